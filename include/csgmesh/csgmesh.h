@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * csgmesh: text scenes -> CSG/blend trees -> watertight triangle meshes.
+ *
+ * The flow is one way:   text -> scene -> field -> mesh -> file
+ *
+ * Conventions
+ *   Units      Lengths are scene units unless the name says otherwise (_deg, _ms, _s, _bytes).
+ *   Axes       Right handed, Z up. f > 0 inside, f < 0 outside; f = 0 counts as inside.
+ *   Ownership  *_create, *_parse, *_load, *_compile, *_build, *_read give you an object;
+ *              pass it to its *_destroy once. *_destroy(NULL) is a no-op. All else borrows.
+ *   Lifetime   A context outlives everything made with it.
+ *   Immutable  Scenes, fields and meshes never change after they are made.
+ *   Threads    A context belongs to one thread at a time. Scenes, fields and meshes may be
+ *              read from any number of threads.
+ *   Errors     Fallible calls return csgm_status; *out is NULL unless it is CSGM_OK.
+ *              Bad input is an error with a diagnostic. Broken contracts (NULL context,
+ *              options not made by *_default) are CSGM_ERR_ARGUMENT. Nothing exits or aborts.
+ *   Determinism  Same scene text + options => same bytes, for any thread count and any ISA.
+ */
+#ifndef CSGMESH_CSGMESH_H
+#define CSGMESH_CSGMESH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define CSGM_VERSION_MAJOR 0
+#define CSGM_VERSION_MINOR 1
+#define CSGM_VERSION_PATCH 0
+
+#ifndef CSGM_API
+#if defined(__GNUC__)
+#define CSGM_API __attribute__((visibility("default")))
+#else
+#define CSGM_API
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- vocabulary ------------------------------------------------------------------ */
+
+typedef struct csgm_vec3 {
+    double x, y, z;
+} csgm_vec3;
+
+/* Axis-aligned; empty when min.x > max.x; a side may be infinite. */
+typedef struct csgm_box {
+    csgm_vec3 min, max;
+} csgm_box;
+
+typedef enum csgm_status {
+    CSGM_OK = 0,
+    CSGM_ERR_ARGUMENT,    /* the caller broke the contract of the call */
+    CSGM_ERR_SYNTAX,      /* the text is not in the language */
+    CSGM_ERR_SCENE,       /* well-formed text with no meaning: unknown name, negative radius */
+    CSGM_ERR_LIMIT,       /* a budget in csgm_limits was reached */
+    CSGM_ERR_MEMORY,      /* the allocator returned NULL, or limits.memory_bytes was reached */
+    CSGM_ERR_IO,          /* errno text is in the diagnostic */
+    CSGM_ERR_FORMAT,      /* a mesh file that is broken or not of the format it claims */
+    CSGM_ERR_UNSUPPORTED, /* this build has no writer/reader for that format */
+    CSGM_ERR_INTERNAL,    /* a bug in csgmesh; please report it */
+    CSGM_CANCELLED        /* csgm_monitor.cancelled said so */
+} csgm_status;
+
+CSGM_API const char *csgm_status_name(csgm_status status); /* "ERR_SYNTAX"; static storage */
+
+/* "0.1.0"; static storage. */
+CSGM_API const char *csgm_version(void);
+
+/* ---- diagnostics ----------------------------------------------------------------- */
+
+typedef enum csgm_severity { CSGM_NOTE, CSGM_WARNING, CSGM_ERROR } csgm_severity;
+
+/* One finding about one place. Borrowed: valid only during the callback. */
+typedef struct csgm_diag {
+    csgm_severity severity;
+    uint16_t code;            /* stable number, printed as E0107; see scenes/README.md */
+    const char *source_name;  /* what you passed as name or path; NULL = not about a file */
+    uint32_t line, column;    /* 1-based; column counts bytes; 0 = not about text */
+    uint32_t length;          /* bytes of source the finding covers */
+    const char *message;      /* one sentence, no newline: "radius must be positive" */
+    const char *hint;         /* what to do, or NULL: "did you mean 'sphere'?" */
+    const char *source_line;  /* the whole line, not terminated, or NULL */
+    uint32_t source_line_length;
+} csgm_diag;
+
+typedef void csgm_diag_fn(void *user, const csgm_diag *diag);
+
+/* Formats "part.txt:4:9: error E0107: ..." plus the source line, the caret line and the hint,
+ * each line ending in '\n'. Returns bytes needed without the terminator; writes at most size
+ * bytes including it (snprintf rules). */
+CSGM_API size_t csgm_diag_format(const csgm_diag *diag, char *buffer, size_t size);
+
+/* Receives text in pieces: the scene's echo() lines, dumps. Not terminated. */
+typedef void csgm_text_fn(void *user, const char *text, size_t length);
+
+/* ---- context: allocator, workers, limits ------------------------------------------ */
+
+typedef struct csgm_context csgm_context;
+
+/* All zero = malloc/free. Called from any worker thread. */
+typedef struct csgm_allocator {
+    void *(*alloc)(void *user, size_t size_bytes); /* aligned for any type; NULL = out of memory */
+    void (*release)(void *user, void *memory, size_t size_bytes);
+    void *user;
+} csgm_allocator;
+
+typedef enum csgm_isa {
+    CSGM_ISA_AUTO,
+    CSGM_ISA_SCALAR,
+    CSGM_ISA_SSE2,
+    CSGM_ISA_AVX2,
+    CSGM_ISA_AVX512,
+    CSGM_ISA_NEON
+} csgm_isa;
+
+typedef struct csgm_limits {
+    uint32_t depth;        /* nesting of text, calls and solids; default 10 000 */
+    uint32_t scene_nodes;  /* nodes of the evaluated tree; default 4 million */
+    uint64_t eval_steps;   /* language steps, guards endless loops; default 1e9 */
+    uint64_t memory_bytes; /* of the context's allocator; default 8 GiB; 0 = no limit */
+    double timeout_s;      /* wall clock of one scene's parse and evaluation and of one mesh
+                              build; default 0 = none */
+} csgm_limits;
+
+typedef struct csgm_context_options {
+    uint32_t struct_size; /* set by csgm_context_options_default; do not touch */
+    csgm_allocator allocator;
+    uint32_t threads;        /* 0 = one per core; 1 = everything on the calling thread */
+    csgm_isa isa;            /* AUTO: the widest this machine runs, or what the environment variable
+                                CSGMESH_ISA names; results are equal */
+    csgm_limits limits;
+    bool warnings_as_errors; /* default false */
+    csgm_diag_fn *on_diag;   /* called on the calling thread only; NULL = silent */
+    csgm_text_fn *on_echo;   /* whole lines "ECHO: ...\n"; NULL = dropped */
+    void *user;              /* passed to on_diag and on_echo */
+} csgm_context_options;
+
+CSGM_API csgm_context_options csgm_context_options_default(void);
+/* options NULL = defaults. */
+CSGM_API csgm_status csgm_context_create(const csgm_context_options *options, csgm_context **out);
+CSGM_API void csgm_context_destroy(csgm_context *context);
+/* Bytes taken from the allocator now and at most so far. */
+CSGM_API uint64_t csgm_context_memory(const csgm_context *context, uint64_t *peak_bytes);
+CSGM_API uint32_t csgm_context_threads(const csgm_context *context);
+/* "avx512", "avx2", "sse2", "neon" or "scalar"; static storage. */
+CSGM_API const char *csgm_context_isa(const csgm_context *context);
+
+/* ---- scene: the evaluated CSG/blend tree ------------------------------------------ */
+
+typedef struct csgm_scene csgm_scene;
+
+/* A top-level assignment made from outside, as -D NAME=EXPR: it replaces the scene's own. */
+typedef struct csgm_define {
+    const char *name;       /* "radius" */
+    const char *expression; /* in the scene language: "50", "[1, 2]", "\"text\"" */
+} csgm_define;
+
+typedef struct csgm_scene_options {
+    uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
+    const csgm_define *defines;
+    size_t define_count;
+    const char *const *include_dirs; /* searched after the including file's own folder */
+    size_t include_dir_count;
+} csgm_scene_options;
+
+CSGM_API csgm_scene_options csgm_scene_options_default(void);
+
+/* text: UTF-8, text_length bytes, may hold NULs (an error with a place). name: for diagnostics
+ * and, where it has a folder, for relative includes. options NULL = defaults. */
+CSGM_API csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t text_length,
+                                      const char *name, const csgm_scene_options *options,
+                                      csgm_scene **out);
+CSGM_API csgm_status csgm_scene_load(csgm_context *context, const char *path,
+                                     const csgm_scene_options *options, csgm_scene **out);
+CSGM_API void csgm_scene_destroy(csgm_scene *scene);
+
+typedef struct csgm_scene_info {
+    csgm_box bounds;   /* contains the solid (S-bounds); infinite sides if unbounded, empty if empty */
+    uint32_t primitive_count, operator_count;
+    double lipschitz;  /* |f(p) - f(q)| <= lipschitz |p - q| */
+    bool has_colors;
+} csgm_scene_info;
+
+CSGM_API csgm_scene_info csgm_scene_get_info(const csgm_scene *scene);
+
+/* Files read for the scene: the scene itself, then includes, in order of first reading.
+ * Returns NULL when index is past the end. */
+CSGM_API const char *csgm_scene_dependency(const csgm_scene *scene, size_t index);
+
+/* Value and gradient in double precision (operators.md, EvalField), for looking, not for speed.
+ * gradient (may be NULL) is zero at critical points. */
+CSGM_API double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient);
+
+/* Primitives that can change the value at this point (the others may be pruned there). */
+CSGM_API uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec3 at);
+
+/* ---- field: the scene compiled to a tape ------------------------------------------ */
+
+typedef struct csgm_field csgm_field;
+
+CSGM_API csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene,
+                                        csgm_field **out);
+CSGM_API void csgm_field_destroy(csgm_field *field);
+
+/* Field values in float at count points (scene units) given as three arrays; out must not
+ * overlap them. Bit-equal on every ISA. */
+CSGM_API void csgm_field_eval(const csgm_field *field, const float *x, const float *y,
+                              const float *z, float *out, size_t count);
+
+/* ---- watching and stopping long calls ---------------------------------------------- */
+
+typedef enum csgm_stage { CSGM_STAGE_OCTREE, CSGM_STAGE_MESH, CSGM_STAGE_WRITE } csgm_stage;
+
+typedef struct csgm_monitor { /* all zero = nobody watches */
+    /* On the calling thread, at most about 20 times a second; fraction (of the stage) never falls. */
+    void (*progress)(void *user, csgm_stage stage, double fraction);
+    /* On any worker, about once per block: be quick and thread safe. true = stop. */
+    bool (*cancelled)(void *user);
+    void *user;
+} csgm_monitor;
+
+/* ---- mesh ------------------------------------------------------------------------- */
+
+typedef struct csgm_mesh csgm_mesh;
+
+typedef struct csgm_mesh_options {
+    uint32_t struct_size; /* set by csgm_mesh_options_default; do not touch */
+    csgm_box bounds;      /* what to mesh, the solid is cut and capped there; empty (the default) =
+                             the scene's own bounds */
+    double cell_size;     /* edge of a marching-cubes cell; 0 = derive from resolution */
+    uint32_t resolution;  /* cells along the longest side when cell_size is 0; default 128 */
+    bool normals;         /* vertex normals from the field's gradient; default true */
+    bool colors;          /* vertex colours where the scene has any; default true */
+    bool prune;           /* default true; false gives the same mesh, slower (for checking) */
+    csgm_monitor monitor;
+} csgm_mesh_options;
+
+CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
+
+typedef struct csgm_mesh_stats {
+    double octree_s, mesh_s; /* wall time: octree + sampling + counting; roots + normals + triangles */
+    double cell_size;
+    uint32_t cells[3];
+    uint64_t cells_visited;  /* octree cells tested */
+    uint64_t pruned_outside, pruned_inside; /* of those, proven free of surface */
+    uint64_t leaf_blocks;    /* blocks of 8^3 cells that were sampled */
+    uint64_t point_evaluations, gradient_evaluations, interval_evaluations;
+    uint64_t primitive_evaluations; /* primitives times points or cells, in all three */
+    double mean_tape_length; /* primitives and operators a sampled block evaluates */
+    uint64_t memory_peak_bytes;
+} csgm_mesh_stats;
+
+/* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a
+ * mesh without triangles and a warning. */
+CSGM_API csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
+                                     const csgm_mesh_options *options, csgm_mesh **out,
+                                     csgm_mesh_stats *stats);
+CSGM_API void csgm_mesh_destroy(csgm_mesh *mesh);
+
+/* A borrowed look at a mesh; fill one yourself to write or compare your own arrays. */
+typedef struct csgm_mesh_view {
+    csgm_vec3 origin;        /* position i in scene units = origin + positions[3*i..]; zero unless the
+                                solid lies so far out that floats would be too coarse */
+    const float *positions;  /* 3 * vertex_count */
+    const float *normals;    /* 3 * vertex_count, unit length, outward, or NULL */
+    const uint8_t *colors;   /* 4 * vertex_count, sRGB + alpha, or NULL */
+    const uint32_t *indices; /* 3 * triangle_count; counter-clockwise seen from outside */
+    uint64_t vertex_count, triangle_count; /* vertex_count < 2^32 */
+} csgm_mesh_view;
+
+CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);
+
+/* A closed oriented 2-manifold has zeros in the first block. */
+typedef struct csgm_mesh_check {
+    uint64_t boundary_edges;    /* used once */
+    uint64_t nonmanifold_edges; /* used more than twice */
+    uint64_t misoriented_edges; /* used twice in the same direction */
+    uint64_t nonmanifold_vertices; /* more than one fan of triangles around it */
+    uint64_t degenerate_triangles; /* an index used twice */
+    uint64_t index_out_of_range;   /* indices >= vertex_count; such triangles are left out of the rest */
+
+    uint64_t unused_vertices;
+    uint64_t zero_area_triangles;
+    int64_t euler;       /* V - E + F over used vertices */
+    uint64_t components; /* connected by shared edges */
+    int64_t genus;       /* components - euler / 2; meaningful for closed manifolds */
+    double area, volume; /* volume by the divergence theorem; meaningful for closed meshes */
+    double min_angle_deg;
+    csgm_box bounds;     /* of used vertices */
+} csgm_mesh_check;
+
+CSGM_API csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
+                                       csgm_mesh_check *out);
+
+/* Largest |f| over the mesh's vertices, in double precision (lambda = 1: their distance to the
+ * surface is at least this). */
+CSGM_API double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh);
+
+/* ---- files ------------------------------------------------------------------------- */
+
+typedef enum csgm_format {
+    CSGM_FORMAT_AUTO, /* by the extension */
+    CSGM_FORMAT_OBJ,
+    CSGM_FORMAT_PLY,  /* binary little endian; ASCII with csgm_write_options.ascii */
+    CSGM_FORMAT_STL,  /* binary; ASCII with csgm_write_options.ascii */
+    CSGM_FORMAT_OFF,
+    CSGM_FORMAT_GLTF, /* JSON with the buffer embedded as base64 */
+    CSGM_FORMAT_GLB,
+    CSGM_FORMAT_DRC,  /* bare Draco */
+    CSGM_FORMAT_COUNT
+} csgm_format;
+
+/* AUTO when the extension (or name, e.g. "ply") is unknown. */
+CSGM_API csgm_format csgm_format_from_path(const char *path);
+CSGM_API csgm_format csgm_format_from_name(const char *name);
+CSGM_API const char *csgm_format_name(csgm_format format); /* "ply"; static storage */
+CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
+/* One line for --version: which optional libraries this build has, and which it lacks. */
+CSGM_API const char *csgm_build_features(void);
+
+typedef enum csgm_unit { CSGM_UNIT_NONE, CSGM_UNIT_MM, CSGM_UNIT_CM, CSGM_UNIT_M, CSGM_UNIT_IN } csgm_unit;
+
+typedef struct csgm_write_options {
+    uint32_t struct_size; /* set by csgm_write_options_default; do not touch */
+    bool ascii;           /* PLY and STL as text; default false */
+    bool draco;           /* GLB and glTF with KHR_draco_mesh_compression; default false */
+    uint32_t draco_position_bits; /* 1..30, default 14 */
+    uint32_t draco_normal_bits;   /* 2..30, default 10 */
+    uint32_t draco_color_bits;    /* 1..30, default 8 */
+    uint32_t draco_level;         /* 0 (fast) .. 10 (small), default 7 */
+    bool y_up;      /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
+                       Other formats keep the scene's axes. */
+    csgm_unit unit; /* glTF and GLB: one scene unit; glTF is in metres, the node scales. Default NONE */
+} csgm_write_options;
+
+CSGM_API csgm_write_options csgm_write_options_default(void);
+
+/* The file appears complete or not at all: written beside the target, synced, renamed.
+ * options NULL = defaults. */
+CSGM_API csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh,
+                                     const char *path, csgm_format format,
+                                     const csgm_write_options *options);
+/* The same bytes to an open file descriptor (a pipe, standard output). */
+CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                                        const char *name, csgm_format format,
+                                        const csgm_write_options *options);
+/* A glTF's node transforms are applied and the Z-up frame restored; several meshes are joined.
+ * STL corners with equal position bits become one vertex. */
+CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
+                                    csgm_mesh **out);
+
+/* ---- looking inside (stable text, for tests and for people) -------------------------- */
+
+typedef enum csgm_dump { CSGM_DUMP_SCENE, CSGM_DUMP_TAPE } csgm_dump;
+
+/* SCENE parses back to the same tree. */
+CSGM_API csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm_dump what,
+                                     csgm_text_fn *sink, void *user);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* CSGMESH_CSGMESH_H */

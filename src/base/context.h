@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ * What every layer shares for one user: memory, findings, limits, workers.
+ */
+#ifndef CSG_BASE_CONTEXT_H
+#define CSG_BASE_CONTEXT_H
+
+#include "base/diagnostics.h"
+#include "base/memory.h"
+
+typedef struct csg_pool csg_pool;
+
+struct csgm_context {
+    csg_memory memory;
+    csg_diag_sink diags;
+    csgm_limits limits;
+    csgm_text_fn *on_echo; /* NULL = dropped */
+    void *user;
+    csgm_isa isa;     /* never AUTO */
+    csg_pool *pool;   /* threads = 1: still a pool, of the caller alone */
+};
+
+/* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY. */
+csgm_status csg_context_no_memory(csgm_context *context);
+
+#endif

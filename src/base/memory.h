@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ * Memory with a budget: every byte of a context goes through one csg_memory, which counts and
+ * refuses above its limit. Arenas take blocks from it; one object, one arena.
+ * Every function that allocates can fail: NULL or false means "out of memory", nothing changed.
+ */
+#ifndef CSG_BASE_MEMORY_H
+#define CSG_BASE_MEMORY_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "csgmesh/csgmesh.h"
+
+typedef struct csg_memory {
+    csgm_allocator allocator;
+    uint64_t limit_bytes; /* 0 = none */
+    atomic_uint_fast64_t used_bytes, peak_bytes;
+} csg_memory;
+
+void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64_t limit_bytes);
+
+/* size_bytes must be > 0. Thread safe. */
+void *csg_memory_alloc(csg_memory *memory, size_t size_bytes);
+/* size_bytes as allocated; NULL is a no-op. */
+void csg_memory_release(csg_memory *memory, void *pointer, size_t size_bytes);
+
+/* Makes room for at least `needed` elements (doubling) in an array owned by the caller:
+ * *data and *capacity are replaced together. */
+bool csg_memory_reserve(csg_memory *memory, void **data, size_t *capacity, size_t needed,
+                        size_t element_bytes);
+
+/* ---- arena: allocate many, release all at once ------------------------------------- */
+
+typedef struct csg_arena_block csg_arena_block;
+
+typedef struct csg_arena {
+    csg_memory *memory;
+    csg_arena_block *blocks; /* newest first */
+    uint8_t *cursor, *end;
+    csg_arena_block *spare; /* one block kept by csg_arena_release_to */
+} csg_arena;
+
+/* A place in an arena to return to. */
+typedef struct csg_arena_mark {
+    csg_arena_block *block;
+    uint8_t *cursor, *end;
+} csg_arena_mark;
+
+void csg_arena_init(csg_arena *arena, csg_memory *memory);
+void csg_arena_reset(csg_arena *arena); /* gives every block back; the arena stays usable */
+
+/* Not zeroed. size_bytes may be 0. Aligned to 16. */
+void *csg_arena_alloc(csg_arena *arena, size_t size_bytes);
+void *csg_arena_calloc(csg_arena *arena, size_t count, size_t element_bytes); /* zeroed, overflow checked */
+/* A terminated copy. */
+char *csg_arena_strndup(csg_arena *arena, const char *text, size_t length);
+/* A terminated formatted string. */
+char *csg_arena_printf(csg_arena *arena, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+csg_arena_mark csg_arena_get_mark(const csg_arena *arena);
+void csg_arena_release_to(csg_arena *arena, csg_arena_mark mark);
+
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ * A pool of POSIX threads; see pool.h. One job at a time: workers sleep on `wake` until the job
+ * number changes, claim items from an atomic counter, and the last one out signals `idle`.
+ */
+#include "base/pool.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+typedef struct job {
+    csg_pool_work *work;
+    void *user;
+    size_t count;
+} job;
+
+typedef struct worker {
+    csg_pool *pool;
+    uint32_t index;
+    pthread_t thread;
+} worker;
+
+struct csg_pool {
+    csg_memory *memory;
+    uint32_t threads; /* with the caller */
+    pthread_mutex_t lock;
+    pthread_cond_t wake, idle;
+    uint64_t generation; /* of the job; under lock */
+    uint32_t busy;       /* workers still in the job; under lock */
+    bool quit;           /* under lock */
+    job job;             /* written under lock, before generation changes */
+    atomic_size_t next, done;
+    atomic_bool stopped;
+    uint32_t allocated; /* length of workers */
+    worker workers[];
+};
+
+static void run_item(csg_pool *pool, uint32_t worker_index, size_t index)
+{
+    if (!pool->job.work(pool->job.user, worker_index, index))
+        atomic_store(&pool->stopped, true);
+    atomic_fetch_add(&pool->done, 1);
+}
+
+static bool claim(csg_pool *pool, size_t *index)
+{
+    if (atomic_load_explicit(&pool->stopped, memory_order_relaxed))
+        return false;
+    *index = atomic_fetch_add(&pool->next, 1);
+    return *index < pool->job.count;
+}
+
+static void *worker_main(void *argument)
+{
+    worker *self = argument;
+    csg_pool *pool = self->pool;
+    uint64_t seen = 0;
+    pthread_mutex_lock(&pool->lock);
+    for (;;) {
+        while (!pool->quit && pool->generation == seen)
+            pthread_cond_wait(&pool->wake, &pool->lock);
+        if (pool->quit)
+            break;
+        seen = pool->generation;
+        pthread_mutex_unlock(&pool->lock);
+        size_t index;
+        while (claim(pool, &index))
+            run_item(pool, self->index, index);
+        pthread_mutex_lock(&pool->lock);
+        if (--pool->busy == 0)
+            pthread_cond_signal(&pool->idle);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+static size_t pool_bytes(uint32_t workers)
+{
+    return sizeof(csg_pool) + workers * sizeof(worker);
+}
+
+csg_pool *csg_pool_create(csg_memory *memory, uint32_t threads)
+{
+    uint32_t extra = threads > 1 ? threads - 1 : 0;
+    csg_pool *pool = csg_memory_alloc(memory, pool_bytes(extra));
+    if (!pool)
+        return NULL;
+    *pool = (csg_pool){.memory = memory, .threads = 1, .allocated = extra};
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    pthread_cond_init(&pool->idle, NULL);
+    for (uint32_t i = 0; i < extra; i++) {
+        worker *w = &pool->workers[i];
+        *w = (worker){.pool = pool, .index = pool->threads};
+        if (pthread_create(&w->thread, NULL, worker_main, w) != 0)
+            break; /* fewer workers give the same bytes */
+        pool->threads++;
+    }
+    return pool;
+}
+
+void csg_pool_destroy(csg_pool *pool)
+{
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->quit = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (uint32_t i = 0; i + 1 < pool->threads; i++)
+        pthread_join(pool->workers[i].thread, NULL);
+    pthread_cond_destroy(&pool->idle);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+    csg_memory_release(pool->memory, pool, pool_bytes(pool->allocated));
+}
+
+uint32_t csg_pool_threads(const csg_pool *pool)
+{
+    return pool->threads;
+}
+
+bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll, void *user)
+{
+    pthread_mutex_lock(&pool->lock);
+    pool->job = (job){work, user, count};
+    atomic_store(&pool->next, 0);
+    atomic_store(&pool->done, 0);
+    atomic_store(&pool->stopped, false);
+    bool alone = pool->threads == 1 || count < 2;
+    if (!alone) {
+        pool->busy = pool->threads - 1;
+        pool->generation++;
+        pthread_cond_broadcast(&pool->wake);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    size_t index;
+    while (claim(pool, &index)) {
+        run_item(pool, 0, index);
+        if (poll)
+            poll(user, atomic_load(&pool->done), count);
+    }
+    if (!alone) {
+        pthread_mutex_lock(&pool->lock);
+        while (pool->busy)
+            pthread_cond_wait(&pool->idle, &pool->lock);
+        pthread_mutex_unlock(&pool->lock);
+    }
+    return !atomic_load(&pool->stopped);
+}

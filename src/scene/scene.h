@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * The evaluated tree of solids: flat arrays, index links. Children have smaller indices than
+ * their parent and each node has at most one parent, so a loop upwards over the nodes is bottom-up
+ * and a loop downwards is top-down: no recursion, however deep the tree.
+ *
+ * Field of a node (f > 0 inside):
+ *   primitive      its exact signed distance in its own frame
+ *   transform M    f(p) = s g(M^-1 p), s = smallest singular value of M: Lipschitz constant kept;
+ *                  for similarities this is the exact distance again
+ *   color          its child
+ *   operator       scene/operators.def; difference is the intersection of the first child with
+ *                  the negated others
+ *   empty          -infinity
+ */
+#ifndef CSG_SCENE_SCENE_H
+#define CSG_SCENE_SCENE_H
+
+#include <stdint.h>
+
+#include "base/context.h"
+#include "base/geometry.h"
+
+typedef uint32_t csg_node_id;
+#define CSG_NODE_NONE UINT32_MAX
+
+typedef enum csg_node_kind {
+    CSG_NODE_EMPTY,
+#define CSG_PRIMITIVE(NAME, name, count, doc) CSG_NODE_##NAME,
+#include "scene/primitives.def"
+#undef CSG_PRIMITIVE
+    CSG_NODE_TRANSFORM,
+    CSG_NODE_COLOR,
+    CSG_NODE_UNION,
+    CSG_NODE_INTERSECTION,
+    CSG_NODE_DIFFERENCE
+} csg_node_kind;
+
+static inline bool csg_node_is_primitive(csg_node_kind kind)
+{
+    return kind > CSG_NODE_EMPTY && kind < CSG_NODE_TRANSFORM;
+}
+static inline bool csg_node_is_operator(csg_node_kind kind)
+{
+    return kind >= CSG_NODE_UNION;
+}
+/* "sphere", "union", ...; static storage. */
+const char *csg_node_kind_name(csg_node_kind kind);
+/* Doubles in a primitive's payload. */
+uint32_t csg_primitive_parameter_count(csg_node_kind kind);
+
+typedef enum csg_blend_kind {
+#define CSG_BLEND(NAME, name, raw, support, excess, fold, doc) CSG_BLEND_##NAME,
+#include "scene/operators.def"
+#undef CSG_BLEND
+    CSG_BLEND_COUNT
+} csg_blend_kind;
+
+/* A blend with its parameter n of operators.md section 2 (w of section 12 for ROUND). */
+typedef struct csg_blend {
+    csg_blend_kind kind;
+    double n; /* > 0; 0 for SHARP. HYPERBOLA and RECIPROCAL: area, else length */
+} csg_blend;
+
+const char *csg_blend_name(csg_blend_kind kind); /* as in the scene language */
+/* n for the language's width w (operators.md 13). */
+double csg_blend_raw(csg_blend_kind kind, double width);
+/* chi: operands that differ by this or more do not blend; INFINITY for some. */
+double csg_blend_support(csg_blend blend);
+/* Largest value of G - max over `operands` operands. */
+double csg_blend_excess(csg_blend blend, uint32_t operands);
+bool csg_blend_is_fold(csg_blend_kind kind);
+/* The blend as a solid scaled by `factor` needs it: areas grow with its square. */
+csg_blend csg_blend_scale(csg_blend blend, double factor);
+
+/* A place in a source text (text/source.h); source UINT32_MAX = nowhere. */
+typedef struct csg_span {
+    uint32_t source, offset, length;
+} csg_span;
+
+typedef struct csg_color {
+    float r, g, b, a; /* 0..1, sRGB */
+} csg_color;
+
+typedef struct csg_node {
+    uint8_t kind;         /* csg_node_kind */
+    uint8_t blend;        /* operators: csg_blend_kind */
+    uint32_t first_child; /* into children */
+    uint32_t child_count;
+    uint32_t payload; /* primitives: into parameters; transforms: into transforms; colours: into
+                         colors; operators: into parameters, where n is */
+    csg_span where;
+} csg_node;
+
+struct csgm_scene {
+    csgm_context *context;
+    csg_arena arena; /* holds all arrays, once sealed */
+    csg_node *nodes;
+    csg_node_id *children;
+    double *parameters;
+    csg_affine *transforms;
+    csg_color *colors;
+    size_t node_count, child_count, parameter_count, transform_count, color_count;
+    csg_node_id root; /* never NONE: an empty scene has an EMPTY node */
+    csg_box *bounds;  /* per node, in its own frame: contains {f >= 0} (bounds.h) */
+    const char **dependencies; /* files read, owned by arena */
+    size_t dependency_count;
+};
+
+static inline const csg_node_id *csg_scene_children(const csgm_scene *scene, const csg_node *node)
+{
+    return scene->children + node->first_child;
+}
+static inline const double *csg_scene_parameters(const csgm_scene *scene, const csg_node *node)
+{
+    return scene->parameters + node->payload;
+}
+csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
+
+/* Largest Lipschitz constant of the scene's field: 1 for every node so far. */
+double csg_scene_lipschitz(const csgm_scene *scene);
+
+#endif
