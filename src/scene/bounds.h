@@ -18,6 +18,10 @@ typedef struct csg_node_bounds {
  * scene->node_count entries. Unreachable nodes do not exist in a sealed scene. */
 csgm_status csg_bounds_compute(const csgm_scene *scene, double delta, csg_node_bounds *out);
 
+/* Fills scene->bounds of a scene whose other arrays are ready: each node's box in its own frame
+ * without regard to its ancestors, except that the root's is cut to what the whole tree can show. */
+csgm_status csg_bounds_fill(csgm_scene *scene);
+
 /* Box of the solid {f >= 0}. Empty for an empty solid, infinite sides for an unbounded one. */
 csg_box csg_bounds_of_solid(const csgm_scene *scene);
 

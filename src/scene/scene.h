@@ -98,6 +98,8 @@ struct csgm_scene {
     csg_node_id *children;
     double *parameters;
     csg_affine *transforms;
+    csg_affine *inverses;  /* once sealed: of transforms */
+    double *scales;        /* once sealed: smallest singular values of transforms */
     csg_color *colors;
     size_t node_count, child_count, parameter_count, transform_count, color_count;
     csg_node_id root; /* never NONE: an empty scene has an EMPTY node */
@@ -115,6 +117,9 @@ static inline const double *csg_scene_parameters(const csgm_scene *scene, const 
     return scene->parameters + node->payload;
 }
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
+
+/* Gives back a sealed scene, the struct itself too. NULL is a no-op. */
+void csg_scene_destroy(csgm_scene *scene);
 
 /* Largest Lipschitz constant of the scene's field: 1 for every node so far. */
 double csg_scene_lipschitz(const csgm_scene *scene);

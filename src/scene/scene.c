@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ * Names and numbers of primitives and blends, read out of primitives.def and operators.def.
+ */
+#include "scene/scene.h"
+
+#include <assert.h>
+
+typedef struct kind_row {
+    const char *name;
+    uint32_t parameter_count;
+} kind_row;
+
+static const kind_row kinds[] = {
+    [CSG_NODE_EMPTY] = {"empty", 0},
+#define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
+#include "scene/primitives.def"
+#undef CSG_PRIMITIVE
+    [CSG_NODE_TRANSFORM] = {"transform", 0},   [CSG_NODE_COLOR] = {"color", 0},
+    [CSG_NODE_UNION] = {"union", 0},           [CSG_NODE_INTERSECTION] = {"intersection", 0},
+    [CSG_NODE_DIFFERENCE] = {"difference", 0},
+};
+
+const char *csg_node_kind_name(csg_node_kind kind)
+{
+    assert((size_t)kind < sizeof kinds / sizeof *kinds);
+    return kinds[kind].name;
+}
+
+uint32_t csg_primitive_parameter_count(csg_node_kind kind)
+{
+    assert((size_t)kind < sizeof kinds / sizeof *kinds);
+    return kinds[kind].parameter_count;
+}
+
+typedef struct blend_row {
+    const char *name;
+    double raw, support, excess;
+    bool fold;
+} blend_row;
+
+static const blend_row blends[CSG_BLEND_COUNT] = {
+#define CSG_BLEND(NAME, name, raw, support, excess, fold, doc)                                     \
+    [CSG_BLEND_##NAME] = {#name, raw, support, excess, fold},
+#include "scene/operators.def"
+#undef CSG_BLEND
+};
+
+static bool has_area(csg_blend_kind kind)
+{
+    return kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL;
+}
+
+const char *csg_blend_name(csg_blend_kind kind)
+{
+    assert(kind < CSG_BLEND_COUNT);
+    return blends[kind].name;
+}
+
+double csg_blend_raw(csg_blend_kind kind, double width)
+{
+    assert(kind < CSG_BLEND_COUNT);
+    return blends[kind].raw * width;
+}
+
+double csg_blend_support(csg_blend blend)
+{
+    return blend.kind == CSG_BLEND_SHARP ? 0 : blends[blend.kind].support * blend.n;
+}
+
+double csg_blend_excess(csg_blend blend, uint32_t operands)
+{
+    if (blend.kind == CSG_BLEND_SHARP || operands < 2)
+        return 0;
+    if (blend.kind == CSG_BLEND_ROUND)
+        return blend.n * (1 - 1 / sqrt((double)operands));
+    double two = blends[blend.kind].excess * (has_area(blend.kind) ? sqrt(blend.n) : blend.n);
+    return two * (operands - 1); /* each step of the fold exceeds the one before by that much */
+}
+
+bool csg_blend_is_fold(csg_blend_kind kind)
+{
+    assert(kind < CSG_BLEND_COUNT);
+    return blends[kind].fold;
+}
+
+csg_blend csg_blend_scale(csg_blend blend, double factor)
+{
+    blend.n *= has_area(blend.kind) ? factor * factor : factor;
+    return blend;
+}
+
+csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
+{
+    return (csg_blend){(csg_blend_kind)node->blend, scene->parameters[node->payload]};
+}
+
+double csg_scene_lipschitz(const csgm_scene *scene)
+{
+    (void)scene; /* primitives and transforms have 1, every blend so far is a convex combination */
+    return 1;
+}
+
+void csg_scene_destroy(csgm_scene *scene)
+{
+    if (!scene)
+        return;
+    csg_memory *memory = &scene->context->memory;
+    csg_arena_reset(&scene->arena);
+    csg_memory_release(memory, scene, sizeof *scene);
+}

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT
+ * Sealing a scene: walks the builder's nodes from the root with an explicit stack, inlines nested
+ * sharp unions and intersections, and copies what is left into one arena, children before parents,
+ * left before right. The inverse and the smallest singular value of each transform and the bounds
+ * of each node are computed once, here.
+ */
+#include "scene/bounds.h"
+#include "scene/build.h"
+
+#include <string.h>
+
+/* A reachable node: which one of the builder's, and its parent's place in the same list. */
+typedef struct visit {
+    csg_node_id node;
+    uint32_t parent;
+} visit;
+
+/* Reachable nodes, parents before children, right before left. */
+typedef struct walk {
+    visit *stack, *order;
+    uint8_t *seen; /* per node of the builder */
+    uint32_t stacked, count;
+} walk;
+
+static bool walk_begin(walk *w, csg_arena *scratch, size_t node_count)
+{
+    *w = (walk){0};
+    w->stack = csg_arena_calloc(scratch, node_count, sizeof *w->stack);
+    w->order = csg_arena_calloc(scratch, node_count, sizeof *w->order);
+    w->seen = csg_arena_calloc(scratch, node_count, sizeof *w->seen);
+    return w->stack && w->order && w->seen;
+}
+
+static bool push(walk *w, csg_node_id node, uint32_t parent)
+{
+    if (w->seen[node])
+        return false;
+    w->seen[node] = 1;
+    w->stack[w->stacked++] = (visit){node, parent};
+    return true;
+}
+
+static bool is_flattened(const csgm_scene *scene, csg_node_id inner, csg_node_id outer)
+{
+    const csg_node *a = &scene->nodes[inner], *b = &scene->nodes[outer];
+    return a->kind == b->kind && (a->kind == CSG_NODE_UNION || a->kind == CSG_NODE_INTERSECTION) &&
+           a->blend == CSG_BLEND_SHARP && b->blend == CSG_BLEND_SHARP;
+}
+
+/* False when a node is reached twice. */
+static bool walk_from(walk *w, const csgm_scene *scene, csg_node_id root)
+{
+    push(w, root, UINT32_MAX);
+    while (w->stacked) {
+        visit v = w->stack[--w->stacked];
+        const csg_node *node = &scene->nodes[v.node];
+        if (v.parent == UINT32_MAX || !is_flattened(scene, v.node, w->order[v.parent].node)) {
+            w->order[w->count] = v;
+            v.parent = w->count++;
+        }
+        for (uint32_t i = 0; i < node->child_count; i++)
+            if (!push(w, csg_scene_children(scene, node)[i], v.parent))
+                return false;
+    }
+    return true;
+}
+
+/* ---- copying -------------------------------------------------------------------------- */
+
+static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *w)
+{
+    for (uint32_t i = 0; i < w->count; i++) {
+        const csg_node *node = &from->nodes[w->order[i].node];
+        out->parameter_count +=
+            csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
+        out->transform_count += node->kind == CSG_NODE_TRANSFORM;
+        out->color_count += node->kind == CSG_NODE_COLOR;
+    }
+    out->node_count = w->count;
+    out->child_count = w->count - 1; /* a tree */
+    csg_arena *arena = &out->arena;
+    out->nodes = csg_arena_calloc(arena, out->node_count, sizeof *out->nodes);
+    out->bounds = csg_arena_calloc(arena, out->node_count, sizeof *out->bounds);
+    out->children = csg_arena_calloc(arena, out->child_count, sizeof *out->children);
+    out->parameters = csg_arena_calloc(arena, out->parameter_count, sizeof *out->parameters);
+    out->transforms = csg_arena_calloc(arena, out->transform_count, sizeof *out->transforms);
+    out->inverses = csg_arena_calloc(arena, out->transform_count, sizeof *out->inverses);
+    out->scales = csg_arena_calloc(arena, out->transform_count, sizeof *out->scales);
+    out->colors = csg_arena_calloc(arena, out->color_count, sizeof *out->colors);
+    return out->nodes && out->bounds && out->children && out->parameters && out->transforms &&
+           out->inverses && out->scales && out->colors;
+}
+
+static void copy_transform(csgm_scene *out, csg_affine matrix)
+{
+    size_t i = out->transform_count++;
+    double largest;
+    out->transforms[i] = matrix;
+    csg_affine_invert(matrix, &out->inverses[i]); /* the builder checked that it can be */
+    csg_affine_singular_values(&matrix, &out->scales[i], &largest);
+}
+
+static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node)
+{
+    uint32_t old = node->payload;
+    if (node->kind == CSG_NODE_TRANSFORM) {
+        node->payload = (uint32_t)out->transform_count;
+        copy_transform(out, from->transforms[old]);
+    } else if (node->kind == CSG_NODE_COLOR) {
+        node->payload = (uint32_t)out->color_count;
+        out->colors[out->color_count++] = from->colors[old];
+    } else {
+        uint32_t count =
+            csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
+        node->payload = (uint32_t)out->parameter_count;
+        for (uint32_t i = 0; i < count; i++)
+            out->parameters[out->parameter_count++] = from->parameters[old + i];
+    }
+}
+
+/* The list backwards is the sealed order: children first, left before right. */
+static void copy_nodes(csgm_scene *out, const csgm_scene *from, const walk *w)
+{
+    out->parameter_count = out->transform_count = out->color_count = 0;
+    for (uint32_t i = 0; i < w->count; i++) {
+        uint32_t place = w->count - 1 - i;
+        csg_node node = from->nodes[w->order[place].node];
+        copy_payload(out, from, &node);
+        node.child_count = 0;
+        out->nodes[i] = node;
+    }
+    for (uint32_t place = 1; place < w->count; place++)
+        out->nodes[w->count - 1 - w->order[place].parent].child_count++;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < w->count; i++) {
+        out->nodes[i].first_child = first;
+        first += out->nodes[i].child_count;
+        out->nodes[i].child_count = 0;
+    }
+    for (uint32_t i = 0; i + 1 < w->count; i++) {
+        csg_node *parent = &out->nodes[w->count - 1 - w->order[w->count - 1 - i].parent];
+        out->children[parent->first_child + parent->child_count++] = i;
+    }
+    out->root = w->count - 1;
+}
+
+static bool copy_dependencies(csgm_scene *out, const char *const *names, size_t count)
+{
+    out->dependencies = csg_arena_calloc(&out->arena, count, sizeof *out->dependencies);
+    if (!out->dependencies)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        out->dependencies[i] = csg_arena_strndup(&out->arena, names[i], strlen(names[i]));
+        if (!out->dependencies[i])
+            return false;
+    }
+    out->dependency_count = count;
+    return true;
+}
+
+static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
+                        csgm_scene *out)
+{
+    walk w;
+    if (!walk_begin(&w, scratch, builder->scene->node_count))
+        return CSGM_ERR_MEMORY;
+    if (!walk_from(&w, builder->scene, root))
+        return CSGM_ERR_INTERNAL;
+    if (!reserve_sealed(out, builder->scene, &w))
+        return CSGM_ERR_MEMORY;
+    copy_nodes(out, builder->scene, &w);
+    return csg_bounds_fill(out);
+}
+
+csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
+                             const char *const *dependencies, size_t dependency_count,
+                             csgm_scene **out)
+{
+    if (builder->status != CSGM_OK)
+        return builder->status;
+    if (root == CSG_NODE_NONE)
+        root = csg_build_empty(builder, (csg_span){.source = UINT32_MAX});
+    if (builder->status != CSGM_OK)
+        return builder->status;
+    if (root >= builder->scene->node_count)
+        return builder->status = CSGM_ERR_ARGUMENT;
+    csg_memory *memory = &builder->context->memory;
+    csgm_scene *scene = csg_memory_alloc(memory, sizeof *scene);
+    if (!scene)
+        return builder->status = CSGM_ERR_MEMORY;
+    *scene = (csgm_scene){.context = builder->context};
+    csg_arena_init(&scene->arena, memory);
+    csg_arena scratch;
+    csg_arena_init(&scratch, memory);
+    csgm_status status = seal(builder, root, &scratch, scene);
+    csg_arena_reset(&scratch);
+    if (status == CSGM_OK && !copy_dependencies(scene, dependencies, dependency_count))
+        status = CSGM_ERR_MEMORY;
+    if (status != CSGM_OK) {
+        csg_scene_destroy(scene);
+        return builder->status = status;
+    }
+    csg_build_abandon(builder);
+    *out = scene;
+    return CSGM_OK;
+}
