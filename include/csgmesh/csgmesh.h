@@ -349,6 +349,9 @@ CSGM_API csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view
 CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                         const char *name, csgm_format format,
                                         const csgm_write_options *options);
+/* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe: for
+ * a handler that then ends the process with _exit. */
+CSGM_API void csgm_files_abandon(void);
 /* A glTF's node transforms are applied and the Z-up frame restored; several meshes are joined.
  * STL corners with equal position bits become one vertex. */
 CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,

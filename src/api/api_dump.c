@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ * Dumps of the public interface: the evaluated tree or the tape as stable text.
+ */
+#include "field/field.h"
+#include "scene/print.h"
+
+static csgm_status dump_tape(csgm_context *context, const csgm_scene *scene, csgm_text_fn *sink,
+                             void *user)
+{
+    csgm_field *field = NULL;
+    csgm_status status = csg_field_compile(context, scene, &field);
+    if (status == CSGM_OK)
+        status = csg_field_print_tape(field, sink, user);
+    csg_field_destroy(field);
+    return status;
+}
+
+csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm_dump what,
+                            csgm_text_fn *sink, void *user)
+{
+    if (!context || !scene || !sink)
+        return CSGM_ERR_ARGUMENT;
+    switch (what) {
+    case CSGM_DUMP_SCENE:
+        return csg_scene_print(context, scene, sink, user);
+    case CSGM_DUMP_TAPE:
+        return dump_tape(context, scene, sink, user);
+    }
+    return CSGM_ERR_ARGUMENT;
+}

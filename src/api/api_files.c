@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT
+ * Mesh files of the public interface: checks the arguments and calls io, which checks the rest.
+ */
+#include "api/view.h"
+#include "io/formats.h"
+
+csgm_format csgm_format_from_path(const char *path)
+{
+    return path ? csg_format_from_path(path) : CSGM_FORMAT_AUTO;
+}
+
+csgm_format csgm_format_from_name(const char *name)
+{
+    return name ? csg_format_from_name(name) : CSGM_FORMAT_AUTO;
+}
+
+const char *csgm_format_name(csgm_format format)
+{
+    return csg_format_name(format);
+}
+
+bool csgm_format_available(csgm_format format, bool for_reading)
+{
+    return csg_format_available(format, for_reading);
+}
+
+const char *csgm_build_features(void)
+{
+    return csg_build_features();
+}
+
+csgm_write_options csgm_write_options_default(void)
+{
+    return csg_write_options_default();
+}
+
+void csgm_files_abandon(void)
+{
+    csg_io_cleanup_pending();
+}
+
+csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
+                            csgm_format format, const csgm_write_options *options)
+{
+    csgm_write_options defaults = csgm_write_options_default();
+    if (!options)
+        options = &defaults;
+    if (!context || !csg_view_is_sound(mesh) || !path || format >= CSGM_FORMAT_COUNT ||
+        options->struct_size != sizeof *options)
+        return CSGM_ERR_ARGUMENT;
+    return csg_io_write(context, mesh, path, format, options);
+}
+
+csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                               const char *name, csgm_format format,
+                               const csgm_write_options *options)
+{
+    csgm_write_options defaults = csgm_write_options_default();
+    if (!options)
+        options = &defaults;
+    if (!context || !csg_view_is_sound(mesh) || fd < 0 || format >= CSGM_FORMAT_COUNT ||
+        options->struct_size != sizeof *options)
+        return CSGM_ERR_ARGUMENT;
+    return csg_io_write_fd(context, mesh, fd, name, format, options);
+}
+
+csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
+                           csgm_mesh **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || !path || format >= CSGM_FORMAT_COUNT)
+        return CSGM_ERR_ARGUMENT;
+    return csg_io_read(context, path, format, out);
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes of the public interface: text in, sealed tree out, and what one may ask of it.
+ */
+#include "lang/lang.h"
+#include "scene/bounds.h"
+#include "scene/reference.h"
+
+csgm_scene_options csgm_scene_options_default(void)
+{
+    return (csgm_scene_options){.struct_size = sizeof(csgm_scene_options)};
+}
+
+static bool scene_options_are_sound(const csgm_scene_options *options)
+{
+    if (!options)
+        return true;
+    if (options->struct_size != sizeof *options || (options->define_count && !options->defines) ||
+        (options->include_dir_count && !options->include_dirs))
+        return false;
+    for (size_t i = 0; i < options->define_count; i++)
+        if (!options->defines[i].name || !options->defines[i].expression)
+            return false;
+    for (size_t i = 0; i < options->include_dir_count; i++)
+        if (!options->include_dirs[i])
+            return false;
+    return true;
+}
+
+csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t text_length,
+                             const char *name, const csgm_scene_options *options, csgm_scene **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || (!text && text_length) || !scene_options_are_sound(options))
+        return CSGM_ERR_ARGUMENT;
+    csg_lang_input input = {.path = name ? name : "text",
+                            .text = text ? text : "",
+                            .text_length = text_length,
+                            .options = options};
+    return csg_lang_compile(context, &input, out);
+}
+
+csgm_status csgm_scene_load(csgm_context *context, const char *path,
+                            const csgm_scene_options *options, csgm_scene **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || !path || !scene_options_are_sound(options))
+        return CSGM_ERR_ARGUMENT;
+    csg_lang_input input = {.path = path, .options = options};
+    return csg_lang_compile(context, &input, out);
+}
+
+void csgm_scene_destroy(csgm_scene *scene)
+{
+    csg_scene_destroy(scene);
+}
+
+csgm_scene_info csgm_scene_get_info(const csgm_scene *scene)
+{
+    csgm_scene_info info = {.bounds = csg_bounds_of_solid(scene),
+                            .lipschitz = csg_scene_lipschitz(scene),
+                            .has_colors = scene->color_count > 0};
+    for (size_t i = 0; i < scene->node_count; i++) {
+        csg_node_kind kind = (csg_node_kind)scene->nodes[i].kind;
+        info.primitive_count += csg_node_is_primitive(kind);
+        info.operator_count += csg_node_is_operator(kind);
+    }
+    return info;
+}
+
+const char *csgm_scene_dependency(const csgm_scene *scene, size_t index)
+{
+    return index < scene->dependency_count ? scene->dependencies[index] : NULL;
+}
+
+double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient)
+{
+    csgm_status status = CSGM_OK;
+    csg_sample sample = csg_reference_eval(scene, at, &status);
+    if (status != CSGM_OK)
+        sample = (csg_sample){.value = NAN, .gradient = {NAN, NAN, NAN}};
+    if (gradient)
+        *gradient = sample.gradient;
+    return sample.value;
+}
+
+uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec3 at)
+{
+    csgm_status status = CSGM_OK;
+    uint32_t count = csg_reference_active_primitives(scene, at, &status);
+    return status == CSGM_OK ? count : 0;
+}

@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT
+ * Counts edges, fans, components and measures of an indexed triangle mesh; see inspect.h.
+ *
+ * A half-edge is named by the corner it starts at: 3 * triangle + k. Half-edges are sorted by their
+ * smaller vertex with one counting sort, and inside such a bucket by the larger vertex, so that the
+ * uses of one undirected edge stand together. Corners at the same vertex that are joined by an edge
+ * are united (union-find): the sets left at a vertex are its fans. Uniting the three corners of
+ * each triangle after that leaves one set a component.
+ */
+#include "mesh/inspect.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/geometry.h"
+
+enum { INSERTION_SORT_MOST = 24 };
+
+typedef struct inspection {
+    const csgm_mesh_view *mesh;
+    csgm_mesh_check *check;
+    uint64_t corner_count;  /* 3 * triangle_count, < 2^32 */
+    uint64_t sound_count;   /* triangles that take part */
+    uint64_t edge_count;    /* undirected */
+    uint32_t *bucket_begin; /* vertex_count + 1: half-edges by smaller vertex */
+    uint64_t *half_edges;   /* larger vertex << 32 | starting corner */
+    uint32_t *parent;       /* union-find over corners */
+    uint8_t *fans;          /* per vertex: 0, 1 or 2 = several */
+} inspection;
+
+static const uint32_t *triangle_at(const inspection *in, uint64_t triangle)
+{
+    return in->mesh->indices + 3 * triangle;
+}
+
+static bool is_in_range(const inspection *in, const uint32_t *v)
+{
+    uint64_t count = in->mesh->vertex_count;
+    return v[0] < count && v[1] < count && v[2] < count;
+}
+
+static bool is_sound(const inspection *in, const uint32_t *v)
+{
+    return is_in_range(in, v) && v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+}
+
+/* Vertices of the half-edge that starts at this corner. */
+static void half_edge_ends(const inspection *in, uint32_t corner, uint32_t *from, uint32_t *to)
+{
+    const uint32_t *v = triangle_at(in, corner / 3);
+    *from = v[corner % 3];
+    *to = v[corner % 3 == 2 ? 0 : corner % 3 + 1];
+}
+
+/* ---- union-find: the smallest corner stands for its set ------------------------------ */
+
+static uint32_t find(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void unite(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = find(parent, a);
+    b = find(parent, b);
+    if (a < b)
+        parent[b] = a;
+    else
+        parent[a] = b;
+}
+
+/* ---- edges --------------------------------------------------------------------------- */
+
+/* Counting sort, first half: bucket sizes, the count of what is broken. */
+static void count_half_edges(inspection *in)
+{
+    memset(in->bucket_begin, 0, (in->mesh->vertex_count + 1) * sizeof *in->bucket_begin);
+    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+        const uint32_t *v = triangle_at(in, t);
+        for (int k = 0; k < 3; k++)
+            in->check->index_out_of_range += v[k] >= in->mesh->vertex_count;
+        if (!is_in_range(in, v))
+            continue;
+        if (!is_sound(in, v)) {
+            in->check->degenerate_triangles++;
+            continue;
+        }
+        in->sound_count++;
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = v[k], b = v[(k + 1) % 3];
+            in->bucket_begin[a < b ? a : b]++;
+        }
+    }
+}
+
+/* Second half: after it bucket_begin[v] is where bucket v begins. */
+static void place_half_edges(inspection *in)
+{
+    uint32_t end = 0;
+    for (uint64_t v = 0; v <= in->mesh->vertex_count; v++) {
+        end += in->bucket_begin[v];
+        in->bucket_begin[v] = end;
+    }
+    for (uint64_t t = in->mesh->triangle_count; t-- > 0;) {
+        const uint32_t *v = triangle_at(in, t);
+        if (!is_sound(in, v))
+            continue;
+        for (uint32_t k = 3; k-- > 0;) {
+            uint32_t a = v[k], b = v[(k + 1) % 3];
+            uint64_t larger = a < b ? b : a;
+            in->half_edges[--in->bucket_begin[a < b ? a : b]] = larger << 32 | (3 * t + k);
+        }
+    }
+}
+
+static int compare_half_edges(const void *a, const void *b)
+{
+    uint64_t left, right;
+    memcpy(&left, a, sizeof left);
+    memcpy(&right, b, sizeof right);
+    return (left > right) - (left < right);
+}
+
+static void sort_bucket(uint64_t *keys, size_t count)
+{
+    if (count > INSERTION_SORT_MOST) {
+        qsort(keys, count, sizeof *keys, compare_half_edges);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        uint64_t key = keys[i];
+        size_t j = i;
+        for (; j > 0 && keys[j - 1] > key; j--)
+            keys[j] = keys[j - 1];
+        keys[j] = key;
+    }
+}
+
+/* The corner at vertex `at` of the triangle to which the half-edge belongs. */
+static uint32_t corner_at(const inspection *in, uint32_t half_edge, uint32_t at)
+{
+    uint32_t from, to;
+    half_edge_ends(in, half_edge, &from, &to);
+    if (from == at)
+        return half_edge;
+    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+}
+
+/* All uses of the edge between `smaller` and the vertex in the keys. */
+static void close_edge(inspection *in, uint32_t smaller, const uint64_t *keys, size_t uses)
+{
+    uint32_t larger = (uint32_t)(keys[0] >> 32), first = (uint32_t)keys[0];
+    size_t forward = 0;
+    for (size_t i = 0; i < uses; i++) {
+        uint32_t half_edge = (uint32_t)keys[i];
+        forward += corner_at(in, half_edge, smaller) == half_edge;
+        unite(in->parent, corner_at(in, first, smaller), corner_at(in, half_edge, smaller));
+        unite(in->parent, corner_at(in, first, larger), corner_at(in, half_edge, larger));
+    }
+    in->edge_count++;
+    in->check->boundary_edges += uses == 1;
+    in->check->nonmanifold_edges += uses > 2;
+    in->check->misoriented_edges += uses == 2 && forward != 1;
+}
+
+static void walk_edges(inspection *in)
+{
+    for (uint64_t c = 0; c < in->corner_count; c++)
+        in->parent[c] = (uint32_t)c;
+    for (uint32_t v = 0; v < in->mesh->vertex_count; v++) {
+        uint64_t *keys = in->half_edges + in->bucket_begin[v];
+        size_t count = in->bucket_begin[v + 1] - in->bucket_begin[v];
+        sort_bucket(keys, count);
+        for (size_t begin = 0, end; begin < count; begin = end) {
+            for (end = begin + 1; end < count && keys[end] >> 32 == keys[begin] >> 32;)
+                end++;
+            close_edge(in, v, keys + begin, end - begin);
+        }
+    }
+}
+
+/* ---- fans and components ------------------------------------------------------------- */
+
+static void count_fans(inspection *in)
+{
+    uint64_t used = 0;
+    memset(in->fans, 0, in->mesh->vertex_count);
+    for (uint64_t c = 0; c < in->corner_count; c++) {
+        const uint32_t *v = triangle_at(in, c / 3);
+        if (in->parent[c] != c || !is_sound(in, v))
+            continue;
+        uint8_t *fans = &in->fans[v[c % 3]];
+        used += *fans == 0;
+        in->check->nonmanifold_vertices += *fans == 1;
+        if (*fans < 2)
+            ++*fans;
+    }
+    in->check->unused_vertices = in->mesh->vertex_count - used;
+    in->check->euler = (int64_t)used - (int64_t)in->edge_count + (int64_t)in->sound_count;
+}
+
+static void count_components(inspection *in)
+{
+    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+        uint32_t corner = (uint32_t)(3 * t);
+        unite(in->parent, corner, corner + 1);
+        unite(in->parent, corner, corner + 2);
+    }
+    for (uint64_t c = 0; c < in->corner_count; c += 3)
+        in->check->components += in->parent[c] == c && is_sound(in, triangle_at(in, c / 3));
+    in->check->genus = (int64_t)in->check->components - in->check->euler / 2;
+}
+
+/* ---- measures ------------------------------------------------------------------------ */
+
+static csg_vec3 position(const inspection *in, uint32_t vertex)
+{
+    const float *p = in->mesh->positions + 3 * (size_t)vertex;
+    return csg_vec3_make(p[0], p[1], p[2]);
+}
+
+static csg_box used_box(const inspection *in)
+{
+    csg_box box = csg_box_empty();
+    for (uint64_t v = 0; v < in->mesh->vertex_count; v++) {
+        if (!in->fans[v])
+            continue;
+        csg_vec3 p = position(in, (uint32_t)v);
+        box = csg_box_hull(box, (csg_box){p, p});
+    }
+    return box;
+}
+
+/* Largest cotangent of a triangle's angles: that of its smallest one, opposite the shortest edge.
+ * cross is twice the area, > 0. */
+static double largest_cotangent(const csg_vec3 *edge, double cross)
+{
+    double largest = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        double cotangent = -csg_vec3_dot(edge[k], edge[(k + 1) % 3]) / cross;
+        largest = cotangent > largest ? cotangent : largest;
+    }
+    return largest;
+}
+
+/* Volume is summed over tetrahedra with the apex in the box's centre: small terms, small errors. */
+static void measure(inspection *in)
+{
+    csgm_mesh_check *check = in->check;
+    csg_box box = used_box(in);
+    csg_vec3 apex = in->sound_count ? csg_box_center(box) : csg_vec3_make(0, 0, 0);
+    double cotangent = -INFINITY;
+    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+        const uint32_t *v = triangle_at(in, t);
+        if (!is_sound(in, v))
+            continue;
+        csg_vec3 a = csg_vec3_sub(position(in, v[0]), apex);
+        csg_vec3 b = csg_vec3_sub(position(in, v[1]), apex);
+        csg_vec3 c = csg_vec3_sub(position(in, v[2]), apex);
+        csg_vec3 edge[3] = {csg_vec3_sub(b, a), csg_vec3_sub(c, b), csg_vec3_sub(a, c)};
+        csg_vec3 normal = csg_vec3_cross(edge[0], edge[1]);
+        double cross = csg_vec3_norm(normal);
+        check->volume += csg_vec3_dot(a, normal) / 6;
+        check->area += cross / 2;
+        if (cross > 0)
+            cotangent = fmax(cotangent, largest_cotangent(edge, cross));
+        else
+            check->zero_area_triangles++;
+    }
+    bool flat = check->zero_area_triangles > 0 || in->sound_count == 0;
+    check->min_angle_deg = flat ? 0 : atan2(1, cotangent) * 180 / acos(-1);
+    check->bounds = box;
+    if (in->sound_count)
+        check->bounds = (csg_box){csg_vec3_add(box.min, in->mesh->origin),
+                                  csg_vec3_add(box.max, in->mesh->origin)};
+}
+
+/* ---- memory -------------------------------------------------------------------------- */
+
+static bool take(csg_memory *memory, void *slot, uint64_t count, size_t element_bytes)
+{
+    void **array = slot;
+    *array = count ? csg_memory_alloc(memory, (size_t)count * element_bytes) : NULL;
+    return *array || !count;
+}
+
+static bool take_arrays(csg_memory *memory, inspection *in)
+{
+    return take(memory, &in->bucket_begin, in->mesh->vertex_count + 1, sizeof *in->bucket_begin) &&
+           take(memory, &in->half_edges, in->corner_count, sizeof *in->half_edges) &&
+           take(memory, &in->parent, in->corner_count, sizeof *in->parent) &&
+           take(memory, &in->fans, in->mesh->vertex_count, sizeof *in->fans);
+}
+
+static void release_arrays(csg_memory *memory, inspection *in)
+{
+    csg_memory_release(memory, in->bucket_begin,
+                       (in->mesh->vertex_count + 1) * sizeof *in->bucket_begin);
+    csg_memory_release(memory, in->half_edges, in->corner_count * sizeof *in->half_edges);
+    csg_memory_release(memory, in->parent, in->corner_count * sizeof *in->parent);
+    csg_memory_release(memory, in->fans, in->mesh->vertex_count * sizeof *in->fans);
+}
+
+csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
+                             csgm_mesh_check *out)
+{
+    if (mesh->triangle_count > UINT32_MAX / 3) {
+        csg_diag_plain(&context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, NULL,
+                       "a mesh of %llu triangles is too large to be inspected",
+                       (unsigned long long)mesh->triangle_count);
+        return CSGM_ERR_LIMIT;
+    }
+    csgm_mesh_check check = {0};
+    inspection in = {.mesh = mesh, .check = &check, .corner_count = 3 * mesh->triangle_count};
+    if (!take_arrays(&context->memory, &in)) {
+        release_arrays(&context->memory, &in);
+        return csg_context_no_memory(context);
+    }
+    count_half_edges(&in);
+    place_half_edges(&in);
+    walk_edges(&in);
+    count_fans(&in);
+    count_components(&in);
+    measure(&in);
+    release_arrays(&context->memory, &in);
+    *out = check;
+    return CSGM_OK;
+}
