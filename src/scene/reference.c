@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * Value and gradient of a whole scene at one point: points go down the tree (a loop from the root
+ * to the leaves), samples come up (a loop back). Small scenes work on the stack.
+ */
+#include "scene/reference.h"
+
+typedef struct workspace {
+    csg_vec3 *points; /* per node, in its own frame */
+    csg_sample *samples;
+    double *values, *partials; /* of one operator's children */
+    void *heap;
+    size_t heap_bytes;
+} workspace;
+
+enum { STACK_BYTES = 16384 };
+
+static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
+{
+    size_t nodes = scene->node_count;
+    size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double));
+    *w = (workspace){0};
+    if (bytes > STACK_BYTES) {
+        w->heap = stack = csg_memory_alloc(&scene->context->memory, bytes);
+        w->heap_bytes = bytes;
+        if (!stack)
+            return false;
+    }
+    w->samples = stack;
+    w->points = (csg_vec3 *)(w->samples + nodes);
+    w->values = (double *)(w->points + nodes); /* no operator has as many children as nodes */
+    w->partials = w->values + nodes;
+    return true;
+}
+
+static void workspace_end(workspace *w, const csgm_scene *scene)
+{
+    csg_memory_release(&scene->context->memory, w->heap, w->heap_bytes);
+}
+
+static void place_points(workspace *w, const csgm_scene *scene, csg_vec3 p)
+{
+    w->points[scene->root] = p;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        csg_vec3 inner = w->points[i];
+        if (node->kind == CSG_NODE_TRANSFORM)
+            inner = csg_affine_point(&scene->inverses[node->payload], inner);
+        for (uint32_t k = 0; k < node->child_count; k++)
+            w->points[csg_scene_children(scene, node)[k]] = inner;
+    }
+}
+
+/* An operator is the union of its children with these signs, times the first sign: intersection
+ * -G(-f), difference -G(-f1, f2, ...). */
+static double operand_sign(csg_node_kind kind, uint32_t index)
+{
+    return kind == CSG_NODE_INTERSECTION || (kind == CSG_NODE_DIFFERENCE && index == 0) ? -1 : 1;
+}
+
+static csg_sample combine(workspace *w, const csgm_scene *scene, const csg_node *node)
+{
+    const csg_node_id *children = csg_scene_children(scene, node);
+    csg_node_kind kind = node->kind;
+    for (uint32_t k = 0; k < node->child_count; k++)
+        w->values[k] = operand_sign(kind, k) * w->samples[children[k]].value;
+    double outer = operand_sign(kind, 0);
+    double value = outer * csg_reference_union(csg_scene_blend(scene, node), w->values,
+                                               node->child_count, w->partials);
+    csg_vec3 gradient = {0, 0, 0};
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double weight = outer * operand_sign(kind, k) * w->partials[k];
+        if (weight != 0)
+            gradient =
+                csg_vec3_add(gradient, csg_vec3_scale(w->samples[children[k]].gradient, weight));
+    }
+    return (csg_sample){value, gradient};
+}
+
+static csg_sample transform(const csgm_scene *scene, const csg_node *node, csg_sample inner)
+{
+    double scale = scene->scales[node->payload];
+    csg_vec3 gradient = csg_affine_covector(&scene->inverses[node->payload], inner.gradient);
+    return (csg_sample){scale * inner.value, csg_vec3_scale(gradient, scale)};
+}
+
+static void evaluate(workspace *w, const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        const csg_node_id *children = csg_scene_children(scene, node);
+        if (node->kind == CSG_NODE_TRANSFORM)
+            w->samples[i] = transform(scene, node, w->samples[children[0]]);
+        else if (node->kind == CSG_NODE_COLOR)
+            w->samples[i] = w->samples[children[0]];
+        else if (csg_node_is_operator(node->kind))
+            w->samples[i] = combine(w, scene, node);
+        else
+            w->samples[i] = csg_reference_primitive(node->kind, csg_scene_parameters(scene, node),
+                                                    w->points[i]);
+    }
+}
+
+csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+{
+    double stack[STACK_BYTES / sizeof(double)];
+    workspace w;
+    if (!workspace_begin(&w, scene, stack)) {
+        *status = CSGM_ERR_MEMORY;
+        return (csg_sample){NAN, {0, 0, 0}};
+    }
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
+    csg_sample root = w.samples[scene->root];
+    workspace_end(&w, scene);
+    return root;
+}
+
+/* Marks the node's children that can change its value by setting points[child].x to 1. */
+static void mark_active(workspace *w, const csgm_scene *scene, const csg_node *node)
+{
+    const csg_node_id *children = csg_scene_children(scene, node);
+    if (!csg_node_is_operator(node->kind)) {
+        for (uint32_t k = 0; k < node->child_count; k++)
+            w->points[children[k]].x = 1;
+        return;
+    }
+    double support = csg_blend_support(csg_scene_blend(scene, node));
+    uint32_t top = 0;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        w->values[k] = operand_sign(node->kind, k) * w->samples[children[k]].value;
+        if (w->values[k] >= w->values[top])
+            top = k;
+    }
+    for (uint32_t k = 0; k < node->child_count; k++)
+        if (k == top || w->values[top] - w->values[k] < support)
+            w->points[children[k]].x = 1;
+}
+
+uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+{
+    double stack[STACK_BYTES / sizeof(double)];
+    workspace w;
+    if (!workspace_begin(&w, scene, stack)) {
+        *status = CSGM_ERR_MEMORY;
+        return 0;
+    }
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
+    for (size_t i = 0; i < scene->node_count; i++)
+        w.points[i].x = i == scene->root; /* the points have done their work: marks instead */
+    uint32_t active = 0;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        if (w.points[i].x == 0)
+            continue;
+        active += csg_node_is_primitive(node->kind);
+        mark_active(&w, scene, node);
+    }
+    workspace_end(&w, scene);
+    return active;
+}
