@@ -1,0 +1,590 @@
+/* SPDX-License-Identifier: MIT
+ * Scene -> tape: a walk over the tree with an explicit stack that carries each node's frame down
+ * (place, scale, sign, colour) and writes nodes in postorder.
+ *
+ * A similarity keeps distances, so its scale goes into the primitive's sizes and only a rotation
+ * or an offset stays to be done a point; other maps keep the primitive in its own frame and scale
+ * its value by the smallest singular value (scene.h).
+ */
+#include <float.h>
+#include <string.h>
+
+#include "field/dispatch.h"
+#include "field/field.h"
+#include "field/formulas.h"
+
+/* What a node inherits from its ancestors. */
+typedef struct frame {
+    csg_affine place; /* own frame -> scene */
+    double factor;    /* product of the ancestors' smallest singular values */
+    bool negate;
+    bool colored;
+    uint32_t color;
+} frame;
+
+/* An operator (or a wrapper on the way to one) whose children are being written. */
+typedef struct task {
+    csg_node_id node;
+    uint32_t next_child;
+    frame frame;
+    /* The operator that the children join: this one, or an ancestor of the same sharp kind. */
+    uint32_t group; /* index of its task */
+    uint32_t written; /* of a group: children in the tape so far */
+    uint32_t begin;   /* of a group: first node */
+    uint32_t parameters;
+    bool is_union;
+    csg_blend blend;
+} task;
+
+typedef struct compiler {
+    csgm_context *context;
+    const csgm_scene *scene;
+    csgm_field *field;
+    csg_tape_node *nodes;
+    float *parameters;
+    csg_color *colors;
+    task *tasks;
+    size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
+        color_capacity, task_count, task_capacity;
+} compiler;
+
+static bool push_parameters(compiler *c, const float *values, size_t count, uint32_t *at)
+{
+    if (c->parameter_count + count > UINT32_MAX ||
+        !csg_memory_reserve(&c->context->memory, (void **)&c->parameters, &c->parameter_capacity,
+                            c->parameter_count + count, sizeof(float)))
+        return false;
+    *at = (uint32_t)c->parameter_count;
+    memcpy(c->parameters + c->parameter_count, values, count * sizeof(float));
+    c->parameter_count += count;
+    return true;
+}
+
+static csg_tape_node *push_node(compiler *c)
+{
+    if (c->node_count >= UINT32_MAX ||
+        !csg_memory_reserve(&c->context->memory, (void **)&c->nodes, &c->node_capacity,
+                            c->node_count + 1, sizeof(csg_tape_node)))
+        return NULL;
+    csg_tape_node *node = &c->nodes[c->node_count++];
+    memset(node, 0, sizeof *node);
+    return node;
+}
+
+static bool push_color(compiler *c, csg_color color, uint32_t *index)
+{
+    /* Neighbouring solids mostly share one colour; an index must be exact in a float. */
+    if (c->color_count && !memcmp(&c->colors[c->color_count - 1], &color, sizeof color)) {
+        *index = (uint32_t)c->color_count - 1;
+        return true;
+    }
+    if (c->color_count >= 1 << 24 ||
+        !csg_memory_reserve(&c->context->memory, (void **)&c->colors, &c->color_capacity,
+                            c->color_count + 1, sizeof color))
+        return false;
+    *index = (uint32_t)c->color_count;
+    c->colors[c->color_count++] = color;
+    return true;
+}
+
+/* ---- leaves ------------------------------------------------------------------------------- */
+
+/* A leaf on its way into floats. */
+typedef struct leaf {
+    uint8_t op;
+    csg_frame frame;
+    double sigma;
+    csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
+    csg_vec3 offset;
+    double own[8];
+    int own_count;
+    double magnitude; /* largest length that takes part in its arithmetic */
+} leaf;
+
+static void own_of_frustum(leaf *l, const double *p, double k)
+{
+    double r1 = p[0] * k, r2 = p[1] * k, h = p[2] * k;
+    double length = hypot(2 * h, r1 - r2);
+    double own[] = {r1, r2, h, 2 * h / length, (r1 - r2) / length, length, p[3] * k, 0};
+    memcpy(l->own, own, sizeof own);
+    l->own_count = OWN_FRUSTUM;
+    l->magnitude = hypot(fmax(r1, r2), h) + p[3] * k;
+}
+
+static void own_of_capsule(leaf *l, const double *p, double k)
+{
+    double h = p[0] * k, r1 = p[1] * k, r2 = p[2] * k;
+    double s = (r1 - r2) / h;
+    double own[] = {h, 1 / h, r1, r2 - r1, s / sqrt(1 - s * s)};
+    memcpy(l->own, own, sizeof own);
+    l->own_count = OWN_CAPSULE;
+    l->magnitude = h + fmax(r1, r2);
+}
+
+static void own_of_torus(leaf *l, const double *p, double k)
+{
+    double half = p[2] * (3.14159265358979323846 / 180);
+    bool whole = p[2] >= 180;
+    double own[] = {p[0] * k, p[1] * k, whole ? -1 : cos(half), whole ? 0 : sin(half)};
+    memcpy(l->own, own, sizeof own);
+    l->own_count = OWN_TORUS;
+    l->magnitude = own[0] + own[1];
+}
+
+/* formulas.h wants the smallest semi-axis last: turn the frame's rows. */
+static void own_of_ellipsoid(leaf *l, const double *p, double k)
+{
+    int last = p[0] < p[1] ? (p[0] < p[2] ? 0 : 2) : (p[1] < p[2] ? 1 : 2);
+    int order[3] = {(last + 1) % 3, (last + 2) % 3, last};
+    csg_affine turned = l->to_own;
+    for (int i = 0; i < 3; i++) {
+        memcpy(turned.m[i], l->to_own.m[order[i]], sizeof turned.m[i]);
+        turned.t[i] = l->to_own.t[order[i]];
+        l->own[i] = p[order[i]] * k;
+    }
+    l->to_own = turned;
+    if (last != 2)
+        l->frame = CSG_FRAME_AFFINE;
+    double z = l->own[2];
+    l->own[3] = (l->own[0] / z) * (l->own[0] / z);
+    l->own[4] = (l->own[1] / z) * (l->own[1] / z);
+    l->own[5] = 0;
+    l->own_count = OWN_ELLIPSOID;
+    l->magnitude = fmax(l->own[0], l->own[1]);
+}
+
+/* A plane stays a plane under every map: sigma, place and scale all go into n and d. */
+static void own_of_plane(leaf *l, const double *p, double factor)
+{
+    csg_vec3 n = {p[0], p[1], p[2]};
+    csg_vec3 b = {l->to_own.t[0], l->to_own.t[1], l->to_own.t[2]};
+    csg_vec3 normal = csg_vec3_scale(csg_affine_covector(&l->to_own, n), factor);
+    l->own[0] = normal.x;
+    l->own[1] = normal.y;
+    l->own[2] = normal.z;
+    l->own[3] = factor * (p[3] - csg_vec3_dot(n, b));
+    l->own_count = OWN_PLANE;
+    l->frame = CSG_FRAME_OFFSET;
+    l->offset = csg_vec3_make(0, 0, 0);
+    l->sigma = l->sigma < 0 ? -1 : 1;
+    l->magnitude = fabs(l->own[3]);
+}
+
+static void own_parameters(leaf *l, csg_node_kind kind, const double *p, double k, double factor)
+{
+    switch (kind) {
+    case CSG_NODE_SPHERE:
+        l->own[0] = p[0] * k;
+        l->own_count = OWN_SPHERE;
+        l->magnitude = l->own[0];
+        break;
+    case CSG_NODE_BOX:
+        for (int i = 0; i < 3; i++)
+            l->own[i] = (p[i] - p[3]) * k;
+        l->own[3] = p[3] * k;
+        l->own_count = OWN_BOX;
+        l->magnitude = k * sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        break;
+    case CSG_NODE_FRUSTUM:
+        own_of_frustum(l, p, k);
+        break;
+    case CSG_NODE_CAPSULE:
+        own_of_capsule(l, p, k);
+        break;
+    case CSG_NODE_TORUS:
+        own_of_torus(l, p, k);
+        break;
+    case CSG_NODE_ELLIPSOID:
+        own_of_ellipsoid(l, p, k);
+        break;
+    default:
+        own_of_plane(l, p, factor);
+    }
+}
+
+/* Chooses the frame of a primitive whose own frame lies at f->place. */
+static void place_leaf(leaf *l, const frame *f, csg_vec3 center, csg_node_kind kind,
+                       const double *p)
+{
+    csg_affine place = f->place;
+    place.t[0] -= center.x;
+    place.t[1] -= center.y;
+    place.t[2] -= center.z;
+    l->op = (uint8_t)(CSG_OP_SPHERE + (kind - CSG_NODE_SPHERE));
+    l->frame = CSG_FRAME_AFFINE;
+    l->offset = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
+    double smallest, largest, k = 1;
+    csg_affine_singular_values(&place, &smallest, &largest);
+    bool similar = largest - smallest <= 1e-12 * largest && kind != CSG_NODE_PLANE;
+    if (similar) {
+        k = smallest;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                place.m[i][j] /= k;
+        bool turned = false;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                turned |= fabs(place.m[i][j] - (i == j)) > 1e-15;
+        if (!turned || kind == CSG_NODE_SPHERE)
+            l->frame = CSG_FRAME_OFFSET;
+    }
+    l->sigma = (f->negate ? -1 : 1) * (similar ? f->factor / k : f->factor);
+    csg_affine_invert(place, &l->to_own); /* build.h admits only invertible maps */
+    own_parameters(l, kind, p, k, f->factor);
+    /* Lengths as the scene sees them: an own-frame value is multiplied by sigma at the end. */
+    l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
+}
+
+/* The rounding error of a value is a few units in the last place of the lengths in it. */
+static double rounding_of(double magnitude)
+{
+    return 32 * (double)FLT_EPSILON * magnitude;
+}
+
+static bool write_leaf(compiler *c, const leaf *l, uint32_t color)
+{
+    float values[CSG_LEAF_OWN_AFFINE + 8];
+    size_t count = CSG_LEAF_FRAME;
+    values[CSG_LEAF_SIGMA] = (float)l->sigma;
+    values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude);
+    values[CSG_LEAF_COLOR] = (float)color;
+    if (l->frame == CSG_FRAME_OFFSET) {
+        values[count++] = (float)l->offset.x;
+        values[count++] = (float)l->offset.y;
+        values[count++] = (float)l->offset.z;
+    } else {
+        for (int i = 0; i < 9; i++)
+            values[count++] = (float)l->to_own.m[i / 3][i % 3];
+        for (int i = 0; i < 3; i++)
+            values[count++] = (float)l->to_own.t[i];
+    }
+    for (int i = 0; i < l->own_count; i++)
+        values[count++] = (float)l->own[i];
+    csg_tape_node *node = push_node(c);
+    if (!node || !push_parameters(c, values, count, &node->parameters))
+        return false;
+    node->op = l->op;
+    node->frame = (uint8_t)l->frame;
+    node->size = 1;
+    return true;
+}
+
+static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
+{
+    leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
+    if (node->kind != CSG_NODE_EMPTY)
+        place_leaf(&l, f, c->field->center, node->kind, csg_scene_parameters(c->scene, node));
+    return write_leaf(c, &l, f->color);
+}
+
+/* ---- operators ------------------------------------------------------------------------------ */
+
+static bool begin_task(compiler *c, csg_node_id id, const frame *f)
+{
+    if (!csg_memory_reserve(&c->context->memory, (void **)&c->tasks, &c->task_capacity,
+                            c->task_count + 1, sizeof(task)))
+        return false;
+    const csg_node *node = &c->scene->nodes[id];
+    uint32_t index = (uint32_t)c->task_count;
+    task t = {.node = id, .frame = *f, .group = index, .begin = (uint32_t)c->node_count};
+    if (csg_node_is_operator(node->kind)) {
+        t.is_union = (node->kind == CSG_NODE_UNION) != f->negate;
+        t.blend = csg_blend_scale(csg_scene_blend(c->scene, node), f->factor);
+        const task *outer = index ? &c->tasks[c->tasks[index - 1].group] : NULL;
+        bool outer_operates = outer && csg_node_is_operator(c->scene->nodes[outer->node].kind);
+        if (outer_operates && t.blend.kind == CSG_BLEND_SHARP &&
+            outer->blend.kind == CSG_BLEND_SHARP && outer->is_union == t.is_union) {
+            t.group = c->tasks[index - 1].group; /* max of max, min of min: one operator */
+        } else {
+            float values[CSG_OPERATOR_PARAMETERS] = {
+                t.blend.kind == CSG_BLEND_SHARP ? 1.0f : (float)t.blend.n,
+                (float)csg_blend_support(t.blend)};
+            if (!push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t.parameters))
+                return false;
+        }
+    } else {
+        /* transforms and colours: their child joins in their place */
+        t.group = index ? c->tasks[index - 1].group : index;
+    }
+    c->tasks[c->task_count++] = t;
+    return true;
+}
+
+/* The last node written completes a child of this group. */
+static void join_child(compiler *c, task *group)
+{
+    if (!csg_node_is_operator(c->scene->nodes[group->node].kind))
+        return; /* the root is a transform or a colour */
+    csg_tape_node *node = &c->nodes[c->node_count - 1];
+    if (group->written && group->blend.kind != CSG_BLEND_ROUND) {
+        node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
+        node->join_blend = (uint8_t)group->blend.kind;
+        node->join_parameters = group->parameters;
+    }
+    group->written++;
+}
+
+static bool end_task(compiler *c)
+{
+    uint32_t index = (uint32_t)--c->task_count;
+    task t = c->tasks[index];
+    if (t.group != index || !csg_node_is_operator(c->scene->nodes[t.node].kind))
+        return true;
+    csg_tape_node *node = push_node(c);
+    if (!node)
+        return false;
+    bool is_round = t.blend.kind == CSG_BLEND_ROUND;
+    node->op = (uint8_t)(is_round ? (t.is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION)
+                                  : (t.is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION));
+    node->blend = (uint8_t)t.blend.kind;
+    node->parameters = t.parameters;
+    node->arity = t.written;
+    node->size = (uint32_t)c->node_count - t.begin;
+    if (index)
+        join_child(c, &c->tasks[c->tasks[index - 1].group]);
+    return true;
+}
+
+/* The frame of the child about to be visited. */
+static bool child_frame(compiler *c, const task *t, frame *f)
+{
+    const csg_node *node = &c->scene->nodes[t->node];
+    *f = t->frame;
+    if (node->kind == CSG_NODE_TRANSFORM) {
+        const csg_affine *matrix = &c->scene->transforms[node->payload];
+        double smallest, largest;
+        csg_affine_singular_values(matrix, &smallest, &largest);
+        f->place = csg_affine_multiply(t->frame.place, *matrix);
+        f->factor *= smallest;
+    } else if (node->kind == CSG_NODE_COLOR && !f->colored) {
+        f->colored = true;
+        return push_color(c, c->scene->colors[node->payload], &f->color);
+    } else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0) {
+        f->negate = !f->negate;
+    }
+    return true;
+}
+
+static bool compile_tree(compiler *c)
+{
+    frame outermost = {.place = csg_affine_identity(), .factor = 1};
+    const csg_node *root = &c->scene->nodes[c->scene->root];
+    if (!root->child_count)
+        return compile_leaf(c, root, &outermost);
+    if (!begin_task(c, c->scene->root, &outermost))
+        return false;
+    while (c->task_count) {
+        task *t = &c->tasks[c->task_count - 1];
+        const csg_node *node = &c->scene->nodes[t->node];
+        if (t->next_child == node->child_count) {
+            if (!end_task(c))
+                return false;
+            continue;
+        }
+        frame f;
+        if (!child_frame(c, t, &f))
+            return false;
+        csg_node_id child = csg_scene_children(c->scene, node)[t->next_child++];
+        if (c->scene->nodes[child].child_count) {
+            if (!begin_task(c, child, &f))
+                return false;
+        } else {
+            if (!compile_leaf(c, &c->scene->nodes[child], &f))
+                return false;
+            join_child(c, &c->tasks[t->group]);
+        }
+    }
+    return true;
+}
+
+/* ---- the field -------------------------------------------------------------------------------- */
+
+uint32_t csg_tape_depth(const csg_tape *tape)
+{
+    uint32_t top = 0, most = 1;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op))
+            top++;
+        else if (csg_op_is_round(node->op))
+            top -= node->arity - 1;
+        if (top > most)
+            most = top;
+        if (node->join)
+            top--;
+    }
+    return most;
+}
+
+static double finite_or_zero(double value)
+{
+    return isfinite(value) ? value : 0;
+}
+
+static csg_vec3 center_of(csg_box bounds)
+{
+    csg_vec3 center = csg_box_is_empty(bounds) ? csg_vec3_make(0, 0, 0) : csg_box_center(bounds);
+    return csg_vec3_make(finite_or_zero(center.x), finite_or_zero(center.y),
+                         finite_or_zero(center.z));
+}
+
+static void *keep(csg_arena *arena, const void *data, size_t bytes)
+{
+    void *copy = csg_arena_alloc(arena, bytes);
+    if (copy && bytes)
+        memcpy(copy, data, bytes);
+    return copy;
+}
+
+/* Copies tape arrays into the field's arena. */
+static bool keep_tape(csgm_field *field, const csg_tape_node *nodes, size_t node_count,
+                      const float *parameters, size_t parameter_count, const csg_color *colors,
+                      size_t color_count)
+{
+    field->tape.nodes = keep(&field->arena, nodes, node_count * sizeof *nodes);
+    field->tape.parameters = keep(&field->arena, parameters, parameter_count * sizeof *parameters);
+    field->tape.colors = keep(&field->arena, colors, color_count * sizeof *colors);
+    field->tape.count = (uint32_t)node_count;
+    field->parameter_count = parameter_count;
+    field->color_count = (uint32_t)color_count;
+    if (!field->tape.nodes || !field->tape.parameters || !field->tape.colors)
+        return false;
+    field->depth = csg_tape_depth(&field->tape);
+    return true;
+}
+
+static csgm_field *field_create(csgm_context *context)
+{
+    csgm_field *field = csg_memory_alloc(&context->memory, sizeof *field);
+    if (field) {
+        *field = (csgm_field){.context = context};
+        csg_arena_init(&field->arena, &context->memory);
+    }
+    return field;
+}
+
+void csg_field_destroy(csgm_field *field)
+{
+    if (!field)
+        return;
+    csg_memory *memory = &field->context->memory;
+    csg_arena_reset(&field->arena);
+    csg_memory_release(memory, field, sizeof *field);
+}
+
+static void count_nodes(const csgm_scene *scene, csgm_field *field)
+{
+    for (size_t i = 0; i < scene->node_count; i++) {
+        field->primitive_count += csg_node_is_primitive(scene->nodes[i].kind);
+        field->operator_count += csg_node_is_operator(scene->nodes[i].kind);
+    }
+}
+
+/* Solids without a colour of their own, next to coloured ones. */
+static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
+
+csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out)
+{
+    compiler c = {.context = context, .scene = scene, .field = field_create(context)};
+    bool done = false;
+    if (c.field) {
+        uint32_t index;
+        c.field->bounds = scene->bounds[scene->root];
+        c.field->center = center_of(c.field->bounds);
+        count_nodes(scene, c.field);
+        done = push_color(&c, default_color, &index) && compile_tree(&c) &&
+               keep_tape(c.field, c.nodes, c.node_count, c.parameters, c.parameter_count, c.colors,
+                         c.color_count);
+    }
+    csg_memory *memory = &context->memory;
+    csg_memory_release(memory, c.nodes, c.node_capacity * sizeof *c.nodes);
+    csg_memory_release(memory, c.parameters, c.parameter_capacity * sizeof *c.parameters);
+    csg_memory_release(memory, c.colors, c.color_capacity * sizeof *c.colors);
+    csg_memory_release(memory, c.tasks, c.task_capacity * sizeof *c.tasks);
+    if (!done) {
+        csg_field_destroy(c.field);
+        return csg_context_no_memory(context);
+    }
+    *out = c.field;
+    return CSGM_OK;
+}
+
+/* A box as a leaf of this field's frame. */
+static size_t clip_parameters(const csgm_field *field, csg_box box, float *values)
+{
+    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
+    csg_vec3 at = csg_vec3_sub(csg_box_center(box), field->center);
+    double magnitude = csg_vec3_norm(half) + csg_vec3_norm(at);
+    double all[] = {1, rounding_of(magnitude), 0, at.x, at.y, at.z, half.x, half.y, half.z, 0};
+    size_t count = sizeof all / sizeof *all;
+    for (size_t i = 0; i < count; i++)
+        values[i] = (float)all[i];
+    return count;
+}
+
+csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
+                           csgm_field **out)
+{
+    float added[16];
+    size_t box_count = clip_parameters(field, box, added);
+    added[box_count + CSG_OPERATOR_N] = 1;
+    added[box_count + CSG_OPERATOR_SUPPORT] = 0;
+    size_t parameter_count = field->parameter_count + box_count + CSG_OPERATOR_PARAMETERS;
+    uint32_t count = field->tape.count, at = (uint32_t)field->parameter_count;
+    csgm_field *clipped = field_create(context);
+    csg_tape_node *nodes = NULL;
+    float *parameters = NULL;
+    if (clipped) {
+        nodes = csg_arena_alloc(&clipped->arena, (count + 2) * sizeof *nodes);
+        parameters = csg_arena_alloc(&clipped->arena, parameter_count * sizeof *parameters);
+    }
+    if (!nodes || !parameters) {
+        csg_field_destroy(clipped);
+        return csg_context_no_memory(context);
+    }
+    csg_arena arena = clipped->arena;
+    *clipped = *field;
+    clipped->context = context;
+    clipped->arena = arena;
+    memcpy(nodes, field->tape.nodes, count * sizeof *nodes);
+    memcpy(parameters, field->tape.parameters, at * sizeof *parameters);
+    memcpy(parameters + at, added, (parameter_count - at) * sizeof *parameters);
+    uint32_t operator_at = at + (uint32_t)box_count;
+    nodes[count] = (csg_tape_node){.op = CSG_OP_BOX, .join = CSG_JOIN_INTERSECTION,
+                                   .parameters = at, .join_parameters = operator_at, .size = 1};
+    nodes[count + 1] = (csg_tape_node){
+        .op = CSG_OP_INTERSECTION, .parameters = operator_at, .arity = 2, .size = count + 2};
+    clipped->tape.nodes = nodes;
+    clipped->tape.parameters = parameters;
+    clipped->tape.count = count + 2;
+    clipped->parameter_count = parameter_count;
+    clipped->depth = csg_tape_depth(&clipped->tape);
+    clipped->bounds = csg_box_intersect(field->bounds, box);
+    *out = clipped;
+    return CSGM_OK;
+}
+
+void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
+                    float *out, size_t count)
+{
+    enum { POINTS = 64 };
+    const csg_kernel *kernel = csg_kernel_for(field->context->isa);
+    csg_memory *memory = &field->context->memory;
+    size_t scratch_floats = csg_kernel_scratch_floats(field->depth);
+    float *scratch = csg_memory_alloc(memory, scratch_floats * sizeof(float));
+    for (size_t i = 0; i < count; i += POINTS) {
+        size_t n = count - i < POINTS ? count - i : POINTS;
+        float px[POINTS] = {0}, py[POINTS] = {0}, pz[POINTS] = {0}, f[POINTS];
+        for (size_t j = 0; j < n; j++) {
+            px[j] = (float)((double)x[i + j] - field->center.x);
+            py[j] = (float)((double)y[i + j] - field->center.y);
+            pz[j] = (float)((double)z[i + j] - field->center.z);
+        }
+        if (scratch)
+            kernel->values(&field->tape, px, py, pz, n, f, scratch, scratch_floats);
+        for (size_t j = 0; j < n; j++)
+            out[i + j] = scratch ? f[j] : NAN;
+    }
+    if (scratch)
+        csg_memory_release(memory, scratch, scratch_floats * sizeof(float));
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ * From scenes to tapes, and values of tapes: the door of this layer.
+ */
+#ifndef CSG_FIELD_FIELD_H
+#define CSG_FIELD_FIELD_H
+
+#include "field/tape.h"
+
+csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out);
+void csg_field_destroy(csgm_field *field);
+
+/* A copy cut by a box (scene units): the intersection with it. */
+csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
+                           csgm_field **out);
+
+/* count values at points in scene units; arrays must not overlap. */
+void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
+                    float *out, size_t count);
+
+/* Stable text, one node a line. */
+csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, void *user);
+
+#endif

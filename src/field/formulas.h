@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT
+ * The float formulas of every primitive and blend, each written once, for one point, without
+ * branches: kernel.c runs them over batches and the compiler turns the batch loops into vectors.
+ * Only + - * / sqrt, comparisons and selections: each exactly rounded, so every instruction set
+ * gives the same bits. The definition they answer to is scene/reference.h.
+ *
+ * A primitive returns its value (f > 0 inside) and writes its gradient; where the caller drops the
+ * gradient the compiler drops its arithmetic.
+ */
+#ifndef CSG_FIELD_FORMULAS_H
+#define CSG_FIELD_FORMULAS_H
+
+#include <math.h>
+
+#include "scene/scene.h"
+
+typedef struct point {
+    float x, y, z;
+} point;
+
+static inline float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+static inline float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+static inline float absolute(float a)
+{
+    return a < 0 ? -a : a;
+}
+static inline float sign_of(float a)
+{
+    return a < 0 ? -1.0f : 1.0f;
+}
+/* a / b, or 0 where b is 0: gradients at critical points. */
+static inline float quotient(float a, float b)
+{
+    return b > 0 ? a / b : 0;
+}
+
+/* ---- primitives: own parameters in the order packed by compile.c ---------------------- */
+
+enum { OWN_SPHERE = 1, OWN_BOX = 4, OWN_FRUSTUM = 8, OWN_CAPSULE = 5, OWN_TORUS = 4,
+       OWN_ELLIPSOID = 6, OWN_PLANE = 4 };
+
+/* own: r */
+static inline float sphere_at(const float *own, point q, point *g)
+{
+    float d = sqrtf(q.x * q.x + q.y * q.y + q.z * q.z);
+    float s = quotient(-1.0f, d);
+    *g = (point){q.x * s, q.y * s, q.z * s};
+    return own[0] - d;
+}
+
+/* own: half sizes without the rounding, rounding */
+static inline float box_at(const float *own, point q, point *g)
+{
+    float ax = absolute(q.x) - own[0], ay = absolute(q.y) - own[1], az = absolute(q.z) - own[2];
+    float ox = larger(ax, 0), oy = larger(ay, 0), oz = larger(az, 0);
+    float outside = sqrtf(ox * ox + oy * oy + oz * oz);
+    float inside = larger(ax, larger(ay, az));
+    int is_out = inside > 0;
+    float s = quotient(-1.0f, outside);
+    float fx = ax >= larger(ay, az) ? -1.0f : 0;
+    float fy = (ay >= az) & (fx == 0) ? -1.0f : 0;
+    float fz = (fx == 0) & (fy == 0) ? -1.0f : 0;
+    *g = (point){sign_of(q.x) * (is_out ? ox * s : fx), sign_of(q.y) * (is_out ? oy * s : fy),
+                 sign_of(q.z) * (is_out ? oz * s : fz)};
+    return own[3] - (is_out ? outside : inside);
+}
+
+/* Distance to a convex outline in the (rho, z) half plane: the side from (r1, -h) to (r2, h) and the
+ * flat caps. Differences to the side's line, not to nearest points, so that the gradient is exact
+ * where roots lie: on the surface.
+ * own: r1, r2, h, nx, nz (side's outward normal), length of the side, rounding, unused */
+static inline float frustum_at(const float *own, point q, point *g)
+{
+    float rho = sqrtf(q.x * q.x + q.y * q.y);
+    float dx = rho - own[0], dz = q.z + own[2];
+    float side = dx * own[3] + dz * own[4];
+    float along = dz * own[3] - dx * own[4];
+    float beyond = along - smaller(larger(along, 0), own[5]);
+    float cap = absolute(q.z) - own[2];
+    float over = larger(rho - (q.z < 0 ? own[0] : own[1]), 0);
+    float to_side = sqrtf(side * side + beyond * beyond);
+    float to_cap = sqrtf(over * over + cap * cap);
+    int is_side = to_side < to_cap;
+    int is_in = (side <= 0) & (cap <= 0);
+    float distance = is_side ? to_side : to_cap;
+    float turn = is_in ? 1.0f : -1.0f;
+    /* Unit vectors from the nearest point; on the surface itself the face's own normal. */
+    float s = to_side > 0 ? turn * side / to_side : -1.0f, e = turn * quotient(beyond, to_side);
+    float c = to_cap > 0 ? turn * cap / to_cap : -1.0f, o = turn * quotient(over, to_cap);
+    float radial = is_side ? s * own[3] - e * own[4] : o;
+    float axial = is_side ? s * own[4] + e * own[3] : c * sign_of(q.z);
+    float k = quotient(radial, rho);
+    *g = (point){q.x * k, q.y * k, axial};
+    return own[6] + turn * distance;
+}
+
+/* Balls of radius r(t) along a segment: the farthest-reaching t in closed form.
+ * own: h, 1 / h, r1, r2 - r1, s / c with s = (r1 - r2) / h, c = sqrt(1 - s^2) */
+static inline float capsule_at(const float *own, point q, point *g)
+{
+    float rho = sqrtf(q.x * q.x + q.y * q.y);
+    float t = smaller(larger((q.z - rho * own[4]) * own[1], 0), 1.0f);
+    float dz = q.z - t * own[0];
+    float d = sqrtf(q.x * q.x + q.y * q.y + dz * dz);
+    float s = quotient(-1.0f, d);
+    *g = (point){q.x * s, q.y * s, dz * s};
+    return own[2] + t * own[3] - d;
+}
+
+/* own: R, r, cosine and sine of half the opening angle */
+static inline float torus_at(const float *own, point q, point *g)
+{
+    float rho = sqrtf(q.x * q.x + q.y * q.y);
+    float ay = absolute(q.y);
+    int on_arc = ay * own[2] - q.x * own[3] <= 0;
+    float k = quotient(own[0], rho); /* nearest skeleton point: (k x, k y, 0), or the arc's end */
+    float dx = on_arc ? q.x - k * q.x : q.x - own[0] * own[2];
+    float dy = on_arc ? ay - k * ay : ay - own[0] * own[3];
+    float ring = rho - own[0];
+    float flat = on_arc ? ring * ring : dx * dx + dy * dy;
+    float d = sqrtf(flat + q.z * q.z);
+    float s = quotient(-1.0f, d);
+    float radial = quotient(ring, rho) * s;
+    *g = (point){on_arc ? q.x * radial : dx * s, on_arc ? q.y * radial : sign_of(q.y) * dy * s,
+                 q.z * s};
+    return own[1] - d;
+}
+
+/* Exact distance: the nearest point y satisfies y_i = e_i^2 p_i / (t + e_i^2); solved in scaled
+ * variables (Eberly, "Distance from a point to an ellipse, an ellipsoid", 2013) with v = t / e_z^2 + 1,
+ * e_z the smallest semi-axis, so that nothing cancels near the medial disc. Newton from a lower bound
+ * of the root of a convex decreasing function rises to it; from the largest of the three bounds each
+ * term is at most 1, which leaves the root within a factor sqrt(3): six steps reach float precision.
+ * own: e_x >= e_z, e_y >= e_z, e_z (compile.c turns the axes), e_x^2 / e_z^2, e_y^2 / e_z^2, 0 */
+static inline float ellipsoid_at(const float *own, point q, point *g)
+{
+    float zx = absolute(q.x) / own[0], zy = absolute(q.y) / own[1], zz = absolute(q.z) / own[2];
+    float rx = own[3], ry = own[4];
+    float bx = rx * zx, by = ry * zy;
+    float v = larger(larger(zz, 1e-6f), larger(bx - rx + 1.0f, by - ry + 1.0f));
+#pragma GCC unroll 7
+    for (int step = 0; step < 7; step++) {
+        float ix = 1.0f / (v + (rx - 1.0f)), iy = 1.0f / (v + (ry - 1.0f)), iz = 1.0f / v;
+        float tx = bx * ix, ty = by * iy, tz = zz * iz;
+        float value = tx * tx + ty * ty + tz * tz - 1.0f;
+        float slope = 2.0f * (tx * tx * ix + ty * ty * iy + tz * tz * iz);
+        v = value > 0 ? v + quotient(value, slope) : v;
+    }
+    float ux = bx / (v + (rx - 1.0f)), uy = by / (v + (ry - 1.0f)); /* nearest point / axes */
+    float uz = sqrtf(larger(1.0f - ux * ux - uy * uy, 0));
+    float dx = own[0] * (zx - ux), dy = own[1] * (zy - uy), dz = own[2] * (zz - uz);
+    float distance = sqrtf(dx * dx + dy * dy + dz * dz);
+    float nx = ux / own[0], ny = uy / own[1], nz = uz / own[2];
+    float s = quotient(-1.0f, sqrtf(nx * nx + ny * ny + nz * nz));
+    *g = (point){sign_of(q.x) * nx * s, sign_of(q.y) * ny * s, sign_of(q.z) * nz * s};
+    return zx * zx + zy * zy + zz * zz < 1.0f ? distance : -distance;
+}
+
+/* own: n (with any scale folded in), d */
+static inline float plane_at(const float *own, point q, point *g)
+{
+    *g = (point){-own[0], -own[1], -own[2]};
+    return own[3] - (own[0] * q.x + own[1] * q.y + own[2] * q.z);
+}
+
+/* ---- blend functions f_b(x, n) and their slopes, x = |a - b| (operators.md 2.1) ------- */
+
+typedef struct blended {
+    float value, slope;
+} blended;
+
+/* sin and cos on [0, 1.31]: Taylor polynomials, error below 2e-7. */
+static inline float sine(float a)
+{
+    float s = a * a;
+    return a * (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
+}
+static inline float cosine(float a)
+{
+    float s = a * a;
+    return 1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
+}
+
+static inline blended blend_hyperbola(float n, float chi, float x)
+{
+    float root = sqrtf(x * x + n);
+    return (blended){n / (2.0f * (root + x)), 0.5f * (x / root - 1.0f)};
+}
+static inline blended blend_reciprocal(float n, float chi, float x)
+{
+    float k = x + sqrtf(2.0f * n);
+    return (blended){n / k, -n / (k * k)};
+}
+/* Functions 3 and 4 are one: 2 n sin^2(u / 2), slope -sin u, with u = (chi - x) / n. */
+static inline blended blend_cosine(float n, float chi, float x)
+{
+    float half = larger(chi - x, 0) / (2.0f * n);
+    float s = sine(half);
+    return (blended){2.0f * n * (s * s), -2.0f * s * cosine(half)};
+}
+static inline blended blend_overblend(float n, float chi, float x)
+{
+    return blend_cosine(n, chi, x);
+}
+static inline blended blend_parabola(float n, float chi, float x)
+{
+    float y = larger(chi - x, 0) / n;
+    return (blended){n * (y * y), -2.0f * y};
+}
+static inline blended blend_chamfer(float n, float chi, float x)
+{
+    float rest = chi - x;
+    return (blended){rest > 0 ? 0.5f * rest : 0, rest > 0 ? -0.5f : 0};
+}
+static inline blended blend_sharp(float n, float chi, float x)
+{
+    return (blended){0, 0};
+}
+
+/* ---- the round n-ary union (operators.md 12) ------------------------------------------- */
+
+/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0. */
+static inline float round_excess(float w, float m, float sum, float squares)
+{
+    float mean = sum / m;
+    float rest = w * w - (squares - sum * mean);
+    return larger(w - mean - sqrtf(larger(rest, 0) / m), 0);
+}
+
+#endif

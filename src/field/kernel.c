@@ -1,0 +1,519 @@
+/* SPDX-License-Identifier: MIT
+ * The kernels: a tape over batches of points. This file is built once per instruction set (see
+ * meson.build); the loops over points are plain C that the compiler turns into vectors, the
+ * formulas are in formulas.h. CSG_KERNEL names the build.
+ *
+ * Three walks over a tape, all on a stack of slots:
+ *   values     a slot is one array
+ *   mixed      a slot is a value and several channels that mix in the proportions of the
+ *              operators' partial derivatives: gradients (3) or colours (4)
+ *   intervals  a slot is a low and a high array of eight lanes
+ */
+#include "field/kernel.h"
+
+#include <string.h>
+
+#include "field/formulas.h"
+
+#define CONCATENATE_(a, b) a##b
+#define CONCATENATE(a, b) CONCATENATE_(a, b)
+#define STRING_(a) #a
+#define STRING(a) STRING_(a)
+
+/* ---- leaves ---------------------------------------------------------------------------- */
+
+typedef struct points {
+    const float *x, *y, *z;
+    size_t count; /* a multiple of CSG_OCTANTS */
+} points;
+
+static inline point offset_frame(const float *t, float x, float y, float z)
+{
+    return (point){x - t[0], y - t[1], z - t[2]};
+}
+
+static inline point affine_frame(const float *m, float x, float y, float z)
+{
+    return (point){m[0] * x + m[1] * y + m[2] * z + m[9], m[3] * x + m[4] * y + m[5] * z + m[10],
+                   m[6] * x + m[7] * y + m[8] * z + m[11]};
+}
+
+/* transpose(m) g */
+static inline point affine_back(const float *m, point g)
+{
+    return (point){m[0] * g.x + m[3] * g.y + m[6] * g.z, m[1] * g.x + m[4] * g.y + m[7] * g.z,
+                   m[2] * g.x + m[5] * g.y + m[8] * g.z};
+}
+
+#define EACH_PRIMITIVE(X)                                                                          \
+    X(SPHERE, sphere) X(BOX, box) X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus)          \
+    X(ELLIPSOID, ellipsoid) X(PLANE, plane)
+
+/* Local copies of the parameters: the compiler then knows that no store changes them. */
+#define VALUE_LOOPS(NAME, name)                                                                    \
+    static void name##_values(const csg_tape_node *node, const float *parameters, points p,        \
+                              float *restrict out)                                                 \
+    {                                                                                              \
+        float own[OWN_##NAME], frame[12];                                                          \
+        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
+        point g;                                                                                   \
+        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
+            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++)                                                   \
+                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+        } else {                                                                                   \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
+            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++)                                                   \
+                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+        }                                                                                          \
+    }
+EACH_PRIMITIVE(VALUE_LOOPS)
+
+#define GRADIENT_LOOPS(NAME, name)                                                                 \
+    static void name##_gradients(const csg_tape_node *node, const float *parameters, points p,     \
+                                 float *restrict out, float *restrict gx, float *restrict gy,      \
+                                 float *restrict gz)                                               \
+    {                                                                                              \
+        float own[OWN_##NAME], frame[12];                                                          \
+        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
+        point g;                                                                                   \
+        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
+            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++) {                                                 \
+                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                gx[i] = sigma * g.x;                                                               \
+                gy[i] = sigma * g.y;                                                               \
+                gz[i] = sigma * g.z;                                                               \
+            }                                                                                      \
+        } else {                                                                                   \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
+            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++) {                                                 \
+                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                g = affine_back(frame, g);                                                         \
+                gx[i] = sigma * g.x;                                                               \
+                gy[i] = sigma * g.y;                                                               \
+                gz[i] = sigma * g.z;                                                               \
+            }                                                                                      \
+        }                                                                                          \
+    }
+EACH_PRIMITIVE(GRADIENT_LOOPS)
+
+static void leaf_values(const csg_tape *tape, const csg_tape_node *node, points p, float *out)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    switch (node->op) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_OP_##NAME:                                                                            \
+        name##_values(node, parameters, p, out);                                                   \
+        break;
+        EACH_PRIMITIVE(CASE)
+#undef CASE
+    default: /* EMPTY */
+        for (size_t i = 0; i < p.count; i++)
+            out[i] = parameters[CSG_LEAF_SIGMA] * -INFINITY;
+    }
+}
+
+static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, points p, float *out,
+                           float *gx, float *gy, float *gz)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    switch (node->op) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_OP_##NAME:                                                                            \
+        name##_gradients(node, parameters, p, out, gx, gy, gz);                                    \
+        break;
+        EACH_PRIMITIVE(CASE)
+#undef CASE
+    default:
+        leaf_values(tape, node, p, out);
+        for (size_t i = 0; i < p.count; i++)
+            gx[i] = gy[i] = gz[i] = 0;
+    }
+}
+
+/* ---- joins: two operands ----------------------------------------------------------------- */
+
+#define EACH_FOLD(X)                                                                               \
+    X(HYPERBOLA, hyperbola) X(RECIPROCAL, reciprocal) X(OVERBLEND, overblend) X(COSINE, cosine)    \
+    X(PARABOLA, parabola) X(CHAMFER, chamfer)
+
+/* a = a op b. */
+static void join_values(const csg_tape_node *node, const float *parameters, float *restrict a,
+                        const float *restrict b, size_t count)
+{
+    const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
+    const int is_union = node->join == CSG_JOIN_UNION;
+    switch (node->join_blend) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_BLEND_##NAME:                                                                         \
+        if (is_union)                                                                              \
+            for (size_t i = 0; i < count; i++)                                                     \
+                a[i] = larger(a[i], b[i]) + blend_##name(n, chi, absolute(a[i] - b[i])).value;     \
+        else                                                                                       \
+            for (size_t i = 0; i < count; i++)                                                     \
+                a[i] = smaller(a[i], b[i]) - blend_##name(n, chi, absolute(a[i] - b[i])).value;    \
+        break;
+        EACH_FOLD(CASE)
+#undef CASE
+    default: /* SHARP */
+        if (is_union)
+            for (size_t i = 0; i < count; i++)
+                a[i] = larger(a[i], b[i]);
+        else
+            for (size_t i = 0; i < count; i++)
+                a[i] = smaller(a[i], b[i]);
+    }
+}
+
+/* share[i] of operand a in the derivative; b has the rest. Changes neither. */
+static void join_shares(const csg_tape_node *node, const float *parameters, const float *restrict a,
+                        const float *restrict b, float *restrict share, size_t count)
+{
+    const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
+    const float turn = node->join == CSG_JOIN_UNION ? 1.0f : -1.0f;
+    switch (node->join_blend) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_BLEND_##NAME:                                                                         \
+        for (size_t i = 0; i < count; i++) {                                                       \
+            float slope = blend_##name(n, chi, absolute(a[i] - b[i])).slope;                       \
+            share[i] = turn * a[i] > turn * b[i] ? 1.0f + slope : -slope;                          \
+        }                                                                                          \
+        break;
+        EACH_FOLD(CASE)
+#undef CASE
+    default:
+        for (size_t i = 0; i < count; i++)
+            share[i] = turn * a[i] > turn * b[i] ? 1.0f : 0.0f;
+    }
+}
+
+/* ---- the round operator: all operands at once -------------------------------------------- */
+
+/* Operands are f[k * stride + i]. Turns them into gaps u = max - f (in place), and leaves the
+ * largest in top and G - max in excess. For intersections f is negated first. work: another
+ * arity * stride floats, and 4 * stride more. */
+static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is_union, float w,
+                        size_t count, float *restrict top, float *restrict excess,
+                        float *restrict work)
+{
+    for (uint32_t k = 0; k < arity; k++) {
+        float *restrict v = f + k * stride;
+        if (!is_union)
+            for (size_t i = 0; i < count; i++)
+                v[i] = -v[i];
+        if (k == 0)
+            memcpy(top, v, count * sizeof(float));
+        else
+            for (size_t i = 0; i < count; i++)
+                top[i] = larger(top[i], v[i]);
+    }
+    for (uint32_t k = 0; k < arity; k++) {
+        float *restrict v = f + k * stride;
+        for (size_t i = 0; i < count; i++)
+            v[i] = top[i] - v[i];
+    }
+    if (arity == 2) { /* what the general walk below gives for two operands, bit for bit */
+        for (size_t i = 0; i < count; i++) {
+            float u = f[i] + f[stride + i]; /* one of them is 0 */
+            excess[i] = w - u > 0 ? round_excess(w, 2.0f, u, u * u) : 0;
+        }
+        return;
+    }
+    float *restrict rest = work, *restrict sum = work + arity * stride,
+                   *restrict squares = sum + stride, *restrict next = squares + stride,
+                   *restrict taken = next + stride;
+    for (uint32_t k = 0; k < arity; k++)
+        memcpy(rest + k * stride, f + k * stride, count * sizeof(float));
+    for (size_t i = 0; i < count; i++)
+        sum[i] = squares[i] = excess[i] = 0;
+    /* The active prefix: operands by growing gap, until one does not reach G. A lane that has
+     * stopped stays: its next gap is no smaller. */
+    for (uint32_t m = 1; m <= arity; m++) {
+        for (size_t i = 0; i < count; i++) {
+            next[i] = INFINITY;
+            taken[i] = 0;
+        }
+        for (uint32_t k = 0; k < arity; k++)
+            for (size_t i = 0; i < count; i++)
+                next[i] = smaller(next[i], rest[k * stride + i]);
+        for (uint32_t k = 0; k < arity; k++)
+            for (size_t i = 0; i < count; i++) {
+                int hit = (rest[k * stride + i] == next[i]) & (taken[i] == 0);
+                rest[k * stride + i] = hit ? INFINITY : rest[k * stride + i];
+                taken[i] = hit ? 1.0f : taken[i];
+            }
+        if (m == 1)
+            continue; /* the largest operand itself: gap 0, excess 0 */
+        float reached = 0;
+        for (size_t i = 0; i < count; i++) {
+            int active = w - next[i] > excess[i];
+            float u = active ? next[i] : 0;
+            sum[i] += u;
+            squares[i] += u * u;
+            excess[i] = active ? round_excess(w, (float)m, sum[i], squares[i]) : excess[i];
+            reached = active ? 1.0f : reached;
+        }
+        if (reached == 0)
+            break;
+    }
+}
+
+/* ---- walks --------------------------------------------------------------------------------- */
+
+typedef struct slots {
+    float *memory;
+    size_t stride; /* floats of one array */
+} slots;
+
+static float *slot(slots s, size_t index)
+{
+    return s.memory + index * s.stride;
+}
+
+static void combine_round_values(const csg_tape *tape, const csg_tape_node *node, slots s,
+                                 size_t first, size_t count, float *work)
+{
+    float w = tape->parameters[node->parameters + CSG_OPERATOR_N];
+    int is_union = node->op == CSG_OP_ROUND_UNION;
+    float *top = work, *excess = work + s.stride;
+    round_solve(slot(s, first), s.stride, node->arity, is_union, w, count, top, excess,
+                work + 2 * s.stride);
+    float *out = slot(s, first);
+    const float turn = is_union ? 1.0f : -1.0f;
+    for (size_t i = 0; i < count; i++)
+        out[i] = turn * (top[i] + excess[i]);
+}
+
+/* Leaves the result in slot 0; `depth` slots, then the round operator's work. */
+static void walk_values(const csg_tape *tape, points p, slots s, uint32_t depth)
+{
+    size_t top = 0;
+    float *work = slot(s, depth);
+    for (uint32_t n = 0; n < tape->count; n++) {
+        const csg_tape_node *node = &tape->nodes[n];
+        if (csg_op_is_leaf(node->op)) {
+            leaf_values(tape, node, p, slot(s, top++));
+        } else if (csg_op_is_round(node->op)) {
+            top -= node->arity;
+            combine_round_values(tape, node, s, top++, p.count, work);
+        }
+        if (node->join) {
+            top--;
+            join_values(node, tape->parameters + node->join_parameters, slot(s, top - 1),
+                        slot(s, top), p.count);
+        }
+    }
+}
+
+enum { GRADIENT_CHANNELS = 3, COLOR_CHANNELS = 4, MOST_CHANNELS = 4 };
+
+/* Slots of a mixed walk: values first (depth of them), then the channels of each. */
+static float *channel(slots s, uint32_t depth, size_t index, int c)
+{
+    return slot(s, depth + index * MOST_CHANNELS + (size_t)c);
+}
+
+static void mix(float *restrict a, const float *restrict b, const float *restrict share,
+                size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        a[i] = share[i] * a[i] + (1.0f - share[i]) * b[i];
+}
+
+static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+                                uint32_t depth, size_t first, int channels, size_t count,
+                                float *work)
+{
+    float w = tape->parameters[node->parameters + CSG_OPERATOR_N];
+    int is_union = node->op == CSG_OP_ROUND_UNION;
+    float *top = work, *excess = work + s.stride, *total = work + 2 * s.stride;
+    float *gaps = slot(s, first);
+    round_solve(gaps, s.stride, node->arity, is_union, w, count, top, excess, total);
+    for (size_t i = 0; i < count; i++)
+        total[i] = 0;
+    for (uint32_t k = 0; k < node->arity; k++)
+        for (size_t i = 0; i < count; i++) {
+            float weight = larger(w - gaps[k * s.stride + i] - excess[i], 0);
+            gaps[k * s.stride + i] = weight;
+            total[i] += weight;
+        }
+    for (int c = 0; c < channels; c++) {
+        float *out = channel(s, depth, first, c);
+        for (size_t i = 0; i < count; i++)
+            out[i] = gaps[i] * out[i];
+        for (uint32_t k = 1; k < node->arity; k++) {
+            const float *in = channel(s, depth, first + k, c);
+            for (size_t i = 0; i < count; i++)
+                out[i] += gaps[k * s.stride + i] * in[i];
+        }
+        for (size_t i = 0; i < count; i++)
+            out[i] = quotient(out[i], total[i]);
+    }
+    const float turn = is_union ? 1.0f : -1.0f;
+    for (size_t i = 0; i < count; i++)
+        gaps[i] = turn * (top[i] + excess[i]);
+}
+
+static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, points p, slots s,
+                       uint32_t depth, size_t index, int channels)
+{
+    if (channels == GRADIENT_CHANNELS) {
+        leaf_gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
+                       channel(s, depth, index, 1), channel(s, depth, index, 2));
+        return;
+    }
+    leaf_values(tape, node, p, slot(s, index));
+    csg_color color = tape->colors[(uint32_t)tape->parameters[node->parameters + CSG_LEAF_COLOR]];
+    const float rgba[COLOR_CHANNELS] = {color.r, color.g, color.b, color.a};
+    for (int c = 0; c < COLOR_CHANNELS; c++) {
+        float *out = channel(s, depth, index, c);
+        for (size_t i = 0; i < p.count; i++)
+            out[i] = rgba[c];
+    }
+}
+
+static void walk_mixed(const csg_tape *tape, points p, slots s, uint32_t depth, int channels)
+{
+    size_t top = 0;
+    float *work = slot(s, depth * (1 + MOST_CHANNELS));
+    for (uint32_t n = 0; n < tape->count; n++) {
+        const csg_tape_node *node = &tape->nodes[n];
+        if (csg_op_is_leaf(node->op)) {
+            leaf_mixed(tape, node, p, s, depth, top++, channels);
+        } else if (csg_op_is_round(node->op)) {
+            top -= node->arity;
+            combine_round_mixed(tape, node, s, depth, top++, channels, p.count, work);
+        }
+        if (node->join) {
+            top--;
+            const float *parameters = tape->parameters + node->join_parameters;
+            join_shares(node, parameters, slot(s, top - 1), slot(s, top), work, p.count);
+            for (int c = 0; c < channels; c++)
+                mix(channel(s, depth, top - 1, c), channel(s, depth, top, c), work, p.count);
+            join_values(node, parameters, slot(s, top - 1), slot(s, top), p.count);
+        }
+    }
+}
+
+/* ---- batches -------------------------------------------------------------------------------- */
+
+static size_t batch_size(uint32_t depth, size_t scratch_floats)
+{
+    size_t fits = scratch_floats / csg_kernel_arrays(depth) / CSG_LANES * CSG_LANES;
+    return fits < CSG_BATCH ? fits : CSG_BATCH;
+}
+
+static size_t padded(size_t count)
+{
+    return (count + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static void values(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *out, float *scratch, size_t scratch_floats)
+{
+    if (tape->count == 1) { /* most blocks: straight into the result */
+        leaf_values(tape, tape->nodes, (points){x, y, z, padded(count)}, out);
+        return;
+    }
+    uint32_t depth = csg_tape_depth(tape);
+    size_t batch = batch_size(depth, scratch_floats);
+    slots s = {scratch, batch};
+    for (size_t i = 0; i < count; i += batch) {
+        size_t n = least(batch, count - i);
+        walk_values(tape, (points){x + i, y + i, z + i, padded(n)}, s, depth);
+        memcpy(out + i, slot(s, 0), n * sizeof(float));
+    }
+}
+
+static void mixed(const csg_tape *tape, const float *x, const float *y, const float *z,
+                  size_t count, float *const *out, int channels, float *scratch,
+                  size_t scratch_floats)
+{
+    uint32_t depth = csg_tape_depth(tape);
+    size_t batch = batch_size(depth, scratch_floats);
+    slots s = {scratch, batch};
+    for (size_t i = 0; i < count; i += batch) {
+        size_t n = least(batch, count - i);
+        walk_mixed(tape, (points){x + i, y + i, z + i, padded(n)}, s, depth, channels);
+        for (int c = 0; c < channels; c++)
+            memcpy(out[c] + i, channel(s, depth, 0, c), n * sizeof(float));
+    }
+}
+
+static void gradients(const csg_tape *tape, const float *x, const float *y, const float *z,
+                      size_t count, float *gx, float *gy, float *gz, float *scratch,
+                      size_t scratch_floats)
+{
+    float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
+    mixed(tape, x, y, z, count, out, GRADIENT_CHANNELS, scratch, scratch_floats);
+}
+
+static void colors(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
+{
+    mixed(tape, x, y, z, count, rgba, COLOR_CHANNELS, scratch, scratch_floats);
+}
+
+/* ---- intervals ------------------------------------------------------------------------------- */
+
+static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, points p, float radius,
+                          float *restrict low, float *restrict high)
+{
+    leaf_values(tape, node, p, low);
+    float reach = radius + tape->parameters[node->parameters + CSG_LEAF_SLACK];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        high[o] = low[o] + reach;
+        low[o] = low[o] - reach;
+    }
+}
+
+/* Every operator here is monotone: its value at the operands' ends (operators.md 0). */
+static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
+                      const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
+                      float *low, float *high, float *scratch)
+{
+    uint32_t depth = csg_tape_depth(tape);
+    points p = {cx, cy, cz, CSG_OCTANTS};
+    slots lows = {scratch, CSG_OCTANTS}, highs = {slot(lows, depth), CSG_OCTANTS};
+    float *work = slot(highs, depth);
+    size_t top = 0;
+    for (uint32_t n = 0; n < tape->count; n++) {
+        const csg_tape_node *node = &tape->nodes[n];
+        if (csg_op_is_leaf(node->op)) {
+            leaf_interval(tape, node, p, radius, slot(lows, top), slot(highs, top));
+            top++;
+        } else if (csg_op_is_round(node->op)) {
+            top -= node->arity;
+            combine_round_values(tape, node, lows, top, CSG_OCTANTS, work);
+            combine_round_values(tape, node, highs, top, CSG_OCTANTS, work);
+            top++;
+        }
+        memcpy(low + (size_t)n * CSG_OCTANTS, slot(lows, top - 1), CSG_OCTANTS * sizeof(float));
+        memcpy(high + (size_t)n * CSG_OCTANTS, slot(highs, top - 1), CSG_OCTANTS * sizeof(float));
+        if (node->join) {
+            top--;
+            const float *parameters = tape->parameters + node->join_parameters;
+            join_values(node, parameters, slot(lows, top - 1), slot(lows, top), CSG_OCTANTS);
+            join_values(node, parameters, slot(highs, top - 1), slot(highs, top), CSG_OCTANTS);
+        }
+    }
+}
+
+extern const csg_kernel CONCATENATE(csg_kernel_, CSG_KERNEL);
+const csg_kernel CONCATENATE(csg_kernel_, CSG_KERNEL) = {
+    .name = STRING(CSG_KERNEL),
+    .values = values,
+    .gradients = gradients,
+    .colors = colors,
+    .intervals = intervals,
+};

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ * What a build of kernel.c for one instruction set offers. One operation runs over a whole batch
+ * of points before the next, so that dispatch costs nothing.
+ */
+#ifndef CSG_FIELD_KERNEL_H
+#define CSG_FIELD_KERNEL_H
+
+#include "field/tape.h"
+
+enum {
+    CSG_BATCH = 256,  /* points a slot holds at most */
+    CSG_LANES = 16,   /* counts are rounded up to this: arrays must have room for it */
+    CSG_OCTANTS = 8
+};
+
+/* Arrays of one batch that a walk over a tape of this depth needs: values, up to four channels, and
+ * the round operator's work (its operands again and six more). */
+static inline size_t csg_kernel_arrays(uint32_t depth)
+{
+    return (size_t)depth * 6 + 8;
+}
+/* Floats of scratch for every function below: whole batches for ordinary depths, smaller ones for
+ * tapes that would need megabytes. */
+size_t csg_kernel_scratch_floats(uint32_t depth);
+
+typedef struct csg_kernel {
+    const char *name;
+
+    /* out[i] = f(x[i], y[i], z[i]) in the tape's frame for i < count, count <= any; arrays have
+     * room for count rounded up to CSG_LANES. */
+    void (*values)(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *out, float *scratch, size_t scratch_floats);
+
+    /* Gradients (forward mode), same rules. Zero at critical points. */
+    void (*gradients)(const csg_tape *tape, const float *x, const float *y, const float *z,
+                      size_t count, float *gx, float *gy, float *gz, float *scratch,
+                      size_t scratch_floats);
+
+    /* Colours: the leaves' in the proportions of the operators' partial derivatives; rgba[4]
+     * arrays of count. */
+    void (*colors)(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *const rgba[4], float *scratch, size_t scratch_floats);
+
+    /* Intervals of every node's value (before its join) over eight balls of one radius:
+     * low[8 * i + o] <= value of node i over ball o <= high[8 * i + o], rounding of the leaves
+     * included. */
+    void (*intervals)(const csg_tape *tape, const float cx[CSG_OCTANTS],
+                      const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
+                      float *low, float *high, float *scratch);
+} csg_kernel;
+
+#endif

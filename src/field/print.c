@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ * The tape as text, one node a line, in evaluation order.
+ */
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "field/field.h"
+
+static const char *const op_names[CSG_OP_COUNT] = {
+#define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_OP_##NAME] = #name,
+#include "scene/primitives.def"
+#undef CSG_PRIMITIVE
+    [CSG_OP_UNION] = "union",
+    [CSG_OP_INTERSECTION] = "intersection",
+    [CSG_OP_ROUND_UNION] = "round_union",
+    [CSG_OP_ROUND_INTERSECTION] = "round_intersection",
+    [CSG_OP_EMPTY] = "empty",
+};
+
+typedef struct printer {
+    csgm_text_fn *sink;
+    void *user;
+} printer;
+
+__attribute__((format(printf, 2, 3))) static void print(printer *out, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (length > 0)
+        out->sink(out->user, text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1);
+}
+
+static void print_leaf(printer *out, const csg_tape *tape, const csg_tape_node *node)
+{
+    const float *p = tape->parameters + node->parameters;
+    print(out, " sigma %.9g", (double)p[CSG_LEAF_SIGMA]);
+    if (node->op == CSG_OP_EMPTY)
+        return;
+    int frame = node->frame == CSG_FRAME_OFFSET ? 3 : 12;
+    print(out, node->frame == CSG_FRAME_OFFSET ? " offset" : " affine");
+    for (int i = 0; i < frame; i++)
+        print(out, " %.9g", (double)p[CSG_LEAF_FRAME + i]);
+    print(out, " color %.0f", (double)p[CSG_LEAF_COLOR]);
+}
+
+csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, void *user)
+{
+    printer out = {sink, user};
+    print(&out, "tape %u nodes, %u slots, center %.17g %.17g %.17g\n", field->tape.count,
+          field->depth, field->center.x, field->center.y, field->center.z);
+    for (uint32_t i = 0; i < field->tape.count; i++) {
+        const csg_tape_node *node = &field->tape.nodes[i];
+        print(&out, "%u %s", i, op_names[node->op]);
+        if (csg_op_is_leaf(node->op))
+            print_leaf(&out, &field->tape, node);
+        else
+            print(&out, " of %u, blend %s n %.9g support %.9g", node->arity,
+                  csg_blend_name(node->blend),
+                  (double)field->tape.parameters[node->parameters + CSG_OPERATOR_N],
+                  (double)field->tape.parameters[node->parameters + CSG_OPERATOR_SUPPORT]);
+        if (node->join)
+            print(&out, ", joins by %s %s", node->join == CSG_JOIN_UNION ? "union" : "intersection",
+                  csg_blend_name(node->join_blend));
+        print(&out, "\n");
+    }
+    return CSGM_OK;
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ * Pruning: which part of a tape can matter in a cell. Inside the band |f| <= tau no bit of a value
+ * changes, outside it no sign does, so pruned and unpruned runs write the same file.
+ *
+ * A cell is a ball for the bounds (Lipschitz constant 1: value at the centre +- radius), composed
+ * bottom-up through the operators; a demand interval goes top-down: the root's value matters in
+ * [-tau, tau]; an operand that stays below (above) what can matter through a union (intersection),
+ * or below the largest sibling by the blend's support, is dropped.
+ */
+#ifndef CSG_FIELD_PRUNE_H
+#define CSG_FIELD_PRUNE_H
+
+#include "field/kernel.h"
+
+typedef enum csg_cell_state { CSG_CELL_OUTSIDE, CSG_CELL_INSIDE, CSG_CELL_SURFACE } csg_cell_state;
+
+/* A finished subtree of the shorter tape. */
+typedef struct csg_emitted {
+    uint32_t root, begin;
+} csg_emitted;
+
+/* Working arrays of one thread. */
+typedef struct csg_pruner {
+    csg_memory *memory;
+    const csg_kernel *kernel;
+    float rounding; /* slack of comparisons: rounding error of any value in the lattice */
+    float *low, *high; /* of every node, eight lanes */
+    float *demand_low, *demand_high;
+    uint8_t *dropped;
+    csg_emitted *stack;
+    csg_tape_node *nodes; /* the shorter tape */
+    float *scratch;
+    size_t capacity; /* nodes the arrays hold */
+    size_t scratch_capacity;
+    const csg_tape *tape; /* of the last csg_prune_octants */
+} csg_pruner;
+
+void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
+                     float rounding);
+void csg_pruner_release(csg_pruner *pruner);
+
+/* Intervals of the whole tape over eight balls. False: out of memory. */
+bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[CSG_OCTANTS],
+                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius);
+
+/* What the last call found about one of the balls. */
+csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
+
+/* The tape for that ball: *out is the same one where nothing could be dropped, else a shorter one in
+ * the arena. tau: half width of the band. False: out of memory. */
+bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out);
+
+#endif

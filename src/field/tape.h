@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ * The tape: the scene's field as a flat postorder array, subtrees contiguous, parameters beside
+ * it, everything in float relative to the field's centre. Pruning copies a shorter array; the
+ * parameters are shared.
+ *
+ * Signs are folded in: difference becomes intersection, negation moves to the leaves (a negative
+ * `sigma`), so that only unions (max and its blends) and intersections (min and theirs) remain.
+ *
+ * Values combine as soon as they are there: each child of a sharp or folded operator but the first
+ * carries the `join` that merges it into its elder siblings' value, so a union of a thousand needs
+ * two value slots. A round operator needs all its operands at once and combines them itself.
+ */
+#ifndef CSG_FIELD_TAPE_H
+#define CSG_FIELD_TAPE_H
+
+#include "scene/scene.h"
+
+typedef enum csg_op {
+#define CSG_PRIMITIVE(NAME, name, count, doc) CSG_OP_##NAME,
+#include "scene/primitives.def"
+#undef CSG_PRIMITIVE
+    CSG_OP_UNION,        /* sharp or folded: the joins of its children did the work */
+    CSG_OP_INTERSECTION,
+    CSG_OP_ROUND_UNION,  /* takes `arity` values from the stack */
+    CSG_OP_ROUND_INTERSECTION,
+    CSG_OP_EMPTY, /* -infinity (or +infinity, negated): only ever the whole tape */
+    CSG_OP_COUNT
+} csg_op;
+
+static inline bool csg_op_is_leaf(uint8_t op)
+{
+    return op < CSG_OP_UNION || op == CSG_OP_EMPTY;
+}
+static inline bool csg_op_is_union(uint8_t op)
+{
+    return op == CSG_OP_UNION || op == CSG_OP_ROUND_UNION;
+}
+static inline bool csg_op_is_round(uint8_t op)
+{
+    return op == CSG_OP_ROUND_UNION || op == CSG_OP_ROUND_INTERSECTION;
+}
+
+/* How a node's value merges with the value of its elder siblings. */
+typedef enum csg_join { CSG_JOIN_NONE, CSG_JOIN_UNION, CSG_JOIN_INTERSECTION } csg_join;
+
+/* Where a leaf's own frame is: q = p - t, or q = m p + t. */
+typedef enum csg_frame { CSG_FRAME_OFFSET, CSG_FRAME_AFFINE } csg_frame;
+
+typedef struct csg_tape_node {
+    uint8_t op;    /* csg_op */
+    uint8_t join;  /* csg_join */
+    uint8_t blend; /* operators: csg_blend_kind of the operator; copied to children's joins */
+    uint8_t join_blend;
+    uint8_t frame;            /* leaves: csg_frame */
+    uint32_t parameters;      /* leaves, operators: into the parameters */
+    uint32_t join_parameters; /* into the parameters, of the operator that joins */
+    uint32_t arity;           /* operators: children */
+    uint32_t size;            /* nodes of the subtree, this one included */
+} csg_tape_node;
+
+/* Parameters of a leaf: sigma, slack, color, then the frame (3 or 12 floats), then its own.
+ *   sigma  +-1, or +-(smallest singular value) where the frame is no similarity
+ *   slack  bound on the rounding error of a value of this leaf anywhere in the lattice
+ *   color  index into the field's colours */
+enum {
+    CSG_LEAF_SIGMA,
+    CSG_LEAF_SLACK,
+    CSG_LEAF_COLOR,
+    CSG_LEAF_FRAME,
+    CSG_LEAF_OWN_OFFSET = CSG_LEAF_FRAME + 3,
+    CSG_LEAF_OWN_AFFINE = CSG_LEAF_FRAME + 12
+};
+/* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero. */
+enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
+
+/* A tape, whole or pruned: `nodes` of one array over shared parameters. */
+typedef struct csg_tape {
+    const csg_tape_node *nodes;
+    const float *parameters;
+    const csg_color *colors;
+    uint32_t count;
+} csg_tape;
+
+struct csgm_field {
+    csgm_context *context;
+    csg_arena arena;
+    csg_tape tape;
+    size_t parameter_count;
+    uint32_t color_count; /* 1 = no colours in the scene: only the default */
+    uint32_t depth; /* value slots that an evaluation needs */
+    csg_vec3 center; /* of the floats */
+    csg_box bounds;  /* of the solid (scene/bounds.h) */
+    uint32_t primitive_count, operator_count;
+};
+
+/* Value slots an evaluation of this tape needs. */
+uint32_t csg_tape_depth(const csg_tape *tape);
+
+#endif
