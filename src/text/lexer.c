@@ -1,0 +1,429 @@
+/* SPDX-License-Identifier: MIT
+ * The lexer; see lexer.h. One pass, one character of look-ahead except for punctuation of two.
+ * Broken UTF-8 is reported once a file: an error in code and strings, a warning in comments, where
+ * old files have Latin-1.
+ */
+#include "text/lexer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text/utf8.h"
+
+typedef struct lexer {
+    const csg_sources *sources;
+    csg_memory *memory;
+    csg_token_array *out;
+    const char *text;
+    uint32_t source, length, at;
+    bool told_utf8, told_nul;
+} lexer;
+
+static const struct {
+    const char *text;
+    uint8_t length, kind;
+} punctuation[] = {
+#define CSG_PUNCTUATION(NAME, text) {text, sizeof(text) - 1, CSG_TOKEN_##NAME},
+#include "text/tokens.def"
+};
+
+static const struct {
+    const char *text;
+    uint8_t length, kind;
+} keywords[] = {
+#define CSG_KEYWORD(NAME, text) {text, sizeof(text) - 1, CSG_TOKEN_##NAME},
+#include "text/tokens.def"
+};
+
+const char *csg_token_kind_name(csg_token_kind kind)
+{
+    static const char *const names[] = {
+#define CSG_TOKEN(NAME, text) text,
+#define CSG_KEYWORD(NAME, text) "'" text "'",
+#define CSG_PUNCTUATION(NAME, text) "'" text "'",
+#include "text/tokens.def"
+    };
+    return names[kind];
+}
+
+/* ---- characters ------------------------------------------------------------------------- */
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+static bool is_name_start(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '$';
+}
+static bool is_name(char c)
+{
+    return (is_name_start(c) && c != '$') || is_digit(c);
+}
+static int hex_value(char c)
+{
+    return is_digit(c) ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+static char peek(const lexer *l, uint32_t ahead)
+{
+    return ahead < l->length - l->at ? l->text[l->at + ahead] : '\0';
+}
+
+static csg_span span(const lexer *l, uint32_t from, uint32_t to)
+{
+    return (csg_span){l->source, from, to - from};
+}
+
+static void bad_utf8(lexer *l, bool in_comment)
+{
+    if (!l->told_utf8)
+        csg_source_report(l->sources, in_comment ? CSG_DIAG_COMMENT_UTF8 : CSG_DIAG_BAD_UTF8,
+                          span(l, l->at, l->at + 1), "save the file as UTF-8",
+                          "byte 0x%02X is not part of a UTF-8 character",
+                          (unsigned)(unsigned char)l->text[l->at]);
+    l->told_utf8 = true;
+}
+
+static void nul_byte(lexer *l)
+{
+    if (!l->told_nul)
+        csg_source_report(l->sources, CSG_DIAG_NUL_BYTE, span(l, l->at, l->at + 1), NULL,
+                          "the text holds a NUL byte");
+    l->told_nul = true;
+}
+
+/* Over one character of a comment or string, whatever it is. */
+static void skip_character(lexer *l, bool in_comment)
+{
+    size_t length = csg_utf8_length(l->text + l->at, l->length - l->at);
+    if (l->text[l->at] == '\0')
+        nul_byte(l);
+    if (length == 0)
+        bad_utf8(l, in_comment);
+    l->at += length ? (uint32_t)length : 1;
+}
+
+static bool push(lexer *l, csg_token_kind kind, uint32_t from)
+{
+    csg_token_array *out = l->out;
+    if (!csg_memory_reserve(l->memory, (void **)&out->items, &out->capacity, out->count + 1,
+                            sizeof *out->items))
+        return false;
+    out->items[out->count++] = (csg_token){(uint8_t)kind, from, l->at - from};
+    return true;
+}
+
+/* ---- what is skipped --------------------------------------------------------------------- */
+
+static void skip_block_comment(lexer *l)
+{
+    uint32_t from = l->at;
+    for (l->at += 2; l->at < l->length; skip_character(l, true))
+        if (peek(l, 0) == '*' && peek(l, 1) == '/') {
+            l->at += 2;
+            return;
+        }
+    csg_source_report(l->sources, CSG_DIAG_UNTERMINATED_COMMENT, span(l, from, from + 2),
+                      "close it with '*/'", "this comment never ends");
+}
+
+static void skip_space(lexer *l)
+{
+    for (;;) {
+        char c = peek(l, 0);
+        if (l->at < l->length && (c == ' ' || (c >= '\t' && c <= '\r'))) {
+            l->at++;
+        } else if (c == '/' && peek(l, 1) == '/') {
+            while (l->at < l->length && l->text[l->at] != '\n')
+                skip_character(l, true);
+        } else if (c == '/' && peek(l, 1) == '*') {
+            skip_block_comment(l);
+        } else {
+            return;
+        }
+    }
+}
+
+/* ---- strings ----------------------------------------------------------------------------- */
+
+/* Reads the escape after a backslash at text[0]: its bytes after the backslash, 0 when unknown. */
+static uint32_t read_escape(const char *text, uint32_t room, uint32_t *character)
+{
+    static const char plain[][2] = {{'n', '\n'}, {'t', '\t'}, {'r', '\r'}, {'"', '"'}, {'\\', '\\'}};
+    char kind = room ? text[0] : '\0';
+    for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
+        if (kind == plain[i][0]) {
+            *character = (unsigned char)plain[i][1];
+            return 1;
+        }
+    bool braces = kind == 'u' && room > 1 && text[1] == '{';
+    uint32_t most = braces ? 6 : kind == 'x' ? 2 : kind == 'u' ? 4 : kind == 'U' ? 6 : 0;
+    uint32_t begin = braces ? 2 : 1, digits = 0, value = 0;
+    while (digits < most && begin + digits < room && hex_value(text[begin + digits]) >= 0)
+        value = value << 4 | (uint32_t)hex_value(text[begin + digits++]);
+    char utf8[4];
+    bool complete = braces ? digits > 0 && begin + digits < room && text[begin + digits] == '}'
+                           : most > 0 && digits == most;
+    if (!complete || value == 0 || csg_utf8_encode(value, utf8) == 0)
+        return 0;
+    *character = value;
+    return begin + digits + (braces ? 1 : 0);
+}
+
+static void lex_escape(lexer *l)
+{
+    uint32_t character, length = read_escape(l->text + l->at + 1, l->length - l->at - 1, &character);
+    if (length) {
+        l->at += 1 + length;
+        return;
+    }
+    uint32_t next = l->at + 1;
+    bool shown = next < l->length && l->text[next] > ' ' && l->text[next] < 0x7F;
+    csg_source_report(l->sources, CSG_DIAG_BAD_ESCAPE, span(l, l->at, next + (shown ? 1 : 0)),
+                      "known are \\n \\t \\r \\\" \\\\ \\xHH \\uHHHH \\u{H...}; a backslash itself is \\\\",
+                      "unknown escape in a string");
+    l->at++;
+}
+
+static bool lex_string(lexer *l)
+{
+    uint32_t from = l->at++;
+    while (l->at < l->length && l->text[l->at] != '"' && l->text[l->at] != '\n') {
+        if (l->text[l->at] == '\\')
+            lex_escape(l);
+        else
+            skip_character(l, false);
+    }
+    if (peek(l, 0) == '"') {
+        l->at++;
+    } else {
+        csg_source_report(l->sources, CSG_DIAG_UNTERMINATED_STRING, span(l, from, from + 1),
+                          "close it with '\"' on the same line", "this string never ends");
+    }
+    return push(l, CSG_TOKEN_STRING, from);
+}
+
+char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size_t *out_length)
+{
+    char *out = csg_arena_alloc(arena, (size_t)length + 4);
+    size_t written = 0;
+    if (!out)
+        return NULL;
+    uint32_t end = length > 1 && text[length - 1] == '"' ? length - 1 : length;
+    for (uint32_t i = 1; i < end;) {
+        uint32_t character, escape = 0;
+        if (text[i] == '\\')
+            escape = read_escape(text + i + 1, end - i - 1, &character);
+        if (escape) {
+            written += csg_utf8_encode(character, out + written);
+            i += 1 + escape;
+        } else {
+            out[written++] = text[i++];
+        }
+    }
+    out[written] = '\0';
+    *out_length = written;
+    return out;
+}
+
+/* ---- numbers ----------------------------------------------------------------------------- */
+
+static void skip_digits(lexer *l)
+{
+    while (is_digit(peek(l, 0)))
+        l->at++;
+}
+
+static void skip_exponent(lexer *l)
+{
+    uint32_t sign = peek(l, 1) == '+' || peek(l, 1) == '-' ? 1 : 0;
+    if ((peek(l, 0) == 'e' || peek(l, 0) == 'E') && is_digit(peek(l, 1 + sign))) {
+        l->at += 1 + sign;
+        skip_digits(l);
+    }
+}
+
+static bool lex_number(lexer *l)
+{
+    uint32_t from = l->at;
+    if (peek(l, 0) == '0' && (peek(l, 1) == 'x' || peek(l, 1) == 'X') && hex_value(peek(l, 2)) >= 0) {
+        for (l->at += 2; hex_value(peek(l, 0)) >= 0;)
+            l->at++;
+    } else {
+        skip_digits(l);
+        if (peek(l, 0) == '.') {
+            l->at++;
+            skip_digits(l);
+        }
+        skip_exponent(l);
+    }
+    bool broken = is_name(peek(l, 0)) || (peek(l, 0) == '.' && is_digit(peek(l, 1)));
+    if (broken) {
+        while (is_name(peek(l, 0)) || peek(l, 0) == '.')
+            l->at++;
+        csg_source_report(l->sources, CSG_DIAG_BAD_NUMBER, span(l, from, l->at),
+                          "a name begins with a letter, a multiplication needs '*', "
+                          "a decimal point is '.'",
+                          "'%.*s' is not a number", (int)(l->at - from < 60 ? l->at - from : 60),
+                          l->text + from);
+    }
+    return push(l, CSG_TOKEN_NUMBER, from);
+}
+
+/* A number with more digits than anyone means: correct to a few units in the last place. */
+static double long_number(const char *text, uint32_t length)
+{
+    double value = 0;
+    int scale = 0;
+    uint32_t i = 0;
+    for (bool point = false; i < length && (is_digit(text[i]) || text[i] == '.'); i++) {
+        if (text[i] == '.') {
+            point = true;
+        } else if (value < 1e300) {
+            value = value * 10 + (text[i] - '0');
+            scale -= point ? 1 : 0;
+        } else {
+            scale += point ? 0 : 1;
+        }
+    }
+    if (i < length)
+        scale += atoi(text + i + 1);
+    return value * pow(10, scale);
+}
+
+double csg_token_number(const char *text, uint32_t length)
+{
+    char buffer[64];
+    if (length > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+        double value = 0;
+        for (uint32_t i = 2; i < length && hex_value(text[i]) >= 0; i++)
+            value = value * 16 + hex_value(text[i]);
+        return value;
+    }
+    if (length >= sizeof buffer)
+        return long_number(text, length);
+    memcpy(buffer, text, length);
+    buffer[length] = '\0';
+    return strtod(buffer, NULL);
+}
+
+/* ---- the rest ----------------------------------------------------------------------------- */
+
+/* After include and use: "<path>" on the same line is one token. */
+static bool lex_path(lexer *l)
+{
+    uint32_t from = l->at;
+    while (peek(l, 0) == ' ' || peek(l, 0) == '\t')
+        l->at++;
+    uint32_t open = l->at;
+    if (peek(l, 0) == '<')
+        while (l->at < l->length && l->text[l->at] != '>' && l->text[l->at] != '\n')
+            skip_character(l, false);
+    if (peek(l, 0) != '>') {
+        l->at = from;
+        return true;
+    }
+    l->at++;
+    return push(l, CSG_TOKEN_PATH, open);
+}
+
+static bool lex_name(lexer *l)
+{
+    uint32_t from = l->at++;
+    while (is_name(peek(l, 0)))
+        l->at++;
+    csg_token_kind kind = CSG_TOKEN_NAME;
+    for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
+        if (keywords[i].length == l->at - from &&
+            memcmp(keywords[i].text, l->text + from, l->at - from) == 0)
+            kind = keywords[i].kind;
+    if (!push(l, kind, from))
+        return false;
+    return kind == CSG_TOKEN_INCLUDE || kind == CSG_TOKEN_USE ? lex_path(l) : true;
+}
+
+static const char *hint_for_character(uint32_t character)
+{
+    switch (character) {
+    case '\'':
+    case 0x2018:
+    case 0x2019:
+    case 0x201C:
+    case 0x201D:
+        return "strings stand in straight double quotes: \"text\"";
+    case 0x2212:
+    case 0x2013:
+    case 0x2014:
+        return "the minus sign is '-'";
+    case 0xD7:
+        return "multiplication is '*'";
+    case '&':
+        return "logical and is '&&'";
+    case '|':
+        return "logical or is '||'";
+    default:
+        return NULL;
+    }
+}
+
+static bool lex_strange(lexer *l)
+{
+    uint32_t from = l->at, character = 0;
+    uint32_t length = (uint32_t)csg_utf8_decode(l->text + l->at, l->length - l->at, &character);
+    if (length && character >= 0x20 && character != 0x7F)
+        csg_source_report(l->sources, CSG_DIAG_BAD_CHARACTER, span(l, from, from + length),
+                          hint_for_character(character), "'%.*s' does not belong here",
+                          (int)length, l->text + from);
+    else if (length && character)
+        csg_source_report(l->sources, CSG_DIAG_BAD_CHARACTER, span(l, from, from + 1), NULL,
+                          "control character 0x%02X", (unsigned)character);
+    if (length == 0 || character == 0)
+        skip_character(l, false);
+    else
+        l->at += length;
+    return push(l, CSG_TOKEN_BAD, from);
+}
+
+static bool lex_punctuation(lexer *l)
+{
+    for (size_t i = 0; i < sizeof punctuation / sizeof *punctuation; i++)
+        if (punctuation[i].length <= l->length - l->at &&
+            memcmp(punctuation[i].text, l->text + l->at, punctuation[i].length) == 0) {
+            uint32_t from = l->at;
+            l->at += punctuation[i].length;
+            return push(l, punctuation[i].kind, from);
+        }
+    return lex_strange(l);
+}
+
+bool csg_lex(const csg_sources *sources, uint32_t source, csg_token_array *out)
+{
+    const csg_source *text = &sources->items[source];
+    lexer l = {sources, &sources->context->memory, out, text->text, source, text->length, 0, false,
+               false};
+    if (l.length >= 3 && memcmp(l.text, "\xEF\xBB\xBF", 3) == 0)
+        l.at = 3;
+    bool ok = true;
+    for (skip_space(&l); ok && l.at < l.length; skip_space(&l)) {
+        char c = peek(&l, 0);
+        if (is_name_start(c))
+            ok = lex_name(&l);
+        else if (is_digit(c) || (c == '.' && is_digit(peek(&l, 1))))
+            ok = lex_number(&l);
+        else if (c == '"')
+            ok = lex_string(&l);
+        else
+            ok = lex_punctuation(&l);
+    }
+    return ok && push(&l, CSG_TOKEN_END, l.length);
+}
+
+void csg_tokens_release(csg_memory *memory, csg_token_array *tokens)
+{
+    csg_memory_release(memory, tokens->items, tokens->capacity * sizeof *tokens->items);
+    *tokens = (csg_token_array){0};
+}
