@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * The one header that C and C++ share: what the outside libraries (and the standard library's
+ * number conversions) do for the readers and writers, in plain C terms. No C++ exception or type
+ * crosses it. Every adapter reports trouble as a status and one sentence; the caller adds the
+ * file's name.
+ */
+#ifndef CSG_IO_ADAPTER_H
+#define CSG_IO_ADAPTER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "csgmesh/csgmesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- numbers (number_format.cc) ------------------------------------------------------ */
+
+enum { CSG_NUMBER_MOST = 32 }; /* bytes any of the put functions may write */
+
+/* Shortest text that reads back as the same value; not terminated; returns its end. */
+char *csg_number_put_float(char *text, float value);
+char *csg_number_put_double(char *text, double value);
+char *csg_number_put_u64(char *text, uint64_t value);
+/* Reads one decimal number (a leading '+' is taken) at text; returns its end, NULL when there is
+ * none. Too large becomes infinity, too small zero. */
+const char *csg_number_parse(const char *text, const char *end, double *value);
+
+/* ---- what a reading adapter hands over ------------------------------------------------ */
+
+typedef struct csg_adapter_error {
+    char text[240]; /* one sentence, terminated */
+} csg_adapter_error;
+
+/* One indexed part of a mesh, borrowed during the call. */
+typedef struct csg_adapter_part {
+    const float *positions;  /* 3 * vertex_count */
+    const float *normals;    /* 3 * vertex_count or NULL */
+    const uint8_t *colors;   /* 4 * vertex_count, sRGB + alpha, or NULL */
+    const uint32_t *indices; /* index_count, a multiple of 3 */
+    uint64_t vertex_count, index_count;
+} csg_adapter_part;
+
+/* ---- Draco (draco.cc) ------------------------------------------------------------------ */
+
+typedef struct csg_draco_settings {
+    uint32_t position_bits, normal_bits; /* quantisation */
+    uint32_t level;                      /* 0 fast .. 10 small */
+} csg_draco_settings;
+
+typedef struct csg_draco_encoded {
+    void *owner; /* pass to csg_draco_release */
+    const uint8_t *bytes;
+    size_t size_bytes;
+    uint64_t vertex_count, triangle_count;     /* of the mesh as encoded */
+    uint32_t position_id, normal_id, color_id; /* unique attribute ids */
+} csg_draco_encoded;
+
+/* What to encode: positions finite, at least one triangle, indices in range. Colours are whole
+ * numbers of one or two bytes, four a vertex. */
+typedef struct csg_draco_mesh {
+    const float *positions, *normals; /* normals may be NULL */
+    const void *colors;               /* NULL, or 4 * vertex_count of color_bytes each */
+    uint32_t color_bytes;             /* 1 or 2 */
+    const uint32_t *indices;
+    uint64_t vertex_count, triangle_count;
+} csg_draco_mesh;
+
+bool csg_draco_available(void);
+csgm_status csg_draco_encode(const csg_draco_mesh *mesh, const csg_draco_settings *settings,
+                             csg_draco_encoded *out, csg_adapter_error *error);
+void csg_draco_release(csg_draco_encoded *encoded); /* no-op on all zero */
+
+/* Attribute ids of a compressed glTF primitive; -1 = it has none. */
+typedef struct csg_draco_ids {
+    int64_t position, normal, color;
+} csg_draco_ids;
+
+/* Decoded arrays: floats as in the file, colours as floats 0..1 of color_components each. */
+typedef struct csg_draco_decoded {
+    void *owner;
+    const float *positions, *normals, *colors; /* normals, colors may be NULL */
+    uint32_t color_components;                 /* 3 or 4 */
+    const uint32_t *indices;
+    uint64_t vertex_count, index_count;
+} csg_draco_decoded;
+
+/* ids NULL = by the attributes' own kinds. most_bytes: refuses a file that says it needs more. */
+csgm_status csg_draco_decode(const uint8_t *bytes, size_t size_bytes, const csg_draco_ids *ids,
+                             uint64_t most_bytes, csg_draco_decoded *out, csg_adapter_error *error);
+void csg_draco_release_decoded(csg_draco_decoded *decoded);
+
+/* ---- glTF reading (gltf.cc) -------------------------------------------------------------- */
+
+/* A part with the place that its node gives it: row-major 3x4, glTF's own axes. */
+typedef csgm_status csg_gltf_part_fn(void *user, const csg_adapter_part *part,
+                                     const double transform[12]);
+/* Brings the bytes of a file named in the document (relative to it, percent signs decoded); they
+ * stay valid until csg_gltf_read returns. CSGM_OK or what went wrong. */
+typedef csgm_status csg_gltf_load_fn(void *user, const char *uri, const uint8_t **bytes,
+                                     size_t *size_bytes);
+
+typedef struct csg_gltf_calls {
+    csg_gltf_part_fn *part;
+    csg_gltf_load_fn *load;
+    void *user;
+    uint64_t most_bytes; /* of memory that decoding may take */
+} csg_gltf_calls;
+
+bool csg_gltf_available(void);
+/* json: the document; bin: the GLB's second chunk or NULL. CSGM_ERR_FORMAT with a sentence, or
+ * what a call returned (then error->text may be empty: it was reported there). */
+csgm_status csg_gltf_read(const char *json, size_t json_bytes, const uint8_t *bin, size_t bin_bytes,
+                          const csg_gltf_calls *calls, csg_adapter_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

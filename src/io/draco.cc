@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT
+ * The only file that names Draco: indexed triangles <-> its compressed bytes.
+ * Always edgebreaker: the sequential method writes files that cannot be decoded when a vertex is
+ * unused. Edgebreaker drops degenerate faces and unused vertices, may split vertices and reorders,
+ * so counts are those that the encoder tracked. Draco crashes on NaN and on a mesh without faces:
+ * callers check both. Whole numbers (colours) are kept exactly; only floats are quantised.
+ */
+#include "io/adapter.h"
+
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include <draco/compression/decode.h>
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
+
+namespace
+{
+
+csgm_status fail(csg_adapter_error *error, csgm_status status, const char *text)
+{
+    std::snprintf(error->text, sizeof error->text, "%s", text);
+    return status;
+}
+
+/* ---- encoding -------------------------------------------------------------------------------- */
+
+int add_attribute(draco::Mesh *mesh, draco::GeometryAttribute::Type kind, int8_t components,
+                  draco::DataType type, bool normalized, const void *values, uint32_t count)
+{
+    int64_t stride = components * draco::DataTypeLength(type);
+    draco::GeometryAttribute shape;
+    shape.Init(kind, nullptr, static_cast<uint8_t>(components), type, normalized, stride, 0);
+    int id = mesh->AddAttribute(shape, true, count);
+    if (count)
+        mesh->attribute(id)->buffer()->Write(0, values, static_cast<size_t>(stride) * count);
+    return id;
+}
+
+struct encoded_owner {
+    draco::EncoderBuffer buffer;
+};
+
+csgm_status encode(const csg_draco_mesh *in, const csg_draco_settings *settings,
+                   csg_draco_encoded *out, csg_adapter_error *error)
+{
+    draco::Mesh mesh;
+    const uint32_t count = static_cast<uint32_t>(in->vertex_count);
+    mesh.set_num_points(count);
+    int position = add_attribute(&mesh, draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32,
+                                 false, in->positions, count);
+    int normal = in->normals ? add_attribute(&mesh, draco::GeometryAttribute::NORMAL, 3,
+                                             draco::DT_FLOAT32, false, in->normals, count)
+                             : -1;
+    int color = in->colors
+                    ? add_attribute(&mesh, draco::GeometryAttribute::COLOR, 4,
+                                    in->color_bytes == 2 ? draco::DT_UINT16 : draco::DT_UINT8, true,
+                                    in->colors, count)
+                    : -1;
+    mesh.SetNumFaces(in->triangle_count);
+    for (uint64_t i = 0; i < in->triangle_count; i++) {
+        draco::Mesh::Face face;
+        for (size_t k = 0; k < 3; k++)
+            face[k] = in->indices[3 * i + k];
+        mesh.SetFace(draco::FaceIndex(static_cast<uint32_t>(i)), face);
+    }
+    draco::ExpertEncoder encoder(mesh);
+    int speed = 10 - static_cast<int>(settings->level);
+    encoder.SetSpeedOptions(speed, speed);
+    encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+    encoder.SetTrackEncodedProperties(true);
+    encoder.SetAttributeQuantization(position, static_cast<int>(settings->position_bits));
+    if (normal >= 0)
+        encoder.SetAttributeQuantization(normal, static_cast<int>(settings->normal_bits));
+    auto owner = std::make_unique<encoded_owner>();
+    draco::Status status = encoder.EncodeToBuffer(&owner->buffer);
+    if (!status.ok())
+        return fail(error, CSGM_ERR_UNSUPPORTED, status.error_msg());
+    if (!encoder.num_encoded_faces())
+        return fail(error, CSGM_ERR_UNSUPPORTED, "all triangles are degenerate");
+    *out = {};
+    out->bytes = reinterpret_cast<const uint8_t *>(owner->buffer.data());
+    out->size_bytes = owner->buffer.size();
+    out->vertex_count = encoder.num_encoded_points();
+    out->triangle_count = encoder.num_encoded_faces();
+    out->position_id = mesh.attribute(position)->unique_id();
+    out->normal_id = normal >= 0 ? mesh.attribute(normal)->unique_id() : 0;
+    out->color_id = color >= 0 ? mesh.attribute(color)->unique_id() : 0;
+    out->owner = owner.release();
+    return CSGM_OK;
+}
+
+/* ---- decoding -------------------------------------------------------------------------------- */
+
+struct decoded_owner {
+    std::vector<float> positions, normals, colors;
+    std::vector<uint32_t> indices;
+};
+
+bool collect(const draco::Mesh &mesh, const draco::PointAttribute *attribute, uint32_t components,
+             std::vector<float> *out)
+{
+    const uint32_t count = mesh.num_points();
+    out->resize(static_cast<size_t>(count) * components);
+    for (uint32_t i = 0; i < count; i++) {
+        draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(i));
+        if (at.value() >= attribute->size())
+            return false;
+        float value[4];
+        if (!attribute->ConvertValue<float>(at, static_cast<int8_t>(components), value))
+            return false;
+        std::memcpy(out->data() + static_cast<size_t>(i) * components, value,
+                    components * sizeof *value);
+    }
+    return true;
+}
+
+const draco::PointAttribute *find(const draco::Mesh &mesh, const csg_draco_ids *ids, int64_t id,
+                                  draco::GeometryAttribute::Type kind)
+{
+    if (!ids)
+        return mesh.GetNamedAttribute(kind);
+    if (id < 0 || id > UINT32_MAX)
+        return nullptr;
+    return mesh.GetAttributeByUniqueId(static_cast<uint32_t>(id));
+}
+
+/* Normalised whole numbers come out of ConvertValue as 0..1 already. */
+bool collect_all(const draco::Mesh &mesh, const csg_draco_ids *ids, decoded_owner *owner,
+                 uint32_t *color_components)
+{
+    using attribute = draco::GeometryAttribute;
+    auto position = find(mesh, ids, ids ? ids->position : -1, attribute::POSITION);
+    auto normal = find(mesh, ids, ids ? ids->normal : -1, attribute::NORMAL);
+    auto color = find(mesh, ids, ids ? ids->color : -1, attribute::COLOR);
+    if (!position || position->num_components() != 3)
+        return false;
+    *color_components = color ? color->num_components() : 0;
+    return collect(mesh, position, 3, &owner->positions) &&
+           (!normal ||
+            (normal->num_components() == 3 && collect(mesh, normal, 3, &owner->normals))) &&
+           (!color || ((*color_components == 3 || *color_components == 4) &&
+                       collect(mesh, color, *color_components, &owner->colors)));
+}
+
+csgm_status decode(const uint8_t *bytes, size_t size, const csg_draco_ids *ids, uint64_t most,
+                   csg_draco_decoded *out, csg_adapter_error *error)
+{
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char *>(bytes), size);
+    draco::Decoder decoder;
+    auto result = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!result.ok())
+        return fail(error, CSGM_ERR_FORMAT, result.status().error_msg());
+    const draco::Mesh &mesh = *result.value();
+    const uint64_t points = mesh.num_points(), faces = mesh.num_faces();
+    if (most && (points * 40 + faces * 12) > most)
+        return fail(error, CSGM_ERR_MEMORY, "the decoded mesh is larger than the memory limit");
+    auto owner = std::make_unique<decoded_owner>();
+    *out = {};
+    if (!collect_all(mesh, ids, owner.get(), &out->color_components))
+        return fail(error, CSGM_ERR_FORMAT, "the Draco data lacks positions or has odd attributes");
+    owner->indices.resize(static_cast<size_t>(faces) * 3);
+    for (uint32_t i = 0; i < faces; i++)
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t index = mesh.face(draco::FaceIndex(i))[k].value();
+            if (index >= points)
+                return fail(error, CSGM_ERR_FORMAT, "an index of the Draco data is out of range");
+            owner->indices[3 * static_cast<size_t>(i) + k] = index;
+        }
+    out->positions = owner->positions.data();
+    out->normals = owner->normals.empty() ? nullptr : owner->normals.data();
+    out->colors = owner->colors.empty() ? nullptr : owner->colors.data();
+    out->indices = owner->indices.data();
+    out->vertex_count = points;
+    out->index_count = faces * 3;
+    out->owner = owner.release();
+    return CSGM_OK;
+}
+
+} // namespace
+
+bool csg_draco_available(void)
+{
+    return true;
+}
+
+csgm_status csg_draco_encode(const csg_draco_mesh *mesh, const csg_draco_settings *settings,
+                             csg_draco_encoded *out, csg_adapter_error *error)
+{
+    try {
+        return encode(mesh, settings, out, error);
+    } catch (const std::bad_alloc &) {
+        return fail(error, CSGM_ERR_MEMORY, "out of memory");
+    } catch (...) {
+        return fail(error, CSGM_ERR_INTERNAL, "the encoder failed");
+    }
+}
+
+void csg_draco_release(csg_draco_encoded *encoded)
+{
+    delete static_cast<encoded_owner *>(encoded->owner);
+    *encoded = {};
+}
+
+csgm_status csg_draco_decode(const uint8_t *bytes, size_t size_bytes, const csg_draco_ids *ids,
+                             uint64_t most_bytes, csg_draco_decoded *out, csg_adapter_error *error)
+{
+    try {
+        return decode(bytes, size_bytes, ids, most_bytes, out, error);
+    } catch (const std::bad_alloc &) {
+        return fail(error, CSGM_ERR_MEMORY, "out of memory");
+    } catch (...) {
+        return fail(error, CSGM_ERR_FORMAT, "the decoder failed");
+    }
+}
+
+void csg_draco_release_decoded(csg_draco_decoded *decoded)
+{
+    delete static_cast<decoded_owner *>(decoded->owner);
+    *decoded = {};
+}

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT
+ * Atomic files; see file.h. The names of temporaries in progress stand in a fixed table of the
+ * process, so that a signal handler can unlink them without a lock or an allocation. A seventeenth
+ * file written at the same time is not in the table: an interrupt would leave its temporary behind.
+ */
+#include "io/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "io/formats.h"
+
+/* ---- temporaries in progress ----------------------------------------------------------- */
+
+enum { SLOTS = 16, SLOT_FREE = 0, SLOT_TAKEN, SLOT_LIVE };
+
+static struct {
+    atomic_int state;
+    char name[PATH_MAX];
+} pending[SLOTS];
+
+static int pending_add(const char *name)
+{
+    size_t length = strlen(name) + 1;
+    for (int i = 0; i < SLOTS && length <= PATH_MAX; i++) {
+        int expected = SLOT_FREE;
+        if (!atomic_compare_exchange_strong(&pending[i].state, &expected, SLOT_TAKEN))
+            continue;
+        memcpy(pending[i].name, name, length);
+        atomic_store(&pending[i].state, SLOT_LIVE);
+        return i;
+    }
+    return -1;
+}
+
+static void pending_remove(int slot)
+{
+    if (slot >= 0)
+        atomic_store(&pending[slot].state, SLOT_FREE);
+}
+
+void csg_io_cleanup_pending(void)
+{
+    int kept = errno;
+    for (int i = 0; i < SLOTS; i++)
+        if (atomic_load(&pending[i].state) == SLOT_LIVE)
+            unlink(pending[i].name);
+    errno = kept;
+}
+
+/* ---- finding the target ------------------------------------------------------------------ */
+
+static csgm_status fail(csg_file *file, int error)
+{
+    csg_diag_plain(&file->context->diags, CSG_DIAG_CANNOT_WRITE, file->path, NULL,
+                   "cannot write: %s", strerror(error));
+    csg_arena_reset(&file->names);
+    return CSGM_ERR_IO;
+}
+
+/* /dev/stdout and its like name an open descriptor: writing through a copy of it keeps its offset
+ * and append mode, which opening the name again would not. */
+static int descriptor_of(const char *path)
+{
+    if (strcmp(path, "/dev/stdout") == 0)
+        return STDOUT_FILENO;
+    if (strcmp(path, "/dev/stderr") == 0)
+        return STDERR_FILENO;
+    char *end = NULL;
+    if (strncmp(path, "/dev/fd/", 8) != 0 || path[8] < '0' || path[8] > '9')
+        return -1;
+    long fd = strtol(path + 8, &end, 10);
+    return *end == '\0' && fd >= 0 && fd <= INT_MAX ? (int)fd : -1;
+}
+
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Follows the last component's links, also one that leads nowhere yet. NULL with errno set. */
+static const char *follow_links(csg_arena *names, const char *path)
+{
+    enum { MOST_LINKS = 40 }; /* as Linux itself */
+    char link[PATH_MAX];
+    for (int i = 0; i < MOST_LINKS; i++) {
+        ssize_t length = readlink(path, link, sizeof link);
+        if (length < 0)
+            return errno == EINVAL || errno == ENOENT ? path : NULL;
+        if ((size_t)length >= sizeof link) {
+            errno = ENAMETOOLONG;
+            return NULL;
+        }
+        int folder = length && link[0] == '/' ? 0 : (int)folder_length(path);
+        path = csg_arena_printf(names, "%.*s%.*s", folder, path, (int)length, link);
+        if (!path) {
+            errno = ENOMEM;
+            return NULL;
+        }
+    }
+    errno = ELOOP;
+    return NULL;
+}
+
+static csgm_status open_direct(csg_file *file, int descriptor)
+{
+    file->fd = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, 0)
+                               : open(file->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    return file->fd < 0 ? fail(file, errno) : CSGM_OK;
+}
+
+/* Created by our own open, not mkstemp, so that the kernel applies the umask. */
+static int open_temporary(csg_file *file)
+{
+    static atomic_uint counter;
+    int folder = (int)folder_length(file->target);
+    for (int attempt = 0; attempt < 1000; attempt++) {
+        file->temporary =
+            csg_arena_printf(&file->names, "%.*s.csgmesh-%ld-%u.tmp", folder, file->target,
+                             (long)getpid(), atomic_fetch_add(&counter, 1));
+        if (!file->temporary) {
+            errno = ENOMEM;
+            return -1;
+        }
+        file->pending = pending_add(file->temporary);
+        file->fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file->fd >= 0)
+            return file->fd;
+        pending_remove(file->pending);
+        file->pending = -1;
+        if (errno != EEXIST)
+            return -1;
+    }
+    return -1;
+}
+
+/* The new file gets the old one's mode and, where we may, its owner. */
+static void take_over(int fd, const struct stat *old)
+{
+    if ((old->st_uid != geteuid() || old->st_gid != getegid()) &&
+        fchown(fd, old->st_uid, old->st_gid) != 0)
+        errno = 0; /* not ours to give: the file belongs to who wrote it */
+    if (fchmod(fd, old->st_mode & 0777) != 0)
+        errno = 0;
+}
+
+csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *path)
+{
+    *file = (csg_file){.context = context, .path = path, .fd = -1, .pending = -1};
+    csg_arena_init(&file->names, &context->memory);
+    int descriptor = descriptor_of(path);
+    struct stat old;
+    bool exists = stat(path, &old) == 0;
+    if (!exists && errno != ENOENT)
+        return fail(file, errno);
+    if (exists && S_ISDIR(old.st_mode))
+        return fail(file, EISDIR);
+    if (descriptor >= 0 || (exists && !S_ISREG(old.st_mode)))
+        return open_direct(file, descriptor);
+    if (exists && access(path, W_OK) != 0)
+        return fail(file, errno);
+    file->target = follow_links(&file->names, path);
+    if (!file->target || open_temporary(file) < 0)
+        return fail(file, errno);
+    if (exists)
+        take_over(file->fd, &old);
+    return CSGM_OK;
+}
+
+/* ---- the end ------------------------------------------------------------------------------- */
+
+static void forget(csg_file *file)
+{
+    pending_remove(file->pending);
+    csg_arena_reset(&file->names);
+    file->fd = file->pending = -1;
+}
+
+csgm_status csg_file_commit(csg_file *file)
+{
+    int error = file->target && fsync(file->fd) != 0 ? errno : 0;
+    if (close(file->fd) != 0 && !error)
+        error = errno;
+    if (file->target && !error && rename(file->temporary, file->target) != 0)
+        error = errno;
+    if (!error) {
+        forget(file);
+        return CSGM_OK;
+    }
+    if (file->temporary)
+        unlink(file->temporary);
+    pending_remove(file->pending);
+    file->fd = file->pending = -1;
+    return fail(file, error);
+}
+
+void csg_file_abandon(csg_file *file)
+{
+    close(file->fd);
+    if (file->temporary)
+        unlink(file->temporary);
+    forget(file);
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ * Files that appear complete or not at all: the bytes go to a temporary file beside the target, are
+ * synced, and take the target's name. Devices, pipes and descriptors are written directly.
+ */
+#ifndef CSG_IO_FILE_H
+#define CSG_IO_FILE_H
+
+#include "base/context.h"
+
+typedef struct csg_file {
+    csgm_context *context;
+    csg_arena names;
+    const char *path;      /* as given, for diagnostics; borrowed */
+    const char *target;    /* links followed; NULL = written directly */
+    const char *temporary; /* beside the target */
+    int fd;
+    int pending; /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
+} csg_file;
+
+/* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */
+csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *path);
+/* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. */
+csgm_status csg_file_commit(csg_file *file);
+/* Closes and removes the temporary. */
+void csg_file_abandon(csg_file *file);
+
+#endif

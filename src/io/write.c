@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT
+ * Writing a mesh: arguments and mesh are checked, the format's writer fills a sink, and the file
+ * takes its name only when all of it is on disk.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "io/file.h"
+#include "io/format_table.h"
+
+csgm_write_options csg_write_options_default(void)
+{
+    return (csgm_write_options){.struct_size = sizeof(csgm_write_options),
+                                .draco_position_bits = 14,
+                                .draco_normal_bits = 10,
+                                .draco_color_bits = 8,
+                                .draco_level = 7,
+                                .y_up = true,
+                                .unit = CSGM_UNIT_NONE};
+}
+
+csgm_status csg_write_refuse(csg_sink *sink, const char *hint, const char *format, ...)
+{
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    csg_diag_plain(&sink->context->diags, CSG_DIAG_FORMAT_LIMIT, sink->name, hint, "%s", text);
+    return CSGM_ERR_UNSUPPORTED;
+}
+
+/* ---- checks ------------------------------------------------------------------------------------
+ */
+
+static csgm_status bad_option(csgm_context *context, const char *file, const char *what)
+{
+    csg_diag_plain(&context->diags, CSG_DIAG_BAD_WRITE_OPTION, file, NULL, "%s", what);
+    return CSGM_ERR_ARGUMENT;
+}
+
+static csgm_status check_options(csgm_context *context, const csgm_write_options *o,
+                                 const char *file)
+{
+    if (o->struct_size != sizeof *o)
+        return CSGM_ERR_ARGUMENT;
+    if (o->draco_position_bits < 1 || o->draco_position_bits > 30)
+        return bad_option(context, file, "Draco's position bits must be from 1 to 30");
+    if (o->draco_normal_bits < 2 || o->draco_normal_bits > 30)
+        return bad_option(context, file, "Draco's normal bits must be from 2 to 30");
+    if (o->draco_color_bits < 1 || o->draco_color_bits > 30)
+        return bad_option(context, file, "Draco's color bits must be from 1 to 30");
+    if (o->draco_level > 10)
+        return bad_option(context, file, "Draco's level must be from 0 to 10");
+    if (o->unit < CSGM_UNIT_NONE || o->unit > CSGM_UNIT_IN)
+        return bad_option(context, file, "the unit is none of the known ones");
+    return CSGM_OK;
+}
+
+/* A difference with itself is zero for finite numbers and NaN for the others; so is their sum, and
+ * the loop has no branch. */
+static bool all_finite(const float *values, uint64_t count)
+{
+    float sum = 0;
+    for (uint64_t i = 0; i < count; i++)
+        sum += values[i] - values[i];
+    return sum == 0;
+}
+
+static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh, const char *file)
+{
+    const char *what = NULL;
+    uint32_t largest = 0;
+    if (mesh->vertex_count > UINT32_MAX || (mesh->vertex_count && !mesh->positions) ||
+        (mesh->triangle_count && !mesh->indices) || mesh->triangle_count > UINT64_MAX / 256)
+        return CSGM_ERR_ARGUMENT;
+    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
+        largest = mesh->indices[i] > largest ? mesh->indices[i] : largest;
+    if (mesh->triangle_count && largest >= mesh->vertex_count)
+        what = "a triangle of the mesh names a vertex that does not exist";
+    else if (!isfinite(mesh->origin.x + mesh->origin.y + mesh->origin.z) ||
+             !all_finite(mesh->positions, 3 * mesh->vertex_count))
+        what = "a coordinate of the mesh is infinite or not a number";
+    if (!what)
+        return CSGM_OK;
+    csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, file, NULL, "%s", what);
+    return CSGM_ERR_ARGUMENT;
+}
+
+/* Everything that can be known before a file is touched. */
+static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, const char *file,
+                           csgm_format format, const csgm_write_options *options,
+                           const csg_format_row **row)
+{
+    csgm_status status = check_options(context, options, file);
+    if (status)
+        return status;
+    if (format == CSGM_FORMAT_AUTO)
+        format = csg_format_from_path(file);
+    *row = csg_format_find(format);
+    if (!*row)
+        return csg_format_unknown(context, file);
+    if (!csg_format_available(format, false))
+        return csg_format_no_library(context, file, (*row)->write_library, "this format");
+    bool is_gltf = format == CSGM_FORMAT_GLB || format == CSGM_FORMAT_GLTF;
+    if (options->draco && is_gltf && !csg_draco_available())
+        return csg_format_no_library(context, file, "Draco", "compressed glTF");
+    return check_mesh(context, mesh, file);
+}
+
+/* ---- writing
+ * -------------------------------------------------------------------------------------- */
+
+static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int fd, const char *name,
+                        const csg_format_row *row, const csgm_write_options *options)
+{
+    csg_sink sink;
+    csgm_status status = csg_sink_open(&sink, context, fd, name);
+    if (status)
+        return status;
+    status = row->write(&sink, mesh, options);
+    if (!status)
+        return csg_sink_close(&sink);
+    csg_sink_discard(&sink);
+    return status;
+}
+
+csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                            const char *name, csgm_format format, const csgm_write_options *options)
+{
+    csgm_write_options defaults = csg_write_options_default();
+    const csg_format_row *row;
+    options = options ? options : &defaults;
+    csgm_status status = prepare(context, mesh, name, format, options, &row);
+    return status ? status : fill(context, mesh, fd, name, row, options);
+}
+
+csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
+                         csgm_format format, const csgm_write_options *options)
+{
+    csgm_write_options defaults = csg_write_options_default();
+    const csg_format_row *row;
+    csg_file file;
+    options = options ? options : &defaults;
+    csgm_status status = prepare(context, mesh, path, format, options, &row);
+    if (status)
+        return status;
+    status = csg_file_create(&file, context, path);
+    if (status)
+        return status;
+    status = fill(context, mesh, file.fd, path, row, options);
+    if (!status)
+        return csg_file_commit(&file);
+    csg_file_abandon(&file);
+    return status;
+}
