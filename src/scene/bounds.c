@@ -1,16 +1,111 @@
 /* SPDX-License-Identifier: MIT
- * Boxes of solids.
+ * Levels, regions and clamp boxes of the exact two-level scheme (operators.md 3.5), n-ary: from the
+ * root down, each child gets the band of values in which it must be exact and the part of space in
+ * which it matters.
  */
 #include "scene/bounds.h"
 
+#include "scene/level_boxes.h"
+
 csgm_status csg_bounds_fill(csgm_scene *scene)
 {
-    for (size_t i = 0; i < scene->node_count; i++)
-        scene->bounds[i] = csg_box_all();
-    return CSGM_OK;
+    csgm_status status = csg_level_boxes(scene, NULL, scene->bounds);
+    csg_box root = csg_box_all();
+    if (status == CSGM_OK)
+        status = csg_level_box_of_root(scene, &root);
+    if (status == CSGM_OK)
+        scene->bounds[scene->root] = csg_box_intersect(scene->bounds[scene->root], root);
+    return status;
 }
 
 csg_box csg_bounds_of_solid(const csgm_scene *scene)
 {
     return scene->bounds[scene->root];
+}
+
+/* The band [-below, above] of child number `index`. */
+static void hand_down_levels(const csgm_scene *scene, const csg_node *node, uint32_t index,
+                             const csg_node_bounds *parent, csg_node_bounds *child)
+{
+    double support = 0, below = parent->below, above = parent->above;
+    if (csg_node_is_operator(node->kind))
+        support = csg_blend_support(csg_scene_blend(scene, node));
+    if (node->kind == CSG_NODE_UNION)
+        below += support;
+    else
+        above += support; /* intersection and difference */
+    if (node->kind == CSG_NODE_TRANSFORM) {
+        below /= scene->scales[node->payload];
+        above /= scene->scales[node->payload];
+    }
+    bool subtracted = node->kind == CSG_NODE_DIFFERENCE && index > 0;
+    child->below = subtracted ? above : below;
+    child->above = subtracted ? below : above;
+}
+
+/* Below an intersection an operand matters only inside the others' boxes. A child's clamp_box
+ * holds its region until the child is visited. */
+static void hand_down_regions(const csgm_scene *scene, const csg_node *node, csg_box region,
+                              csg_node_bounds *out)
+{
+    const csg_node_id *children = csg_scene_children(scene, node);
+    uint32_t count = node->child_count;
+    if (node->kind == CSG_NODE_TRANSFORM)
+        region = csg_affine_box(&scene->inverses[node->payload], region);
+    for (uint32_t k = 0; k < count; k++)
+        out[children[k]].clamp_box = region;
+    if (node->kind == CSG_NODE_DIFFERENCE) {
+        for (uint32_t k = 1; k < count; k++)
+            out[children[k]].clamp_box = csg_box_intersect(region, out[children[0]].level_box);
+    } else if (node->kind == CSG_NODE_INTERSECTION) {
+        csg_box after = region, before = region;
+        for (uint32_t k = count; k-- > 0;) {
+            out[children[k]].clamp_box = after;
+            after = csg_box_intersect(after, out[children[k]].level_box);
+        }
+        for (uint32_t k = 0; k < count; k++) {
+            out[children[k]].clamp_box = csg_box_intersect(out[children[k]].clamp_box, before);
+            before = csg_box_intersect(before, out[children[k]].level_box);
+        }
+    }
+}
+
+static csgm_status fill_level_boxes(const csgm_scene *scene, csg_arena *scratch,
+                                    csg_node_bounds *out)
+{
+    double *levels = csg_arena_calloc(scratch, scene->node_count, sizeof *levels);
+    csg_box *boxes = csg_arena_calloc(scratch, scene->node_count, sizeof *boxes);
+    if (!levels || !boxes)
+        return CSGM_ERR_MEMORY;
+    for (size_t i = 0; i < scene->node_count; i++)
+        levels[i] = out[i].below;
+    csgm_status status = csg_level_boxes(scene, levels, boxes);
+    for (size_t i = 0; i < scene->node_count; i++)
+        out[i].level_box = boxes[i];
+    return status;
+}
+
+csgm_status csg_bounds_compute(const csgm_scene *scene, double delta, csg_node_bounds *out)
+{
+    out[scene->root] = (csg_node_bounds){.below = delta, .above = delta};
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        for (uint32_t k = 0; k < node->child_count; k++)
+            hand_down_levels(scene, node, k, &out[i], &out[csg_scene_children(scene, node)[k]]);
+    }
+    csg_arena scratch;
+    csg_arena_init(&scratch, &scene->context->memory);
+    csgm_status status = fill_level_boxes(scene, &scratch, out);
+    csg_arena_reset(&scratch);
+    if (status != CSGM_OK)
+        return status;
+    out[scene->root].clamp_box = csg_box_all();
+    for (size_t i = scene->node_count; i-- > 0;) {
+        csg_box region = out[i].clamp_box;
+        out[i].clamp_box =
+            csg_box_intersect(out[i].level_box, csg_box_grow(region, out[i].below + out[i].above));
+        hand_down_regions(scene, &scene->nodes[i], csg_box_intersect(region, out[i].clamp_box),
+                          out);
+    }
+    return CSGM_OK;
 }

@@ -19,7 +19,8 @@ typedef struct csg_node_bounds {
 csgm_status csg_bounds_compute(const csgm_scene *scene, double delta, csg_node_bounds *out);
 
 /* Fills scene->bounds of a scene whose other arrays are ready: each node's box in its own frame
- * without regard to its ancestors, except that the root's is cut to what the whole tree can show. */
+ * without regard to its ancestors, except that the root's is cut to what the whole tree can show.
+ */
 csgm_status csg_bounds_fill(csgm_scene *scene);
 
 /* Box of the solid {f >= 0}. Empty for an empty solid, infinite sides for an unbounded one. */

@@ -17,8 +17,8 @@ typedef struct csg_scene_builder {
     csgm_context *context;
     csgm_scene *scene; /* growing; arrays are from context->memory until csg_build_finish */
     size_t node_capacity, child_capacity, parameter_capacity, transform_capacity, color_capacity;
-    csgm_status status;  /* first failure, sticky */
-    char problem[160];   /* one sentence about it, "" for memory */
+    csgm_status status; /* first failure, sticky */
+    char problem[160];  /* one sentence about it, "" for memory */
 } csg_scene_builder;
 
 csgm_status csg_build_begin(csg_scene_builder *builder, csgm_context *context);

@@ -22,10 +22,12 @@ void csg_reference_blend_function(csg_blend_kind kind, double n, double x, doubl
  * k = 2. Intersection: -G(-f); difference: -G(-f1, f2, ...). */
 double csg_reference_union(csg_blend blend, const double *values, size_t count, double *partials);
 
-/* Whole scene at a point; *status becomes CSGM_ERR_MEMORY when there was no room, else untouched. */
+/* Whole scene at a point; *status becomes CSGM_ERR_MEMORY when there was no room, else untouched.
+ */
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
-/* Primitives whose value can change the root's there: those not dropped by an operator's support. */
+/* Primitives whose value can change the root's there: those not dropped by an operator's support.
+ */
 uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
 #endif

@@ -98,12 +98,12 @@ struct csgm_scene {
     csg_node_id *children;
     double *parameters;
     csg_affine *transforms;
-    csg_affine *inverses;  /* once sealed: of transforms */
-    double *scales;        /* once sealed: smallest singular values of transforms */
+    csg_affine *inverses; /* once sealed: of transforms */
+    double *scales;       /* once sealed: smallest singular values of transforms */
     csg_color *colors;
     size_t node_count, child_count, parameter_count, transform_count, color_count;
-    csg_node_id root; /* never NONE: an empty scene has an EMPTY node */
-    csg_box *bounds;  /* per node, in its own frame: contains {f >= 0} (bounds.h) */
+    csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
+    csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
     size_t dependency_count;
 };

@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: MIT
+ * A blended union shows where one operand is above its level by at most the blend's excess and
+ * another by at most its support, so it asks its operands for boxes at up to three levels, and
+ * those ask theirs. Each node therefore has a short sorted list of levels, planned from the root
+ * down; a box for a larger level holds the one for a smaller, so a list that grows too long loses
+ * the levels next to larger ones. Boxes are then computed from the leaves up, one per level
+ * ("slot").
+ *
+ * Two uses: each node in its own frame; or all of the tree in the root's frame, with regions, the
+ * part of space in which an ancestor needs the slot at all.
+ */
+#include "scene/level_boxes.h"
+
+#include <string.h>
+
+#include "scene/primitive_box.h"
+
+enum {
+    MOST_LEVELS = 8,          /* of a node */
+    MOST_LEVELS_IN_LARGE = 2, /* of a node in a scene of more than LARGE_SCENE nodes */
+    LARGE_SCENE = 200000,
+    MOST_PAIRED = 64, /* operands of a union whose pairs are looked at one by one */
+    MOST_PASSES = 8   /* up and down, for the root's box */
+};
+
+typedef struct slots {
+    uint32_t first, count;
+} slots;
+
+typedef struct table {
+    const csgm_scene *scene;
+    csg_arena arena;
+    slots *nodes;
+    double *levels; /* per slot */
+    size_t level_capacity, slot_count;
+    csg_box *boxes; /* per slot */
+    csg_box *work;  /* of one operator's children */
+    bool whole;     /* all boxes in the root's frame, cut by regions */
+    /* for the whole tree only */
+    csg_box *regions;    /* per slot */
+    uint32_t *frame;     /* the innermost transform around each node, or NONE */
+    csg_affine *to_root; /* per transform, from inside it to the root's frame */
+} table;
+
+/* ---- planning the levels ---------------------------------------------------------------- */
+
+typedef struct level_list {
+    double at[4 * MOST_LEVELS];
+    uint32_t count;
+} level_list;
+
+static void add_level(level_list *list, double level)
+{
+    uint32_t i = list->count;
+    while (i > 0 && list->at[i - 1] > level)
+        i--;
+    if (i > 0 && list->at[i - 1] == level)
+        return;
+    memmove(list->at + i + 1, list->at + i, (list->count - i) * sizeof *list->at);
+    list->at[i] = level;
+    list->count++;
+}
+
+/* Drops levels next to a larger one, but never the smallest, which matters most. */
+static void thin(level_list *list, uint32_t most)
+{
+    while (list->count > most) {
+        uint32_t closest = most > 1 ? 1 : 0;
+        for (uint32_t i = closest; i + 1 < list->count; i++)
+            if (list->at[i + 1] - list->at[i] < list->at[closest + 1] - list->at[closest])
+                closest = i;
+        memmove(list->at + closest, list->at + closest + 1,
+                (list->count - closest - 1) * sizeof *list->at);
+        list->count--;
+    }
+}
+
+static bool store_levels(table *t, csg_node_id node, level_list *list)
+{
+    void *levels = t->levels;
+    thin(list, t->scene->node_count > LARGE_SCENE ? MOST_LEVELS_IN_LARGE : MOST_LEVELS);
+    if (!csg_memory_reserve(t->arena.memory, &levels, &t->level_capacity,
+                            t->slot_count + list->count, sizeof *t->levels))
+        return false;
+    t->levels = levels;
+    t->nodes[node] = (slots){(uint32_t)t->slot_count, list->count};
+    for (uint32_t i = 0; i < list->count; i++)
+        t->levels[t->slot_count++] = list->at[i];
+    return true;
+}
+
+/* How far below a node's level its operands matter: the largest alone, any with a larger one. */
+static void union_levels(const csgm_scene *scene, const csg_node *node, double *excess,
+                         double *support)
+{
+    csg_blend blend = csg_scene_blend(scene, node);
+    *excess = csg_blend_excess(blend, node->child_count);
+    *support = csg_blend_support(blend);
+}
+
+/* What a node at `level` asks of its child number `index`. */
+static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, double level,
+                level_list *list)
+{
+    double excess, support;
+    if (node->kind == CSG_NODE_TRANSFORM) {
+        add_level(list, level / scene->scales[node->payload]);
+    } else if (node->kind == CSG_NODE_UNION) {
+        union_levels(scene, node, &excess, &support);
+        add_level(list, level);
+        add_level(list, level + excess);
+        add_level(list, level + support);
+    } else if (node->kind != CSG_NODE_DIFFERENCE || index == 0) {
+        add_level(list, level);
+    }
+}
+
+static bool plan(table *t, const double *own)
+{
+    const csgm_scene *scene = t->scene;
+    level_list list = {{own ? own[scene->root] : 0}, 1};
+    if (!store_levels(t, scene->root, &list))
+        return false;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        for (uint32_t k = 0; k < node->child_count; k++) {
+            csg_node_id child = csg_scene_children(scene, node)[k];
+            list.count = 0;
+            for (uint32_t s = 0; s < t->nodes[i].count; s++)
+                ask(scene, node, k, t->levels[t->nodes[i].first + s], &list);
+            if (!t->whole) /* each node also has a level of its own */
+                add_level(&list, own ? own[child] : 0);
+            if (!store_levels(t, child, &list))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* The box of a node for a level that was asked for, or for the next larger one that was kept. */
+static csg_box box_at(const table *t, csg_node_id node, double level)
+{
+    slots s = t->nodes[node];
+    uint32_t i = 0;
+    while (i + 1 < s.count && t->levels[s.first + i] < level)
+        i++;
+    return s.count ? t->boxes[s.first + i] : csg_box_all();
+}
+
+/* ---- boxes, from the leaves up ----------------------------------------------------------- */
+
+/* Hull of the operands at `level` and of every pair's common part, one grown by the excess, the
+ * other by the support. */
+static csg_box union_box(const table *t, const csg_node *node, double level)
+{
+    const csg_node_id *children = csg_scene_children(t->scene, node);
+    uint32_t count = node->child_count;
+    double excess, support;
+    union_levels(t->scene, node, &excess, &support);
+    csg_box box = csg_box_empty();
+    bool pairs = support > 0 && count <= MOST_PAIRED;
+    for (uint32_t i = 0; i < count; i++)
+        box = csg_box_hull(box, box_at(t, children[i], pairs ? level : level + excess));
+    if (!pairs)
+        return box;
+    for (uint32_t i = 0; i < count; i++)
+        t->work[i] = box_at(t, children[i], level + support);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_box one = box_at(t, children[i], level + excess);
+        for (uint32_t j = 0; j < count; j++)
+            if (j != i)
+                box = csg_box_hull(box, csg_box_intersect(one, t->work[j]));
+    }
+    return box;
+}
+
+/* Outside of a subtracted half-space is a half-space too: {-f >= -level}, where that is what the
+ * child is; all of space otherwise. */
+static csg_box outside_box(const table *t, csg_node_id child, csg_affine map, double level)
+{
+    const csgm_scene *scene = t->scene;
+    const csg_node *node = &scene->nodes[child];
+    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
+        if (node->kind == CSG_NODE_TRANSFORM) {
+            map = csg_affine_multiply(map, scene->transforms[node->payload]);
+            level /= scene->scales[node->payload];
+        }
+        node = &scene->nodes[csg_scene_children(scene, node)[0]];
+    }
+    if (node->kind != CSG_NODE_PLANE)
+        return csg_box_all();
+    const double *v = csg_scene_parameters(scene, node);
+    const double flipped[4] = {-v[0], -v[1], -v[2], -v[3]};
+    return csg_primitive_box(CSG_NODE_PLANE, flipped, &map, level);
+}
+
+static csg_affine frame_of(const table *t, size_t node)
+{
+    bool turned = t->whole && t->frame[node] != CSG_NODE_NONE;
+    return turned ? t->to_root[t->frame[node]] : csg_affine_identity();
+}
+
+static csg_box transform_box(const table *t, const csg_node *node, double level)
+{
+    const csgm_scene *scene = t->scene;
+    csg_node_id child = csg_scene_children(scene, node)[0];
+    const csg_node *inner = &scene->nodes[child];
+    level /= scene->scales[node->payload];
+    if (t->whole)
+        return box_at(t, child, level);
+    const csg_affine *map = &scene->transforms[node->payload];
+    if (csg_node_is_primitive(inner->kind))
+        return csg_primitive_box(inner->kind, csg_scene_parameters(scene, inner), map, level);
+    return csg_affine_box(map, box_at(t, child, level));
+}
+
+static csg_box cut_box(const table *t, size_t index, double level)
+{
+    const csg_node *node = &t->scene->nodes[index];
+    const csg_node_id *children = csg_scene_children(t->scene, node);
+    csg_box box = box_at(t, children[0], level);
+    for (uint32_t k = 1; k < node->child_count; k++) {
+        csg_box other = node->kind == CSG_NODE_INTERSECTION
+                            ? box_at(t, children[k], level)
+                            : outside_box(t, children[k], frame_of(t, index), level);
+        box = csg_box_intersect(box, other);
+    }
+    return box;
+}
+
+static csg_box node_box(const table *t, size_t index, double level)
+{
+    const csg_node *node = &t->scene->nodes[index];
+    switch ((csg_node_kind)node->kind) {
+    case CSG_NODE_TRANSFORM:
+        return transform_box(t, node, level);
+    case CSG_NODE_COLOR:
+        return box_at(t, csg_scene_children(t->scene, node)[0], level);
+    case CSG_NODE_UNION:
+        return union_box(t, node, level);
+    case CSG_NODE_INTERSECTION:
+    case CSG_NODE_DIFFERENCE:
+        return cut_box(t, index, level);
+    default: {
+        csg_affine map = frame_of(t, index);
+        return csg_primitive_box(node->kind, csg_scene_parameters(t->scene, node), &map, level);
+    }
+    }
+}
+
+static void compute_upward(table *t)
+{
+    for (size_t i = 0; i < t->scene->node_count; i++) {
+        for (uint32_t k = 0; k < t->nodes[i].count; k++) {
+            uint32_t slot = t->nodes[i].first + k;
+            csg_box box = node_box(t, i, t->levels[slot]);
+            t->boxes[slot] = t->whole ? csg_box_intersect(box, t->regions[slot]) : box;
+        }
+    }
+}
+
+/* ---- regions, from the root down --------------------------------------------------------- */
+
+static void widen_region(table *t, csg_node_id child, double level, csg_box by)
+{
+    slots s = t->nodes[child];
+    uint32_t i = 0;
+    while (i + 1 < s.count && t->levels[s.first + i] < level)
+        i++;
+    if (s.count)
+        t->regions[s.first + i] = csg_box_hull(t->regions[s.first + i], by);
+}
+
+/* A child's slot matters where the slots that ask for it have their boxes. */
+static void compute_downward(table *t)
+{
+    const csgm_scene *scene = t->scene;
+    for (size_t slot = 1; slot < t->slot_count; slot++)
+        t->regions[slot] = csg_box_empty();
+    level_list asked;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        for (uint32_t s = 0; s < t->nodes[i].count; s++) {
+            uint32_t slot = t->nodes[i].first + s;
+            for (uint32_t k = 0; k < node->child_count; k++) {
+                asked.count = 0;
+                ask(scene, node, k, t->levels[slot], &asked);
+                for (uint32_t a = 0; a < asked.count; a++)
+                    widen_region(t, csg_scene_children(scene, node)[k], asked.at[a],
+                                 t->boxes[slot]);
+            }
+        }
+    }
+}
+
+static void place_frames(table *t)
+{
+    const csgm_scene *scene = t->scene;
+    t->frame[scene->root] = CSG_NODE_NONE;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        uint32_t inner = t->frame[i];
+        if (node->kind == CSG_NODE_TRANSFORM) {
+            inner = node->payload;
+            t->to_root[inner] =
+                csg_affine_multiply(frame_of(t, i), scene->transforms[node->payload]);
+        }
+        for (uint32_t k = 0; k < node->child_count; k++)
+            t->frame[csg_scene_children(scene, node)[k]] = inner;
+    }
+}
+
+/* ---- the two uses ------------------------------------------------------------------------ */
+
+static csgm_status table_begin(table *t, const csgm_scene *scene, const double *own, bool whole)
+{
+    *t = (table){.scene = scene, .whole = whole};
+    csg_arena_init(&t->arena, &scene->context->memory);
+    t->nodes = csg_arena_calloc(&t->arena, scene->node_count, sizeof *t->nodes);
+    t->work = csg_arena_calloc(&t->arena, MOST_PAIRED, sizeof *t->work);
+    if (!t->nodes || !t->work || !plan(t, own))
+        return CSGM_ERR_MEMORY;
+    t->boxes = csg_arena_calloc(&t->arena, t->slot_count, sizeof *t->boxes);
+    if (!t->boxes || !whole)
+        return t->boxes ? CSGM_OK : CSGM_ERR_MEMORY;
+    t->regions = csg_arena_calloc(&t->arena, t->slot_count, sizeof *t->regions);
+    t->frame = csg_arena_calloc(&t->arena, scene->node_count, sizeof *t->frame);
+    t->to_root = csg_arena_calloc(&t->arena, scene->transform_count, sizeof *t->to_root);
+    if (!t->regions || !t->frame || !t->to_root)
+        return CSGM_ERR_MEMORY;
+    place_frames(t);
+    return CSGM_OK;
+}
+
+static void table_end(table *t)
+{
+    csg_memory_release(t->arena.memory, t->levels, t->level_capacity * sizeof *t->levels);
+    csg_arena_reset(&t->arena);
+}
+
+csgm_status csg_level_boxes(const csgm_scene *scene, const double *levels, csg_box *out)
+{
+    table t;
+    csgm_status status = table_begin(&t, scene, levels, false);
+    if (status == CSGM_OK) {
+        compute_upward(&t);
+        for (size_t i = 0; i < scene->node_count; i++)
+            out[i] = box_at(&t, (csg_node_id)i, levels ? levels[i] : 0);
+    }
+    table_end(&t);
+    return status;
+}
+
+static bool is_same_box(csg_box a, csg_box b)
+{
+    return (csg_box_is_empty(a) && csg_box_is_empty(b)) ||
+           (csg_box_contains_box(a, b) && csg_box_contains_box(b, a));
+}
+
+csgm_status csg_level_box_of_root(const csgm_scene *scene, csg_box *out)
+{
+    table t;
+    csgm_status status = table_begin(&t, scene, NULL, true);
+    if (status == CSGM_OK) {
+        for (size_t slot = 0; slot < t.slot_count; slot++)
+            t.regions[slot] = csg_box_all();
+        csg_box last = csg_box_all();
+        for (int pass = 0; pass < MOST_PASSES; pass++) {
+            compute_upward(&t);
+            *out = box_at(&t, scene->root, 0);
+            if (is_same_box(*out, last) && pass > 1)
+                break;
+            last = *out;
+            t.regions[0] = *out;
+            compute_downward(&t);
+        }
+    }
+    table_end(&t);
+    return status;
+}

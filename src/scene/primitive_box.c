@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT
+ * Support functions; see primitive_box.h. {f >= -level} of an exact distance is the solid grown by
+ * a ball, which adds level |n|.
+ */
+#include "scene/primitive_box.h"
+
+#include <assert.h>
+#include <float.h>
+
+static double torus_support(const double *v, csg_vec3 n)
+{
+    double across = hypot(n.x, n.y);
+    csg_affine turn = csg_affine_rotate(v[2], csg_vec3_make(0, 0, 1));
+    double cosine = turn.m[0][0], sine = turn.m[1][0];
+    bool on_arc = v[2] >= 180 || sine * n.x - cosine * fabs(n.y) >= 0;
+    double reach = on_arc ? across : cosine * n.x + sine * fabs(n.y);
+    return v[0] * reach + v[1] * csg_vec3_norm(n);
+}
+
+/* Bounded only along the plane's own normal, as nearly as it can be told. */
+static double plane_support(const double *v, csg_vec3 n)
+{
+    csg_vec3 normal = csg_vec3_make(v[0], v[1], v[2]);
+    double along = csg_vec3_dot(n, normal), across = csg_vec3_norm(csg_vec3_cross(n, normal));
+    return along > 0 && across <= 2 * DBL_EPSILON * along ? along * v[3] : INFINITY;
+}
+
+double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
+{
+    double length = csg_vec3_norm(n), across = hypot(n.x, n.y);
+    switch (kind) {
+    case CSG_NODE_SPHERE:
+        return v[0] * length;
+    case CSG_NODE_BOX:
+        return fabs(n.x) * (v[0] - v[3]) + fabs(n.y) * (v[1] - v[3]) + fabs(n.z) * (v[2] - v[3]) +
+               v[3] * length;
+    case CSG_NODE_FRUSTUM:
+        return fmax(v[0] * across - v[2] * n.z, v[1] * across + v[2] * n.z) + v[3] * length;
+    case CSG_NODE_CAPSULE:
+        return fmax(v[1] * length, v[2] * length + v[0] * n.z);
+    case CSG_NODE_TORUS:
+        return torus_support(v, n);
+    case CSG_NODE_ELLIPSOID:
+        return csg_vec3_norm(csg_vec3_make(v[0] * n.x, v[1] * n.y, v[2] * n.z));
+    case CSG_NODE_PLANE:
+        return plane_support(v, n);
+    default:
+        assert(kind == CSG_NODE_EMPTY);
+        return -INFINITY;
+    }
+}
+
+/* Rows along an axis come out exact; sums of products get room for their rounding. */
+static double rounding_room(const double *row, double reach, double shift)
+{
+    int used = (row[0] != 0) + (row[1] != 0) + (row[2] != 0);
+    return used > 1 && isfinite(reach) ? 4 * DBL_EPSILON * (fabs(reach) + fabs(shift)) : 0;
+}
+
+csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const csg_affine *map,
+                          double level)
+{
+    double low[3], high[3];
+    if (kind == CSG_NODE_EMPTY)
+        return csg_box_empty();
+    for (int i = 0; i < 3; i++) {
+        const double *row = map->m[i];
+        csg_vec3 n = csg_vec3_make(row[0], row[1], row[2]);
+        double grow = level * csg_vec3_norm(n);
+        double up = csg_primitive_support(kind, parameters, n) + grow;
+        double down = csg_primitive_support(kind, parameters, csg_vec3_scale(n, -1)) + grow;
+        high[i] = map->t[i] + up + rounding_room(row, up, map->t[i]);
+        low[i] = map->t[i] - down - rounding_room(row, down, map->t[i]);
+    }
+    return (csg_box){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}

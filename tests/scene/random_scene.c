@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT
+ * See random_scene.h. Leaves are placed first, then groups of two to five of what there is are
+ * joined until one solid is left.
+ */
+#include "random_scene.h"
+
+enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
+
+static const csg_span nowhere = {.source = UINT32_MAX};
+
+static double uniform(csg_random *random, double low, double high)
+{
+    return csg_random_uniform(random, low, high);
+}
+
+static bool chance(csg_random *random, double probability)
+{
+    return uniform(random, 0, 1) < probability;
+}
+
+static csg_vec3 random_direction(csg_random *random)
+{
+    for (;;) {
+        csg_vec3 v = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
+        double length = csg_vec3_norm(v);
+        if (length > 0.1 && length < 1)
+            return csg_vec3_normalize(v);
+    }
+}
+
+csg_affine test_random_affine(csg_random *random, double low, double high, double shift)
+{
+    csg_vec3 axis = random_direction(random);
+    csg_affine turn = csg_affine_rotate(uniform(random, -180, 180), axis);
+    csg_vec3 factors = {uniform(random, low, high), uniform(random, low, high),
+                        uniform(random, low, high)};
+    csg_affine a = csg_affine_multiply(turn, csg_affine_scale(factors));
+    for (int i = 0; i < 3; i++)
+        a.t[i] = uniform(random, -shift, shift);
+    return a;
+}
+
+static void random_plane(csg_random *random, double *v)
+{
+    csg_vec3 n = random_direction(random);
+    if (chance(random, 0.3))
+        n = (csg_vec3[]){{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}[csg_random_below(random, 3)];
+    v[0] = n.x;
+    v[1] = n.y;
+    v[2] = n.z;
+    v[3] = uniform(random, -0.3, 0.5);
+}
+
+void test_random_parameters(csg_random *random, csg_node_kind kind, double *v)
+{
+    for (int i = 0; i < 4; i++)
+        v[i] = uniform(random, 0.15, 0.7);
+    switch (kind) {
+    case CSG_NODE_BOX:
+        v[3] = chance(random, 0.5) ? 0 : uniform(random, 0, fmin(v[0], fmin(v[1], v[2])));
+        break;
+    case CSG_NODE_FRUSTUM:
+        v[csg_random_below(random, 2)] *= chance(random, 0.3) ? 0 : 1; /* pointed */
+        v[1] = chance(random, 0.3) && v[0] > 0 ? v[0] : v[1];          /* straight */
+        v[3] = chance(random, 0.5) ? 0 : uniform(random, 0, 0.2);
+        break;
+    case CSG_NODE_CAPSULE:
+        v[0] = fabs(v[1] - v[2]) + uniform(random, 0.05, 1);
+        break;
+    case CSG_NODE_TORUS:
+        v[1] = uniform(random, 0.05, 0.35);
+        v[2] = chance(random, 0.4) ? 180 : uniform(random, 5, 180);
+        break;
+    case CSG_NODE_PLANE:
+        random_plane(random, v);
+        break;
+    default:
+        break;
+    }
+}
+
+csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
+                                  csg_node_kind kind, double *parameters)
+{
+    double v[4];
+    test_random_parameters(random, kind, v);
+    for (int i = 0; parameters && i < 4; i++)
+        parameters[i] = v[i];
+    return csg_build_primitive(builder, kind, v, nowhere);
+}
+
+csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
+{
+    if (kind == CSG_BLEND_SHARP)
+        return (csg_blend){CSG_BLEND_SHARP, 0};
+    if (kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL)
+        return (csg_blend){kind, uniform(random, 0.0005, 0.01)};
+    return (csg_blend){kind, csg_blend_raw(kind, uniform(random, 0.03, 0.35))};
+}
+
+static csg_blend any_blend(csg_random *random)
+{
+    csg_blend_kind kind = CSG_BLEND_SHARP;
+    if (chance(random, 0.75))
+        kind = (csg_blend_kind)csg_random_below(random, CSG_BLEND_COUNT);
+    return test_random_blend(random, kind);
+}
+
+static csg_node_kind any_operator(csg_random *random)
+{
+    double x = uniform(random, 0, 1);
+    return x < 0.6 ? CSG_NODE_UNION : x < 0.85 ? CSG_NODE_DIFFERENCE : CSG_NODE_INTERSECTION;
+}
+
+static csg_node_id colored(csg_scene_builder *builder, csg_random *random, csg_node_id node)
+{
+    if (node == CSG_NODE_NONE || !chance(random, 0.2))
+        return node;
+    csg_color color = {(float)uniform(random, 0, 1), (float)uniform(random, 0, 1),
+                       (float)uniform(random, 0, 1), 1};
+    return csg_build_color(builder, color, node, nowhere);
+}
+
+/* A bounded primitive somewhere, one in eight of them cut by a half-space. */
+static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
+{
+    csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
+    csg_node_id node = test_random_primitive(builder, random, kind, NULL);
+    if (chance(random, 0.125)) {
+        csg_node_id cut[2] = {node, test_random_primitive(builder, random, CSG_NODE_PLANE, NULL)};
+        csg_node_kind how = chance(random, 0.5) ? CSG_NODE_INTERSECTION : CSG_NODE_DIFFERENCE;
+        node = csg_build_operator(builder, how, any_blend(random), cut, 2, nowhere);
+    }
+    bool equal = chance(random, 0.5);
+    double factor = uniform(random, 0.7, 1.3);
+    csg_affine place = equal ? test_random_affine(random, factor, factor, 0.8)
+                             : test_random_affine(random, 0.5, 1.4, 0.8);
+    return colored(builder, random, csg_build_transform(builder, &place, node, nowhere));
+}
+
+csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, unsigned primitives)
+{
+    csg_node_id pool[MOST_LEAVES], group[MOST_OPERANDS];
+    unsigned count = primitives < 1 ? 1 : primitives > MOST_LEAVES ? MOST_LEAVES : primitives;
+    for (unsigned i = 0; i < count; i++)
+        pool[i] = random_leaf(builder, random);
+    while (count > 1) {
+        unsigned size = 2 + csg_random_below(random, MOST_OPERANDS - 1);
+        if (size > count)
+            size = count;
+        for (unsigned i = 0; i < size; i++) {
+            unsigned pick = csg_random_below(random, count);
+            group[i] = pool[pick];
+            pool[pick] = pool[--count];
+        }
+        csg_node_kind kind = count ? any_operator(random) : CSG_NODE_UNION;
+        csg_node_id joined =
+            csg_build_operator(builder, kind, any_blend(random), group, size, nowhere);
+        if (chance(random, 0.3)) {
+            csg_affine place = test_random_affine(random, 0.75, 1.05, 0.15);
+            joined = csg_build_transform(builder, &place, joined, nowhere);
+        }
+        pool[count++] = colored(builder, random, joined);
+    }
+    return pool[0];
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ * Seeded random scenes for property tests: every primitive (partial tori and planes too), every
+ * operator, every blend with widths that matter, unequal scales, sometimes colours. The solids are
+ * finite, most of them lie within about [-2, 2]^3; a few are empty.
+ */
+#ifndef TEST_RANDOM_SCENE_H
+#define TEST_RANDOM_SCENE_H
+
+#include "base/random.h"
+#include "scene/build.h"
+
+/* A scene of about that many primitives (>= 1); CSG_NODE_NONE when the builder failed. */
+csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, unsigned primitives);
+
+/* A primitive of this kind with random parameters (sizes 0.1 to 0.8), not placed; its parameters
+ * are also copied to `parameters` (room for 4) unless that is NULL. */
+csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
+                                  csg_node_kind kind, double *parameters);
+void test_random_parameters(csg_random *random, csg_node_kind kind, double *parameters);
+
+/* A turn about a random axis after a scale, its three factors between low and high (equal when
+ * low = high), then a shift of at most `shift` along each axis. */
+csg_affine test_random_affine(csg_random *random, double low, double high, double shift);
+
+csg_blend test_random_blend(csg_random *random, csg_blend_kind kind);
+
+#endif
