@@ -5,6 +5,7 @@
  */
 #include "scene/build.h"
 
+#include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -339,6 +340,7 @@ static bool check_matrix(csg_scene_builder *builder, const csg_affine *matrix)
     return builder->status == CSGM_OK;
 }
 
+/* To the last bits: a turn there and back is the identity too. */
 static bool is_identity(const csg_affine *matrix)
 {
     const csg_affine identity = csg_affine_identity();
@@ -346,7 +348,7 @@ static bool is_identity(const csg_affine *matrix)
         if (matrix->t[i] != 0)
             return false;
         for (int j = 0; j < 3; j++)
-            if (matrix->m[i][j] != identity.m[i][j])
+            if (fabs(matrix->m[i][j] - identity.m[i][j]) > 4 * DBL_EPSILON)
                 return false;
     }
     return true;
