@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ * Sampling a block; see block.h.
+ */
+#include "grid/block.h"
+
+#include <string.h>
+
+enum { N = CSG_BLOCK_SAMPLES };
+
+static void fill_coordinates(csg_block_samples *samples, const csg_lattice *lattice,
+                             const uint32_t at[3])
+{
+    float line[3][N];
+    for (int axis = 0; axis < 3; axis++)
+        for (uint32_t i = 0; i < N; i++)
+            line[axis][i] =
+                csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + i);
+    float *x = samples->x, *y = samples->y, *z = samples->z;
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++, x += N, y += N, z += N)
+            for (int i = 0; i < N; i++) {
+                x[i] = line[0][i];
+                y[i] = line[1][j];
+                z[i] = line[2][k];
+            }
+    for (int i = CSG_BLOCK_POINTS; i < CSG_BLOCK_POINTS_PADDED; i++) {
+        samples->x[i] = samples->x[0];
+        samples->y[i] = samples->y[0];
+        samples->z[i] = samples->z[0];
+    }
+}
+
+/* Bits of the points 0..8 of this block along an axis that lie strictly inside the lattice. */
+static uint16_t inner_points(const csg_lattice *lattice, int axis, uint32_t at)
+{
+    uint16_t bits = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        uint32_t index = at * CSG_BLOCK_EDGE + i;
+        bits |= (uint16_t)((index > 0 && index < lattice->cells[axis]) << i);
+    }
+    return bits;
+}
+
+/* Rows of signs, f = 0 inside; what is on the lattice's border or beyond is outside. */
+static void collect_signs(csg_block *block, const csg_lattice *lattice, const float *f)
+{
+    uint8_t sign[CSG_BLOCK_POINTS_PADDED];
+    for (int i = 0; i < CSG_BLOCK_POINTS_PADDED; i++)
+        sign[i] = f[i] >= 0;
+    uint16_t inner[3];
+    for (int axis = 0; axis < 3; axis++)
+        inner[axis] = inner_points(lattice, axis, block->at[axis]);
+    const uint8_t *s = sign;
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++, s += N) {
+            uint64_t eight;
+            memcpy(&eight, s, sizeof eight);
+            /* gathers the lowest bits of eight bytes (little endian) into the top byte */
+            uint16_t row = (uint16_t)((eight * 0x0102040810204080u) >> 56 | (uint64_t)s[8] << 8);
+            int on = (inner[1] >> j & 1) & (inner[2] >> k & 1);
+            block->inside[k][j] = on ? row & inner[0] : 0;
+        }
+}
+
+static void collect_crossings(csg_block *block)
+{
+    uint32_t count = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < CSG_BLOCK_EDGE; k++) {
+            uint64_t word = 0;
+            for (int j = 0; j < CSG_BLOCK_EDGE; j++) {
+                uint16_t row = block->inside[k][j];
+                uint16_t other = axis == 0   ? (uint16_t)(row >> 1)
+                                 : axis == 1 ? block->inside[k][j + 1]
+                                             : block->inside[k + 1][j];
+                word |= (uint64_t)((row ^ other) & 0xFF) << (8 * j);
+            }
+            block->crossed[axis][k] = word;
+            block->rank[axis][k] = (uint16_t)count;
+            count += (uint32_t)__builtin_popcountll(word);
+        }
+    block->vertex_count = count;
+}
+
+/* Whether all points agree: most sampled blocks without a surface leave here. */
+static bool is_uniform(const csg_block *block)
+{
+    uint16_t any = 0, all = 0x1FF;
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++) {
+            any |= block->inside[k][j];
+            all &= block->inside[k][j];
+        }
+    return any == 0 || all == 0x1FF;
+}
+
+bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape *tape,
+                      const csg_lattice *lattice, const uint32_t at[3], csg_block_samples *samples,
+                      float *scratch, size_t scratch_floats)
+{
+    memcpy(block->at, at, sizeof block->at);
+    block->nodes = tape->nodes;
+    block->node_count = tape->count;
+    fill_coordinates(samples, lattice, at);
+    kernel->values(tape, samples->x, samples->y, samples->z, CSG_BLOCK_POINTS, samples->f, scratch,
+                   scratch_floats);
+    collect_signs(block, lattice, samples->f);
+    if (is_uniform(block))
+        return false;
+    collect_crossings(block);
+    /* A block may touch the surface with its shared upper faces only: its cells still need
+     * triangles, so it stays even without an edge of its own. */
+    return true;
+}

@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: MIT
+ * The octree walk; see octree.h. A cell of level l is a cube of 2^l blocks; level 0 is sampled.
+ */
+#include "grid/octree.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "field/dispatch.h"
+#include "field/prune.h"
+
+typedef struct cell {
+    uint32_t at[3]; /* in cubes of its level */
+    uint32_t node_count;
+    const csg_tape_node *nodes;
+} cell;
+
+enum { CELLS_PER_ITEM = 16 };
+
+/* What one item of a level produced, and where it is. */
+typedef struct segment {
+    uint32_t worker;
+    size_t first, count;
+} segment;
+
+typedef struct worker {
+    csg_pruner pruner;
+    csg_arena tapes[2]; /* of even and odd levels: a level's parents are dropped after it */
+    cell *cells;
+    csg_block *blocks;
+    size_t cell_count, cell_capacity, block_count, block_capacity;
+    csg_block_samples *samples;
+    float *scratch;
+    size_t scratch_floats;
+    csg_octree_stats stats;
+} worker;
+
+typedef struct walk {
+    csgm_context *context;
+    const csgm_field *field;
+    const csg_lattice *lattice;
+    const csg_octree_options *options;
+    const csg_kernel *kernel;
+    worker *workers;
+    uint32_t worker_count;
+    float tau; /* the band: one lattice edge */
+    cell *cells;    /* of the level being split */
+    size_t cell_count;
+    segment *segments; /* one an item */
+    int level;         /* of the children being made */
+    int top_level;
+    atomic_bool out_of_memory, cancelled;
+} walk;
+
+/* ---- one cell ------------------------------------------------------------------------------- */
+
+/* Whether a cube of this level has any cell of the lattice. */
+static bool is_in_lattice(const walk *w, const uint32_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if ((uint64_t)at[axis] << w->level >= w->lattice->blocks[axis])
+            return false;
+    return true;
+}
+
+static void octant_of(const uint32_t parent[3], int octant, uint32_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = 2 * parent[axis] + (uint32_t)(octant >> axis & 1);
+}
+
+/* Centres of the eight children, and the radius of their balls, rounded up. */
+static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTANTS])
+{
+    uint32_t half = (uint32_t)(CSG_BLOCK_EDGE / 2) << w->level;
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        uint32_t at[3];
+        octant_of(parent->at, octant, at);
+        for (int axis = 0; axis < 3; axis++)
+            c[axis][octant] =
+                csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
+    }
+    return (float)(half * w->lattice->cell_size * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
+}
+
+static uint32_t primitives_in(const csg_tape *tape)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tape->count; i++)
+        count += csg_op_is_leaf(tape->nodes[i].op);
+    return count;
+}
+
+static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
+{
+    if (!csg_memory_reserve(&w->context->memory, (void **)&self->cells, &self->cell_capacity,
+                            self->cell_count + 1, sizeof(cell)))
+        return false;
+    cell *c = &self->cells[self->cell_count++];
+    memcpy(c->at, at, sizeof c->at);
+    c->nodes = tape->nodes;
+    c->node_count = tape->count;
+    return true;
+}
+
+static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
+{
+    if (!csg_memory_reserve(&w->context->memory, (void **)&self->blocks, &self->block_capacity,
+                            self->block_count + 1, sizeof(csg_block)))
+        return false;
+    uint32_t primitives = primitives_in(tape);
+    self->stats.sampled_blocks++;
+    self->stats.point_evaluations += CSG_BLOCK_POINTS;
+    self->stats.primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * primitives;
+    self->stats.tape_nodes_sampled += tape->count;
+    csg_block *block = &self->blocks[self->block_count];
+    if (csg_block_sample(block, w->kernel, tape, w->lattice, at, self->samples, self->scratch,
+                         self->scratch_floats))
+        self->block_count++;
+    return true;
+}
+
+/* A tape that outlives its parent's level. */
+static bool own_tape(csg_arena *arena, const csg_tape *parent, csg_tape *tape)
+{
+    if (tape->nodes != parent->nodes)
+        return true;
+    csg_tape_node *copy = csg_arena_alloc(arena, tape->count * sizeof *copy);
+    if (!copy)
+        return false;
+    memcpy(copy, parent->nodes, tape->count * sizeof *copy);
+    tape->nodes = copy;
+    return true;
+}
+
+static bool visit_octant(walk *w, worker *self, const csg_tape *parent, int octant,
+                         const uint32_t at[3], const csg_tape **shared)
+{
+    csg_arena *arena = &self->tapes[w->level & 1];
+    csg_tape tape = *parent;
+    self->stats.visited++;
+    if (w->options->prune) {
+        csg_cell_state state = csg_prune_state(&self->pruner, octant);
+        self->stats.pruned_outside += state == CSG_CELL_OUTSIDE;
+        self->stats.pruned_inside += state == CSG_CELL_INSIDE;
+        if (state != CSG_CELL_SURFACE)
+            return true;
+        if (!csg_prune_shorten(&self->pruner, octant, w->tau, arena, &tape))
+            return false;
+        if (tape.nodes == parent->nodes && *shared)
+            tape = **shared; /* an elder sibling has copied it already */
+        else if (tape.nodes == parent->nodes) {
+            csg_tape *copy = csg_arena_alloc(arena, sizeof *copy);
+            if (!copy || !own_tape(arena, parent, &tape))
+                return false;
+            *copy = tape;
+            *shared = copy;
+        }
+    }
+    return w->level ? keep_cell(w, self, at, &tape) : sample_block(w, self, at, &tape);
+}
+
+static bool split(walk *w, worker *self, const cell *parent)
+{
+    csg_tape tape = w->field->tape;
+    tape.nodes = parent->nodes;
+    tape.count = parent->node_count;
+    const csg_tape *shared = NULL;
+    if (w->options->prune) {
+        float c[3][CSG_OCTANTS];
+        float radius = octant_balls(w, parent, c);
+        if (!csg_prune_octants(&self->pruner, &tape, c[0], c[1], c[2], radius))
+            return false;
+        self->stats.interval_evaluations += CSG_OCTANTS;
+        self->stats.primitive_evaluations += (uint64_t)CSG_OCTANTS * primitives_in(&tape);
+    }
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        uint32_t at[3];
+        octant_of(parent->at, octant, at);
+        if (is_in_lattice(w, at) && !visit_octant(w, self, &tape, octant, at, &shared))
+            return false;
+    }
+    return true;
+}
+
+/* ---- one level ------------------------------------------------------------------------------- */
+
+static bool split_item(void *user, uint32_t worker_index, size_t item)
+{
+    walk *w = user;
+    worker *self = &w->workers[worker_index];
+    if (w->options->cancelled && w->options->cancelled(w->options->user)) {
+        atomic_store(&w->cancelled, true);
+        return false;
+    }
+    segment *s = &w->segments[item];
+    s->worker = worker_index;
+    s->first = w->level ? self->cell_count : self->block_count;
+    size_t end = (item + 1) * CELLS_PER_ITEM;
+    for (size_t i = item * CELLS_PER_ITEM; i < end && i < w->cell_count; i++) {
+        if (!split(w, self, &w->cells[i])) {
+            atomic_store(&w->out_of_memory, true);
+            return false;
+        }
+    }
+    s->count = (w->level ? self->cell_count : self->block_count) - s->first;
+    return true;
+}
+
+static void report_progress(void *user, size_t done, size_t count)
+{
+    walk *w = user;
+    /* Each level has about four times the cells of the one above. */
+    double share = ldexp(1, -2 * w->level);
+    if (w->options->progress)
+        w->options->progress(w->options->user, share * ((double)done / (double)count));
+}
+
+/* Joins the workers' cells (or blocks) in the order of their parents. */
+static bool join_level(walk *w, size_t item_count, csg_octree *out)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < item_count; i++)
+        total += w->segments[i].count;
+    if (w->level == 0) {
+        if (!csg_memory_reserve(&w->context->memory, (void **)&out->blocks, &out->block_capacity,
+                                total, sizeof(csg_block)))
+            return false;
+    } else {
+        w->cells = total ? csg_memory_alloc(&w->context->memory, total * sizeof(cell)) : NULL;
+        if (total && !w->cells)
+            return false;
+    }
+    size_t at = 0;
+    for (size_t i = 0; i < item_count; i++) {
+        const segment *s = &w->segments[i];
+        const worker *from = &w->workers[s->worker];
+        if (!s->count)
+            continue;
+        if (w->level)
+            memcpy(w->cells + at, from->cells + s->first, s->count * sizeof(cell));
+        else
+            memcpy(out->blocks + at, from->blocks + s->first, s->count * sizeof(csg_block));
+        at += s->count;
+    }
+    w->cell_count = total;
+    if (w->level == 0)
+        out->block_count = total;
+    return true;
+}
+
+static bool run_level(walk *w, csg_octree *out)
+{
+    csg_memory *memory = &w->context->memory;
+    size_t items = (w->cell_count + CELLS_PER_ITEM - 1) / CELLS_PER_ITEM;
+    cell *parents = w->cells;
+    size_t parent_count = w->cell_count;
+    w->segments = csg_memory_alloc(memory, (items + 1) * sizeof(segment));
+    bool done = w->segments != NULL;
+    if (!done)
+        atomic_store(&w->out_of_memory, true);
+    w->cells = parents;
+    done = done && csg_pool_run(w->context->pool, items, split_item, report_progress, w);
+    w->cells = NULL;
+    if (done && !join_level(w, items, out)) {
+        atomic_store(&w->out_of_memory, true);
+        done = false;
+    }
+    csg_memory_release(memory, w->segments, (items + 1) * sizeof(segment));
+    csg_memory_release(memory, parents, parent_count * sizeof(cell));
+    for (uint32_t i = 0; i < w->worker_count; i++) {
+        w->workers[i].cell_count = 0;
+        if (w->level)
+            csg_arena_reset(&w->workers[i].tapes[(w->level + 1) & 1]);
+    }
+    if (!done)
+        w->cell_count = 0;
+    return done;
+}
+
+/* ---- the walk --------------------------------------------------------------------------------- */
+
+static bool create_workers(walk *w, float rounding)
+{
+    csg_memory *memory = &w->context->memory;
+    w->workers = csg_memory_alloc(memory, w->worker_count * sizeof(worker));
+    if (!w->workers)
+        return false;
+    bool done = true;
+    for (uint32_t i = 0; i < w->worker_count; i++) {
+        worker *self = &w->workers[i];
+        memset(self, 0, sizeof *self);
+        csg_pruner_init(&self->pruner, memory, w->kernel, rounding);
+        csg_arena_init(&self->tapes[0], memory);
+        csg_arena_init(&self->tapes[1], memory);
+        self->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
+        self->samples = csg_memory_alloc(memory, sizeof *self->samples);
+        self->scratch = csg_memory_alloc(memory, self->scratch_floats * sizeof(float));
+        done = done && self->samples && self->scratch;
+    }
+    return done;
+}
+
+static void add_stats(csg_octree_stats *total, const csg_octree_stats *part)
+{
+    total->visited += part->visited;
+    total->pruned_outside += part->pruned_outside;
+    total->pruned_inside += part->pruned_inside;
+    total->sampled_blocks += part->sampled_blocks;
+    total->interval_evaluations += part->interval_evaluations;
+    total->point_evaluations += part->point_evaluations;
+    total->primitive_evaluations += part->primitive_evaluations;
+    total->tape_nodes_sampled += part->tape_nodes_sampled;
+}
+
+/* Releases the workers; the tapes of the blocks (even levels) go to the octree. */
+static void release_workers(walk *w, csg_octree *out)
+{
+    csg_memory *memory = &w->context->memory;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        worker *self = &w->workers[i];
+        add_stats(&out->stats, &self->stats);
+        csg_pruner_release(&self->pruner);
+        csg_arena_reset(&self->tapes[1]);
+        out->arenas[i] = self->tapes[0];
+        csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));
+        csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block));
+        csg_memory_release(memory, self->samples, sizeof *self->samples);
+        csg_memory_release(memory, self->scratch, self->scratch_floats * sizeof(float));
+    }
+    csg_memory_release(memory, w->workers, w->worker_count * sizeof(worker));
+}
+
+/* The root: one cube of 2^top_level blocks around the whole lattice. */
+static bool make_root(walk *w)
+{
+    uint32_t most = 1;
+    for (int axis = 0; axis < 3; axis++)
+        most = w->lattice->blocks[axis] > most ? w->lattice->blocks[axis] : most;
+    w->top_level = 1;
+    while (1u << w->top_level < most)
+        w->top_level++;
+    w->cells = csg_memory_alloc(&w->context->memory, sizeof(cell));
+    if (!w->cells)
+        return false;
+    *w->cells = (cell){.nodes = w->field->tape.nodes, .node_count = w->field->tape.count};
+    w->cell_count = 1;
+    return true;
+}
+
+csgm_status csg_octree_walk(csgm_context *context, const csgm_field *field,
+                            const csg_lattice *lattice, const csg_octree_options *options,
+                            csg_octree *out)
+{
+    walk w = {.context = context, .field = field, .lattice = lattice, .options = options,
+              .kernel = csg_kernel_for(context->isa),
+              .worker_count = csg_pool_threads(context->pool)};
+    /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own lengths. */
+    double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
+    w.tau = (float)(lattice->cell_size * (1 + 0x1p-10) + 2 * rounding);
+    *out = (csg_octree){.context = context};
+    out->arenas = csg_memory_alloc(&context->memory, w.worker_count * sizeof(csg_arena));
+    if (!out->arenas)
+        return csg_context_no_memory(context);
+    out->arena_count = w.worker_count;
+    for (uint32_t i = 0; i < w.worker_count; i++)
+        csg_arena_init(&out->arenas[i], &context->memory);
+    bool done = create_workers(&w, (float)rounding) && make_root(&w);
+    if (!done)
+        atomic_store(&w.out_of_memory, true);
+    for (w.level = w.top_level - 1; done && w.level >= 0; w.level--)
+        done = run_level(&w, out);
+    release_workers(&w, out);
+    if (done)
+        return CSGM_OK;
+    csg_octree_release(out);
+    return atomic_load(&w.out_of_memory) ? csg_context_no_memory(context) : CSGM_CANCELLED;
+}
+
+void csg_octree_release(csg_octree *octree)
+{
+    if (!octree->context)
+        return;
+    csg_memory *memory = &octree->context->memory;
+    for (uint32_t i = 0; i < octree->arena_count; i++)
+        csg_arena_reset(&octree->arenas[i]);
+    csg_memory_release(memory, octree->arenas, octree->arena_count * sizeof(csg_arena));
+    csg_memory_release(memory, octree->blocks, octree->block_capacity * sizeof(csg_block));
+    *octree = (csg_octree){0};
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ * Vertices and triangles of blocks; see marching.h.
+ */
+#include "mesh/marching.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
+
+/* ---- finding blocks --------------------------------------------------------------------------- */
+
+static size_t home_slot(const csg_block_index *index, const uint32_t at[3])
+{
+    uint64_t key = (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42;
+    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing: the high bits are well mixed */
+    return (size_t)(key >> 20) & (index->slot_count - 1);
+}
+
+bool csg_block_index_make(csg_block_index *index, csg_memory *memory, const csg_block *blocks,
+                          size_t count)
+{
+    *index = (csg_block_index){.memory = memory, .slot_count = 16};
+    while (index->slot_count < 2 * count)
+        index->slot_count *= 2;
+    index->slots = csg_memory_alloc(memory, index->slot_count * sizeof(uint32_t));
+    if (!index->slots)
+        return false;
+    memset(index->slots, 0, index->slot_count * sizeof(uint32_t));
+    for (size_t i = 0; i < count; i++) {
+        size_t slot = home_slot(index, blocks[i].at);
+        while (index->slots[slot])
+            slot = (slot + 1) & (index->slot_count - 1);
+        index->slots[slot] = (uint32_t)i + 1;
+    }
+    return true;
+}
+
+void csg_block_index_release(csg_block_index *index)
+{
+    if (index->memory)
+        csg_memory_release(index->memory, index->slots, index->slot_count * sizeof(uint32_t));
+    *index = (csg_block_index){0};
+}
+
+const csg_block *csg_block_index_find(const csg_block_index *index, const csg_block *blocks,
+                                      const uint32_t at[3])
+{
+    for (size_t slot = home_slot(index, at); index->slots[slot];
+         slot = (slot + 1) & (index->slot_count - 1)) {
+        const csg_block *block = &blocks[index->slots[slot] - 1];
+        if (!memcmp(block->at, at, sizeof block->at))
+            return block;
+    }
+    return NULL;
+}
+
+/* ---- cells ------------------------------------------------------------------------------------- */
+
+/* The four rows of signs around a row of cells. */
+typedef struct rows {
+    unsigned r[4]; /* y + 2 z */
+    unsigned mixed; /* bit x: the corners of cell x do not all agree */
+} rows;
+
+static rows rows_of(const csg_block *block, int j, int k)
+{
+    rows s = {{block->inside[k][j], block->inside[k][j + 1], block->inside[k + 1][j],
+               block->inside[k + 1][j + 1]}, 0};
+    unsigned any = s.r[0] | s.r[1] | s.r[2] | s.r[3], all = s.r[0] & s.r[1] & s.r[2] & s.r[3];
+    s.mixed = (any | any >> 1) & ~(all & all >> 1) & 0xFF;
+    return s;
+}
+
+static unsigned pattern_of(const rows *s, int i)
+{
+    return (s->r[0] >> i & 3) | (s->r[1] >> i & 3) << 2 | (s->r[2] >> i & 3) << 4 |
+           (s->r[3] >> i & 3) << 6;
+}
+
+uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *tables)
+{
+    uint32_t count = 0;
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            rows s = rows_of(block, j, k);
+            for (unsigned rest = s.mixed; rest; rest &= rest - 1)
+                count += tables->count[pattern_of(&s, __builtin_ctz(rest))];
+        }
+    return count;
+}
+
+/* ---- vertices ------------------------------------------------------------------------------------ */
+
+/* Lists the block's crossed edges in the order of their ranks. */
+static void collect_edges(const csg_marching *m, const csg_block *block, csg_edges *e)
+{
+    float line[3][N], step[3][E];
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < N; i++)
+            line[axis][i] =
+                csg_lattice_coordinate(m->lattice, axis, block->at[axis] * E + i);
+        for (int i = 0; i < E; i++)
+            step[axis][i] = line[axis][i + 1] - line[axis][i];
+    }
+    uint32_t n = 0;
+    for (uint8_t axis = 0; axis < 3; axis++)
+        for (int k = 0; k < E; k++)
+            for (uint64_t rest = block->crossed[axis][k]; rest; rest &= rest - 1, n++) {
+                int bit = __builtin_ctzll(rest), i = bit & 7, j = bit >> 3;
+                e->ax[n] = line[0][i];
+                e->ay[n] = line[1][j];
+                e->az[n] = line[2][k];
+                e->dx[n] = axis == 0 ? step[0][i] : 0;
+                e->dy[n] = axis == 1 ? step[1][j] : 0;
+                e->dz[n] = axis == 2 ? step[2][k] : 0;
+                e->a_inside[n] = block->inside[k][j] >> i & 1;
+            }
+    e->count = n;
+}
+
+static void write_positions(const csg_marching *m, const csg_edges *e, float *out)
+{
+    for (uint32_t i = 0; i < e->count; i++) {
+        out[3 * i] = (float)(m->shift.x + (double)e->x[i]);
+        out[3 * i + 1] = (float)(m->shift.y + (double)e->y[i]);
+        out[3 * i + 2] = (float)(m->shift.z + (double)e->z[i]);
+    }
+}
+
+/* Outward: against the gradient. At a critical point, along the edge from inside to outside. */
+static void write_normals(const csg_edges *e, float *const g[3], float *out)
+{
+    for (uint32_t i = 0; i < e->count; i++) {
+        float x = -g[0][i], y = -g[1][i], z = -g[2][i];
+        float square = x * x + y * y + z * z;
+        if (!(square > 1e-12f)) {
+            float turn = e->a_inside[i] ? 1.0f : -1.0f;
+            x = turn * e->dx[i], y = turn * e->dy[i], z = turn * e->dz[i];
+            square = x * x + y * y + z * z;
+        }
+        float k = 1.0f / sqrtf(square);
+        out[3 * i] = x * k;
+        out[3 * i + 1] = y * k;
+        out[3 * i + 2] = z * k;
+    }
+}
+
+static void write_colors(const csg_edges *e, float *const rgba[4], uint8_t *out)
+{
+    for (uint32_t i = 0; i < e->count; i++)
+        for (int c = 0; c < 4; c++) {
+            float v = rgba[c][i] * 255.0f + 0.5f;
+            out[4 * i + (uint32_t)c] = (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+        }
+}
+
+uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
+                               csg_marching_room *room, const csg_marching_output *out,
+                               float *scratch, size_t scratch_floats)
+{
+    csg_edges *e = &room->edges;
+    csg_tape tape = m->field->tape;
+    tape.nodes = block->nodes;
+    tape.count = block->node_count;
+    collect_edges(m, block, e);
+    if (!e->count)
+        return 0;
+    uint64_t evaluations =
+        csg_roots_find(e, m->kernel, &tape, m->tolerance, scratch, scratch_floats);
+    write_positions(m, e, out->positions);
+    float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
+                          room->channels[3]};
+    if (out->normals) {
+        m->kernel->gradients(&tape, e->x, e->y, e->z, e->count, channels[0], channels[1],
+                             channels[2], scratch, scratch_floats);
+        write_normals(e, channels, out->normals);
+    }
+    if (out->colors) {
+        m->kernel->colors(&tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
+        write_colors(e, channels, out->colors);
+    }
+    return evaluations;
+}
+
+/* ---- triangles ----------------------------------------------------------------------------------- */
+
+/* Vertex numbers of one neighbour's edges that this block's cells use. shift: 8 on the axes where
+ * it is the upper neighbour; there only its first layer touches this block. */
+static void number_edges(const csg_block *from, const int shift[3], uint32_t vertex[3][CSG_BLOCK_POINTS])
+{
+    /* bits of the first column and row where the neighbour lies above in x and y */
+    uint64_t used = ~(uint64_t)0;
+    if (shift[0])
+        used &= 0x0101010101010101u;
+    if (shift[1])
+        used &= 0xFF;
+    int layers = shift[2] ? 1 : E;
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < layers; k++) {
+            uint64_t word = from->crossed[axis][k];
+            for (uint64_t rest = word & used; rest; rest &= rest - 1) {
+                int bit = __builtin_ctzll(rest);
+                uint64_t before = word & (((uint64_t)1 << bit) - 1);
+                int i = (bit & 7) + shift[0], j = (bit >> 3) + shift[1];
+                vertex[axis][((k + shift[2]) * N + j) * N + i] =
+                    from->first_vertex + from->rank[axis][k] +
+                    (uint32_t)__builtin_popcountll(before);
+            }
+        }
+}
+
+static void number_all_edges(const csg_marching *m, const csg_block *block,
+                             uint32_t vertex[3][CSG_BLOCK_POINTS])
+{
+    for (unsigned octant = 0; octant < 8; octant++) {
+        uint32_t at[3];
+        int shift[3];
+        for (int axis = 0; axis < 3; axis++) {
+            at[axis] = block->at[axis] + (octant >> axis & 1);
+            shift[axis] = (octant >> axis & 1) ? E : 0;
+        }
+        const csg_block *from = octant ? csg_block_index_find(m->index, m->blocks, at) : block;
+        if (from)
+            number_edges(from, shift, vertex);
+    }
+}
+
+void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_marching_room *room,
+                            const csg_marching_output *out)
+{
+    const csg_cell_tables *tables = m->tables;
+    uint32_t *indices = out->indices;
+    /* Table edge -> place in `vertex`, relative to the cell. */
+    uint32_t place[CSG_CELL_EDGES];
+    for (int edge = 0; edge < CSG_CELL_EDGES; edge++) {
+        const uint8_t *o = tables->offset[edge];
+        place[edge] =
+            (uint32_t)(edge / 4 * CSG_BLOCK_POINTS + (o[2] * N + o[1]) * N + o[0]);
+    }
+    number_all_edges(m, block, room->vertex);
+    const uint32_t *vertex = room->vertex[0];
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            rows s = rows_of(block, j, k);
+            for (unsigned rest = s.mixed; rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest);
+                unsigned pattern = pattern_of(&s, i);
+                const uint32_t *at = vertex + (k * N + j) * N + i;
+                int corners = 3 * tables->count[pattern];
+                for (int c = 0; c < corners; c++)
+                    *indices++ = at[place[tables->edge[pattern][c]]];
+            }
+        }
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ * Marching cubes over blocks: counting before anything is made, then vertices and triangles straight
+ * to their places. Numbers come from ranks and prefix sums: no hash of vertices, no weld.
+ */
+#ifndef CSG_MESH_MARCHING_H
+#define CSG_MESH_MARCHING_H
+
+#include "grid/octree.h"
+#include "mesh/roots.h"
+#include "mesh/tables.h"
+
+/* Which block is where: open addressing on block coordinates. */
+typedef struct csg_block_index {
+    csg_memory *memory;
+    uint32_t *slots; /* block number + 1, 0 = free */
+    size_t slot_count; /* power of two */
+} csg_block_index;
+
+bool csg_block_index_make(csg_block_index *index, csg_memory *memory, const csg_block *blocks,
+                          size_t count);
+void csg_block_index_release(csg_block_index *index);
+/* NULL where there is none. */
+const csg_block *csg_block_index_find(const csg_block_index *index, const csg_block *blocks,
+                                      const uint32_t at[3]);
+
+/* Triangles of the block's cells. */
+uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *tables);
+
+/* Where results go; positions relative to the mesh's origin. normals and colors may be NULL. */
+typedef struct csg_marching_output {
+    float *positions, *normals; /* of the block's first vertex */
+    uint8_t *colors;
+    uint32_t *indices; /* of the block's first triangle */
+} csg_marching_output;
+
+/* One thread's room. */
+typedef struct csg_marching_room {
+    csg_edges edges;
+    float channels[4][CSG_BLOCK_MOST_EDGES];
+    uint32_t vertex[3][CSG_BLOCK_POINTS]; /* of crossed edges only */
+} csg_marching_room;
+
+typedef struct csg_marching {
+    const csg_kernel *kernel;
+    const csgm_field *field;
+    const csg_lattice *lattice;
+    const csg_cell_tables *tables;
+    const csg_block *blocks;
+    const csg_block_index *index;
+    csg_vec3 shift; /* field frame -> relative to the mesh's origin */
+    float tolerance; /* of roots */
+} csg_marching;
+
+/* Vertices of one block. Returns point evaluations made. */
+uint64_t csg_marching_vertices(const csg_marching *marching, const csg_block *block,
+                               csg_marching_room *room, const csg_marching_output *out,
+                               float *scratch, size_t scratch_floats);
+void csg_marching_triangles(const csg_marching *marching, const csg_block *block,
+                            csg_marching_room *room, const csg_marching_output *out);
+
+#endif

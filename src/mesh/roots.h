@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ * Where the surface crosses lattice edges: bracketed roots of the field along each edge, all edges
+ * of a block in one batch. A root depends on its own edge only, not on the batch.
+ */
+#ifndef CSG_MESH_ROOTS_H
+#define CSG_MESH_ROOTS_H
+
+#include "field/kernel.h"
+
+enum {
+    CSG_BLOCK_MOST_EDGES = 3 * 8 * 8 * 8, /* of a block: a multiple of CSG_LANES */
+};
+
+/* Edges from a to b = a + d, one coordinate of d not zero. Arrays of whole CSG_LANES. */
+typedef struct csg_edges {
+    uint32_t count;
+    float ax[CSG_BLOCK_MOST_EDGES], ay[CSG_BLOCK_MOST_EDGES], az[CSG_BLOCK_MOST_EDGES];
+    float dx[CSG_BLOCK_MOST_EDGES], dy[CSG_BLOCK_MOST_EDGES], dz[CSG_BLOCK_MOST_EDGES];
+    /* results: the point on the edge, and working room */
+    float x[CSG_BLOCK_MOST_EDGES], y[CSG_BLOCK_MOST_EDGES], z[CSG_BLOCK_MOST_EDGES];
+    float t[CSG_BLOCK_MOST_EDGES], f[CSG_BLOCK_MOST_EDGES];
+    float ta[CSG_BLOCK_MOST_EDGES], tb[CSG_BLOCK_MOST_EDGES];
+    float fa[CSG_BLOCK_MOST_EDGES], fb[CSG_BLOCK_MOST_EDGES];
+    float moved[CSG_BLOCK_MOST_EDGES]; /* the end that the last step moved: -1 a, +1 b, 0 none */
+    uint8_t axis[CSG_BLOCK_MOST_EDGES];
+    bool a_inside[CSG_BLOCK_MOST_EDGES];
+} csg_edges;
+
+/* Fills x, y, z. tolerance: |f| small enough to stop. Returns point evaluations made. */
+uint64_t csg_roots_find(csg_edges *edges, const csg_kernel *kernel, const csg_tape *tape,
+                        float tolerance, float *scratch, size_t scratch_floats);
+
+#endif
