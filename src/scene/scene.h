@@ -19,6 +19,7 @@
 
 #include "base/context.h"
 #include "base/geometry.h"
+#include "base/span.h"
 
 typedef uint32_t csg_node_id;
 #define CSG_NODE_NONE UINT32_MAX
@@ -71,11 +72,6 @@ double csg_blend_excess(csg_blend blend, uint32_t operands);
 bool csg_blend_is_fold(csg_blend_kind kind);
 /* The blend as a solid scaled by `factor` needs it: areas grow with its square. */
 csg_blend csg_blend_scale(csg_blend blend, double factor);
-
-/* A place in a source text (text/source.h); source UINT32_MAX = nowhere. */
-typedef struct csg_span {
-    uint32_t source, offset, length;
-} csg_span;
 
 typedef struct csg_color {
     float r, g, b, a; /* 0..1, sRGB */

@@ -6,7 +6,8 @@
 #ifndef CSG_TEXT_SOURCE_H
 #define CSG_TEXT_SOURCE_H
 
-#include "scene/scene.h"
+#include "base/context.h"
+#include "base/span.h"
 
 
 typedef struct csg_source {
