@@ -22,7 +22,7 @@ csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm
         return CSGM_ERR_ARGUMENT;
     switch (what) {
     case CSGM_DUMP_SCENE:
-        return csg_scene_print(context, scene, sink, user);
+        return csg_scene_print(scene, sink, user);
     case CSGM_DUMP_TAPE:
         return dump_tape(context, scene, sink, user);
     }

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT
+ * The public header, alone and first: compiled as C99, C17 and C++17 with warnings as errors.
+ */
+#include <csgmesh/csgmesh.h>
+
+int header_alone(void);
+
+int header_alone(void)
+{
+    csgm_mesh_options options = csgm_mesh_options_default();
+    csgm_diag_fn *on_diag = 0;
+    return options.resolution == 128 && !on_diag && CSGM_OK == 0 ? CSGM_VERSION_MAJOR : 1;
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80.
+
+With --format: clang-format agrees with every C file (exit 77, a skip, where version 14 is not there).
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+FILE_LINES, FUNCTION_LINES = 700, 80
+FOLDERS = ["src", "include", "tools", "tests", "examples", ".ci"]
+SKIPPED = {"node_modules", "__pycache__"}
+CODE = (".c", ".h", ".cc")
+MARKED = CODE + (".def", ".py", ".sh", ".js", ".mjs", "meson.build")
+
+# (file, function): why it may be longer.
+LONG_FUNCTIONS = {}
+
+
+def files(root):
+    for folder in FOLDERS:
+        for place, folders, names in os.walk(os.path.join(root, folder)):
+            folders[:] = sorted(set(folders) - SKIPPED)
+            for name in sorted(names):
+                yield os.path.relpath(os.path.join(place, name), root)
+
+
+def is_script(path):
+    with open(path, "rb") as file:
+        return file.read(2) == b"#!"
+
+
+def functions(lines):
+    """(name, first line, length) of each function: its body opens with a brace in column one."""
+    for number, line in enumerate(lines):
+        if line != "{":
+            continue
+        first = number
+        while first > 0 and lines[first - 1].strip() and not lines[first - 1].rstrip().endswith(
+                ("*/", ";", "}")) and not lines[first - 1].startswith("#"):
+            first -= 1
+        end = next((i for i in range(number, len(lines)) if lines[i].startswith("}")), len(lines))
+        name = re.search(r"(\w+)\(", " ".join(lines[first:number]))
+        yield name.group(1) if name else "?", first + 1, end - first + 1
+
+
+def check_file(root, path):
+    full = os.path.join(root, path)
+    if not (path.endswith(MARKED) or is_script(full)):
+        return
+    with open(full, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    if not any("SPDX-License-Identifier: MIT" in line for line in lines[:3]):
+        yield 1, "no SPDX line at its head"
+    if len(lines) - 1 > FILE_LINES:
+        yield FILE_LINES, f"{len(lines) - 1} lines; {FILE_LINES} is the most: split it by meaning"
+    if path.endswith(CODE):
+        for name, first, length in functions(lines):
+            if length > FUNCTION_LINES and (path, name) not in LONG_FUNCTIONS:
+                yield first, f"{name} has {length} lines; {FUNCTION_LINES} is the most"
+
+
+def check_format(root):
+    program = shutil.which("clang-format-14") or shutil.which("clang-format")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True,
+                             check=True).stdout if program else ""
+    if "version 14." not in version:
+        print("clang-format 14 is not installed: skipped")
+        return 77
+    code = [path for path in files(root) if path.endswith(CODE)]
+    return subprocess.run([program, "--dry-run", "-Werror"] + code, cwd=root,
+                          check=False).returncode
+
+
+def main():
+    arguments = sys.argv[1:]
+    wants_format = "--format" in arguments
+    places = [a for a in arguments if a != "--format"]
+    root = os.path.abspath(places[0] if places else os.path.join(os.path.dirname(__file__), ".."))
+    if wants_format:
+        return check_format(root)
+    count = 0
+    for path in files(root):
+        for line, fault in check_file(root, path):
+            print(f"{path}:{line}: {fault}")
+            count += 1
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Folder order is data order: every #include in src/ and tools/ must name its own folder or one above.
+
+Prints one line a fault and exits 1 when there is any. The order is that of src/README.md.
+"""
+import os
+import re
+import sys
+
+ORDER = ["base", "text", "scene", "lang", "field", "grid", "mesh", "io", "render", "diff", "api"]
+
+# The scene layer knows nothing of text: spans are plain numbers there.
+FORBIDDEN = {("scene", "text"): "scenes know nothing of text"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+
+
+def includes(path):
+    """Yields (line number, quote, name) of each include of a file."""
+    with open(path, encoding="utf-8") as file:
+        for number, line in enumerate(file, 1):
+            found = INCLUDE.match(line)
+            if found:
+                yield number, found.group(1), found.group(2)
+
+
+def sources(folder):
+    for root, _, names in sorted(os.walk(folder)):
+        for name in sorted(names):
+            if name.endswith((".c", ".h", ".cc", ".def", ".inc")):
+                yield os.path.join(root, name)
+
+
+def fault_in_layer(layer, quote, name):
+    """Why a file of `layer` may not include `name`, or None."""
+    if quote == "<":
+        return "the public header is included with quotes" if name.startswith("csgmesh/") else None
+    if name == "csgmesh/csgmesh.h":
+        return None
+    folder = name.split("/")[0]
+    if "/" not in name or folder not in ORDER:
+        return f"write the path from src/, as \"{layer}/{name}\""
+    if ORDER.index(folder) > ORDER.index(layer):
+        return f"{layer}/ stands above {folder}/ and must not know it"
+    return FORBIDDEN.get((layer, folder))
+
+
+def check_source(root):
+    for path in sources(os.path.join(root, "src")):
+        layer = os.path.relpath(path, os.path.join(root, "src")).split(os.sep)[0]
+        if layer not in ORDER:
+            yield path, 1, f"no layer '{layer}' in the order of tools/check_layers.py"
+            continue
+        for number, quote, name in includes(path):
+            fault = fault_in_layer(layer, quote, name)
+            if fault:
+                yield path, number, fault
+
+
+def check_tools(root):
+    """Programs use the public header and files beside them, nothing of src/."""
+    for path in sources(os.path.join(root, "tools")):
+        for number, quote, name in includes(path):
+            if quote == '"' and name != "csgmesh/csgmesh.h" and "/" in name:
+                yield path, number, "tools/ includes csgmesh/csgmesh.h only"
+            if quote == '"' and "/" not in name and not os.path.exists(
+                    os.path.join(os.path.dirname(path), name)):
+                yield path, number, f"no file '{name}' beside it"
+
+
+def main():
+    root = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else
+                           os.path.join(os.path.dirname(__file__), ".."))
+    faults = list(check_source(root)) + list(check_tools(root))
+    for path, number, fault in faults:
+        print(f"{os.path.relpath(path, root)}:{number}: {fault}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ * Signals; see interrupt.h. The handler calls only what is async-signal-safe: it removes unfinished
+ * files, says one line and leaves with _exit. Nothing else of the process outlives it.
+ */
+#include "interrupt.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli.h"
+
+static atomic_bool progress_shown;
+static _Atomic(const char *) pending_file;
+
+static void say(const char *text)
+{
+    if (write(STDERR_FILENO, text, strlen(text)) < 0) {
+        /* nobody is left to be told */
+    }
+}
+
+static void on_signal(int signal_number)
+{
+    (void)signal_number;
+    const char *path = atomic_load(&pending_file);
+    csgm_files_abandon();
+    if (path)
+        unlink(path);
+    if (atomic_load(&progress_shown))
+        say("\n");
+    say("csgmesh: interrupted\n");
+    _exit(CLI_TROUBLE);
+}
+
+/* A signal that the parent made ignored stays ignored (nohup, background jobs). */
+static void catch_signal(int signal_number)
+{
+    struct sigaction old, action = {.sa_handler = on_signal};
+    sigfillset(&action.sa_mask);
+    if (sigaction(signal_number, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+        sigaction(signal_number, &action, NULL);
+}
+
+void cli_interrupt_install(void)
+{
+    catch_signal(SIGINT);
+    catch_signal(SIGTERM);
+    catch_signal(SIGHUP);
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+bool cli_interrupt_progress_shown(bool shown)
+{
+    return atomic_exchange(&progress_shown, shown);
+}
+
+void cli_interrupt_pending_file(const char *path)
+{
+    atomic_store(&pending_file, path);
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ * Ctrl-C and its like: the process ends at once, whatever it is doing, and leaves no half file.
+ */
+#ifndef CLI_INTERRUPT_H
+#define CLI_INTERRUPT_H
+
+#include <stdbool.h>
+
+/* Installs the handlers; SIGPIPE and SIGXFSZ become errors of write(). */
+void cli_interrupt_install(void);
+/* Tells the handler whether a bar stands on the terminal; returns what was told before. */
+bool cli_interrupt_progress_shown(bool shown);
+/* A file to remove when interrupted; NULL = none. The text must stay valid. */
+void cli_interrupt_pending_file(const char *path);
+
+#endif

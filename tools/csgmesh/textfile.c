@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT
+ * Small files; see textfile.h. Regular files are written beside the target, synced and renamed;
+ * devices and pipes are written directly.
+ */
+#include "textfile.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "interrupt.h"
+
+static bool write_all(int fd, const char *text, size_t length)
+{
+    while (length > 0) {
+        ssize_t written = write(fd, text, length);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written < 0)
+            return false;
+        text += written;
+        length -= (size_t)written;
+    }
+    return true;
+}
+
+static bool write_directly(const char *path, const char *text, size_t length)
+{
+    int fd = open(path, O_WRONLY | O_CLOEXEC);
+    if (fd < 0)
+        return false;
+    bool good = write_all(fd, text, length);
+    int reason = errno;
+    good = close(fd) == 0 && good;
+    if (!good && reason)
+        errno = reason;
+    return good;
+}
+
+static bool write_renamed(const char *target, const char *text, size_t length)
+{
+    char temporary[PATH_MAX + 16];
+    int written = snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
+    if (written < 0 || (size_t)written >= sizeof temporary) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    int fd = mkstemp(temporary);
+    if (fd < 0)
+        return false;
+    cli_interrupt_pending_file(temporary);
+    errno = 0;
+    mode_t mask = umask(0);
+    umask(mask);
+    bool good = fchmod(fd, 0666 & ~mask) == 0 && write_all(fd, text, length) && fsync(fd) == 0;
+    int reason = errno;
+    good = close(fd) == 0 && good && rename(temporary, target) == 0;
+    if (!good) {
+        reason = reason ? reason : errno;
+        unlink(temporary);
+        errno = reason;
+    }
+    cli_interrupt_pending_file(NULL);
+    return good;
+}
+
+static bool write_path(const char *path, const char *text, size_t length)
+{
+    struct stat status;
+    char target[PATH_MAX];
+    errno = 0;
+    if (strcmp(path, "-") == 0)
+        return write_all(STDOUT_FILENO, text, length);
+    if (stat(path, &status) != 0)
+        return write_renamed(path, text, length);
+    errno = 0;
+    if (!S_ISREG(status.st_mode))
+        return write_directly(path, text, length);
+    return realpath(path, target) && write_renamed(target, text, length);
+}
+
+int cli_write_text(cli_app *app, const char *path, const char *text, size_t length)
+{
+    if (write_path(path, text, length))
+        return CLI_DONE;
+    const char *reason = strerror(errno);
+    bool is_stdout = strcmp(path, "-") == 0;
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot write %s: %s",
+                    is_stdout ? "standard output" : path, reason);
+    return CLI_TROUBLE;
+}
+
+char *cli_read_stdin(cli_app *app, size_t *length)
+{
+    size_t room = 1 << 16, most = (size_t)1 << 31;
+    char *text = malloc(room);
+    *length = 0;
+    while (text) {
+        ssize_t got = read(STDIN_FILENO, text + *length, room - *length);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got == 0)
+            return text;
+        if (got < 0 || *length > most) {
+            cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read standard input: %s",
+                            got < 0 ? strerror(errno) : "it is larger than 2 GiB");
+            free(text);
+            return NULL;
+        }
+        *length += (size_t)got;
+        if (*length == room) {
+            char *larger = realloc(text, room *= 2);
+            if (!larger)
+                break;
+            text = larger;
+        }
+    }
+    free(text);
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    return NULL;
+}

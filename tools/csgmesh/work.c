@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * Scene to mesh; see work.h.
+ */
+#include "work.h"
+
+int cli_work_check(cli_app *app)
+{
+    if (app->options.given[CLI_OPTION_resolution] && app->options.given[CLI_OPTION_cell_size])
+        return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
+    return CLI_DONE;
+}
+
+int cli_work_load(cli_app *app, cli_work *work, const char *path)
+{
+    double begin_s = cli_now_s();
+    csgm_status status = cli_app_load(app, path, &work->scene);
+    work->scene_s = cli_now_s() - begin_s;
+    if (status == CSGM_OK)
+        work->info = csgm_scene_get_info(work->scene);
+    return cli_exit_status(status);
+}
+
+static csgm_mesh_options mesh_options(cli_app *app)
+{
+    const cli_options *options = &app->options;
+    csgm_mesh_options mesh = csgm_mesh_options_default();
+    if (options->given[CLI_OPTION_bounds])
+        mesh.bounds = options->bounds;
+    if (options->given[CLI_OPTION_resolution])
+        mesh.resolution = (uint32_t)options->resolution;
+    mesh.cell_size = options->cell_size;
+    mesh.normals = options->normals == 0;
+    mesh.colors = options->colors == 0;
+    mesh.prune = !options->no_prune;
+    mesh.monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};
+    return mesh;
+}
+
+int cli_work_mesh(cli_app *app, cli_work *work)
+{
+    csgm_mesh_options options = mesh_options(app);
+    double begin_s = cli_now_s();
+    csgm_status status = csgm_field_compile(app->context, work->scene, &work->field);
+    work->compile_s = cli_now_s() - begin_s;
+    if (status == CSGM_OK)
+        status = csgm_mesh_build(app->context, work->field, &options, &work->mesh, &work->stats);
+    work->build_s = cli_now_s() - begin_s - work->compile_s;
+    cli_console_end_progress(&app->console);
+    if (status == CSGM_OK && cli_app_is_refused(app))
+        status = CSGM_ERR_SCENE;
+    return cli_exit_status(status);
+}
+
+void cli_work_release(cli_work *work)
+{
+    csgm_mesh_destroy(work->mesh);
+    csgm_field_destroy(work->field);
+    csgm_scene_destroy(work->scene);
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ * Scene -> field -> mesh as `mesh` and `info` both do it, with the time each step took.
+ */
+#ifndef CLI_WORK_H
+#define CLI_WORK_H
+
+#include "cli.h"
+
+typedef struct cli_work {
+    csgm_scene *scene;
+    csgm_field *field;
+    csgm_mesh *mesh;
+    csgm_scene_info info;
+    csgm_mesh_stats stats;
+    double scene_s, compile_s, build_s;
+} cli_work;
+
+/* Usage faults of -r, -s and --bounds. CLI_DONE or CLI_TROUBLE. */
+int cli_work_check(cli_app *app);
+/* Each returns an exit status; failures are reported. */
+int cli_work_load(cli_app *app, cli_work *work, const char *path);
+int cli_work_mesh(cli_app *app, cli_work *work);
+void cli_work_release(cli_work *work);
+
+#endif
