@@ -342,6 +342,10 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
             gaps[k * s.stride + i] = weight;
             total[i] += weight;
         }
+    /* Shares first, so that a lone active operand has exactly 1. */
+    for (uint32_t k = 0; k < node->arity; k++)
+        for (size_t i = 0; i < count; i++)
+            gaps[k * s.stride + i] = quotient(gaps[k * s.stride + i], total[i]);
     for (int c = 0; c < channels; c++) {
         float *out = channel(s, depth, first, c);
         for (size_t i = 0; i < count; i++)
@@ -351,8 +355,6 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
             for (size_t i = 0; i < count; i++)
                 out[i] += gaps[k * s.stride + i] * in[i];
         }
-        for (size_t i = 0; i < count; i++)
-            out[i] = quotient(out[i], total[i]);
     }
     const float turn = is_union ? 1.0f : -1.0f;
     for (size_t i = 0; i < count; i++)

@@ -128,11 +128,12 @@ static void write_positions(const csg_marching *m, const csg_edges *e, float *ou
     }
 }
 
-/* Outward: against the gradient. At a critical point, along the edge from inside to outside. */
+/* Outward: against the gradient. At a critical point, along the edge from inside to outside.
+ * Adding 0 makes every zero positive: a sum with an operand that pruning drops loses the sign. */
 static void write_normals(const csg_edges *e, float *const g[3], float *out)
 {
     for (uint32_t i = 0; i < e->count; i++) {
-        float x = -g[0][i], y = -g[1][i], z = -g[2][i];
+        float x = 0.0f - g[0][i], y = 0.0f - g[1][i], z = 0.0f - g[2][i];
         float square = x * x + y * y + z * z;
         if (!(square > 1e-12f)) {
             float turn = e->a_inside[i] ? 1.0f : -1.0f;
@@ -140,9 +141,9 @@ static void write_normals(const csg_edges *e, float *const g[3], float *out)
             square = x * x + y * y + z * z;
         }
         float k = 1.0f / sqrtf(square);
-        out[3 * i] = x * k;
-        out[3 * i + 1] = y * k;
-        out[3 * i + 2] = z * k;
+        out[3 * i] = x * k + 0.0f;
+        out[3 * i + 1] = y * k + 0.0f;
+        out[3 * i + 2] = z * k + 0.0f;
     }
 }
 
