@@ -35,12 +35,13 @@ typedef struct csg_adapter_error {
     char text[240]; /* one sentence, terminated */
 } csg_adapter_error;
 
-/* One indexed part of a mesh, borrowed during the call. */
+/* One indexed part of a mesh, borrowed. */
 typedef struct csg_adapter_part {
-    const float *positions;  /* 3 * vertex_count */
-    const float *normals;    /* 3 * vertex_count or NULL */
-    const uint8_t *colors;   /* 4 * vertex_count, sRGB + alpha, or NULL */
-    const uint32_t *indices; /* index_count, a multiple of 3 */
+    const float *positions;    /* 3 * vertex_count */
+    const float *normals;      /* 3 * vertex_count or NULL */
+    const float *colors;       /* color_components * vertex_count, 0..1, or NULL */
+    uint32_t color_components; /* 3 or 4 */
+    const uint32_t *indices;   /* index_count, a multiple of 3, each below vertex_count */
     uint64_t vertex_count, index_count;
 } csg_adapter_part;
 
@@ -79,13 +80,9 @@ typedef struct csg_draco_ids {
     int64_t position, normal, color;
 } csg_draco_ids;
 
-/* Decoded arrays: floats as in the file, colours as floats 0..1 of color_components each. */
 typedef struct csg_draco_decoded {
-    void *owner;
-    const float *positions, *normals, *colors; /* normals, colors may be NULL */
-    uint32_t color_components;                 /* 3 or 4 */
-    const uint32_t *indices;
-    uint64_t vertex_count, index_count;
+    void *owner; /* pass to csg_draco_release_decoded */
+    csg_adapter_part part;
 } csg_draco_decoded;
 
 /* ids NULL = by the attributes' own kinds. most_bytes: refuses a file that says it needs more. */

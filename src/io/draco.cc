@@ -161,7 +161,7 @@ csgm_status decode(const uint8_t *bytes, size_t size, const csg_draco_ids *ids, 
         return fail(error, CSGM_ERR_MEMORY, "the decoded mesh is larger than the memory limit");
     auto owner = std::make_unique<decoded_owner>();
     *out = {};
-    if (!collect_all(mesh, ids, owner.get(), &out->color_components))
+    if (!collect_all(mesh, ids, owner.get(), &out->part.color_components))
         return fail(error, CSGM_ERR_FORMAT, "the Draco data lacks positions or has odd attributes");
     owner->indices.resize(static_cast<size_t>(faces) * 3);
     for (uint32_t i = 0; i < faces; i++)
@@ -171,12 +171,13 @@ csgm_status decode(const uint8_t *bytes, size_t size, const csg_draco_ids *ids, 
                 return fail(error, CSGM_ERR_FORMAT, "an index of the Draco data is out of range");
             owner->indices[3 * static_cast<size_t>(i) + k] = index;
         }
-    out->positions = owner->positions.data();
-    out->normals = owner->normals.empty() ? nullptr : owner->normals.data();
-    out->colors = owner->colors.empty() ? nullptr : owner->colors.data();
-    out->indices = owner->indices.data();
-    out->vertex_count = points;
-    out->index_count = faces * 3;
+    csg_adapter_part &part = out->part;
+    part.positions = owner->positions.data();
+    part.normals = owner->normals.empty() ? nullptr : owner->normals.data();
+    part.colors = owner->colors.empty() ? nullptr : owner->colors.data();
+    part.indices = owner->indices.data();
+    part.vertex_count = points;
+    part.index_count = faces * 3;
     out->owner = owner.release();
     return CSGM_OK;
 }

@@ -5,12 +5,14 @@
 #define CSG_IO_FORMAT_TABLE_H
 
 #include "io/formats.h"
+#include "io/reader.h"
 #include "io/writers.h"
 
 typedef struct csg_format_row {
     csgm_format id;
     const char *name; /* also its extension */
     csg_write_fn *write;
+    csg_read_fn *read;
     const char *write_library, *read_library;   /* NULL = needs none */
     bool (*can_write)(void), (*can_read)(void); /* NULL = always */
 } csg_format_row;

@@ -10,13 +10,15 @@
 #include "io/format_table.h"
 
 static const csg_format_row rows[] = {
-    {CSGM_FORMAT_OBJ, "obj", csg_obj_write, NULL, NULL, NULL, NULL},
-    {CSGM_FORMAT_PLY, "ply", csg_ply_write, NULL, NULL, NULL, NULL},
-    {CSGM_FORMAT_STL, "stl", csg_stl_write, NULL, NULL, NULL, NULL},
-    {CSGM_FORMAT_OFF, "off", csg_off_write, NULL, NULL, NULL, NULL},
-    {CSGM_FORMAT_GLTF, "gltf", csg_gltf_write, NULL, "tinygltf", NULL, csg_gltf_available},
-    {CSGM_FORMAT_GLB, "glb", csg_glb_write, NULL, "tinygltf", NULL, csg_gltf_available},
-    {CSGM_FORMAT_DRC, "drc", csg_drc_write, "Draco", "Draco", csg_draco_available,
+    {CSGM_FORMAT_OBJ, "obj", csg_obj_write, csg_obj_read, NULL, NULL, NULL, NULL},
+    {CSGM_FORMAT_PLY, "ply", csg_ply_write, csg_ply_read, NULL, NULL, NULL, NULL},
+    {CSGM_FORMAT_STL, "stl", csg_stl_write, csg_stl_read, NULL, NULL, NULL, NULL},
+    {CSGM_FORMAT_OFF, "off", csg_off_write, csg_off_read, NULL, NULL, NULL, NULL},
+    {CSGM_FORMAT_GLTF, "gltf", csg_gltf_write, csg_gltf_read_file, NULL, "tinygltf", NULL,
+     csg_gltf_available},
+    {CSGM_FORMAT_GLB, "glb", csg_glb_write, csg_gltf_read_file, NULL, "tinygltf", NULL,
+     csg_gltf_available},
+    {CSGM_FORMAT_DRC, "drc", csg_drc_write, csg_drc_read, "Draco", "Draco", csg_draco_available,
      csg_draco_available},
 };
 

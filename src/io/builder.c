@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ * The growing mesh of builder.h.
+ */
+#include "io/builder.h"
+
+#include <math.h>
+#include <string.h>
+
+void csg_builder_init(csg_mesh_builder *b, csgm_context *context)
+{
+    *b = (csg_mesh_builder){.context = context};
+}
+
+void csg_builder_release(csg_mesh_builder *b)
+{
+    csg_memory *memory = &b->context->memory;
+    csg_memory_release(memory, b->positions, b->position_room * 3 * sizeof(double));
+    csg_memory_release(memory, b->normals, b->normal_room * 3 * sizeof(float));
+    csg_memory_release(memory, b->colors, b->color_room * 4);
+    csg_memory_release(memory, b->indices, b->index_room * 3 * sizeof(uint32_t));
+    csg_builder_init(b, b->context);
+}
+
+/* array: where the pointer stands. */
+static bool room(csg_mesh_builder *b, void *array, size_t *capacity, size_t needed, size_t bytes)
+{
+    if (needed <= *capacity)
+        return true;
+    void *data;
+    memcpy(&data, array, sizeof data);
+    if (b->failed || !csg_memory_reserve(&b->context->memory, &data, capacity, needed, bytes)) {
+        b->failed = true;
+        return false;
+    }
+    memcpy(array, &data, sizeof data);
+    return true;
+}
+
+bool csg_builder_reserve(csg_mesh_builder *b, size_t vertices, size_t triangles)
+{
+    return room(b, &b->positions, &b->position_room, vertices, 3 * sizeof(double)) &&
+           room(b, &b->indices, &b->index_room, triangles, 3 * sizeof(uint32_t));
+}
+
+static bool add_color(csg_mesh_builder *b, const uint8_t *color)
+{
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    if (!color && !b->colors)
+        return true;
+    bool first = !b->colors;
+    if (!room(b, &b->colors, &b->color_room, b->vertex_count + 1, 4))
+        return false;
+    if (first)
+        memset(b->colors, 255, 4 * b->vertex_count);
+    memcpy(b->colors + 4 * b->vertex_count, color ? color : white, 4);
+    return true;
+}
+
+bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const float *normal,
+                        const uint8_t *color)
+{
+    if (b->vertex_count >= UINT32_MAX ||
+        !room(b, &b->positions, &b->position_room, b->vertex_count + 1, 3 * sizeof(double)) ||
+        !add_color(b, color)) {
+        b->failed = true;
+        return false;
+    }
+    memcpy(b->positions + 3 * b->vertex_count, position, 3 * sizeof(double));
+    if (!normal)
+        b->lacks_normals = true;
+    if (!b->lacks_normals) {
+        if (!room(b, &b->normals, &b->normal_room, b->vertex_count + 1, 3 * sizeof(float)))
+            return false;
+        memcpy(b->normals + 3 * b->vertex_count, normal, 3 * sizeof(float));
+    }
+    b->vertex_count++;
+    return true;
+}
+
+bool csg_builder_triangle(csg_mesh_builder *b, uint32_t i, uint32_t j, uint32_t k)
+{
+    if (!room(b, &b->indices, &b->index_room, b->triangle_count + 1, 3 * sizeof(uint32_t)))
+        return false;
+    uint32_t *corner = b->indices + 3 * b->triangle_count++;
+    corner[0] = i;
+    corner[1] = j;
+    corner[2] = k;
+    return true;
+}
+
+float *csg_builder_normals(csg_mesh_builder *b)
+{
+    if (!room(b, &b->normals, &b->normal_room, b->vertex_count ? b->vertex_count : 1,
+              3 * sizeof(float)))
+        return NULL;
+    b->lacks_normals = false;
+    return b->normals;
+}
+
+/* ---- the end --------------------------------------------------------------------------------- */
+
+/* Zero when every position is a float already, or when the mesh is at least 1/16 as large as it is
+ * far away: rounding then costs less than a millionth of its size. */
+static csgm_vec3 choose_origin(const csg_mesh_builder *b)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    bool exact = true;
+    for (size_t i = 0; i < 3 * b->vertex_count; i++) {
+        double p = b->positions[i];
+        exact &= (double)(float)p == p;
+        low[i % 3] = fmin(low[i % 3], p);
+        high[i % 3] = fmax(high[i % 3], p);
+    }
+    double size = 0, distance = 0, center[3];
+    for (int k = 0; k < 3; k++) {
+        center[k] = (double)(float)(low[k] / 2 + high[k] / 2);
+        size = fmax(size, high[k] - low[k]);
+        distance = fmax(distance, fabs(center[k]));
+    }
+    if (exact || !(distance > 16 * size))
+        return (csgm_vec3){0, 0, 0};
+    return (csgm_vec3){center[0], center[1], center[2]};
+}
+
+csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
+{
+    csgm_mesh *mesh;
+    bool normals = b->vertex_count && !b->lacks_normals;
+    if (b->failed)
+        return csg_context_no_memory(b->context);
+    csgm_status status = csg_mesh_create(b->context, b->vertex_count, b->triangle_count, normals,
+                                         b->colors != NULL, &mesh);
+    if (status)
+        return status;
+    mesh->origin = choose_origin(b);
+    const double *origin = &mesh->origin.x;
+    bool moved = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    for (size_t i = 0; i < 3 * b->vertex_count; i++) /* -0 - 0 is -0: no bit is lost */
+        mesh->positions[i] = (float)(moved ? b->positions[i] - origin[i % 3] : b->positions[i]);
+    if (normals)
+        memcpy(mesh->normals, b->normals, b->vertex_count * 3 * sizeof(float));
+    if (b->colors)
+        memcpy(mesh->colors, b->colors, b->vertex_count * 4);
+    if (b->triangle_count)
+        memcpy(mesh->indices, b->indices, b->triangle_count * 3 * sizeof(uint32_t));
+    csg_builder_release(b);
+    *out = mesh;
+    return CSGM_OK;
+}

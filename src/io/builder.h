@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ * Vertices and triangles of unknown number -> a mesh. Positions are kept in double until the end,
+ * when it is known whether floats about zero suffice or the mesh needs an origin.
+ */
+#ifndef CSG_IO_BUILDER_H
+#define CSG_IO_BUILDER_H
+
+#include "mesh/mesh.h"
+
+typedef struct csg_mesh_builder {
+    csgm_context *context;
+    double *positions; /* 3 a vertex */
+    float *normals;    /* 3 a vertex, as long as every vertex so far came with one */
+    uint8_t *colors;   /* 4 a vertex, from the first coloured one on; white before */
+    uint32_t *indices; /* 3 a triangle */
+    size_t vertex_count, triangle_count;
+    size_t position_room, normal_room, color_room, index_room; /* in vertices and triangles */
+    bool lacks_normals; /* a vertex came without: the mesh will have none */
+    bool failed;        /* out of memory; sticky */
+} csg_mesh_builder;
+
+void csg_builder_init(csg_mesh_builder *builder, csgm_context *context);
+void csg_builder_release(csg_mesh_builder *builder);
+
+/* Room ahead for counts that are known and believed. */
+bool csg_builder_reserve(csg_mesh_builder *builder, size_t vertices, size_t triangles);
+
+/* false: out of memory, or 2^32 vertices. normal and color may be NULL. */
+bool csg_builder_vertex(csg_mesh_builder *builder, const double position[3], const float *normal,
+                        const uint8_t *color);
+/* Indices must be below the vertex count by the time of csg_builder_finish. */
+bool csg_builder_triangle(csg_mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c);
+/* An array for a normal of every vertex that there is, to be filled now; NULL = out of memory. */
+float *csg_builder_normals(csg_mesh_builder *builder);
+
+/* The mesh; the builder is empty after. Reports what fails (memory only). */
+csgm_status csg_builder_finish(csg_mesh_builder *builder, csgm_mesh **out);
+
+#endif

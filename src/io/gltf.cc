@@ -1,0 +1,664 @@
+/* SPDX-License-Identifier: MIT
+ * The only file that names tinygltf (and nlohmann's JSON, which it parses with): a glTF document ->
+ * its triangles, node by node. tinygltf turns the JSON into accessors, views, meshes and nodes;
+ * what it does not do is done here. Before it: the document is cut down to what geometry needs
+ * (free-form "extras" would let it recurse without bound), buffers are resolved without copies, and
+ * compressed primitives lose the indices that a tinygltf without Draco refuses. After it: every
+ * number is checked against the bytes that are there before anything is allocated. Not read: sparse
+ * accessors, morph targets, skins, required extensions that change geometry in other ways.
+ */
+#include "io/adapter.h"
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <new>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#define TINYGLTF_NO_FS
+#include <tiny_gltf.h>
+
+namespace
+{
+
+using nlohmann::json;
+
+struct trouble {
+    csgm_status status;
+    std::string text;
+};
+
+[[noreturn]] void refuse(csgm_status status, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+void refuse(csgm_status status, const char *format, ...)
+{
+    char text[sizeof(csg_adapter_error)];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    throw trouble{status, text};
+}
+
+struct span {
+    const uint8_t *bytes;
+    size_t size;
+};
+
+struct compressed {
+    int64_t view;
+    csg_draco_ids ids;
+};
+
+struct document {
+    const csg_gltf_calls *calls;
+    std::vector<span> buffers;
+    std::vector<std::vector<unsigned char>> embedded;      /* bytes of data URIs */
+    std::map<std::pair<size_t, size_t>, compressed> draco; /* by mesh and primitive */
+    tinygltf::Model model;
+};
+
+/* ---- before tinygltf: a smaller document ------------------------------------------------------
+ */
+
+/* The parser itself does not recurse, but what walks its result may. */
+void check_depth(const char *text, size_t size)
+{
+    constexpr int most = 64; /* our documents need 9 */
+    int depth = 0;
+    bool quoted = false;
+    for (size_t i = 0; i < size; i++) {
+        char c = text[i];
+        if (quoted) {
+            i += c == '\\';
+            quoted = c != '"';
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > most)
+                refuse(CSGM_ERR_FORMAT, "the JSON is nested more than %d deep", most);
+        } else if (c == ']' || c == '}') {
+            depth--;
+        }
+    }
+}
+
+json parse(const char *text, size_t size)
+{
+    check_depth(text, size);
+    try {
+        json root = json::parse(text, text + size);
+        if (!root.is_object())
+            refuse(CSGM_ERR_FORMAT, "a glTF document is a JSON object");
+        return root;
+    } catch (const json::parse_error &e) {
+        refuse(CSGM_ERR_FORMAT, "the JSON is broken at byte %zu of it", e.byte);
+    }
+}
+
+const json *member(const json &object, const char *name)
+{
+    if (!object.is_object())
+        return nullptr;
+    auto at = object.find(name);
+    return at == object.end() ? nullptr : &*at;
+}
+
+/* The members named, of each object of an array. */
+json keep_members(const json &array, const std::vector<const char *> &names)
+{
+    json out = json::array();
+    for (const json &from : array) {
+        json to = json::object();
+        for (const char *name : names)
+            if (const json *value = member(from, name))
+                to[name] = *value;
+        out.push_back(std::move(to));
+    }
+    return out;
+}
+
+int64_t integer(const json *value, int64_t otherwise)
+{
+    return value && value->is_number_integer() ? value->get<int64_t>() : otherwise;
+}
+
+/* Remembers a compressed primitive; its indices accessor has no view, which tinygltf refuses. */
+void note_draco(document &doc, size_t mesh, size_t primitive, const json &from, json &to)
+{
+    const json *extensions = member(from, "extensions");
+    const json *draco = extensions ? member(*extensions, "KHR_draco_mesh_compression") : nullptr;
+    const json *ids = draco ? member(*draco, "attributes") : nullptr;
+    if (!draco)
+        return;
+    if (!ids)
+        refuse(CSGM_ERR_FORMAT, "a compressed primitive names no attributes");
+    doc.draco[{mesh, primitive}] = {integer(member(*draco, "bufferView"), -1),
+                                    {integer(member(*ids, "POSITION"), -1),
+                                     integer(member(*ids, "NORMAL"), -1),
+                                     integer(member(*ids, "COLOR_0"), -1)}};
+    to.erase("indices");
+}
+
+json keep_meshes(document &doc, const json &meshes)
+{
+    json out = json::array();
+    for (const json &mesh : meshes) {
+        json primitives = json::array();
+        if (const json *from = member(mesh, "primitives"); from && from->is_array()) {
+            primitives = keep_members(*from, {"attributes", "indices", "mode"});
+            for (size_t i = 0; i < from->size(); i++)
+                note_draco(doc, out.size(), i, (*from)[i], primitives[i]);
+        }
+        out.push_back({{"primitives", std::move(primitives)}});
+    }
+    return out;
+}
+
+json cut_down(document &doc, const json &root)
+{
+    json out = json::object();
+    auto copy = [&](const char *name, const std::vector<const char *> &names) {
+        if (const json *array = member(root, name); array && array->is_array())
+            out[name] = keep_members(*array, names);
+    };
+    out["asset"] = {{"version", "2.0"}};
+    if (const json *scene = member(root, "scene"))
+        out["scene"] = *scene;
+    copy("scenes", {"nodes"});
+    copy("nodes", {"children", "mesh", "matrix", "translation", "rotation", "scale"});
+    copy("accessors",
+         {"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "sparse"});
+    copy("bufferViews", {"buffer", "byteOffset", "byteLength", "byteStride"});
+    if (const json *meshes = member(root, "meshes"); meshes && meshes->is_array())
+        out["meshes"] = keep_meshes(doc, *meshes);
+    return out;
+}
+
+/* Materials and textures do not change triangles; anything else that is required may. */
+void check_extensions(const json &root)
+{
+    const json *required = member(root, "extensionsRequired");
+    if (!required || !required->is_array())
+        return;
+    for (const json &item : *required) {
+        std::string name = item.is_string() ? item.get<std::string>() : "?";
+        bool harmless = name.rfind("KHR_materials_", 0) == 0 ||
+                        name.rfind("KHR_texture_", 0) == 0 || name.rfind("EXT_texture_", 0) == 0 ||
+                        name == "KHR_lights_punctual" || name == "KHR_mesh_quantization";
+        if (name == "KHR_draco_mesh_compression") {
+            if (!csg_draco_available())
+                refuse(CSGM_ERR_UNSUPPORTED, "it is compressed with Draco, and this csgmesh was "
+                                             "built without Draco");
+        } else if (!harmless) {
+            refuse(CSGM_ERR_UNSUPPORTED, "it requires the extension '%.80s', which is not read",
+                   name.c_str());
+        }
+    }
+}
+
+void check_version(const json &root)
+{
+    const json *asset = member(root, "asset");
+    const json *version = asset ? member(*asset, "version") : nullptr;
+    if (!version || !version->is_string())
+        refuse(CSGM_ERR_FORMAT, "the document has no asset.version");
+    if (version->get<std::string>().rfind("2.", 0) != 0)
+        refuse(CSGM_ERR_UNSUPPORTED, "glTF version %.20s is not read, only 2.0",
+               version->get<std::string>().c_str());
+}
+
+/* ---- buffers ------------------------------------------------------------------------------------
+ */
+
+std::string percent_decoded(const std::string &uri)
+{
+    std::string out;
+    for (size_t i = 0; i < uri.size(); i++) {
+        unsigned byte;
+        if (uri[i] == '%' && i + 2 < uri.size() &&
+            std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
+            out += static_cast<char>(byte);
+            i += 2;
+        } else {
+            out += uri[i];
+        }
+    }
+    return out;
+}
+
+span find_buffer(document &doc, const std::string &uri)
+{
+    if (tinygltf::IsDataURI(uri)) {
+        std::string mime;
+        doc.embedded.emplace_back();
+        if (!tinygltf::DecodeDataURI(&doc.embedded.back(), mime, uri, 0, false))
+            refuse(CSGM_ERR_FORMAT, "a buffer's base64 cannot be decoded");
+        return {doc.embedded.back().data(), doc.embedded.back().size()};
+    }
+    span found{};
+    std::string name = percent_decoded(uri);
+    if (name.empty() || name.find('\0') != std::string::npos)
+        refuse(CSGM_ERR_FORMAT, "a buffer names no file");
+    csgm_status status = doc.calls->load(doc.calls->user, name.c_str(), &found.bytes, &found.size);
+    if (status)
+        throw trouble{status, ""}; /* reported there */
+    return found;
+}
+
+void resolve_buffers(document &doc, const json &root, span bin)
+{
+    const json *buffers = member(root, "buffers");
+    if (!buffers || !buffers->is_array())
+        return;
+    for (const json &buffer : *buffers) {
+        const json *uri = member(buffer, "uri");
+        int64_t told = integer(member(buffer, "byteLength"), -1);
+        span found{};
+        if (uri && uri->is_string())
+            found = find_buffer(doc, uri->get_ref<const std::string &>());
+        else if (doc.buffers.empty() && bin.bytes)
+            found = bin;
+        else
+            refuse(CSGM_ERR_FORMAT, "buffer %zu has no bytes", doc.buffers.size());
+        if (told < 0 || static_cast<uint64_t>(told) > found.size)
+            refuse(CSGM_ERR_FORMAT, "buffer %zu ends too soon: it says %lld bytes and has %zu",
+                   doc.buffers.size(), static_cast<long long>(told), found.size);
+        found.size = static_cast<size_t>(told);
+        doc.buffers.push_back(found);
+    }
+}
+
+/* ---- accessors ----------------------------------------------------------------------------------
+ */
+
+span view_bytes(const document &doc, int64_t index)
+{
+    if (index < 0 || static_cast<uint64_t>(index) >= doc.model.bufferViews.size())
+        refuse(CSGM_ERR_FORMAT, "there is no bufferView %lld", static_cast<long long>(index));
+    const tinygltf::BufferView &view = doc.model.bufferViews[static_cast<size_t>(index)];
+    if (view.buffer < 0 || static_cast<size_t>(view.buffer) >= doc.buffers.size())
+        refuse(CSGM_ERR_FORMAT, "there is no buffer %d", view.buffer);
+    const span &buffer = doc.buffers[static_cast<size_t>(view.buffer)];
+    if (view.byteOffset > buffer.size || view.byteLength > buffer.size - view.byteOffset)
+        refuse(CSGM_ERR_FORMAT, "bufferView %lld goes beyond the end of its buffer",
+               static_cast<long long>(index));
+    return {buffer.bytes + view.byteOffset, view.byteLength};
+}
+
+/* An accessor whose bytes are known to be there. */
+struct values {
+    const uint8_t *bytes;
+    size_t count, stride;
+    int component;
+    bool normalized;
+    uint32_t components;
+};
+
+values open_accessor(const document &doc, int index)
+{
+    if (index < 0 || static_cast<size_t>(index) >= doc.model.accessors.size())
+        refuse(CSGM_ERR_FORMAT, "there is no accessor %d", index);
+    const tinygltf::Accessor &accessor = doc.model.accessors[static_cast<size_t>(index)];
+    int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
+    int components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
+    if (accessor.sparse.isSparse || accessor.bufferView < 0)
+        refuse(CSGM_ERR_UNSUPPORTED, "accessor %d is sparse or empty, which is not read", index);
+    if (size <= 0 || components <= 0 || components > 4)
+        refuse(CSGM_ERR_FORMAT, "accessor %d has no type", index);
+    span bytes = view_bytes(doc, accessor.bufferView);
+    size_t element = static_cast<size_t>(size) * static_cast<size_t>(components);
+    size_t stride = doc.model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
+    stride = stride ? stride : element;
+    if (accessor.byteOffset > bytes.size || stride > 65536)
+        refuse(CSGM_ERR_FORMAT, "accessor %d goes beyond the end of its bufferView", index);
+    bytes.bytes += accessor.byteOffset;
+    bytes.size -= accessor.byteOffset;
+    if (accessor.count &&
+        (bytes.size < element || (bytes.size - element) / stride + 1 < accessor.count))
+        refuse(CSGM_ERR_FORMAT, "accessor %d goes beyond the end of its bufferView", index);
+    return {bytes.bytes,
+            accessor.count,
+            stride,
+            accessor.componentType,
+            accessor.normalized,
+            static_cast<uint32_t>(components)};
+}
+
+template <typename T> T load(const uint8_t *at)
+{
+    T value;
+    std::memcpy(&value, at, sizeof value); /* both little endian */
+    return value;
+}
+
+float load_float(const values &v, const uint8_t *at)
+{
+    auto scaled = [&](float value, float most) {
+        return !v.normalized ? value : value < -most ? -1.0f : value / most;
+    };
+    switch (v.component) {
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return load<float>(at);
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return scaled(load<int8_t>(at), 127);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return scaled(load<uint8_t>(at), 255);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return scaled(load<int16_t>(at), 32767);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return scaled(load<uint16_t>(at), 65535);
+    default:
+        refuse(CSGM_ERR_UNSUPPORTED, "vertex data of component type %d is not read", v.component);
+    }
+}
+
+std::vector<float> read_floats(const values &v)
+{
+    std::vector<float> out(v.count * v.components);
+    size_t size =
+        static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(v.component)));
+    for (size_t i = 0; i < v.count; i++)
+        for (size_t k = 0; k < v.components; k++)
+            out[i * v.components + k] = load_float(v, v.bytes + i * v.stride + k * size);
+    return out;
+}
+
+std::vector<uint32_t> read_indices(const document &doc, int accessor)
+{
+    values v = open_accessor(doc, accessor);
+    std::vector<uint32_t> out(v.count);
+    for (size_t i = 0; i < v.count; i++) {
+        const uint8_t *at = v.bytes + i * v.stride;
+        switch (v.component) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            out[i] = *at;
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            out[i] = load<uint16_t>(at);
+            break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            out[i] = load<uint32_t>(at);
+            break;
+        default:
+            refuse(CSGM_ERR_FORMAT, "indices of component type %d", v.component);
+        }
+    }
+    return out;
+}
+
+/* ---- primitives ---------------------------------------------------------------------------------
+ */
+
+struct arrays {
+    std::vector<float> positions, normals, colors;
+    std::vector<uint32_t> indices;
+    uint32_t color_components = 0;
+};
+
+/* Strips and fans become separate triangles. */
+std::vector<uint32_t> to_triangles(const std::vector<uint32_t> &in, int mode)
+{
+    std::vector<uint32_t> out;
+    for (size_t i = 2; i < in.size(); i++) {
+        bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2;
+        uint32_t a = mode == TINYGLTF_MODE_TRIANGLE_FAN ? in[0] : in[i - 2];
+        out.insert(out.end(), {odd ? in[i - 1] : a, odd ? a : in[i - 1], in[i]});
+    }
+    return out;
+}
+
+std::vector<float> attribute(const document &doc, const tinygltf::Primitive &primitive,
+                             const char *name, uint32_t *components)
+{
+    *components = 0;
+    auto at = primitive.attributes.find(name);
+    if (at == primitive.attributes.end())
+        return {};
+    values v = open_accessor(doc, at->second);
+    *components = v.components;
+    return read_floats(v);
+}
+
+arrays read_plain(const document &doc, const tinygltf::Primitive &primitive)
+{
+    arrays out;
+    uint32_t components, normal_components;
+    out.positions = attribute(doc, primitive, "POSITION", &components);
+    out.normals = attribute(doc, primitive, "NORMAL", &normal_components);
+    out.colors = attribute(doc, primitive, "COLOR_0", &out.color_components);
+    size_t count = out.positions.size() / 3;
+    if (components != 3 && components != 0)
+        refuse(CSGM_ERR_FORMAT, "positions are not of type VEC3");
+    if (!out.normals.empty() && (normal_components != 3 || out.normals.size() != count * 3))
+        refuse(CSGM_ERR_FORMAT, "there are not as many normals as positions");
+    if (!out.colors.empty() && (out.color_components < 3 || out.color_components > 4 ||
+                                out.colors.size() != count * out.color_components))
+        refuse(CSGM_ERR_FORMAT, "there are not as many colours as positions");
+    if (primitive.indices >= 0)
+        out.indices = read_indices(doc, primitive.indices);
+    else
+        for (size_t i = 0; i < count; i++)
+            out.indices.push_back(static_cast<uint32_t>(i));
+    if (primitive.mode != TINYGLTF_MODE_TRIANGLES)
+        out.indices = to_triangles(out.indices, primitive.mode);
+    if (out.indices.size() % 3)
+        refuse(CSGM_ERR_FORMAT, "the number of indices is not a multiple of three");
+    for (uint32_t index : out.indices)
+        if (index >= count)
+            refuse(CSGM_ERR_FORMAT, "an index is out of range");
+    return out;
+}
+
+using transform = std::array<double, 12>;
+
+void emit_compressed(const document &doc, const compressed &from, const transform &place)
+{
+    span bytes = view_bytes(doc, from.view);
+    csg_adapter_error error = {};
+    csg_draco_decoded decoded = {};
+    if (!csg_draco_available())
+        refuse(CSGM_ERR_UNSUPPORTED, "it is compressed with Draco, and this csgmesh was built "
+                                     "without Draco");
+    csgm_status status = csg_draco_decode(bytes.bytes, bytes.size, &from.ids, doc.calls->most_bytes,
+                                          &decoded, &error);
+    if (status)
+        refuse(status, "a compressed primitive: %s", error.text);
+    status = doc.calls->part(doc.calls->user, &decoded.part, place.data());
+    csg_draco_release_decoded(&decoded);
+    if (status)
+        throw trouble{status, ""};
+}
+
+void emit_primitive(const document &doc, size_t mesh, size_t index, const transform &place)
+{
+    const tinygltf::Primitive &primitive = doc.model.meshes[mesh].primitives[index];
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        return; /* points and lines are no surface */
+    auto draco = doc.draco.find({mesh, index});
+    if (draco != doc.draco.end()) {
+        emit_compressed(doc, draco->second, place);
+        return;
+    }
+    arrays in = read_plain(doc, primitive);
+    csg_adapter_part part = {};
+    part.positions = in.positions.data();
+    part.normals = in.normals.empty() ? nullptr : in.normals.data();
+    part.colors = in.colors.empty() ? nullptr : in.colors.data();
+    part.color_components = in.color_components;
+    part.indices = in.indices.data();
+    part.vertex_count = in.positions.size() / 3;
+    part.index_count = in.indices.size();
+    csgm_status status = doc.calls->part(doc.calls->user, &part, place.data());
+    if (status)
+        throw trouble{status, ""};
+}
+
+/* ---- nodes --------------------------------------------------------------------------------------
+ */
+
+transform identity()
+{
+    return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+}
+
+/* First b, then a; rows of [m | t]. */
+transform multiply(const transform &a, const transform &b)
+{
+    transform out;
+    for (size_t r = 0; r < 3; r++)
+        for (size_t c = 0; c < 4; c++)
+            out[4 * r + c] = a[4 * r] * b[c] + a[4 * r + 1] * b[4 + c] + a[4 * r + 2] * b[8 + c] +
+                             (c == 3 ? a[4 * r + 3] : 0);
+    return out;
+}
+
+transform from_quaternion(const std::vector<double> &q, const std::vector<double> &s)
+{
+    double x = q[0], y = q[1], z = q[2], w = q[3];
+    return {(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - z * w) * s[1],
+            2 * (x * z + y * w) * s[2],       0,
+            2 * (x * y + z * w) * s[0],       (1 - 2 * (x * x + z * z)) * s[1],
+            2 * (y * z - x * w) * s[2],       0,
+            2 * (x * z - y * w) * s[0],       2 * (y * z + x * w) * s[1],
+            (1 - 2 * (x * x + y * y)) * s[2], 0};
+}
+
+transform node_transform(const tinygltf::Node &node)
+{
+    transform out = identity();
+    if (node.matrix.size() == 16) { /* column-major */
+        for (size_t r = 0; r < 3; r++)
+            for (size_t c = 0; c < 4; c++)
+                out[4 * r + c] = node.matrix[4 * c + r];
+        return out;
+    }
+    std::vector<double> s = node.scale.size() == 3 ? node.scale : std::vector<double>{1, 1, 1};
+    std::vector<double> q =
+        node.rotation.size() == 4 ? node.rotation : std::vector<double>{0, 0, 0, 1};
+    out = from_quaternion(q, s);
+    for (size_t r = 0; r < 3 && node.translation.size() == 3; r++)
+        out[4 * r + 3] = node.translation[r];
+    return out;
+}
+
+void emit_mesh(const document &doc, int mesh, const transform &place)
+{
+    if (mesh < 0)
+        return;
+    if (static_cast<size_t>(mesh) >= doc.model.meshes.size())
+        refuse(CSGM_ERR_FORMAT, "there is no mesh %d", mesh);
+    size_t count = doc.model.meshes[static_cast<size_t>(mesh)].primitives.size();
+    for (size_t i = 0; i < count; i++)
+        emit_primitive(doc, static_cast<size_t>(mesh), i, place);
+}
+
+/* The nodes of the scene that is shown, or, without scenes, those that are nobody's children. */
+std::vector<int> root_nodes(const tinygltf::Model &model)
+{
+    if (!model.scenes.empty()) {
+        size_t scene = model.defaultScene < 0 ? 0 : static_cast<size_t>(model.defaultScene);
+        if (scene >= model.scenes.size())
+            refuse(CSGM_ERR_FORMAT, "there is no scene %zu", scene);
+        return model.scenes[scene].nodes;
+    }
+    std::vector<bool> is_child(model.nodes.size(), false);
+    for (const tinygltf::Node &node : model.nodes)
+        for (int child : node.children)
+            if (child >= 0 && static_cast<size_t>(child) < is_child.size())
+                is_child[static_cast<size_t>(child)] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < is_child.size(); i++)
+        if (!is_child[i])
+            roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
+/* Depth first with a stack of its own; children come out in their order. Every node has one parent
+ * at most, so one that comes twice is shared or its own ancestor. */
+void walk(const document &doc)
+{
+    const std::vector<tinygltf::Node> &nodes = doc.model.nodes;
+    std::vector<bool> seen(nodes.size(), false);
+    std::vector<std::pair<int, transform>> stack;
+    std::vector<int> roots = root_nodes(doc.model);
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+        stack.push_back({*root, identity()});
+    while (!stack.empty()) {
+        auto [index, parent] = stack.back();
+        stack.pop_back();
+        if (index < 0 || static_cast<size_t>(index) >= nodes.size())
+            refuse(CSGM_ERR_FORMAT, "there is no node %d", index);
+        if (seen[static_cast<size_t>(index)])
+            refuse(CSGM_ERR_FORMAT, "node %d has two parents or is its own ancestor", index);
+        seen[static_cast<size_t>(index)] = true;
+        const tinygltf::Node &node = nodes[static_cast<size_t>(index)];
+        transform place = multiply(parent, node_transform(node));
+        emit_mesh(doc, node.mesh, place);
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+            stack.push_back({*child, place});
+    }
+    for (size_t i = 0; nodes.empty() && i < doc.model.meshes.size(); i++)
+        emit_mesh(doc, static_cast<int>(i), identity());
+}
+
+void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
+{
+    document doc;
+    doc.calls = calls;
+    json root = parse(text, size);
+    check_version(root);
+    check_extensions(root);
+    resolve_buffers(doc, root, bin);
+    std::string small = cut_down(doc, root).dump();
+    root = nullptr; /* base64 buffers are large */
+    std::string error, warning;
+    tinygltf::TinyGLTF loader;
+    if (!loader.LoadASCIIFromString(&doc.model, &error, &warning, small.data(),
+                                    static_cast<unsigned>(small.size()), ""))
+        refuse(CSGM_ERR_FORMAT, "%.*s",
+               static_cast<int>(error.find_first_of("\n") == std::string::npos
+                                    ? error.size()
+                                    : error.find_first_of("\n")),
+               error.empty() ? "the document is not glTF" : error.c_str());
+    walk(doc);
+}
+
+csgm_status fail(csg_adapter_error *error, csgm_status status, const char *text)
+{
+    std::snprintf(error->text, sizeof error->text, "%s", text);
+    return status;
+}
+
+} // namespace
+
+bool csg_gltf_available(void)
+{
+    return true;
+}
+
+csgm_status csg_gltf_read(const char *json_text, size_t json_bytes, const uint8_t *bin,
+                          size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error)
+{
+    try {
+        read(json_text, json_bytes, {bin, bin_bytes}, calls);
+        return CSGM_OK;
+    } catch (const trouble &t) {
+        return fail(error, t.status, t.text.c_str());
+    } catch (const std::bad_alloc &) {
+        return fail(error, CSGM_ERR_MEMORY, "out of memory");
+    } catch (...) {
+        return fail(error, CSGM_ERR_FORMAT, "the document is not glTF");
+    }
+}
