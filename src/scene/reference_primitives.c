@@ -134,6 +134,9 @@ typedef struct secular {
     double shift[3];  /* d_i >= 0, 0 for the shortest axis */
 } secular;
 
+/* Smaller weights are as good as zero, and their quotients would lose digits to underflow. */
+#define NO_WEIGHT 1e-290
+
 /* S(u) and S'(u). */
 static double secular_sum(const secular *s, double u, double *slope)
 {
@@ -183,6 +186,8 @@ static csg_sample ellipsoid(const double *e, csg_vec3 p)
         double ratio = e[i] / e[shortest];
         s.shift[i] = (ratio - 1) * (ratio + 1);
         s.weight[i] = fabs(y[i]) / e[i] * ratio * ratio;
+        if (s.weight[i] < NO_WEIGHT)
+            s.weight[i] = 0;
     }
     double u = secular_root(&s), w[3], square = 0, sum = 0;
     for (int i = 0; i < 3; i++) {
