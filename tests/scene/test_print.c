@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: MIT
+ * The printed tree: exact text of each kind of node, numbers that read back, depth without
+ * recursion, memory. (That the text parses back to the same tree is tested with the parser.)
+ */
+#include "scene_support.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "random_scene.h"
+#include "scene/print.h"
+
+static csgm_context context;
+static csg_scene_builder builder;
+
+static int begin(void **state)
+{
+    test_context_init(&context);
+    return csg_build_begin(&builder, &context) != CSGM_OK;
+}
+
+static int end(void **state)
+{
+    csg_build_abandon(&builder);
+    test_context_end(&context);
+    return 0;
+}
+
+typedef struct text {
+    char *data;
+    size_t length, capacity;
+} text;
+
+static void collect(void *user, const char *piece, size_t length)
+{
+    text *t = user;
+    if (t->length + length + 1 > t->capacity) {
+        t->capacity = 2 * (t->length + length + 1);
+        t->data = realloc(t->data, t->capacity);
+        assert_non_null(t->data);
+    }
+    memcpy(t->data + t->length, piece, length);
+    t->length += length;
+    t->data[t->length] = '\0';
+}
+
+static void check_text(csg_node_id root, const char *expected)
+{
+    csgm_scene *scene = test_seal(&builder, root);
+    text t = {0};
+    assert_int_equal(csg_scene_print(scene, collect, &t), CSGM_OK);
+    assert_string_equal(t.data, expected);
+    free(t.data);
+    csg_scene_destroy(scene);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+}
+
+static csg_node_id primitive(csg_node_kind kind, double a, double b, double c, double d)
+{
+    return csg_build_primitive(&builder, kind, (double[]){a, b, c, d}, NOWHERE);
+}
+
+static void test_primitives(void **state)
+{
+    check_text(csg_build_empty(&builder, NOWHERE), "union() {}\n");
+    check_text(primitive(CSG_NODE_SPHERE, 0.1, 0, 0, 0), "sphere(r = 0.1);\n");
+    check_text(primitive(CSG_NODE_BOX, 1, 2, 3, 0), "cube(size = [2, 4, 6], center = true);\n");
+    check_text(primitive(CSG_NODE_BOX, 1, 2, 3, 0.25),
+               "cube(size = [2, 4, 6], center = true, round = 0.25);\n");
+    check_text(primitive(CSG_NODE_FRUSTUM, 1, 0, 2, 0),
+               "cylinder(h = 4, r1 = 1, r2 = 0, center = true);\n");
+    check_text(primitive(CSG_NODE_FRUSTUM, 1, 1, 2, 0.5),
+               "cylinder(h = 5, r1 = 1.5, r2 = 1.5, center = true, round = 0.5);\n");
+    check_text(primitive(CSG_NODE_CAPSULE, 3, 1, 0.5, 0),
+               "capsule(p1 = [0, 0, 0], p2 = [0, 0, 3], r1 = 1, r2 = 0.5);\n");
+    check_text(primitive(CSG_NODE_TORUS, 2, 0.5, 180, 0), "torus(r = 2, tube = 0.5);\n");
+    check_text(primitive(CSG_NODE_TORUS, 2, 0.5, 45, 0),
+               "rotate([0, 0, -45]) torus(r = 2, tube = 0.5, angle = 90);\n");
+    check_text(primitive(CSG_NODE_ELLIPSOID, 1, 2, 3, 0), "ellipsoid(r = [1, 2, 3]);\n");
+    check_text(primitive(CSG_NODE_PLANE, 0, 0, -1, 0.5), "plane(normal = [0, 0, -1], d = 0.5);\n");
+}
+
+static void test_tree(void **state)
+{
+    csg_affine move = csg_affine_translate(csg_vec3_make(1, 2, 1.0 / 3));
+    csg_node_id a =
+        csg_build_transform(&builder, &move, primitive(CSG_NODE_SPHERE, 1, 0, 0, 0), NOWHERE);
+    a = csg_build_color(&builder, (csg_color){1, 0.5f, 0.1f, 1}, a, NOWHERE);
+    csg_node_id b[3] = {a, primitive(CSG_NODE_SPHERE, 2, 0, 0, 0),
+                        primitive(CSG_NODE_SPHERE, 3, 0, 0, 0)};
+    csg_node_id joined = csg_build_operator(&builder, CSG_NODE_UNION,
+                                            (csg_blend){CSG_BLEND_ROUND, 0.5}, b, 3, NOWHERE);
+    csg_node_id c[2] = {joined, primitive(CSG_NODE_SPHERE, 4, 0, 0, 0)};
+    joined = csg_build_operator(&builder, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_PARABOLA, 0.4},
+                                c, 2, NOWHERE);
+    csg_node_id d[2] = {joined, primitive(CSG_NODE_SPHERE, 5, 0, 0, 0)};
+    check_text(csg_build_operator(&builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
+                                  d, 2, NOWHERE),
+               "intersection() {\n"
+               "  difference(blend = parabola(n = 0.4)) {\n"
+               "    union(blend = 0.5) {\n"
+               "      color([1, 0.5, 0.100000001, 1])\n"
+               "        multmatrix([[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 0.33333333333333331], "
+               "[0, 0, 0, 1]])\n"
+               "          sphere(r = 1);\n"
+               "      sphere(r = 2);\n"
+               "      sphere(r = 3);\n"
+               "    }\n"
+               "    sphere(r = 4);\n"
+               "  }\n"
+               "  sphere(r = 5);\n"
+               "}\n");
+}
+
+static void test_numbers_read_back(void **state)
+{
+    csg_random random = {3};
+    for (int i = 0; i < 500; i++) {
+        double r = pow(10, csg_random_uniform(&random, -14, 14)), back;
+        csgm_scene *scene = test_seal(&builder, primitive(CSG_NODE_SPHERE, r, 0, 0, 0));
+        text t = {0};
+        assert_int_equal(csg_scene_print(scene, collect, &t), CSGM_OK);
+        assert_int_equal(sscanf(t.data, "sphere(r = %lf);", &back), 1);
+        assert_true(back == r);
+        free(t.data);
+        csg_scene_destroy(scene);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    }
+}
+
+static size_t occurrences(const char *in, const char *of)
+{
+    size_t count = 0;
+    for (const char *at = strstr(in, of); at; at = strstr(at + 1, of))
+        count++;
+    return count;
+}
+
+static void test_random_scenes(void **state)
+{
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        csg_random random = {seed};
+        csgm_scene *scene =
+            test_seal(&builder, test_random_scene(&builder, &random, 1 + (unsigned)seed));
+        text t = {0};
+        assert_int_equal(csg_scene_print(scene, collect, &t), CSGM_OK);
+        size_t primitives = 0, operators = 0;
+        for (size_t i = 0; i < scene->node_count; i++) {
+            primitives += csg_node_is_primitive(scene->nodes[i].kind);
+            operators += csg_node_is_operator(scene->nodes[i].kind);
+        }
+        assert_int_equal(occurrences(t.data, ";"), primitives);
+        assert_int_equal(occurrences(t.data, "{"), operators);
+        assert_int_equal(occurrences(t.data, "}"), operators);
+        assert_int_equal(occurrences(t.data, "multmatrix"), scene->transform_count);
+        free(t.data);
+        csg_scene_destroy(scene);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    }
+}
+
+static csgm_scene *deep_scene(int depth)
+{
+    csg_node_id node = primitive(CSG_NODE_SPHERE, 1, 0, 0, 0);
+    for (int i = 0; i < depth; i++) {
+        csg_node_id pair[2] = {node, primitive(CSG_NODE_SPHERE, 1, 0, 0, 0)};
+        node = csg_build_operator(&builder, i % 2 ? CSG_NODE_UNION : CSG_NODE_INTERSECTION,
+                                  (csg_blend){CSG_BLEND_SHARP, 0}, pair, 2, NOWHERE);
+    }
+    return test_seal(&builder, node);
+}
+
+static void test_deep_tree(void **state)
+{
+    enum { DEPTH = 50000 };
+    csgm_scene *scene = deep_scene(DEPTH);
+    text t = {0};
+    assert_int_equal(csg_scene_print(scene, collect, &t), CSGM_OK);
+    assert_int_equal(occurrences(t.data, "sphere"), DEPTH + 1);
+    assert_true(t.length < (size_t)DEPTH * 3 * 110); /* the indentation is capped */
+    free(t.data);
+    t = (text){0};
+    context.memory.limit_bytes = atomic_load(&context.memory.used_bytes) + 1000;
+    assert_int_equal(csg_scene_print(scene, collect, &t), CSGM_ERR_MEMORY);
+    free(t.data);
+    csg_scene_destroy(scene);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+    const struct CMUnitTest tests[] = {
+        TEST(test_primitives),    TEST(test_tree),      TEST(test_numbers_read_back),
+        TEST(test_random_scenes), TEST(test_deep_tree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
