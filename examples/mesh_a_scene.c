@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The whole way by the C interface: scene text in, PLY file out.
  *
- *   cc mesh_a_scene.c $(pkg-config --cflags --libs csgmesh) -o mesh_a_scene && ./mesh_a_scene out.ply
+ *   cc mesh_a_scene.c $(pkg-config --cflags --libs csgmesh) -o mesh_a_scene && ./mesh_a_scene
+ * out.ply
  */
 #include <csgmesh/csgmesh.h>
 #include <stdio.h>
@@ -39,8 +40,8 @@ int main(int argc, char **argv)
     if (status == CSGM_OK) {
         csgm_mesh_view view = csgm_mesh_get_view(mesh);
         printf("%llu triangles\n", (unsigned long long)view.triangle_count);
-        status = csgm_mesh_write(context, &view, argc > 1 ? argv[1] : "out.ply", CSGM_FORMAT_AUTO,
-                                 NULL);
+        status =
+            csgm_mesh_write(context, &view, argc > 1 ? argv[1] : "out.ply", CSGM_FORMAT_AUTO, NULL);
     }
     csgm_mesh_destroy(mesh);
     csgm_field_destroy(field);

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Ctrl-C and SIGTERM: the program ends at once, with status 2, and leaves nothing behind."""
+import os
+import signal
+import subprocess
+import time
+
+import cli
+
+# A sanitizer's process takes longer to go away than the work takes to stop.
+PATIENCE_S = 2.0 if os.environ.get("CSGMESH_SANITIZED") == "1" else 0.1
+
+
+class Interrupt(cli.CliTest):
+    def interrupted(self, *arguments, number=signal.SIGINT, after_s=0.4):
+        begun = set(os.listdir(self.folder))
+        process = subprocess.Popen([cli.PROGRAM, *arguments], cwd=self.folder,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE)
+        time.sleep(after_s)
+        self.assertIsNone(process.poll(), "the work ended before it could be interrupted")
+        sent = time.monotonic()
+        process.send_signal(number)
+        _, message = process.communicate(timeout=30)
+        took = time.monotonic() - sent
+        self.assertEqual(process.returncode, 2, message)
+        self.assertIn(b"interrupted", message)
+        self.assertLess(took, PATIENCE_S)
+        self.assertEqual(set(os.listdir(self.folder)), begun)
+
+    def test_while_meshing(self):
+        self.write("a.txt", cli.BLEND)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            self.interrupted("a.txt", "--no-prune", "-r", "3000", "-o", "a.ply", number=number)
+
+    def test_while_evaluating(self):
+        self.write("a.txt", "for (i = [0 : 1e12]) if (i < 0) sphere(i);\n")
+        self.interrupted("a.txt", "-o", "a.ply")
+
+    def test_while_writing(self):
+        """A full pipe holds the writer until it is interrupted."""
+        self.write("a.txt", cli.BALL)
+        read, write = os.pipe()
+        process = subprocess.Popen([cli.PROGRAM, "a.txt", "-r", "64", "-f", "obj", "-o", "-"],
+                                   cwd=self.folder, stdin=subprocess.DEVNULL, stdout=write,
+                                   stderr=subprocess.PIPE)
+        os.close(write)
+        time.sleep(1)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        _, message = process.communicate(timeout=30)
+        os.close(read)
+        self.assertEqual(process.returncode, 2, message)
+        self.assertIn(b"interrupted", message)
+
+    def test_old_file_survives_at_any_moment(self):
+        """Interrupted at many moments: the output is the old file or the whole new one."""
+        self.write("a.txt", cli.BALL)
+        self.assert_status(self.run_in("a.txt", "-r", "128", "-o", "new.ply"), 0)
+        whole = self.read("new.ply")
+        for step in range(20):
+            self.write("out.ply", b"old")
+            process = subprocess.Popen([cli.PROGRAM, "a.txt", "-r", "128", "-o", "out.ply"],
+                                       cwd=self.folder, stderr=subprocess.DEVNULL)
+            time.sleep(0.004 * step)
+            process.send_signal(signal.SIGTERM)
+            process.wait(timeout=30)
+            self.assertIn(self.read("out.ply"), (b"old", whole))
+            self.assert_files("a.txt", "new.ply", "out.ply")
+
+
+if __name__ == "__main__":
+    cli.main()

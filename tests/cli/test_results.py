@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: MIT
+"""What the program makes when all goes well: files, statistics, dependency rules, facts, dumps."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import unittest
+
+import cli
+
+
+class Outputs(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.txt", cli.BLEND)
+
+    def test_every_format(self):
+        names = [f"out.{name}" for name in cli.formats_written()]
+        self.assertGreaterEqual(len(names), 6)
+        result = self.run_in("a.txt", "-r", "32", *sum((["-o", name] for name in names), []))
+        self.assert_status(result, 0)
+        self.assertEqual(result.stderr, "")
+        self.assert_files("a.txt", *names)
+        counts = {self.info(name)["mesh"]["triangles"] for name in names}
+        self.assertEqual(len(counts), 1, "the formats disagree")
+
+    def test_ascii(self):
+        self.assert_status(self.run_in("a.txt", "-r", "16", "--ascii", "-o", "a.ply", "-o",
+                                       "a.stl"), 0)
+        self.assertIn(b"format ascii 1.0", self.read("a.ply"))
+        self.assertTrue(self.read("a.stl").startswith(b"solid"))
+
+    def test_stdout_is_the_file(self):
+        for name in ("ply", "stl", "obj", "glb"):
+            piped = self.run_in("a.txt", "-r", "16", "-f", name, "-o", "-")
+            self.assert_status(piped, 0)
+            self.assert_status(self.run_in("a.txt", "-r", "16", "-o", f"a.{name}"), 0)
+            self.assertEqual(piped.stdout, self.read(f"a.{name}"))
+
+    def test_stdin(self):
+        piped = self.run_in("-", "-r", "16", "-f", "ply", "-o", "-", stdin=cli.BLEND.encode())
+        self.assert_status(piped, 0)
+        direct = self.run_in("a.txt", "-r", "16", "-f", "ply", "-o", "-")
+        self.assertEqual(piped.stdout, direct.stdout)
+        wrong = self.run_in("-", "-f", "ply", "-o", "-", stdin=b"sphere(;")
+        self.assert_refused(wrong, 1, "-:1:8")
+
+    def test_format_wins_over_the_name_of_one_output(self):
+        self.assert_status(self.run_in("a.txt", "-r", "16", "-f", "stl", "-o", "part.bin"), 0)
+        self.assert_status(self.run_in("a.txt", "-r", "16", "-o", "part.stl"), 0)
+        self.assertEqual(self.read("part.bin"), self.read("part.stl"))
+
+    def test_written_with_the_usual_mode(self):
+        self.assert_status(self.run_in("a.txt", "-r", "8", "-o", "a.ply", "--stats=a.json"), 0)
+        mask = os.umask(0)
+        os.umask(mask)
+        for name in ("a.ply", "a.json"):
+            self.assertEqual(os.stat(self.path(name)).st_mode & 0o777, 0o666 & ~mask)
+
+    def test_link_is_followed(self):
+        os.mkdir(self.path("store"))
+        os.symlink("store/real.ply", self.path("a.ply"))
+        self.write("store/real.ply", b"old")
+        self.assert_status(self.run_in("a.txt", "-r", "8", "-o", "a.ply"), 0)
+        self.assertTrue(os.path.islink(self.path("a.ply")))
+        self.assertTrue(self.read("store/real.ply").startswith(b"ply"))
+
+    def test_normals_and_colors(self):
+        self.run_in("a.txt", "-r", "8", "-o", "full.ply")
+        self.run_in("a.txt", "-r", "8", "--normals", "none", "--colors", "none", "-o", "bare.ply")
+        full, bare = self.info("full.ply")["mesh"], self.info("bare.ply")["mesh"]
+        self.assertEqual((full["normals"], full["colors"]), (True, True))
+        self.assertEqual((bare["normals"], bare["colors"]), (False, False))
+        self.assertEqual(full["triangles"], bare["triangles"])
+
+    def test_up_and_unit(self):
+        self.run_in("a.txt", "-r", "8", "-o", "y.gltf")
+        self.run_in("a.txt", "-r", "8", "--up", "z", "-o", "z.gltf")
+        self.run_in("a.txt", "-r", "8", "--unit", "mm", "-o", "mm.gltf")
+        nodes = {name: json.loads(self.read(f"{name}.gltf"))["nodes"] for name in ("y", "z", "mm")}
+        self.assertIn("rotation", json.dumps(nodes["y"]) + json.dumps(nodes["y"]).replace(
+            "matrix", "rotation"))
+        self.assertNotEqual(nodes["y"], nodes["z"])
+        self.assertIn("0.001", json.dumps(nodes["mm"]))
+
+    def test_defines_change_the_solid(self):
+        self.write("b.txt", "size = 1;\nsphere(r = size);\n")
+        small = self.stats("b.txt", "-r", "16")["mesh"]["volume"]
+        large = self.stats("b.txt", "-r", "16", "-D", "size=2")["mesh"]["volume"]
+        self.assertAlmostEqual(large / small, 8, places=4)
+
+    def test_bounds_cut_and_close(self):
+        self.write("b.txt", cli.BALL)
+        stats = self.stats("b.txt", "-q", "-r", "32", "--bounds", "-2,-2,-2,2,2,0")
+        self.assertEqual(stats["mesh"]["boundary_edges"], 0)
+        self.assertAlmostEqual(stats["mesh"]["volume"], 2 / 3 * math.pi, delta=0.05)
+
+    def test_cell_size(self):
+        self.assertEqual(self.stats("a.txt", "-s", "0.25")["grid"]["cell_size"], 0.25)
+
+    def test_echo_and_quiet(self):
+        self.write("b.txt", 'echo("hello", 1);\na = 1;\na = 2;\nsphere(a);\n')
+        loud, quiet = self.run_in("check", "b.txt"), self.run_in("check", "-q", "b.txt")
+        self.assertIn('ECHO: "hello", 1\n', loud.stderr)
+        self.assertIn("warning W", loud.stderr)
+        self.assertEqual(quiet.stderr, "")
+
+    def test_progress_and_color(self):
+        shown = self.run_in("a.txt", "-r", "64", "--progress=always", "-o", "a.ply")
+        self.assertIn(" %", shown.stderr)
+        self.assertEqual(self.run_in("a.txt", "-r", "64", "-o", "a.ply").stderr, "")
+        self.write("bad.txt", "sphere(;\n")
+        colored = self.run_in("check", "--color=always", "bad.txt")
+        self.assertIn("\033[1;31merror E", colored.stderr)
+        self.assertNotIn("\033", self.run_in("check", "bad.txt").stderr)
+
+
+class Statistics(cli.CliTest):
+    def test_keys(self):
+        self.write("a.txt", cli.BLEND)
+        self.assert_status(self.run_in("a.txt", "-r", "32", "-j", "2", "--stats=s.json"), 0)
+        stats = json.loads(self.read("s.json"))
+        expected = {
+            "csgmesh": None, "peak_rss_bytes": None, "threads": None, "simd": None,
+            "scene": ["primitives", "operators", "lambda", "bounds"],
+            "grid": ["cell_size", "cells"],
+            "evaluations": ["interval", "points", "gradient", "primitive", "mean_tape_length"],
+            "octree": ["visited", "pruned_outside", "pruned_inside", "leaf_blocks"],
+            "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
+                     "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
+                     "volume", "bounds"],
+            "quality": ["max_abs_field", "min_angle_deg", "degenerate"],
+            "time_s": ["scene", "compile", "octree", "mesh", "write", "total"],
+        }
+        self.assertEqual(set(stats), set(expected))
+        for key, members in expected.items():
+            if members:
+                self.assertEqual(set(stats[key]), set(members), key)
+        self.assertEqual(stats["scene"]["primitives"], 2)
+        self.assertEqual(stats["scene"]["operators"], 1)
+        self.assertEqual(stats["threads"], 2)
+        self.assertEqual(max(stats["grid"]["cells"]), 32)
+        self.assertEqual((stats["mesh"]["euler"], stats["mesh"]["components"]), (2, 1))
+        self.assertGreater(stats["evaluations"]["points"], 0)
+        self.assertGreater(stats["octree"]["leaf_blocks"], 0)
+        self.assertGreater(stats["time_s"]["total"], 0)
+
+    def test_agrees_with_info(self):
+        self.write("a.txt", cli.BLEND)
+        stats = self.stats("a.txt", "-r", "32", "-o", "a.ply")["mesh"]
+        mesh = self.info("a.ply")["mesh"]
+        for key in ("vertices", "triangles", "euler", "genus", "components"):
+            self.assertEqual(mesh[key], stats[key])
+        self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
+
+
+class Dependencies(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        os.mkdir(self.path("lib dir"))
+        self.write("lib dir/b#$.txt", "module ball() sphere(1);\n")
+        self.write("a.txt", "include <lib dir/b#$.txt>\nball();\n")
+
+    def test_deps(self):
+        result = self.run_in("deps", "a.txt")
+        self.assert_status(result, 0)
+        self.assertEqual(result.stdout.decode().splitlines(), ["a.txt", "lib dir/b#$.txt"])
+
+    def test_include_dir(self):
+        self.write("c.txt", "use <b#$.txt>\nball();\n")
+        self.assert_status(self.run_in("check", "c.txt"), 1)
+        self.assert_status(self.run_in("check", "-I", "lib dir", "c.txt"), 0)
+
+    def make(self, *arguments):
+        return subprocess.run(["make", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              check=True).stdout
+
+    @unittest.skipUnless(shutil.which("make"), "make is not installed")
+    def test_make_understands_the_rule(self):
+        self.write("Makefile", f"out.stl: a.txt\n\t'{cli.PROGRAM}' -r 8 $< -o $@ -M out.d\n"
+                   "-include out.d\n")
+        self.assertIn("csgmesh", self.make())
+        self.assertIn("up to date", self.make())
+        future = os.stat(self.path("out.stl")).st_mtime + 10
+        os.utime(self.path("lib dir/b#$.txt"), (future, future))
+        self.assertIn("csgmesh", self.make())
+
+    @unittest.skipUnless(shutil.which("ninja"), "ninja is not installed")
+    def test_ninja_understands_the_rule(self):
+        self.write("build.ninja", f"rule mesh\n  command = '{cli.PROGRAM}' -r 8 $in -o $out -M out.d"
+                   "\n  depfile = out.d\n  deps = gcc\nbuild out.stl: mesh a.txt\n")
+
+        def ninja():
+            return subprocess.run(["ninja"], cwd=self.folder, capture_output=True, text=True,
+                                  check=True).stdout
+        ninja()
+        self.assertIn("no work to do", ninja())
+        future = os.stat(self.path("out.stl")).st_mtime + 10
+        os.utime(self.path("lib dir/b#$.txt"), (future, future))
+        self.assertNotIn("no work to do", ninja())
+
+
+class Looking(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.txt", cli.BLEND)
+
+    def test_eval(self):
+        self.write("ball.txt", cli.BALL)
+        result = self.run_in("eval", "ball.txt", "--json", "--at", "3,0,4", "--at", "0,0,0")
+        self.assert_status(result, 0)
+        far, middle = map(json.loads, result.stdout.decode().splitlines())
+        self.assertEqual(set(far), {"at", "f", "gradient", "lambda", "primitives"})
+        self.assertAlmostEqual(far["f"], -4, places=12)
+        self.assertAlmostEqual(far["gradient"][2], -0.8, places=12)
+        self.assertEqual((middle["f"], middle["lambda"], middle["primitives"]), (1, 1, 1))
+        text = self.run_in("eval", "ball.txt", "--at", "3,0,4").stdout.decode()
+        self.assertIn("f = -4 (outside)", text)
+
+    def test_info_of_a_scene(self):
+        result = self.run_in("info", "-r", "32", "a.txt")
+        self.assert_status(result, 0)
+        for words in ("primitives   2", "operators    1", "closed       yes", "volume"):
+            self.assertIn(words, result.stdout.decode())
+        facts = json.loads(self.run_in("info", "--json", "-r", "32", "a.txt").stdout)
+        self.assertEqual(facts["files"], ["a.txt"])
+        self.assertEqual(facts["mesh"]["components"], 1)
+
+    def test_info_of_an_unbounded_scene(self):
+        self.write("plane.txt", "plane([0, 0, 1], 0);\n")
+        result = self.run_in("info", "--json", "plane.txt")
+        self.assert_status(result, 0)
+        self.assertNotIn("mesh", json.loads(result.stdout))
+
+    def test_info_of_an_open_mesh(self):
+        self.write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        result = self.run_in("info", "open.off")
+        self.assert_status(result, 0)
+        self.assertIn("closed       no: 3 boundary edges", result.stdout.decode())
+
+    def test_dump_parses_back(self):
+        flat = self.run_in("dump", "--scene", "a.txt")
+        self.assert_status(flat, 0)
+        self.write("flat.txt", flat.stdout)
+        again = self.run_in("dump", "--scene", "flat.txt")
+        self.assertEqual(again.stdout, flat.stdout)
+        for name in ("a", "flat"):
+            self.run_in(f"{name}.txt", "-r", "24", "-o", f"{name}.ply")
+        self.assertEqual(self.read("a.ply"), self.read("flat.ply"))
+
+    def test_dump_of_the_tape(self):
+        result = self.run_in("dump", "--tape", "a.txt")
+        self.assert_status(result, 0)
+        self.assertGreaterEqual(len(result.stdout.splitlines()), 3)
+
+
+if __name__ == "__main__":
+    cli.main()

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""The same scene gives the same bytes for any number of threads, any instruction set, and --no-prune."""
+import cli
+
+SCENES = {
+    "blend": cli.BLEND,
+    "cut": """difference(blend = 0.05) {
+  cube(2, center = true);
+  for (a = [[0, 0], [90, 0], [0, 90]]) rotate([a[0], a[1], 0]) cylinder(h = 3, r = 0.6, center = true);
+}
+""",
+    "many": """for (i = [0 : 40]) translate([cos(i * 40), sin(i * 40), i / 15])
+  sphere(r = 0.2 + 0.004 * i);
+""",
+}
+
+
+class SameBytes(cli.CliTest):
+    def mesh(self, *arguments, env=None):
+        result = self.run_in("a.txt", "-r", "48", "-f", "ply", "-o", "-", *arguments, env=env)
+        self.assert_status(result, 0)
+        return result.stdout
+
+    def test_threads_pruning_and_instruction_sets(self):
+        for name, text in SCENES.items():
+            with self.subTest(name):
+                self.write("a.txt", text)
+                first = self.mesh("-j", "1")
+                self.assertGreater(len(first), 10000)
+                for arguments in (["-j", "2"], ["-j", "5"], ["--no-prune"]):
+                    self.assertEqual(self.mesh(*arguments), first, arguments)
+                for isa in ("scalar", "sse2", "avx2", "avx512"):
+                    self.assertEqual(self.mesh(env={"CSGMESH_ISA": isa}), first, isa)
+
+
+if __name__ == "__main__":
+    cli.main()

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""Bad input and a hostile world: one clear message, the right exit status, no output file left."""
+import os
+import subprocess
+import unittest
+
+import cli
+
+
+class BadInput(cli.CliTest):
+    def refused(self, status, *arguments, words=(), left=()):
+        result = self.run_in(*arguments, "-o", "out.glb")
+        self.assert_refused(result, status, *words)
+        self.assert_files(*left)
+
+    def test_missing_file(self):
+        self.refused(2, "nothing.txt", words=["nothing.txt", "No such file"])
+
+    def test_empty_file(self):
+        self.write("empty.txt", "")
+        self.refused(1, "empty.txt", words=["empty"], left=["empty.txt"])
+
+    def test_directory(self):
+        os.mkdir(self.path("folder"))
+        self.refused(2, "folder", words=["folder", "directory"], left=["folder"])
+
+    def test_binary_file(self):
+        self.write("binary.txt", bytes(range(256)) * 64)
+        self.refused(1, "binary.txt", words=["binary.txt:"], left=["binary.txt"])
+
+    def test_nul_bytes(self):
+        self.write("nul.txt", b"sphere(r = 1);\0\0\0cube(1);")
+        self.refused(1, "nul.txt", words=["nul.txt:1:15"], left=["nul.txt"])
+
+    def test_missing_include(self):
+        self.write("a.txt", "include <missing.txt>\nsphere(1);\n")
+        self.refused(1, "a.txt", words=["a.txt:1:", "missing.txt"], left=["a.txt"])
+
+    def test_bad_define(self):
+        self.write("a.txt", cli.BALL)
+        self.refused(1, "a.txt", "-D", "r=(", left=["a.txt"])
+
+    def test_unreadable_file(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may read everything")
+        self.write("a.txt", cli.BALL)
+        os.chmod(self.path("a.txt"), 0)
+        self.refused(2, "a.txt", words=["Permission denied"], left=["a.txt"])
+
+    def test_unbounded_solid(self):
+        self.write("a.txt", "plane([0, 0, 1], 0);\n")
+        self.refused(1, "a.txt", words=["unbounded"], left=["a.txt"])
+
+    def test_warnings_as_errors(self):
+        self.write("a.txt", "a = 1;\na = 2;\nsphere(a);\n")
+        self.assert_status(self.run_in("check", "a.txt"), 0)
+        self.refused(1, "a.txt", "-Werror", "-r", "8", words=["a.txt:2:1: error E"], left=["a.txt"])
+
+    def test_worst_status_of_several(self):
+        self.write("good.txt", cli.BALL)
+        self.write("bad.txt", "sphere(r = );\n")
+        self.assert_status(self.run_in("check", "good.txt", "good.txt"), 0)
+        self.assert_status(self.run_in("check", "bad.txt", "good.txt"), 1)
+        self.assert_status(self.run_in("check", "missing.txt", "bad.txt"), 2)
+
+    def test_broken_mesh(self):
+        self.write("broken.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 9\n")
+        result = self.run_in("info", "broken.ply")
+        self.assert_refused(result, 1, "broken.ply")
+        self.assert_refused(self.run_in("info", "missing.ply"), 2, "missing.ply")
+
+    def test_json_diagnostics(self):
+        self.write("bad.txt", "sphere(r = );\nnosuch();\n")
+        result = self.run_in("check", "--diagnostics=json", "bad.txt")
+        self.assert_status(result, 1)
+        found = [cli.json.loads(line) for line in result.stderr.splitlines()]
+        self.assertEqual(found[0]["severity"], "error")
+        self.assertEqual((found[0]["file"], found[0]["line"]), ("bad.txt", 1))
+        self.assertRegex(found[0]["code"], "^E[0-9]{4}$")
+
+
+class BadOutput(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.txt", cli.BALL)
+
+    def refused(self, output, *words, arguments=()):
+        result = self.run_in("a.txt", "-r", "16", "-o", output, *arguments)
+        self.assert_refused(result, 2, *words)
+
+    def test_missing_folder(self):
+        self.refused("nowhere/a.glb", "nowhere/a.glb", "No such file or directory")
+        self.assert_files("a.txt")
+
+    def test_directory(self):
+        os.mkdir(self.path("a.glb"))
+        self.refused("a.glb", "a.glb", "Is a directory")
+        self.assert_files("a.txt", "a.glb")
+
+    def test_full_disk(self):
+        for name in cli.formats_written():
+            self.refused("/dev/full", "/dev/full", "No space left", arguments=["-f", name])
+        self.assert_files("a.txt")
+
+    def test_full_disk_behind_stdout(self):
+        with open("/dev/full", "wb") as full:
+            for arguments in (["a.txt", "-r", "16", "-f", "stl", "-o", "-"],
+                              ["a.txt", "-r", "16", "--stats"],
+                              ["info", "-r", "16", "a.txt"], ["deps", "a.txt"], ["--help"],
+                              ["eval", "a.txt", "--at", "0,0,0"], ["dump", "--tape", "a.txt"]):
+                result = self.run_in(*arguments, stdout=full)
+                self.assert_refused(result, 2, "standard output", "No space left")
+
+    def test_full_statistics(self):
+        result = self.run_in("a.txt", "-r", "16", "--stats=/dev/full")
+        self.assert_refused(result, 2, "/dev/full", "No space left")
+
+    def test_closed_pipe(self):
+        read, write = os.pipe()
+        os.close(read)
+        try:
+            result = self.run_in("a.txt", "-r", "64", "-f", "ply", "-o", "-", stdout=write)
+        finally:
+            os.close(write)
+        self.assert_refused(result, 2, "standard output", "Broken pipe")
+
+    def test_file_size_limit(self):
+        command = f"ulimit -f 1; exec '{cli.PROGRAM}' a.txt -r 64 -o out.stl"
+        result = subprocess.run(["sh", "-c", command], cwd=self.folder, capture_output=True,
+                                check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn(b"File too large", result.stderr)
+        self.assert_files("a.txt")
+
+    def test_read_only_folder(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        os.mkdir(self.path("locked"), 0o555)
+        self.refused("locked/a.glb", "Permission denied")
+
+    def test_old_file_survives_a_failure(self):
+        self.write("out.stl", b"old")
+        command = f"ulimit -f 1; exec '{cli.PROGRAM}' a.txt -r 64 -o out.stl"
+        subprocess.run(["sh", "-c", command], cwd=self.folder, capture_output=True, check=False)
+        self.assertEqual(self.read("out.stl"), b"old")
+        self.assert_files("a.txt", "out.stl")
+
+    def test_one_of_two_outputs_fails(self):
+        result = self.run_in("a.txt", "-r", "16", "-f", "stl", "-o", "/dev/full", "-o", "b.ply")
+        self.assert_status(result, 2)
+        self.assert_files("a.txt", "b.ply")
+
+
+class Limits(cli.CliTest):
+    def limited(self, text, *arguments, words=()):
+        self.write("a.txt", text)
+        result = self.run_in("a.txt", "-o", "out.ply", *arguments)
+        self.assert_refused(result, 2, *words)
+        self.assert_files("a.txt")
+
+    def test_timeout_of_evaluation(self):
+        self.limited("for (i = [0 : 1e12]) if (i < 0) sphere(i);\n", "--timeout", "0.3")
+
+    def test_timeout_of_meshing(self):
+        self.limited(cli.BLEND, "-r", "4000", "--no-prune", "--timeout", "0.3", words=["time"])
+
+    def test_memory(self):
+        self.limited(cli.BALL, "-r", "1000", "--max-memory", "4M", words=["memory", "4 MiB"])
+
+    def test_memory_of_evaluation(self):
+        self.limited("a = [for (i = [0 : 1e9]) i];\nsphere(a[0] + 1);\n", "--max-memory", "20M")
+
+    def test_depth(self):
+        self.limited("x = " + "(" * 3000 + "1" + ")" * 3000 + ";\nsphere(x);\n", "--max-depth",
+                     "1000")
+
+    def test_nodes(self):
+        self.limited("for (i = [1 : 5000]) translate([i, 0, 0]) sphere(0.3);\n", "--max-nodes", "1000")
+
+
+if __name__ == "__main__":
+    cli.main()
