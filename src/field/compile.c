@@ -28,7 +28,7 @@ typedef struct task {
     uint32_t next_child;
     frame frame;
     /* The operator that the children join: this one, or an ancestor of the same sharp kind. */
-    uint32_t group; /* index of its task */
+    uint32_t group;   /* index of its task */
     uint32_t written; /* of a group: children in the tape so far */
     uint32_t begin;   /* of a group: first node */
     uint32_t parameters;
@@ -105,7 +105,8 @@ static void own_of_frustum(leaf *l, const double *p, double k)
 {
     double r1 = p[0] * k, r2 = p[1] * k, h = p[2] * k;
     double length = hypot(2 * h, r1 - r2);
-    double own[] = {r1, r2, h, 2 * h / length, (r1 - r2) / length, length, p[3] * k, 0};
+    double own[] = {r1,       (r1 + r2) / 2, h, 2 * h / length, (r1 - r2) / length, length,
+                    p[3] * k, (r2 - r1) / 2};
     memcpy(l->own, own, sizeof own);
     l->own_count = OWN_FRUSTUM;
     l->magnitude = hypot(fmax(r1, r2), h) + p[3] * k;
@@ -397,7 +398,8 @@ static bool compile_tree(compiler *c)
     return true;
 }
 
-/* ---- the field -------------------------------------------------------------------------------- */
+/* ---- the field --------------------------------------------------------------------------------
+ */
 
 uint32_t csg_tape_depth(const csg_tape *tape)
 {
@@ -550,8 +552,11 @@ csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_b
     memcpy(parameters, field->tape.parameters, at * sizeof *parameters);
     memcpy(parameters + at, added, (parameter_count - at) * sizeof *parameters);
     uint32_t operator_at = at + (uint32_t)box_count;
-    nodes[count] = (csg_tape_node){.op = CSG_OP_BOX, .join = CSG_JOIN_INTERSECTION,
-                                   .parameters = at, .join_parameters = operator_at, .size = 1};
+    nodes[count] = (csg_tape_node){.op = CSG_OP_BOX,
+                                   .join = CSG_JOIN_INTERSECTION,
+                                   .parameters = at,
+                                   .join_parameters = operator_at,
+                                   .size = 1};
     nodes[count + 1] = (csg_tape_node){
         .op = CSG_OP_INTERSECTION, .parameters = operator_at, .arity = 2, .size = count + 2};
     clipped->tape.nodes = nodes;

@@ -42,8 +42,15 @@ static inline float quotient(float a, float b)
 
 /* ---- primitives: own parameters in the order packed by compile.c ---------------------- */
 
-enum { OWN_SPHERE = 1, OWN_BOX = 4, OWN_FRUSTUM = 8, OWN_CAPSULE = 5, OWN_TORUS = 4,
-       OWN_ELLIPSOID = 6, OWN_PLANE = 4 };
+enum {
+    OWN_SPHERE = 1,
+    OWN_BOX = 4,
+    OWN_FRUSTUM = 8,
+    OWN_CAPSULE = 5,
+    OWN_TORUS = 4,
+    OWN_ELLIPSOID = 6,
+    OWN_PLANE = 4
+};
 
 /* own: r */
 static inline float sphere_at(const float *own, point q, point *g)
@@ -71,10 +78,11 @@ static inline float box_at(const float *own, point q, point *g)
     return own[3] - (is_out ? outside : inside);
 }
 
-/* Distance to a convex outline in the (rho, z) half plane: the side from (r1, -h) to (r2, h) and the
- * flat caps. Differences to the side's line, not to nearest points, so that the gradient is exact
- * where roots lie: on the surface.
- * own: r1, r2, h, nx, nz (side's outward normal), length of the side, rounding, unused */
+/* Distance to a convex outline in the (rho, z) half plane: the side from (r1, -h) to (r2, h) and
+ * the flat caps. Differences to the side's line, not to nearest points, so that the gradient is
+ * exact where roots lie: on the surface. own: r1, (r1 + r2) / 2, h, nx, nz (side's outward
+ * normal), length of the side, rounding, (r2 - r1) / 2 (not r1, r2: gcc 12 does not vectorise a
+ * choice between two parameters) */
 static inline float frustum_at(const float *own, point q, point *g)
 {
     float rho = sqrtf(q.x * q.x + q.y * q.y);
@@ -83,18 +91,18 @@ static inline float frustum_at(const float *own, point q, point *g)
     float along = dz * own[3] - dx * own[4];
     float beyond = along - smaller(larger(along, 0), own[5]);
     float cap = absolute(q.z) - own[2];
-    float over = larger(rho - (q.z < 0 ? own[0] : own[1]), 0);
-    float to_side = sqrtf(side * side + beyond * beyond);
-    float to_cap = sqrtf(over * over + cap * cap);
-    int is_side = to_side < to_cap;
-    int is_in = (side <= 0) & (cap <= 0);
-    float distance = is_side ? to_side : to_cap;
+    float over = larger(rho - (own[1] + sign_of(q.z) * own[7]), 0);
+    float square_side = side * side + beyond * beyond, square_cap = over * over + cap * cap;
+    int is_side = square_side < square_cap;
+    int is_in = larger(side, cap) <= 0;
+    float distance = sqrtf(is_side ? square_side : square_cap);
     float turn = is_in ? 1.0f : -1.0f;
-    /* Unit vectors from the nearest point; on the surface itself the face's own normal. */
-    float s = to_side > 0 ? turn * side / to_side : -1.0f, e = turn * quotient(beyond, to_side);
-    float c = to_cap > 0 ? turn * cap / to_cap : -1.0f, o = turn * quotient(over, to_cap);
-    float radial = is_side ? s * own[3] - e * own[4] : o;
-    float axial = is_side ? s * own[4] + e * own[3] : c * sign_of(q.z);
+    /* Unit vector from the nearest point, across and along the face; on it the face's own normal.
+     */
+    float across = distance > 0 ? turn * (is_side ? side : cap) / distance : -1.0f;
+    float past = turn * quotient(is_side ? beyond : over, distance);
+    float radial = is_side ? across * own[3] - past * own[4] : past;
+    float axial = is_side ? across * own[4] + past * own[3] : across * sign_of(q.z);
     float k = quotient(radial, rho);
     *g = (point){q.x * k, q.y * k, axial};
     return own[6] + turn * distance;
@@ -133,11 +141,12 @@ static inline float torus_at(const float *own, point q, point *g)
 }
 
 /* Exact distance: the nearest point y satisfies y_i = e_i^2 p_i / (t + e_i^2); solved in scaled
- * variables (Eberly, "Distance from a point to an ellipse, an ellipsoid", 2013) with v = t / e_z^2 + 1,
- * e_z the smallest semi-axis, so that nothing cancels near the medial disc. Newton from a lower bound
- * of the root of a convex decreasing function rises to it; from the largest of the three bounds each
- * term is at most 1, which leaves the root within a factor sqrt(3): six steps reach float precision.
- * own: e_x >= e_z, e_y >= e_z, e_z (compile.c turns the axes), e_x^2 / e_z^2, e_y^2 / e_z^2, 0 */
+ * variables (Eberly, "Distance from a point to an ellipse, an ellipsoid", 2013) with v = t / e_z^2
+ * + 1, e_z the smallest semi-axis, so that nothing cancels near the medial disc. Newton from a
+ * lower bound of the root of a convex decreasing function rises to it; from the largest of the
+ * three bounds each term is at most 1, which leaves the root within a factor sqrt(3): six steps
+ * reach float precision. own: e_x >= e_z, e_y >= e_z, e_z (compile.c turns the axes), e_x^2 /
+ * e_z^2, e_y^2 / e_z^2, 0 */
 static inline float ellipsoid_at(const float *own, point q, point *g)
 {
     float zx = absolute(q.x) / own[0], zy = absolute(q.y) / own[1], zz = absolute(q.z) / own[2];
@@ -179,12 +188,14 @@ typedef struct blended {
 static inline float sine(float a)
 {
     float s = a * a;
-    return a * (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
+    return a *
+           (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
 }
 static inline float cosine(float a)
 {
     float s = a * a;
-    return 1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
+    return 1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 +
+                                                     s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
 }
 
 static inline blended blend_hyperbola(float n, float chi, float x)
@@ -225,7 +236,8 @@ static inline blended blend_sharp(float n, float chi, float x)
 
 /* ---- the round n-ary union (operators.md 12) ------------------------------------------- */
 
-/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0. */
+/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0.
+ */
 static inline float round_excess(float w, float m, float sum, float squares)
 {
     float mean = sum / m;

@@ -46,8 +46,10 @@ static inline point affine_back(const float *m, point g)
 }
 
 #define EACH_PRIMITIVE(X)                                                                          \
-    X(SPHERE, sphere) X(BOX, box) X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus)          \
-    X(ELLIPSOID, ellipsoid) X(PLANE, plane)
+    X(SPHERE, sphere)                                                                              \
+    X(BOX, box)                                                                                    \
+    X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus) X(ELLIPSOID, ellipsoid)                \
+        X(PLANE, plane)
 
 /* Local copies of the parameters: the compiler then knows that no store changes them. */
 #define VALUE_LOOPS(NAME, name)                                                                    \
@@ -139,8 +141,9 @@ static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, poin
 /* ---- joins: two operands ----------------------------------------------------------------- */
 
 #define EACH_FOLD(X)                                                                               \
-    X(HYPERBOLA, hyperbola) X(RECIPROCAL, reciprocal) X(OVERBLEND, overblend) X(COSINE, cosine)    \
-    X(PARABOLA, parabola) X(CHAMFER, chamfer)
+    X(HYPERBOLA, hyperbola)                                                                        \
+    X(RECIPROCAL, reciprocal)                                                                      \
+    X(OVERBLEND, overblend) X(COSINE, cosine) X(PARABOLA, parabola) X(CHAMFER, chamfer)
 
 /* a = a op b. */
 static void join_values(const csg_tape_node *node, const float *parameters, float *restrict a,
@@ -225,8 +228,8 @@ static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is
         return;
     }
     float *restrict rest = work, *restrict sum = work + arity * stride,
-                   *restrict squares = sum + stride, *restrict next = squares + stride,
-                   *restrict taken = next + stride;
+                    *restrict squares = sum + stride, *restrict next = squares + stride,
+                    *restrict taken = next + stride;
     for (uint32_t k = 0; k < arity; k++)
         memcpy(rest + k * stride, f + k * stride, count * sizeof(float));
     for (size_t i = 0; i < count; i++)

@@ -8,8 +8,8 @@
 #include "field/tape.h"
 
 enum {
-    CSG_BATCH = 256,  /* points a slot holds at most */
-    CSG_LANES = 16,   /* counts are rounded up to this: arrays must have room for it */
+    CSG_BATCH = 256, /* points a slot holds at most */
+    CSG_LANES = 16,  /* counts are rounded up to this: arrays must have room for it */
     CSG_OCTANTS = 8
 };
 

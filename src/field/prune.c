@@ -149,7 +149,8 @@ static uint32_t decide(csg_pruner *pruner, int octant, float tau)
 
 /* ---- the shorter tape ------------------------------------------------------------------------ */
 
-/* Writes an operator over the last `kept` subtrees: its joins and, unless only one is left, itself. */
+/* Writes an operator over the last `kept` subtrees: its joins and, unless only one is left, itself.
+ */
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {

@@ -23,7 +23,7 @@ typedef struct csg_emitted {
 typedef struct csg_pruner {
     csg_memory *memory;
     const csg_kernel *kernel;
-    float rounding; /* slack of comparisons: rounding error of any value in the lattice */
+    float rounding;    /* slack of comparisons: rounding error of any value in the lattice */
     float *low, *high; /* of every node, eight lanes */
     float *demand_low, *demand_high;
     uint8_t *dropped;
@@ -46,8 +46,8 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
 /* What the last call found about one of the balls. */
 csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
 
-/* The tape for that ball: *out is the same one where nothing could be dropped, else a shorter one in
- * the arena. tau: half width of the band. False: out of memory. */
+/* The tape for that ball: *out is the same one where nothing could be dropped, else a shorter one
+ * in the arena. tau: half width of the band. False: out of memory. */
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out);
 
 #endif

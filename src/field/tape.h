@@ -19,9 +19,9 @@ typedef enum csg_op {
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_OP_##NAME,
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
-    CSG_OP_UNION,        /* sharp or folded: the joins of its children did the work */
+    CSG_OP_UNION, /* sharp or folded: the joins of its children did the work */
     CSG_OP_INTERSECTION,
-    CSG_OP_ROUND_UNION,  /* takes `arity` values from the stack */
+    CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
     CSG_OP_ROUND_INTERSECTION,
     CSG_OP_EMPTY, /* -infinity (or +infinity, negated): only ever the whole tape */
     CSG_OP_COUNT
@@ -87,9 +87,9 @@ struct csgm_field {
     csg_tape tape;
     size_t parameter_count;
     uint32_t color_count; /* 1 = no colours in the scene: only the default */
-    uint32_t depth; /* value slots that an evaluation needs */
-    csg_vec3 center; /* of the floats */
-    csg_box bounds;  /* of the solid (scene/bounds.h) */
+    uint32_t depth;       /* value slots that an evaluation needs */
+    csg_vec3 center;      /* of the floats */
+    csg_box bounds;       /* of the solid (scene/bounds.h) */
     uint32_t primitive_count, operator_count;
 };
 

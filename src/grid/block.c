@@ -13,8 +13,7 @@ static void fill_coordinates(csg_block_samples *samples, const csg_lattice *latt
     float line[3][N];
     for (int axis = 0; axis < 3; axis++)
         for (uint32_t i = 0; i < N; i++)
-            line[axis][i] =
-                csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + i);
+            line[axis][i] = csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + i);
     float *x = samples->x, *y = samples->y, *z = samples->z;
     for (int k = 0; k < N; k++)
         for (int j = 0; j < N; j++, x += N, y += N, z += N)

@@ -14,9 +14,9 @@
 
 typedef struct csg_block {
     uint64_t crossed[3][CSG_BLOCK_EDGE];
-    uint16_t rank[3][CSG_BLOCK_EDGE]; /* crossed edges before that word */
+    uint16_t rank[3][CSG_BLOCK_EDGE];                      /* crossed edges before that word */
     uint16_t inside[CSG_BLOCK_SAMPLES][CSG_BLOCK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
-    uint32_t at[3];                   /* in blocks */
+    uint32_t at[3];                                        /* in blocks */
     uint32_t node_count;
     const csg_tape_node *nodes; /* of the pruned tape */
     uint32_t vertex_count, triangle_count;

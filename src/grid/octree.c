@@ -29,8 +29,9 @@ typedef struct worker {
     csg_pruner pruner;
     csg_arena tapes[2]; /* of even and odd levels: a level's parents are dropped after it */
     cell *cells;
-    csg_block *blocks;
+    csg_block **blocks; /* in tapes[0] */
     size_t cell_count, cell_capacity, block_count, block_capacity;
+    csg_block candidate; /* the block being sampled */
     csg_block_samples *samples;
     float *scratch;
     size_t scratch_floats;
@@ -45,8 +46,8 @@ typedef struct walk {
     const csg_kernel *kernel;
     worker *workers;
     uint32_t worker_count;
-    float tau; /* the band: one lattice edge */
-    cell *cells;    /* of the level being split */
+    float tau;   /* the band: one lattice edge */
+    cell *cells; /* of the level being split */
     size_t cell_count;
     segment *segments; /* one an item */
     int level;         /* of the children being made */
@@ -79,8 +80,7 @@ static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTA
         uint32_t at[3];
         octant_of(parent->at, octant, at);
         for (int axis = 0; axis < 3; axis++)
-            c[axis][octant] =
-                csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
+            c[axis][octant] = csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
     }
     return (float)(half * w->lattice->cell_size * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
 }
@@ -107,18 +107,20 @@ static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tap
 
 static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
 {
-    if (!csg_memory_reserve(&w->context->memory, (void **)&self->blocks, &self->block_capacity,
-                            self->block_count + 1, sizeof(csg_block)))
-        return false;
     uint32_t primitives = primitives_in(tape);
     self->stats.sampled_blocks++;
     self->stats.point_evaluations += CSG_BLOCK_POINTS;
     self->stats.primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * primitives;
     self->stats.tape_nodes_sampled += tape->count;
-    csg_block *block = &self->blocks[self->block_count];
-    if (csg_block_sample(block, w->kernel, tape, w->lattice, at, self->samples, self->scratch,
-                         self->scratch_floats))
-        self->block_count++;
+    if (!csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, self->samples,
+                          self->scratch, self->scratch_floats))
+        return true;
+    csg_block *block = csg_arena_alloc(&self->tapes[0], sizeof *block);
+    if (!block || !csg_memory_reserve(&w->context->memory, (void **)&self->blocks,
+                                      &self->block_capacity, self->block_count + 1, sizeof block))
+        return false;
+    *block = self->candidate;
+    self->blocks[self->block_count++] = block;
     return true;
 }
 
@@ -221,33 +223,31 @@ static void report_progress(void *user, size_t done, size_t count)
 /* Joins the workers' cells (or blocks) in the order of their parents. */
 static bool join_level(walk *w, size_t item_count, csg_octree *out)
 {
-    size_t total = 0;
+    size_t total = 0, element = w->level ? sizeof(cell) : sizeof(csg_block *);
     for (size_t i = 0; i < item_count; i++)
         total += w->segments[i].count;
-    if (w->level == 0) {
-        if (!csg_memory_reserve(&w->context->memory, (void **)&out->blocks, &out->block_capacity,
-                                total, sizeof(csg_block)))
-            return false;
-    } else {
-        w->cells = total ? csg_memory_alloc(&w->context->memory, total * sizeof(cell)) : NULL;
-        if (total && !w->cells)
-            return false;
-    }
-    size_t at = 0;
+    uint8_t *joined = total ? csg_memory_alloc(&w->context->memory, total * element) : NULL;
+    if (total && !joined)
+        return false;
+    uint8_t *at = joined;
     for (size_t i = 0; i < item_count; i++) {
         const segment *s = &w->segments[i];
         const worker *from = &w->workers[s->worker];
         if (!s->count)
             continue;
         if (w->level)
-            memcpy(w->cells + at, from->cells + s->first, s->count * sizeof(cell));
+            memcpy(at, from->cells + s->first, s->count * element);
         else
-            memcpy(out->blocks + at, from->blocks + s->first, s->count * sizeof(csg_block));
-        at += s->count;
+            memcpy(at, from->blocks + s->first, s->count * element);
+        at += s->count * element;
     }
-    w->cell_count = total;
-    if (w->level == 0)
+    if (w->level) {
+        w->cells = (cell *)(void *)joined;
+        w->cell_count = total;
+    } else {
+        out->blocks = (csg_block **)(void *)joined;
         out->block_count = total;
+    }
     return true;
 }
 
@@ -264,6 +264,7 @@ static bool run_level(walk *w, csg_octree *out)
     w->cells = parents;
     done = done && csg_pool_run(w->context->pool, items, split_item, report_progress, w);
     w->cells = NULL;
+    w->cell_count = 0;
     if (done && !join_level(w, items, out)) {
         atomic_store(&w->out_of_memory, true);
         done = false;
@@ -275,12 +276,11 @@ static bool run_level(walk *w, csg_octree *out)
         if (w->level)
             csg_arena_reset(&w->workers[i].tapes[(w->level + 1) & 1]);
     }
-    if (!done)
-        w->cell_count = 0;
     return done;
 }
 
-/* ---- the walk --------------------------------------------------------------------------------- */
+/* ---- the walk ---------------------------------------------------------------------------------
+ */
 
 static bool create_workers(walk *w, float rounding)
 {
@@ -315,7 +315,7 @@ static void add_stats(csg_octree_stats *total, const csg_octree_stats *part)
     total->tape_nodes_sampled += part->tape_nodes_sampled;
 }
 
-/* Releases the workers; the tapes of the blocks (even levels) go to the octree. */
+/* Releases the workers; blocks and their tapes (of even levels) go to the octree. */
 static void release_workers(walk *w, csg_octree *out)
 {
     csg_memory *memory = &w->context->memory;
@@ -326,7 +326,7 @@ static void release_workers(walk *w, csg_octree *out)
         csg_arena_reset(&self->tapes[1]);
         out->arenas[i] = self->tapes[0];
         csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));
-        csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block));
+        csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block *));
         csg_memory_release(memory, self->samples, sizeof *self->samples);
         csg_memory_release(memory, self->scratch, self->scratch_floats * sizeof(float));
     }
@@ -354,10 +354,14 @@ csgm_status csg_octree_walk(csgm_context *context, const csgm_field *field,
                             const csg_lattice *lattice, const csg_octree_options *options,
                             csg_octree *out)
 {
-    walk w = {.context = context, .field = field, .lattice = lattice, .options = options,
+    walk w = {.context = context,
+              .field = field,
+              .lattice = lattice,
+              .options = options,
               .kernel = csg_kernel_for(context->isa),
               .worker_count = csg_pool_threads(context->pool)};
-    /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own lengths. */
+    /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own
+     * lengths. */
     double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
     w.tau = (float)(lattice->cell_size * (1 + 0x1p-10) + 2 * rounding);
     *out = (csg_octree){.context = context};
@@ -387,6 +391,6 @@ void csg_octree_release(csg_octree *octree)
     for (uint32_t i = 0; i < octree->arena_count; i++)
         csg_arena_reset(&octree->arenas[i]);
     csg_memory_release(memory, octree->arenas, octree->arena_count * sizeof(csg_arena));
-    csg_memory_release(memory, octree->blocks, octree->block_capacity * sizeof(csg_block));
+    csg_memory_release(memory, octree->blocks, octree->block_count * sizeof(csg_block *));
     *octree = (csg_octree){0};
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The octree walk: level by level from one cube down to blocks, dropping cubes that the field
- * proves free of surface and shortening the tape of the others. Each level is one parallel loop; its
- * results are joined in the order of their parents, so cells stay in Morton order for any number of
- * threads.
+ * proves free of surface and shortening the tape of the others. Each level is one parallel loop;
+ * its results are joined in the order of their parents, so cells stay in Morton order for any
+ * number of threads.
  */
 #ifndef CSG_GRID_OCTREE_H
 #define CSG_GRID_OCTREE_H
@@ -23,12 +23,12 @@ typedef struct csg_octree_stats {
     uint64_t interval_evaluations, point_evaluations, primitive_evaluations, tape_nodes_sampled;
 } csg_octree_stats;
 
-/* The blocks that the surface touches, in Morton order. Owns their tapes. */
+/* The blocks that the surface touches, in Morton order. */
 typedef struct csg_octree {
     csgm_context *context;
-    csg_block *blocks;
-    size_t block_count, block_capacity;
-    csg_arena *arenas; /* one a worker: the blocks' tapes */
+    csg_block **blocks;
+    size_t block_count;
+    csg_arena *arenas; /* one a worker: blocks and their tapes */
     uint32_t arena_count;
     csg_octree_stats stats;
 } csg_octree;

@@ -41,7 +41,8 @@ typedef struct build {
     atomic_bool timed_out;
 } build;
 
-/* ---- watching ---------------------------------------------------------------------------------- */
+/* ---- watching ----------------------------------------------------------------------------------
+ */
 
 static bool should_stop(void *user)
 {
@@ -85,7 +86,8 @@ static csgm_status stopped(build *b)
     return CSGM_ERR_LIMIT;
 }
 
-/* ---- bounds and lattice --------------------------------------------------------------------------- */
+/* ---- bounds and lattice
+ * --------------------------------------------------------------------------- */
 
 static csgm_status choose_bounds(build *b)
 {
@@ -113,8 +115,7 @@ static csgm_status make_lattice(build *b)
                          &b->lattice))
         return CSGM_OK;
     csg_vec3 size = csg_box_size(b->bounds);
-    csg_diag_plain(&b->context->diags, CSG_DIAG_TOO_FINE, NULL,
-                   "lower -r, or raise -s",
+    csg_diag_plain(&b->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower -r, or raise -s",
                    "the lattice over %g x %g x %g would have more than %d cells along a side",
                    size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
     return CSGM_ERR_LIMIT;
@@ -131,7 +132,8 @@ static csgm_status clip(build *b)
     return status;
 }
 
-/* ---- counts ------------------------------------------------------------------------------------- */
+/* ---- counts -------------------------------------------------------------------------------------
+ */
 
 static bool count_item(void *user, uint32_t worker_index, size_t item)
 {
@@ -139,7 +141,7 @@ static bool count_item(void *user, uint32_t worker_index, size_t item)
     (void)worker_index;
     size_t end = (item + 1) * BLOCKS_PER_ITEM;
     for (size_t i = item * BLOCKS_PER_ITEM; i < end && i < b->octree.block_count; i++)
-        b->octree.blocks[i].triangle_count = csg_marching_count(&b->octree.blocks[i], &b->tables);
+        b->octree.blocks[i]->triangle_count = csg_marching_count(b->octree.blocks[i], &b->tables);
     return true;
 }
 
@@ -154,7 +156,7 @@ static csgm_status number_blocks(build *b, uint64_t *vertices, uint64_t *triangl
     csg_pool_run(b->context->pool, item_count(b), count_item, NULL, b);
     *vertices = *triangles = 0;
     for (size_t i = 0; i < b->octree.block_count; i++) {
-        csg_block *block = &b->octree.blocks[i];
+        csg_block *block = b->octree.blocks[i];
         block->first_vertex = (uint32_t)*vertices;
         block->first_triangle = *triangles;
         *vertices += block->vertex_count;
@@ -168,7 +170,8 @@ static csgm_status number_blocks(build *b, uint64_t *vertices, uint64_t *triangl
     return CSGM_ERR_LIMIT;
 }
 
-/* ---- vertices and triangles ------------------------------------------------------------------------ */
+/* ---- vertices and triangles
+ * ------------------------------------------------------------------------ */
 
 static void make_block(build *b, worker *self, const csg_block *block)
 {
@@ -196,7 +199,7 @@ static bool make_item(void *user, uint32_t worker_index, size_t item)
         return false;
     size_t end = (item + 1) * BLOCKS_PER_ITEM;
     for (size_t i = item * BLOCKS_PER_ITEM; i < end && i < b->octree.block_count; i++)
-        make_block(b, &b->workers[worker_index], &b->octree.blocks[i]);
+        make_block(b, &b->workers[worker_index], b->octree.blocks[i]);
     return true;
 }
 
@@ -262,7 +265,8 @@ static csgm_status make_mesh(build *b)
     if (status != CSGM_OK)
         return status;
     bool colors = b->options->colors && b->field->color_count > 1;
-    status = csg_mesh_create(b->context, vertices, triangles, b->options->normals, colors, &b->mesh);
+    status =
+        csg_mesh_create(b->context, vertices, triangles, b->options->normals, colors, &b->mesh);
     if (status != CSGM_OK || !vertices)
         return status;
     status = create_workers(b);
@@ -278,14 +282,17 @@ static csgm_status make_mesh(build *b)
 
 static csgm_status walk_octree(build *b)
 {
-    csg_octree_options options = {
-        .prune = b->options->prune, .progress = report_progress, .cancelled = should_stop, .user = b};
+    csg_octree_options options = {.prune = b->options->prune,
+                                  .progress = report_progress,
+                                  .cancelled = should_stop,
+                                  .user = b};
     b->stage = CSGM_STAGE_OCTREE;
     csgm_status status = csg_octree_walk(b->context, b->field, &b->lattice, &options, &b->octree);
     return status == CSGM_CANCELLED ? stopped(b) : status;
 }
 
-/* ---- what is said about the result -------------------------------------------------------------------- */
+/* ---- what is said about the result
+ * -------------------------------------------------------------------- */
 
 /* Whether a vertex lies on one of the planes that cut the solid. */
 static bool touches_bounds(const build *b)

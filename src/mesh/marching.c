@@ -8,7 +8,8 @@
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 
-/* ---- finding blocks --------------------------------------------------------------------------- */
+/* ---- finding blocks ---------------------------------------------------------------------------
+ */
 
 static size_t home_slot(const csg_block_index *index, const uint32_t at[3])
 {
@@ -17,7 +18,7 @@ static size_t home_slot(const csg_block_index *index, const uint32_t at[3])
     return (size_t)(key >> 20) & (index->slot_count - 1);
 }
 
-bool csg_block_index_make(csg_block_index *index, csg_memory *memory, const csg_block *blocks,
+bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block *const *blocks,
                           size_t count)
 {
     *index = (csg_block_index){.memory = memory, .slot_count = 16};
@@ -28,7 +29,7 @@ bool csg_block_index_make(csg_block_index *index, csg_memory *memory, const csg_
         return false;
     memset(index->slots, 0, index->slot_count * sizeof(uint32_t));
     for (size_t i = 0; i < count; i++) {
-        size_t slot = home_slot(index, blocks[i].at);
+        size_t slot = home_slot(index, blocks[i]->at);
         while (index->slots[slot])
             slot = (slot + 1) & (index->slot_count - 1);
         index->slots[slot] = (uint32_t)i + 1;
@@ -43,30 +44,32 @@ void csg_block_index_release(csg_block_index *index)
     *index = (csg_block_index){0};
 }
 
-const csg_block *csg_block_index_find(const csg_block_index *index, const csg_block *blocks,
+const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
                                       const uint32_t at[3])
 {
     for (size_t slot = home_slot(index, at); index->slots[slot];
          slot = (slot + 1) & (index->slot_count - 1)) {
-        const csg_block *block = &blocks[index->slots[slot] - 1];
+        const csg_block *block = blocks[index->slots[slot] - 1];
         if (!memcmp(block->at, at, sizeof block->at))
             return block;
     }
     return NULL;
 }
 
-/* ---- cells ------------------------------------------------------------------------------------- */
+/* ---- cells -------------------------------------------------------------------------------------
+ */
 
 /* The four rows of signs around a row of cells. */
 typedef struct rows {
-    unsigned r[4]; /* y + 2 z */
+    unsigned r[4];  /* y + 2 z */
     unsigned mixed; /* bit x: the corners of cell x do not all agree */
 } rows;
 
 static rows rows_of(const csg_block *block, int j, int k)
 {
     rows s = {{block->inside[k][j], block->inside[k][j + 1], block->inside[k + 1][j],
-               block->inside[k + 1][j + 1]}, 0};
+               block->inside[k + 1][j + 1]},
+              0};
     unsigned any = s.r[0] | s.r[1] | s.r[2] | s.r[3], all = s.r[0] & s.r[1] & s.r[2] & s.r[3];
     s.mixed = (any | any >> 1) & ~(all & all >> 1) & 0xFF;
     return s;
@@ -90,7 +93,8 @@ uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *table
     return count;
 }
 
-/* ---- vertices ------------------------------------------------------------------------------------ */
+/* ---- vertices
+ * ------------------------------------------------------------------------------------ */
 
 /* Lists the block's crossed edges in the order of their ranks. */
 static void collect_edges(const csg_marching *m, const csg_block *block, csg_edges *e)
@@ -98,8 +102,7 @@ static void collect_edges(const csg_marching *m, const csg_block *block, csg_edg
     float line[3][N], step[3][E];
     for (int axis = 0; axis < 3; axis++) {
         for (uint32_t i = 0; i < N; i++)
-            line[axis][i] =
-                csg_lattice_coordinate(m->lattice, axis, block->at[axis] * E + i);
+            line[axis][i] = csg_lattice_coordinate(m->lattice, axis, block->at[axis] * E + i);
         for (int i = 0; i < E; i++)
             step[axis][i] = line[axis][i + 1] - line[axis][i];
     }
@@ -184,11 +187,13 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
     return evaluations;
 }
 
-/* ---- triangles ----------------------------------------------------------------------------------- */
+/* ---- triangles
+ * ----------------------------------------------------------------------------------- */
 
 /* Vertex numbers of one neighbour's edges that this block's cells use. shift: 8 on the axes where
  * it is the upper neighbour; there only its first layer touches this block. */
-static void number_edges(const csg_block *from, const int shift[3], uint32_t vertex[3][CSG_BLOCK_POINTS])
+static void number_edges(const csg_block *from, const int shift[3],
+                         uint32_t vertex[3][CSG_BLOCK_POINTS])
 {
     /* bits of the first column and row where the neighbour lies above in x and y */
     uint64_t used = ~(uint64_t)0;
@@ -236,8 +241,7 @@ void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_m
     uint32_t place[CSG_CELL_EDGES];
     for (int edge = 0; edge < CSG_CELL_EDGES; edge++) {
         const uint8_t *o = tables->offset[edge];
-        place[edge] =
-            (uint32_t)(edge / 4 * CSG_BLOCK_POINTS + (o[2] * N + o[1]) * N + o[0]);
+        place[edge] = (uint32_t)(edge / 4 * CSG_BLOCK_POINTS + (o[2] * N + o[1]) * N + o[0]);
     }
     number_all_edges(m, block, room->vertex);
     const uint32_t *vertex = room->vertex[0];

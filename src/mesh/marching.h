@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Marching cubes over blocks: counting before anything is made, then vertices and triangles straight
- * to their places. Numbers come from ranks and prefix sums: no hash of vertices, no weld.
+ * Marching cubes over blocks: counting before anything is made, then vertices and triangles
+ * straight to their places. Numbers come from ranks and prefix sums: no hash of vertices, no weld.
  */
 #ifndef CSG_MESH_MARCHING_H
 #define CSG_MESH_MARCHING_H
@@ -12,15 +12,15 @@
 /* Which block is where: open addressing on block coordinates. */
 typedef struct csg_block_index {
     csg_memory *memory;
-    uint32_t *slots; /* block number + 1, 0 = free */
+    uint32_t *slots;   /* block number + 1, 0 = free */
     size_t slot_count; /* power of two */
 } csg_block_index;
 
-bool csg_block_index_make(csg_block_index *index, csg_memory *memory, const csg_block *blocks,
+bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block *const *blocks,
                           size_t count);
 void csg_block_index_release(csg_block_index *index);
 /* NULL where there is none. */
-const csg_block *csg_block_index_find(const csg_block_index *index, const csg_block *blocks,
+const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
                                       const uint32_t at[3]);
 
 /* Triangles of the block's cells. */
@@ -45,9 +45,9 @@ typedef struct csg_marching {
     const csgm_field *field;
     const csg_lattice *lattice;
     const csg_cell_tables *tables;
-    const csg_block *blocks;
+    csg_block *const *blocks;
     const csg_block_index *index;
-    csg_vec3 shift; /* field frame -> relative to the mesh's origin */
+    csg_vec3 shift;  /* field frame -> relative to the mesh's origin */
     float tolerance; /* of roots */
 } csg_marching;
 

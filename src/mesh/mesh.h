@@ -9,9 +9,9 @@
 struct csgm_mesh {
     csgm_context *context;
     csgm_vec3 origin;
-    float *positions; /* 3 * vertex_count */
-    float *normals;   /* 3 * vertex_count or NULL */
-    uint8_t *colors;  /* 4 * vertex_count or NULL */
+    float *positions;  /* 3 * vertex_count */
+    float *normals;    /* 3 * vertex_count or NULL */
+    uint8_t *colors;   /* 4 * vertex_count or NULL */
     uint32_t *indices; /* 3 * triangle_count */
     uint64_t vertex_count, triangle_count;
 };

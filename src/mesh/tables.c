@@ -2,8 +2,8 @@
  * Deriving the marching-cubes cases.
  *
  * Face rule: on each face every run of inside corners is cut off by its own segment, so diagonal
- * inside corners stay apart. It depends on the face's corners only, so both cells at a face draw the
- * same segments, and the segments around a cell close to loops. A loop is cut into triangles by
+ * inside corners stay apart. It depends on the face's corners only, so both cells at a face draw
+ * the same segments, and the segments around a cell close to loops. A loop is cut into triangles by
  * diagonals that never join two edges of one face: such a diagonal would lie in the face, where the
  * neighbour could draw the same one and make an edge of four triangles. Such a cut exists for every
  * loop of every pattern (tests/mesh checks it). Hence the surface is a closed oriented 2-manifold:
@@ -67,14 +67,15 @@ static void link_segments(unsigned pattern, uint8_t next[CSG_CELL_EDGES])
             while (pattern >> corners[(last + 1) % FACE_CORNERS] & 1)
                 last++;
             uint8_t enter = edge_between(before, corners[i]);
-            uint8_t leave = edge_between(corners[last % FACE_CORNERS],
-                                         corners[(last + 1) % FACE_CORNERS]);
+            uint8_t leave =
+                edge_between(corners[last % FACE_CORNERS], corners[(last + 1) % FACE_CORNERS]);
             next[leave] = enter;
         }
     }
 }
 
-/* Whether the polygon loop[first..last] can be cut without a diagonal in a face; writes triangles. */
+/* Whether the polygon loop[first..last] can be cut without a diagonal in a face; writes triangles.
+ */
 static bool cut(const uint8_t *loop, const unsigned *faces, int first, int last, int length,
                 uint8_t *edges, int *count)
 {

@@ -2,8 +2,8 @@
  * Marching cubes: the triangles of a cell for each of the 256 sign patterns of its corners, derived
  * from one face rule instead of a copied table.
  *
- * Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e = 4 * axis + u + 2 * v: u and v
- * are the edge's coordinates on the other two axes in increasing order.
+ * Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e = 4 * axis + u + 2 * v: u and
+ * v are the edge's coordinates on the other two axes in increasing order.
  */
 #ifndef CSG_MESH_TABLES_H
 #define CSG_MESH_TABLES_H
@@ -13,9 +13,10 @@
 enum { CSG_CELL_EDGES = 12, CSG_CELL_MOST_TRIANGLES = 5 };
 
 typedef struct csg_cell_tables {
-    uint8_t count[256];                                   /* triangles; bit c of a pattern: corner c inside */
-    uint8_t edge[256][3 * CSG_CELL_MOST_TRIANGLES];       /* three edges a triangle, counter-clockwise from outside */
-    uint8_t offset[CSG_CELL_EDGES][3];                    /* lower point of each edge, relative to the cell */
+    uint8_t count[256]; /* triangles; bit c of a pattern: corner c inside */
+    uint8_t edge[256][3 * CSG_CELL_MOST_TRIANGLES]; /* three edges a triangle, counter-clockwise
+                                                       from outside */
+    uint8_t offset[CSG_CELL_EDGES][3]; /* lower point of each edge, relative to the cell */
 } csg_cell_tables;
 
 void csg_cell_tables_make(csg_cell_tables *tables);
