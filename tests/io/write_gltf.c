@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ * Writes GLB and glTF files of every shape and option into the folder named by the argument, for
+ * validate.mjs. Exit 1 when a write fails.
+ */
+#include "support.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct variant {
+    const char *name;
+    bool draco, z_up;
+    csgm_unit unit;
+} variant;
+
+static int write_one(io_context *io, const csgm_mesh_view *view, const char *folder,
+                     const char *shape, const variant *v, const char *extension)
+{
+    char path[512];
+    csgm_write_options options = csg_write_options_default();
+    options.draco = v->draco;
+    options.y_up = !v->z_up;
+    options.unit = v->unit;
+    snprintf(path, sizeof path, "%s/%s-%s.%s", folder, shape, v->name, extension);
+    csgm_status status = csg_io_write(&io->context, view, path, CSGM_FORMAT_AUTO, &options);
+    if (status)
+        fprintf(stderr, "%s: %s\n", path, io->last);
+    return status != CSGM_OK;
+}
+
+static int write_variants(io_context *io, const csgm_mesh_view *view, const char *folder,
+                          const char *shape)
+{
+    static const variant variants[] = {
+        {"plain", false, false, CSGM_UNIT_NONE}, {"zup", false, true, CSGM_UNIT_NONE},
+        {"mm", false, false, CSGM_UNIT_MM},      {"inch-zup", false, true, CSGM_UNIT_IN},
+        {"draco", true, false, CSGM_UNIT_NONE},  {"draco-cm", true, false, CSGM_UNIT_CM}};
+    int failed = 0;
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        if (variants[i].draco && !csg_format_available(CSGM_FORMAT_DRC, false))
+            continue;
+        failed |= write_one(io, view, folder, shape, &variants[i], "glb");
+        failed |= write_one(io, view, folder, shape, &variants[i], "gltf");
+    }
+    return failed;
+}
+
+/* What a mesher may hand over: no normals, glass, normals of no length. */
+static int write_odd(io_context *io, const char *folder)
+{
+    csgm_mesh *mesh = io_shape_make(&io->context, IO_SPHERE);
+    csgm_mesh_view view = csg_mesh_view(mesh);
+    int failed = 0;
+    mesh->colors[7] = 128;
+    memset(mesh->normals + 30, 0, 12);
+    mesh->normals[60] *= 1.5f;
+    failed |= write_variants(io, &view, folder, "odd");
+    view.normals = NULL;
+    failed |= write_variants(io, &view, folder, "colors");
+    view.colors = NULL;
+    failed |= write_variants(io, &view, folder, "bare");
+    csg_mesh_destroy(mesh);
+    mesh = io_sphere_make(&io->context, 400, 200); /* more vertices than 16 bits count */
+    view = csg_mesh_view(mesh);
+    failed |= write_variants(io, &view, folder, "large");
+    csg_mesh_destroy(mesh);
+    return failed;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2)
+        return 2;
+    io_context io;
+    io_context_init(&io, 0);
+    int failed = 0;
+    for (int shape = 0; shape < IO_SHAPES; shape++) {
+        csgm_mesh *mesh = io_shape_make(&io.context, (io_shape)shape);
+        csgm_mesh_view view = csg_mesh_view(mesh);
+        failed |= write_variants(&io, &view, argv[1], io_shape_names[shape]);
+        csg_mesh_destroy(mesh);
+    }
+    return failed | write_odd(&io, argv[1]);
+}
