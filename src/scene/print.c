@@ -42,6 +42,17 @@ static void put_number(printer *out, double value)
     put(out, text);
 }
 
+static void put_float(printer *out, float value)
+{
+    char text[40];
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if ((float)strtod(text, NULL) == value)
+            break;
+    }
+    put(out, text);
+}
+
 static void put_list(printer *out, const double *values, int count)
 {
     put(out, "[");
@@ -167,10 +178,13 @@ static void put_matrix(printer *out, const csg_affine *a)
 
 static void put_color(printer *out, csg_color color)
 {
-    char text[96];
-    snprintf(text, sizeof text, "color([%.9g, %.9g, %.9g, %.9g])\n", (double)color.r,
-             (double)color.g, (double)color.b, (double)color.a);
-    put(out, text);
+    const float channels[4] = {color.r, color.g, color.b, color.a};
+    put(out, "color(");
+    for (int i = 0; i < 4; i++) {
+        put(out, i ? ", " : "[");
+        put_float(out, channels[i]);
+    }
+    put(out, "])\n");
 }
 
 static void put_operator(printer *out, const csg_node *node)
