@@ -54,7 +54,7 @@ class Package(cli.CliTest):
     def test_static(self):
         archive = os.path.join(self.libraries, "libcsgmesh.a")
         others = [word for word in self.pkg_config("--libs", "--static") if word != "-lcsgmesh"]
-        self.build_and_run(archive, *others, "-lstdc++", "-lm", "-lpthread")
+        self.build_and_run(archive, *others)
 
     def test_version_and_program(self):
         self.assertEqual(self.pkg_config("--modversion"),

@@ -140,7 +140,7 @@ class Statistics(cli.CliTest):
         self.assertEqual(stats["scene"]["primitives"], 2)
         self.assertEqual(stats["scene"]["operators"], 1)
         self.assertEqual(stats["threads"], 2)
-        self.assertEqual(max(stats["grid"]["cells"]), 32)
+        self.assertIn(max(stats["grid"]["cells"]), range(32, 41))  # with a margin
         self.assertEqual((stats["mesh"]["euler"], stats["mesh"]["components"]), (2, 1))
         self.assertGreater(stats["evaluations"]["points"], 0)
         self.assertGreater(stats["octree"]["leaf_blocks"], 0)

@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: MIT
+ * The public interface as a C program uses it: broken contracts are refused, long calls can be
+ * watched and stopped, memory is balanced, and any allocation may fail.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "csgmesh/csgmesh.h"
+
+static const char scene_text[] = "union(blend = 0.3) {\n"
+                                 "  sphere(r = 1);\n"
+                                 "  translate([0.8, 0, 0]) color(\"red\") cube(0.9);\n"
+                                 "}\n";
+
+/* ---- an allocator that counts, and fails on purpose ------------------------------------- */
+
+typedef struct counting {
+    int64_t bytes, blocks;  /* in use */
+    int64_t calls, fail_at; /* the call of this number returns NULL; 0 = none */
+} counting;
+
+static void *counting_alloc(void *user, size_t size_bytes)
+{
+    counting *c = user;
+    int64_t call = __atomic_add_fetch(&c->calls, 1, __ATOMIC_RELAXED);
+    if (call == c->fail_at)
+        return NULL;
+    __atomic_add_fetch(&c->bytes, (int64_t)size_bytes, __ATOMIC_RELAXED);
+    __atomic_add_fetch(&c->blocks, 1, __ATOMIC_RELAXED);
+    return malloc(size_bytes);
+}
+
+static void counting_release(void *user, void *memory, size_t size_bytes)
+{
+    counting *c = user;
+    __atomic_add_fetch(&c->bytes, -(int64_t)size_bytes, __ATOMIC_RELAXED);
+    __atomic_add_fetch(&c->blocks, -1, __ATOMIC_RELAXED);
+    free(memory);
+}
+
+typedef struct findings {
+    int errors, warnings;
+    uint16_t last_code;
+} findings;
+
+static void count_finding(void *user, const csgm_diag *diag)
+{
+    findings *found = user;
+    found->errors += diag->severity == CSGM_ERROR;
+    found->warnings += diag->severity == CSGM_WARNING;
+    found->last_code = diag->code;
+    assert_non_null(diag->message);
+}
+
+/* ---- the whole way ------------------------------------------------------------------------ */
+
+typedef struct run {
+    csgm_context *context;
+    csgm_scene *scene;
+    csgm_field *field;
+    csgm_mesh *mesh;
+    csgm_mesh_check check;
+} run;
+
+static csgm_status go(run *r, const csgm_context_options *options, const char *text,
+                      const csgm_mesh_options *mesh_options)
+{
+    *r = (run){0};
+    csgm_status status = csgm_context_create(options, &r->context);
+    if (status == CSGM_OK)
+        status = csgm_scene_parse(r->context, text, strlen(text), "test", NULL, &r->scene);
+    if (status == CSGM_OK)
+        status = csgm_field_compile(r->context, r->scene, &r->field);
+    if (status == CSGM_OK)
+        status = csgm_mesh_build(r->context, r->field, mesh_options, &r->mesh, NULL);
+    if (status == CSGM_OK) {
+        csgm_mesh_view view = csgm_mesh_get_view(r->mesh);
+        status = csgm_mesh_inspect(r->context, &view, &r->check);
+        for (int f = CSGM_FORMAT_OBJ; f < CSGM_FORMAT_COUNT && status == CSGM_OK; f++)
+            if (csgm_format_available((csgm_format)f, false))
+                status = csgm_mesh_write(r->context, &view, "/dev/null", (csgm_format)f, NULL);
+    }
+    return status;
+}
+
+static void end(run *r)
+{
+    csgm_mesh_destroy(r->mesh);
+    csgm_field_destroy(r->field);
+    csgm_scene_destroy(r->scene);
+    csgm_context_destroy(r->context);
+}
+
+static csgm_mesh_options coarse(void)
+{
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.resolution = 24;
+    return options;
+}
+
+static void test_the_whole_way(void **state)
+{
+    csgm_mesh_options options = coarse();
+    run r;
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    assert_int_equal(r.check.boundary_edges + r.check.nonmanifold_edges +
+                         r.check.misoriented_edges + r.check.nonmanifold_vertices,
+                     0);
+    assert_int_equal(r.check.components, 1);
+    csgm_mesh_view view = csgm_mesh_get_view(r.mesh);
+    assert_non_null(view.normals);
+    assert_non_null(view.colors);
+    assert_true(csgm_mesh_max_abs_field(r.scene, &view) < 1e-4);
+    csgm_scene_info info = csgm_scene_get_info(r.scene);
+    assert_int_equal(info.primitive_count, 2);
+    assert_int_equal(info.operator_count, 1);
+    assert_true(info.has_colors);
+    end(&r);
+}
+
+static void test_field_agrees_with_the_reference(void **state)
+{
+    csgm_mesh_options options = coarse();
+    run r;
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    enum { COUNT = 1000 };
+    float x[COUNT], y[COUNT], z[COUNT], value[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        x[i] = (float)(i % 10) / 4 - 1;
+        y[i] = (float)(i / 10 % 10) / 4 - 1;
+        z[i] = (float)(i / 100) / 4 - 1;
+    }
+    csgm_field_eval(r.field, x, y, z, value, COUNT);
+    for (int i = 0; i < COUNT; i++) {
+        csgm_vec3 gradient;
+        double exact = csgm_scene_eval(r.scene, (csgm_vec3){x[i], y[i], z[i]}, &gradient);
+        assert_true(fabs(value[i] - exact) < 1e-5);
+        assert_true(hypot(hypot(gradient.x, gradient.y), gradient.z) < 1 + 1e-9);
+    }
+    end(&r);
+}
+
+/* ---- contracts ---------------------------------------------------------------------------- */
+
+static void test_destroy_of_nothing(void **state)
+{
+    csgm_context_destroy(NULL);
+    csgm_scene_destroy(NULL);
+    csgm_field_destroy(NULL);
+    csgm_mesh_destroy(NULL);
+}
+
+static void test_options_not_made_by_default(void **state)
+{
+    csgm_context_options options = csgm_context_options_default();
+    csgm_context *context = (csgm_context *)&options;
+    options.struct_size--;
+    assert_int_equal(csgm_context_create(&options, &context), CSGM_ERR_ARGUMENT);
+    assert_null(context);
+    options = csgm_context_options_default();
+    options.allocator.alloc = counting_alloc; /* and no release */
+    assert_int_equal(csgm_context_create(&options, &context), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_context_create(NULL, NULL), CSGM_ERR_ARGUMENT);
+
+    csgm_mesh_options mesh_options = coarse();
+    mesh_options.struct_size = 0;
+    run r;
+    assert_int_equal(go(&r, NULL, scene_text, &mesh_options), CSGM_ERR_ARGUMENT);
+    assert_null(r.mesh);
+    end(&r);
+}
+
+static void test_null_arguments(void **state)
+{
+    csgm_context *context;
+    assert_int_equal(csgm_context_create(NULL, &context), CSGM_OK);
+    csgm_scene *scene = NULL;
+    csgm_field *field = NULL;
+    csgm_mesh *mesh = NULL;
+    assert_int_equal(csgm_scene_parse(NULL, "", 0, "t", NULL, &scene), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_scene_parse(context, NULL, 1, "t", NULL, &scene), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_scene_parse(context, "", 0, "t", NULL, NULL), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_scene_load(context, NULL, NULL, &scene), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_field_compile(context, NULL, &field), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_mesh_build(context, NULL, NULL, &mesh, NULL), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_mesh_read(context, NULL, CSGM_FORMAT_PLY, &mesh), CSGM_ERR_ARGUMENT);
+    csgm_mesh_view view = {.vertex_count = 3};
+    csgm_mesh_check check;
+    assert_int_equal(csgm_mesh_inspect(context, &view, &check), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_mesh_write(context, &view, "/dev/null", CSGM_FORMAT_PLY, NULL),
+                     CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_format_from_name(NULL), CSGM_FORMAT_AUTO);
+    assert_int_equal(csgm_format_from_path(NULL), CSGM_FORMAT_AUTO);
+    assert_null(scene);
+    assert_null(mesh);
+    csgm_context_destroy(context);
+}
+
+static void test_names(void **state)
+{
+    assert_string_equal(csgm_version(), "0.1.0");
+    assert_string_equal(csgm_status_name(CSGM_ERR_SYNTAX), "ERR_SYNTAX");
+    assert_string_equal(csgm_status_name((csgm_status)999), "unknown");
+    for (int f = CSGM_FORMAT_OBJ; f < CSGM_FORMAT_COUNT; f++)
+        assert_int_equal(csgm_format_from_name(csgm_format_name((csgm_format)f)), f);
+}
+
+static void test_findings_reach_the_caller(void **state)
+{
+    findings found = {0};
+    csgm_context_options options = csgm_context_options_default();
+    options.on_diag = count_finding;
+    options.user = &found;
+    run r;
+    assert_int_equal(go(&r, &options, "sphere(r = );\n", NULL), CSGM_ERR_SYNTAX);
+    assert_true(found.errors > 0);
+    assert_null(r.scene);
+    end(&r);
+    found = (findings){0};
+    assert_int_equal(go(&r, &options, "nosuchsolid();\n", NULL), CSGM_ERR_SCENE);
+    assert_int_equal(found.errors, 1);
+    end(&r);
+}
+
+/* ---- watching and stopping ------------------------------------------------------------------ */
+
+typedef struct watch {
+    int calls, looks, stop_at;
+    double last;
+    csgm_stage stage;
+    bool fell;
+} watch;
+
+static void on_progress(void *user, csgm_stage stage, double fraction)
+{
+    watch *w = user;
+    w->fell = w->fell || (stage == w->stage && w->calls && fraction < w->last);
+    w->calls++;
+    w->last = fraction;
+    w->stage = stage;
+}
+
+static bool on_look(void *user)
+{
+    watch *w = user;
+    int looks = __atomic_add_fetch(&w->looks, 1, __ATOMIC_RELAXED);
+    return w->stop_at && looks >= w->stop_at;
+}
+
+static void test_cancel(void **state)
+{
+    watch w = {0};
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.monitor = (csgm_monitor){on_progress, on_look, &w};
+    run r;
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    assert_true(w.looks > 10);
+    assert_false(w.fell);
+    end(&r);
+    int all = w.looks;
+    for (int stop_at = 1; stop_at <= all; stop_at += 1 + all / 20) {
+        w = (watch){.stop_at = stop_at};
+        counting memory = {0};
+        csgm_context_options context_options = csgm_context_options_default();
+        context_options.allocator = (csgm_allocator){counting_alloc, counting_release, &memory};
+        csgm_status status = go(&r, &context_options, scene_text, &options);
+        assert_true(status == CSGM_CANCELLED || (w.looks < stop_at && status == CSGM_OK));
+        assert_true(status == CSGM_OK || r.mesh == NULL);
+        end(&r);
+        assert_int_equal(memory.bytes, 0);
+    }
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+static void test_any_allocation_may_fail(void **state)
+{
+    counting memory = {0};
+    findings found = {0};
+    csgm_context_options options = csgm_context_options_default();
+    options.allocator = (csgm_allocator){counting_alloc, counting_release, &memory};
+    options.threads = 1;
+    options.on_diag = count_finding;
+    options.user = &found;
+    csgm_mesh_options mesh_options = coarse();
+    run r;
+    assert_int_equal(go(&r, &options, scene_text, &mesh_options), CSGM_OK);
+    end(&r);
+    assert_int_equal(memory.bytes, 0);
+    assert_int_equal(memory.blocks, 0);
+    int64_t calls = memory.calls;
+    assert_true(calls > 10);
+    for (int64_t fail_at = 1; fail_at <= calls; fail_at++) {
+        memory = (counting){.fail_at = fail_at};
+        found = (findings){0};
+        csgm_status status = go(&r, &options, scene_text, &mesh_options);
+        assert_int_equal(status, CSGM_ERR_MEMORY);
+        assert_int_equal(found.errors, fail_at == 1 ? 0 : 1); /* 1: the context itself */
+        end(&r);
+        assert_int_equal(memory.bytes, 0);
+        assert_int_equal(memory.blocks, 0);
+    }
+}
+
+static void test_memory_limit(void **state)
+{
+    findings found = {0};
+    csgm_context_options options = csgm_context_options_default();
+    options.limits.memory_bytes = 1 << 20;
+    options.on_diag = count_finding;
+    options.user = &found;
+    csgm_mesh_options mesh_options = csgm_mesh_options_default();
+    mesh_options.resolution = 512;
+    run r;
+    assert_int_equal(go(&r, &options, scene_text, &mesh_options), CSGM_ERR_MEMORY);
+    assert_int_equal(found.errors, 1);
+    uint64_t peak;
+    csgm_context_memory(r.context, &peak);
+    assert_true(peak <= 1 << 20);
+    end(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_whole_way),
+        cmocka_unit_test(test_field_agrees_with_the_reference),
+        cmocka_unit_test(test_destroy_of_nothing),
+        cmocka_unit_test(test_options_not_made_by_default),
+        cmocka_unit_test(test_null_arguments),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_findings_reach_the_caller),
+        cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_any_allocation_may_fail),
+        cmocka_unit_test(test_memory_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
