@@ -15,9 +15,19 @@
 
 enum { BLOCKS_PER_ITEM = 32 };
 
+/* A run on its way to a receiver. */
+typedef struct run_buffer {
+    float *positions, *normals;
+    uint8_t *colors;
+    uint32_t *indices;
+    size_t position_capacity, normal_capacity, color_capacity, index_capacity;
+} run_buffer;
+
 typedef struct worker {
     csg_marching_room *room;
     float *scratch;
+    run_buffer run;
+    csg_box bounds; /* of the vertices made */
     uint64_t point_evaluations, gradient_evaluations, primitive_evaluations;
 } worker;
 
@@ -32,13 +42,15 @@ typedef struct build {
     csg_block_index index;
     csg_cell_tables tables;
     csg_marching marching;
-    csgm_mesh *mesh;
+    csg_mesh_counts counts;
+    csgm_mesh *mesh; /* NULL when a receiver takes it */
+    const csg_mesh_receiver *receiver;
     worker *workers;
     uint32_t worker_count;
     size_t scratch_floats;
     double started_s, deadline_s, last_report_s;
     csgm_stage stage;
-    atomic_bool timed_out;
+    atomic_bool timed_out, out_of_memory, refused;
 } build;
 
 /* ---- watching ----------------------------------------------------------------------------------
@@ -78,6 +90,10 @@ static void poll(void *user, size_t done, size_t count)
 
 static csgm_status stopped(build *b)
 {
+    if (atomic_load(&b->out_of_memory))
+        return csg_context_no_memory(b->context);
+    if (atomic_load(&b->refused))
+        return CSGM_ERR_IO;
     if (!atomic_load(&b->timed_out))
         return CSGM_CANCELLED;
     csg_diag_plain(&b->context->diags, CSG_DIAG_TIMEOUT, NULL,
@@ -151,45 +167,133 @@ static size_t item_count(const build *b)
 }
 
 /* Prefix sums over the blocks in Morton order give every vertex and triangle its number. */
-static csgm_status number_blocks(build *b, uint64_t *vertices, uint64_t *triangles)
+static csgm_status number_blocks(build *b)
 {
     csg_pool_run(b->context->pool, item_count(b), count_item, NULL, b);
-    *vertices = *triangles = 0;
+    csg_mesh_counts *counts = &b->counts;
     for (size_t i = 0; i < b->octree.block_count; i++) {
         csg_block *block = b->octree.blocks[i];
-        block->first_vertex = (uint32_t)*vertices;
-        block->first_triangle = *triangles;
-        *vertices += block->vertex_count;
-        *triangles += block->triangle_count;
+        block->first_vertex = (uint32_t)counts->vertex_count;
+        block->first_triangle = counts->triangle_count;
+        counts->vertex_count += block->vertex_count;
+        counts->triangle_count += block->triangle_count;
     }
-    if (*vertices <= UINT32_MAX)
+    if (counts->vertex_count <= UINT32_MAX)
         return CSGM_OK;
     csg_diag_plain(&b->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower the resolution",
                    "the mesh would have %llu vertices, more than 32-bit indices can number",
-                   (unsigned long long)*vertices);
+                   (unsigned long long)counts->vertex_count);
     return CSGM_ERR_LIMIT;
 }
 
 /* ---- vertices and triangles
  * ------------------------------------------------------------------------ */
 
-static void make_block(build *b, worker *self, const csg_block *block)
+static csg_box box_of(const float *positions, uint64_t count, csg_box box)
 {
+    for (uint64_t i = 0; i < count; i++, positions += 3) {
+        csg_vec3 p = {(double)positions[0], (double)positions[1], (double)positions[2]};
+        box = csg_box_hull(box, (csg_box){p, p});
+    }
+    return box;
+}
+
+static void make_block(build *b, worker *self, const csg_block *block,
+                       const csg_marching_output *out)
+{
+    uint64_t points = csg_marching_vertices(&b->marching, block, self->room, out, self->scratch,
+                                            b->scratch_floats);
+    csg_marching_triangles(&b->marching, block, self->room, out);
+    if (b->clipped)
+        self->bounds = box_of(out->positions, block->vertex_count, self->bounds);
+    uint64_t gradients = out->normals ? block->vertex_count : 0;
+    self->point_evaluations += points;
+    self->gradient_evaluations += gradients;
+    self->primitive_evaluations += (points + gradients) * (block->node_count + 1) / 2;
+}
+
+/* Makes blocks [first, end); arrays of `out` begin with the first block's. */
+static void make_blocks(build *b, worker *self, size_t first, size_t end,
+                        const csg_marching_output *out)
+{
+    const csg_block *start = b->octree.blocks[first];
+    for (size_t i = first; i < end; i++) {
+        const csg_block *block = b->octree.blocks[i];
+        size_t v = block->first_vertex - start->first_vertex;
+        size_t t = (size_t)(block->first_triangle - start->first_triangle);
+        csg_marching_output place = {
+            .positions = out->positions + 3 * v,
+            .normals = out->normals ? out->normals + 3 * v : NULL,
+            .colors = out->colors ? out->colors + 4 * v : NULL,
+            .indices = out->indices + 3 * t,
+        };
+        make_block(b, self, block, &place);
+    }
+}
+
+static bool reserve_run(build *b, run_buffer *run, size_t vertices, size_t triangles)
+{
+    csg_memory *memory = &b->context->memory;
+    return csg_memory_reserve(memory, (void **)&run->positions, &run->position_capacity,
+                              3 * vertices, sizeof(float)) &&
+           (!b->counts.normals ||
+            csg_memory_reserve(memory, (void **)&run->normals, &run->normal_capacity, 3 * vertices,
+                               sizeof(float))) &&
+           (!b->counts.colors || csg_memory_reserve(memory, (void **)&run->colors,
+                                                    &run->color_capacity, 4 * vertices, 1)) &&
+           csg_memory_reserve(memory, (void **)&run->indices, &run->index_capacity, 3 * triangles,
+                              sizeof(uint32_t));
+}
+
+static void release_run(csg_memory *memory, run_buffer *run)
+{
+    csg_memory_release(memory, run->positions, run->position_capacity * sizeof(float));
+    csg_memory_release(memory, run->normals, run->normal_capacity * sizeof(float));
+    csg_memory_release(memory, run->colors, run->color_capacity);
+    csg_memory_release(memory, run->indices, run->index_capacity * sizeof(uint32_t));
+}
+
+/* One item for a receiver: made in the worker's buffer, then handed on. */
+static bool hand_on(build *b, uint32_t worker_index, size_t first, size_t end)
+{
+    worker *self = &b->workers[worker_index];
+    const csg_block *start = b->octree.blocks[first], *last = b->octree.blocks[end - 1];
+    csg_mesh_run run = {
+        .worker = worker_index,
+        .first_vertex = start->first_vertex,
+        .vertex_count = (uint64_t)last->first_vertex + last->vertex_count - start->first_vertex,
+        .first_triangle = start->first_triangle,
+        .triangle_count = last->first_triangle + last->triangle_count - start->first_triangle,
+    };
+    run_buffer *buffer = &self->run;
+    if (!reserve_run(b, buffer, (size_t)run.vertex_count, (size_t)run.triangle_count)) {
+        atomic_store(&b->out_of_memory, true);
+        return false;
+    }
+    csg_marching_output out = {buffer->positions, buffer->normals, buffer->colors, buffer->indices};
+    make_blocks(b, self, first, end, &out);
+    run.positions = buffer->positions;
+    run.normals = buffer->normals;
+    run.colors = buffer->colors;
+    run.indices = buffer->indices;
+    if (b->receiver->put(b->receiver->user, &run))
+        return true;
+    atomic_store(&b->refused, true);
+    return false;
+}
+
+static void keep_in_mesh(build *b, uint32_t worker_index, size_t first, size_t end)
+{
+    const csg_block *start = b->octree.blocks[first];
     csgm_mesh *mesh = b->mesh;
-    size_t v = block->first_vertex;
+    size_t v = start->first_vertex;
     csg_marching_output out = {
         .positions = mesh->positions + 3 * v,
         .normals = mesh->normals ? mesh->normals + 3 * v : NULL,
         .colors = mesh->colors ? mesh->colors + 4 * v : NULL,
-        .indices = mesh->indices + 3 * block->first_triangle,
+        .indices = mesh->indices + 3 * start->first_triangle,
     };
-    uint64_t points = csg_marching_vertices(&b->marching, block, self->room, &out, self->scratch,
-                                            b->scratch_floats);
-    csg_marching_triangles(&b->marching, block, self->room, &out);
-    uint64_t gradients = out.normals ? block->vertex_count : 0;
-    self->point_evaluations += points;
-    self->gradient_evaluations += gradients;
-    self->primitive_evaluations += (points + gradients) * (block->node_count + 1) / 2;
+    make_blocks(b, &b->workers[worker_index], first, end, &out);
 }
 
 static bool make_item(void *user, uint32_t worker_index, size_t item)
@@ -197,9 +301,11 @@ static bool make_item(void *user, uint32_t worker_index, size_t item)
     build *b = user;
     if (should_stop(b))
         return false;
-    size_t end = (item + 1) * BLOCKS_PER_ITEM;
-    for (size_t i = item * BLOCKS_PER_ITEM; i < end && i < b->octree.block_count; i++)
-        make_block(b, &b->workers[worker_index], b->octree.blocks[i]);
+    size_t first = item * BLOCKS_PER_ITEM, end = first + BLOCKS_PER_ITEM;
+    end = end < b->octree.block_count ? end : b->octree.block_count;
+    if (b->receiver)
+        return hand_on(b, worker_index, first, end);
+    keep_in_mesh(b, worker_index, first, end);
     return true;
 }
 
@@ -213,6 +319,7 @@ static csgm_status create_workers(build *b)
         return csg_context_no_memory(b->context);
     memset(b->workers, 0, b->worker_count * sizeof(worker));
     for (uint32_t i = 0; i < b->worker_count; i++) {
+        b->workers[i].bounds = csg_box_empty();
         b->workers[i].room = csg_memory_alloc(memory, sizeof(csg_marching_room));
         b->workers[i].scratch = csg_memory_alloc(memory, b->scratch_floats * sizeof(float));
         if (!b->workers[i].room || !b->workers[i].scratch)
@@ -225,6 +332,7 @@ static void release_workers(build *b)
 {
     csg_memory *memory = &b->context->memory;
     for (uint32_t i = 0; b->workers && i < b->worker_count; i++) {
+        release_run(memory, &b->workers[i].run);
         csg_memory_release(memory, b->workers[i].room, sizeof(csg_marching_room));
         csg_memory_release(memory, b->workers[i].scratch, b->scratch_floats * sizeof(float));
     }
@@ -243,7 +351,6 @@ static csg_vec3 origin_of(const build *b)
 static void prepare_marching(build *b)
 {
     double extent = csg_lattice_extent(&b->lattice);
-    b->mesh->origin = origin_of(b);
     b->marching = (csg_marching){
         .kernel = csg_kernel_for(b->context->isa),
         .field = b->field,
@@ -251,23 +358,35 @@ static void prepare_marching(build *b)
         .tables = &b->tables,
         .blocks = b->octree.blocks,
         .index = &b->index,
-        .shift = csg_vec3_sub(b->field->center, b->mesh->origin),
+        .shift = csg_vec3_sub(b->field->center, b->counts.origin),
         /* a few ulp of the coordinates, or a distance nobody sees in a cell */
         .tolerance = (float)fmax(2 * (double)FLT_EPSILON * extent, 0x1p-14 * b->lattice.cell_size),
     };
 }
 
+/* Where the mesh goes: arrays of its own, or a receiver. */
+static csgm_status begin_output(build *b)
+{
+    csg_mesh_counts *counts = &b->counts;
+    counts->normals = b->options->normals;
+    counts->colors = b->options->colors && b->field->color_count > 1;
+    counts->origin = origin_of(b);
+    if (b->receiver)
+        return b->receiver->begin(b->receiver->user, counts);
+    csgm_status status = csg_mesh_create(b->context, counts->vertex_count, counts->triangle_count,
+                                         counts->normals, counts->colors, &b->mesh);
+    if (status == CSGM_OK)
+        b->mesh->origin = counts->origin;
+    return status;
+}
+
 static csgm_status make_mesh(build *b)
 {
-    uint64_t vertices, triangles;
     csg_cell_tables_make(&b->tables);
-    csgm_status status = number_blocks(b, &vertices, &triangles);
-    if (status != CSGM_OK)
-        return status;
-    bool colors = b->options->colors && b->field->color_count > 1;
-    status =
-        csg_mesh_create(b->context, vertices, triangles, b->options->normals, colors, &b->mesh);
-    if (status != CSGM_OK || !vertices)
+    csgm_status status = number_blocks(b);
+    if (status == CSGM_OK)
+        status = begin_output(b);
+    if (status != CSGM_OK || !b->counts.vertex_count)
         return status;
     status = create_workers(b);
     if (status != CSGM_OK)
@@ -297,24 +416,20 @@ static csgm_status walk_octree(build *b)
 /* Whether a vertex lies on one of the planes that cut the solid. */
 static bool touches_bounds(const build *b)
 {
-    double near = 1e-3 * b->lattice.cell_size;
-    csg_box inner = csg_box_grow(b->bounds, -near);
-    const csgm_mesh *mesh = b->mesh;
-    for (uint64_t i = 0; i < mesh->vertex_count; i++) {
-        const float *p = mesh->positions + 3 * i;
-        double x = mesh->origin.x + (double)p[0], y = mesh->origin.y + (double)p[1],
-               z = mesh->origin.z + (double)p[2];
-        if (x <= inner.min.x || x >= inner.max.x || y <= inner.min.y || y >= inner.max.y ||
-            z <= inner.min.z || z >= inner.max.z)
-            return true;
-    }
-    return false;
+    csg_box box = csg_box_empty();
+    for (uint32_t i = 0; b->workers && i < b->worker_count; i++)
+        box = csg_box_hull(box, b->workers[i].bounds);
+    if (csg_box_is_empty(box))
+        return false;
+    box.min = csg_vec3_add(box.min, b->counts.origin);
+    box.max = csg_vec3_add(box.max, b->counts.origin);
+    return !csg_box_contains_box(csg_box_grow(b->bounds, -1e-3 * b->lattice.cell_size), box);
 }
 
 static void warn(build *b)
 {
     csg_diag_sink *diags = &b->context->diags;
-    if (!b->mesh->triangle_count && !csg_box_is_empty(b->field->bounds))
+    if (!b->counts.triangle_count && !csg_box_is_empty(b->field->bounds))
         csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
                        "the solid may lie outside the bounds, or be thinner than a cell: try a "
                        "higher -r",
@@ -373,22 +488,47 @@ static csgm_status run(build *b, csgm_mesh_stats *stats)
     return status;
 }
 
-csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
-                           const csgm_mesh_options *options, csgm_mesh **out,
-                           csgm_mesh_stats *stats)
+static build begin_build(csgm_context *context, const csgm_field *field,
+                         const csgm_mesh_options *options)
 {
     build b = {.context = context, .options = options, .field = field};
     b.started_s = csg_clock_now_s();
     if (context->limits.timeout_s > 0)
         b.deadline_s = b.started_s + context->limits.timeout_s;
+    return b;
+}
+
+static void end_build(build *b)
+{
+    release_workers(b);
+    csg_block_index_release(&b->index);
+    csg_octree_release(&b->octree);
+    csg_field_destroy(b->clipped);
+}
+
+csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
+                           const csgm_mesh_options *options, csgm_mesh **out,
+                           csgm_mesh_stats *stats)
+{
+    build b = begin_build(context, field, options);
     csgm_status status = run(&b, stats);
-    release_workers(&b);
-    csg_block_index_release(&b.index);
-    csg_octree_release(&b.octree);
-    csg_field_destroy(b.clipped);
+    end_build(&b);
     if (status == CSGM_OK)
         *out = b.mesh;
     else
         csg_mesh_destroy(b.mesh);
+    return status;
+}
+
+csgm_status csg_mesh_stream(csgm_context *context, const csgm_field *field,
+                            const csgm_mesh_options *options, const csg_mesh_receiver *receiver,
+                            csg_mesh_counts *counts, csgm_mesh_stats *stats)
+{
+    build b = begin_build(context, field, options);
+    b.receiver = receiver;
+    csgm_status status = run(&b, stats);
+    end_build(&b);
+    if (counts)
+        *counts = b.counts;
     return status;
 }

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ * A mesh that is handed on in pieces, as it is made: the counts first, then runs of consecutive
+ * vertices and triangles from any worker in any order.
+ */
+#ifndef CSG_MESH_RUN_H
+#define CSG_MESH_RUN_H
+
+#include "base/context.h"
+
+typedef struct csg_mesh_counts {
+    uint64_t vertex_count, triangle_count;
+    bool normals, colors;
+    csgm_vec3 origin;
+} csg_mesh_counts;
+
+typedef struct csg_mesh_run {
+    uint32_t worker;
+    uint64_t first_vertex, vertex_count, first_triangle, triangle_count;
+    const float *positions, *normals; /* of first_vertex; normals and colors may be NULL */
+    const uint8_t *colors;
+    const uint32_t *indices; /* of first_triangle; numbers of the whole mesh */
+} csg_mesh_run;
+
+typedef struct csg_mesh_receiver {
+    void *user;
+    /* Once, on the calling thread, before any run. Anything but CSGM_OK (reported) ends the build.
+     */
+    csgm_status (*begin)(void *user, const csg_mesh_counts *counts);
+    /* Any worker. False ends the build; the receiver remembers why. */
+    bool (*put)(void *user, const csg_mesh_run *run);
+} csg_mesh_receiver;
+
+#endif
