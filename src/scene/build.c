@@ -4,36 +4,15 @@
  * blends become chains); nested n-ary operators are flattened when the scene is sealed (seal.c).
  */
 #include "scene/build.h"
+#include "scene/check.h"
 
 #include <float.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
-
-/* Lengths beyond these leave no room for the squares and ratios that the formulas need. */
-#define LARGEST_LENGTH 1e15
-#define SMALLEST_LENGTH 1e-15
-/* A map whose smallest stretch is below this part of its largest is as good as singular. */
-#define SMALLEST_STRETCH 1e-13
-
-static csg_node_id fail(csg_scene_builder *builder, csgm_status status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static csg_node_id fail(csg_scene_builder *builder, csgm_status status, const char *format, ...)
-{
-    if (builder->status != CSGM_OK)
-        return CSG_NODE_NONE;
-    builder->status = status;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(builder->problem, sizeof builder->problem, format, arguments);
-    va_end(arguments);
-    return CSG_NODE_NONE;
-}
 
 static csg_node_id fail_memory(csg_scene_builder *builder)
 {
-    return fail(builder, CSGM_ERR_MEMORY, "%s", "");
+    csg_check_fail(builder, CSGM_ERR_MEMORY, "%s", "");
+    return CSG_NODE_NONE;
 }
 
 /* ---- appending ---------------------------------------------------------------------- */
@@ -76,7 +55,7 @@ static bool has_room_for_nodes(csg_scene_builder *builder)
     if (!limit || limit >= CSG_NODE_NONE)
         limit = CSG_NODE_NONE - 1;
     if (scene->node_count >= limit) {
-        fail(builder, CSGM_ERR_LIMIT, "the scene has more than %u solids", limit);
+        csg_check_fail(builder, CSGM_ERR_LIMIT, "the scene has more than %u solids", limit);
         return false;
     }
     void *nodes = scene->nodes;
@@ -93,7 +72,7 @@ static bool reserve_children(csg_scene_builder *builder, size_t more)
 {
     csgm_scene *scene = builder->scene;
     if (more > UINT32_MAX - scene->child_count) {
-        fail(builder, CSGM_ERR_LIMIT, "the scene has too many solids");
+        csg_check_fail(builder, CSGM_ERR_LIMIT, "the scene has too many solids");
         return false;
     }
     void *children = scene->children;
@@ -138,7 +117,8 @@ static bool is_usable(csg_scene_builder *builder, csg_node_id child)
         return false;
     if (child < builder->scene->node_count)
         return true;
-    fail(builder, CSGM_ERR_ARGUMENT, "a solid that does not exist was used as an operand");
+    csg_check_fail(builder, CSGM_ERR_ARGUMENT,
+                   "a solid that does not exist was used as an operand");
     return false;
 }
 
@@ -151,121 +131,6 @@ csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where)
 
 /* ---- primitives ---------------------------------------------------------------------- */
 
-static bool check_range(csg_scene_builder *builder, double value, const char *what)
-{
-    if (!isfinite(value))
-        fail(builder, CSGM_ERR_SCENE, "%s is not a finite number", what);
-    else if (fabs(value) > LARGEST_LENGTH)
-        fail(builder, CSGM_ERR_SCENE, "%s is larger than %g", what, LARGEST_LENGTH);
-    return builder->status == CSGM_OK;
-}
-
-static bool check_positive(csg_scene_builder *builder, double value, const char *what)
-{
-    if (!check_range(builder, value, what))
-        return false;
-    if (value <= 0)
-        fail(builder, CSGM_ERR_SCENE, "%s must be positive", what);
-    else if (value < SMALLEST_LENGTH)
-        fail(builder, CSGM_ERR_SCENE, "%s is smaller than %g", what, SMALLEST_LENGTH);
-    return builder->status == CSGM_OK;
-}
-
-static bool check_not_negative(csg_scene_builder *builder, double value, const char *what)
-{
-    if (!check_range(builder, value, what))
-        return false;
-    if (value < 0)
-        fail(builder, CSGM_ERR_SCENE, "%s must not be negative", what);
-    return builder->status == CSGM_OK;
-}
-
-static bool check_radii(csg_scene_builder *builder, double r1, double r2)
-{
-    if (!check_not_negative(builder, r1, "the radius") ||
-        !check_not_negative(builder, r2, "the radius"))
-        return false;
-    if (fmax(r1, r2) < SMALLEST_LENGTH)
-        fail(builder, CSGM_ERR_SCENE, "one of the two radii must be positive");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_box(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the size") || !check_positive(builder, v[1], "the size") ||
-        !check_positive(builder, v[2], "the size") ||
-        !check_not_negative(builder, v[3], "the rounding radius"))
-        return false;
-    if (v[3] > fmin(v[0], fmin(v[1], v[2])))
-        fail(builder, CSGM_ERR_SCENE, "the rounding radius is more than half the smallest side");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_capsule(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the length") || !check_radii(builder, v[1], v[2]))
-        return false;
-    if (fabs(v[1] - v[2]) >= v[0])
-        fail(builder, CSGM_ERR_SCENE, "one end of the capsule swallows the other");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_torus(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the radius") ||
-        !check_positive(builder, v[1], "the tube radius"))
-        return false;
-    if (!(v[2] > 0 && v[2] <= 180))
-        fail(builder, CSGM_ERR_SCENE, "the angle must be above 0 and at most 360 degrees");
-    return builder->status == CSGM_OK;
-}
-
-/* A normal that is of unit length already, to the last bits, is left alone: printing and parsing
- * a scene again must not move its planes. */
-static bool check_plane(csg_scene_builder *builder, double *v)
-{
-    for (int i = 0; i < 3; i++)
-        if (!check_range(builder, v[i], "the normal"))
-            return false;
-    if (!check_range(builder, v[3], "the distance"))
-        return false;
-    double length = csg_vec3_norm(csg_vec3_make(v[0], v[1], v[2]));
-    if (length < SMALLEST_LENGTH) {
-        fail(builder, CSGM_ERR_SCENE, "the normal must not be zero");
-        return false;
-    }
-    if (fabs(length - 1) > 1e-15)
-        for (int i = 0; i < 3; i++)
-            v[i] /= length;
-    return true;
-}
-
-static bool check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
-{
-    switch (kind) {
-    case CSG_NODE_SPHERE:
-        return check_positive(builder, v[0], "the radius");
-    case CSG_NODE_BOX:
-        return check_box(builder, v);
-    case CSG_NODE_FRUSTUM:
-        return check_radii(builder, v[0], v[1]) && check_positive(builder, v[2], "the height") &&
-               check_not_negative(builder, v[3], "the rounding radius");
-    case CSG_NODE_CAPSULE:
-        return check_capsule(builder, v);
-    case CSG_NODE_TORUS:
-        return check_torus(builder, v);
-    case CSG_NODE_ELLIPSOID:
-        return check_positive(builder, v[0], "the semi-axis") &&
-               check_positive(builder, v[1], "the semi-axis") &&
-               check_positive(builder, v[2], "the semi-axis");
-    case CSG_NODE_PLANE:
-        return check_plane(builder, v);
-    default:
-        fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
-        return false;
-    }
-}
-
 csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
                                 const double *parameters, csg_span where)
 {
@@ -276,7 +141,7 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
     uint32_t count = csg_node_is_primitive(kind) ? csg_primitive_parameter_count(kind) : 0;
     for (uint32_t i = 0; i < count; i++)
         values[i] = parameters[i];
-    if (!check_primitive(builder, kind, values) || !has_room_for_nodes(builder) ||
+    if (!csg_check_primitive(builder, kind, values) || !has_room_for_nodes(builder) ||
         !reserve_parameters(builder, count))
         return CSG_NODE_NONE;
     csgm_scene *scene = builder->scene;
@@ -290,20 +155,14 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,
                               double r2, csg_span where)
 {
-    const double ends[6] = {p1.x, p1.y, p1.z, p2.x, p2.y, p2.z};
-    if (builder->status != CSGM_OK)
-        return CSG_NODE_NONE;
-    for (int i = 0; i < 6; i++)
-        if (!check_range(builder, ends[i], "the end of the capsule"))
-            return CSG_NODE_NONE;
-    if (!check_radii(builder, r1, r2))
+    if (builder->status != CSGM_OK || !csg_check_ends(builder, p1, p2, r1, r2))
         return CSG_NODE_NONE;
     csg_vec3 axis = csg_vec3_sub(p2, p1);
     double length = csg_vec3_norm(axis);
     csg_affine place = csg_affine_identity();
     csg_node_id solid;
     csg_vec3 origin = p1;
-    if (length < SMALLEST_LENGTH || fabs(r1 - r2) >= length) {
+    if (length < CSG_SMALLEST_LENGTH || fabs(r1 - r2) >= length) {
         solid = csg_build_primitive(builder, CSG_NODE_SPHERE, (double[]){fmax(r1, r2)}, where);
         origin = r1 >= r2 ? p1 : p2;
     } else {
@@ -320,25 +179,6 @@ csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 
 }
 
 /* ---- transforms and colours ----------------------------------------------------------- */
-
-static bool check_matrix(csg_scene_builder *builder, const csg_affine *matrix)
-{
-    double smallest, largest;
-    csg_affine inverse;
-    for (int i = 0; i < 3; i++) {
-        if (!check_range(builder, matrix->t[i], "a number of the transform"))
-            return false;
-        for (int j = 0; j < 3; j++)
-            if (!check_range(builder, matrix->m[i][j], "a number of the transform"))
-                return false;
-    }
-    csg_affine_singular_values(matrix, &smallest, &largest);
-    if (!csg_affine_invert(*matrix, &inverse) || !(smallest > SMALLEST_STRETCH * largest))
-        fail(builder, CSGM_ERR_SCENE, "the transform flattens the solid");
-    else if (smallest < SMALLEST_LENGTH)
-        fail(builder, CSGM_ERR_SCENE, "the transform shrinks the solid to nothing");
-    return builder->status == CSGM_OK;
-}
 
 /* To the last bits: a turn there and back is the identity too. */
 static bool is_identity(const csg_affine *matrix)
@@ -382,7 +222,7 @@ static csg_node_id place(csg_scene_builder *builder, const csg_affine *matrix, c
     if (node->kind != CSG_NODE_TRANSFORM)
         return append_transform(builder, matrix, child, where);
     csg_affine both = csg_affine_multiply(*matrix, scene->transforms[node->payload]);
-    if (!check_matrix(builder, &both))
+    if (!csg_check_matrix(builder, &both))
         return CSG_NODE_NONE;
     if (is_identity(&both))
         return scene->children[node->first_child];
@@ -394,7 +234,7 @@ static csg_node_id place(csg_scene_builder *builder, const csg_affine *matrix, c
 csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *matrix,
                                 csg_node_id child, csg_span where)
 {
-    if (!is_usable(builder, child) || !check_matrix(builder, matrix))
+    if (!is_usable(builder, child) || !csg_check_matrix(builder, matrix))
         return CSG_NODE_NONE;
     csg_node node = builder->scene->nodes[child];
     if (node.kind == CSG_NODE_EMPTY)
@@ -412,12 +252,8 @@ csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *ma
 csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
                             csg_span where)
 {
-    const float channels[4] = {color.r, color.g, color.b, color.a};
-    if (!is_usable(builder, child))
+    if (!is_usable(builder, child) || !csg_check_color(builder, color))
         return CSG_NODE_NONE;
-    for (int i = 0; i < 4; i++)
-        if (!(channels[i] >= 0 && channels[i] <= 1))
-            return fail(builder, CSGM_ERR_SCENE, "a colour's numbers must lie between 0 and 1");
     csgm_scene *scene = builder->scene;
     const csg_node *node = &scene->nodes[child];
     if (node->kind == CSG_NODE_EMPTY)
@@ -440,23 +276,6 @@ csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_nod
 }
 
 /* ---- operators ------------------------------------------------------------------------ */
-
-static bool check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend)
-{
-    if (!csg_node_is_operator(kind) || (unsigned)blend->kind >= CSG_BLEND_COUNT) {
-        fail(builder, CSGM_ERR_ARGUMENT, "there is no such operator");
-        return false;
-    }
-    if (blend->kind == CSG_BLEND_SHARP || blend->n == 0) {
-        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
-        return true;
-    }
-    if (!check_not_negative(builder, blend->n, "the blend's width"))
-        return false;
-    if (blend->n < SMALLEST_LENGTH) /* below what any coordinate can show */
-        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
-    return true;
-}
 
 static csg_node_id append_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                                    const csg_node_id *children, size_t count, csg_span where)
@@ -512,7 +331,7 @@ static csg_node_id join(csg_scene_builder *builder, csg_node_kind kind, csg_blen
 csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                                const csg_node_id *children, size_t count, csg_span where)
 {
-    if (builder->status != CSGM_OK || !check_operator(builder, kind, &blend))
+    if (builder->status != CSGM_OK || !csg_check_operator(builder, kind, &blend))
         return CSG_NODE_NONE;
     for (size_t i = 0; i < count; i++)
         if (!is_usable(builder, children[i]))

@@ -18,7 +18,7 @@ static size_t random_operands(csg_random *random, csg_blend blend, double *value
 {
     size_t count = csg_blend_is_fold(blend.kind) ? 2 : 1 + csg_random_below(random, 8);
     if (blend.kind == CSG_BLEND_ROUND && csg_random_below(random, 10) == 0)
-        count = 1 + csg_random_below(random, MOST);
+        count = 1 + csg_random_below(random, MOST - 1); /* inert_law adds one */
     double reach = fmin(csg_blend_support(blend), 1) + 0.01;
     for (size_t i = 0; i < count; i++) {
         values[i] = csg_random_uniform(random, -0.7, 0.7) * reach;

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ * What a scene's numbers may be; see check.h. NaN fails every comparison, so ranges are written
+ * such that it is refused.
+ */
+#include "scene/check.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+/* Larger lengths leave no room for the squares and ratios that the formulas need. */
+#define LARGEST_LENGTH 1e15
+/* A map whose smallest stretch is below this part of its largest is as good as singular. */
+#define SMALLEST_STRETCH 1e-13
+
+void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *format, ...)
+{
+    if (builder->status != CSGM_OK)
+        return;
+    builder->status = status;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(builder->problem, sizeof builder->problem, format, arguments);
+    va_end(arguments);
+}
+
+static bool check_range(csg_scene_builder *builder, double value, const char *what)
+{
+    if (!isfinite(value))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is not a finite number", what);
+    else if (fabs(value) > LARGEST_LENGTH)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is larger than %g", what, LARGEST_LENGTH);
+    return builder->status == CSGM_OK;
+}
+
+static bool check_positive(csg_scene_builder *builder, double value, const char *what)
+{
+    if (!check_range(builder, value, what))
+        return false;
+    if (value <= 0)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s must be positive", what);
+    else if (value < CSG_SMALLEST_LENGTH)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is smaller than %g", what, CSG_SMALLEST_LENGTH);
+    return builder->status == CSGM_OK;
+}
+
+static bool check_not_negative(csg_scene_builder *builder, double value, const char *what)
+{
+    if (!check_range(builder, value, what))
+        return false;
+    if (value < 0)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s must not be negative", what);
+    return builder->status == CSGM_OK;
+}
+
+static bool check_radii(csg_scene_builder *builder, double r1, double r2)
+{
+    if (!check_not_negative(builder, r1, "the radius") ||
+        !check_not_negative(builder, r2, "the radius"))
+        return false;
+    if (fmax(r1, r2) < CSG_SMALLEST_LENGTH)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "one of the two radii must be positive");
+    return builder->status == CSGM_OK;
+}
+
+static bool check_box(csg_scene_builder *builder, const double *v)
+{
+    if (!check_positive(builder, v[0], "the size") || !check_positive(builder, v[1], "the size") ||
+        !check_positive(builder, v[2], "the size") ||
+        !check_not_negative(builder, v[3], "the rounding radius"))
+        return false;
+    if (v[3] > fmin(v[0], fmin(v[1], v[2])))
+        csg_check_fail(builder, CSGM_ERR_SCENE,
+                       "the rounding radius is more than half the smallest side");
+    return builder->status == CSGM_OK;
+}
+
+static bool check_capsule(csg_scene_builder *builder, const double *v)
+{
+    if (!check_positive(builder, v[0], "the length") || !check_radii(builder, v[1], v[2]))
+        return false;
+    if (fabs(v[1] - v[2]) >= v[0])
+        csg_check_fail(builder, CSGM_ERR_SCENE, "one end of the capsule swallows the other");
+    return builder->status == CSGM_OK;
+}
+
+static bool check_torus(csg_scene_builder *builder, const double *v)
+{
+    if (!check_positive(builder, v[0], "the radius") ||
+        !check_positive(builder, v[1], "the tube radius"))
+        return false;
+    if (!(v[2] > 0 && v[2] <= 180))
+        csg_check_fail(builder, CSGM_ERR_SCENE,
+                       "the angle must be above 0 and at most 360 degrees");
+    return builder->status == CSGM_OK;
+}
+
+/* A normal that is of unit length already, to the last bits, is left alone: printing and parsing
+ * a scene again must not move its planes. */
+static bool check_plane(csg_scene_builder *builder, double *v)
+{
+    for (int i = 0; i < 3; i++)
+        if (!check_range(builder, v[i], "the normal"))
+            return false;
+    if (!check_range(builder, v[3], "the distance"))
+        return false;
+    double length = csg_vec3_norm(csg_vec3_make(v[0], v[1], v[2]));
+    if (length < CSG_SMALLEST_LENGTH) {
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the normal must not be zero");
+        return false;
+    }
+    if (fabs(length - 1) > 1e-15)
+        for (int i = 0; i < 3; i++)
+            v[i] /= length;
+    return true;
+}
+
+bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
+{
+    switch (kind) {
+    case CSG_NODE_SPHERE:
+        return check_positive(builder, v[0], "the radius");
+    case CSG_NODE_BOX:
+        return check_box(builder, v);
+    case CSG_NODE_FRUSTUM:
+        return check_radii(builder, v[0], v[1]) && check_positive(builder, v[2], "the height") &&
+               check_not_negative(builder, v[3], "the rounding radius");
+    case CSG_NODE_CAPSULE:
+        return check_capsule(builder, v);
+    case CSG_NODE_TORUS:
+        return check_torus(builder, v);
+    case CSG_NODE_ELLIPSOID:
+        return check_positive(builder, v[0], "the semi-axis") &&
+               check_positive(builder, v[1], "the semi-axis") &&
+               check_positive(builder, v[2], "the semi-axis");
+    case CSG_NODE_PLANE:
+        return check_plane(builder, v);
+    default:
+        csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
+        return false;
+    }
+}
+
+bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1, double r2)
+{
+    const double ends[6] = {p1.x, p1.y, p1.z, p2.x, p2.y, p2.z};
+    for (int i = 0; i < 6; i++)
+        if (!check_range(builder, ends[i], "the end of the capsule"))
+            return false;
+    return check_radii(builder, r1, r2);
+}
+
+bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix)
+{
+    double smallest, largest;
+    csg_affine inverse;
+    for (int i = 0; i < 3; i++) {
+        if (!check_range(builder, matrix->t[i], "a number of the transform"))
+            return false;
+        for (int j = 0; j < 3; j++)
+            if (!check_range(builder, matrix->m[i][j], "a number of the transform"))
+                return false;
+    }
+    csg_affine_singular_values(matrix, &smallest, &largest);
+    if (!csg_affine_invert(*matrix, &inverse) || !(smallest > SMALLEST_STRETCH * largest))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the transform flattens the solid");
+    else if (smallest < CSG_SMALLEST_LENGTH)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the transform shrinks the solid to nothing");
+    return builder->status == CSGM_OK;
+}
+
+bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend)
+{
+    if (!csg_node_is_operator(kind) || (unsigned)blend->kind >= CSG_BLEND_COUNT) {
+        csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such operator");
+        return false;
+    }
+    if (blend->kind == CSG_BLEND_SHARP || blend->n == 0) {
+        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
+        return true;
+    }
+    if (!check_not_negative(builder, blend->n, "the blend's width"))
+        return false;
+    if (blend->n < CSG_SMALLEST_LENGTH) /* below what any coordinate can show */
+        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
+    return true;
+}
+
+bool csg_check_color(csg_scene_builder *builder, csg_color color)
+{
+    const float channels[4] = {color.r, color.g, color.b, color.a};
+    for (int i = 0; i < 4; i++)
+        if (!(channels[i] >= 0 && channels[i] <= 1))
+            csg_check_fail(builder, CSGM_ERR_SCENE, "a colour's numbers must lie between 0 and 1");
+    return builder->status == CSGM_OK;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ * The builder's checks: false, and one sentence in builder->problem, for what no scene may hold.
+ */
+#ifndef CSG_SCENE_CHECK_H
+#define CSG_SCENE_CHECK_H
+
+#include "scene/build.h"
+
+/* Smaller sizes are refused, smaller blends are sharp. */
+#define CSG_SMALLEST_LENGTH 1e-15
+
+/* The first failure stays. */
+void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* values as in primitives.def; a plane's normal becomes a unit vector. */
+bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *values);
+/* Of a capsule. */
+bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1, double r2);
+bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix);
+/* A blend without width becomes sharp. */
+bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend);
+bool csg_check_color(csg_scene_builder *builder, csg_color color);
+
+#endif
