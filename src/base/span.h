@@ -11,4 +11,9 @@ typedef struct csg_span {
     uint32_t source, offset, length;
 } csg_span;
 
+static inline csg_span csg_span_nowhere(void)
+{
+    return (csg_span){UINT32_MAX, 0, 0};
+}
+
 #endif

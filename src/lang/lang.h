@@ -7,14 +7,16 @@
 #include "scene/scene.h"
 
 typedef struct csg_lang_input {
-    const char *path; /* file to read, or the name of `text` in diagnostics ("-" for standard input) */
+    const char
+        *path; /* file to read, or the name of `text` in diagnostics ("-" for standard input) */
     const char *text; /* NULL = read path */
     size_t text_length;
     const csgm_scene_options *options; /* NULL = defaults */
 } csg_lang_input;
 
-/* Reports what is wrong through context->diags. *out is set only on CSGM_OK. Status: SYNTAX or SCENE for
- * faults of the input, LIMIT for context->limits, IO for files that cannot be read, MEMORY, ARGUMENT. */
+/* Reports what is wrong through context->diags. *out is set only on CSGM_OK. Status: SYNTAX or
+ * SCENE for faults of the input, LIMIT for context->limits, IO for files that cannot be read,
+ * MEMORY, ARGUMENT. */
 csgm_status csg_lang_compile(csgm_context *context, const csg_lang_input *input, csgm_scene **out);
 
 #endif

@@ -63,9 +63,10 @@ static bool is_name(char c)
 }
 static int hex_value(char c)
 {
-    return is_digit(c) ? c - '0'
+    return is_digit(c)            ? c - '0'
            : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 static char peek(const lexer *l, uint32_t ahead)
@@ -153,7 +154,8 @@ static void skip_space(lexer *l)
 /* Reads the escape after a backslash at text[0]: its bytes after the backslash, 0 when unknown. */
 static uint32_t read_escape(const char *text, uint32_t room, uint32_t *character)
 {
-    static const char plain[][2] = {{'n', '\n'}, {'t', '\t'}, {'r', '\r'}, {'"', '"'}, {'\\', '\\'}};
+    static const char plain[][2] = {
+        {'n', '\n'}, {'t', '\t'}, {'r', '\r'}, {'"', '"'}, {'\\', '\\'}};
     char kind = room ? text[0] : '\0';
     for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
         if (kind == plain[i][0]) {
@@ -176,16 +178,18 @@ static uint32_t read_escape(const char *text, uint32_t room, uint32_t *character
 
 static void lex_escape(lexer *l)
 {
-    uint32_t character, length = read_escape(l->text + l->at + 1, l->length - l->at - 1, &character);
+    uint32_t character,
+        length = read_escape(l->text + l->at + 1, l->length - l->at - 1, &character);
     if (length) {
         l->at += 1 + length;
         return;
     }
     uint32_t next = l->at + 1;
     bool shown = next < l->length && l->text[next] > ' ' && l->text[next] < 0x7F;
-    csg_source_report(l->sources, CSG_DIAG_BAD_ESCAPE, span(l, l->at, next + (shown ? 1 : 0)),
-                      "known are \\n \\t \\r \\\" \\\\ \\xHH \\uHHHH \\u{H...}; a backslash itself is \\\\",
-                      "unknown escape in a string");
+    csg_source_report(
+        l->sources, CSG_DIAG_BAD_ESCAPE, span(l, l->at, next + (shown ? 1 : 0)),
+        "known are \\n \\t \\r \\\" \\\\ \\xHH \\uHHHH \\u{H...}; a backslash itself is \\\\",
+        "unknown escape in a string");
     l->at++;
 }
 
@@ -250,7 +254,8 @@ static void skip_exponent(lexer *l)
 static bool lex_number(lexer *l)
 {
     uint32_t from = l->at;
-    if (peek(l, 0) == '0' && (peek(l, 1) == 'x' || peek(l, 1) == 'X') && hex_value(peek(l, 2)) >= 0) {
+    if (peek(l, 0) == '0' && (peek(l, 1) == 'x' || peek(l, 1) == 'X') &&
+        hex_value(peek(l, 2)) >= 0) {
         for (l->at += 2; hex_value(peek(l, 0)) >= 0;)
             l->at++;
     } else {
@@ -376,8 +381,8 @@ static bool lex_strange(lexer *l)
     uint32_t length = (uint32_t)csg_utf8_decode(l->text + l->at, l->length - l->at, &character);
     if (length && character >= 0x20 && character != 0x7F)
         csg_source_report(l->sources, CSG_DIAG_BAD_CHARACTER, span(l, from, from + length),
-                          hint_for_character(character), "'%.*s' does not belong here",
-                          (int)length, l->text + from);
+                          hint_for_character(character), "'%.*s' does not belong here", (int)length,
+                          l->text + from);
     else if (length && character)
         csg_source_report(l->sources, CSG_DIAG_BAD_CHARACTER, span(l, from, from + 1), NULL,
                           "control character 0x%02X", (unsigned)character);

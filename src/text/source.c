@@ -89,7 +89,8 @@ static void note_includes(const csg_sources *sources, csg_span where)
             csg_source_note(sources, source->from, "and so on");
             return;
         }
-        csg_source_note(sources, source->from, source->textual ? "included from here" : "used from here");
+        csg_source_note(sources, source->from,
+                        source->textual ? "included from here" : "used from here");
         where = source->from;
     }
 }
@@ -157,7 +158,8 @@ static csgm_status check_content(const csg_sources *sources, csg_span from, cons
         return CSGM_ERR_LIMIT;
     }
     if (is_binary(text, length)) {
-        bool utf16 = length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
+        bool utf16 =
+            length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
         report_file(sources, CSG_DIAG_BINARY_FILE, from, name,
                     utf16 ? "it looks like UTF-16: save it as UTF-8"
                           : "a scene is a text file in UTF-8",
@@ -212,8 +214,8 @@ typedef struct buffer {
 static int read_all(csg_memory *memory, int file, buffer *into)
 {
     while (into->length <= LARGEST_TEXT) {
-        if (!csg_memory_reserve(memory, (void **)&into->data, &into->capacity,
-                                into->length + 65536, 1))
+        if (!csg_memory_reserve(memory, (void **)&into->data, &into->capacity, into->length + 65536,
+                                1))
             return ENOMEM;
         ssize_t got = read(file, into->data + into->length, into->capacity - into->length);
         if (got < 0 && errno == EINTR)

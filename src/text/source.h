@@ -9,7 +9,6 @@
 #include "base/context.h"
 #include "base/span.h"
 
-
 typedef struct csg_source {
     const char *name; /* path as found, or the caller's name of the text */
     const char *text;
@@ -32,11 +31,6 @@ typedef struct csg_source_request {
     csg_span from; /* source UINT32_MAX: nobody's */
     bool textual;
 } csg_source_request;
-
-static inline csg_span csg_span_nowhere(void)
-{
-    return (csg_span){UINT32_MAX, 0, 0};
-}
 
 void csg_sources_init(csg_sources *sources, csgm_context *context, csg_arena *arena);
 void csg_sources_reset(csg_sources *sources);

@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Decodes the character that begins at text; returns its bytes, 0 when it is broken or room is 0. */
+/* Decodes the character that begins at text; returns its bytes, 0 when it is broken or room is 0.
+ */
 size_t csg_utf8_decode(const char *text, size_t room, uint32_t *character);
 /* Writes 1 to 4 bytes; 0 for what is no character. */
 size_t csg_utf8_encode(uint32_t character, char out[4]);

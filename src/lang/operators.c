@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: MIT
+ * Unary and binary operators on values, as OpenSCAD defines them: element by element on vectors,
+ * * is the dot, matrix-vector and matrix-matrix product, undef where an operation has no meaning
+ * (with a warning, except when an operand is undef because of an earlier one).
+ */
+#include <math.h>
+#include <string.h>
+
+#include "lang/evaluator.h"
+
+static csg_value undefined(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    const char *sign = csg_token_kind_name(x->operation);
+    csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
+                    "there is no %.*s of %s and %s, it counts as undef", (int)strlen(sign), sign,
+                    csg_value_kind_name(left), csg_value_kind_name(right));
+    return csg_value_undef();
+}
+
+static csg_vector *make_vector(csg_eval *e, const csg_expression *x, size_t count)
+{
+    if (!csg_eval_charge(e, count / 8 + 1, x->where))
+        return NULL;
+    csg_vector *made = csg_vector_create(&e->heap, count);
+    if (!made)
+        csg_eval_no_memory(e);
+    return made;
+}
+
+/* ---- element by element -----------------------------------------------------------------------
+ */
+
+/* Recursion goes as deep as vectors nest: csg_vector.depth bounds it. */
+static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    bool minus = x->operation == CSG_TOKEN_MINUS;
+    if (left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER)
+        return csg_value_number(minus ? left.as.number - right.as.number
+                                      : left.as.number + right.as.number);
+    if (left.kind != CSG_VALUE_VECTOR || right.kind != CSG_VALUE_VECTOR)
+        return undefined(e, x, left, right);
+    const csg_vector *a = left.as.vector, *b = right.as.vector;
+    size_t count = a->count < b->count ? a->count : b->count;
+    csg_vector *made = make_vector(e, x, count);
+    for (size_t i = 0; made && i < count && !e->stop; i++)
+        csg_vector_set(made, i, add(e, x, a->items[i], b->items[i]));
+    return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
+}
+
+static double scale_number(const csg_expression *x, double number, double by, bool number_first)
+{
+    if (x->operation == CSG_TOKEN_STAR)
+        return number * by;
+    return number_first ? by / number : number / by;
+}
+
+/* vector * number, number * vector, vector / number, number / vector. */
+static csg_value scale(csg_eval *e, const csg_expression *x, csg_value value, double by,
+                       bool number_first)
+{
+    if (value.kind == CSG_VALUE_NUMBER)
+        return csg_value_number(scale_number(x, value.as.number, by, number_first));
+    if (value.kind != CSG_VALUE_VECTOR)
+        return number_first ? undefined(e, x, csg_value_number(by), value)
+                            : undefined(e, x, value, csg_value_number(by));
+    const csg_vector *vector = value.as.vector;
+    csg_vector *made = make_vector(e, x, vector->count);
+    for (size_t i = 0; made && i < vector->count && !e->stop; i++)
+        csg_vector_set(made, i, scale(e, x, vector->items[i], by, number_first));
+    return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
+}
+
+/* ---- products
+ * ------------------------------------------------------------------------------------ */
+
+static bool all_numbers(const csg_vector *vector)
+{
+    for (uint32_t i = 0; i < vector->count; i++)
+        if (vector->items[i].kind != CSG_VALUE_NUMBER)
+            return false;
+    return true;
+}
+
+/* Rows of numbers, all of one length. */
+static bool is_matrix(csg_value value, uint32_t *columns)
+{
+    if (value.kind != CSG_VALUE_VECTOR || value.as.vector->count == 0)
+        return false;
+    const csg_vector *rows = value.as.vector;
+    for (uint32_t i = 0; i < rows->count; i++) {
+        if (rows->items[i].kind != CSG_VALUE_VECTOR || !all_numbers(rows->items[i].as.vector))
+            return false;
+        if (i == 0)
+            *columns = rows->items[i].as.vector->count;
+        else if (rows->items[i].as.vector->count != *columns)
+            return false;
+    }
+    return true;
+}
+
+static double dot(const csg_vector *a, const csg_vector *b)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < a->count; i++)
+        sum += a->items[i].as.number * b->items[i].as.number;
+    return sum;
+}
+
+static csg_value matrix_vector(csg_eval *e, const csg_expression *x, const csg_vector *matrix,
+                               const csg_vector *vector)
+{
+    csg_vector *made = make_vector(e, x, matrix->count);
+    if (!made || !csg_eval_charge(e, (uint64_t)matrix->count * vector->count / 8, x->where))
+        return csg_value_undef();
+    for (uint32_t i = 0; i < matrix->count; i++)
+        made->items[i] = csg_value_number(dot(matrix->items[i].as.vector, vector));
+    return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
+/* Row vector times matrix: the sum of the rows, weighted. */
+static csg_value vector_matrix(csg_eval *e, const csg_expression *x, const csg_vector *vector,
+                               const csg_vector *matrix, uint32_t columns)
+{
+    csg_vector *made = make_vector(e, x, columns);
+    if (!made || !csg_eval_charge(e, (uint64_t)vector->count * columns / 8, x->where))
+        return csg_value_undef();
+    for (uint32_t j = 0; j < columns; j++) {
+        double sum = 0;
+        for (uint32_t i = 0; i < vector->count; i++)
+            sum += vector->items[i].as.number * matrix->items[i].as.vector->items[j].as.number;
+        made->items[j] = csg_value_number(sum);
+    }
+    return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
+static csg_value matrix_matrix(csg_eval *e, const csg_expression *x, const csg_vector *left,
+                               const csg_vector *right, uint32_t columns)
+{
+    csg_vector *made = make_vector(e, x, left->count);
+    for (uint32_t i = 0; made && i < left->count && !e->stop; i++)
+        csg_vector_set(made, i, vector_matrix(e, x, left->items[i].as.vector, right, columns));
+    return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
+}
+
+static csg_value product(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    uint32_t left_columns = 0, right_columns = 0;
+    const csg_vector *a = left.as.vector, *b = right.as.vector;
+    bool left_matrix = is_matrix(left, &left_columns),
+         right_matrix = is_matrix(right, &right_columns);
+    if (a->count == 0 || b->count == 0)
+        return undefined(e, x, left, right);
+    if (!left_matrix && !right_matrix && all_numbers(a) && all_numbers(b) && a->count == b->count)
+        return csg_value_number(dot(a, b));
+    if (left_matrix && !right_matrix && all_numbers(b) && left_columns == b->count)
+        return matrix_vector(e, x, a, b);
+    if (!left_matrix && right_matrix && all_numbers(a) && a->count == b->count)
+        return vector_matrix(e, x, a, b, right_columns);
+    if (left_matrix && right_matrix && left_columns == b->count)
+        return matrix_matrix(e, x, a, b, right_columns);
+    return undefined(e, x, left, right);
+}
+
+static csg_value multiply(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    if (left.kind == CSG_VALUE_NUMBER &&
+        (right.kind == CSG_VALUE_NUMBER || right.kind == CSG_VALUE_VECTOR))
+        return scale(e, x, right, left.as.number, true);
+    if (left.kind == CSG_VALUE_VECTOR && right.kind == CSG_VALUE_NUMBER)
+        return scale(e, x, left, right.as.number, false);
+    if (left.kind == CSG_VALUE_VECTOR && right.kind == CSG_VALUE_VECTOR &&
+        x->operation == CSG_TOKEN_STAR)
+        return product(e, x, left, right);
+    return undefined(e, x, left, right);
+}
+
+/* ---- comparison
+ * -------------------------------------------------------------------------------------- */
+
+static bool equal_vectors(csg_eval *e, const csg_vector *a, const csg_vector *b, csg_span where)
+{
+    if (a->count != b->count)
+        return false;
+    for (uint32_t i = 0; i < a->count; i++)
+        if (!csg_value_equal(e, a->items[i], b->items[i], where))
+            return false;
+    return true;
+}
+
+bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span where)
+{
+    if (left.kind != right.kind || !csg_eval_charge(e, 1, where))
+        return false;
+    switch (left.kind) {
+    case CSG_VALUE_NUMBER:
+        return left.as.number == right.as.number;
+    case CSG_VALUE_BOOLEAN:
+        return left.as.boolean == right.as.boolean;
+    case CSG_VALUE_BLEND:
+        return left.blend == right.blend && left.as.number == right.as.number;
+    case CSG_VALUE_STRING:
+        return left.as.string->length == right.as.string->length &&
+               memcmp(left.as.string->text, right.as.string->text, left.as.string->length) == 0;
+    case CSG_VALUE_VECTOR:
+        return equal_vectors(e, left.as.vector, right.as.vector, where);
+    case CSG_VALUE_RANGE:
+        return left.as.range->begin == right.as.range->begin &&
+               left.as.range->step == right.as.range->step &&
+               left.as.range->end == right.as.range->end;
+    case CSG_VALUE_FUNCTION:
+        return left.as.function == right.as.function;
+    default:
+        return true;
+    }
+}
+
+static csg_value by_order(csg_token_kind operation, double difference)
+{
+    switch (operation) {
+    case CSG_TOKEN_LESS:
+        return csg_value_boolean(difference < 0);
+    case CSG_TOKEN_LESS_EQUAL:
+        return csg_value_boolean(difference <= 0);
+    case CSG_TOKEN_GREATER:
+        return csg_value_boolean(difference > 0);
+    default:
+        return csg_value_boolean(difference >= 0);
+    }
+}
+
+static csg_value compare(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    if (left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER) {
+        double a = left.as.number, b = right.as.number;
+        return by_order(x->operation, a < b ? -1 : a > b ? 1 : a == b ? 0 : (double)NAN);
+    }
+    if (left.kind == CSG_VALUE_BOOLEAN && right.kind == CSG_VALUE_BOOLEAN)
+        return by_order(x->operation, (double)left.as.boolean - (double)right.as.boolean);
+    if (left.kind == CSG_VALUE_STRING && right.kind == CSG_VALUE_STRING) {
+        int order = strcmp(left.as.string->text, right.as.string->text);
+        return by_order(x->operation, order);
+    }
+    return undefined(e, x, left, right);
+}
+
+/* ---- entry
+ * ---------------------------------------------------------------------------------------------- */
+
+static csg_value numbers(const csg_expression *x, double a, double b)
+{
+    switch (x->operation) {
+    case CSG_TOKEN_PLUS:
+        return csg_value_number(a + b);
+    case CSG_TOKEN_MINUS:
+        return csg_value_number(a - b);
+    case CSG_TOKEN_STAR:
+        return csg_value_number(a * b);
+    case CSG_TOKEN_SLASH:
+        return csg_value_number(a / b);
+    case CSG_TOKEN_PERCENT:
+        return csg_value_number(fmod(a, b));
+    default:
+        return csg_value_number(pow(a, b));
+    }
+}
+
+csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    bool both = left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER;
+    if (e->stop)
+        return csg_value_undef();
+    switch (x->operation) {
+    case CSG_TOKEN_EQUAL:
+    case CSG_TOKEN_NOT_EQUAL:
+        return csg_value_boolean(csg_value_equal(e, left, right, x->where) ==
+                                 (x->operation == CSG_TOKEN_EQUAL));
+    case CSG_TOKEN_LESS:
+    case CSG_TOKEN_LESS_EQUAL:
+    case CSG_TOKEN_GREATER:
+    case CSG_TOKEN_GREATER_EQUAL:
+        return compare(e, x, left, right);
+    case CSG_TOKEN_PLUS:
+    case CSG_TOKEN_MINUS:
+        return add(e, x, left, right);
+    case CSG_TOKEN_STAR:
+    case CSG_TOKEN_SLASH:
+        return both ? numbers(x, left.as.number, right.as.number) : multiply(e, x, left, right);
+    default:
+        return both ? numbers(x, left.as.number, right.as.number) : undefined(e, x, left, right);
+    }
+}
+
+static csg_value negate(csg_eval *e, const csg_expression *x, csg_value operand)
+{
+    if (operand.kind == CSG_VALUE_NUMBER)
+        return csg_value_number(-operand.as.number);
+    if (operand.kind == CSG_VALUE_VECTOR) {
+        const csg_vector *vector = operand.as.vector;
+        csg_vector *made = make_vector(e, x, vector->count);
+        for (size_t i = 0; made && i < vector->count && !e->stop; i++)
+            csg_vector_set(made, i, negate(e, x, vector->items[i]));
+        return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
+    }
+    csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
+                    "there is no negative of a %s, it counts as undef",
+                    csg_value_kind_name(operand));
+    return csg_value_undef();
+}
+
+csg_value csg_eval_unary(csg_eval *e, const csg_expression *x, csg_value operand)
+{
+    if (x->operation == CSG_TOKEN_NOT)
+        return csg_value_boolean(!csg_value_is_true(operand));
+    if (x->operation == CSG_TOKEN_MINUS)
+        return negate(e, x, operand);
+    return csg_value_retain(operand);
+}
