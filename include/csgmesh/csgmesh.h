@@ -352,6 +352,17 @@ CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_v
 /* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe: for
  * a handler that then ends the process with _exit. */
 CSGM_API void csgm_files_abandon(void);
+/* csgm_mesh_build and csgm_mesh_write in one, the same bytes. Binary PLY and plain GLB are filled while
+ * the mesh is made, by all threads, in memory of the surface's blocks and not of the mesh; any other
+ * format (and a pipe or device) keeps the mesh in memory until it is written. A mesh without
+ * triangles writes no file: CSGM_ERR_SCENE, after a warning. counts (vertices, triangles) and stats
+ * may be NULL; options NULL = defaults. */
+CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
+                                          const csgm_mesh_options *options, const char *path,
+                                          csgm_format format,
+                                          const csgm_write_options *write_options,
+                                          uint64_t counts[2], csgm_mesh_stats *stats);
+
 /* A glTF's node transforms are applied and the Z-up frame restored; several meshes are joined.
  * STL corners with equal position bits become one vertex. */
 CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,

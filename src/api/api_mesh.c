@@ -2,6 +2,8 @@
  * Meshes of the public interface: a field in, an indexed triangle mesh out, and its inspection.
  */
 #include "api/view.h"
+#include "base/pool.h"
+#include "io/stream.h"
 #include "mesh/build.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
@@ -31,6 +33,69 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats ignored;
     return csg_mesh_build(context, field, options, out, stats ? stats : &ignored);
+}
+
+/* Into a file that is filled from all sides. */
+static csgm_status stream_file(csgm_context *context, const csgm_field *field,
+                               const csgm_mesh_options *options, const char *path,
+                               csgm_format format, const csgm_write_options *write_options,
+                               csg_mesh_counts *counts, csgm_mesh_stats *stats)
+{
+    csg_stream *stream;
+    csgm_status status = csg_stream_create(context, path, format, write_options,
+                                           csg_pool_threads(context->pool), &stream);
+    if (status != CSGM_OK)
+        return status;
+    csg_mesh_receiver receiver = csg_stream_receiver(stream);
+    status = csg_mesh_stream(context, field, options, &receiver, counts, stats);
+    if (status == CSGM_OK && counts->triangle_count)
+        return csg_stream_commit(stream);
+    csg_stream_abandon(stream);
+    return status == CSGM_OK ? CSGM_ERR_SCENE : status;
+}
+
+/* Through a mesh in memory. */
+static csgm_status build_and_write(csgm_context *context, const csgm_field *field,
+                                   const csgm_mesh_options *options, const char *path,
+                                   csgm_format format, const csgm_write_options *write_options,
+                                   csg_mesh_counts *counts, csgm_mesh_stats *stats)
+{
+    csgm_mesh *mesh;
+    csgm_status status = csg_mesh_build(context, field, options, &mesh, stats);
+    if (status != CSGM_OK)
+        return status;
+    csgm_mesh_view view = csg_mesh_view(mesh);
+    counts->vertex_count = view.vertex_count;
+    counts->triangle_count = view.triangle_count;
+    status = view.triangle_count ? csg_io_write(context, &view, path, format, write_options)
+                                 : CSGM_ERR_SCENE;
+    csg_mesh_destroy(mesh);
+    return status;
+}
+
+csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options, const char *path,
+                                 csgm_format format, const csgm_write_options *write_options,
+                                 uint64_t counts[2], csgm_mesh_stats *stats)
+{
+    csgm_mesh_options mesh_defaults = csgm_mesh_options_default();
+    csgm_write_options write_defaults = csgm_write_options_default();
+    options = options ? options : &mesh_defaults;
+    write_options = write_options ? write_options : &write_defaults;
+    if (!context || !field || !path || format >= CSGM_FORMAT_COUNT ||
+        options->struct_size != sizeof *options ||
+        write_options->struct_size != sizeof *write_options)
+        return CSGM_ERR_ARGUMENT;
+    csgm_mesh_stats ignored;
+    csg_mesh_counts made = {0};
+    bool streams = csg_stream_is_possible(path, format, write_options);
+    csgm_status status = (streams ? stream_file : build_and_write)(
+        context, field, options, path, format, write_options, &made, stats ? stats : &ignored);
+    if (counts) {
+        counts[0] = made.vertex_count;
+        counts[1] = made.triangle_count;
+    }
+    return status;
 }
 
 void csgm_mesh_destroy(csgm_mesh *mesh)

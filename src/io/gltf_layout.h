@@ -38,4 +38,28 @@ enum { CSG_GLTF_JSON_MOST = 8192 };
 size_t csg_gltf_json(const csg_gltf_layout *layout, bool embedded, char text[CSG_GLTF_JSON_MOST]);
 extern const char csg_gltf_json_tail[];
 
+/* The parts of the plain buffer, from counts and which arrays there are. */
+csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh);
+/* The node's matrix, columns of scale * rotation * translate(origin); the rotation takes (x, y, z)
+ * to (x, z, -y). */
+void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
+                    const csgm_write_options *options);
+
+/* ---- GLB ------------------------------------------------------------------------------------- */
+
+#define CSG_GLB_MOST UINT32_MAX /* bytes of a file */
+enum {
+    CSG_GLB_HEAD_MOST = 12 + 8 + 8, /* the head without its JSON */
+    /* A plain GLB's JSON chunk is filled up with spaces to this, so that the buffer's place in the
+     * file (4096) is known before the numbers in the JSON are. */
+    CSG_GLB_JSON_BYTES = 4096 - CSG_GLB_HEAD_MOST
+};
+/* The JSON chunk's bytes, padded; returns their number. text has room for CSG_GLTF_JSON_MOST + 4.
+ */
+size_t csg_glb_json(const csg_gltf_layout *layout, char *text);
+uint64_t csg_glb_bytes(const csg_gltf_layout *layout, size_t json_bytes);
+/* Header, JSON chunk and the head of the binary chunk; returns the place after. */
+uint8_t *csg_glb_put_head(uint8_t *at, const csg_gltf_layout *layout, const char *json,
+                          size_t json_bytes);
+
 #endif

@@ -11,8 +11,6 @@
 #include "io/color.h"
 #include "io/gltf_layout.h"
 
-static const uint64_t glb_most = UINT32_MAX;
-
 /* ---- layout ------------------------------------------------------------------------------------
  */
 
@@ -32,9 +30,8 @@ static double metres(csgm_unit unit)
     return 1;
 }
 
-/* Columns of scale * rotation * translate(origin); the rotation takes (x, y, z) to (x, z, -y). */
-static void node_matrix(csg_gltf_layout *layout, const csgm_vec3 *origin,
-                        const csgm_write_options *options)
+void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
+                    const csgm_write_options *options)
 {
     double s = metres(options->unit), *m = layout->matrix;
     memset(m, 0, sizeof layout->matrix);
@@ -75,8 +72,7 @@ static bool all_opaque(const csgm_mesh_view *mesh)
     return opaque;
 }
 
-/* The parts of the plain buffer; touches none of the mesh's arrays. */
-static csg_gltf_layout measure(const csgm_mesh_view *mesh)
+csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh)
 {
     csg_gltf_layout layout = {.vertex_count = mesh->vertex_count,
                               .index_count = 3 * mesh->triangle_count,
@@ -231,36 +227,51 @@ static void put_body(csg_sink *sink, const csg_gltf_layout *layout, const csgm_m
 /* ---- containers
  * ----------------------------------------------------------------------------------- */
 
-static uint64_t glb_size(const csg_gltf_layout *layout, size_t json_bytes)
+uint64_t csg_glb_bytes(const csg_gltf_layout *layout, size_t json_bytes)
 {
-    uint64_t json_padded = (json_bytes + 3) & ~(uint64_t)3;
-    return 12 + 8 + json_padded + (layout->buffer_bytes ? 8 + layout->buffer_bytes : 0);
+    return 12 + 8 + json_bytes + (layout->buffer_bytes ? 8 + layout->buffer_bytes : 0);
+}
+
+size_t csg_glb_json(const csg_gltf_layout *layout, char *text)
+{
+    size_t length = csg_gltf_json(layout, false, text);
+    size_t wanted = layout->index_count && !layout->draco ? (size_t)CSG_GLB_JSON_BYTES : length;
+    while (length < wanted || length % 4)
+        text[length++] = ' ';
+    return length;
+}
+
+uint8_t *csg_glb_put_head(uint8_t *at, const csg_gltf_layout *layout, const char *json,
+                          size_t json_bytes)
+{
+    memcpy(at, "glTF", 4);
+    at = csg_store_u32(at + 4, 2);
+    at = csg_store_u32(at, (uint32_t)csg_glb_bytes(layout, json_bytes));
+    at = csg_store_u32(at, (uint32_t)json_bytes);
+    memcpy(at, "JSON", 4);
+    memcpy(at + 4, json, json_bytes);
+    at += 4 + json_bytes;
+    if (!layout->buffer_bytes)
+        return at;
+    at = csg_store_u32(at, (uint32_t)layout->buffer_bytes);
+    memcpy(at, "BIN", 4);
+    return at + 4;
 }
 
 static csgm_status put_glb(csg_sink *sink, const csg_gltf_layout *layout,
                            const csgm_mesh_view *mesh)
 {
-    char json[CSG_GLTF_JSON_MOST];
-    size_t length = csg_gltf_json(layout, false, json);
-    uint64_t total = glb_size(layout, length);
-    if (total > glb_most)
+    char json[CSG_GLTF_JSON_MOST + 4];
+    size_t length = csg_glb_json(layout, json);
+    uint64_t total = csg_glb_bytes(layout, length);
+    if (total > CSG_GLB_MOST)
         return csg_write_refuse(sink, "write PLY instead, which has no such limit",
                                 "GLB files end at 4 GiB, this one would have %llu bytes",
                                 (unsigned long long)total);
-    while (length % 4)
-        json[length++] = ' ';
-    uint8_t *at = csg_sink_room(sink, 20);
-    memcpy(at, "glTF", 4);
-    at = csg_store_u32(csg_store_u32(at + 4, 2), (uint32_t)total);
-    at = csg_store_u32(at, (uint32_t)length);
-    memcpy(at, "JSON", 4);
-    csg_sink_took(sink, at + 4);
-    csg_sink_put(sink, json, length);
+    csg_sink_took(sink, csg_glb_put_head(csg_sink_room(sink, length + CSG_GLB_HEAD_MOST), layout,
+                                         json, length));
     if (!layout->buffer_bytes)
         return CSGM_OK;
-    at = csg_store_u32(csg_sink_room(sink, 8), (uint32_t)layout->buffer_bytes);
-    memcpy(at, "BIN", 4);
-    csg_sink_took(sink, at + 4);
     put_body(sink, layout, mesh, false);
     return CSGM_OK;
 }
@@ -269,7 +280,7 @@ static csgm_status put_gltf(csg_sink *sink, const csg_gltf_layout *layout,
                             const csgm_mesh_view *mesh)
 {
     char json[CSG_GLTF_JSON_MOST];
-    if (layout->buffer_bytes > glb_most)
+    if (layout->buffer_bytes > CSG_GLB_MOST)
         return csg_write_refuse(sink, "write PLY instead, which has no such limit",
                                 "glTF buffers end at 4 GiB, this one would have %llu bytes",
                                 (unsigned long long)layout->buffer_bytes);
@@ -337,14 +348,14 @@ static csgm_status write_compressed(csg_sink *sink, csg_gltf_layout *layout,
 static csgm_status write_document(csg_sink *sink, const csgm_mesh_view *mesh,
                                   const csgm_write_options *options, container_fn *container)
 {
-    csg_gltf_layout layout = measure(mesh);
+    csg_gltf_layout layout = csg_gltf_measure(mesh);
     if (!mesh->triangle_count) { /* a buffer must not be empty, nor a mesh */
         layout = (csg_gltf_layout){0};
         return container(sink, &layout, mesh);
     }
     position_range(&layout, mesh);
     layout.opaque = all_opaque(mesh);
-    node_matrix(&layout, &mesh->origin, options);
+    csg_gltf_place(&layout, &mesh->origin, options);
     if (options->draco)
         return write_compressed(sink, &layout, mesh, options, container);
     return container(sink, &layout, mesh);
@@ -352,8 +363,8 @@ static csgm_status write_document(csg_sink *sink, const csgm_mesh_view *mesh,
 
 uint64_t csg_glb_size(const csgm_mesh_view *mesh)
 {
-    csg_gltf_layout layout = measure(mesh);
-    return glb_size(&layout, CSG_GLTF_JSON_MOST);
+    csg_gltf_layout layout = csg_gltf_measure(mesh);
+    return csg_glb_bytes(&layout, CSG_GLTF_JSON_MOST);
 }
 
 csgm_status csg_glb_write(csg_sink *sink, const csgm_mesh_view *mesh,

@@ -5,7 +5,7 @@
  */
 #include "io/writers.h"
 
-static void put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii)
+void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii)
 {
     const char *real = csg_view_is_offset(mesh) ? "double" : "float";
     csg_sink_format(sink, "ply\nformat %s 1.0\ncomment %s\nelement vertex %llu\n",
@@ -23,36 +23,52 @@ static void put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii)
 
 /* ---- binary -------------------------------------------------------------------------------- */
 
-static void put_binary_vertices(csg_sink *sink, const csgm_mesh_view *mesh)
+size_t csg_ply_vertex_bytes(const csgm_mesh_view *mesh)
 {
-    enum { VERTEX_MOST = 3 * 8 + 3 * 4 + 4 };
+    return (csg_view_is_offset(mesh) ? 24u : 12u) + (mesh->normals ? 12u : 0u) +
+           (mesh->colors ? 4u : 0u);
+}
+
+void csg_ply_pack_vertices(uint8_t *at, const csgm_mesh_view *mesh, uint64_t first, uint64_t count)
+{
     bool offset = csg_view_is_offset(mesh);
-    const float *position = mesh->positions, *normal = mesh->normals;
-    const uint8_t *color = mesh->colors;
-    for (uint64_t i = 0; i < mesh->vertex_count; i++, position += 3) {
-        uint8_t *at = csg_sink_room(sink, VERTEX_MOST);
+    for (uint64_t i = first; i < first + count; i++) {
         for (int k = 0; k < 3; k++)
             at = offset ? csg_store_f64(at, csg_view_coordinate(mesh, i, k))
-                        : csg_store_f32(at, position[k]);
-        for (int k = 0; normal && k < 3; k++)
-            at = csg_store_f32(at, normal[3 * i + (uint64_t)k]);
-        if (color) {
-            memcpy(at, color + 4 * i, 4);
+                        : csg_store_f32(at, mesh->positions[3 * i + (uint64_t)k]);
+        for (uint64_t k = 0; mesh->normals && k < 3; k++)
+            at = csg_store_f32(at, mesh->normals[3 * i + k]);
+        if (mesh->colors) {
+            memcpy(at, mesh->colors + 4 * i, 4);
             at += 4;
         }
-        csg_sink_took(sink, at);
     }
 }
 
-static void put_binary_faces(csg_sink *sink, const csgm_mesh_view *mesh)
+void csg_ply_pack_faces(uint8_t *at, const uint32_t *indices, uint64_t count)
 {
-    const uint32_t *corner = mesh->indices;
-    for (uint64_t i = 0; i < mesh->triangle_count; i++, corner += 3) {
-        uint8_t *at = csg_sink_room(sink, 1 + 3 * 4);
+    for (uint64_t i = 0; i < count; i++, indices += 3) {
         *at++ = 3;
         for (int k = 0; k < 3; k++)
-            at = csg_store_u32(at, corner[k]);
-        csg_sink_took(sink, at);
+            at = csg_store_u32(at, indices[k]);
+    }
+}
+
+static void put_binary(csg_sink *sink, const csgm_mesh_view *mesh)
+{
+    enum { CHUNK = 256 };
+    size_t stride = csg_ply_vertex_bytes(mesh);
+    for (uint64_t i = 0; i < mesh->vertex_count; i += CHUNK) {
+        uint64_t count = mesh->vertex_count - i < CHUNK ? mesh->vertex_count - i : CHUNK;
+        uint8_t *at = csg_sink_room(sink, CHUNK * stride);
+        csg_ply_pack_vertices(at, mesh, i, count);
+        csg_sink_took(sink, at + count * stride);
+    }
+    for (uint64_t i = 0; i < mesh->triangle_count; i += CHUNK) {
+        uint64_t count = mesh->triangle_count - i < CHUNK ? mesh->triangle_count - i : CHUNK;
+        uint8_t *at = csg_sink_room(sink, CHUNK * CSG_PLY_FACE_BYTES);
+        csg_ply_pack_faces(at, mesh->indices + 3 * i, count);
+        csg_sink_took(sink, at + count * CSG_PLY_FACE_BYTES);
     }
 }
 
@@ -94,20 +110,28 @@ static void put_ascii_faces(csg_sink *sink, const csgm_mesh_view *mesh)
     }
 }
 
+csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh)
+{
+    if (mesh->vertex_count <= INT32_MAX)
+        return CSGM_OK;
+    csg_diag_plain(&context->diags, CSG_DIAG_FORMAT_LIMIT, file, "lower the resolution",
+                   "PLY counts vertices up to 2147483647, the mesh has %llu",
+                   (unsigned long long)mesh->vertex_count);
+    return CSGM_ERR_UNSUPPORTED;
+}
+
 csgm_status csg_ply_write(csg_sink *sink, const csgm_mesh_view *mesh,
                           const csgm_write_options *options)
 {
-    if (mesh->vertex_count > INT32_MAX)
-        return csg_write_refuse(sink, "lower the resolution",
-                                "PLY counts vertices up to 2147483647, the mesh has %llu",
-                                (unsigned long long)mesh->vertex_count);
-    put_header(sink, mesh, options->ascii);
+    csgm_status status = csg_ply_check(sink->context, sink->name, mesh);
+    if (status != CSGM_OK)
+        return status;
+    csg_ply_put_header(sink, mesh, options->ascii);
     if (options->ascii) {
         put_ascii_vertices(sink, mesh);
         put_ascii_faces(sink, mesh);
     } else {
-        put_binary_vertices(sink, mesh);
-        put_binary_faces(sink, mesh);
+        put_binary(sink, mesh);
     }
     return CSGM_OK;
 }

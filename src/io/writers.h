@@ -21,6 +21,14 @@ typedef csgm_status csg_write_fn(csg_sink *sink, const csgm_mesh_view *mesh,
 csg_write_fn csg_obj_write, csg_ply_write, csg_stl_write, csg_off_write, csg_gltf_write,
     csg_glb_write, csg_drc_write;
 
+/* Binary PLY in pieces. The header looks at counts, the origin and which arrays there are. */
+enum { CSG_PLY_FACE_BYTES = 1 + 3 * 4 };
+csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh);
+void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii);
+size_t csg_ply_vertex_bytes(const csgm_mesh_view *mesh);
+void csg_ply_pack_vertices(uint8_t *at, const csgm_mesh_view *mesh, uint64_t first, uint64_t count);
+void csg_ply_pack_faces(uint8_t *at, const uint32_t *indices, uint64_t count);
+
 /* Reports why this mesh cannot be written in this format. */
 csgm_status csg_write_refuse(csg_sink *sink, const char *hint, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
