@@ -103,10 +103,12 @@ static void damage(const sample *s, const uint8_t *bytes, size_t size)
 {
     io_context io;
     io_context_init(&io, MEMORY_LIMIT);
-    csg_random random = {size};
+    csg_random random = {size}; /* the seed */
     uint8_t *copy = malloc(2 * size + 64);
     assert_non_null(copy);
-    for (int round = 0; round < 2000; round++) {
+    const char *asked = getenv("CSGMESH_ROUNDS"); /* more, for a long run by hand */
+    int rounds = asked ? atoi(asked) : 2000;
+    for (int round = 0; round < rounds; round++) {
         memcpy(copy, bytes, size);
         size_t length = size;
         uint32_t edits = 1 + csg_random_below(&random, 4);
@@ -279,6 +281,41 @@ static void deep_json_is_refused(void **state)
     io_context_check(&io);
 }
 
+/* Headers of tiny files that tell of hundreds of millions of faces: sequential and edgebreaker. */
+static void draco_counts_are_not_believed(void **state)
+{
+    (void)state;
+    if (!csg_format_available(CSGM_FORMAT_DRC, true))
+        skip();
+    static const uint8_t heads[][11] = {{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0},
+                                        {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0}};
+    io_context io;
+    io_context_init(&io, MEMORY_LIMIT);
+    for (size_t h = 0; h < 2; h++)
+        for (uint32_t first = 0; first < 3; first++)
+            for (uint8_t fill = 0; fill < 4; fill++) {
+                uint8_t bytes[64] = {0};
+                memcpy(bytes, heads[h], sizeof *heads);
+                size_t at = sizeof *heads;
+                bytes[at] = (uint8_t)first; /* edgebreaker: the traversal's kind */
+                at += h;
+                for (int count = 0; count < 3; count++) {
+                    memset(bytes + at, 0xFF, 4); /* 2^28 - 1 as a variable-length number */
+                    bytes[at + 3] = 0x7F;
+                    at += 4;
+                }
+                memset(bytes + at, fill, sizeof bytes - at);
+                assert_int_not_equal(read_bytes(&io, "a.drc", bytes, sizeof bytes), CSGM_OK);
+            }
+#ifndef __SANITIZE_ADDRESS__
+    struct rusage usage;
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    if (usage.ru_maxrss > RSS_MOST_KIB)
+        fail_msg("%ld KiB were taken", usage.ru_maxrss);
+#endif
+    io_context_check(&io);
+}
+
 /* Every allocation of a read fails once. */
 static void memory_may_run_out(void **state)
 {
@@ -312,6 +349,7 @@ int main(void)
         cmocka_unit_test(every_reader_survives),
         cmocka_unit_test(lies_are_told_apart),
         cmocka_unit_test(deep_json_is_refused),
+        cmocka_unit_test(draco_counts_are_not_believed),
         cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
