@@ -32,11 +32,11 @@ need_packages() {
     done
     [ -n "$missing" ] || return 0
     say "installing:$missing"
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 update >&2 ||
+    quietly as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 update ||
         say "apt-get update failed; trying to install all the same"
     # shellcheck disable=SC2086 # one word a package
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y -o DPkg::Lock::Timeout=300 \
-        --no-install-recommends install $missing >&2 </dev/null
+    quietly as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y \
+        -o DPkg::Lock::Timeout=300 --no-install-recommends install $missing
 }
 
 # On Debian and its like; elsewhere the packages are the user's task.

@@ -16,6 +16,7 @@ SCENES = os.environ["CSGMESH_SCENES"]
 FORMATS = ["obj", "ply", "stl", "off", "gltf", "glb", "drc"]
 
 BALL = "sphere(r = 1);\n"
+ENDLESS = "for (i = [0 : 99999]) for (j = [0 : 99999]) if (i < 0) sphere(i);\n"
 BLEND = """union(blend = 0.3) {
   sphere(r = 1);
   translate([0.9, 0, 0]) color("red") cube(0.8);

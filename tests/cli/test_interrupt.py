@@ -34,7 +34,7 @@ class Interrupt(cli.CliTest):
             self.interrupted("a.txt", "--no-prune", "-r", "3000", "-o", "a.ply", number=number)
 
     def test_while_evaluating(self):
-        self.write("a.txt", "for (i = [0 : 1e12]) if (i < 0) sphere(i);\n")
+        self.write("a.txt", cli.ENDLESS)
         self.interrupted("a.txt", "-o", "a.ply")
 
     def test_while_writing(self):

@@ -169,7 +169,7 @@ class Dependencies(cli.CliTest):
 
     def test_include_dir(self):
         self.write("c.txt", "use <b#$.txt>\nball();\n")
-        self.assert_status(self.run_in("check", "c.txt"), 1)
+        self.assert_status(self.run_in("check", "c.txt"), 2)
         self.assert_status(self.run_in("check", "-I", "lib dir", "c.txt"), 0)
 
     def make(self, *arguments):
