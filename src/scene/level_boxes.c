@@ -13,6 +13,7 @@
 
 #include <string.h>
 
+#include "scene/half_spaces.h"
 #include "scene/primitive_box.h"
 
 enum {
@@ -174,9 +175,10 @@ static csg_box union_box(const table *t, const csg_node *node, double level)
     return box;
 }
 
-/* Outside of a subtracted half-space is a half-space too: {-f >= -level}, where that is what the
- * child is; all of space otherwise. */
-static csg_box outside_box(const table *t, csg_node_id child, csg_affine map, double level)
+/* Whether the child is a half-space, placed or coloured or not, and which one in the frame that
+ * `map` leads to: {f >= -level}, or {-f >= -level} where it is subtracted. */
+static bool is_half_space(const table *t, csg_node_id child, csg_affine map, double level,
+                          bool subtracted, csg_half_space *out)
 {
     const csgm_scene *scene = t->scene;
     const csg_node *node = &scene->nodes[child];
@@ -187,11 +189,21 @@ static csg_box outside_box(const table *t, csg_node_id child, csg_affine map, do
         }
         node = &scene->nodes[csg_scene_children(scene, node)[0]];
     }
-    if (node->kind != CSG_NODE_PLANE)
-        return csg_box_all();
+    csg_affine inverse;
+    if (node->kind != CSG_NODE_PLANE || !isfinite(level) || !csg_affine_invert(map, &inverse))
+        return false;
     const double *v = csg_scene_parameters(scene, node);
-    const double flipped[4] = {-v[0], -v[1], -v[2], -v[3]};
-    return csg_primitive_box(CSG_NODE_PLANE, flipped, &map, level);
+    double sign = subtracted ? -1 : 1;
+    csg_half_space own = {{sign * v[0], sign * v[1], sign * v[2]}, sign * v[3] + level};
+    *out = csg_half_space_map(own, &inverse);
+    return true;
+}
+
+static csg_box half_space_box(const csg_half_space *h)
+{
+    const double v[4] = {h->normal.x, h->normal.y, h->normal.z, h->d};
+    const csg_affine identity = csg_affine_identity();
+    return csg_primitive_box(CSG_NODE_PLANE, v, &identity, 0);
 }
 
 static csg_affine frame_of(const table *t, size_t node)
@@ -214,18 +226,27 @@ static csg_box transform_box(const table *t, const csg_node *node, double level)
     return csg_affine_box(map, box_at(t, child, level));
 }
 
+/* The first operand, or all of an intersection, cut by all half-spaces among the operands. */
 static csg_box cut_box(const table *t, size_t index, double level)
 {
     const csg_node *node = &t->scene->nodes[index];
     const csg_node_id *children = csg_scene_children(t->scene, node);
-    csg_box box = box_at(t, children[0], level);
-    for (uint32_t k = 1; k < node->child_count; k++) {
-        csg_box other = node->kind == CSG_NODE_INTERSECTION
-                            ? box_at(t, children[k], level)
-                            : outside_box(t, children[k], frame_of(t, index), level);
-        box = csg_box_intersect(box, other);
+    csg_half_space planes[CSG_MOST_HALF_SPACES];
+    size_t plane_count = 0;
+    csg_affine frame = frame_of(t, index);
+    csg_box box = csg_box_all();
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        bool subtracted = node->kind == CSG_NODE_DIFFERENCE && k > 0;
+        csg_half_space h;
+        if (!subtracted)
+            box = csg_box_intersect(box, box_at(t, children[k], level));
+        if (!is_half_space(t, children[k], frame, level, subtracted, &h))
+            continue;
+        box = csg_box_intersect(box, half_space_box(&h));
+        if (plane_count < CSG_MOST_HALF_SPACES) /* leaving some out is safe */
+            planes[plane_count++] = h;
     }
-    return box;
+    return plane_count ? csg_half_spaces_box(planes, plane_count, box) : box;
 }
 
 static csg_box node_box(const table *t, size_t index, double level)

@@ -122,6 +122,53 @@ static void test_half_spaces(void **state)
                  cube(1));
 }
 
+static csgm_scene *octahedron(csg_node_kind kind, unsigned faces)
+{
+    csg_node_id planes[9];
+    double third = sqrt(1.0 / 3);
+    size_t count = 0;
+    if (kind == CSG_NODE_DIFFERENCE)
+        planes[count++] = sphere(0, 0, 0, 9);
+    for (unsigned i = 0; i < faces; i++) {
+        double out = kind == CSG_NODE_DIFFERENCE ? -third : third;
+        planes[count++] = primitive(CSG_NODE_PLANE, i & 1 ? out : -out, i & 2 ? out : -out,
+                                    i & 4 ? out : -out, kind == CSG_NODE_DIFFERENCE ? -1 : 1);
+    }
+    csg_node_id node = csg_build_operator(&builder, kind, sharp, planes, count, NOWHERE);
+    csg_affine move = csg_affine_translate(csg_vec3_make(10, 0, 0));
+    return test_seal(&builder, csg_build_transform(&builder, &move, node, NOWHERE));
+}
+
+/* Oblique planes bound a solid together; all but one of an octahedron's do too, half of them not.
+ */
+static void test_polytopes(void **state)
+{
+    double reach = sqrt(3);
+    csg_box expected = {{10 - reach, -reach, -reach}, {10 + reach, reach, reach}};
+    for (csg_node_kind kind = CSG_NODE_INTERSECTION; kind <= CSG_NODE_DIFFERENCE; kind++) {
+        csgm_scene *scene = octahedron(kind, 8);
+        check_near_box(csg_bounds_of_solid(scene), expected, 1e-7);
+        csg_scene_destroy(scene);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    }
+    csgm_scene *scene = octahedron(CSG_NODE_INTERSECTION, 7);
+    assert_true(csg_box_is_finite(csg_bounds_of_solid(scene)));
+    assert_true(csg_box_contains_box(csg_bounds_of_solid(scene), expected));
+    csg_scene_destroy(scene);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    scene = octahedron(CSG_NODE_INTERSECTION, 4);
+    assert_true(csg_box_contains_box(csg_bounds_of_solid(scene), csg_box_all()));
+    csg_scene_destroy(scene);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    csg_node_id above = primitive(CSG_NODE_PLANE, 0, -1, 0, -1);
+    csg_node_id below = primitive(CSG_NODE_PLANE, -1e-5, 1, 0, 0); /* only where x > 1e5 */
+    scene = test_seal(&builder, join(CSG_NODE_INTERSECTION, sharp, above, below));
+    csg_vec3 far_out = {1e6, 5, 0};
+    assert_true(test_sample(scene, far_out).value > 0);
+    assert_true(csg_box_contains_box(csg_bounds_of_solid(scene), (csg_box){far_out, far_out}));
+    csg_scene_destroy(scene);
+}
+
 static void test_blended_unions_grow_only_near(void **state)
 {
     const csg_blend round = {CSG_BLEND_ROUND, 0.5};
@@ -326,6 +373,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_primitives),
         TEST(test_half_spaces),
+        TEST(test_polytopes),
         TEST(test_blended_unions_grow_only_near),
         TEST(test_ancestors_cut),
         TEST(test_turned_groups),
