@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * What the mesh tests share: from a scene made by hand to an inspected mesh, in a context with
+ * workers, that must give all its memory back.
+ */
+#ifndef TEST_MESH_SUPPORT_H
+#define TEST_MESH_SUPPORT_H
+
+#include "base/pool.h"
+#include "field/dispatch.h"
+#include "mesh/build.h"
+#include "mesh/inspect.h"
+#include "scene/random_scene.h"
+#include "scene/scene_support.h"
+
+typedef struct mesh_case {
+    csgm_context context;
+    csg_scene_builder builder;
+    csgm_scene *scene;
+    csgm_field *field;
+    csgm_mesh *mesh; /* of the last mesh_build */
+    csgm_mesh_stats stats;
+    csgm_mesh_check check;
+    int findings;
+    uint16_t last_code; /* of the last finding, 0 = none */
+} mesh_case;
+
+void mesh_case_begin(mesh_case *c, uint32_t threads);
+void mesh_case_compile(mesh_case *c, csg_node_id root);
+void mesh_case_end(mesh_case *c);
+
+/* The defaults of the public interface, at another resolution. */
+csgm_mesh_options mesh_options(uint32_t resolution);
+
+/* A second call replaces the mesh of the first. */
+csgm_status mesh_build(mesh_case *c, const csgm_mesh_options *options);
+/* Must succeed; fills check, and the mesh must be a closed oriented 2-manifold without unused
+ * vertices, with unit normals. */
+void mesh_build_closed(mesh_case *c, const csgm_mesh_options *options, const char *what);
+
+/* Vertex in the scene's frame. */
+csg_vec3 mesh_vertex(const mesh_case *c, uint64_t i);
+/* Largest |f| of the reference over the vertices. */
+double mesh_largest_error(const mesh_case *c);
+void mesh_assert_same(const csgm_mesh *a, const csgm_mesh *b, const char *what);
+
+/* ---- scenes in short ----------------------------------------------------------------------- */
+
+csg_node_id make_sphere(mesh_case *c, double r);
+csg_node_id make_box(mesh_case *c, double hx, double hy, double hz);
+csg_node_id make_cylinder(mesh_case *c, double r, double half_height);
+csg_node_id make_half_space(mesh_case *c, double nx, double ny, double nz, double d);
+csg_node_id moved(mesh_case *c, csg_node_id node, double x, double y, double z);
+csg_node_id turned(mesh_case *c, csg_node_id node, double angle_deg, csg_vec3 axis);
+csg_node_id joined(mesh_case *c, csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b);
+
+#define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})
+#define ROUND(w) ((csg_blend){CSG_BLEND_ROUND, (w)})
+
+#endif
