@@ -429,7 +429,7 @@ static bool touches_bounds(const build *b)
 static void warn(build *b)
 {
     csg_diag_sink *diags = &b->context->diags;
-    if (!b->counts.triangle_count && !csg_box_is_empty(b->field->bounds))
+    if (!b->counts.triangle_count && (b->clipped || !csg_box_is_empty(b->field->bounds)))
         csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
                        "the solid may lie outside the bounds, or be thinner than a cell: try a "
                        "higher -r",
