@@ -189,7 +189,8 @@ static void walk_edges(inspection *in)
 static void count_fans(inspection *in)
 {
     uint64_t used = 0;
-    memset(in->fans, 0, in->mesh->vertex_count);
+    if (in->mesh->vertex_count)
+        memset(in->fans, 0, in->mesh->vertex_count);
     for (uint64_t c = 0; c < in->corner_count; c++) {
         const uint32_t *v = triangle_at(in, c / 3);
         if (in->parent[c] != c || !is_sound(in, v))
