@@ -15,8 +15,6 @@
 
 #include "field/formulas.h"
 
-#define CONCATENATE_(a, b) a##b
-#define CONCATENATE(a, b) CONCATENATE_(a, b)
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
 
@@ -514,11 +512,11 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     }
 }
 
-extern const csg_kernel CONCATENATE(csg_kernel_, CSG_KERNEL);
-const csg_kernel CONCATENATE(csg_kernel_, CSG_KERNEL) = {
+const csg_kernel CSG_THIS_KERNEL = {
     .name = STRING(CSG_KERNEL),
     .values = values,
     .gradients = gradients,
     .colors = colors,
     .intervals = intervals,
+    .roots = CSG_THIS_ROOTS,
 };

@@ -23,6 +23,8 @@ static inline size_t csg_kernel_arrays(uint32_t depth)
  * tapes that would need megabytes. */
 size_t csg_kernel_scratch_floats(uint32_t depth);
 
+typedef struct csg_edges csg_edges; /* roots.h */
+
 typedef struct csg_kernel {
     const char *name;
 
@@ -47,6 +49,24 @@ typedef struct csg_kernel {
     void (*intervals)(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch);
+
+    /* Fills x, y, z of edges with ends of different signs. tolerance: |f| small enough to stop.
+     * Returns point evaluations made. */
+    uint64_t (*roots)(const csg_tape *tape, csg_edges *edges, float tolerance, float *scratch,
+                      size_t scratch_floats);
 } csg_kernel;
+
+/* ---- inside the builds: names that end in the build's own ---------------------------------- */
+
+#ifdef CSG_KERNEL
+#define CSG_CONCATENATE_(a, b) a##b
+#define CSG_CONCATENATE(a, b) CSG_CONCATENATE_(a, b)
+#define CSG_THIS_KERNEL CSG_CONCATENATE(csg_kernel_, CSG_KERNEL)
+#define CSG_THIS_ROOTS CSG_CONCATENATE(csg_roots_, CSG_KERNEL)
+
+extern const csg_kernel CSG_THIS_KERNEL;
+uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *edges, float tolerance, float *scratch,
+                        size_t scratch_floats);
+#endif
 
 #endif

@@ -7,6 +7,13 @@
 
 enum { N = CSG_BLOCK_SAMPLES };
 
+/* count copies of the first `period` floats, in place. */
+static void repeat(float *array, size_t period, size_t count)
+{
+    for (size_t i = 1; i < count; i++)
+        memcpy(array + i * period, array, period * sizeof(float));
+}
+
 static void fill_coordinates(csg_block_samples *samples, const csg_lattice *lattice,
                              const uint32_t at[3])
 {
@@ -14,14 +21,15 @@ static void fill_coordinates(csg_block_samples *samples, const csg_lattice *latt
     for (int axis = 0; axis < 3; axis++)
         for (uint32_t i = 0; i < N; i++)
             line[axis][i] = csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + i);
-    float *x = samples->x, *y = samples->y, *z = samples->z;
+    memcpy(samples->x, line[0], sizeof line[0]);
+    for (int j = 0; j < N; j++)
+        for (int i = 0; i < N; i++)
+            samples->y[j * N + i] = line[1][j];
+    repeat(samples->x, N, N * N);
+    repeat(samples->y, N * N, N);
     for (int k = 0; k < N; k++)
-        for (int j = 0; j < N; j++, x += N, y += N, z += N)
-            for (int i = 0; i < N; i++) {
-                x[i] = line[0][i];
-                y[i] = line[1][j];
-                z[i] = line[2][k];
-            }
+        for (int i = 0; i < N * N; i++)
+            samples->z[k * N * N + i] = line[2][k];
     for (int i = CSG_BLOCK_POINTS; i < CSG_BLOCK_POINTS_PADDED; i++) {
         samples->x[i] = samples->x[0];
         samples->y[i] = samples->y[0];

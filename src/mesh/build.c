@@ -41,6 +41,7 @@ typedef struct build {
     csg_octree octree;
     csg_block_index index;
     csg_cell_tables tables;
+    csg_marching_places places;
     csg_marching marching;
     csg_mesh_counts counts;
     csgm_mesh *mesh; /* NULL when a receiver takes it */
@@ -324,6 +325,7 @@ static csgm_status create_workers(build *b)
         b->workers[i].scratch = csg_memory_alloc(memory, b->scratch_floats * sizeof(float));
         if (!b->workers[i].room || !b->workers[i].scratch)
             return csg_context_no_memory(b->context);
+        memset(b->workers[i].room, 0, sizeof(csg_marching_room));
     }
     return CSGM_OK;
 }
@@ -356,6 +358,7 @@ static void prepare_marching(build *b)
         .field = b->field,
         .lattice = &b->lattice,
         .tables = &b->tables,
+        .places = &b->places,
         .blocks = b->octree.blocks,
         .index = &b->index,
         .shift = csg_vec3_sub(b->field->center, b->counts.origin),
@@ -383,6 +386,7 @@ static csgm_status begin_output(build *b)
 static csgm_status make_mesh(build *b)
 {
     csg_cell_tables_make(&b->tables);
+    csg_marching_places_make(&b->places, &b->tables);
     csgm_status status = number_blocks(b);
     if (status == CSGM_OK)
         status = begin_output(b);

@@ -170,8 +170,7 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
     collect_edges(m, block, e);
     if (!e->count)
         return 0;
-    uint64_t evaluations =
-        csg_roots_find(e, m->kernel, &tape, m->tolerance, scratch, scratch_floats);
+    uint64_t evaluations = m->kernel->roots(&tape, e, m->tolerance, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
                           room->channels[3]};
@@ -190,8 +189,20 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
 /* ---- triangles
  * ----------------------------------------------------------------------------------- */
 
-/* Vertex numbers of one neighbour's edges that this block's cells use. shift: 8 on the axes where
- * it is the upper neighbour; there only its first layer touches this block. */
+/* The block's own edges are numbered in the order of their ranks. */
+static void number_own_edges(const csg_block *block, uint32_t vertex[3][CSG_BLOCK_POINTS])
+{
+    uint32_t next = block->first_vertex;
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < E; k++)
+            for (uint64_t rest = block->crossed[axis][k]; rest; rest &= rest - 1) {
+                int bit = __builtin_ctzll(rest);
+                vertex[axis][(k * N + (bit >> 3)) * N + (bit & 7)] = next++;
+            }
+}
+
+/* Vertex numbers of an upper neighbour's edges that this block's cells use. shift: 8 on the axes
+ * where it lies above; there only its first layer touches this block. */
 static void number_edges(const csg_block *from, const int shift[3],
                          uint32_t vertex[3][CSG_BLOCK_POINTS])
 {
@@ -219,42 +230,58 @@ static void number_edges(const csg_block *from, const int shift[3],
 static void number_all_edges(const csg_marching *m, const csg_block *block,
                              uint32_t vertex[3][CSG_BLOCK_POINTS])
 {
-    for (unsigned octant = 0; octant < 8; octant++) {
+    number_own_edges(block, vertex);
+    for (unsigned octant = 1; octant < 8; octant++) {
         uint32_t at[3];
         int shift[3];
         for (int axis = 0; axis < 3; axis++) {
             at[axis] = block->at[axis] + (octant >> axis & 1);
             shift[axis] = (octant >> axis & 1) ? E : 0;
         }
-        const csg_block *from = octant ? csg_block_index_find(m->index, m->blocks, at) : block;
+        const csg_block *from = csg_block_index_find(m->index, m->blocks, at);
         if (from)
             number_edges(from, shift, vertex);
     }
 }
 
+void csg_marching_places_make(csg_marching_places *places, const csg_cell_tables *tables)
+{
+    for (int pattern = 0; pattern < 256; pattern++)
+        for (int c = 0; c < CSG_CELL_MOST_INDICES; c++) {
+            int edge = tables->edge[pattern][c];
+            const uint8_t *o = tables->offset[edge];
+            places->place[pattern][c] =
+                (uint16_t)(edge / 4 * CSG_BLOCK_POINTS + (o[2] * N + o[1]) * N + o[0]);
+        }
+}
+
+/* Two triangles, the most frequent number, are copied without asking; a third and more where there
+ * are. Unused places of a pattern name some vertex of the table. */
+static uint32_t *put_cell(uint32_t *out, const uint32_t *vertex, const uint16_t *place, int count)
+{
+    enum { USUAL = 6 };
+    for (int c = 0; c < USUAL; c++)
+        out[c] = vertex[place[c]];
+    for (int c = USUAL; c < count; c++)
+        out[c] = vertex[place[c]];
+    return out + count;
+}
+
 void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_marching_room *room,
                             const csg_marching_output *out)
 {
-    const csg_cell_tables *tables = m->tables;
-    uint32_t *indices = out->indices;
-    /* Table edge -> place in `vertex`, relative to the cell. */
-    uint32_t place[CSG_CELL_EDGES];
-    for (int edge = 0; edge < CSG_CELL_EDGES; edge++) {
-        const uint8_t *o = tables->offset[edge];
-        place[edge] = (uint32_t)(edge / 4 * CSG_BLOCK_POINTS + (o[2] * N + o[1]) * N + o[0]);
-    }
-    number_all_edges(m, block, room->vertex);
     const uint32_t *vertex = room->vertex[0];
+    uint32_t *end = room->indices;
+    number_all_edges(m, block, room->vertex);
     for (int k = 0; k < E; k++)
         for (int j = 0; j < E; j++) {
             rows s = rows_of(block, j, k);
             for (unsigned rest = s.mixed; rest; rest &= rest - 1) {
                 int i = __builtin_ctz(rest);
                 unsigned pattern = pattern_of(&s, i);
-                const uint32_t *at = vertex + (k * N + j) * N + i;
-                int corners = 3 * tables->count[pattern];
-                for (int c = 0; c < corners; c++)
-                    *indices++ = at[place[tables->edge[pattern][c]]];
+                end = put_cell(end, vertex + (k * N + j) * N + i, m->places->place[pattern],
+                               3 * m->tables->count[pattern]);
             }
         }
+    memcpy(out->indices, room->indices, (size_t)(end - room->indices) * sizeof *end);
 }

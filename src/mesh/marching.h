@@ -5,8 +5,8 @@
 #ifndef CSG_MESH_MARCHING_H
 #define CSG_MESH_MARCHING_H
 
+#include "field/roots.h"
 #include "grid/octree.h"
-#include "mesh/roots.h"
 #include "mesh/tables.h"
 
 /* Which block is where: open addressing on block coordinates. */
@@ -23,6 +23,14 @@ void csg_block_index_release(csg_block_index *index);
 const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
                                       const uint32_t at[3]);
 
+/* The tables with each edge as the place of its vertex in csg_marching_room.vertex, relative to the
+ * cell's own. */
+typedef struct csg_marching_places {
+    uint16_t place[256][CSG_CELL_MOST_INDICES];
+} csg_marching_places;
+
+void csg_marching_places_make(csg_marching_places *places, const csg_cell_tables *tables);
+
 /* Triangles of the block's cells. */
 uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *tables);
 
@@ -33,11 +41,14 @@ typedef struct csg_marching_output {
     uint32_t *indices; /* of the block's first triangle */
 } csg_marching_output;
 
+enum { CSG_BLOCK_MOST_INDICES = 8 * 8 * 8 * CSG_CELL_MOST_INDICES };
+
 /* One thread's room. */
 typedef struct csg_marching_room {
     csg_edges edges;
     float channels[4][CSG_BLOCK_MOST_EDGES];
     uint32_t vertex[3][CSG_BLOCK_POINTS]; /* of crossed edges only */
+    uint32_t indices[CSG_BLOCK_MOST_INDICES + CSG_CELL_MOST_INDICES];
 } csg_marching_room;
 
 typedef struct csg_marching {
@@ -45,6 +56,7 @@ typedef struct csg_marching {
     const csgm_field *field;
     const csg_lattice *lattice;
     const csg_cell_tables *tables;
+    const csg_marching_places *places;
     csg_block *const *blocks;
     const csg_block_index *index;
     csg_vec3 shift;  /* field frame -> relative to the mesh's origin */

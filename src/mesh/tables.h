@@ -10,13 +10,17 @@
 
 #include <stdint.h>
 
-enum { CSG_CELL_EDGES = 12, CSG_CELL_MOST_TRIANGLES = 5 };
+enum {
+    CSG_CELL_EDGES = 12,
+    CSG_CELL_MOST_TRIANGLES = 5,
+    CSG_CELL_MOST_INDICES = 3 * CSG_CELL_MOST_TRIANGLES
+};
 
 typedef struct csg_cell_tables {
-    uint8_t count[256]; /* triangles; bit c of a pattern: corner c inside */
-    uint8_t edge[256][3 * CSG_CELL_MOST_TRIANGLES]; /* three edges a triangle, counter-clockwise
+    uint8_t count[256];                       /* triangles; bit c of a pattern: corner c inside */
+    uint8_t edge[256][CSG_CELL_MOST_INDICES]; /* three edges a triangle, counter-clockwise
                                                        from outside */
-    uint8_t offset[CSG_CELL_EDGES][3]; /* lower point of each edge, relative to the cell */
+    uint8_t offset[CSG_CELL_EDGES][3];        /* lower point of each edge, relative to the cell */
 } csg_cell_tables;
 
 void csg_cell_tables_make(csg_cell_tables *tables);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Where the surface crosses lattice edges: bracketed roots of the field along each edge, all edges
- * of a block in one batch. A root depends on its own edge only, not on the batch.
+ * of a block in one batch. A root depends on its own edge only, not on the batch. Built once per
+ * instruction set, like the kernels.
  */
-#ifndef CSG_MESH_ROOTS_H
-#define CSG_MESH_ROOTS_H
+#ifndef CSG_FIELD_ROOTS_H
+#define CSG_FIELD_ROOTS_H
 
 #include "field/kernel.h"
 
@@ -12,7 +13,7 @@ enum {
 };
 
 /* Edges from a to b = a + d, one coordinate of d not zero. Arrays of whole CSG_LANES. */
-typedef struct csg_edges {
+struct csg_edges {
     uint32_t count;
     float ax[CSG_BLOCK_MOST_EDGES], ay[CSG_BLOCK_MOST_EDGES], az[CSG_BLOCK_MOST_EDGES];
     float dx[CSG_BLOCK_MOST_EDGES], dy[CSG_BLOCK_MOST_EDGES], dz[CSG_BLOCK_MOST_EDGES];
@@ -22,12 +23,7 @@ typedef struct csg_edges {
     float ta[CSG_BLOCK_MOST_EDGES], tb[CSG_BLOCK_MOST_EDGES];
     float fa[CSG_BLOCK_MOST_EDGES], fb[CSG_BLOCK_MOST_EDGES];
     float moved[CSG_BLOCK_MOST_EDGES]; /* the end that the last step moved: -1 a, +1 b, 0 none */
-    uint8_t axis[CSG_BLOCK_MOST_EDGES];
     bool a_inside[CSG_BLOCK_MOST_EDGES];
-} csg_edges;
-
-/* Fills x, y, z. tolerance: |f| small enough to stop. Returns point evaluations made. */
-uint64_t csg_roots_find(csg_edges *edges, const csg_kernel *kernel, const csg_tape *tape,
-                        float tolerance, float *scratch, size_t scratch_floats);
+};
 
 #endif

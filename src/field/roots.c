@@ -2,10 +2,9 @@
  * The Illinois variant of regula falsi (Dowell and Jarratt 1971) on many edges at once. The end
  * that was kept twice has its value halved; lanes that are done stay as they are.
  */
-#include "mesh/roots.h"
+#include "field/roots.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { MOST_STEPS = 16 };
 
@@ -37,11 +36,11 @@ static void place(csg_edges *e)
     }
 }
 
-static void evaluate(csg_edges *e, const csg_kernel *kernel, const csg_tape *tape, float *out,
-                     float *scratch, size_t scratch_floats)
+static void evaluate(csg_edges *e, const csg_tape *tape, float *out, float *scratch,
+                     size_t scratch_floats)
 {
     place(e);
-    kernel->values(tape, e->x, e->y, e->z, e->count, out, scratch, scratch_floats);
+    CSG_THIS_KERNEL.values(tape, e->x, e->y, e->z, e->count, out, scratch, scratch_floats);
 }
 
 static void set_all(float *array, size_t count, float value)
@@ -85,8 +84,8 @@ static bool shrink(csg_edges *e, float tolerance)
     return open > 0;
 }
 
-uint64_t csg_roots_find(csg_edges *e, const csg_kernel *kernel, const csg_tape *tape,
-                        float tolerance, float *scratch, size_t scratch_floats)
+uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float tolerance, float *scratch,
+                        size_t scratch_floats)
 {
     if (!e->count)
         return 0;
@@ -96,16 +95,16 @@ uint64_t csg_roots_find(csg_edges *e, const csg_kernel *kernel, const csg_tape *
     set_all(e->ta, n, 0);
     set_all(e->tb, n, 1);
     set_all(e->t, n, 0);
-    evaluate(e, kernel, tape, e->fa, scratch, scratch_floats);
+    evaluate(e, tape, e->fa, scratch, scratch_floats);
     set_all(e->t, n, 1);
-    evaluate(e, kernel, tape, e->fb, scratch, scratch_floats);
+    evaluate(e, tape, e->fb, scratch, scratch_floats);
     for (size_t i = e->count; i < n; i++)
         e->fa[i] = e->fa[0], e->fb[i] = e->fb[0];
     set_all(e->moved, n, 0);
     set_all(e->f, n, INFINITY); /* no lane is done */
     for (int step = 0; step < MOST_STEPS; step++) {
         propose(e, tolerance);
-        evaluate(e, kernel, tape, e->f, scratch, scratch_floats);
+        evaluate(e, tape, e->f, scratch, scratch_floats);
         evaluations += e->count;
         for (size_t i = e->count; i < n; i++)
             e->f[i] = 0;
