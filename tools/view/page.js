@@ -11,7 +11,7 @@ const OVERSAMPLING = 2;
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.shadowMap.enabled = true;
-renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+renderer.shadowMap.type = THREE.VSMShadowMap;
 renderer.toneMapping = THREE.NeutralToneMapping;
 renderer.toneMappingExposure = 1.0;
 const surroundings = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment(), 0.04).texture;
@@ -36,11 +36,12 @@ function dress(model, wire) {
 
 function light(scene, center, radius) {
   const key = new THREE.DirectionalLight(0xffffff, 1.9);
-  key.position.copy(center).add(new THREE.Vector3(-0.9, 2.2, 1.5).multiplyScalar(radius));
+  key.position.copy(center).add(new THREE.Vector3(-0.9, 3.2, 1.3).multiplyScalar(radius));
   key.target.position.copy(center);
   key.castShadow = true;
   key.shadow.mapSize.set(2048, 2048);
-  key.shadow.radius = 6;
+  key.shadow.radius = 10;
+  key.shadow.blurSamples = 20;
   key.shadow.bias = -0.0004;
   key.shadow.normalBias = radius * 0.004;
   const box = key.shadow.camera;
@@ -106,7 +107,7 @@ async function render(model) {
   const center = box.getCenter(new THREE.Vector3());
   light(scene, center, radius);
   const floor = new THREE.Mesh(new THREE.PlaneGeometry(20 * radius, 20 * radius),
-    new THREE.ShadowMaterial({ opacity: 0.22 }));
+    new THREE.ShadowMaterial({ opacity: 0.2 }));
   floor.rotation.x = -Math.PI / 2;
   floor.position.set(center.x, box.min.y - 0.002 * radius, center.z);
   floor.receiveShadow = true;
