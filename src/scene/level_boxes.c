@@ -3,7 +3,8 @@
  * another by at most its support, so it asks its operands for boxes at up to three levels, and
  * those ask theirs. Each node therefore has a short sorted list of levels, planned from the root
  * down; a box for a larger level holds the one for a smaller, so a list that grows too long loses
- * the levels next to larger ones. Boxes are then computed from the leaves up, one per level
+ * the levels next to larger ones. (Leaves answer for any level.) Boxes are then computed from the
+ * leaves up, one per level
  * ("slot").
  *
  * Two uses: each node in its own frame; or all of the tree in the root's frame, with regions, the
@@ -50,9 +51,12 @@ typedef struct level_list {
     uint32_t count;
 } level_list;
 
+/* An infinite level needs no slot, its box is all of space. */
 static void add_level(level_list *list, double level)
 {
     uint32_t i = list->count;
+    if (!isfinite(level))
+        return;
     while (i > 0 && list->at[i - 1] > level)
         i--;
     if (i > 0 && list->at[i - 1] == level)
@@ -62,14 +66,18 @@ static void add_level(level_list *list, double level)
     list->count++;
 }
 
-/* Drops levels next to a larger one, but never the smallest, which matters most. */
+/* Drops levels next to one that is larger by little, but never the smallest, which matters most. */
 static void thin(level_list *list, uint32_t most)
 {
     while (list->count > most) {
-        uint32_t closest = most > 1 ? 1 : 0;
-        for (uint32_t i = closest; i + 1 < list->count; i++)
-            if (list->at[i + 1] - list->at[i] < list->at[closest + 1] - list->at[closest])
+        uint32_t closest = 1;
+        double gap = INFINITY;
+        for (uint32_t i = 1; i + 1 < list->count; i++) {
+            double here = (list->at[i + 1] - list->at[i]) / list->at[i + 1];
+            if (here < gap)
                 closest = i;
+            gap = fmin(gap, here);
+        }
         memmove(list->at + closest, list->at + closest + 1,
                 (list->count - closest - 1) * sizeof *list->at);
         list->count--;
@@ -119,7 +127,8 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
 static bool plan(table *t, const double *own)
 {
     const csgm_scene *scene = t->scene;
-    level_list list = {{own ? own[scene->root] : 0}, 1};
+    level_list list = {.count = 0};
+    add_level(&list, own ? own[scene->root] : 0);
     if (!store_levels(t, scene->root, &list))
         return false;
     for (size_t i = scene->node_count; i-- > 0;) {
@@ -138,17 +147,53 @@ static bool plan(table *t, const double *own)
     return true;
 }
 
-/* The box of a node for a level that was asked for, or for the next larger one that was kept. */
-static csg_box box_at(const table *t, csg_node_id node, double level)
+/* The node's slot for a level that was asked for, or for the next larger one that was kept. */
+static uint32_t slot_at(const table *t, csg_node_id node, double level)
 {
     slots s = t->nodes[node];
     uint32_t i = 0;
     while (i + 1 < s.count && t->levels[s.first + i] < level)
         i++;
-    return s.count ? t->boxes[s.first + i] : csg_box_all();
+    return s.first + i;
 }
 
 /* ---- boxes, from the leaves up ----------------------------------------------------------- */
+
+static csg_affine frame_of(const table *t, size_t node)
+{
+    bool turned = t->whole && t->frame[node] != CSG_NODE_NONE;
+    return turned ? t->to_root[t->frame[node]] : csg_affine_identity();
+}
+
+/* Where the node is a primitive, placed or coloured or not: its box at just this level. */
+static bool is_leaf_box(const table *t, csg_node_id id, double level, csg_box *box)
+{
+    const csgm_scene *scene = t->scene;
+    const csg_node *node = &scene->nodes[id];
+    csg_affine map = frame_of(t, id);
+    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
+        if (node->kind == CSG_NODE_TRANSFORM) {
+            map = csg_affine_multiply(map, scene->transforms[node->payload]);
+            level /= scene->scales[node->payload];
+        }
+        node = &scene->nodes[csg_scene_children(scene, node)[0]];
+    }
+    if (node->child_count)
+        return false;
+    *box = csg_primitive_box(node->kind, csg_scene_parameters(scene, node), &map, level);
+    return true;
+}
+
+static csg_box box_at(const table *t, csg_node_id node, double level)
+{
+    csg_box box;
+    if (!t->nodes[node].count || !isfinite(level))
+        return csg_box_all();
+    uint32_t slot = slot_at(t, node, level);
+    if (!is_leaf_box(t, node, level, &box))
+        return t->boxes[slot];
+    return t->whole ? csg_box_intersect(box, t->regions[slot]) : box;
+}
 
 /* Hull of the operands at `level` and of every pair's common part, one grown by the excess, the
  * other by the support. */
@@ -206,24 +251,11 @@ static csg_box half_space_box(const csg_half_space *h)
     return csg_primitive_box(CSG_NODE_PLANE, v, &identity, 0);
 }
 
-static csg_affine frame_of(const table *t, size_t node)
-{
-    bool turned = t->whole && t->frame[node] != CSG_NODE_NONE;
-    return turned ? t->to_root[t->frame[node]] : csg_affine_identity();
-}
-
 static csg_box transform_box(const table *t, const csg_node *node, double level)
 {
-    const csgm_scene *scene = t->scene;
-    csg_node_id child = csg_scene_children(scene, node)[0];
-    const csg_node *inner = &scene->nodes[child];
-    level /= scene->scales[node->payload];
-    if (t->whole)
-        return box_at(t, child, level);
-    const csg_affine *map = &scene->transforms[node->payload];
-    if (csg_node_is_primitive(inner->kind))
-        return csg_primitive_box(inner->kind, csg_scene_parameters(scene, inner), map, level);
-    return csg_affine_box(map, box_at(t, child, level));
+    csg_box box =
+        box_at(t, csg_scene_children(t->scene, node)[0], level / t->scene->scales[node->payload]);
+    return t->whole ? box : csg_affine_box(&t->scene->transforms[node->payload], box);
 }
 
 /* The first operand, or all of an intersection, cut by all half-spaces among the operands. */
@@ -252,21 +284,14 @@ static csg_box cut_box(const table *t, size_t index, double level)
 static csg_box node_box(const table *t, size_t index, double level)
 {
     const csg_node *node = &t->scene->nodes[index];
-    switch ((csg_node_kind)node->kind) {
-    case CSG_NODE_TRANSFORM:
+    csg_box box;
+    if (is_leaf_box(t, (csg_node_id)index, level, &box))
+        return box;
+    if (node->kind == CSG_NODE_TRANSFORM)
         return transform_box(t, node, level);
-    case CSG_NODE_COLOR:
+    if (node->kind == CSG_NODE_COLOR)
         return box_at(t, csg_scene_children(t->scene, node)[0], level);
-    case CSG_NODE_UNION:
-        return union_box(t, node, level);
-    case CSG_NODE_INTERSECTION:
-    case CSG_NODE_DIFFERENCE:
-        return cut_box(t, index, level);
-    default: {
-        csg_affine map = frame_of(t, index);
-        return csg_primitive_box(node->kind, csg_scene_parameters(t->scene, node), &map, level);
-    }
-    }
+    return node->kind == CSG_NODE_UNION ? union_box(t, node, level) : cut_box(t, index, level);
 }
 
 static void compute_upward(table *t)
@@ -284,12 +309,10 @@ static void compute_upward(table *t)
 
 static void widen_region(table *t, csg_node_id child, double level, csg_box by)
 {
-    slots s = t->nodes[child];
-    uint32_t i = 0;
-    while (i + 1 < s.count && t->levels[s.first + i] < level)
-        i++;
-    if (s.count)
-        t->regions[s.first + i] = csg_box_hull(t->regions[s.first + i], by);
+    if (!t->nodes[child].count || !isfinite(level))
+        return;
+    uint32_t slot = slot_at(t, child, level);
+    t->regions[slot] = csg_box_hull(t->regions[slot], by);
 }
 
 /* A child's slot matters where the slots that ask for it have their boxes. */

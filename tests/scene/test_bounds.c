@@ -182,6 +182,28 @@ static void test_blended_unions_grow_only_near(void **state)
                  cube(1.1));
 }
 
+/* However long the chain of blends, the solid grows by less than one support. */
+static void test_long_chains_stay_tight(void **state)
+{
+    enum { LENGTH = 2000 };
+    static csg_node_id balls[LENGTH];
+    csg_random random = {11};
+    for (csg_blend_kind kind = CSG_BLEND_ROUND; kind < CSG_BLEND_COUNT; kind++) {
+        csg_blend blend = test_random_blend(&random, kind);
+        double grown = fmin(csg_blend_support(blend), csg_blend_excess(blend, LENGTH));
+        for (int i = 0; i < LENGTH; i++)
+            balls[i] = sphere(i, 0, 0, 0.6);
+        csg_node_id all =
+            csg_build_operator(&builder, CSG_NODE_UNION, blend, balls, LENGTH, NOWHERE);
+        csgm_scene *scene = test_seal(&builder, all);
+        if (csg_bounds_of_solid(scene).max.z > 0.6 + grown + 1e-9)
+            fail_msg("%s: %g beyond %g", csg_blend_name(kind), csg_bounds_of_solid(scene).max.z,
+                     0.6 + grown);
+        csg_scene_destroy(scene);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    }
+}
+
 static void test_ancestors_cut(void **state)
 {
     csg_node_id both = join(CSG_NODE_UNION, sharp, sphere(0, 5, 0, 1), sphere(1, 0, 0, 1));
@@ -375,6 +397,7 @@ int main(void)
         TEST(test_half_spaces),
         TEST(test_polytopes),
         TEST(test_blended_unions_grow_only_near),
+        TEST(test_long_chains_stay_tight),
         TEST(test_ancestors_cut),
         TEST(test_turned_groups),
         TEST(test_random_trees_are_contained),
