@@ -4,8 +4,7 @@
  * those ask theirs. Each node therefore has a short sorted list of levels, planned from the root
  * down; a box for a larger level holds the one for a smaller, so a list that grows too long loses
  * the levels next to larger ones. (Leaves answer for any level.) Boxes are then computed from the
- * leaves up, one per level
- * ("slot").
+ * leaves up, one per level ("slot").
  *
  * Two uses: each node in its own frame; or all of the tree in the root's frame, with regions, the
  * part of space in which an ancestor needs the slot at all.
