@@ -3,6 +3,7 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 
 #include "depfile.h"
@@ -115,14 +116,14 @@ static int write_statistics(cli_app *app, const cli_work *work, run_report *repo
 
 /* ---- the run --------------------------------------------------------------------------- */
 
-static void tell_result(cli_app *app, const csgm_mesh_view *mesh, const run_report *report)
+static void tell_result(cli_app *app, uint64_t triangle_count, const run_report *report)
 {
     if (!app->console.is_terminal || app->console.quiet || app->console.json)
         return;
     for (size_t i = 0; i < app->options.outputs.count; i++)
         fprintf(stderr, "%s%s", i ? ", " : "", app->options.outputs.items[i]);
     fprintf(stderr, "%s%llu triangles, %.2f s\n", app->options.outputs.count ? ": " : "",
-            (unsigned long long)mesh->triangle_count, report->total_s);
+            (unsigned long long)triangle_count, report->total_s);
 }
 
 static int write_all(cli_app *app, const cli_work *work, run_report *report)
@@ -142,9 +143,32 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
     report->total_s = end_s - app->start_s;
     report->peak_rss_bytes = peak_rss_bytes();
     if (status == CLI_DONE)
-        tell_result(app, &view, report);
+        tell_result(app, view.triangle_count, report);
     if (status == CLI_DONE && app->options.stats)
         status = write_statistics(app, work, report);
+    return status;
+}
+
+/* One file and nothing else to do with the mesh: it need not be in memory as a whole. -Werror must
+ * hear the warnings of meshing before a file is there. */
+static bool goes_straight_to_file(const cli_options *options)
+{
+    return options->outputs.count == 1 && strcmp(options->outputs.items[0], "-") != 0 &&
+           !options->stats && options->warnings == 0;
+}
+
+static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
+{
+    csgm_write_options write_options = cli_outputs_options(&app->options);
+    uint64_t triangle_count;
+    int status =
+        cli_work_mesh_file(app, work, app->options.outputs.items[0],
+                           cli_outputs_format(&app->options, 0), &write_options, &triangle_count);
+    if (status == CLI_DONE && app->options.depfile)
+        status = cli_depfile_write(app, work->scene);
+    report->total_s = cli_now_s() - app->start_s;
+    if (status == CLI_DONE)
+        tell_result(app, triangle_count, report);
     return status;
 }
 
@@ -153,10 +177,13 @@ static int run(cli_app *app, const char *path)
     cli_work work = {0};
     run_report report = {0};
     int status = cli_work_load(app, &work, path);
-    if (status == CLI_DONE)
+    if (status == CLI_DONE && goes_straight_to_file(&app->options)) {
+        status = mesh_to_file(app, &work, &report);
+    } else if (status == CLI_DONE) {
         status = cli_work_mesh(app, &work);
-    if (status == CLI_DONE)
-        status = write_all(app, &work, &report);
+        if (status == CLI_DONE)
+            status = write_all(app, &work, &report);
+    }
     cli_work_release(&work);
     return status;
 }

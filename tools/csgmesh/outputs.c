@@ -157,7 +157,7 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
     return status;
 }
 
-static csgm_write_options write_options(const cli_options *options)
+csgm_write_options cli_outputs_options(const cli_options *options)
 {
     csgm_write_options write = csgm_write_options_default();
     write.ascii = options->ascii;
@@ -176,7 +176,7 @@ static csgm_write_options write_options(const cli_options *options)
 
 int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh)
 {
-    csgm_write_options options = write_options(&app->options);
+    csgm_write_options options = cli_outputs_options(&app->options);
     int worst = CLI_DONE;
     for (size_t i = 0; i < app->options.outputs.count; i++) {
         const char *path = app->options.outputs.items[i];

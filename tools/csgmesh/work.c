@@ -36,18 +36,41 @@ static csgm_mesh_options mesh_options(cli_app *app)
     return mesh;
 }
 
-int cli_work_mesh(cli_app *app, cli_work *work)
+static csgm_status compile(cli_app *app, cli_work *work)
 {
-    csgm_mesh_options options = mesh_options(app);
     double begin_s = cli_now_s();
     csgm_status status = csgm_field_compile(app->context, work->scene, &work->field);
     work->compile_s = cli_now_s() - begin_s;
+    return status;
+}
+
+int cli_work_mesh(cli_app *app, cli_work *work)
+{
+    csgm_mesh_options options = mesh_options(app);
+    csgm_status status = compile(app, work);
     if (status == CSGM_OK)
         status = csgm_mesh_build(app->context, work->field, &options, &work->mesh, &work->stats);
-    work->build_s = cli_now_s() - begin_s - work->compile_s;
     cli_console_end_progress(&app->console);
     if (status == CSGM_OK && cli_app_is_refused(app))
         status = CSGM_ERR_SCENE;
+    return cli_exit_status(status);
+}
+
+int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
+                       const csgm_write_options *write_options, uint64_t *triangle_count)
+{
+    csgm_mesh_options options = mesh_options(app);
+    uint32_t errors = app->console.errors;
+    uint64_t counts[2] = {0};
+    csgm_status status = compile(app, work);
+    if (status == CSGM_OK)
+        status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
+                                      write_options, counts, &work->stats);
+    cli_console_end_progress(&app->console);
+    *triangle_count = counts[1];
+    if (status != CSGM_OK && app->console.errors == errors)
+        cli_console_say(&app->console, CSGM_ERROR, NULL,
+                        "the mesh has no triangles: nothing was written");
     return cli_exit_status(status);
 }
 
