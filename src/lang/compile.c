@@ -7,16 +7,22 @@
  */
 #include "lang/lang.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <string.h>
+#include <time.h>
 
 #include "lang/evaluator.h"
 #include "lang/loader.h"
 
-typedef struct relay { /* one callback at a time from the worker to the caller */
+enum { MAILBOX = 16384 };
+
+typedef struct relay { /* callbacks from the worker to the caller */
     pthread_mutex_t mutex;
     pthread_cond_t changed;
-    const csgm_diag *diag; /* waiting to be delivered */
+    char mailbox[MAILBOX]; /* echoes, each after its length: the worker does not wait for these */
+    size_t mail_length;
+    const csgm_diag *diag; /* one finding, or one echo too long for the mailbox: it waits */
     const char *text;
     size_t text_length;
     bool done; /* the worker has ended */
@@ -228,13 +234,29 @@ static void relay_diag(void *user, const csgm_diag *diag)
     pthread_mutex_unlock(&c->relay.mutex);
 }
 
+/* Mutex held; there is room or will be. */
+static void post(relay *r, const char *text, size_t length)
+{
+    while (r->mail_length + sizeof length + length > MAILBOX)
+        pthread_cond_wait(&r->changed, &r->mutex);
+    memcpy(r->mailbox + r->mail_length, &length, sizeof length);
+    memcpy(r->mailbox + r->mail_length + sizeof length, text, length);
+    r->mail_length += sizeof length + length;
+    if (r->mail_length > MAILBOX / 2)
+        pthread_cond_broadcast(&r->changed);
+}
+
 static void relay_echo(void *user, const char *text, size_t length)
 {
     compilation *c = user;
     pthread_mutex_lock(&c->relay.mutex);
-    c->relay.text = text;
-    c->relay.text_length = length;
-    hand_over(&c->relay);
+    if (length <= MAILBOX / 4) {
+        post(&c->relay, text, length);
+    } else {
+        c->relay.text = text;
+        c->relay.text_length = length;
+        hand_over(&c->relay);
+    }
     pthread_mutex_unlock(&c->relay.mutex);
 }
 
@@ -249,22 +271,59 @@ static void *work(void *argument)
     return NULL;
 }
 
-/* On the caller's thread: delivers what the worker hands over, until it ends. */
+/* Empties the mailbox; the mutex is held, and let go while the caller is called. */
+static void deliver_mail(compilation *c)
+{
+    relay *r = &c->relay;
+    char mail[MAILBOX];
+    size_t end = r->mail_length, length;
+    memcpy(mail, r->mailbox, end);
+    r->mail_length = 0;
+    pthread_cond_broadcast(&r->changed);
+    pthread_mutex_unlock(&r->mutex);
+    for (size_t at = 0; at < end; at += sizeof length + length) {
+        memcpy(&length, mail + at, sizeof length);
+        c->on_echo(c->echo_user, mail + at + sizeof length, length);
+    }
+    pthread_mutex_lock(&r->mutex);
+}
+
+/* Until something changes, or it is time to look into the mailbox (true). */
+static bool wait_a_little(relay *r)
+{
+    enum { LITTLE_NS = 50000000 };
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += LITTLE_NS;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_nsec -= 1000000000;
+        until.tv_sec++;
+    }
+    return pthread_cond_timedwait(&r->changed, &r->mutex, &until) == ETIMEDOUT;
+}
+
+/* On the caller's thread: delivers what the worker hands over, in order, until it ends. Echoes
+ * gather for a while: waking for each one would cost more than evaluating it. */
 static void serve(compilation *c)
 {
     relay *r = &c->relay;
+    bool late = false;
     pthread_mutex_lock(&r->mutex);
-    while (!r->done || r->diag || r->text) {
-        if (r->diag)
-            c->on_diag(c->diag_user, r->diag);
-        if (r->text)
-            c->on_echo(c->echo_user, r->text, r->text_length);
-        if (r->diag || r->text) {
+    while (!r->done || r->diag || r->text || r->mail_length) {
+        bool due = late || r->mail_length > MAILBOX / 2 || r->diag || r->text || r->done;
+        late = false;
+        if (r->mail_length && due) {
+            deliver_mail(c);
+        } else if (r->diag || r->text) {
+            if (r->diag)
+                c->on_diag(c->diag_user, r->diag);
+            else
+                c->on_echo(c->echo_user, r->text, r->text_length);
             r->diag = NULL;
             r->text = NULL;
             pthread_cond_broadcast(&r->changed);
         } else {
-            pthread_cond_wait(&r->changed, &r->mutex);
+            late = wait_a_little(r);
         }
     }
     pthread_mutex_unlock(&r->mutex);
@@ -292,7 +351,11 @@ static void run(compilation *c)
     csgm_context *context = c->context;
     pthread_t thread;
     pthread_mutex_init(&c->relay.mutex, NULL);
-    pthread_cond_init(&c->relay.changed, NULL);
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&c->relay.changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
     csg_diag_sink *diags = &context->diags;
     if (c->on_diag) {
         diags->on_diag = relay_diag;

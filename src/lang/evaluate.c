@@ -368,7 +368,7 @@ static void replace_frame(csg_eval *e, position *at, csg_frame *fresh)
 /* Steps into a user's function. */
 static void step_into(csg_eval *e, position *at, const target *to)
 {
-    enum { CALL_STEPS = 4 };
+    enum { CALL_STEPS = 10 };
     const csg_expression *call = at->x;
     at->x = NULL;
     if (!at->called) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Unary and binary operators on values, as OpenSCAD defines them: element by element on vectors,
  * * is the dot, matrix-vector and matrix-matrix product, undef where an operation has no meaning
- * (with a warning, except when an operand is undef because of an earlier one).
+ * (with a warning, unless an operand is undef: then something else went wrong before).
  */
 #include <math.h>
 #include <string.h>
@@ -11,9 +11,10 @@
 static csg_value undefined(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
     const char *sign = csg_token_kind_name(x->operation);
-    csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
-                    "there is no %.*s of %s and %s, it counts as undef", (int)strlen(sign), sign,
-                    csg_value_kind_name(left), csg_value_kind_name(right));
+    if (left.kind != CSG_VALUE_UNDEF && right.kind != CSG_VALUE_UNDEF)
+        csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
+                        "there is no %.*s of %s and %s, it counts as undef", (int)strlen(sign),
+                        sign, csg_value_kind_name(left), csg_value_kind_name(right));
     return csg_value_undef();
 }
 
@@ -301,9 +302,10 @@ static csg_value negate(csg_eval *e, const csg_expression *x, csg_value operand)
             csg_vector_set(made, i, negate(e, x, vector->items[i]));
         return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
     }
-    csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
-                    "there is no negative of a %s, it counts as undef",
-                    csg_value_kind_name(operand));
+    if (operand.kind != CSG_VALUE_UNDEF)
+        csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where, NULL,
+                        "there is no negative of a %s, it counts as undef",
+                        csg_value_kind_name(operand));
     return csg_value_undef();
 }
 

@@ -270,7 +270,7 @@ static bool opens_generator(const csg_parser *parser)
     return kind == CSG_TOKEN_FOR || kind == CSG_TOKEN_IF || kind == CSG_TOKEN_EACH;
 }
 
-static csg_expression *parse_element_here(csg_parser *parser)
+static csg_expression *parse_generator(csg_parser *parser)
 {
     switch (csg_parser_peek(parser)) {
     case CSG_TOKEN_FOR:
@@ -288,8 +288,6 @@ static csg_expression *parse_element_here(csg_parser *parser)
     default:
         break;
     }
-    if (csg_parser_peek(parser) != CSG_TOKEN_OPEN_ROUND || !opens_generator(parser))
-        return csg_parse_expression(parser);
     csg_span open = csg_parser_span(parser);
     csg_parser_next(parser);
     csg_expression *inner = parse_element(parser);
@@ -298,9 +296,15 @@ static csg_expression *parse_element_here(csg_parser *parser)
 
 static csg_expression *parse_element(csg_parser *parser)
 {
+    csg_token_kind kind = csg_parser_peek(parser);
+    bool generator = kind == CSG_TOKEN_FOR || kind == CSG_TOKEN_IF || kind == CSG_TOKEN_EACH ||
+                     kind == CSG_TOKEN_LET || kind == CSG_TOKEN_ASSERT || kind == CSG_TOKEN_ECHO ||
+                     (kind == CSG_TOKEN_OPEN_ROUND && opens_generator(parser));
+    if (!generator)
+        return csg_parse_expression(parser);
     if (!csg_parser_enter(parser))
         return NULL;
-    csg_expression *made = parse_element_here(parser);
+    csg_expression *made = parse_generator(parser);
     csg_parser_leave(parser);
     return made;
 }
@@ -503,6 +507,16 @@ static csg_expression *make_pair(csg_parser *parser, csg_expression_kind kind, c
     return made;
 }
 
+/* A sign and what it stands before, or what stands right of '^': one level deeper. */
+static csg_expression *parse_operand(csg_parser *parser)
+{
+    if (!csg_parser_enter(parser))
+        return NULL;
+    csg_expression *made = parse_unary(parser);
+    csg_parser_leave(parser);
+    return made;
+}
+
 static csg_expression *parse_power(csg_parser *parser)
 {
     csg_span from = csg_parser_span(parser);
@@ -512,34 +526,26 @@ static csg_expression *parse_power(csg_parser *parser)
     csg_span sign = csg_parser_span(parser);
     csg_parser_next(parser);
     csg_expression *made =
-        make_pair(parser, CSG_EXPRESSION_BINARY, sign, left, parse_unary(parser));
+        make_pair(parser, CSG_EXPRESSION_BINARY, sign, left, parse_operand(parser));
     if (!made)
         return NULL;
     made->operation = CSG_TOKEN_CARET;
     return finish(parser, made, from);
 }
 
-static csg_expression *parse_unary_here(csg_parser *parser)
+static csg_expression *parse_unary(csg_parser *parser)
 {
     csg_token_kind kind = csg_parser_peek(parser);
     if (kind != CSG_TOKEN_MINUS && kind != CSG_TOKEN_PLUS && kind != CSG_TOKEN_NOT)
         return parse_power(parser);
     csg_span sign = csg_parser_span(parser);
     csg_parser_next(parser);
-    csg_expression *made = make_pair(parser, CSG_EXPRESSION_UNARY, sign, parse_unary(parser), NULL);
+    csg_expression *made =
+        make_pair(parser, CSG_EXPRESSION_UNARY, sign, parse_operand(parser), NULL);
     if (!made)
         return NULL;
     made->operation = (uint8_t)kind;
     return finish(parser, made, sign);
-}
-
-static csg_expression *parse_unary(csg_parser *parser)
-{
-    if (!csg_parser_enter(parser))
-        return NULL;
-    csg_expression *made = parse_unary_here(parser);
-    csg_parser_leave(parser);
-    return made;
 }
 
 static int precedence(csg_token_kind kind)

@@ -141,7 +141,7 @@ static void run_body(csg_eval *e, const csg_definition *module, csg_frame *call,
 static void run_module(csg_eval *e, const csg_definition *module, csg_frame *home,
                        const csg_statement *statement, csg_frame *frame)
 {
-    enum { CALL_STEPS = 4 };
+    enum { CALL_STEPS = 10 };
     size_t dynamics = e->dynamic_count;
     if (!csg_eval_charge(e, CALL_STEPS, statement->where) || !csg_eval_enter(e, statement->where))
         return;

@@ -204,11 +204,11 @@ static bool lex_string(lexer *l)
     }
     if (peek(l, 0) == '"') {
         l->at++;
-    } else {
-        csg_source_report(l->sources, CSG_DIAG_UNTERMINATED_STRING, span(l, from, from + 1),
-                          "close it with '\"' on the same line", "this string never ends");
+        return push(l, CSG_TOKEN_STRING, from);
     }
-    return push(l, CSG_TOKEN_STRING, from);
+    csg_source_report(l->sources, CSG_DIAG_UNTERMINATED_STRING, span(l, from, from + 1),
+                      "close it with '\"' on the same line", "this string never ends");
+    return push(l, CSG_TOKEN_BAD, from);
 }
 
 char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size_t *out_length)
