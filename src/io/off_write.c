@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Mesh -> OFF (Geomview): [C][N]OFF, counts, then x y z [nx ny nz] [r g b a as 0..255], then faces.
- * Written directly, not by OpenMesh: see src/io/README.md for why.
+ * Written directly: OpenMesh would drop faces at edges of more than two, and takes longer.
  */
 #include "io/writers.h"
 
@@ -30,9 +30,9 @@ csgm_status csg_off_write(csg_sink *sink, const csgm_mesh_view *mesh,
                           const csgm_write_options *options)
 {
     (void)options; /* OFF is text, Z up as the scene, without units */
-    csg_sink_format(sink, "%s%sOFF\n# %s\n%llu %llu 0\n", mesh->colors ? "C" : "",
-                    mesh->normals ? "N" : "", CSG_WRITTEN_BY,
-                    (unsigned long long)mesh->vertex_count,
+    /* no comment that says who wrote it: OpenMesh's reader then finds no triangles */
+    csg_sink_format(sink, "%s%sOFF\n%llu %llu 0\n", mesh->colors ? "C" : "",
+                    mesh->normals ? "N" : "", (unsigned long long)mesh->vertex_count,
                     (unsigned long long)mesh->triangle_count);
     put_vertices(sink, mesh);
     for (uint64_t i = 0; i < mesh->triangle_count; i++) {

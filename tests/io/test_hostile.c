@@ -346,10 +346,8 @@ static void memory_may_run_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_reader_survives),
-        cmocka_unit_test(lies_are_told_apart),
-        cmocka_unit_test(deep_json_is_refused),
-        cmocka_unit_test(draco_counts_are_not_believed),
+        cmocka_unit_test(every_reader_survives), cmocka_unit_test(lies_are_told_apart),
+        cmocka_unit_test(deep_json_is_refused),  cmocka_unit_test(draco_counts_are_not_believed),
         cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
