@@ -24,6 +24,7 @@ struct csg_edges {
     float fa[CSG_BLOCK_MOST_EDGES], fb[CSG_BLOCK_MOST_EDGES];
     float moved[CSG_BLOCK_MOST_EDGES]; /* the end that the last step moved: -1 a, +1 b, 0 none */
     bool a_inside[CSG_BLOCK_MOST_EDGES];
+    uint16_t rank[CSG_BLOCK_MOST_EDGES]; /* where the caller wants the result */
 };
 
 #endif

@@ -14,26 +14,81 @@ static void repeat(float *array, size_t period, size_t count)
         memcpy(array + i * period, array, period * sizeof(float));
 }
 
+/* Coordinates of the n^3 points from lattice point `first` on, padded to whole lanes. */
 static void fill_coordinates(csg_block_samples *samples, const csg_lattice *lattice,
-                             const uint32_t at[3])
+                             const uint32_t first[3], size_t n)
 {
     float line[3][N];
     for (int axis = 0; axis < 3; axis++)
-        for (uint32_t i = 0; i < N; i++)
-            line[axis][i] = csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + i);
-    memcpy(samples->x, line[0], sizeof line[0]);
-    for (int j = 0; j < N; j++)
-        for (int i = 0; i < N; i++)
-            samples->y[j * N + i] = line[1][j];
-    repeat(samples->x, N, N * N);
-    repeat(samples->y, N * N, N);
-    for (int k = 0; k < N; k++)
-        for (int i = 0; i < N * N; i++)
-            samples->z[k * N * N + i] = line[2][k];
-    for (int i = CSG_BLOCK_POINTS; i < CSG_BLOCK_POINTS_PADDED; i++) {
+        for (uint32_t i = 0; i < n; i++)
+            line[axis][i] = csg_lattice_coordinate(lattice, axis, first[axis] + i);
+    memcpy(samples->x, line[0], n * sizeof(float));
+    for (size_t j = 0; j < n; j++)
+        for (size_t i = 0; i < n; i++)
+            samples->y[j * n + i] = line[1][j];
+    repeat(samples->x, n, n * n);
+    repeat(samples->y, n * n, n);
+    for (size_t k = 0; k < n; k++)
+        for (size_t i = 0; i < n * n; i++)
+            samples->z[k * n * n + i] = line[2][k];
+    for (size_t i = n * n * n; i % CSG_LANES; i++) {
         samples->x[i] = samples->x[0];
         samples->y[i] = samples->y[0];
         samples->z[i] = samples->z[0];
+    }
+}
+
+static void sample_points(csg_block_samples *samples, const csg_kernel *kernel,
+                          const csg_tape *tape, const csg_lattice *lattice, const uint32_t first[3],
+                          size_t n, float *scratch, size_t scratch_floats)
+{
+    fill_coordinates(samples, lattice, first, n);
+    kernel->values(tape, samples->x, samples->y, samples->z, n * n * n, samples->f, scratch,
+                   scratch_floats);
+}
+
+/* The whole block with one tape. */
+static void sample_whole(csg_block *block, csg_block_samples *samples, const csg_kernel *kernel,
+                         const csg_tape *tape, const csg_lattice *lattice, float *scratch,
+                         size_t scratch_floats)
+{
+    uint32_t first[3];
+    for (int axis = 0; axis < 3; axis++)
+        first[axis] = block->at[axis] * CSG_BLOCK_EDGE;
+    sample_points(samples, kernel, tape, lattice, first, N, scratch, scratch_floats);
+    for (int i = 0; i < CSG_BLOCK_POINTS; i++)
+        samples->inside[i] = samples->f[i] >= 0;
+}
+
+/* Part by part. Points on the planes between parts are in several: they agree in sign. */
+static void sample_parts(csg_block *block, csg_block_samples *samples, const csg_kernel *kernel,
+                         const csg_tape *tape, const csg_lattice *lattice, float *scratch,
+                         size_t scratch_floats)
+{
+    enum { P = CSG_PART_EDGE + 1 };
+    for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
+        const csg_block_part *part = &block->parts[octant];
+        uint32_t first[3];
+        size_t begin = 0;
+        const size_t step[3] = {1, N, N * N};
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t shift = (octant >> axis & 1) * CSG_PART_EDGE;
+            first[axis] = block->at[axis] * CSG_BLOCK_EDGE + shift;
+            begin += shift * step[axis];
+        }
+        csg_tape short_tape = *tape;
+        short_tape.nodes = part->nodes;
+        short_tape.count = part->node_count;
+        bool known = part->state != CSG_CELL_SURFACE;
+        if (!known)
+            sample_points(samples, kernel, &short_tape, lattice, first, P, scratch, scratch_floats);
+        const float *f = samples->f;
+        for (size_t k = 0; k < P; k++)
+            for (size_t j = 0; j < P; j++, f += P) {
+                uint8_t *row = samples->inside + begin + k * step[2] + j * step[1];
+                for (size_t i = 0; i < P; i++)
+                    row[i] = known ? part->state == CSG_CELL_INSIDE : f[i] >= 0;
+            }
     }
 }
 
@@ -49,15 +104,11 @@ static uint16_t inner_points(const csg_lattice *lattice, int axis, uint32_t at)
 }
 
 /* Rows of signs, f = 0 inside; what is on the lattice's border or beyond is outside. */
-static void collect_signs(csg_block *block, const csg_lattice *lattice, const float *f)
+static void collect_signs(csg_block *block, const csg_lattice *lattice, const uint8_t *s)
 {
-    uint8_t sign[CSG_BLOCK_POINTS_PADDED];
-    for (int i = 0; i < CSG_BLOCK_POINTS_PADDED; i++)
-        sign[i] = f[i] >= 0;
     uint16_t inner[3];
     for (int axis = 0; axis < 3; axis++)
         inner[axis] = inner_points(lattice, axis, block->at[axis]);
-    const uint8_t *s = sign;
     for (int k = 0; k < N; k++)
         for (int j = 0; j < N; j++, s += N) {
             uint64_t eight;
@@ -108,10 +159,9 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     memcpy(block->at, at, sizeof block->at);
     block->nodes = tape->nodes;
     block->node_count = tape->count;
-    fill_coordinates(samples, lattice, at);
-    kernel->values(tape, samples->x, samples->y, samples->z, CSG_BLOCK_POINTS, samples->f, scratch,
-                   scratch_floats);
-    collect_signs(block, lattice, samples->f);
+    (block->parts ? sample_parts : sample_whole)(block, samples, kernel, tape, lattice, scratch,
+                                                 scratch_floats);
+    collect_signs(block, lattice, samples->inside);
     if (is_uniform(block))
         return false;
     collect_crossings(block);

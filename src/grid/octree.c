@@ -17,7 +17,12 @@ typedef struct cell {
     const csg_tape_node *nodes;
 } cell;
 
-enum { CELLS_PER_ITEM = 16 };
+enum {
+    CELLS_PER_ITEM = 16,
+    /* Blocks with longer tapes are split into parts with tapes of their own. Measured on a million
+     * spheres: see tests/bench/log.md. */
+    LONG_TAPE = 6
+};
 
 /* What one item of a level produced, and where it is. */
 typedef struct segment {
@@ -26,7 +31,7 @@ typedef struct segment {
 } segment;
 
 typedef struct worker {
-    csg_pruner pruner;
+    csg_pruner pruner, part_pruner;
     csg_arena tapes[2]; /* of even and odd levels: a level's parents are dropped after it */
     cell *cells;
     csg_block **blocks; /* in tapes[0] */
@@ -72,7 +77,13 @@ static void octant_of(const uint32_t parent[3], int octant, uint32_t at[3])
         at[axis] = 2 * parent[axis] + (uint32_t)(octant >> axis & 1);
 }
 
-/* Centres of the eight children, and the radius of their balls, rounded up. */
+/* Of the ball around a cube of 2 * half cells along an edge, rounded up. */
+static float ball_radius(const walk *w, uint32_t half)
+{
+    return (float)(half * w->lattice->cell_size * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
+}
+
+/* Centres of the eight children; returns the radius of their balls. */
 static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTANTS])
 {
     uint32_t half = (uint32_t)(CSG_BLOCK_EDGE / 2) << w->level;
@@ -82,7 +93,7 @@ static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTA
         for (int axis = 0; axis < 3; axis++)
             c[axis][octant] = csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
     }
-    return (float)(half * w->lattice->cell_size * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
+    return ball_radius(w, half);
 }
 
 static uint32_t primitives_in(const csg_tape *tape)
@@ -105,16 +116,69 @@ static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tap
     return true;
 }
 
+/* Tapes for the eight parts of a block, in the arena of blocks. */
+static bool split_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
+{
+    csg_block_part *parts = csg_arena_alloc(&self->tapes[0], CSG_OCTANTS * sizeof *parts);
+    float c[3][CSG_OCTANTS];
+    for (int octant = 0; octant < CSG_OCTANTS; octant++)
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t half = CSG_PART_EDGE / 2, shift = (octant >> axis & 1) * CSG_PART_EDGE;
+            c[axis][octant] =
+                csg_lattice_coordinate(w->lattice, axis, at[axis] * CSG_BLOCK_EDGE + shift + half);
+        }
+    if (!parts || !csg_prune_octants(&self->part_pruner, tape, c[0], c[1], c[2],
+                                     ball_radius(w, CSG_PART_EDGE / 2)))
+        return false;
+    self->stats.interval_evaluations += CSG_OCTANTS;
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        csg_tape part = *tape;
+        csg_cell_state state = csg_prune_state(&self->part_pruner, octant);
+        if (state == CSG_CELL_SURFACE &&
+            !csg_prune_shorten(&self->part_pruner, octant, w->tau, &self->tapes[0], &part))
+            return false;
+        parts[octant] = (csg_block_part){part.nodes, part.count, state};
+    }
+    self->candidate.parts = parts;
+    return true;
+}
+
+static void count_samples(worker *self, const csg_tape *tape)
+{
+    const csg_block_part *parts = self->candidate.parts;
+    enum { PART_POINTS = (CSG_PART_EDGE + 1) * (CSG_PART_EDGE + 1) * (CSG_PART_EDGE + 1) };
+    csg_octree_stats *stats = &self->stats;
+    stats->sampled_blocks++;
+    if (!parts) {
+        stats->point_evaluations += CSG_BLOCK_POINTS;
+        stats->primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * primitives_in(tape);
+        stats->tape_nodes_sampled += tape->count;
+        return;
+    }
+    uint64_t nodes = 0;
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        if (parts[octant].state != CSG_CELL_SURFACE)
+            continue;
+        csg_tape part = {.nodes = parts[octant].nodes, .count = parts[octant].node_count};
+        stats->point_evaluations += PART_POINTS;
+        stats->primitive_evaluations += (uint64_t)PART_POINTS * primitives_in(&part);
+        nodes += part.count;
+    }
+    stats->tape_nodes_sampled += nodes / CSG_OCTANTS;
+}
+
 static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
 {
-    uint32_t primitives = primitives_in(tape);
-    self->stats.sampled_blocks++;
-    self->stats.point_evaluations += CSG_BLOCK_POINTS;
-    self->stats.primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * primitives;
-    self->stats.tape_nodes_sampled += tape->count;
+    csg_arena_mark mark = csg_arena_get_mark(&self->tapes[0]);
+    self->candidate.parts = NULL;
+    if (w->options->prune && tape->count > LONG_TAPE && !split_block(w, self, at, tape))
+        return false;
+    count_samples(self, tape);
     if (!csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, self->samples,
-                          self->scratch, self->scratch_floats))
+                          self->scratch, self->scratch_floats)) {
+        csg_arena_release_to(&self->tapes[0], mark);
         return true;
+    }
     csg_block *block = csg_arena_alloc(&self->tapes[0], sizeof *block);
     if (!block || !csg_memory_reserve(&w->context->memory, (void **)&self->blocks,
                                       &self->block_capacity, self->block_count + 1, sizeof block))
@@ -293,6 +357,7 @@ static bool create_workers(walk *w, float rounding)
         worker *self = &w->workers[i];
         memset(self, 0, sizeof *self);
         csg_pruner_init(&self->pruner, memory, w->kernel, rounding);
+        csg_pruner_init(&self->part_pruner, memory, w->kernel, rounding);
         csg_arena_init(&self->tapes[0], memory);
         csg_arena_init(&self->tapes[1], memory);
         self->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
@@ -323,6 +388,7 @@ static void release_workers(walk *w, csg_octree *out)
         worker *self = &w->workers[i];
         add_stats(&out->stats, &self->stats);
         csg_pruner_release(&self->pruner);
+        csg_pruner_release(&self->part_pruner);
         csg_arena_reset(&self->tapes[1]);
         out->arenas[i] = self->tapes[0];
         csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));

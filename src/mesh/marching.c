@@ -96,38 +96,74 @@ uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *table
 /* ---- vertices
  * ------------------------------------------------------------------------------------ */
 
-/* Lists the block's crossed edges in the order of their ranks. */
-static void collect_edges(const csg_marching *m, const csg_block *block, csg_edges *e)
+/* Crossed edges of a word before a bit. */
+static uint32_t rank_in_word(uint64_t word, int bit)
 {
-    float line[3][N], step[3][E];
+    return (uint32_t)__builtin_popcountll(word & (((uint64_t)1 << bit) - 1));
+}
+
+/* Coordinates of the block's lattice points and lengths of the edges between them. */
+typedef struct block_lines {
+    float point[3][N], step[3][E];
+} block_lines;
+
+static block_lines lines_of(const csg_lattice *lattice, const csg_block *block)
+{
+    block_lines lines;
     for (int axis = 0; axis < 3; axis++) {
         for (uint32_t i = 0; i < N; i++)
-            line[axis][i] = csg_lattice_coordinate(m->lattice, axis, block->at[axis] * E + i);
+            lines.point[axis][i] = csg_lattice_coordinate(lattice, axis, block->at[axis] * E + i);
         for (int i = 0; i < E; i++)
-            step[axis][i] = line[axis][i + 1] - line[axis][i];
+            lines.step[axis][i] = lines.point[axis][i + 1] - lines.point[axis][i];
     }
+    return lines;
+}
+
+/* Where a part of a block lies: masks of the words' bits and a range of layers. */
+typedef struct part_range {
+    uint64_t bits;
+    int first_layer, end_layer;
+} part_range;
+
+static part_range range_of_part(unsigned octant)
+{
+    enum { P = CSG_PART_EDGE };
+    uint64_t columns = (octant & 1) ? 0xF0F0F0F0F0F0F0F0u : 0x0F0F0F0F0F0F0F0Fu;
+    uint64_t lines = (octant >> 1 & 1) ? 0xFFFFFFFF00000000u : 0x00000000FFFFFFFFu;
+    int layer = (octant >> 2 & 1) ? P : 0;
+    return (part_range){columns & lines, layer, layer + P};
+}
+
+/* Lists crossed edges within a range, in the order of their ranks. */
+static void collect_edges(const csg_block *block, const block_lines *lines, part_range range,
+                          csg_edges *e)
+{
     uint32_t n = 0;
-    for (uint8_t axis = 0; axis < 3; axis++)
-        for (int k = 0; k < E; k++)
-            for (uint64_t rest = block->crossed[axis][k]; rest; rest &= rest - 1, n++) {
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = range.first_layer; k < range.end_layer; k++) {
+            uint64_t word = block->crossed[axis][k];
+            for (uint64_t rest = word & range.bits; rest; rest &= rest - 1, n++) {
                 int bit = __builtin_ctzll(rest), i = bit & 7, j = bit >> 3;
-                e->ax[n] = line[0][i];
-                e->ay[n] = line[1][j];
-                e->az[n] = line[2][k];
-                e->dx[n] = axis == 0 ? step[0][i] : 0;
-                e->dy[n] = axis == 1 ? step[1][j] : 0;
-                e->dz[n] = axis == 2 ? step[2][k] : 0;
+                e->ax[n] = lines->point[0][i];
+                e->ay[n] = lines->point[1][j];
+                e->az[n] = lines->point[2][k];
+                e->dx[n] = axis == 0 ? lines->step[0][i] : 0;
+                e->dy[n] = axis == 1 ? lines->step[1][j] : 0;
+                e->dz[n] = axis == 2 ? lines->step[2][k] : 0;
                 e->a_inside[n] = block->inside[k][j] >> i & 1;
+                e->rank[n] = (uint16_t)(block->rank[axis][k] + rank_in_word(word, bit));
             }
+        }
     e->count = n;
 }
 
 static void write_positions(const csg_marching *m, const csg_edges *e, float *out)
 {
     for (uint32_t i = 0; i < e->count; i++) {
-        out[3 * i] = (float)(m->shift.x + (double)e->x[i]);
-        out[3 * i + 1] = (float)(m->shift.y + (double)e->y[i]);
-        out[3 * i + 2] = (float)(m->shift.z + (double)e->z[i]);
+        float *p = out + 3 * e->rank[i];
+        p[0] = (float)(m->shift.x + (double)e->x[i]);
+        p[1] = (float)(m->shift.y + (double)e->y[i]);
+        p[2] = (float)(m->shift.z + (double)e->z[i]);
     }
 }
 
@@ -136,6 +172,7 @@ static void write_positions(const csg_marching *m, const csg_edges *e, float *ou
 static void write_normals(const csg_edges *e, float *const g[3], float *out)
 {
     for (uint32_t i = 0; i < e->count; i++) {
+        float *n = out + 3 * e->rank[i];
         float x = 0.0f - g[0][i], y = 0.0f - g[1][i], z = 0.0f - g[2][i];
         float square = x * x + y * y + z * z;
         if (!(square > 1e-12f)) {
@@ -144,9 +181,9 @@ static void write_normals(const csg_edges *e, float *const g[3], float *out)
             square = x * x + y * y + z * z;
         }
         float k = 1.0f / sqrtf(square);
-        out[3 * i] = x * k + 0.0f;
-        out[3 * i + 1] = y * k + 0.0f;
-        out[3 * i + 2] = z * k + 0.0f;
+        n[0] = x * k + 0.0f;
+        n[1] = y * k + 0.0f;
+        n[2] = z * k + 0.0f;
     }
 }
 
@@ -155,33 +192,54 @@ static void write_colors(const csg_edges *e, float *const rgba[4], uint8_t *out)
     for (uint32_t i = 0; i < e->count; i++)
         for (int c = 0; c < 4; c++) {
             float v = rgba[c][i] * 255.0f + 0.5f;
-            out[4 * i + (uint32_t)c] = (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+            out[4 * e->rank[i] + c] = (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
         }
+}
+
+/* Roots, normals and colours of the collected edges. */
+static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
+                              const csg_marching_output *out, float *scratch, size_t scratch_floats)
+{
+    csg_edges *e = &room->edges;
+    float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
+                          room->channels[3]};
+    if (!e->count)
+        return 0;
+    uint64_t evaluations = m->kernel->roots(tape, e, m->tolerance, scratch, scratch_floats);
+    write_positions(m, e, out->positions);
+    if (out->normals) {
+        m->kernel->gradients(tape, e->x, e->y, e->z, e->count, channels[0], channels[1],
+                             channels[2], scratch, scratch_floats);
+        write_normals(e, channels, out->normals);
+    }
+    if (out->colors) {
+        m->kernel->colors(tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
+        write_colors(e, channels, out->colors);
+    }
+    return evaluations;
 }
 
 uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
                                csg_marching_room *room, const csg_marching_output *out,
                                float *scratch, size_t scratch_floats)
 {
-    csg_edges *e = &room->edges;
     csg_tape tape = m->field->tape;
-    tape.nodes = block->nodes;
-    tape.count = block->node_count;
-    collect_edges(m, block, e);
-    if (!e->count)
-        return 0;
-    uint64_t evaluations = m->kernel->roots(&tape, e, m->tolerance, scratch, scratch_floats);
-    write_positions(m, e, out->positions);
-    float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
-                          room->channels[3]};
-    if (out->normals) {
-        m->kernel->gradients(&tape, e->x, e->y, e->z, e->count, channels[0], channels[1],
-                             channels[2], scratch, scratch_floats);
-        write_normals(e, channels, out->normals);
+    block_lines lines = lines_of(m->lattice, block);
+    if (!block->parts) {
+        tape.nodes = block->nodes;
+        tape.count = block->node_count;
+        collect_edges(block, &lines, (part_range){~(uint64_t)0, 0, E}, &room->edges);
+        return make_vertices(m, &tape, room, out, scratch, scratch_floats);
     }
-    if (out->colors) {
-        m->kernel->colors(&tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
-        write_colors(e, channels, out->colors);
+    uint64_t evaluations = 0;
+    for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
+        const csg_block_part *part = &block->parts[octant];
+        if (part->state != CSG_CELL_SURFACE)
+            continue;
+        tape.nodes = part->nodes;
+        tape.count = part->node_count;
+        collect_edges(block, &lines, range_of_part(octant), &room->edges);
+        evaluations += make_vertices(m, &tape, room, out, scratch, scratch_floats);
     }
     return evaluations;
 }
@@ -218,11 +276,9 @@ static void number_edges(const csg_block *from, const int shift[3],
             uint64_t word = from->crossed[axis][k];
             for (uint64_t rest = word & used; rest; rest &= rest - 1) {
                 int bit = __builtin_ctzll(rest);
-                uint64_t before = word & (((uint64_t)1 << bit) - 1);
                 int i = (bit & 7) + shift[0], j = (bit >> 3) + shift[1];
                 vertex[axis][((k + shift[2]) * N + j) * N + i] =
-                    from->first_vertex + from->rank[axis][k] +
-                    (uint32_t)__builtin_popcountll(before);
+                    from->first_vertex + from->rank[axis][k] + rank_in_word(word, bit);
             }
         }
 }
