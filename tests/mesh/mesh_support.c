@@ -56,6 +56,7 @@ csgm_status mesh_build(mesh_case *c, const csgm_mesh_options *options)
     c->mesh = NULL;
     c->findings = 0;
     c->last_code = 0;
+    c->context.diags.errors = c->context.diags.warnings = 0; /* the cap is not for tests */
     return csg_mesh_build(&c->context, c->field, options, &c->mesh, &c->stats);
 }
 
