@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Keeps the tables of the language manual as the program's own lists say.
+
+    python3 tools/manual/tables.py            rewrites scenes/README.md between its markers
+    python3 tools/manual/tables.py --check    exit status 1 when that would change something
+
+In: the .def files of src/lang, src/scene and src/base. A marker pair <!-- begin NAME --> and
+<!-- end NAME --> holds the table that TABLES[NAME] makes.
+"""
+import os
+import re
+import sys
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+MANUAL = os.path.join(ROOT, "scenes", "README.md")
+
+
+def calls(path):
+    """(macro, [arguments]) of every macro call in a .def file; strings without their quotes."""
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        text = file.read()
+    text = re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
+    text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
+    for call in re.finditer(r'(CSG_\w+)\(((?:"(?:\\.|[^"\\])*"|[^()"])*)\)', text):
+        arguments = [""]
+        for string, comma, other in re.findall(r'"((?:\\.|[^"\\])*)"|(,)|([^,"]+)', call.group(2)):
+            if comma:
+                arguments.append("")
+            else:
+                arguments[-1] += re.sub(r"\\(.)", r"\1", string) if string else other.strip()
+        yield call.group(1), arguments
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    return lines + ["| " + " | ".join(cell(c) for c in row) + " |" for row in rows]
+
+
+def code(text):
+    return f"`{text}`" if text else ""
+
+
+def module_group(name, handler, children):
+    if handler == "control":
+        return "control"
+    if handler in ("operator", "blend", "group"):
+        return "operators"
+    return "transforms" if children == "1" else "solids"
+
+
+def modules(group):
+    parameters, found = {}, []
+    for macro, fields in calls("src/lang/modules.def"):
+        if macro == "CSG_MODULE" and module_group(*fields[:3]) == group:
+            found.append(fields)
+        if macro == "CSG_PARAMETER":
+            parameters.setdefault(fields[0], []).append(fields[1:])
+    rows = []
+    for name, _, _, doc in found:
+        rows.append([f"**{code(name)}**", "", "", "", doc])
+        for parameter, how, default, unit, allowed, meaning in parameters.get(name, []):
+            shown = parameter if how == "POSITIONAL" else parameter + " ="
+            limits = ", ".join(part for part in (unit, allowed) if part)
+            rows.append(["", code(shown), default, limits, meaning])
+    if group == "control":
+        return table(["module", "what it does"], [[row[0], row[4]] for row in rows])
+    return table(["module", "parameter", "default", "kind and range", "meaning"], rows)
+
+
+def functions():
+    rows = []
+    for _, (name, _, _, _, parameters, doc) in calls("src/lang/functions.def"):
+        rows.append([code(f"{name}({parameters})"), doc])
+    return table(["function", "gives"], rows)
+
+
+def unsupported():
+    rows = []
+    for path in ("src/lang/unsupported.def", "src/lang/unsupported_functions.def"):
+        for _, (name, instead) in calls(path):
+            rows.append([code(name), "" if instead == "NULL" else instead])
+    return table(["not there yet", "until then"], rows)
+
+
+def diagnostics():
+    rows = []
+    for _, (_, number, severity, summary) in calls("src/base/diagnostics.def"):
+        word = severity.removeprefix("CSGM_").lower()
+        rows.append([f"{word[0].upper()}{int(number):04d}", word, summary])
+    return table(["code", "severity", "what was found"], rows)
+
+
+TABLES = {
+    "solids": lambda: modules("solids"),
+    "transforms": lambda: modules("transforms"),
+    "operators": lambda: modules("operators"),
+    "control": lambda: modules("control"),
+    "functions": functions,
+    "unsupported": unsupported,
+    "diagnostics": diagnostics,
+}
+
+
+def renew(text):
+    for name, make in TABLES.items():
+        begin, end = f"<!-- begin {name} -->", f"<!-- end {name} -->"
+        before, _, rest = text.partition(begin)
+        _, found, after = rest.partition(end)
+        if not found:
+            sys.exit(f"{MANUAL}: no markers for the table '{name}'")
+        text = before + "\n".join([begin] + make() + [end]) + after
+    return text
+
+
+def main():
+    with open(MANUAL, encoding="utf-8") as file:
+        old = file.read()
+    new = renew(old)
+    if "--check" in sys.argv[1:]:
+        if new != old:
+            print("scenes/README.md is not up to date: run python3 tools/manual/tables.py")
+        return int(new != old)
+    if new != old:
+        with open(MANUAL, "w", encoding="utf-8") as file:
+            file.write(new)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
