@@ -89,7 +89,7 @@ static void same_bits(const float *a, const float *b, size_t count, bool zeros_t
 void test_same_bits(const test_results *a, const test_results *b, size_t count, bool zeros_too,
                     const char *what)
 {
-    same_bits(a->value, b->value, count, true, "value", what);
+    same_bits(a->value, b->value, count, zeros_too, "value", what);
     for (int c = 0; c < 3; c++)
         same_bits(a->gradient[c], b->gradient[c], count, zeros_too, "gradient", what);
     for (int c = 0; c < 4; c++)

@@ -49,8 +49,8 @@ void test_evaluate(const csg_kernel *kernel, const csg_tape *tape, const test_po
 /* The builds of the kernels that this machine runs, scalar first; returns how many. */
 size_t test_kernels(const csg_kernel *kernels[8]);
 
-/* Same bits in every array, or the test fails and says where. Zeros of gradients and colours may
- * differ in sign unless `zeros_too`. */
+/* Same bits in every array, or the test fails and says where. Zeros may differ in sign unless
+ * `zeros_too`. */
 void test_same_bits(const test_results *a, const test_results *b, size_t count, bool zeros_too,
                     const char *what);
 

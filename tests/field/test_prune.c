@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: MIT
+ * What pruning promises, on random scenes and random cells, and on pairs of operands built to sit
+ * exactly on the threshold of dropping one:
+ *   intervals  contain the value, in float and in double, of every point of the ball
+ *   states     OUTSIDE and INSIDE are true of every point
+ *   shorter    tapes give the same bits where |f| <= tau (values, gradients, colours), and the same
+ *              sign elsewhere; also when they are shortened again in smaller and smaller cells
+ */
+#include <float.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "field/field_support.h"
+#include "field/prune.h"
+
+enum { LEVELS = 5, POINTS_IN_CELL = 96 };
+
+typedef struct cube {
+    csg_vec3 center; /* field frame */
+    double half;
+} cube;
+
+/* Everything one scene needs. */
+typedef struct walk {
+    test_subject subject;
+    const csg_kernel *kernel;
+    csg_pruner pruner;
+    csg_arena arena;
+    double rounding; /* as the octree chooses it */
+    uint64_t cells, outside, inside, shortened, in_band;
+} walk;
+
+static void walk_begin(walk *w, double extent)
+{
+    w->kernel = csg_kernel_for(csg_cpu_best_isa(CSGM_ISA_AUTO));
+    w->rounding = 32 * (double)FLT_EPSILON * extent;
+    csg_pruner_init(&w->pruner, &w->subject.context.memory, w->kernel, (float)w->rounding);
+    csg_arena_init(&w->arena, &w->subject.context.memory);
+}
+
+static void walk_end(walk *w)
+{
+    csg_pruner_release(&w->pruner);
+    csg_arena_reset(&w->arena);
+    test_subject_end(&w->subject);
+}
+
+static cube child_of(cube parent, int octant)
+{
+    double q = parent.half / 2;
+    csg_vec3 step = {octant & 1 ? q : -q, octant & 2 ? q : -q, octant & 4 ? q : -q};
+    return (cube){csg_vec3_add(parent.center, step), q};
+}
+
+static void prune_children(walk *w, const csg_tape *tape, cube parent)
+{
+    float c[3][CSG_OCTANTS];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        csg_vec3 at = child_of(parent, o).center;
+        c[0][o] = (float)at.x, c[1][o] = (float)at.y, c[2][o] = (float)at.z;
+    }
+    double radius = parent.half / 2 * sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON);
+    assert_true(csg_prune_octants(&w->pruner, tape, c[0], c[1], c[2], (float)radius));
+}
+
+/* Corners, the middle, random points, and as many near the surface as a few steps can bring there.
+ */
+static void points_in_cube(const walk *w, csg_random *random, cube k, test_points *points)
+{
+    test_points_clear(points);
+    test_points_add(points, k.center);
+    for (int corner = 0; corner < 8; corner++) {
+        csg_vec3 way = {corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1};
+        test_points_add(points, csg_vec3_add(k.center, csg_vec3_scale(way, k.half)));
+    }
+    while (points->count < POINTS_IN_CELL) {
+        csg_vec3 p = csg_vec3_add(k.center, test_point(random, k.half));
+        for (int step = 0; step < 2 && points->count % 2; step++) {
+            csg_sample s = test_sample(w->subject.scene, csg_vec3_add(p, w->subject.field->center));
+            csg_vec3 to = csg_vec3_sub(p, csg_vec3_scale(s.gradient, s.value));
+            p.x = fmin(fmax(to.x, k.center.x - k.half), k.center.x + k.half);
+            p.y = fmin(fmax(to.y, k.center.y - k.half), k.center.y + k.half);
+            p.z = fmin(fmax(to.z, k.center.z - k.half), k.center.z + k.half);
+        }
+        test_points_add(points, p);
+    }
+}
+
+/* The root's interval of the last prune_children holds every value in the child. */
+static void check_interval(const walk *w, const csg_tape *tape, int octant,
+                           const test_points *points, const test_results *r, const char *what)
+{
+    size_t root = ((size_t)tape->count - 1) * CSG_OCTANTS + (size_t)octant;
+    double low = (double)w->pruner.low[root], high = (double)w->pruner.high[root];
+    csg_cell_state state = csg_prune_state(&w->pruner, octant);
+    for (size_t i = 0; i < points->count; i++) {
+        double value = (double)r->value[i];
+        double exact =
+            i % 4 ? value
+                  : test_sample(w->subject.scene, test_points_in_scene(points, i, w->subject.field))
+                        .value;
+        if (!(low <= value && value <= high))
+            fail_msg("%s: %.9g is not in [%.9g, %.9g]", what, value, low, high);
+        /* Far from the surface a shortened tape has another value of the same sign. */
+        if (tape->nodes == w->subject.field->tape.nodes && !(low <= exact && exact <= high))
+            fail_msg("%s: exactly %.17g is not in [%.9g, %.9g]", what, exact, low, high);
+        if ((state == CSG_CELL_OUTSIDE && !(value < 0 && exact < 0)) ||
+            (state == CSG_CELL_INSIDE && !(value >= 0 && exact >= 0)))
+            fail_msg("%s: state %d of a cell with %.9g (%.17g)", what, (int)state, value, exact);
+    }
+}
+
+/* Same bits in the band, same sign outside; keeps only the band's results for the comparison. */
+static size_t keep_band(test_results *full, test_results *other, size_t count, double tau,
+                        const char *what)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        float f = full->value[i];
+        if ((f >= 0) != (other->value[i] >= 0))
+            fail_msg("%s: %.9g has become %.9g", what, (double)f, (double)other->value[i]);
+        if (fabs((double)f) > tau)
+            continue;
+        test_results *both[2] = {full, other};
+        for (int k = 0; k < 2; k++) {
+            both[k]->value[kept] = both[k]->value[i];
+            for (int c = 0; c < 3; c++)
+                both[k]->gradient[c][kept] = both[k]->gradient[c][i];
+            for (int c = 0; c < 4; c++)
+                both[k]->color[c][kept] = both[k]->color[c][i];
+        }
+        kept++;
+    }
+    return kept;
+}
+
+/* One random way down from a cube: its tape is shortened again at each level. */
+static void descend(walk *w, csg_random *random, cube at, double tau, const char *what)
+{
+    static test_points points;
+    static test_results full, other;
+    csg_tape tape = w->subject.field->tape;
+    for (int level = 0; level < LEVELS; level++) {
+        prune_children(w, &tape, at);
+        int next = -1;
+        uint32_t first = csg_random_below(random, CSG_OCTANTS);
+        for (uint32_t k = 0; k < CSG_OCTANTS; k++) {
+            int octant = (int)((first + k) % CSG_OCTANTS);
+            csg_cell_state state = csg_prune_state(&w->pruner, octant);
+            if (k < 2 || (state == CSG_CELL_SURFACE && next < 0)) {
+                points_in_cube(w, random, child_of(at, octant), &points);
+                test_evaluate(w->kernel, &tape, &points, &other);
+                check_interval(w, &tape, octant, &points, &other, what);
+                w->cells++;
+                w->outside += state == CSG_CELL_OUTSIDE;
+                w->inside += state == CSG_CELL_INSIDE;
+            }
+            if (state == CSG_CELL_SURFACE && next < 0)
+                next = octant; /* the points left are of this child, if it is the last looked at */
+        }
+        if (next < 0)
+            return;
+        at = child_of(at, next);
+        csg_tape shorter;
+        assert_true(csg_prune_shorten(&w->pruner, next, (float)tau, &w->arena, &shorter));
+        assert_true(shorter.count <= tape.count);
+        w->shortened += shorter.count < tape.count;
+        tape = shorter;
+        points_in_cube(w, random, at, &points);
+        test_evaluate(w->kernel, &w->subject.field->tape, &points, &full);
+        test_evaluate(w->kernel, &tape, &points, &other);
+        size_t kept = keep_band(&full, &other, points.count, tau, what);
+        test_same_bits(&full, &other, kept, false, what);
+        w->in_band += kept;
+    }
+}
+
+static void test_random_scenes(void **state)
+{
+    uint64_t cells = 0, outside = 0, inside = 0, shortened = 0, in_band = 0;
+    csg_random random = {21};
+    for (unsigned i = 0; i < 200; i++) {
+        walk w = {0};
+        char what[48];
+        snprintf(what, sizeof what, "random scene %u", i);
+        test_subject_begin(&w.subject);
+        test_subject_compile(&w.subject,
+                             test_random_scene(&w.subject.builder, &random, 1 + i * 7 % 60));
+        walk_begin(&w, 3);
+        for (int turn = 0; turn < 3; turn++) {
+            cube at = {test_point(&random, 1), csg_random_uniform(&random, 0.05, 1.5)};
+            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
+            descend(&w, &random, at, tau, what);
+        }
+        cells += w.cells, outside += w.outside, inside += w.inside;
+        shortened += w.shortened, in_band += w.in_band;
+        walk_end(&w);
+    }
+    /* Enough of everything was seen for the checks to mean something. */
+    assert_true(cells > 5000 && outside > 500 && inside > 100 && shortened > 500);
+    assert_true(in_band > 20000);
+}
+
+/* ---- on the threshold
+ * ------------------------------------------------------------------------------ */
+
+/* Two spheres on a line through the cell with their fields' difference at one point of the cell
+ * exactly the support, up to rounding: the farther one may or may not be dropped, and must not be
+ * where that would change a bit. */
+static void check_threshold(csg_random *random, csg_blend_kind kind, csg_node_kind how,
+                            walk *totals)
+{
+    walk w = {0};
+    csg_blend blend = test_random_blend(random, kind);
+    double chi = csg_blend_support(blend), half = csg_random_uniform(random, 0.01, 0.2);
+    csg_vec3 along = test_direction(random), center = test_point(random, 1);
+    double radius = half * sqrt(3.0), r[2], distance[2], turn = how == CSG_NODE_UNION ? 1 : -1;
+    /* At the end of the ball towards the second sphere: values `f` and f - chi (mirrored for an
+     * intersection), within a few ulp. */
+    double f = csg_random_uniform(random, -1, 1) * half;
+    double value[2] = {f, f - turn * chi + csg_random_uniform(random, -4, 4) * 1e-7};
+    csg_vec3 end = csg_vec3_add(center, csg_vec3_scale(along, radius));
+    csg_node_id nodes[2];
+    test_subject_begin(&w.subject);
+    for (int k = 0; k < 2; k++) {
+        r[k] = csg_random_uniform(random, 0.5, 2) + fmax(value[k], 0);
+        distance[k] = r[k] - value[k];
+        csg_vec3 at = csg_vec3_add(end, csg_vec3_scale(along, k ? distance[k] : -distance[k]));
+        csg_affine place = csg_affine_translate(at);
+        nodes[k] = csg_build_transform(
+            &w.subject.builder, &place,
+            csg_build_primitive(&w.subject.builder, CSG_NODE_SPHERE, &r[k], NOWHERE), NOWHERE);
+    }
+    test_subject_compile(&w.subject,
+                         csg_build_operator(&w.subject.builder, how, blend, nodes, 2, NOWHERE));
+    walk_begin(&w, 8);
+    /* The cell's child 0 is the ball of the construction. */
+    csg_vec3 own = csg_vec3_sub(center, w.subject.field->center);
+    cube at = {csg_vec3_add(own, csg_vec3_make(half, half, half)), 2 * half};
+    prune_children(&w, &w.subject.field->tape, at);
+    double tau = 3 * half;
+    csg_tape shorter;
+    assert_true(csg_prune_shorten(&w.pruner, 0, (float)tau, &w.arena, &shorter));
+    static test_points points;
+    static test_results full, other;
+    test_points_clear(&points);
+    for (int i = 0; i < 256; i++) { /* in the ball, most of them at its end */
+        csg_vec3 p = csg_vec3_scale(along, radius * (1 - pow(2, -i / 8.0)));
+        p = csg_vec3_add(p, test_point(random, 0.1 * radius * pow(2, -i / 8.0)));
+        test_points_add(&points, csg_vec3_add(own, p));
+    }
+    test_evaluate(w.kernel, &w.subject.field->tape, &points, &full);
+    test_evaluate(w.kernel, &shorter, &points, &other);
+    char what[64];
+    snprintf(what, sizeof what, "threshold, %s %s", csg_blend_name(kind), csg_node_kind_name(how));
+    size_t kept = keep_band(&full, &other, points.count, tau, what);
+    test_same_bits(&full, &other, kept, false, what);
+    totals->cells++;
+    totals->shortened += shorter.count < w.subject.field->tape.count;
+    totals->in_band += kept;
+    walk_end(&w);
+}
+
+static void test_threshold(void **state)
+{
+    static const csg_blend_kind kinds[] = {CSG_BLEND_SHARP,     CSG_BLEND_ROUND,
+                                           CSG_BLEND_OVERBLEND, CSG_BLEND_COSINE,
+                                           CSG_BLEND_PARABOLA,  CSG_BLEND_CHAMFER};
+    csg_random random = {22};
+    walk totals = {0};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        for (int i = 0; i < 400; i++)
+            check_threshold(&random, kinds[k], i % 2 ? CSG_NODE_UNION : CSG_NODE_INTERSECTION,
+                            &totals);
+    assert_true(totals.in_band > 100000);
+}
+
+/* ---- what pruning is for
+ * ------------------------------------------------------------------------------ */
+
+/* In a cell that one of a thousand balls reaches, its tape is that ball. */
+static void test_one_of_many(void **state)
+{
+    walk w = {0};
+    csg_node_id nodes[1000];
+    test_subject_begin(&w.subject);
+    for (int i = 0; i < 1000; i++) {
+        csg_affine place = csg_affine_translate(csg_vec3_make(i % 10, i / 10 % 10, i / 100));
+        nodes[i] = csg_build_transform(
+            &w.subject.builder, &place,
+            csg_build_primitive(&w.subject.builder, CSG_NODE_SPHERE, (double[]){0.3}, NOWHERE),
+            NOWHERE);
+    }
+    test_subject_compile(&w.subject, csg_build_operator(&w.subject.builder, CSG_NODE_UNION,
+                                                        (csg_blend){CSG_BLEND_ROUND, 0.1}, nodes,
+                                                        1000, NOWHERE));
+    walk_begin(&w, 10);
+    cube at = {csg_vec3_make(0.5, 0.5, 0.5), 0.2}; /* field frame: the centre is (4.5, 4.5, 4.5) */
+    prune_children(&w, &w.subject.field->tape, at);
+    csg_tape shorter;
+    assert_int_equal(csg_prune_state(&w.pruner, 0), CSG_CELL_SURFACE);
+    assert_true(csg_prune_shorten(&w.pruner, 0, 0.05f, &w.arena, &shorter));
+    assert_int_equal(shorter.count, 1);
+    walk_end(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_threshold),
+        cmocka_unit_test(test_one_of_many),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
