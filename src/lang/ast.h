@@ -131,6 +131,7 @@ typedef struct csg_program {
     uint32_t scope_count;
     const char **dependencies;
     uint32_t dependency_count;
+    double deadline_s;   /* of the monotonic clock; 0 = none */
     bool failed_io;      /* a file could not be read */
     uintptr_t stack_end; /* lowest address of the stack that parser and evaluator may use */
 } csg_program;

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/clock.h"
 #include "lang/evaluator.h"
 #include "lang/loader.h"
 
@@ -207,6 +208,8 @@ static void compile(compilation *c)
     uint32_t errors = c->context->diags.errors;
     char here;
     c->status = csg_program_init(&program, c->context);
+    if (c->context->limits.timeout_s > 0)
+        program.deadline_s = csg_clock_now_s() + c->context->limits.timeout_s;
     program.stack_end = (uintptr_t)&here - c->stack_bytes;
     if (c->status == CSGM_OK)
         c->status = parse(&program, c);

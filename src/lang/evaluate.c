@@ -128,20 +128,10 @@ static bool to_literal(csg_value value, target *out)
 }
 
 /* A variable that holds a function, in this frame or further out. */
-static bool find_literal(csg_eval *e, csg_symbol name, csg_frame *frame, target *out)
+static bool find_literal(const csg_eval *e, csg_symbol name, const csg_frame *frame, target *out)
 {
-    csg_value value = {.kind = CSG_VALUE_UNSET};
-    if (e->program->symbols.entries[name].special)
-        value = csg_value_retain(csg_eval_dynamic(e, name));
-    for (csg_frame *at = frame; at && value.kind == CSG_VALUE_UNSET; at = at->parent)
-        for (uint32_t i = 0; i < at->count; i++) {
-            csg_symbol here = at->names ? at->names[i].name : at->scope->variables[i].name;
-            if (here == name && at->values[i].kind != CSG_VALUE_UNSET)
-                value = csg_value_retain(at->values[i]);
-        }
-    bool found = to_literal(value, out);
-    csg_value_release(&e->heap, value);
-    return found;
+    const csg_value *found = csg_eval_lookup(e, name, frame);
+    return found && to_literal(*found, out);
 }
 
 static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *frame, target *out)

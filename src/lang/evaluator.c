@@ -144,8 +144,8 @@ bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
                        (unsigned long long)e->context->limits.eval_steps);
         return false;
     }
-    if (e->deadline_s != 0 && before / LOOK_AT_CLOCK != e->steps / LOOK_AT_CLOCK &&
-        csg_clock_now_s() > e->deadline_s)
+    if (e->program->deadline_s != 0 && before / LOOK_AT_CLOCK != e->steps / LOOK_AT_CLOCK &&
+        csg_clock_now_s() > e->program->deadline_s)
         csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL,
                        "the evaluation takes more than %g seconds", e->context->limits.timeout_s);
     return !e->stop;
@@ -244,20 +244,23 @@ static const csg_value *find_in_frame(const csg_eval *e, const csg_frame *frame,
                : NULL;
 }
 
+const csg_value *csg_eval_lookup(const csg_eval *e, csg_symbol name, const csg_frame *frame)
+{
+    const csg_value *found = NULL;
+    uint32_t head = e->program->symbols.entries[name].special ? e->dynamic_heads[name] : 0;
+    if (head)
+        return &e->dynamics[head - 1].value;
+    for (const csg_frame *at = frame; at && !found; at = at->parent)
+        found = at->count ? find_in_frame(e, at, name) : NULL;
+    return found;
+}
+
 csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where)
 {
     char hint[96];
-    csg_value dynamic;
-    if (e->program->symbols.entries[name].special) {
-        dynamic = csg_eval_dynamic(e, name);
-        if (dynamic.kind != CSG_VALUE_UNSET)
-            return csg_value_retain(dynamic);
-    }
-    for (const csg_frame *at = frame; at; at = at->parent) {
-        const csg_value *found = find_in_frame(e, at, name);
-        if (found)
-            return csg_value_retain(*found);
-    }
+    const csg_value *found = csg_eval_lookup(e, name, frame);
+    if (found)
+        return csg_value_retain(*found);
     if (name == e->symbol_pi)
         return csg_value_number(3.14159265358979323846);
     csg_eval_report(
@@ -421,8 +424,6 @@ csgm_status csg_eval_init(csg_eval *e, csg_program *program)
     csg_memory *memory = &program->context->memory;
     *e = (csg_eval){.program = program, .context = program->context, .root = CSG_NODE_NONE};
     csg_heap_init(&e->heap, memory, program->context->limits.depth);
-    if (program->context->limits.timeout_s > 0)
-        e->deadline_s = csg_clock_now_s() + program->context->limits.timeout_s;
     if (intern_constants(e)) { /* no name is interned after this: the table of heads stays */
         e->dynamic_heads =
             csg_arena_calloc(&program->arena, program->symbols.count, sizeof(uint32_t));

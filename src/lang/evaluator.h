@@ -41,7 +41,6 @@ typedef struct csg_eval {
     csgm_status status; /* why stopped; SCENE after a reported mistake */
     uint32_t depth;
     uint64_t steps;
-    double deadline_s; /* 0 = none */
 
     csg_dynamic *dynamics;
     size_t dynamic_count, dynamic_capacity;
@@ -93,6 +92,8 @@ void csg_eval_push_trace(csg_eval *e, csg_symbol name, bool module, csg_span whe
 
 /* The variable's value; UNDEF and a warning when there is none. */
 csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where);
+/* The same, borrowed; NULL when there is none. */
+const csg_value *csg_eval_lookup(const csg_eval *e, csg_symbol name, const csg_frame *frame);
 /* The value of a $variable, borrowed; UNSET when it has none. */
 csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name);
 void csg_eval_push_dynamic(csg_eval *e, csg_symbol name, csg_value value); /* consumed */

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "lang/loader.h"
 #include "lang/parser_private.h"
 
@@ -307,9 +308,24 @@ static void resynchronize(csg_parser *parser, size_t from)
     }
 }
 
+static bool is_late(csg_parser *parser)
+{
+    const csg_program *program = parser->program;
+    if (program->deadline_s == 0 || (parser->at & 63) || csg_clock_now_s() < program->deadline_s)
+        return false;
+    csg_source_report(&program->sources, CSG_DIAG_TIMEOUT, csg_parser_span(parser), NULL,
+                      "parsing takes more than %g seconds", program->context->limits.timeout_s);
+    parser->stop = true;
+    parser->status = CSGM_ERR_LIMIT;
+    parser->at = parser->tokens.count - 1;
+    return true;
+}
+
 static void parse_or_skip(csg_parser *parser, csg_scope *scope)
 {
     size_t from = parser->at;
+    if (is_late(parser))
+        return;
     if (!parse_statement(parser, scope) && !parser->stop)
         resynchronize(parser, from);
 }

@@ -17,6 +17,7 @@
 enum {
     LARGEST_TEXT = 64 << 20, /* bytes of one file */
     MOST_SOURCES = 10000,    /* an include that includes twice is a tree of 2^depth files */
+    LONGEST_LINE = 400,      /* bytes of a line that is shown */
     SNIFFED = 8192           /* bytes looked at to tell text from binary */
 };
 
@@ -52,7 +53,11 @@ static void report_at(const csg_sources *sources, csg_diag_code code, csg_span w
                       const char *hint, const char *message)
 {
     csgm_diag diag = {.message = message, .hint = hint};
-    if (where.source < sources->count) {
+    const csg_diag_sink *sink = &sources->context->diags;
+    /* What is not shown any more is only counted: finding its line could be slow. */
+    bool shown =
+        code == CSG_DIAG_NOTE ? !sink->mute_notes : sink->errors + sink->warnings < CSG_DIAG_MOST;
+    if (shown && where.source < sources->count) {
         const csg_source *source = &sources->items[where.source];
         csg_source_place(source, where.offset, &diag.line, &diag.column);
         diag.source_name = source->name;
@@ -62,8 +67,10 @@ static void report_at(const csg_sources *sources, csg_diag_code code, csg_span w
         uint32_t end = begin;
         while (end < source->length && source->text[end] != '\n' && source->text[end] != '\r')
             end++;
-        diag.source_line = source->text + begin;
-        diag.source_line_length = end - begin;
+        if (end - begin <= LONGEST_LINE) { /* else the caret would stand screens away */
+            diag.source_line = source->text + begin;
+            diag.source_line_length = end - begin;
+        }
     }
     csg_diag_report(&sources->context->diags, code, diag);
 }
