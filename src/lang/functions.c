@@ -97,19 +97,26 @@ static csg_value make_blend(const csg_function_call *call, csg_blend_kind kind, 
     return made;
 }
 
+/* The one argument of a blend; NAN after a report. */
+static double blend_number(const csg_function_call *call)
+{
+    if (call->arguments[0].kind == CSG_VALUE_NUMBER)
+        return call->arguments[0].as.number;
+    csg_eval_report(call->e, CSG_DIAG_BAD_BLEND, call->syntax[0].value->whole, NULL,
+                    "%s() needs a number, not a %s", call->name,
+                    csg_value_kind_name(call->arguments[0]));
+    return NAN;
+}
+
 csg_value csg_function_blend(const csg_function_call *call)
 {
     int kind = CSG_BLEND_COUNT - 1;
     while (kind > 0 && strcmp(csg_blend_name((csg_blend_kind)kind), call->name) != 0)
         kind--;
-    if (call->arguments[0].kind != CSG_VALUE_NUMBER) {
-        csg_eval_report(call->e, CSG_DIAG_BAD_BLEND, call->syntax[0].value->whole, NULL,
-                        "%s() needs a number, not a %s", call->name,
-                        csg_value_kind_name(call->arguments[0]));
-        return csg_value_undef();
-    }
-    double value = call->arguments[0].as.number;
+    double value = blend_number(call);
     bool raw = call->syntax[0].name == call->e->symbol_n;
+    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
+        return csg_value_undef();
     if (call->syntax[0].name && !raw && call->syntax[0].name != call->e->symbol_w)
         csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[0].where, NULL,
                         "%s() takes the width w or the raw parameter n", call->name);
@@ -119,11 +126,13 @@ csg_value csg_function_blend(const csg_function_call *call)
 
 csg_value csg_function_round(const csg_function_call *call)
 {
-    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
-        return csg_bad_argument(call, 0, "a number");
-    if (call->syntax[0].name == call->e->symbol_r)
-        return make_blend(call, CSG_BLEND_ROUND, call->arguments[0].as.number);
-    return csg_value_number(round(call->arguments[0].as.number));
+    bool number = call->arguments[0].kind == CSG_VALUE_NUMBER;
+    if (call->syntax[0].name == call->e->symbol_r) {
+        double radius = blend_number(call);
+        return number ? make_blend(call, CSG_BLEND_ROUND, radius) : csg_value_undef();
+    }
+    return number ? csg_value_number(round(call->arguments[0].as.number))
+                  : csg_bad_argument(call, 0, "a number");
 }
 
 /* round(x) with one positional argument, and no function of the scene in its place. */
@@ -195,8 +204,9 @@ const char *csg_suggest(csg_eval *e, csg_diag_code code, csg_symbol name, csg_fr
     csg_member_kind kind = code == CSG_DIAG_UNKNOWN_MODULE     ? CSG_MEMBER_MODULE
                            : code == CSG_DIAG_UNKNOWN_FUNCTION ? CSG_MEMBER_FUNCTION
                                                                : CSG_MEMBER_VARIABLE;
-    if (csg_eval_has_told(e, code, where))
-        return NULL; /* the search is not for loops */
+    const csg_diag_sink *sink = &e->context->diags;
+    if (csg_eval_has_told(e, code, where) || sink->errors + sink->warnings >= CSG_DIAG_MOST)
+        return NULL; /* nobody will see it: the search is not for loops */
     search s = {.wanted = csg_symbol_name(&e->program->symbols, name)};
     size_t length = strlen(s.wanted);
     s.distance = length <= 2 ? 2 : length <= 5 ? 3 : 4; /* one more than is allowed */

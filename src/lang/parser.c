@@ -311,7 +311,8 @@ static void resynchronize(csg_parser *parser, size_t from)
 static bool is_late(csg_parser *parser)
 {
     const csg_program *program = parser->program;
-    if (program->deadline_s == 0 || (parser->at & 63) || csg_clock_now_s() < program->deadline_s)
+    if (program->deadline_s == 0 || (++parser->statements & 63) ||
+        csg_clock_now_s() < program->deadline_s)
         return false;
     csg_source_report(&program->sources, CSG_DIAG_TIMEOUT, csg_parser_span(parser), NULL,
                       "parsing takes more than %g seconds", program->context->limits.timeout_s);
@@ -354,7 +355,7 @@ static csg_scope *parse_children(csg_parser *parser)
     if (kind == CSG_TOKEN_OPEN_CURLY)
         return parse_block(parser, scope) ? scope : NULL;
     if (kind == CSG_TOKEN_CLOSE_CURLY || kind == CSG_TOKEN_END || kind == CSG_TOKEN_MODULE ||
-        kind == CSG_TOKEN_FUNCTION || kind == CSG_TOKEN_ASSIGN) {
+        kind == CSG_TOKEN_FUNCTION || kind == CSG_TOKEN_ELSE || kind == CSG_TOKEN_ASSIGN) {
         csg_source_report(&parser->program->sources, CSG_DIAG_EXPECTED, place_behind(parser),
                           kind == CSG_TOKEN_ASSIGN ? "'==' compares, '=' assigns to a plain name"
                                                    : NULL,

@@ -14,9 +14,10 @@ typedef struct csg_parser {
     const char *text;
     csg_token_array tokens;
     size_t at;
-    uint32_t depth;     /* of nesting, against the stack */
-    bool stop;          /* memory or a limit: unwind */
-    csgm_status status; /* why */
+    uint32_t depth;      /* of nesting, against the stack */
+    uint32_t statements; /* begun: now and then the clock is looked at */
+    bool stop;           /* memory or a limit: unwind */
+    csgm_status status;  /* why */
 } csg_parser;
 
 /* How a step ended: false = an error was reported, resynchronise. */

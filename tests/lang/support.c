@@ -11,6 +11,7 @@
 static void on_diag(void *user, const csgm_diag *diag)
 {
     bench *b = user;
+    assert_true(pthread_equal(pthread_self(), b->thread)); /* the library's promise */
     if (b->text_length < sizeof b->text)
         b->text_length +=
             csgm_diag_format(diag, b->text + b->text_length, sizeof b->text - b->text_length);
@@ -23,6 +24,7 @@ static void on_diag(void *user, const csgm_diag *diag)
 static void on_echo(void *user, const char *text, size_t length)
 {
     bench *b = user;
+    assert_true(pthread_equal(pthread_self(), b->thread));
     assert_true(length >= 7 && memcmp(text, "ECHO: ", 6) == 0 && text[length - 1] == '\n');
     length -= 6;
     if (b->echo_length + length < sizeof b->echo) {
@@ -35,6 +37,7 @@ static void on_echo(void *user, const char *text, size_t length)
 void bench_open(bench *b, const csgm_allocator *allocator)
 {
     memset(b, 0, sizeof *b);
+    b->thread = pthread_self();
     csg_memory_init(&b->context.memory, allocator, (uint64_t)8 << 30);
     b->context.limits = (csgm_limits){10000, 4000000, 1000000000, (uint64_t)8 << 30, 0};
     b->context.diags = (csg_diag_sink){.on_diag = on_diag, .user = b};

@@ -4,6 +4,8 @@
 #ifndef TESTS_LANG_SUPPORT_H
 #define TESTS_LANG_SUPPORT_H
 
+#include <pthread.h>
+
 #include "lang/lang.h"
 
 enum { MOST_CODES = 64 };
@@ -16,6 +18,7 @@ typedef struct bench {
     size_t echo_length;
     int codes[MOST_CODES]; /* of errors and warnings in order; warnings negative */
     int code_count;
+    pthread_t thread;  /* that opened it: callbacks must come on it */
     csgm_scene *scene; /* of the last bench_compile */
 } bench;
 

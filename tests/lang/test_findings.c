@@ -89,6 +89,39 @@ static void a_repeated_mistake_is_told_once(void **state)
     assert_int_equal(b.code_count, 1);
 }
 
+static void warnings_can_be_errors(void **state)
+{
+    (void)state;
+    b.context.diags.warnings_as_errors = true;
+    assert_int_equal(bench_compile(&b, "sphere(oops);"), CSGM_ERR_SCENE);
+    assert_true(bench_has(&b, 203));
+    assert_int_equal(bench_compile(&b, "a = 1; a = 2; sphere(a);"), CSGM_ERR_SYNTAX);
+    assert_int_equal(bench_compile(&b, "*sphere(1);"), CSGM_ERR_SCENE);
+    assert_true(bench_has(&b, 390));
+    b.context.diags.warnings_as_errors = false;
+    assert_int_equal(bench_compile(&b, "sphere(oops);"), CSGM_OK);
+}
+
+static void echoes_and_findings_keep_their_order(void **state)
+{
+    char *at;
+    (void)state;
+    assert_int_equal(
+        bench_compile(&b, "for (i = [1 : 3000]) echo(i, \"padding padding\"); sphere(1);"),
+        CSGM_OK);
+    at = b.echo;
+    for (int i = 1; i <= 2000; i++) { /* what the bench keeps */
+        char line[64];
+        snprintf(line, sizeof line, "%d, \"padding padding\"\n", i);
+        assert_memory_equal(at, line, strlen(line));
+        at += strlen(line);
+    }
+    assert_int_equal(
+        bench_compile(&b, "echo([for (i = [1 : 8000]) i]); echo(\"last\"); sphere(1);"), CSGM_OK);
+    assert_string_equal(b.echo + b.echo_length - 7, "\"last\"\n");
+    assert_true(b.echo_length > 30000);
+}
+
 /* ---- recovery -------------------------------------------------------------------------------- */
 
 static void the_parser_finds_independent_mistakes(void **state)
@@ -311,6 +344,8 @@ int main(void)
         cmocka_unit_test(a_call_trace_looks_like_this),
         cmocka_unit_test(an_unclosed_bracket_shows_both_places),
         cmocka_unit_test(a_repeated_mistake_is_told_once),
+        cmocka_unit_test(warnings_can_be_errors),
+        cmocka_unit_test(echoes_and_findings_keep_their_order),
         cmocka_unit_test(the_parser_finds_independent_mistakes),
         cmocka_unit_test(mistakes_inside_blocks_do_not_spill),
         cmocka_unit_test(no_more_than_twenty_are_shown),

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "lang/support.h"
+#include "scene/print.h"
 #include "scene/reference.h"
 
 static bench b;
@@ -243,6 +244,55 @@ static void the_mug_of_the_manual_compiles(void **state)
           64, 0, 45, 5);
 }
 
+/* ---- the printed scene is the same scene --------------------------------------------- */
+
+typedef struct printed {
+    char text[16384];
+    size_t length;
+} printed;
+
+static void collect(void *user, const char *text, size_t length)
+{
+    printed *p = user;
+    assert_true(p->length + length < sizeof p->text);
+    memcpy(p->text + p->length, text, length);
+    p->length += length;
+    p->text[p->length] = '\0';
+}
+
+static void printed_scenes_parse_back(void **state)
+{
+    static const char *const scenes[] = {
+        "sphere(2);",
+        "cube([1, 2, 3], round = 0.25);",
+        "cylinder(h = 10, r1 = 6, r2 = 1, round = 0.5);",
+        "cylinder(h = 10, r = 4, round = 1, center = true);",
+        "torus(10, 2, 75);",
+        "capsule([1, 2, 3], [4, 4, 4], 1, 0.5);",
+        "plane([1, 2, 3], 4);",
+        "difference(blend = 2) { union(blend = cosine(3)) { sphere(4); color(\"teal\") cube(5); "
+        "blend(1) ellipsoid([1, 2, 3]); } rotate([10, 20, 30]) scale([1, 2, 3]) cylinder(9, 1, 2); "
+        "}",
+        "intersection(blend = hyperbola(0.3)) { sphere(4); translate([1, 0, 0]) sphere(4); "
+        "cube(3); }",
+        "intersection() { sphere(4); }",
+    };
+    static printed first, second;
+    (void)state;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        first.length = second.length = 0;
+        assert_int_equal(bench_compile(&b, scenes[i]), CSGM_OK);
+        assert_int_equal(csg_scene_print(b.scene, collect, &first), CSGM_OK);
+        csgm_status status = bench_compile(&b, first.text);
+        if (status != CSGM_OK || b.code_count)
+            print_error("%s%s", first.text, b.text);
+        assert_int_equal(status, CSGM_OK);
+        assert_int_equal(b.code_count, 0);
+        assert_int_equal(csg_scene_print(b.scene, collect, &second), CSGM_OK);
+        assert_string_equal(first.text, second.text);
+    }
+}
+
 static int setup(void **state)
 {
     (void)state;
@@ -268,6 +318,7 @@ int main(void)
         cmocka_unit_test(wrapped_children_bring_their_own_blend),
         cmocka_unit_test(colors_are_read),
         cmocka_unit_test(the_mug_of_the_manual_compiles),
+        cmocka_unit_test(printed_scenes_parse_back),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
