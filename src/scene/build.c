@@ -42,10 +42,14 @@ void csg_build_abandon(csg_scene_builder *builder)
     csg_memory_release(memory, scene->transforms,
                        builder->transform_capacity * sizeof *scene->transforms);
     csg_memory_release(memory, scene->colors, builder->color_capacity * sizeof *scene->colors);
+    csg_memory_release(memory, scene->formulas,
+                       builder->formula_capacity * sizeof *scene->formulas);
+    csg_memory_release(memory, scene->steps, builder->step_capacity * sizeof *scene->steps);
     csg_memory_release(memory, scene, sizeof *scene);
     builder->scene = NULL;
     builder->node_capacity = builder->child_capacity = builder->parameter_capacity = 0;
     builder->transform_capacity = builder->color_capacity = 0;
+    builder->formula_capacity = builder->step_capacity = 0;
 }
 
 static bool has_room_for_nodes(csg_scene_builder *builder)
@@ -138,7 +142,8 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
     double values[MOST_PARAMETERS] = {0};
     if (builder->status != CSGM_OK)
         return CSG_NODE_NONE;
-    uint32_t count = csg_node_is_primitive(kind) ? csg_primitive_parameter_count(kind) : 0;
+    bool known = csg_node_is_primitive(kind) && kind != CSG_NODE_FIELD;
+    uint32_t count = known ? csg_primitive_parameter_count(kind) : 0;
     for (uint32_t i = 0; i < count; i++)
         values[i] = parameters[i];
     if (!csg_check_primitive(builder, kind, values) || !has_room_for_nodes(builder) ||
@@ -176,6 +181,74 @@ csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 
     place.t[1] = origin.y;
     place.t[2] = origin.z;
     return csg_build_transform(builder, &place, solid, where);
+}
+
+/* ---- fields --------------------------------------------------------------------------- */
+
+static bool append_formula(csg_scene_builder *builder, const csg_formula_step *steps,
+                           const csg_formula *formula)
+{
+    csgm_scene *scene = builder->scene;
+    csg_memory *memory = &builder->context->memory;
+    void *formulas = scene->formulas, *all_steps = scene->steps;
+    if (formula->count > UINT32_MAX - scene->step_count) {
+        csg_check_fail(builder, CSGM_ERR_LIMIT, "the scene's formulas are too long");
+        return false;
+    }
+    bool done = csg_memory_reserve(memory, &formulas, &builder->formula_capacity,
+                                   scene->formula_count + 1, sizeof *formula);
+    scene->formulas = formulas;
+    done = done && csg_memory_reserve(memory, &all_steps, &builder->step_capacity,
+                                      scene->step_count + formula->count, sizeof *steps);
+    scene->steps = all_steps;
+    if (!done) {
+        fail_memory(builder);
+        return false;
+    }
+    scene->formulas[scene->formula_count] = *formula;
+    scene->formulas[scene->formula_count++].first = (uint32_t)scene->step_count;
+    memcpy(scene->steps + scene->step_count, steps, formula->count * sizeof *steps);
+    scene->step_count += formula->count;
+    return true;
+}
+
+/* field & box: what lies outside the bounds is outside the solid. */
+static csg_node_id cut_by_box(csg_scene_builder *builder, csg_node_id field, csg_box box,
+                              csg_span where)
+{
+    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
+    csg_affine place = csg_affine_translate(csg_box_center(box));
+    csg_node_id cutter =
+        csg_build_primitive(builder, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0}, where);
+    if (cutter == CSG_NODE_NONE)
+        return CSG_NODE_NONE;
+    cutter = csg_build_transform(builder, &place, cutter, where);
+    if (cutter == CSG_NODE_NONE)
+        return CSG_NODE_NONE;
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
+                              (csg_node_id[]){field, cutter}, 2, where);
+}
+
+csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
+                            uint32_t count, csg_box bounds, bool cut, double lipschitz,
+                            csg_span where)
+{
+    if (builder->status != CSGM_OK || !csg_check_field(builder, steps, count, bounds, lipschitz))
+        return CSG_NODE_NONE;
+    csg_formula formula = {.count = count, .lipschitz = lipschitz, .bounds = bounds};
+    if (lipschitz == 0)
+        formula.lipschitz = csg_formula_lipschitz(&builder->context->memory, steps, count, bounds);
+    if (isnan(formula.lipschitz))
+        return fail_memory(builder);
+    if (!csg_check_slope(builder, &formula))
+        return CSG_NODE_NONE;
+    if (!has_room_for_nodes(builder) || !append_formula(builder, steps, &formula))
+        return CSG_NODE_NONE;
+    csg_node node = {.kind = CSG_NODE_FIELD,
+                     .payload = (uint32_t)builder->scene->formula_count - 1,
+                     .where = where};
+    csg_node_id field = append_node(builder, node, NULL, 0);
+    return cut && csg_box_is_finite(bounds) ? cut_by_box(builder, field, bounds, where) : field;
 }
 
 /* ---- transforms and colours ----------------------------------------------------------- */

@@ -16,7 +16,8 @@
 typedef struct csg_scene_builder {
     csgm_context *context;
     csgm_scene *scene; /* growing; arrays are from context->memory until csg_build_finish */
-    size_t node_capacity, child_capacity, parameter_capacity, transform_capacity, color_capacity;
+    size_t node_capacity, child_capacity, parameter_capacity, transform_capacity, color_capacity,
+        formula_capacity, step_capacity;
     csgm_status status; /* first failure, sticky */
     char problem[160];  /* one sentence about it, "" for memory */
 } csg_scene_builder;
@@ -33,6 +34,12 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
  * swallows the other. */
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,
                               double r2, csg_span where);
+/* The solid where the formula is >= 0. steps as csg_formula_collect gives them; bounds: where the
+ * formula is meant (formula.h), a finite box, or all of space; cut: and nothing outside of it is
+ * inside. lipschitz 0: computed, which fails for formulas that are too steep to tell. */
+csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
+                            uint32_t count, csg_box bounds, bool cut, double lipschitz,
+                            csg_span where);
 /* matrix must be invertible and finite. */
 csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *matrix,
                                 csg_node_id child, csg_span where);

@@ -140,6 +140,54 @@ bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double 
     }
 }
 
+/* Operands come first, constants are finite. */
+static bool is_sound_step(const csg_formula_step *steps, uint32_t index)
+{
+    const csg_formula_step *step = &steps[index];
+    if (step->op >= CSG_FORMULA_OP_COUNT)
+        return false;
+    uint32_t arity = csg_formula_op_arity(step->op);
+    return (arity < 1 || step->a < index) && (arity < 2 || step->b < index) &&
+           (step->op != CSG_FORMULA_CONSTANT || isfinite(step->constant));
+}
+
+bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count,
+                     csg_box bounds, double lipschitz)
+{
+    if (count == 0 || count > CSG_LONGEST_FORMULA)
+        csg_check_fail(builder, CSGM_ERR_LIMIT, "the formula has more than %d operations",
+                       CSG_LONGEST_FORMULA);
+    for (uint32_t i = 0; i < count && builder->status == CSGM_OK; i++)
+        if (!is_sound_step(steps, i))
+            csg_check_fail(builder, CSGM_ERR_SCENE, "the formula has a number that is not finite");
+    const double sides[6] = {bounds.min.x, bounds.min.y, bounds.min.z,
+                             bounds.max.x, bounds.max.y, bounds.max.z};
+    bool unbounded = !csg_box_is_finite(bounds) && !csg_box_is_empty(bounds);
+    for (int i = 0; i < 6 && builder->status == CSGM_OK; i++)
+        if (unbounded ? isfinite(sides[i])
+                      : !check_range(builder, sides[i], "a side of the bounds"))
+            csg_check_fail(builder, CSGM_ERR_SCENE, "the bounds are not finite");
+    if (builder->status == CSGM_OK && !unbounded &&
+        !(bounds.min.x < bounds.max.x && bounds.min.y < bounds.max.y &&
+          bounds.min.z < bounds.max.z))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the bounds are empty");
+    if (!(lipschitz >= 0 && isfinite(lipschitz)))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "lipschitz must be a positive number");
+    return builder->status == CSGM_OK;
+}
+
+bool csg_check_slope(csg_scene_builder *builder, csg_formula *formula)
+{
+    const double smallest = 1e-6, largest = 1e12;
+    if (!(formula->lipschitz <= largest))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "how steep the formula gets cannot be told%s",
+                       csg_box_is_finite(formula->bounds)
+                           ? "; give lipschitz ="
+                           : "; give bounds = [[x, y, z], [x, y, z]], or lipschitz =");
+    formula->lipschitz = fmax(formula->lipschitz, smallest);
+    return builder->status == CSGM_OK;
+}
+
 bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1, double r2)
 {
     const double ends[6] = {p1.x, p1.y, p1.z, p2.x, p2.y, p2.z};

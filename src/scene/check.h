@@ -15,6 +15,10 @@ void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *
 
 /* values as in primitives.def; a plane's normal becomes a unit vector. */
 bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *values);
+bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count,
+                     csg_box bounds, double lipschitz);
+/* The formula's Lipschitz constant, as given or found; a tiny one is raised. */
+bool csg_check_slope(csg_scene_builder *builder, csg_formula *formula);
 /* Of a capsule. */
 bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1, double r2);
 bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix);

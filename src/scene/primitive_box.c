@@ -44,6 +44,8 @@ double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
         return csg_vec3_norm(csg_vec3_make(v[0] * n.x, v[1] * n.y, v[2] * n.z));
     case CSG_NODE_PLANE:
         return plane_support(v, n);
+    case CSG_NODE_FIELD: /* a formula may be inside anywhere */
+        return INFINITY;
     default:
         assert(kind == CSG_NODE_EMPTY);
         return -INFINITY;
@@ -63,6 +65,8 @@ csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const cs
     double low[3], high[3];
     if (kind == CSG_NODE_EMPTY)
         return csg_box_empty();
+    if (kind == CSG_NODE_FIELD)
+        return csg_box_all();
     for (int i = 0; i < 3; i++) {
         const double *row = map->m[i];
         csg_vec3 n = csg_vec3_make(row[0], row[1], row[2]);

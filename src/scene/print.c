@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/formula_print.h"
+
 enum { DEEPEST_INDENT = 40, INDENT = 2 };
 
 typedef struct open_node {
@@ -33,13 +35,7 @@ static void put(printer *out, const char *text)
 
 static void put_number(printer *out, double value)
 {
-    char text[40];
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value)
-            break;
-    }
-    put(out, text);
+    csg_print_number(out->sink, out->user, value);
 }
 
 static void put_float(printer *out, float value)
@@ -164,6 +160,27 @@ static void put_primitive(printer *out, const csg_node *node)
     }
 }
 
+static bool put_field(printer *out, const csg_node *node)
+{
+    const csgm_scene *scene = out->scene;
+    const csg_formula *formula = &scene->formulas[node->payload];
+    csg_box domain = formula->bounds;
+    put(out, "field(");
+    if (!csg_formula_print(&scene->context->memory, scene->steps + formula->first, formula->count,
+                           out->sink, out->user))
+        return false;
+    if (csg_box_is_finite(domain)) {
+        put(out, ", domain = [");
+        put_list(out, (double[]){domain.min.x, domain.min.y, domain.min.z}, 3);
+        put(out, ", ");
+        put_list(out, (double[]){domain.max.x, domain.max.y, domain.max.z}, 3);
+        put(out, "]");
+    }
+    put_argument(out, ", ", "lipschitz", formula->lipschitz);
+    put(out, ");\n");
+    return true;
+}
+
 /* ---- nodes with children ------------------------------------------------------------------- */
 
 static void put_matrix(printer *out, const csg_affine *a)
@@ -215,8 +232,10 @@ static bool open_children(printer *out, csg_node_id id)
         put_color(out, scene->colors[node->payload]);
     else if (csg_node_is_operator(node->kind))
         put_operator(out, node);
-    else
+    else if (node->kind != CSG_NODE_FIELD)
         put_primitive(out, node);
+    else if (!put_field(out, node))
+        return false;
     if (!node->child_count)
         return true;
     if (!csg_memory_reserve(&scene->context->memory, &open, &out->open_capacity,

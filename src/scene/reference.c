@@ -7,6 +7,7 @@
 typedef struct workspace {
     csg_vec3 *points; /* per node, in its own frame */
     csg_sample *samples;
+    csg_formula_dual *steps;   /* of the longest formula */
     double *values, *partials; /* of one operator's children */
     void *heap;
     size_t heap_bytes;
@@ -16,8 +17,11 @@ enum { STACK_BYTES = 16384 };
 
 static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
 {
-    size_t nodes = scene->node_count;
-    size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double));
+    size_t nodes = scene->node_count, steps = 0;
+    for (size_t i = 0; i < scene->formula_count; i++)
+        steps = scene->formulas[i].count > steps ? scene->formulas[i].count : steps;
+    size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double)) +
+                   steps * sizeof *w->steps;
     *w = (workspace){0};
     if (bytes > STACK_BYTES) {
         w->heap = stack = csg_memory_alloc(&scene->context->memory, bytes);
@@ -29,6 +33,7 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     w->points = (csg_vec3 *)(w->samples + nodes);
     w->values = (double *)(w->points + nodes); /* no operator has as many children as nodes */
     w->partials = w->values + nodes;
+    w->steps = (csg_formula_dual *)(w->partials + nodes);
     return true;
 }
 
@@ -83,6 +88,16 @@ static csg_sample transform(const csgm_scene *scene, const csg_node *node, csg_s
     return (csg_sample){scale * inner.value, csg_vec3_scale(gradient, scale)};
 }
 
+static csg_sample sample_leaf(workspace *w, const csgm_scene *scene, const csg_node *node,
+                              csg_vec3 p)
+{
+    if (node->kind != CSG_NODE_FIELD)
+        return csg_reference_primitive(node->kind, csg_scene_parameters(scene, node), p);
+    csg_formula_dual dual =
+        csg_formula_evaluate(scene->steps, &scene->formulas[node->payload], p, w->steps);
+    return (csg_sample){dual.value, dual.gradient};
+}
+
 static void evaluate(workspace *w, const csgm_scene *scene)
 {
     for (size_t i = 0; i < scene->node_count; i++) {
@@ -95,8 +110,7 @@ static void evaluate(workspace *w, const csgm_scene *scene)
         else if (csg_node_is_operator(node->kind))
             w->samples[i] = combine(w, scene, node);
         else
-            w->samples[i] = csg_reference_primitive(node->kind, csg_scene_parameters(scene, node),
-                                                    w->points[i]);
+            w->samples[i] = sample_leaf(w, scene, node, w->points[i]);
     }
 }
 

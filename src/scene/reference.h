@@ -11,7 +11,7 @@ typedef struct csg_sample {
     csg_vec3 gradient; /* zero at critical points */
 } csg_sample;
 
-/* One primitive in its own frame, parameters as in primitives.def (operators.md 1). */
+/* One primitive (no field) in its own frame, parameters as in primitives.def (operators.md 1). */
 csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p);
 
 /* f_b(x, n) and its derivative (operators.md 2.1), x >= 0. Not for SHARP and ROUND. */

@@ -12,6 +12,7 @@ typedef struct kind_row {
 
 static const kind_row kinds[] = {
     [CSG_NODE_EMPTY] = {"empty", 0},
+    [CSG_NODE_FIELD] = {"field", 0},
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
@@ -96,8 +97,15 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
 
 double csg_scene_lipschitz(const csgm_scene *scene)
 {
-    (void)scene; /* primitives and transforms have 1, every blend so far is a convex combination */
-    return 1;
+    double largest = 0;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        if (node->kind == CSG_NODE_FIELD)
+            largest = fmax(largest, scene->formulas[node->payload].lipschitz);
+        else if (csg_node_is_primitive(node->kind))
+            largest = fmax(largest, 1); /* exact distances */
+    }
+    return largest > 0 ? largest : 1;
 }
 
 void csg_scene_destroy(csgm_scene *scene)

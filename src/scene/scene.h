@@ -5,6 +5,7 @@
  *
  * Field of a node (f > 0 inside):
  *   primitive      its exact signed distance in its own frame
+ *   field          its formula (scene/formula.h), Lipschitz constant as stated there
  *   transform M    f(p) = s g(M^-1 p), s = smallest singular value of M: Lipschitz constant kept;
  *                  for similarities this is the exact distance again
  *   color          its child
@@ -20,12 +21,14 @@
 #include "base/context.h"
 #include "base/geometry.h"
 #include "base/span.h"
+#include "scene/formula.h"
 
 typedef uint32_t csg_node_id;
 #define CSG_NODE_NONE UINT32_MAX
 
 typedef enum csg_node_kind {
     CSG_NODE_EMPTY,
+    CSG_NODE_FIELD,
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_NODE_##NAME,
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
@@ -36,6 +39,7 @@ typedef enum csg_node_kind {
     CSG_NODE_DIFFERENCE
 } csg_node_kind;
 
+/* A leaf that is a solid: a field too. */
 static inline bool csg_node_is_primitive(csg_node_kind kind)
 {
     return kind > CSG_NODE_EMPTY && kind < CSG_NODE_TRANSFORM;
@@ -46,7 +50,7 @@ static inline bool csg_node_is_operator(csg_node_kind kind)
 }
 /* "sphere", "union", ...; static storage. */
 const char *csg_node_kind_name(csg_node_kind kind);
-/* Doubles in a primitive's payload. */
+/* Doubles in a primitive's payload; a field has none. */
 uint32_t csg_primitive_parameter_count(csg_node_kind kind);
 
 typedef enum csg_blend_kind {
@@ -82,8 +86,8 @@ typedef struct csg_node {
     uint8_t blend;        /* operators: csg_blend_kind */
     uint32_t first_child; /* into children */
     uint32_t child_count;
-    uint32_t payload; /* primitives: into parameters; transforms: into transforms; colours: into
-                         colors; operators: into parameters, where n is */
+    uint32_t payload; /* primitives: into parameters; fields: into formulas; transforms: into
+                         transforms; colours: into colors; operators: into parameters, where n is */
     csg_span where;
 } csg_node;
 
@@ -97,7 +101,10 @@ struct csgm_scene {
     csg_affine *inverses; /* once sealed: of transforms */
     double *scales;       /* once sealed: smallest singular values of transforms */
     csg_color *colors;
-    size_t node_count, child_count, parameter_count, transform_count, color_count;
+    csg_formula *formulas;
+    csg_formula_step *steps; /* of all formulas */
+    size_t node_count, child_count, parameter_count, transform_count, color_count, formula_count,
+        step_count;
     csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
     csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
@@ -117,7 +124,8 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 /* Gives back a sealed scene, the struct itself too. NULL is a no-op. */
 void csg_scene_destroy(csgm_scene *scene);
 
-/* Largest Lipschitz constant of the scene's field: 1 for every node so far. */
+/* Lipschitz constant of the scene's field: the largest of its leaves', since transforms keep it and
+ * every operator's partial derivatives add up to 1. */
 double csg_scene_lipschitz(const csgm_scene *scene);
 
 #endif

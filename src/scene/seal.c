@@ -75,6 +75,10 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
             csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
         out->color_count += node->kind == CSG_NODE_COLOR;
+        if (node->kind == CSG_NODE_FIELD) {
+            out->formula_count++;
+            out->step_count += from->formulas[node->payload].count;
+        }
     }
     out->node_count = w->count;
     out->child_count = w->count - 1; /* a tree */
@@ -87,8 +91,10 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
     out->inverses = csg_arena_calloc(arena, out->transform_count, sizeof *out->inverses);
     out->scales = csg_arena_calloc(arena, out->transform_count, sizeof *out->scales);
     out->colors = csg_arena_calloc(arena, out->color_count, sizeof *out->colors);
-    return out->nodes && out->bounds && out->children && out->parameters && out->transforms &&
-           out->inverses && out->scales && out->colors;
+    out->formulas = csg_arena_calloc(arena, out->formula_count, sizeof *out->formulas);
+    out->steps = csg_arena_calloc(arena, out->step_count, sizeof *out->steps);
+    return out->formulas && out->steps && out->nodes && out->bounds && out->children &&
+           out->parameters && out->transforms && out->inverses && out->scales && out->colors;
 }
 
 static void copy_transform(csgm_scene *out, csg_affine matrix)
@@ -100,6 +106,15 @@ static void copy_transform(csgm_scene *out, csg_affine matrix)
     csg_affine_singular_values(&matrix, &out->scales[i], &largest);
 }
 
+static void copy_formula(csgm_scene *out, const csgm_scene *from, csg_formula formula)
+{
+    memcpy(out->steps + out->step_count, from->steps + formula.first,
+           formula.count * sizeof *out->steps);
+    formula.first = (uint32_t)out->step_count;
+    out->step_count += formula.count;
+    out->formulas[out->formula_count++] = formula;
+}
+
 static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node)
 {
     uint32_t old = node->payload;
@@ -109,6 +124,9 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
     } else if (node->kind == CSG_NODE_COLOR) {
         node->payload = (uint32_t)out->color_count;
         out->colors[out->color_count++] = from->colors[old];
+    } else if (node->kind == CSG_NODE_FIELD) {
+        node->payload = (uint32_t)out->formula_count;
+        copy_formula(out, from, from->formulas[old]);
     } else {
         uint32_t count =
             csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
@@ -122,6 +140,7 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
 static void copy_nodes(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
     out->parameter_count = out->transform_count = out->color_count = 0;
+    out->formula_count = out->step_count = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         uint32_t place = w->count - 1 - i;
         csg_node node = from->nodes[w->order[place].node];
