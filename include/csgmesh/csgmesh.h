@@ -78,13 +78,13 @@ typedef enum csgm_severity { CSGM_NOTE, CSGM_WARNING, CSGM_ERROR } csgm_severity
 /* One finding about one place. Borrowed: valid only during the callback. */
 typedef struct csgm_diag {
     csgm_severity severity;
-    uint16_t code;            /* stable number, printed as E0107; see scenes/README.md */
-    const char *source_name;  /* what you passed as name or path; NULL = not about a file */
-    uint32_t line, column;    /* 1-based; column counts bytes; 0 = not about text */
-    uint32_t length;          /* bytes of source the finding covers */
-    const char *message;      /* one sentence, no newline: "radius must be positive" */
-    const char *hint;         /* what to do, or NULL: "did you mean 'sphere'?" */
-    const char *source_line;  /* the whole line, not terminated, or NULL */
+    uint16_t code;           /* stable number, printed as E0107; see scenes/README.md */
+    const char *source_name; /* what you passed as name or path; NULL = not about a file */
+    uint32_t line, column;   /* 1-based; column counts bytes; 0 = not about text */
+    uint32_t length;         /* bytes of source the finding covers */
+    const char *message;     /* one sentence, no newline: "radius must be positive" */
+    const char *hint;        /* what to do, or NULL: "did you mean 'sphere'?" */
+    const char *source_line; /* the whole line, not terminated, or NULL */
     uint32_t source_line_length;
 } csgm_diag;
 
@@ -130,9 +130,9 @@ typedef struct csgm_limits {
 typedef struct csgm_context_options {
     uint32_t struct_size; /* set by csgm_context_options_default; do not touch */
     csgm_allocator allocator;
-    uint32_t threads;        /* 0 = one per core; 1 = everything on the calling thread */
-    csgm_isa isa;            /* AUTO: the widest this machine runs, or what the environment variable
-                                CSGMESH_ISA names; results are equal */
+    uint32_t threads; /* 0 = one per core; 1 = everything on the calling thread */
+    csgm_isa isa;     /* AUTO: the widest this machine runs, or what the environment variable
+                         CSGMESH_ISA names; results are equal */
     csgm_limits limits;
     bool warnings_as_errors; /* default false */
     csgm_diag_fn *on_diag;   /* called on the calling thread only; NULL = silent */
@@ -180,9 +180,9 @@ CSGM_API csgm_status csgm_scene_load(csgm_context *context, const char *path,
 CSGM_API void csgm_scene_destroy(csgm_scene *scene);
 
 typedef struct csgm_scene_info {
-    csgm_box bounds;   /* contains the solid (S-bounds); infinite sides if unbounded, empty if empty */
+    csgm_box bounds; /* contains the solid (S-bounds); its sides may be infinite, it may be empty */
     uint32_t primitive_count, operator_count;
-    double lipschitz;  /* |f(p) - f(q)| <= lipschitz |p - q| */
+    double lipschitz; /* |f(p) - f(q)| <= lipschitz |p - q| */
     bool has_colors;
 } csgm_scene_info;
 
@@ -217,7 +217,7 @@ CSGM_API void csgm_field_eval(const csgm_field *field, const float *x, const flo
 typedef enum csgm_stage { CSGM_STAGE_OCTREE, CSGM_STAGE_MESH, CSGM_STAGE_WRITE } csgm_stage;
 
 typedef struct csgm_monitor { /* all zero = nobody watches */
-    /* On the calling thread, at most about 20 times a second; fraction (of the stage) never falls. */
+    /* On the calling thread, at most about 20 times a second; a stage's fraction never falls. */
     void (*progress)(void *user, csgm_stage stage, double fraction);
     /* On any worker, about once per block: be quick and thread safe. true = stop. */
     bool (*cancelled)(void *user);
@@ -243,15 +243,16 @@ typedef struct csgm_mesh_options {
 CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
 
 typedef struct csgm_mesh_stats {
-    double octree_s, mesh_s; /* wall time: octree + sampling + counting; roots + normals + triangles */
+    /* Wall time of octree, sampling and counting; of roots, normals and triangles. */
+    double octree_s, mesh_s;
     double cell_size;
     uint32_t cells[3];
-    uint64_t cells_visited;  /* octree cells tested */
+    uint64_t cells_visited;                 /* octree cells tested */
     uint64_t pruned_outside, pruned_inside; /* of those, proven free of surface */
-    uint64_t leaf_blocks;    /* blocks of 8^3 cells that were sampled */
+    uint64_t leaf_blocks;                   /* blocks of 8^3 cells that were sampled */
     uint64_t point_evaluations, gradient_evaluations, interval_evaluations;
     uint64_t primitive_evaluations; /* primitives times points or cells, in all three */
-    double mean_tape_length; /* primitives and operators a sampled block evaluates */
+    double mean_tape_length;        /* primitives and operators a sampled block evaluates */
     uint64_t memory_peak_bytes;
 } csgm_mesh_stats;
 
@@ -264,8 +265,8 @@ CSGM_API void csgm_mesh_destroy(csgm_mesh *mesh);
 
 /* A borrowed look at a mesh; fill one yourself to write or compare your own arrays. */
 typedef struct csgm_mesh_view {
-    csgm_vec3 origin;        /* position i in scene units = origin + positions[3*i..]; zero unless the
-                                solid lies so far out that floats would be too coarse */
+    csgm_vec3 origin; /* position i in scene units = origin + positions[3*i..]; zero unless the
+                         solid lies so far out that floats would be too coarse */
     const float *positions;  /* 3 * vertex_count */
     const float *normals;    /* 3 * vertex_count, unit length, outward, or NULL */
     const uint8_t *colors;   /* 4 * vertex_count, sRGB + alpha, or NULL */
@@ -277,12 +278,12 @@ CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);
 
 /* A closed oriented 2-manifold has zeros in the first block. */
 typedef struct csgm_mesh_check {
-    uint64_t boundary_edges;    /* used once */
-    uint64_t nonmanifold_edges; /* used more than twice */
-    uint64_t misoriented_edges; /* used twice in the same direction */
+    uint64_t boundary_edges;       /* used once */
+    uint64_t nonmanifold_edges;    /* used more than twice */
+    uint64_t misoriented_edges;    /* used twice in the same direction */
     uint64_t nonmanifold_vertices; /* more than one fan of triangles around it */
     uint64_t degenerate_triangles; /* an index used twice */
-    uint64_t index_out_of_range;   /* indices >= vertex_count; such triangles are left out of the rest */
+    uint64_t index_out_of_range;   /* indices >= vertex_count; left out of the rest */
 
     uint64_t unused_vertices;
     uint64_t zero_area_triangles;
@@ -291,7 +292,7 @@ typedef struct csgm_mesh_check {
     int64_t genus;       /* components - euler / 2; meaningful for closed manifolds */
     double area, volume; /* volume by the divergence theorem; meaningful for closed meshes */
     double min_angle_deg;
-    csgm_box bounds;     /* of used vertices */
+    csgm_box bounds; /* of used vertices */
 } csgm_mesh_check;
 
 CSGM_API csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
@@ -306,12 +307,12 @@ CSGM_API double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh
 typedef enum csgm_format {
     CSGM_FORMAT_AUTO, /* by the extension */
     CSGM_FORMAT_OBJ,
-    CSGM_FORMAT_PLY,  /* binary little endian; ASCII with csgm_write_options.ascii */
-    CSGM_FORMAT_STL,  /* binary; ASCII with csgm_write_options.ascii */
+    CSGM_FORMAT_PLY, /* binary little endian; ASCII with csgm_write_options.ascii */
+    CSGM_FORMAT_STL, /* binary; ASCII with csgm_write_options.ascii */
     CSGM_FORMAT_OFF,
     CSGM_FORMAT_GLTF, /* JSON with the buffer embedded as base64 */
     CSGM_FORMAT_GLB,
-    CSGM_FORMAT_DRC,  /* bare Draco */
+    CSGM_FORMAT_DRC, /* bare Draco */
     CSGM_FORMAT_COUNT
 } csgm_format;
 
@@ -323,19 +324,25 @@ CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
 /* One line for --version: which optional libraries this build has, and which it lacks. */
 CSGM_API const char *csgm_build_features(void);
 
-typedef enum csgm_unit { CSGM_UNIT_NONE, CSGM_UNIT_MM, CSGM_UNIT_CM, CSGM_UNIT_M, CSGM_UNIT_IN } csgm_unit;
+typedef enum csgm_unit {
+    CSGM_UNIT_NONE,
+    CSGM_UNIT_MM,
+    CSGM_UNIT_CM,
+    CSGM_UNIT_M,
+    CSGM_UNIT_IN
+} csgm_unit;
 
 typedef struct csgm_write_options {
-    uint32_t struct_size; /* set by csgm_write_options_default; do not touch */
-    bool ascii;           /* PLY and STL as text; default false */
-    bool draco;           /* GLB and glTF with KHR_draco_mesh_compression; default false */
+    uint32_t struct_size;         /* set by csgm_write_options_default; do not touch */
+    bool ascii;                   /* PLY and STL as text; default false */
+    bool draco;                   /* GLB and glTF with KHR_draco_mesh_compression; default false */
     uint32_t draco_position_bits; /* 1..30, default 14 */
     uint32_t draco_normal_bits;   /* 2..30, default 10 */
     uint32_t draco_color_bits;    /* 1..30, default 8 */
     uint32_t draco_level;         /* 0 (fast) .. 10 (small), default 7 */
     bool y_up;      /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
                        Other formats keep the scene's axes. */
-    csgm_unit unit; /* glTF and GLB: one scene unit; glTF is in metres, the node scales. Default NONE */
+    csgm_unit unit; /* glTF and GLB: what a scene unit is; one node scales it to metres. NONE */
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);
@@ -349,14 +356,14 @@ CSGM_API csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view
 CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                         const char *name, csgm_format format,
                                         const csgm_write_options *options);
-/* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe: for
- * a handler that then ends the process with _exit. */
+/* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe:
+ * for a handler that then ends the process with _exit. */
 CSGM_API void csgm_files_abandon(void);
-/* csgm_mesh_build and csgm_mesh_write in one, the same bytes. Binary PLY and plain GLB are filled while
- * the mesh is made, by all threads, in memory of the surface's blocks and not of the mesh; any other
- * format (and a pipe or device) keeps the mesh in memory until it is written. A mesh without
- * triangles writes no file: CSGM_ERR_SCENE, after a warning. counts (vertices, triangles) and stats
- * may be NULL; options NULL = defaults. */
+/* csgm_mesh_build and csgm_mesh_write in one, the same bytes. Binary PLY and plain GLB are filled
+ * while the mesh is made, by all threads, in memory of the surface's blocks and not of the mesh;
+ * any other format (and a pipe or device) keeps the mesh in memory until it is written. A mesh
+ * without triangles writes no file: CSGM_ERR_SCENE, after a warning. counts (vertices, triangles)
+ * and stats may be NULL; options NULL = defaults. */
 CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
                                           const csgm_mesh_options *options, const char *path,
                                           csgm_format format,

@@ -15,8 +15,8 @@ struct csgm_context {
     csgm_limits limits;
     csgm_text_fn *on_echo; /* NULL = dropped */
     void *user;
-    csgm_isa isa;     /* never AUTO */
-    csg_pool *pool;   /* threads = 1: still a pool, of the caller alone */
+    csgm_isa isa;   /* never AUTO */
+    csg_pool *pool; /* threads = 1: still a pool, of the caller alone */
 };
 
 /* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY. */

@@ -111,8 +111,8 @@ static void put_caret(writer *w, const csgm_diag *diag)
         put_string(w, c == '\t' ? "\t" : " ");
     }
     put_string(w, "^");
-    uint32_t room = diag->source_line_length >= diag->column
-                        ? diag->source_line_length - diag->column : 0;
+    uint32_t room =
+        diag->source_line_length >= diag->column ? diag->source_line_length - diag->column : 0;
     for (uint32_t i = 1; i < diag->length && i <= room; i++)
         put_string(w, "~");
     put_string(w, "\n");
@@ -126,8 +126,8 @@ size_t csgm_diag_format(const csgm_diag *diag, char *buffer, size_t size)
     if (diag->severity == CSGM_NOTE)
         snprintf(head, sizeof head, "note: ");
     else
-        snprintf(head, sizeof head, "%s %c%04u: ",
-                 diag->severity == CSGM_ERROR ? "error" : "warning",
+        snprintf(head, sizeof head,
+                 "%s %c%04u: ", diag->severity == CSGM_ERROR ? "error" : "warning",
                  diag->severity == CSGM_ERROR ? 'E' : 'W', diag->code);
     put_string(&w, head);
     put_string(&w, diag->message);

@@ -22,9 +22,9 @@ typedef struct csg_diag_sink {
     csgm_diag_fn *on_diag; /* NULL = silent */
     void *user;
     bool warnings_as_errors;
-    bool mute_notes;               /* the last finding was over the cap: drop its notes too */
-    uint32_t errors, warnings;     /* counted even above the cap */
-    uint32_t dropped;              /* findings above the cap */
+    bool mute_notes;           /* the last finding was over the cap: drop its notes too */
+    uint32_t errors, warnings; /* counted even above the cap */
+    uint32_t dropped;          /* findings above the cap */
 } csg_diag_sink;
 
 /* Severity of the code's table row (warnings_as_errors not applied). */

@@ -65,9 +65,9 @@ csg_vec3 csg_box_size(csg_box box)
 
 bool csg_box_contains_box(csg_box outer, csg_box inner)
 {
-    return csg_box_is_empty(inner) ||
-           (outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
-            outer.max.x >= inner.max.x && outer.max.y >= inner.max.y && outer.max.z >= inner.max.z);
+    return csg_box_is_empty(inner) || (outer.min.x <= inner.min.x && outer.min.y <= inner.min.y &&
+                                       outer.min.z <= inner.min.z && outer.max.x >= inner.max.x &&
+                                       outer.max.y >= inner.max.y && outer.max.z >= inner.max.z);
 }
 
 double csg_box_field(csg_box box, csg_vec3 p)

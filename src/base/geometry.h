@@ -85,9 +85,9 @@ csg_affine csg_affine_multiply(csg_affine a, csg_affine b); /* first b, then a *
 double csg_affine_determinant(csg_affine a);
 bool csg_affine_invert(csg_affine a, csg_affine *out); /* false when singular */
 csg_vec3 csg_affine_point(const csg_affine *a, csg_vec3 p);
-csg_vec3 csg_affine_vector(const csg_affine *a, csg_vec3 v);           /* m v */
-csg_vec3 csg_affine_covector(const csg_affine *a, csg_vec3 v);         /* transpose(m) v */
-csg_box csg_affine_box(const csg_affine *a, csg_box box);               /* box of the image */
+csg_vec3 csg_affine_vector(const csg_affine *a, csg_vec3 v);   /* m v */
+csg_vec3 csg_affine_covector(const csg_affine *a, csg_vec3 v); /* transpose(m) v */
+csg_box csg_affine_box(const csg_affine *a, csg_box box);      /* box of the image */
 /* Smallest and largest singular value of m: |m v| lies between them for unit v. */
 void csg_affine_singular_values(const csg_affine *a, double *smallest, double *largest);
 /* True when m is a rotation or reflection times one factor (within 1e-12 relative). */

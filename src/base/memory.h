@@ -53,7 +53,8 @@ void csg_arena_reset(csg_arena *arena); /* gives every block back; the arena sta
 
 /* Not zeroed. size_bytes may be 0. Aligned to 16. */
 void *csg_arena_alloc(csg_arena *arena, size_t size_bytes);
-void *csg_arena_calloc(csg_arena *arena, size_t count, size_t element_bytes); /* zeroed, overflow checked */
+void *csg_arena_calloc(csg_arena *arena, size_t count,
+                       size_t element_bytes); /* zeroed, overflow checked */
 /* A terminated copy. */
 char *csg_arena_strndup(csg_arena *arena, const char *text, size_t length);
 /* A terminated formatted string. */

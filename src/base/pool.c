@@ -119,7 +119,8 @@ uint32_t csg_pool_threads(const csg_pool *pool)
     return pool->threads;
 }
 
-bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll, void *user)
+bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll,
+                  void *user)
 {
     pthread_mutex_lock(&pool->lock);
     pool->job = (job){work, user, count};

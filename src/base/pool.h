@@ -25,6 +25,7 @@ typedef void csg_pool_poll(void *user, size_t done, size_t count);
 
 /* Runs work for every index in [0, count), any order across workers; returns when all are done.
  * False when some work returned false; items not yet begun are then skipped. poll may be NULL. */
-bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll, void *user);
+bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll,
+                  void *user);
 
 #endif

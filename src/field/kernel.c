@@ -46,8 +46,7 @@ static inline point affine_back(const float *m, point g)
 #define EACH_PRIMITIVE(X)                                                                          \
     X(SPHERE, sphere)                                                                              \
     X(BOX, box)                                                                                    \
-    X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus) X(ELLIPSOID, ellipsoid)                \
-        X(PLANE, plane)
+    X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus) X(ELLIPSOID, ellipsoid) X(PLANE, plane)
 
 /* Local copies of the parameters: the compiler then knows that no store changes them. */
 #define VALUE_LOOPS(NAME, name)                                                                    \

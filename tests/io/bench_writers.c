@@ -56,7 +56,8 @@ static double theirs(const openmesh_mesh *mesh, const kind *k, bool reading)
     for (int i = 0; i < ROUNDS; i++) {
         double start = csg_clock_now_s();
         openmesh_mesh *back = reading ? openmesh_read(path) : NULL;
-        bool fine = reading ? back != NULL : openmesh_write(mesh, path, !k->ascii && !strstr(k->name, ".off"));
+        bool fine = reading ? back != NULL
+                            : openmesh_write(mesh, path, !k->ascii && !strstr(k->name, ".off"));
         double took = csg_clock_now_s() - start;
         openmesh_destroy(back);
         if (!fine)
