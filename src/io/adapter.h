@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* ---- numbers (number_format.cc) ------------------------------------------------------ */
+/* ---- numbers (number_format.cc) --------------------------------------------------- */
 
 enum { CSG_NUMBER_MOST = 32 }; /* bytes any of the put functions may write */
 
@@ -29,7 +29,7 @@ char *csg_number_put_u64(char *text, uint64_t value);
  * none. Too large becomes infinity, too small zero. */
 const char *csg_number_parse(const char *text, const char *end, double *value);
 
-/* ---- what a reading adapter hands over ------------------------------------------------ */
+/* ---- what a reading adapter hands over -------------------------------------------- */
 
 typedef struct csg_adapter_error {
     char text[240]; /* one sentence, terminated */
@@ -45,7 +45,7 @@ typedef struct csg_adapter_part {
     uint64_t vertex_count, index_count;
 } csg_adapter_part;
 
-/* ---- Draco (draco.cc) ------------------------------------------------------------------ */
+/* ---- Draco (draco.cc) ------------------------------------------------------------- */
 
 typedef struct csg_draco_settings {
     uint32_t position_bits, normal_bits; /* quantisation */
@@ -90,7 +90,7 @@ csgm_status csg_draco_decode(const uint8_t *bytes, size_t size_bytes, const csg_
                              uint64_t most_bytes, csg_draco_decoded *out, csg_adapter_error *error);
 void csg_draco_release_decoded(csg_draco_decoded *decoded);
 
-/* ---- glTF reading (gltf.cc) -------------------------------------------------------------- */
+/* ---- glTF reading (gltf.cc) ------------------------------------------------------- */
 
 /* A part with the place that its node gives it: row-major 3x4, glTF's own axes. */
 typedef csgm_status csg_gltf_part_fn(void *user, const csg_adapter_part *part,

@@ -97,7 +97,7 @@ float *csg_builder_normals(csg_mesh_builder *b)
     return b->normals;
 }
 
-/* ---- the end --------------------------------------------------------------------------------- */
+/* ---- the end ---------------------------------------------------------------------- */
 
 /* Zero when every position is a float already, or when the mesh is at least 1/16 as large as it is
  * far away: rounding then costs less than a millionth of its size. */

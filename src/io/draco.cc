@@ -26,7 +26,7 @@ csgm_status fail(csg_adapter_error *error, csgm_status status, const char *text)
     return status;
 }
 
-/* ---- encoding -------------------------------------------------------------------------------- */
+/* ---- encoding --------------------------------------------------------------------- */
 
 int add_attribute(draco::Mesh *mesh, draco::GeometryAttribute::Type kind, int8_t components,
                   draco::DataType type, bool normalized, const void *values, uint32_t count)
@@ -93,7 +93,7 @@ csgm_status encode(const csg_draco_mesh *in, const csg_draco_settings *settings,
     return CSGM_OK;
 }
 
-/* ---- decoding -------------------------------------------------------------------------------- */
+/* ---- decoding --------------------------------------------------------------------- */
 
 struct decoded_owner {
     std::vector<float> positions, normals, colors;

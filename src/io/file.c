@@ -17,7 +17,7 @@
 
 #include "io/formats.h"
 
-/* ---- temporaries in progress ----------------------------------------------------------- */
+/* ---- temporaries in progress ------------------------------------------------------ */
 
 enum { SLOTS = 16, SLOT_FREE = 0, SLOT_TAKEN, SLOT_LIVE };
 
@@ -55,7 +55,7 @@ void csg_io_cleanup_pending(void)
     errno = kept;
 }
 
-/* ---- finding the target ------------------------------------------------------------------ */
+/* ---- finding the target ----------------------------------------------------------- */
 
 static csgm_status fail(csg_file *file, int error)
 {
@@ -175,7 +175,7 @@ csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *p
     return CSGM_OK;
 }
 
-/* ---- the end ------------------------------------------------------------------------------- */
+/* ---- the end ---------------------------------------------------------------------- */
 
 static void forget(csg_file *file)
 {

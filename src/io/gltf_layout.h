@@ -45,7 +45,7 @@ csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh);
 void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
                     const csgm_write_options *options);
 
-/* ---- GLB ------------------------------------------------------------------------------------- */
+/* ---- GLB -------------------------------------------------------------------------- */
 
 #define CSG_GLB_MOST UINT32_MAX /* bytes of a file */
 enum {

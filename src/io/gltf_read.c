@@ -23,8 +23,7 @@ typedef struct gltf {
     loaded *files; /* named by the document; kept until it is read */
 } gltf;
 
-/* ---- a part
- * ---------------------------------------------------------------------------------------- */
+/* ---- a part ----------------------------------------------------------------------- */
 
 /* Rows of [m | t] after turning (x, y, z) to (x, -z, y). */
 static void z_up(const double in[12], double out[12])
@@ -111,8 +110,7 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
     return !status && g->builder->failed ? csg_context_no_memory(g->input->context) : status;
 }
 
-/* ---- files beside it
- * ------------------------------------------------------------------------------- */
+/* ---- files beside it -------------------------------------------------------------- */
 
 static csgm_status load(void *user, const char *uri, const uint8_t **bytes, size_t *size_bytes)
 {
@@ -153,8 +151,7 @@ static void release_files(gltf *g)
     }
 }
 
-/* ---- the container
- * --------------------------------------------------------------------------------- */
+/* ---- the container ---------------------------------------------------------------- */
 
 typedef struct chunks {
     const uint8_t *json, *bin;

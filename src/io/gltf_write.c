@@ -224,8 +224,7 @@ static void put_body(csg_sink *sink, const csg_gltf_layout *layout, const csgm_m
     body_end(&b);
 }
 
-/* ---- containers
- * ----------------------------------------------------------------------------------- */
+/* ---- containers ------------------------------------------------------------------- */
 
 uint64_t csg_glb_bytes(const csg_gltf_layout *layout, size_t json_bytes)
 {
@@ -293,8 +292,7 @@ static csgm_status put_gltf(csg_sink *sink, const csg_gltf_layout *layout,
     return CSGM_OK;
 }
 
-/* ---- Draco
- * ---------------------------------------------------------------------------------------- */
+/* ---- Draco ------------------------------------------------------------------------ */
 
 typedef csgm_status container_fn(csg_sink *sink, const csg_gltf_layout *layout,
                                  const csgm_mesh_view *mesh);

@@ -93,8 +93,7 @@ static bool skip_property(ply *p, const csg_ply_property *property)
     return true;
 }
 
-/* ---- rows
- * ---------------------------------------------------------------------------------------- */
+/* ---- rows ------------------------------------------------------------------------- */
 
 /* Whole numbers fill their type's range, fractions go from 0 to 1. */
 static uint8_t to_color(double value, csg_ply_type type)
@@ -181,8 +180,7 @@ static csgm_status read_row(ply *p, const csg_ply_element *element)
     return CSGM_OK;
 }
 
-/* ---- elements
- * ------------------------------------------------------------------------------------- */
+/* ---- elements --------------------------------------------------------------------- */
 
 /* Compares the count with the fewest bytes that its rows can take. */
 static bool fits(const ply *p, const csg_ply_element *element)

@@ -21,7 +21,7 @@ void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii)
                     (unsigned long long)mesh->triangle_count);
 }
 
-/* ---- binary -------------------------------------------------------------------------------- */
+/* ---- binary ----------------------------------------------------------------------- */
 
 size_t csg_ply_vertex_bytes(const csgm_mesh_view *mesh)
 {
@@ -72,7 +72,7 @@ static void put_binary(csg_sink *sink, const csgm_mesh_view *mesh)
     }
 }
 
-/* ---- ASCII --------------------------------------------------------------------------------- */
+/* ---- ASCII ------------------------------------------------------------------------ */
 
 static void put_ascii_vertices(csg_sink *sink, const csgm_mesh_view *mesh)
 {

@@ -104,8 +104,7 @@ csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint
     return error == ENOMEM ? csg_context_no_memory(context) : unreadable(context, path, error);
 }
 
-/* ---- which format
- * -------------------------------------------------------------------------------- */
+/* ---- which format ----------------------------------------------------------------- */
 
 static bool begins(const uint8_t *data, size_t size, const char *text)
 {
@@ -134,8 +133,7 @@ static csgm_format detect(const uint8_t *data, size_t size)
     return CSGM_FORMAT_AUTO;
 }
 
-/* ---- the door
- * -------------------------------------------------------------------------------------- */
+/* ---- the door --------------------------------------------------------------------- */
 
 csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_t size_bytes,
                                const char *path, csgm_format format, csgm_mesh **out)

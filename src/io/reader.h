@@ -39,7 +39,7 @@ static inline uint64_t csg_memory_left(const csg_memory *memory)
     return !memory->limit_bytes ? 0 : memory->limit_bytes > used ? memory->limit_bytes - used : 1;
 }
 
-/* ---- little-endian loads ----------------------------------------------------------------- */
+/* ---- little-endian loads ---------------------------------------------------------- */
 
 static inline uint32_t csg_load_u32(const uint8_t *at)
 {

@@ -49,7 +49,7 @@ static inline void csg_sink_took(csg_sink *sink, const void *end)
     sink->length = (size_t)((const uint8_t *)end - sink->buffer);
 }
 
-/* ---- little-endian stores: return the place after ------------------------------------- */
+/* ---- little-endian stores: return the place after --------------------------------- */
 
 static inline uint8_t *csg_store_u16(uint8_t *at, uint32_t value)
 {

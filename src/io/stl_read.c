@@ -7,8 +7,7 @@
 
 #include "io/scan.h"
 
-/* ---- welding: open addressing over the vertices of the builder
- * ----------------------------------- */
+/* ---- welding: open addressing over the vertices of the builder -------------------- */
 
 typedef struct weld {
     csg_mesh_builder *builder;
@@ -84,8 +83,7 @@ static bool add_facet(weld *w, double corners[3][3])
     return csg_builder_triangle(w->builder, v[0], v[1], v[2]);
 }
 
-/* ---- binary
- * ----------------------------------------------------------------------------------------- */
+/* ---- binary ----------------------------------------------------------------------- */
 
 enum { HEADER = 84, FACET = 50 };
 
@@ -115,8 +113,7 @@ static csgm_status read_binary(csg_input *input, weld *w)
     return CSGM_OK;
 }
 
-/* ---- ASCII
- * ------------------------------------------------------------------------------------------ */
+/* ---- ASCII ------------------------------------------------------------------------ */
 
 static bool next_is(csg_scan *s, const char *expected)
 {

@@ -47,8 +47,7 @@ bool csg_stream_is_possible(const char *path, csgm_format format, const csgm_wri
     return stat(path, &target) != 0 ? errno == ENOENT : S_ISREG(target.st_mode);
 }
 
-/* ---- bytes to their place
- * ------------------------------------------------------------------------ */
+/* ---- bytes to their place --------------------------------------------------------- */
 
 static bool write_at(csg_stream *s, const void *bytes, uint64_t count, uint64_t at)
 {
@@ -78,8 +77,7 @@ static uint8_t *room(csg_stream *s, worker *self, uint64_t bytes)
     return NULL;
 }
 
-/* ---- PLY
- * ----------------------------------------------------------------------------------------- */
+/* ---- PLY -------------------------------------------------------------------------- */
 
 static csgm_status begin_ply(csg_stream *s)
 {
@@ -123,8 +121,7 @@ static bool put_ply(csg_stream *s, worker *self, const csg_mesh_run *run)
     return write_at(s, bytes, face_bytes, s->faces_at + run->first_triangle * CSG_PLY_FACE_BYTES);
 }
 
-/* ---- GLB
- * ------------------------------------------------------------------------------------------ */
+/* ---- GLB -------------------------------------------------------------------------- */
 
 static csgm_status begin_glb(csg_stream *s)
 {
@@ -224,8 +221,7 @@ static bool end_glb(csg_stream *s)
     return write_at(s, head, (uint64_t)(end - head), 0);
 }
 
-/* ---- the stream
- * ------------------------------------------------------------------------------------- */
+/* ---- the stream ------------------------------------------------------------------- */
 
 static csgm_status begin(void *user, const csg_mesh_counts *counts)
 {

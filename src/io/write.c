@@ -109,8 +109,7 @@ static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, co
     return check_mesh(context, mesh, file);
 }
 
-/* ---- writing
- * -------------------------------------------------------------------------------------- */
+/* ---- writing ---------------------------------------------------------------------- */
 
 static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int fd, const char *name,
                         const csg_format_row *row, const csgm_write_options *options)

@@ -126,7 +126,7 @@ csgm_mesh *io_shape_make(csgm_context *context, io_shape shape)
     return from_arrays(context, NULL, 0, NULL, 0);
 }
 
-/* ---- files ----------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------ */
 
 const char *io_folder_make(char *path, size_t size)
 {

@@ -155,8 +155,7 @@ static void pipe_is_told_by_content(void **state)
     io_context_check(&io);
 }
 
-/* ---- glTF
- * ------------------------------------------------------------------------------------------ */
+/* ---- glTF ------------------------------------------------------------------------- */
 
 /* Three vertices (0 0 0), (1 0 0), (0 1 0) with stride 16, then indices 0 1 2 as bytes. */
 static void fill_triangle(uint8_t buffer[52])
@@ -235,8 +234,7 @@ static void strips_become_triangles(void **state)
     io_context_check(&io);
 }
 
-/* ---- writing
- * ------------------------------------------------------------------------------------------ */
+/* ---- writing ---------------------------------------------------------------------- */
 
 static void all_colors_survive_gltf(void **state)
 {
