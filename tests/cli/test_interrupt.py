@@ -53,20 +53,26 @@ class Interrupt(cli.CliTest):
         self.assertEqual(process.returncode, 2, message)
         self.assertIn(b"interrupted", message)
 
-    def test_old_file_survives_at_any_moment(self):
-        """Interrupted at many moments: the output is the old file or the whole new one."""
+    def old_file_survives(self, name):
         self.write("a.txt", cli.BALL)
-        self.assert_status(self.run_in("a.txt", "-r", "128", "-o", "new.ply"), 0)
-        whole = self.read("new.ply")
+        self.assert_status(self.run_in("a.txt", "-r", "128", "-o", "new" + name), 0)
+        whole = self.read("new" + name)
         for step in range(20):
-            self.write("out.ply", b"old")
-            process = subprocess.Popen([cli.PROGRAM, "a.txt", "-r", "128", "-o", "out.ply"],
+            self.write("out" + name, b"old")
+            process = subprocess.Popen([cli.PROGRAM, "a.txt", "-r", "128", "-o", "out" + name],
                                        cwd=self.folder, stderr=subprocess.DEVNULL)
             time.sleep(0.004 * step)
             process.send_signal(signal.SIGTERM)
             process.wait(timeout=30)
-            self.assertIn(self.read("out.ply"), (b"old", whole))
-            self.assert_files("a.txt", "new.ply", "out.ply")
+            self.assertIn(self.read("out" + name), (b"old", whole))
+            self.assert_files("a.txt", "new" + name, "out" + name)
+
+    def test_old_file_survives_at_any_moment(self):
+        """Interrupted at many moments: the output is the old file or the whole new one."""
+        self.old_file_survives(".ply")
+
+    def test_old_file_survives_while_text_is_written(self):
+        self.old_file_survives(".obj")
 
 
 if __name__ == "__main__":
