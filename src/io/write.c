@@ -82,6 +82,8 @@ static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     else if (!isfinite(mesh->origin.x + mesh->origin.y + mesh->origin.z) ||
              !all_finite(mesh->positions, 3 * mesh->vertex_count))
         what = "a coordinate of the mesh is infinite or not a number";
+    else if (mesh->normals && !all_finite(mesh->normals, 3 * mesh->vertex_count))
+        what = "a normal of the mesh is infinite or not a number";
     if (!what)
         return CSGM_OK;
     csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, file, NULL, "%s", what);

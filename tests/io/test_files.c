@@ -145,6 +145,10 @@ static void refused_mesh_leaves_the_old_file(void **state)
     f->mesh->positions[7] = (float)NAN;
     expect_refused(f, f->path, CSGM_ERR_ARGUMENT, "not a number");
     f->mesh->positions[7] = kept;
+    kept = f->mesh->normals[7];
+    f->mesh->normals[7] = (float)INFINITY;
+    expect_refused(f, f->path, CSGM_ERR_ARGUMENT, "a normal");
+    f->mesh->normals[7] = kept;
     f->mesh->indices[5] = (uint32_t)f->mesh->vertex_count;
     expect_refused(f, f->path, CSGM_ERR_ARGUMENT, "does not exist");
     free(io_file_load(f->path, &after));
