@@ -146,6 +146,8 @@ typedef struct csg_list {
 } csg_list;
 
 void csg_list_push(csg_eval *e, csg_list *list, csg_value element, csg_span where); /* consumed */
+/* Room for `more` elements at once. */
+void csg_list_reserve(csg_eval *e, csg_list *list, double more, csg_span where);
 csg_value csg_list_finish(csg_eval *e, csg_list *list); /* a vector; the list is released */
 
 /* ---- built-in functions

@@ -21,15 +21,20 @@ csg_value csg_function_len(const csg_function_call *call)
 csg_value csg_function_concat(const csg_function_call *call)
 {
     csg_list list = {0};
+    double total = 0;
+    for (uint32_t i = 0; i < call->count; i++)
+        total +=
+            call->arguments[i].kind == CSG_VALUE_VECTOR ? call->arguments[i].as.vector->count : 1;
+    csg_list_reserve(call->e, &list, total, call->where);
     for (uint32_t i = 0; i < call->count; i++) {
-        csg_value value = call->arguments[i];
-        bool one = value.kind != CSG_VALUE_VECTOR;
-        uint32_t count = one ? 1 : value.as.vector->count;
+        const csg_value *value = &call->arguments[i];
+        bool one = value->kind != CSG_VALUE_VECTOR;
+        const csg_value *items = one ? value : value->as.vector->items;
+        uint32_t count = one ? 1 : value->as.vector->count;
         if (!csg_eval_charge(call->e, count / 4, call->where))
             break;
-        for (uint32_t k = 0; k < count && !call->e->stop; k++)
-            csg_list_push(call->e, &list, csg_value_retain(one ? value : value.as.vector->items[k]),
-                          call->where);
+        for (uint32_t k = 0; k < count; k++)
+            list.items[list.count++] = csg_value_retain(items[k]);
     }
     return csg_list_finish(call->e, &list);
 }

@@ -217,6 +217,7 @@ csg_value csg_function_rands(const csg_function_call *call)
     csg_random random = {0};
     memcpy(&random.state, &seed, sizeof random.state);
     csg_list list = {0};
+    csg_list_reserve(call->e, &list, fmax(count, 0), call->where);
     for (double i = 0; i < count && !call->e->stop; i++)
         csg_list_push(call->e, &list, csg_value_number(csg_random_uniform(&random, low, high)),
                       call->where);

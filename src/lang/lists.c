@@ -23,6 +23,18 @@ void csg_list_push(csg_eval *e, csg_list *list, csg_value element, csg_span wher
         list->items[list->count++] = element;
 }
 
+void csg_list_reserve(csg_eval *e, csg_list *list, double more, csg_span where)
+{
+    if (e->stop)
+        return;
+    if ((double)list->count + more > CSG_LONGEST_LIST)
+        csg_eval_limit(e, CSG_DIAG_LIST_TOO_LONG, where, NULL, "the list has more than %d elements",
+                       (int)CSG_LONGEST_LIST);
+    else if (!csg_memory_reserve(e->heap.memory, (void **)&list->items, &list->capacity,
+                                 list->count + (size_t)more, sizeof *list->items))
+        csg_eval_no_memory(e);
+}
+
 csg_value csg_list_finish(csg_eval *e, csg_list *list)
 {
     csg_vector *made = e->stop ? NULL : csg_vector_create(&e->heap, list->count);
@@ -82,7 +94,8 @@ static csg_value next_character(csg_eval *e, csg_iteration *iteration)
 
 bool csg_iteration_next(csg_eval *e, csg_iteration *iteration, csg_value *out, csg_span where)
 {
-    if (iteration->next >= iteration->count || !csg_eval_charge(e, 1, where))
+    enum { ROUND_STEPS = 4 }; /* with the frame that each round gets */
+    if (iteration->next >= iteration->count || !csg_eval_charge(e, ROUND_STEPS, where))
         return false;
     const csg_value over = iteration->over;
     double index = iteration->next++;

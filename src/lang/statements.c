@@ -229,8 +229,9 @@ static void make_root(csg_eval *e, const csg_statement *statement, size_t first)
 
 void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread)
 {
+    enum { STATEMENT_STEPS = 4 };
     size_t first = e->part_count;
-    if (!csg_eval_charge(e, 1, statement->where))
+    if (!csg_eval_charge(e, STATEMENT_STEPS, statement->where))
         return;
     if (statement->kind == CSG_STATEMENT_IF)
         run_if(e, statement, frame, spread);
