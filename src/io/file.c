@@ -159,7 +159,7 @@ csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *p
     int descriptor = descriptor_of(path);
     struct stat old;
     bool exists = stat(path, &old) == 0;
-    if (!exists && errno != ENOENT)
+    if (!exists && (errno != ENOENT || !path[0]))
         return fail(file, errno);
     if (exists && S_ISDIR(old.st_mode))
         return fail(file, EISDIR);

@@ -58,14 +58,18 @@ static csgm_status check_options(csgm_context *context, const csgm_write_options
     return CSGM_OK;
 }
 
-/* A difference with itself is zero for finite numbers and NaN for the others; so is their sum, and
- * the loop has no branch. */
+/* Not finite = all bits of the exponent set. Integers, since the compiler may not reorder a sum of
+ * floats into vectors. */
 static bool all_finite(const float *values, uint64_t count)
 {
-    float sum = 0;
-    for (uint64_t i = 0; i < count; i++)
-        sum += values[i] - values[i];
-    return sum == 0;
+    const uint32_t exponent = 0x7F800000;
+    uint32_t bad = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, values + i, sizeof bits);
+        bad |= (bits & exponent) == exponent;
+    }
+    return !bad;
 }
 
 static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh, const char *file)
