@@ -10,7 +10,7 @@
 // 0 looks along the scene's +y), --zoom (1), --columns (1), --labels (file names under the pictures),
 // --wire (edges instead of faces), --chromium PATH. A file may carry a view of its own:
 // mug.glb@20,30 or mug.glb@20,30,1.2.
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { accessSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { basename, dirname, extname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { tmpdir } from "node:os";
@@ -19,6 +19,7 @@ import { chromium } from "playwright-core";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
+const BYTES = "application/octet-stream";
 const FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
   "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--force-color-profile=srgb"];
@@ -36,6 +37,7 @@ function readOptions() {
   });
   if (!values.output || !positionals.length)
     throw new Error("usage: view.js MESH.glb... -o OUT.png [options]; see the head of this file");
+  for (const file of positionals) accessSync(file.split("@")[0]);
   return { values, files: positionals };
 }
 
@@ -57,8 +59,11 @@ async function serve(route, models) {
   let file = join(here, path);
   if (path.startsWith("/three/")) file = join(here, "node_modules", path);
   if (path.startsWith("/mesh/")) file = resolve(models[Number(path.slice(6))].path);
-  if (path === "/favicon.ico") return route.fulfill({ status: 204 });
-  return route.fulfill({ body: readFileSync(file), contentType: TYPES[extname(file)] ?? "application/octet-stream" });
+  try {
+    return await route.fulfill({ body: readFileSync(file), contentType: TYPES[extname(file)] ?? BYTES });
+  } catch {
+    return route.fulfill({ status: 404 });
+  }
 }
 
 async function main() {
