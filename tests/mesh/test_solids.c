@@ -161,6 +161,28 @@ static void test_sphere_by_hand(void **state)
     mesh_case_end(&c);
 }
 
+/* A ball under unequal scales: its field is no distance, so measure by hand: in the ball's own
+ * frame, over the length of the gradient. */
+static void test_scaled_sphere_by_hand(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    csg_vec3 s = {0.5, 1, 0.25};
+    mesh_case_compile(&c, scaled_sphere(&c));
+    csgm_mesh_options options = mesh_options(100);
+    mesh_build_closed(&c, &options, "scaled sphere");
+    for (uint64_t i = 0; i < c.mesh->vertex_count; i++) {
+        csg_vec3 p = mesh_vertex(&c, i), q = {p.x / s.x, p.y / s.y, p.z / s.z};
+        csg_vec3 out = {q.x / s.x, q.y / s.y, q.z / s.z};
+        double distance = (csg_vec3_norm(q) - 1) * csg_vec3_norm(q) / csg_vec3_norm(out);
+        test_near(distance, 0, 1e-5 * 2);
+        const float *n = c.mesh->normals + 3 * i;
+        csg_vec3 normal = {(double)n[0], (double)n[1], (double)n[2]};
+        test_near_vec3(normal, csg_vec3_normalize(out), 1e-4);
+    }
+    mesh_case_end(&c);
+}
+
 /* ---- fillets --------------------------------------------------------------------------------- */
 
 /* Two half-spaces at a right angle, joined with round(r): an arc of radius r about (s, s, z), s = r
@@ -262,8 +284,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_volumes),        cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_sphere_by_hand), cmocka_unit_test(test_fillets),
-        cmocka_unit_test(test_colors),         cmocka_unit_test(test_options),
+        cmocka_unit_test(test_sphere_by_hand), cmocka_unit_test(test_scaled_sphere_by_hand),
+        cmocka_unit_test(test_fillets),        cmocka_unit_test(test_colors),
+        cmocka_unit_test(test_options),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
