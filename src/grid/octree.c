@@ -43,22 +43,27 @@ typedef struct worker {
     csg_octree_stats stats;
 } worker;
 
-typedef struct walk {
+struct csg_octree {
     csgm_context *context;
     const csgm_field *field;
     const csg_lattice *lattice;
-    const csg_octree_options *options;
+    csg_octree_options options;
     const csg_kernel *kernel;
     worker *workers;
     uint32_t worker_count;
     float tau;   /* the band: one lattice edge */
-    cell *cells; /* of the level being split */
+    cell *cells; /* the level being split; at the end the frontier */
     size_t cell_count;
+    size_t first_cell, end_cell; /* of them, those being split */
+    csg_block **blocks;          /* sampled last, in Morton order */
+    size_t block_count;
     segment *segments; /* one an item */
     int level;         /* of the children being made */
     int top_level;
     atomic_bool out_of_memory, cancelled;
-} walk;
+};
+
+typedef csg_octree walk;
 
 /* ---- one cell ------------------------------------------------------------------------------- */
 
@@ -171,7 +176,7 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
 {
     csg_arena_mark mark = csg_arena_get_mark(&self->tapes[0]);
     self->candidate.parts = NULL;
-    if (w->options->prune && tape->count > LONG_TAPE && !split_block(w, self, at, tape))
+    if (w->options.prune && tape->count > LONG_TAPE && !split_block(w, self, at, tape))
         return false;
     count_samples(self, tape);
     if (!csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, self->samples,
@@ -207,7 +212,7 @@ static bool visit_octant(walk *w, worker *self, const csg_tape *parent, int octa
     csg_arena *arena = &self->tapes[w->level & 1];
     csg_tape tape = *parent;
     self->stats.visited++;
-    if (w->options->prune) {
+    if (w->options.prune) {
         csg_cell_state state = csg_prune_state(&self->pruner, octant);
         self->stats.pruned_outside += state == CSG_CELL_OUTSIDE;
         self->stats.pruned_inside += state == CSG_CELL_INSIDE;
@@ -234,7 +239,7 @@ static bool split(walk *w, worker *self, const cell *parent)
     tape.nodes = parent->nodes;
     tape.count = parent->node_count;
     const csg_tape *shared = NULL;
-    if (w->options->prune) {
+    if (w->options.prune) {
         float c[3][CSG_OCTANTS];
         float radius = octant_balls(w, parent, c);
         if (!csg_prune_octants(&self->pruner, &tape, c[0], c[1], c[2], radius))
@@ -257,15 +262,15 @@ static bool split_item(void *user, uint32_t worker_index, size_t item)
 {
     walk *w = user;
     worker *self = &w->workers[worker_index];
-    if (w->options->cancelled && w->options->cancelled(w->options->user)) {
+    if (w->options.cancelled && w->options.cancelled(w->options.user)) {
         atomic_store(&w->cancelled, true);
         return false;
     }
     segment *s = &w->segments[item];
     s->worker = worker_index;
     s->first = w->level ? self->cell_count : self->block_count;
-    size_t end = (item + 1) * CELLS_PER_ITEM;
-    for (size_t i = item * CELLS_PER_ITEM; i < end && i < w->cell_count; i++) {
+    size_t first = w->first_cell + item * CELLS_PER_ITEM, end = first + CELLS_PER_ITEM;
+    for (size_t i = first; i < end && i < w->end_cell; i++) {
         if (!split(w, self, &w->cells[i])) {
             atomic_store(&w->out_of_memory, true);
             return false;
@@ -280,20 +285,20 @@ static void report_progress(void *user, size_t done, size_t count)
     walk *w = user;
     /* Each level has about four times the cells of the one above. */
     double share = ldexp(1, -2 * w->level);
-    if (w->options->progress)
-        w->options->progress(w->options->user, share * ((double)done / (double)count));
+    if (w->options.progress)
+        w->options.progress(w->options.user, share * ((double)done / (double)count));
 }
 
-/* Joins the workers' cells (or blocks) in the order of their parents. */
-static bool join_level(walk *w, size_t item_count, csg_octree *out)
+/* The items' results, of `element` bytes each, in the order of their parents. NULL without any. */
+static bool join_items(walk *w, size_t item_count, size_t element, void **joined, size_t *total)
 {
-    size_t total = 0, element = w->level ? sizeof(cell) : sizeof(csg_block *);
+    *total = 0;
     for (size_t i = 0; i < item_count; i++)
-        total += w->segments[i].count;
-    uint8_t *joined = total ? csg_memory_alloc(&w->context->memory, total * element) : NULL;
-    if (total && !joined)
+        *total += w->segments[i].count;
+    *joined = *total ? csg_memory_alloc(&w->context->memory, *total * element) : NULL;
+    if (*total && !*joined)
         return false;
-    uint8_t *at = joined;
+    uint8_t *at = *joined;
     for (size_t i = 0; i < item_count; i++) {
         const segment *s = &w->segments[i];
         const worker *from = &w->workers[s->worker];
@@ -305,42 +310,45 @@ static bool join_level(walk *w, size_t item_count, csg_octree *out)
             memcpy(at, from->blocks + s->first, s->count * element);
         at += s->count * element;
     }
-    if (w->level) {
-        w->cells = (cell *)(void *)joined;
-        w->cell_count = total;
-    } else {
-        out->blocks = (csg_block **)(void *)joined;
-        out->block_count = total;
-    }
     return true;
 }
 
-static bool run_level(walk *w, csg_octree *out)
+/* Splits cells [first_cell, end_cell); the children, cells or blocks, come back joined. */
+static bool run_level(walk *w, size_t element, void **joined, size_t *total)
 {
     csg_memory *memory = &w->context->memory;
-    size_t items = (w->cell_count + CELLS_PER_ITEM - 1) / CELLS_PER_ITEM;
-    cell *parents = w->cells;
-    size_t parent_count = w->cell_count;
+    size_t items = (w->end_cell - w->first_cell + CELLS_PER_ITEM - 1) / CELLS_PER_ITEM;
     w->segments = csg_memory_alloc(memory, (items + 1) * sizeof(segment));
-    bool done = w->segments != NULL;
-    if (!done)
+    if (!w->segments) {
         atomic_store(&w->out_of_memory, true);
-    w->cells = parents;
-    done = done && csg_pool_run(w->context->pool, items, split_item, report_progress, w);
-    w->cells = NULL;
-    w->cell_count = 0;
-    if (done && !join_level(w, items, out)) {
+        return false;
+    }
+    bool done = csg_pool_run(w->context->pool, items, split_item, report_progress, w);
+    if (done && !join_items(w, items, element, joined, total)) {
         atomic_store(&w->out_of_memory, true);
         done = false;
     }
     csg_memory_release(memory, w->segments, (items + 1) * sizeof(segment));
-    csg_memory_release(memory, parents, parent_count * sizeof(cell));
-    for (uint32_t i = 0; i < w->worker_count; i++) {
-        w->workers[i].cell_count = 0;
-        if (w->level)
-            csg_arena_reset(&w->workers[i].tapes[(w->level + 1) & 1]);
-    }
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        w->workers[i].cell_count = w->workers[i].block_count = 0;
     return done;
+}
+
+/* Replaces the cells by their children of the next level down. */
+static bool descend(walk *w)
+{
+    void *children;
+    size_t count;
+    w->first_cell = 0;
+    w->end_cell = w->cell_count;
+    if (!run_level(w, sizeof(cell), &children, &count))
+        return false;
+    csg_memory_release(&w->context->memory, w->cells, w->cell_count * sizeof(cell));
+    w->cells = children;
+    w->cell_count = count;
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        csg_arena_reset(&w->workers[i].tapes[(w->level + 1) & 1]);
+    return true;
 }
 
 /* ---- the walk ---------------------------------------------------------------------------------
@@ -368,29 +376,15 @@ static bool create_workers(walk *w, float rounding)
     return done;
 }
 
-static void add_stats(csg_octree_stats *total, const csg_octree_stats *part)
-{
-    total->visited += part->visited;
-    total->pruned_outside += part->pruned_outside;
-    total->pruned_inside += part->pruned_inside;
-    total->sampled_blocks += part->sampled_blocks;
-    total->interval_evaluations += part->interval_evaluations;
-    total->point_evaluations += part->point_evaluations;
-    total->primitive_evaluations += part->primitive_evaluations;
-    total->tape_nodes_sampled += part->tape_nodes_sampled;
-}
-
-/* Releases the workers; blocks and their tapes (of even levels) go to the octree. */
-static void release_workers(walk *w, csg_octree *out)
+static void release_workers(walk *w)
 {
     csg_memory *memory = &w->context->memory;
     for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
         worker *self = &w->workers[i];
-        add_stats(&out->stats, &self->stats);
         csg_pruner_release(&self->pruner);
         csg_pruner_release(&self->part_pruner);
+        csg_arena_reset(&self->tapes[0]);
         csg_arena_reset(&self->tapes[1]);
-        out->arenas[i] = self->tapes[0];
         csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));
         csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block *));
         csg_memory_release(memory, self->samples, sizeof *self->samples);
@@ -399,7 +393,7 @@ static void release_workers(walk *w, csg_octree *out)
     csg_memory_release(memory, w->workers, w->worker_count * sizeof(worker));
 }
 
-/* The root: one cube of 2^top_level blocks around the whole lattice. */
+/* The root: one cube of 2^top_level >= 2 blocks along an edge, around the whole lattice. */
 static bool make_root(walk *w)
 {
     uint32_t most = 1;
@@ -416,47 +410,129 @@ static bool make_root(walk *w)
     return true;
 }
 
-csgm_status csg_octree_walk(csgm_context *context, const csgm_field *field,
-                            const csg_lattice *lattice, const csg_octree_options *options,
-                            csg_octree *out)
+static csgm_status why_stopped(walk *w)
 {
-    walk w = {.context = context,
-              .field = field,
-              .lattice = lattice,
-              .options = options,
-              .kernel = csg_kernel_for(context->isa),
-              .worker_count = csg_pool_threads(context->pool)};
+    return atomic_load(&w->out_of_memory) ? csg_context_no_memory(w->context) : CSGM_CANCELLED;
+}
+
+csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
+                              const csg_lattice *lattice, const csg_octree_options *options,
+                              csg_octree **out)
+{
+    walk *w = csg_memory_alloc(&context->memory, sizeof *w);
+    if (!w)
+        return csg_context_no_memory(context);
+    *w = (walk){.context = context,
+                .field = field,
+                .lattice = lattice,
+                .options = *options,
+                .kernel = csg_kernel_for(context->isa),
+                .worker_count = csg_pool_threads(context->pool)};
     /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own
      * lengths. */
     double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
-    w.tau = (float)(lattice->cell_size * (1 + 0x1p-10) + 2 * rounding);
-    *out = (csg_octree){.context = context};
-    out->arenas = csg_memory_alloc(&context->memory, w.worker_count * sizeof(csg_arena));
-    if (!out->arenas)
-        return csg_context_no_memory(context);
-    out->arena_count = w.worker_count;
-    for (uint32_t i = 0; i < w.worker_count; i++)
-        csg_arena_init(&out->arenas[i], &context->memory);
-    bool done = create_workers(&w, (float)rounding) && make_root(&w);
+    w->tau = (float)(lattice->cell_size * (1 + 0x1p-10) + 2 * rounding);
+    bool done = create_workers(w, (float)rounding) && make_root(w);
     if (!done)
-        atomic_store(&w.out_of_memory, true);
-    for (w.level = w.top_level - 1; done && w.level >= 0; w.level--)
-        done = run_level(&w, out);
-    release_workers(&w, out);
-    if (done)
+        atomic_store(&w->out_of_memory, true);
+    for (w->level = w->top_level - 1; done && w->level > 0; w->level--)
+        done = descend(w);
+    if (done) {
+        *out = w;
         return CSGM_OK;
-    csg_octree_release(out);
-    return atomic_load(&w.out_of_memory) ? csg_context_no_memory(context) : CSGM_CANCELLED;
+    }
+    csgm_status status = why_stopped(w);
+    csg_octree_destroy(w);
+    return status;
 }
 
-void csg_octree_release(csg_octree *octree)
+static void forget_blocks(walk *w)
 {
-    if (!octree->context)
+    csg_memory_release(&w->context->memory, w->blocks, w->block_count * sizeof(csg_block *));
+    w->blocks = NULL;
+    w->block_count = 0;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++)
+        csg_arena_reset(&w->workers[i].tapes[0]);
+}
+
+void csg_octree_destroy(csg_octree *w)
+{
+    if (!w)
         return;
-    csg_memory *memory = &octree->context->memory;
-    for (uint32_t i = 0; i < octree->arena_count; i++)
-        csg_arena_reset(&octree->arenas[i]);
-    csg_memory_release(memory, octree->arenas, octree->arena_count * sizeof(csg_arena));
-    csg_memory_release(memory, octree->blocks, octree->block_count * sizeof(csg_block *));
-    *octree = (csg_octree){0};
+    csg_memory *memory = &w->context->memory;
+    forget_blocks(w);
+    release_workers(w);
+    csg_memory_release(memory, w->cells, w->cell_count * sizeof(cell));
+    csg_memory_release(memory, w, sizeof *w);
+}
+
+size_t csg_octree_frontier_count(const csg_octree *octree)
+{
+    return octree->cell_count;
+}
+
+csgm_status csg_octree_sample(csg_octree *w, size_t first, size_t end)
+{
+    void *blocks;
+    forget_blocks(w);
+    w->level = 0;
+    w->first_cell = first;
+    w->end_cell = end;
+    if (!run_level(w, sizeof(csg_block *), &blocks, &w->block_count)) {
+        w->block_count = 0;
+        return why_stopped(w);
+    }
+    w->blocks = blocks;
+    return CSGM_OK;
+}
+
+csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count)
+{
+    *count = octree->block_count;
+    return octree->blocks;
+}
+
+/* Whether the highest set bit of a is lower than that of b (Chan 2002). */
+static bool is_shorter(uint32_t a, uint32_t b)
+{
+    return a < b && a < (a ^ b);
+}
+
+/* Morton order with x in the lowest bits: the axis of the highest differing bit decides, the later
+ * axis among equals. */
+static bool is_before(const uint32_t a[3], const uint32_t b[3])
+{
+    int deciding = 0;
+    uint32_t most = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t differ = a[axis] ^ b[axis];
+        if (!is_shorter(differ, most)) {
+            deciding = axis;
+            most = differ;
+        }
+    }
+    return a[deciding] < b[deciding];
+}
+
+bool csg_octree_is_before_sampled(const csg_octree *w, const uint32_t at[3])
+{
+    uint32_t cube[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
+    return is_before(cube, w->cells[w->first_cell].at);
+}
+
+csg_octree_stats csg_octree_get_stats(const csg_octree *w)
+{
+    csg_octree_stats total = {0};
+    for (uint32_t i = 0; i < w->worker_count; i++) {
+        const csg_octree_stats *part = &w->workers[i].stats;
+        total.visited += part->visited;
+        total.pruned_outside += part->pruned_outside;
+        total.pruned_inside += part->pruned_inside;
+        total.sampled_blocks += part->sampled_blocks;
+        total.interval_evaluations += part->interval_evaluations;
+        total.point_evaluations += part->point_evaluations;
+        total.primitive_evaluations += part->primitive_evaluations;
+        total.tape_nodes_sampled += part->tape_nodes_sampled;
+    }
+    return total;
 }

@@ -23,20 +23,25 @@ typedef struct csg_octree_stats {
     uint64_t interval_evaluations, point_evaluations, primitive_evaluations, tape_nodes_sampled;
 } csg_octree_stats;
 
-/* The blocks that the surface touches, in Morton order. */
-typedef struct csg_octree {
-    csgm_context *context;
-    csg_block **blocks;
-    size_t block_count;
-    csg_arena *arenas; /* one a worker: blocks and their tapes */
-    uint32_t arena_count;
-    csg_octree_stats stats;
-} csg_octree;
+/* The walk's result: the frontier, cubes of 2^3 blocks that the surface may touch, in Morton order,
+ * with their tapes; and the blocks of the part of it that was sampled last. The frontier takes a
+ * twentieth of the memory of all blocks, so a caller who must save memory samples part by part. */
+typedef struct csg_octree csg_octree;
 
-/* CSGM_OK, CSGM_CANCELLED or CSGM_ERR_MEMORY (reported). On failure *out is empty. */
-csgm_status csg_octree_walk(csgm_context *context, const csgm_field *field,
-                            const csg_lattice *lattice, const csg_octree_options *options,
-                            csg_octree *out);
-void csg_octree_release(csg_octree *octree);
+/* CSGM_OK, CSGM_CANCELLED or CSGM_ERR_MEMORY (reported). */
+csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
+                              const csg_lattice *lattice, const csg_octree_options *options,
+                              csg_octree **out);
+void csg_octree_destroy(csg_octree *octree); /* NULL is a no-op */
+
+size_t csg_octree_frontier_count(const csg_octree *octree);
+/* Samples the blocks of frontier cubes [first, end) and forgets those of the call before. */
+csgm_status csg_octree_sample(csg_octree *octree, size_t first, size_t end);
+/* The blocks, in Morton order, that the surface touches. */
+csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count);
+/* Whether a block at this place comes, in Morton order, before all of the range sampled last. */
+bool csg_octree_is_before_sampled(const csg_octree *octree, const uint32_t at[3]);
+/* Work done so far. */
+csg_octree_stats csg_octree_get_stats(const csg_octree *octree);
 
 #endif

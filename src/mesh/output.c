@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ * Where vertices and triangles go: to their places in the mesh's arrays, or, run by run, through a
+ * buffer of the worker's to a receiver.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "field/dispatch.h"
+#include "mesh/work.h"
+
+/* ---- blocks -------------------------------------------------------------------------------- */
+
+static csg_box box_of(const float *positions, uint64_t count, csg_box box)
+{
+    for (uint64_t i = 0; i < count; i++, positions += 3) {
+        csg_vec3 p = {(double)positions[0], (double)positions[1], (double)positions[2]};
+        box = csg_box_hull(box, (csg_box){p, p});
+    }
+    return box;
+}
+
+static void make_block(csg_mesh_work *w, csg_mesh_worker *self, const csg_block *block,
+                       const csg_marching_output *out)
+{
+    uint64_t points = csg_marching_vertices(&w->marching, block, self->room, out, self->scratch,
+                                            w->scratch_floats);
+    csg_marching_triangles(&w->marching, block, self->room, out);
+    if (w->clipped)
+        self->bounds = box_of(out->positions, block->vertex_count, self->bounds);
+    uint64_t gradients = out->normals ? block->vertex_count : 0;
+    self->point_evaluations += points;
+    self->gradient_evaluations += gradients;
+    self->primitive_evaluations += (points + gradients) * (block->node_count + 1) / 2;
+}
+
+/* Makes blocks [first, end); arrays of `out` begin with the first block's. */
+static void make_blocks(csg_mesh_work *w, csg_mesh_worker *self, size_t first, size_t end,
+                        const csg_marching_output *out)
+{
+    const csg_block *start = w->blocks[first];
+    for (size_t i = first; i < end; i++) {
+        const csg_block *block = w->blocks[i];
+        size_t v = block->first_vertex - start->first_vertex;
+        size_t t = (size_t)(block->first_triangle - start->first_triangle);
+        csg_marching_output place = {
+            .positions = out->positions + 3 * v,
+            .normals = out->normals ? out->normals + 3 * v : NULL,
+            .colors = out->colors ? out->colors + 4 * v : NULL,
+            .indices = out->indices + 3 * t,
+        };
+        make_block(w, self, block, &place);
+    }
+}
+
+static bool reserve_run(csg_mesh_work *w, csg_run_buffer *run, size_t vertices, size_t triangles)
+{
+    csg_memory *memory = &w->context->memory;
+    return csg_memory_reserve(memory, (void **)&run->positions, &run->position_capacity,
+                              3 * vertices, sizeof(float)) &&
+           (!w->counts.normals ||
+            csg_memory_reserve(memory, (void **)&run->normals, &run->normal_capacity, 3 * vertices,
+                               sizeof(float))) &&
+           (!w->counts.colors || csg_memory_reserve(memory, (void **)&run->colors,
+                                                    &run->color_capacity, 4 * vertices, 1)) &&
+           csg_memory_reserve(memory, (void **)&run->indices, &run->index_capacity, 3 * triangles,
+                              sizeof(uint32_t));
+}
+
+static void release_run(csg_memory *memory, csg_run_buffer *run)
+{
+    csg_memory_release(memory, run->positions, run->position_capacity * sizeof(float));
+    csg_memory_release(memory, run->normals, run->normal_capacity * sizeof(float));
+    csg_memory_release(memory, run->colors, run->color_capacity);
+    csg_memory_release(memory, run->indices, run->index_capacity * sizeof(uint32_t));
+}
+
+/* One item for a receiver: made in the worker's buffer, then handed on. */
+static bool hand_on(csg_mesh_work *w, uint32_t worker_index, size_t first, size_t end)
+{
+    csg_mesh_worker *self = &w->workers[worker_index];
+    const csg_block *start = w->blocks[first], *last = w->blocks[end - 1];
+    csg_mesh_run run = {
+        .worker = worker_index,
+        .first_vertex = start->first_vertex,
+        .vertex_count = (uint64_t)last->first_vertex + last->vertex_count - start->first_vertex,
+        .first_triangle = start->first_triangle,
+        .triangle_count = last->first_triangle + last->triangle_count - start->first_triangle,
+    };
+    csg_run_buffer *buffer = &self->run;
+    if (!reserve_run(w, buffer, (size_t)run.vertex_count, (size_t)run.triangle_count)) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
+    csg_marching_output out = {buffer->positions, buffer->normals, buffer->colors, buffer->indices};
+    make_blocks(w, self, first, end, &out);
+    run.positions = buffer->positions;
+    run.normals = buffer->normals;
+    run.colors = buffer->colors;
+    run.indices = buffer->indices;
+    if (w->receiver->put(w->receiver->user, &run))
+        return true;
+    atomic_store(&w->refused, true);
+    return false;
+}
+
+static void keep_in_mesh(csg_mesh_work *w, uint32_t worker_index, size_t first, size_t end)
+{
+    const csg_block *start = w->blocks[first];
+    csgm_mesh *mesh = w->mesh;
+    size_t v = start->first_vertex;
+    csg_marching_output out = {
+        .positions = mesh->positions + 3 * v,
+        .normals = mesh->normals ? mesh->normals + 3 * v : NULL,
+        .colors = mesh->colors ? mesh->colors + 4 * v : NULL,
+        .indices = mesh->indices + 3 * start->first_triangle,
+    };
+    make_blocks(w, &w->workers[worker_index], first, end, &out);
+}
+
+static bool make_item(void *user, uint32_t worker_index, size_t item)
+{
+    csg_mesh_work *w = user;
+    if (csg_mesh_should_stop(w))
+        return false;
+    size_t first = item * CSG_BLOCKS_PER_ITEM, end = first + CSG_BLOCKS_PER_ITEM;
+    end = end < w->block_count ? end : w->block_count;
+    if (w->receiver)
+        return hand_on(w, worker_index, first, end);
+    keep_in_mesh(w, worker_index, first, end);
+    return true;
+}
+
+/* ---- beginning ------------------------------------------------------------------------------- */
+
+/* Far from the scene's origin floats are coarse: there the mesh keeps its own. */
+static csg_vec3 origin_of(const csg_mesh_work *w)
+{
+    enum { FAR = 1024 };
+    csg_vec3 center = w->field->center, size = csg_box_size(w->bounds);
+    double extent = fmax(size.x, fmax(size.y, size.z));
+    return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
+}
+
+static void prepare_marching(csg_mesh_work *w)
+{
+    double extent = csg_lattice_extent(&w->lattice);
+    w->marching = (csg_marching){
+        .kernel = csg_kernel_for(w->context->isa),
+        .field = w->field,
+        .lattice = &w->lattice,
+        .tables = &w->tables,
+        .places = &w->places,
+        .index = &w->index,
+        .shift = csg_vec3_sub(w->field->center, w->counts.origin),
+        /* a few ulp of the coordinates, or a distance nobody sees in a cell */
+        .tolerance = (float)fmax(2 * (double)FLT_EPSILON * extent, 0x1p-14 * w->lattice.cell_size),
+    };
+}
+
+/* Where the mesh goes: arrays of its own, or a receiver. */
+static csgm_status begin_arrays(csg_mesh_work *w)
+{
+    csg_mesh_counts *counts = &w->counts;
+    counts->normals = w->options->normals;
+    counts->colors = w->options->colors && w->field->color_count > 1;
+    counts->origin = origin_of(w);
+    if (w->receiver)
+        return w->receiver->begin(w->receiver->user, counts);
+    csgm_status status = csg_mesh_create(w->context, counts->vertex_count, counts->triangle_count,
+                                         counts->normals, counts->colors, &w->mesh);
+    if (status == CSGM_OK)
+        w->mesh->origin = counts->origin;
+    return status;
+}
+
+static csgm_status create_workers(csg_mesh_work *w)
+{
+    csg_memory *memory = &w->context->memory;
+    w->worker_count = csg_pool_threads(w->context->pool);
+    w->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
+    w->workers = csg_memory_alloc(memory, w->worker_count * sizeof(csg_mesh_worker));
+    if (!w->workers)
+        return csg_context_no_memory(w->context);
+    memset(w->workers, 0, w->worker_count * sizeof(csg_mesh_worker));
+    for (uint32_t i = 0; i < w->worker_count; i++) {
+        w->workers[i].bounds = csg_box_empty();
+        w->workers[i].room = csg_memory_alloc(memory, sizeof(csg_marching_room));
+        w->workers[i].scratch = csg_memory_alloc(memory, w->scratch_floats * sizeof(float));
+        if (!w->workers[i].room || !w->workers[i].scratch)
+            return csg_context_no_memory(w->context);
+        memset(w->workers[i].room, 0, sizeof(csg_marching_room));
+    }
+    return CSGM_OK;
+}
+
+csgm_status csg_mesh_begin_output(csg_mesh_work *w)
+{
+    csgm_status status = begin_arrays(w);
+    if (status != CSGM_OK || !w->counts.vertex_count)
+        return status;
+    prepare_marching(w);
+    return create_workers(w);
+}
+
+csgm_status csg_mesh_make_blocks(csg_mesh_work *w)
+{
+    bool done = csg_pool_run(w->context->pool, csg_mesh_item_count(w), make_item, csg_mesh_poll, w);
+    return done ? CSGM_OK : csg_mesh_why_stopped(w);
+}
+
+void csg_mesh_release_output(csg_mesh_work *w)
+{
+    csg_memory *memory = &w->context->memory;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        release_run(memory, &w->workers[i].run);
+        csg_memory_release(memory, w->workers[i].room, sizeof(csg_marching_room));
+        csg_memory_release(memory, w->workers[i].scratch, w->scratch_floats * sizeof(float));
+    }
+    csg_memory_release(memory, w->workers, w->worker_count * sizeof(csg_mesh_worker));
+}
