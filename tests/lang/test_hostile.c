@@ -42,7 +42,7 @@ static void loops_and_recursion_end(void **state)
     check_limit("function f(n) = 1 + g(n); function g(n) = 1 + f(n); x = f(0);", 903);
     check_limit("module a() b(); module b() a(); a();", 903);
     check_limit("module a() { a(); a(); } a();", 903);
-    check_limit("module a() { children(); a() children(); } a() sphere(1);", 903);
+    check_limit("module a() { children(); a() children(); } a() sphere(1);", 904);
     check_limit("module a(n) if (n > 0) { a(n - 1); a(n - 1); } a(60);", 904);
     check_limit("function f(n) = n == 0 ? 1 : f(n - 1) + f(n - 1); x = f(60);", 904);
     check_limit("function f(v, n) = n == 0 ? v : f([v, v], n - 1); x = f(1, 40); y = x == x;", 904);
