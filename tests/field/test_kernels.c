@@ -218,7 +218,7 @@ static void check_primitive(csg_random *random, csg_node_kind kind, enum frame_k
 static void test_primitives(void **state)
 {
     csg_random random = {1};
-    for (csg_node_kind kind = CSG_NODE_SPHERE; kind < CSG_NODE_TRANSFORM; kind++)
+    for (csg_node_kind kind = CSG_NODE_SPHERE; kind <= CSG_NODE_PLANE; kind++)
         for (int frame = 0; frame < FRAMES; frame++)
             for (int turn = 0; turn < 6; turn++)
                 check_primitive(&random, kind, (enum frame_kind)frame);
