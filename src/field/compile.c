@@ -9,6 +9,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "field/compile_formula.h"
 #include "field/dispatch.h"
 #include "field/field.h"
 #include "field/formulas.h"
@@ -44,6 +45,9 @@ typedef struct compiler {
     float *parameters;
     csg_color *colors;
     task *tasks;
+    csg_tape_step *steps;
+    csg_tape_formula *formulas;
+    size_t step_count, step_capacity, formula_count, formula_capacity;
     size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
         color_capacity, task_count, task_capacity;
 } compiler;
@@ -203,6 +207,15 @@ static void own_parameters(leaf *l, csg_node_kind kind, const double *p, double 
     }
 }
 
+static bool is_turned(const csg_affine *place)
+{
+    bool turned = false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            turned |= fabs(place->m[i][j] - (i == j)) > 1e-15;
+    return turned;
+}
+
 /* Chooses the frame of a primitive whose own frame lies at f->place. */
 static void place_leaf(leaf *l, const frame *f, csg_vec3 center, csg_node_kind kind,
                        const double *p)
@@ -222,11 +235,7 @@ static void place_leaf(leaf *l, const frame *f, csg_vec3 center, csg_node_kind k
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 place.m[i][j] /= k;
-        bool turned = false;
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                turned |= fabs(place.m[i][j] - (i == j)) > 1e-15;
-        if (!turned || kind == CSG_NODE_SPHERE)
+        if (!is_turned(&place) || kind == CSG_NODE_SPHERE)
             l->frame = CSG_FRAME_OFFSET;
     }
     l->sigma = (f->negate ? -1 : 1) * (similar ? f->factor / k : f->factor);
@@ -234,6 +243,33 @@ static void place_leaf(leaf *l, const frame *f, csg_vec3 center, csg_node_kind k
     own_parameters(l, kind, p, k, f->factor);
     /* Lengths as the scene sees them: an own-frame value is multiplied by sigma at the end. */
     l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
+}
+
+/* A formula has no sizes that could be scaled: its frame is the whole map. */
+static bool place_field(compiler *c, leaf *l, const frame *f, const csg_node *node)
+{
+    csg_memory *memory = &c->context->memory;
+    csg_affine place = f->place;
+    place.t[0] -= c->field->center.x;
+    place.t[1] -= c->field->center.y;
+    place.t[2] -= c->field->center.z;
+    l->op = CSG_OP_FIELD;
+    l->frame = is_turned(&place) ? CSG_FRAME_AFFINE : CSG_FRAME_OFFSET;
+    l->offset = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
+    csg_affine_invert(place, &l->to_own);
+    l->sigma = f->negate ? -f->factor : f->factor;
+    l->own[0] = (double)c->formula_count;
+    l->own_count = 1;
+    if (c->formula_count >= 1 << 24 || /* an index must be exact in a float */
+        !csg_memory_reserve(memory, (void **)&c->formulas, &c->formula_capacity,
+                            c->formula_count + 1, sizeof *c->formulas) ||
+        !csg_formula_compile(memory, c->scene->steps, &c->scene->formulas[node->payload], &c->steps,
+                             &c->step_count, &c->step_capacity, &c->formulas[c->formula_count]))
+        return false;
+    /* How far a shift of the point by its rounding moves the value. */
+    l->magnitude = (double)c->formulas[c->formula_count].lipschitz * csg_vec3_norm(l->offset);
+    c->formula_count++;
+    return true;
 }
 
 /* The rounding error of a value is a few units in the last place of the lengths in it. */
@@ -273,7 +309,10 @@ static bool write_leaf(compiler *c, const leaf *l, uint32_t color)
 static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
 {
     leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
-    if (node->kind != CSG_NODE_EMPTY)
+    if (node->kind == CSG_NODE_FIELD) {
+        if (!place_field(c, &l, f, node))
+            return false;
+    } else if (node->kind != CSG_NODE_EMPTY)
         place_leaf(&l, f, c->field->center, node->kind, csg_scene_parameters(c->scene, node));
     return write_leaf(c, &l, f->color);
 }
@@ -455,6 +494,14 @@ static bool keep_tape(csgm_field *field, const csg_tape_node *nodes, size_t node
     return true;
 }
 
+static bool keep_formulas(compiler *c)
+{
+    csgm_field *field = c->field;
+    field->tape.steps = keep(&field->arena, c->steps, c->step_count * sizeof *c->steps);
+    field->tape.formulas = keep(&field->arena, c->formulas, c->formula_count * sizeof *c->formulas);
+    return field->tape.steps && field->tape.formulas;
+}
+
 static csgm_field *field_create(csgm_context *context)
 {
     csgm_field *field = csg_memory_alloc(&context->memory, sizeof *field);
@@ -494,7 +541,8 @@ csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, cs
         c.field->bounds = scene->bounds[scene->root];
         c.field->center = center_of(c.field->bounds);
         count_nodes(scene, c.field);
-        done = push_color(&c, default_color, &index) && compile_tree(&c) &&
+        c.field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
+        done = push_color(&c, default_color, &index) && compile_tree(&c) && keep_formulas(&c) &&
                keep_tape(c.field, c.nodes, c.node_count, c.parameters, c.parameter_count, c.colors,
                          c.color_count);
     }
@@ -503,6 +551,8 @@ csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, cs
     csg_memory_release(memory, c.parameters, c.parameter_capacity * sizeof *c.parameters);
     csg_memory_release(memory, c.colors, c.color_capacity * sizeof *c.colors);
     csg_memory_release(memory, c.tasks, c.task_capacity * sizeof *c.tasks);
+    csg_memory_release(memory, c.steps, c.step_capacity * sizeof *c.steps);
+    csg_memory_release(memory, c.formulas, c.formula_capacity * sizeof *c.formulas);
     if (!done) {
         csg_field_destroy(c.field);
         return csg_context_no_memory(context);
@@ -561,6 +611,7 @@ csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_b
         .op = CSG_OP_INTERSECTION, .parameters = operator_at, .arity = 2, .size = count + 2};
     clipped->tape.nodes = nodes;
     clipped->tape.parameters = parameters;
+    clipped->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
     clipped->tape.count = count + 2;
     clipped->parameter_count = parameter_count;
     clipped->depth = csg_tape_depth(&clipped->tape);

@@ -13,6 +13,7 @@
 
 #include <string.h>
 
+#include "field/formula_kernel.h"
 #include "field/formulas.h"
 
 #define STRING_(a) #a
@@ -111,6 +112,9 @@ static void leaf_values(const csg_tape *tape, const csg_tape_node *node, points 
         break;
         EACH_PRIMITIVE(CASE)
 #undef CASE
+    case CSG_OP_FIELD:
+        CSG_THIS_FORMULA_KERNEL.values(tape, node, p.x, p.y, p.z, p.count, out);
+        break;
     default: /* EMPTY */
         for (size_t i = 0; i < p.count; i++)
             out[i] = parameters[CSG_LEAF_SIGMA] * -INFINITY;
@@ -128,6 +132,9 @@ static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, poin
         break;
         EACH_PRIMITIVE(CASE)
 #undef CASE
+    case CSG_OP_FIELD:
+        CSG_THIS_FORMULA_KERNEL.gradients(tape, node, p.x, p.y, p.z, p.count, out, gx, gy, gz);
+        break;
     default:
         leaf_values(tape, node, p, out);
         for (size_t i = 0; i < p.count; i++)
@@ -471,6 +478,10 @@ static void colors(const csg_tape *tape, const float *x, const float *y, const f
 static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, points p, float radius,
                           float *restrict low, float *restrict high)
 {
+    if (node->op == CSG_OP_FIELD) {
+        CSG_THIS_FORMULA_KERNEL.intervals(tape, node, p.x, p.y, p.z, radius, low, high);
+        return;
+    }
     leaf_values(tape, node, p, low);
     float reach = radius + tape->parameters[node->parameters + CSG_LEAF_SLACK];
     for (int o = 0; o < CSG_OCTANTS; o++) {

@@ -43,9 +43,9 @@ typedef struct csg_kernel {
     void (*colors)(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats);
 
-    /* Intervals of every node's value (before its join) over eight balls of one radius:
-     * low[8 * i + o] <= value of node i over ball o <= high[8 * i + o], rounding of the leaves
-     * included. */
+    /* Intervals of every node's value (before its join) over eight cubes, given by the balls
+     * around them: low[8 * i + o] <= value of node i over cube o <= high[8 * i + o], rounding of
+     * the leaves included. (Without expression fields they hold over the balls too.) */
     void (*intervals)(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch);

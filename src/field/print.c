@@ -10,6 +10,7 @@ static const char *const op_names[CSG_OP_COUNT] = {
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_OP_##NAME] = #name,
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
+    [CSG_OP_FIELD] = "field",
     [CSG_OP_UNION] = "union",
     [CSG_OP_INTERSECTION] = "intersection",
     [CSG_OP_ROUND_UNION] = "round_union",

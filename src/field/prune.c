@@ -68,6 +68,7 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
     if (!make_room(pruner, tape))
         return false;
     pruner->tape = tape;
+    pruner->slack = pruner->rounding * tape->lipschitz;
     pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding, pruner->low,
                               pruner->high, pruner->scratch);
     return true;
@@ -86,9 +87,9 @@ static float high_of(const csg_pruner *pruner, uint32_t node, int octant)
 csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant)
 {
     uint32_t root = pruner->tape->count - 1;
-    if (low_of(pruner, root, octant) > pruner->rounding)
+    if (low_of(pruner, root, octant) > pruner->slack)
         return CSG_CELL_INSIDE;
-    if (high_of(pruner, root, octant) < -pruner->rounding)
+    if (high_of(pruner, root, octant) < -pruner->slack)
         return CSG_CELL_OUTSIDE;
     return CSG_CELL_SURFACE;
 }
@@ -112,7 +113,7 @@ static uint32_t decide_operands(csg_pruner *pruner, uint32_t node, int octant)
         }
     }
     float demand = is_union ? pruner->demand_low[node] : -pruner->demand_high[node];
-    float threshold = (demand > best ? demand : best) - chi - pruner->rounding;
+    float threshold = (demand > best ? demand : best) - chi - pruner->slack;
     uint32_t dropped = 0;
     child = node - 1;
     for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {

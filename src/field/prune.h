@@ -2,8 +2,9 @@
  * Pruning: which part of a tape can matter in a cell. Inside the band |f| <= tau no bit of a value
  * changes, outside it no sign does, so pruned and unpruned runs write the same file.
  *
- * A cell is a ball for the bounds (Lipschitz constant 1: value at the centre +- radius), composed
- * bottom-up through the operators; a demand interval goes top-down: the root's value matters in
+ * A cell is the ball around it for the bounds (Lipschitz constant 1: value at the centre +-
+ * radius; expression fields use the cube, see formula_kernel.h), composed bottom-up through the
+ * operators; a demand interval goes top-down: the root's value matters in
  * [-tau, tau]; an operand that stays below (above) what can matter through a union (intersection),
  * or below the largest sibling by the blend's support, is dropped.
  */
@@ -23,7 +24,8 @@ typedef struct csg_emitted {
 typedef struct csg_pruner {
     csg_memory *memory;
     const csg_kernel *kernel;
-    float rounding;    /* slack of comparisons: rounding error of any value in the lattice */
+    float rounding;    /* slack of lengths: rounding error of any distance in the lattice */
+    float slack;       /* of comparisons: the same of values */
     float *low, *high; /* of every node, eight lanes */
     float *demand_low, *demand_high;
     uint8_t *dropped;

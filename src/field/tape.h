@@ -19,6 +19,7 @@ typedef enum csg_op {
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_OP_##NAME,
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
+    CSG_OP_FIELD,
     CSG_OP_UNION, /* sharp or folded: the joins of its children did the work */
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
@@ -73,11 +74,33 @@ enum {
 /* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero. */
 enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
 
+/* One operation of an expression field over slots of floats, angles in radians. `out` is neither
+ * `a` nor `b`; slots 0 to 2 are the point. */
+typedef struct csg_tape_step {
+    uint8_t op;       /* csg_formula_op with operands */
+    uint8_t constant; /* which operand is `value` instead of a slot */
+    uint16_t out, a, b;
+    float value;
+} csg_tape_step;
+
+enum { CSG_CONSTANT_NONE, CSG_CONSTANT_A, CSG_CONSTANT_B };
+
+/* A CSG_OP_FIELD's own parameter is the index of one of these. */
+typedef struct csg_tape_formula {
+    uint32_t first, count; /* into the steps */
+    uint32_t slots, result;
+    float low[3], high[3]; /* the domain, in the leaf's own frame */
+    float lipschitz;
+} csg_tape_formula;
+
 /* A tape, whole or pruned: `nodes` of one array over shared parameters. */
 typedef struct csg_tape {
     const csg_tape_node *nodes;
     const float *parameters;
     const csg_color *colors;
+    const csg_tape_step *steps;
+    const csg_tape_formula *formulas;
+    float lipschitz; /* of the whole field */
     uint32_t count;
 } csg_tape;
 

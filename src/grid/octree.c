@@ -51,7 +51,7 @@ struct csg_octree {
     const csg_kernel *kernel;
     worker *workers;
     uint32_t worker_count;
-    float tau;   /* the band: one lattice edge */
+    float tau;   /* the band: by how much f can change along a lattice edge */
     cell *cells; /* the level being split; at the end the frontier */
     size_t cell_count;
     size_t first_cell, end_cell; /* of them, those being split */
@@ -431,7 +431,8 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
     /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own
      * lengths. */
     double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
-    w->tau = (float)(lattice->cell_size * (1 + 0x1p-10) + 2 * rounding);
+    w->tau = (float)((double)field->tape.lipschitz *
+                     (lattice->cell_size * (1 + 0x1p-10) + 2 * rounding));
     bool done = create_workers(w, (float)rounding) && make_root(w);
     if (!done)
         atomic_store(&w->out_of_memory, true);

@@ -151,6 +151,18 @@ static bool is_sound_step(const csg_formula_step *steps, uint32_t index)
            (step->op != CSG_FORMULA_CONSTANT || isfinite(step->constant));
 }
 
+/* Angles in radians take a slot or two more on a tape. */
+static void check_width(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count)
+{
+    uint32_t width = 0;
+    if (!csg_formula_width(&builder->context->memory, steps, count, &width))
+        csg_check_fail(builder, CSGM_ERR_MEMORY, "%s", "");
+    else if (width + 4 > CSG_FORMULA_SLOTS)
+        csg_check_fail(builder, CSGM_ERR_LIMIT,
+                       "the formula needs %u intermediate values at once, at most %d can be", width,
+                       CSG_FORMULA_SLOTS - 4);
+}
+
 bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count,
                      csg_box bounds, double lipschitz)
 {
@@ -173,6 +185,8 @@ bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, 
         csg_check_fail(builder, CSGM_ERR_SCENE, "the bounds are empty");
     if (!(lipschitz >= 0 && isfinite(lipschitz)))
         csg_check_fail(builder, CSGM_ERR_SCENE, "lipschitz must be a positive number");
+    if (builder->status == CSGM_OK)
+        check_width(builder, steps, count);
     return builder->status == CSGM_OK;
 }
 

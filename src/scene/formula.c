@@ -30,7 +30,7 @@ uint32_t csg_formula_op_arity(csg_formula_op op)
 
 void csg_formula_begin(csg_formula_builder *builder, csg_memory *memory)
 {
-    *builder = (csg_formula_builder){.memory = memory};
+    *builder = (csg_formula_builder){.memory = memory, .most = CSG_LONGEST_FORMULA};
 }
 
 void csg_formula_end(csg_formula_builder *builder)
@@ -95,7 +95,7 @@ static csg_formula_id append(csg_formula_builder *builder, csg_formula_step step
     uint32_t *place = find_place(builder, &step);
     if (*place)
         return *place - 1;
-    if (builder->count >= CSG_LONGEST_FORMULA) {
+    if (builder->count >= builder->most) {
         builder->too_long = true;
         return CSG_FORMULA_NONE;
     }
@@ -277,4 +277,31 @@ uint32_t csg_formula_collect(const csg_formula_builder *builder, csg_formula_id 
     uint32_t count = collect(builder, result, out, order, order + builder->count);
     csg_memory_release(builder->memory, order, bytes);
     return count;
+}
+
+bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                       uint32_t *out)
+{
+    uint32_t *readers = csg_memory_alloc(memory, count * sizeof *readers);
+    if (!readers)
+        return false;
+    memset(readers, 0, count * sizeof *readers);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t arity = csg_formula_op_arity(steps[i].op);
+        readers[steps[i].a] += arity > 0;
+        readers[steps[i].b] += arity > 1;
+    }
+    uint32_t live = 3, most = 3; /* the coordinates */
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t arity = csg_formula_op_arity(steps[i].op);
+        if (!arity)
+            continue;
+        most = ++live > most ? live : most;
+        live -= --readers[steps[i].a] == 0 && steps[steps[i].a].op > CSG_FORMULA_Z;
+        if (arity > 1)
+            live -= --readers[steps[i].b] == 0 && steps[steps[i].b].op > CSG_FORMULA_Z;
+    }
+    *out = most;
+    csg_memory_release(memory, readers, count * sizeof *readers);
+    return true;
 }

@@ -20,6 +20,11 @@ typedef enum csg_formula_op {
     CSG_FORMULA_OP_COUNT
 } csg_formula_op;
 
+/* One operand; neither a leaf nor two. */
+static inline bool csg_formula_op_is_unary(csg_formula_op op)
+{
+    return op > CSG_FORMULA_Z && op < CSG_FORMULA_ADD;
+}
 /* "sin"; static storage. */
 const char *csg_formula_op_name(csg_formula_op op);
 uint32_t csg_formula_op_arity(csg_formula_op op);
@@ -41,7 +46,10 @@ typedef struct csg_formula {
  */
 #define CSG_FORMULA_FAR 1e18
 
-enum { CSG_LONGEST_FORMULA = 1 << 16 };
+enum {
+    CSG_LONGEST_FORMULA = 1 << 16,
+    CSG_FORMULA_SLOTS = 512 /* most values that a formula may need at once, coordinates included */
+};
 
 /* ---- building ----------------------------------------------------------------------------- */
 
@@ -53,6 +61,7 @@ typedef struct csg_formula_builder {
     csg_formula_step *steps;
     uint32_t *table; /* open addressing: step + 1 */
     size_t count, capacity, table_size;
+    size_t most;   /* steps: CSG_LONGEST_FORMULA */
     bool too_long; /* NONE was returned for CSG_LONGEST_FORMULA, not for memory */
 } csg_formula_builder;
 
@@ -66,6 +75,10 @@ csg_formula_id csg_formula_apply(csg_formula_builder *builder, csg_formula_op op
  * builder->count); returns how many, 0 when out of memory. */
 uint32_t csg_formula_collect(const csg_formula_builder *builder, csg_formula_id result,
                              csg_formula_step *out);
+
+/* Values that an evaluation in this order has to keep at once, constants not counted. */
+bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                       uint32_t *out);
 
 /* ---- values and bounds ---------------------------------------------------------------------- */
 
