@@ -9,7 +9,7 @@
 #include "field/kernel.h"
 
 enum {
-    CSG_BLOCK_MOST_EDGES = 3 * 8 * 8 * 8, /* of a block: a multiple of CSG_LANES */
+    CSG_BLOCK_MOST_EDGES = 1952, /* 3 * 8 * 9 * 9, up to whole CSG_LANES */
 };
 
 /* Edges from a to b = a + d, one coordinate of d not zero. Arrays of whole CSG_LANES. */

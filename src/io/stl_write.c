@@ -39,22 +39,57 @@ static void load_facet(facet *f, const csgm_mesh_view *mesh, uint64_t triangle, 
     face_normal(f);
 }
 
+csgm_status csg_stl_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh)
+{
+    if (mesh->triangle_count <= UINT32_MAX)
+        return CSGM_OK;
+    csg_diag_plain(&context->diags, CSG_DIAG_FORMAT_LIMIT, file, "write PLY instead",
+                   "binary STL counts triangles up to 4294967295, the mesh has %llu",
+                   (unsigned long long)mesh->triangle_count);
+    return CSGM_ERR_UNSUPPORTED;
+}
+
+void csg_stl_pack_head(uint8_t head[CSG_STL_HEAD_BYTES], uint64_t triangle_count)
+{
+    memset(head, 0, CSG_STL_HEAD_BYTES);
+    snprintf((char *)head, CSG_STL_HEAD_BYTES - 4, "%s binary STL", CSG_WRITTEN_BY);
+    csg_store_u32(head + CSG_STL_HEAD_BYTES - 4, (uint32_t)triangle_count);
+}
+
+static uint8_t *pack_facet(uint8_t *at, const facet *f)
+{
+    for (int k = 0; k < 3; k++)
+        at = csg_store_f32(at, f->normal[k]);
+    for (int k = 0; k < 9; k++)
+        at = csg_store_f32(at, f->corner[k / 3][k % 3]);
+    return csg_store_u16(at, 0);
+}
+
+void csg_stl_pack_corners(uint8_t *at, const csgm_vec3 *origin, const float *corners,
+                          uint64_t count)
+{
+    const double shift[3] = {origin->x, origin->y, origin->z};
+    bool offset = origin->x != 0 || origin->y != 0 || origin->z != 0;
+    facet f;
+    for (uint64_t i = 0; i < count; i++, corners += 9) {
+        for (int k = 0; k < 9; k++)
+            f.corner[k / 3][k % 3] =
+                offset ? (float)(shift[k % 3] + (double)corners[k]) : corners[k];
+        face_normal(&f);
+        at = pack_facet(at, &f);
+    }
+}
+
 static void put_binary(csg_sink *sink, const csgm_mesh_view *mesh)
 {
-    char header[80] = {0};
-    snprintf(header, sizeof header, "%s binary STL", CSG_WRITTEN_BY);
-    csg_sink_put(sink, header, sizeof header);
-    csg_sink_took(sink, csg_store_u32(csg_sink_room(sink, 4), (uint32_t)mesh->triangle_count));
+    uint8_t head[CSG_STL_HEAD_BYTES];
+    csg_stl_pack_head(head, mesh->triangle_count);
+    csg_sink_put(sink, head, sizeof head);
     bool offset = csg_view_is_offset(mesh);
     facet f;
     for (uint64_t i = 0; i < mesh->triangle_count; i++) {
         load_facet(&f, mesh, i, offset);
-        uint8_t *at = csg_sink_room(sink, 50);
-        for (int k = 0; k < 3; k++)
-            at = csg_store_f32(at, f.normal[k]);
-        for (int k = 0; k < 9; k++)
-            at = csg_store_f32(at, f.corner[k / 3][k % 3]);
-        csg_sink_took(sink, csg_store_u16(at, 0));
+        csg_sink_took(sink, pack_facet(csg_sink_room(sink, CSG_STL_FACET_BYTES), &f));
     }
 }
 
@@ -94,10 +129,9 @@ static void put_ascii(csg_sink *sink, const csgm_mesh_view *mesh)
 csgm_status csg_stl_write(csg_sink *sink, const csgm_mesh_view *mesh,
                           const csgm_write_options *options)
 {
-    if (!options->ascii && mesh->triangle_count > UINT32_MAX)
-        return csg_write_refuse(sink, "write PLY instead",
-                                "STL counts triangles up to 4294967295, the mesh has %llu",
-                                (unsigned long long)mesh->triangle_count);
+    csgm_status status = options->ascii ? CSGM_OK : csg_stl_check(sink->context, sink->name, mesh);
+    if (status != CSGM_OK)
+        return status;
     if (options->ascii)
         put_ascii(sink, mesh);
     else

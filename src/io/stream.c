@@ -40,8 +40,8 @@ bool csg_stream_is_possible(const char *path, csgm_format format, const csgm_wri
 {
     if (format == CSGM_FORMAT_AUTO)
         format = csg_format_from_path(path);
-    if (!((format == CSGM_FORMAT_PLY && !options->ascii) ||
-          (format == CSGM_FORMAT_GLB && !options->draco)))
+    bool is_binary = (format == CSGM_FORMAT_PLY || format == CSGM_FORMAT_STL) && !options->ascii;
+    if (!is_binary && !(format == CSGM_FORMAT_GLB && !options->draco))
         return false;
     struct stat target;
     return stat(path, &target) != 0 ? errno == ENOENT : S_ISREG(target.st_mode);
@@ -119,6 +119,30 @@ static bool put_ply(csg_stream *s, worker *self, const csg_mesh_run *run)
         return false;
     csg_ply_pack_faces(bytes, run->indices, run->triangle_count);
     return write_at(s, bytes, face_bytes, s->faces_at + run->first_triangle * CSG_PLY_FACE_BYTES);
+}
+
+/* ---- STL
+ * ----------------------------------------------------------------------------------------- */
+
+static csgm_status begin_stl(csg_stream *s)
+{
+    uint8_t head[CSG_STL_HEAD_BYTES];
+    csgm_status status = csg_stl_check(s->context, s->file.path, &s->view);
+    csg_stl_pack_head(head, s->view.triangle_count);
+    if (status == CSGM_OK)
+        write_at(s, head, sizeof head, 0);
+    return status;
+}
+
+static bool put_stl(csg_stream *s, worker *self, const csg_mesh_run *run)
+{
+    uint64_t count = run->triangle_count * CSG_STL_FACET_BYTES;
+    uint8_t *bytes = room(s, self, count);
+    if (!bytes)
+        return false;
+    csg_stl_pack_corners(bytes, &s->view.origin, run->corners, run->triangle_count);
+    return write_at(s, bytes, count,
+                    CSG_STL_HEAD_BYTES + run->first_triangle * CSG_STL_FACET_BYTES);
 }
 
 /* ---- GLB -------------------------------------------------------------------------- */
@@ -233,19 +257,26 @@ static csgm_status begin(void *user, const csg_mesh_counts *counts)
                                .colors = counts->colors ? some_bytes : NULL,
                                .vertex_count = counts->vertex_count,
                                .triangle_count = counts->triangle_count};
-    return s->format == CSGM_FORMAT_PLY ? begin_ply(s) : begin_glb(s);
+    return s->format == CSGM_FORMAT_PLY   ? begin_ply(s)
+           : s->format == CSGM_FORMAT_STL ? begin_stl(s)
+                                          : begin_glb(s);
 }
 
 static bool put(void *user, const csg_mesh_run *run)
 {
     csg_stream *s = user;
     worker *self = &s->workers[run->worker];
-    return s->format == CSGM_FORMAT_PLY ? put_ply(s, self, run) : put_glb(s, self, run);
+    return s->format == CSGM_FORMAT_PLY   ? put_ply(s, self, run)
+           : s->format == CSGM_FORMAT_STL ? put_stl(s, self, run)
+                                          : put_glb(s, self, run);
 }
 
 csg_mesh_receiver csg_stream_receiver(csg_stream *stream)
 {
-    return (csg_mesh_receiver){.user = stream, .begin = begin, .put = put};
+    return (csg_mesh_receiver){.user = stream,
+                               .begin = begin,
+                               .put = put,
+                               .wants_corners = stream->format == CSGM_FORMAT_STL};
 }
 
 static void release(csg_stream *s)

@@ -11,7 +11,7 @@
 
 typedef struct csg_stream csg_stream;
 
-/* Binary PLY, and GLB without Draco, to a regular file or one that does not exist yet. */
+/* Binary PLY and STL, and GLB without Draco, to a regular file or one that does not exist yet. */
 bool csg_stream_is_possible(const char *path, csgm_format format,
                             const csgm_write_options *options);
 

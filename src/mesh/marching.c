@@ -341,3 +341,83 @@ void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_m
         }
     memcpy(out->indices, room->indices, (size_t)(end - room->indices) * sizeof *end);
 }
+
+/* ---- loose triangles
+ * ----------------------------------------------------------------------------- */
+
+/* Whether the edge from point (i, j, k) along an axis ends inside the block and is crossed. */
+static bool is_crossed(const csg_block *block, int axis, const int at[3])
+{
+    int end[3] = {at[0], at[1], at[2]};
+    if (++end[axis] > E)
+        return false;
+    return ((block->inside[at[2]][at[1]] >> at[0]) ^ (block->inside[end[2]][end[1]] >> end[0])) & 1;
+}
+
+/* The part that a point belongs to; those of the upper rim to the last. */
+static unsigned part_of(const int at[3])
+{
+    unsigned octant = 0;
+    for (int axis = 0; axis < 3; axis++)
+        octant |= (unsigned)(at[axis] >= CSG_PART_EDGE) << axis;
+    return octant;
+}
+
+/* Lists crossed edges, the rim's too, of one part or (parts = false) of the whole block. */
+static void collect_all_edges(const csg_block *block, const block_lines *lines, bool parts,
+                              unsigned octant, csg_edges *e)
+{
+    uint32_t n = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int point = 0; point < CSG_BLOCK_POINTS; point++) {
+            int at[3] = {point % N, point / N % N, point / (N * N)};
+            if (!is_crossed(block, axis, at) || (parts && part_of(at) != octant))
+                continue;
+            e->ax[n] = lines->point[0][at[0]];
+            e->ay[n] = lines->point[1][at[1]];
+            e->az[n] = lines->point[2][at[2]];
+            e->dx[n] = axis == 0 ? lines->step[0][at[0]] : 0;
+            e->dy[n] = axis == 1 ? lines->step[1][at[1]] : 0;
+            e->dz[n] = axis == 2 ? lines->step[2][at[2]] : 0;
+            e->rank[n++] = (uint16_t)(axis * CSG_BLOCK_POINTS + point);
+        }
+    e->count = n;
+}
+
+static uint64_t find_corners(const csg_marching *m, const csg_block *block, csg_marching_room *room,
+                             float *scratch, size_t scratch_floats)
+{
+    csg_tape tape = m->field->tape;
+    block_lines lines = lines_of(m->lattice, block);
+    uint64_t evaluations = 0;
+    for (unsigned octant = 0; octant < (block->parts ? CSG_OCTANTS : 1u); octant++) {
+        const csg_block_part *part = block->parts ? &block->parts[octant] : NULL;
+        if (part && part->state != CSG_CELL_SURFACE)
+            continue;
+        tape.nodes = part ? part->nodes : block->nodes;
+        tape.count = part ? part->node_count : block->node_count;
+        collect_all_edges(block, &lines, part != NULL, octant, &room->edges);
+        evaluations += m->kernel->roots(&tape, &room->edges, m->tolerance, scratch, scratch_floats);
+        write_positions(m, &room->edges, room->corner[0]);
+    }
+    return evaluations;
+}
+
+uint64_t csg_marching_corners(const csg_marching *m, const csg_block *block,
+                              csg_marching_room *room, float *corners, float *scratch,
+                              size_t scratch_floats)
+{
+    uint64_t evaluations = find_corners(m, block, room, scratch, scratch_floats);
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            rows s = rows_of(block, j, k);
+            for (unsigned rest = s.mixed; rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest), cell = (k * N + j) * N + i;
+                unsigned pattern = pattern_of(&s, i);
+                for (int c = 0; c < 3 * m->tables->count[pattern]; c++, corners += 3)
+                    memcpy(corners, room->corner[cell + m->places->place[pattern][c]],
+                           3 * sizeof(float));
+            }
+        }
+    return evaluations;
+}

@@ -49,6 +49,7 @@ typedef struct csg_marching_room {
     float channels[4][CSG_BLOCK_MOST_EDGES];
     uint32_t vertex[3][CSG_BLOCK_POINTS]; /* of crossed edges only */
     uint32_t indices[CSG_BLOCK_MOST_INDICES + CSG_CELL_MOST_INDICES];
+    float corner[3 * CSG_BLOCK_POINTS][3]; /* positions of crossed edges, upper rim included */
 } csg_marching_room;
 
 typedef struct csg_marching {
@@ -69,5 +70,12 @@ uint64_t csg_marching_vertices(const csg_marching *marching, const csg_block *bl
                                float *scratch, size_t scratch_floats);
 void csg_marching_triangles(const csg_marching *marching, const csg_block *block,
                             csg_marching_room *room, const csg_marching_output *out);
+
+/* The block's triangles as 9 floats each, without any neighbour: roots on the rim that belongs to
+ * upper neighbours are found here too, with the same bits, since every tape that covers an edge
+ * gives the same values on it. Returns point evaluations made. */
+uint64_t csg_marching_corners(const csg_marching *marching, const csg_block *block,
+                              csg_marching_room *room, float *corners, float *scratch,
+                              size_t scratch_floats);
 
 #endif

@@ -74,6 +74,47 @@ static void release_run(csg_memory *memory, csg_run_buffer *run)
     csg_memory_release(memory, run->normals, run->normal_capacity * sizeof(float));
     csg_memory_release(memory, run->colors, run->color_capacity);
     csg_memory_release(memory, run->indices, run->index_capacity * sizeof(uint32_t));
+    csg_memory_release(memory, run->corners, run->corner_capacity * sizeof(float));
+}
+
+/* Vertices and indices of blocks [first, end) in the worker's buffer. */
+static bool fill_indexed(csg_mesh_work *w, csg_mesh_worker *self, size_t first, size_t end,
+                         csg_mesh_run *run)
+{
+    csg_run_buffer *buffer = &self->run;
+    if (!reserve_run(w, buffer, (size_t)run->vertex_count, (size_t)run->triangle_count))
+        return false;
+    csg_marching_output out = {buffer->positions, buffer->normals, buffer->colors, buffer->indices};
+    make_blocks(w, self, first, end, &out);
+    run->positions = buffer->positions;
+    run->normals = buffer->normals;
+    run->colors = buffer->colors;
+    run->indices = buffer->indices;
+    return true;
+}
+
+/* Loose triangles of blocks [first, end) in the worker's buffer. */
+static bool fill_corners(csg_mesh_work *w, csg_mesh_worker *self, size_t first, size_t end,
+                         csg_mesh_run *run)
+{
+    csg_run_buffer *buffer = &self->run;
+    if (!csg_memory_reserve(&w->context->memory, (void **)&buffer->corners,
+                            &buffer->corner_capacity, 9 * (size_t)run->triangle_count,
+                            sizeof(float)))
+        return false;
+    run->corners = buffer->corners;
+    float *at = buffer->corners;
+    for (size_t i = first; i < end; i++) {
+        const csg_block *block = w->blocks[i];
+        uint64_t points = csg_marching_corners(&w->marching, block, self->room, at, self->scratch,
+                                               w->scratch_floats);
+        if (w->clipped)
+            self->bounds = box_of(at, 3 * (uint64_t)block->triangle_count, self->bounds);
+        self->point_evaluations += points;
+        self->primitive_evaluations += points * (block->node_count + 1) / 2;
+        at += 9 * (size_t)block->triangle_count;
+    }
+    return true;
 }
 
 /* One item for a receiver: made in the worker's buffer, then handed on. */
@@ -88,17 +129,10 @@ static bool hand_on(csg_mesh_work *w, uint32_t worker_index, size_t first, size_
         .first_triangle = start->first_triangle,
         .triangle_count = last->first_triangle + last->triangle_count - start->first_triangle,
     };
-    csg_run_buffer *buffer = &self->run;
-    if (!reserve_run(w, buffer, (size_t)run.vertex_count, (size_t)run.triangle_count)) {
+    if (!(w->receiver->wants_corners ? fill_corners : fill_indexed)(w, self, first, end, &run)) {
         atomic_store(&w->out_of_memory, true);
         return false;
     }
-    csg_marching_output out = {buffer->positions, buffer->normals, buffer->colors, buffer->indices};
-    make_blocks(w, self, first, end, &out);
-    run.positions = buffer->positions;
-    run.normals = buffer->normals;
-    run.colors = buffer->colors;
-    run.indices = buffer->indices;
     if (w->receiver->put(w->receiver->user, &run))
         return true;
     atomic_store(&w->refused, true);
@@ -146,6 +180,7 @@ static csg_vec3 origin_of(const csg_mesh_work *w)
 static void prepare_marching(csg_mesh_work *w)
 {
     double extent = csg_lattice_extent(&w->lattice);
+    double slope = (double)w->field->tape.lipschitz;
     w->marching = (csg_marching){
         .kernel = csg_kernel_for(w->context->isa),
         .field = w->field,
@@ -154,8 +189,9 @@ static void prepare_marching(csg_mesh_work *w)
         .places = &w->places,
         .index = &w->index,
         .shift = csg_vec3_sub(w->field->center, w->counts.origin),
-        /* a few ulp of the coordinates, or a distance nobody sees in a cell */
-        .tolerance = (float)fmax(2 * (double)FLT_EPSILON * extent, 0x1p-14 * w->lattice.cell_size),
+        /* what a few ulp of the coordinates change, or a distance nobody sees in a cell */
+        .tolerance = (float)fmax(2 * (double)FLT_EPSILON * extent * slope,
+                                 0x1p-14 * w->lattice.cell_size * fmin(slope, 1)),
     };
 }
 

@@ -19,6 +19,7 @@ typedef struct csg_mesh_run {
     const float *positions, *normals; /* of first_vertex; normals and colors may be NULL */
     const uint8_t *colors;
     const uint32_t *indices; /* of first_triangle; numbers of the whole mesh */
+    const float *corners;    /* of first_triangle: 9 floats a triangle; then nothing of the above */
 } csg_mesh_run;
 
 typedef struct csg_mesh_receiver {
@@ -28,6 +29,7 @@ typedef struct csg_mesh_receiver {
     csgm_status (*begin)(void *user, const csg_mesh_counts *counts);
     /* Any worker. False ends the build; the receiver remembers why. */
     bool (*put)(void *user, const csg_mesh_run *run);
+    bool wants_corners; /* runs of loose triangles instead of vertices and indices */
 } csg_mesh_receiver;
 
 #endif

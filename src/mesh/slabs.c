@@ -9,19 +9,25 @@
 #include "base/pool.h"
 #include "mesh/work.h"
 
-/* One slab where all blocks fit into half of the memory that is left, else as many as it takes. */
-static csgm_status divide(csg_mesh_work *w)
+/* Frontier cells whose blocks may be in memory at once: as many as half of the memory left can
+ * hold, and not more than take a gigabyte at the very worst (in practice a third of it). */
+static size_t cells_per_slab(const csg_memory *memory)
 {
     enum { BYTES_PER_CELL = 8 * 600, LEAST_CELLS = 16 }; /* eight blocks with tapes and index */
-    csg_memory *memory = &w->context->memory;
-    size_t cells = csg_octree_frontier_count(w->octree), per_slab = cells;
+    uint64_t bytes = (uint64_t)1 << 30;
     if (memory->limit_bytes) {
         uint64_t used = atomic_load(&memory->used_bytes);
         uint64_t left = memory->limit_bytes > used ? memory->limit_bytes - used : 0;
-        uint64_t fits = left / 2 / BYTES_PER_CELL;
-        per_slab = fits < LEAST_CELLS ? (size_t)LEAST_CELLS : fits < cells ? (size_t)fits : cells;
+        bytes = left / 2 < bytes ? left / 2 : bytes;
     }
-    per_slab = per_slab ? per_slab : 1;
+    uint64_t cells = bytes / BYTES_PER_CELL;
+    return cells > LEAST_CELLS ? (size_t)cells : (size_t)LEAST_CELLS;
+}
+
+static csgm_status divide(csg_mesh_work *w)
+{
+    csg_memory *memory = &w->context->memory;
+    size_t cells = csg_octree_frontier_count(w->octree), per_slab = cells_per_slab(memory);
     w->slab_count = cells ? (cells + per_slab - 1) / per_slab : 1;
     w->slabs = csg_memory_alloc(memory, w->slab_count * sizeof(csg_slab));
     if (!w->slabs)

@@ -27,7 +27,8 @@ typedef struct csg_run_buffer {
     float *positions, *normals;
     uint8_t *colors;
     uint32_t *indices;
-    size_t position_capacity, normal_capacity, color_capacity, index_capacity;
+    float *corners;
+    size_t position_capacity, normal_capacity, color_capacity, index_capacity, corner_capacity;
 } csg_run_buffer;
 
 /* One thread's part. */
