@@ -120,9 +120,9 @@ void mesh_assert_same(const csgm_mesh *a, const csgm_mesh *b, const char *what)
         fail_msg("%s: origins differ", what);
     assert_int_equal(a->normals != NULL, b->normals != NULL);
     assert_int_equal(a->colors != NULL, b->colors != NULL);
-    if (memcmp(a->indices, b->indices, 12 * triangles))
+    if (triangles && memcmp(a->indices, b->indices, 12 * triangles))
         fail_msg("%s: indices differ", what);
-    if (memcmp(a->positions, b->positions, 12 * vertices))
+    if (vertices && memcmp(a->positions, b->positions, 12 * vertices))
         fail_msg("%s: positions differ", what);
     if (a->normals && memcmp(a->normals, b->normals, 12 * vertices))
         fail_msg("%s: normals differ", what);
