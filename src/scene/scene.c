@@ -11,8 +11,7 @@ typedef struct kind_row {
 } kind_row;
 
 static const kind_row kinds[] = {
-    [CSG_NODE_EMPTY] = {"empty", 0},
-    [CSG_NODE_FIELD] = {"field", 0},
+    [CSG_NODE_EMPTY] = {"empty", 0},           [CSG_NODE_FIELD] = {"field", 0},
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
