@@ -50,9 +50,10 @@ typedef struct csg_kernel {
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch);
 
-    /* Fills x, y, z of edges with ends of different signs. tolerance: |f| small enough to stop.
+    /* Fills x, y, z of edges with ends of different signs. noise: the
+     * field's rounding error, below which no value is better than another.
      * Returns point evaluations made. */
-    uint64_t (*roots)(const csg_tape *tape, csg_edges *edges, float tolerance, float *scratch,
+    uint64_t (*roots)(const csg_tape *tape, csg_edges *edges, float noise, float *scratch,
                       size_t scratch_floats);
 } csg_kernel;
 
@@ -65,7 +66,7 @@ typedef struct csg_kernel {
 #define CSG_THIS_ROOTS CSG_CONCATENATE(csg_roots_, CSG_KERNEL)
 
 extern const csg_kernel CSG_THIS_KERNEL;
-uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *edges, float tolerance, float *scratch,
+uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *edges, float noise, float *scratch,
                         size_t scratch_floats);
 #endif
 

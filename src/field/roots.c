@@ -49,8 +49,19 @@ static void set_all(float *array, size_t count, float value)
         array[i] = value;
 }
 
+/* A value is small against the field's change along the edge, whatever its slope: the place is then
+ * known to 2^-14 of the edge, which nobody sees. Below the noise of rounding nothing is gained. */
+static void set_tolerances(csg_edges *e, float noise)
+{
+    size_t n = padded(e->count);
+    for (size_t i = 0; i < n; i++) {
+        float small = 0x1p-14f * fabsf(e->fb[i] - e->fa[i]);
+        e->tolerance[i] = small > noise ? small : noise;
+    }
+}
+
 /* The secant's zero, or the middle where rounding has put it outside the bracket. */
-static void propose(csg_edges *e, float tolerance)
+static void propose(csg_edges *e)
 {
     size_t n = padded(e->count);
     for (size_t i = 0; i < n; i++) {
@@ -58,17 +69,17 @@ static void propose(csg_edges *e, float tolerance)
         float secant = e->ta[i] + width * (e->fa[i] / (e->fa[i] - e->fb[i]));
         bool within = (secant > e->ta[i]) & (secant < e->tb[i]);
         float t = within ? secant : e->ta[i] + 0.5f * width;
-        e->t[i] = fabsf(e->f[i]) > tolerance ? t : e->t[i];
+        e->t[i] = fabsf(e->f[i]) > e->tolerance[i] ? t : e->t[i];
     }
 }
 
 /* Shrinks the brackets around the new value; returns whether some lane is not done. */
-static bool shrink(csg_edges *e, float tolerance)
+static bool shrink(csg_edges *e)
 {
     size_t n = padded(e->count);
     float open = 0;
     for (size_t i = 0; i < n; i++) {
-        bool live = fabsf(e->f[i]) > tolerance;
+        bool live = fabsf(e->f[i]) > e->tolerance[i];
         bool with_a = (e->f[i] >= 0) == (e->fa[i] >= 0);
         bool move_a = live & with_a, move_b = live & !with_a;
         bool halve_a = move_b & (e->moved[i] > 0), halve_b = move_a & (e->moved[i] < 0);
@@ -84,7 +95,7 @@ static bool shrink(csg_edges *e, float tolerance)
     return open > 0;
 }
 
-uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float tolerance, float *scratch,
+uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float noise, float *scratch,
                         size_t scratch_floats)
 {
     if (!e->count)
@@ -100,15 +111,16 @@ uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float tolerance, flo
     evaluate(e, tape, e->fb, scratch, scratch_floats);
     for (size_t i = e->count; i < n; i++)
         e->fa[i] = e->fa[0], e->fb[i] = e->fb[0];
+    set_tolerances(e, noise);
     set_all(e->moved, n, 0);
     set_all(e->f, n, INFINITY); /* no lane is done */
     for (int step = 0; step < MOST_STEPS; step++) {
-        propose(e, tolerance);
+        propose(e);
         evaluate(e, tape, e->f, scratch, scratch_floats);
         evaluations += e->count;
         for (size_t i = e->count; i < n; i++)
             e->f[i] = 0;
-        if (!shrink(e, tolerance))
+        if (!shrink(e))
             break;
     }
     for (size_t i = 0; i < n; i++) {

@@ -22,6 +22,7 @@ struct csg_edges {
     float t[CSG_BLOCK_MOST_EDGES], f[CSG_BLOCK_MOST_EDGES];
     float ta[CSG_BLOCK_MOST_EDGES], tb[CSG_BLOCK_MOST_EDGES];
     float fa[CSG_BLOCK_MOST_EDGES], fb[CSG_BLOCK_MOST_EDGES];
+    float tolerance[CSG_BLOCK_MOST_EDGES]; /* |f| small enough to stop */
     float moved[CSG_BLOCK_MOST_EDGES]; /* the end that the last step moved: -1 a, +1 b, 0 none */
     bool a_inside[CSG_BLOCK_MOST_EDGES];
     uint16_t rank[CSG_BLOCK_MOST_EDGES]; /* where the caller wants the result */

@@ -31,6 +31,18 @@ static csgm_status choose_bounds(csg_mesh_work *w)
     return CSGM_ERR_SCENE;
 }
 
+static csgm_status check_cells(csg_mesh_work *w)
+{
+    const csgm_mesh_options *options = w->options;
+    bool good = options->cell_size == 0 ? options->resolution > 0
+                                        : options->cell_size > 0 && isfinite(options->cell_size);
+    if (good)
+        return CSGM_OK;
+    csg_diag_plain(&w->context->diags, CSG_DIAG_BAD_BOUNDS, NULL, NULL,
+                   "the resolution or the cell size must be a positive number");
+    return CSGM_ERR_ARGUMENT;
+}
+
 static csgm_status make_lattice(csg_mesh_work *w)
 {
     const csgm_mesh_options *options = w->options;
@@ -38,6 +50,11 @@ static csgm_status make_lattice(csg_mesh_work *w)
                          &w->lattice))
         return CSGM_OK;
     csg_vec3 size = csg_box_size(w->bounds);
+    if (!(size.x > 0 || size.y > 0 || size.z > 0)) {
+        csg_diag_plain(&w->context->diags, CSG_DIAG_BAD_BOUNDS, NULL, "give a cell size with -s",
+                       "the bounds are a single point, which sets no resolution");
+        return CSGM_ERR_ARGUMENT;
+    }
     csg_diag_plain(&w->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower -r, or raise -s",
                    "the lattice over %g x %g x %g would have more than %d cells along a side",
                    size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
@@ -71,7 +88,9 @@ static csgm_status prepare(csg_mesh_work *w)
     csgm_status status = choose_bounds(w);
     if (status != CSGM_OK || csg_box_is_empty(w->bounds))
         return status;
-    status = make_lattice(w);
+    status = check_cells(w);
+    if (status == CSGM_OK)
+        status = make_lattice(w);
     if (status == CSGM_OK)
         status = clip(w);
     if (status == CSGM_OK)

@@ -205,7 +205,7 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_m
                           room->channels[3]};
     if (!e->count)
         return 0;
-    uint64_t evaluations = m->kernel->roots(tape, e, m->tolerance, scratch, scratch_floats);
+    uint64_t evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     if (out->normals) {
         m->kernel->gradients(tape, e->x, e->y, e->z, e->count, channels[0], channels[1],
@@ -397,7 +397,7 @@ static uint64_t find_corners(const csg_marching *m, const csg_block *block, csg_
         tape.nodes = part ? part->nodes : block->nodes;
         tape.count = part ? part->node_count : block->node_count;
         collect_all_edges(block, &lines, part != NULL, octant, &room->edges);
-        evaluations += m->kernel->roots(&tape, &room->edges, m->tolerance, scratch, scratch_floats);
+        evaluations += m->kernel->roots(&tape, &room->edges, m->noise, scratch, scratch_floats);
         write_positions(m, &room->edges, room->corner[0]);
     }
     return evaluations;

@@ -60,8 +60,8 @@ typedef struct csg_marching {
     const csg_marching_places *places;
     csg_block *const *blocks;
     const csg_block_index *index;
-    csg_vec3 shift;  /* field frame -> relative to the mesh's origin */
-    float tolerance; /* of roots */
+    csg_vec3 shift; /* field frame -> relative to the mesh's origin */
+    float noise;    /* of the field's values: rounding */
 } csg_marching;
 
 /* Vertices of one block. Returns point evaluations made. */

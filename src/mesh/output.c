@@ -179,7 +179,6 @@ static csg_vec3 origin_of(const csg_mesh_work *w)
 
 static void prepare_marching(csg_mesh_work *w)
 {
-    double extent = csg_lattice_extent(&w->lattice);
     double slope = (double)w->field->tape.lipschitz;
     w->marching = (csg_marching){
         .kernel = csg_kernel_for(w->context->isa),
@@ -189,9 +188,8 @@ static void prepare_marching(csg_mesh_work *w)
         .places = &w->places,
         .index = &w->index,
         .shift = csg_vec3_sub(w->field->center, w->counts.origin),
-        /* what a few ulp of the coordinates change, or a distance nobody sees in a cell */
-        .tolerance = (float)fmax(2 * (double)FLT_EPSILON * extent * slope,
-                                 0x1p-14 * w->lattice.cell_size * fmin(slope, 1)),
+        /* what a unit in the last place of a coordinate changes */
+        .noise = (float)((double)FLT_EPSILON * csg_lattice_extent(&w->lattice) * slope),
     };
 }
 

@@ -213,7 +213,7 @@ static void test_receiver_stops(void **state)
     uint64_t before = used_bytes(&c);
     csgm_mesh_options options = mesh_options(100);
     stopper s = {.stop_at = 1 << 30};
-    csg_mesh_receiver receiver = {&s, stopper_begin, stopper_put};
+    csg_mesh_receiver receiver = {.user = &s, .begin = stopper_begin, .put = stopper_put};
     assert_int_equal(csg_mesh_stream(&c.context, c.field, &options, &receiver, NULL, NULL),
                      CSGM_OK);
     int runs = atomic_load(&s.runs);

@@ -98,7 +98,7 @@ static void compare_runs(const mesh_case *first, unsigned seed, uint32_t threads
     compile_scene(&c, seed, threads);
     csgm_mesh_options options = options_of(&c, seed);
     collector k = {.context = &c.context};
-    csg_mesh_receiver receiver = {&k, collect_begin, collect_run};
+    csg_mesh_receiver receiver = {.user = &k, .begin = collect_begin, .put = collect_run};
     csg_mesh_counts counts;
     assert_int_equal(csg_mesh_stream(&c.context, c.field, &options, &receiver, &counts, &c.stats),
                      CSGM_OK);
