@@ -171,8 +171,20 @@ double csg_affine_determinant(csg_affine a)
            a.m[0][2] * (a.m[1][0] * a.m[2][1] - a.m[1][1] * a.m[2][0]);
 }
 
+/* Most maps of large scenes: worth a way of their own where the general one costs much. */
+static bool is_translation(const csg_affine *a)
+{
+    return a->m[0][0] == 1 && a->m[1][1] == 1 && a->m[2][2] == 1 && a->m[0][1] == 0 &&
+           a->m[0][2] == 0 && a->m[1][0] == 0 && a->m[1][2] == 0 && a->m[2][0] == 0 &&
+           a->m[2][1] == 0;
+}
+
 bool csg_affine_invert(csg_affine a, csg_affine *out)
 {
+    if (is_translation(&a)) {
+        *out = csg_affine_translate(csg_vec3_make(-a.t[0], -a.t[1], -a.t[2]));
+        return true;
+    }
     double determinant = csg_affine_determinant(a);
     if (determinant == 0 || !isfinite(determinant))
         return false;
@@ -231,6 +243,10 @@ csg_box csg_affine_box(const csg_affine *a, csg_box box)
 
 void csg_affine_singular_values(const csg_affine *a, double *smallest, double *largest)
 {
+    if (is_translation(a)) {
+        *smallest = *largest = 1;
+        return;
+    }
     /* One-sided Jacobi: orthogonalise the columns, their lengths are the singular values. */
     double c[3][3];
     for (int i = 0; i < 3; i++)

@@ -7,11 +7,31 @@
 
 #include "scene/level_boxes.h"
 
+/* The root's own box is then the hull of the leaves' boxes, and no look from above makes it
+ * smaller. Scenes of a million solids are mostly like that. */
+static bool is_union_of_placed_leaves(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        bool joins = node->kind == CSG_NODE_UNION && node->blend == CSG_BLEND_SHARP;
+        if (csg_node_is_operator(node->kind) && !joins)
+            return false;
+        if (node->kind != CSG_NODE_TRANSFORM)
+            continue;
+        const csg_node *child = node;
+        while (child->kind == CSG_NODE_TRANSFORM || child->kind == CSG_NODE_COLOR)
+            child = &scene->nodes[csg_scene_children(scene, child)[0]];
+        if (child->child_count)
+            return false;
+    }
+    return true;
+}
+
 csgm_status csg_bounds_fill(csgm_scene *scene)
 {
     csgm_status status = csg_level_boxes(scene, NULL, scene->bounds);
     csg_box root = csg_box_all();
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && !is_union_of_placed_leaves(scene))
         status = csg_level_box_of_root(scene, &root);
     if (status == CSGM_OK)
         scene->bounds[scene->root] = csg_box_intersect(scene->bounds[scene->root], root);

@@ -164,22 +164,33 @@ static csg_affine frame_of(const table *t, size_t node)
     return turned ? t->to_root[t->frame[node]] : csg_affine_identity();
 }
 
+/* The node below a chain of transforms and colours. */
+static const csg_node *undressed(const csgm_scene *scene, const csg_node *node)
+{
+    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
+        node = &scene->nodes[csg_scene_children(scene, node)[0]];
+    return node;
+}
+
 /* Where the node is a primitive, placed or coloured or not: its box at just this level. */
 static bool is_leaf_box(const table *t, csg_node_id id, double level, csg_box *box)
 {
     const csgm_scene *scene = t->scene;
-    const csg_node *node = &scene->nodes[id];
+    const csg_node *node = &scene->nodes[id], *leaf = undressed(scene, node);
+    if (leaf->child_count)
+        return false;
     csg_affine map = frame_of(t, id);
-    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
+    bool placed = t->whole && t->frame[id] != CSG_NODE_NONE;
+    while (node != leaf) {
         if (node->kind == CSG_NODE_TRANSFORM) {
-            map = csg_affine_multiply(map, scene->transforms[node->payload]);
+            const csg_affine *inner = &scene->transforms[node->payload];
+            map = placed ? csg_affine_multiply(map, *inner) : *inner;
+            placed = true;
             level /= scene->scales[node->payload];
         }
         node = &scene->nodes[csg_scene_children(scene, node)[0]];
     }
-    if (node->child_count)
-        return false;
-    *box = csg_primitive_box(node->kind, csg_scene_parameters(scene, node), &map, level);
+    *box = csg_primitive_box(leaf->kind, csg_scene_parameters(scene, leaf), &map, level);
     return true;
 }
 
@@ -189,7 +200,7 @@ static csg_box box_at(const table *t, csg_node_id node, double level)
     if (!t->nodes[node].count || !isfinite(level))
         return csg_box_all();
     uint32_t slot = slot_at(t, node, level);
-    if (!is_leaf_box(t, node, level, &box))
+    if (t->levels[slot] == level || !is_leaf_box(t, node, level, &box))
         return t->boxes[slot];
     return t->whole ? csg_box_intersect(box, t->regions[slot]) : box;
 }
@@ -226,7 +237,9 @@ static bool is_half_space(const table *t, csg_node_id child, csg_affine map, dou
 {
     const csgm_scene *scene = t->scene;
     const csg_node *node = &scene->nodes[child];
-    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
+    if (undressed(scene, node)->kind != CSG_NODE_PLANE || !isfinite(level))
+        return false;
+    while (node->kind != CSG_NODE_PLANE) {
         if (node->kind == CSG_NODE_TRANSFORM) {
             map = csg_affine_multiply(map, scene->transforms[node->payload]);
             level /= scene->scales[node->payload];
@@ -234,7 +247,7 @@ static bool is_half_space(const table *t, csg_node_id child, csg_affine map, dou
         node = &scene->nodes[csg_scene_children(scene, node)[0]];
     }
     csg_affine inverse;
-    if (node->kind != CSG_NODE_PLANE || !isfinite(level) || !csg_affine_invert(map, &inverse))
+    if (!isfinite(level) || !csg_affine_invert(map, &inverse))
         return false;
     const double *v = csg_scene_parameters(scene, node);
     double sign = subtracted ? -1 : 1;

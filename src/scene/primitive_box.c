@@ -27,7 +27,7 @@ static double plane_support(const double *v, csg_vec3 n)
 
 double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
 {
-    double length = csg_vec3_norm(n), across = hypot(n.x, n.y);
+    double length = csg_vec3_norm(n), across;
     switch (kind) {
     case CSG_NODE_SPHERE:
         return v[0] * length;
@@ -35,6 +35,7 @@ double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
         return fabs(n.x) * (v[0] - v[3]) + fabs(n.y) * (v[1] - v[3]) + fabs(n.z) * (v[2] - v[3]) +
                v[3] * length;
     case CSG_NODE_FRUSTUM:
+        across = hypot(n.x, n.y);
         return fmax(v[0] * across - v[2] * n.z, v[1] * across + v[2] * n.z) + v[3] * length;
     case CSG_NODE_CAPSULE:
         return fmax(v[1] * length, v[2] * length + v[0] * n.z);
@@ -70,9 +71,13 @@ csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const cs
     for (int i = 0; i < 3; i++) {
         const double *row = map->m[i];
         csg_vec3 n = csg_vec3_make(row[0], row[1], row[2]);
-        double grow = level * csg_vec3_norm(n);
-        double up = csg_primitive_support(kind, parameters, n) + grow;
-        double down = csg_primitive_support(kind, parameters, csg_vec3_scale(n, -1)) + grow;
+        double length = csg_vec3_norm(n), grow = level * length, up, down;
+        if (kind == CSG_NODE_SPHERE) { /* large scenes are made of them */
+            up = down = parameters[0] * length + grow;
+        } else {
+            up = csg_primitive_support(kind, parameters, n) + grow;
+            down = csg_primitive_support(kind, parameters, csg_vec3_scale(n, -1)) + grow;
+        }
         high[i] = map->t[i] + up + rounding_room(row, up, map->t[i]);
         low[i] = map->t[i] - down - rounding_room(row, down, map->t[i]);
     }

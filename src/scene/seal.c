@@ -188,7 +188,7 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
     if (!reserve_sealed(out, builder->scene, &w))
         return CSGM_ERR_MEMORY;
     copy_nodes(out, builder->scene, &w);
-    return csg_bounds_fill(out);
+    return CSGM_OK;
 }
 
 csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
@@ -213,13 +213,16 @@ csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
     csg_arena_init(&scratch, memory);
     csgm_status status = seal(builder, root, &scratch, scene);
     csg_arena_reset(&scratch);
+    if (status == CSGM_OK) { /* bounds need room too */
+        csg_build_abandon(builder);
+        status = csg_bounds_fill(scene);
+    }
     if (status == CSGM_OK && !copy_dependencies(scene, dependencies, dependency_count))
         status = CSGM_ERR_MEMORY;
     if (status != CSGM_OK) {
         csg_scene_destroy(scene);
         return builder->status = status;
     }
-    csg_build_abandon(builder);
     *out = scene;
     return CSGM_OK;
 }
