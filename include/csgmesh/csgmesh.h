@@ -203,6 +203,7 @@ CSGM_API uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec
 
 typedef struct csgm_field csgm_field;
 
+/* The scene must outlive the field. */
 CSGM_API csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene,
                                         csgm_field **out);
 CSGM_API void csgm_field_destroy(csgm_field *field);

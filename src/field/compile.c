@@ -532,20 +532,58 @@ static void count_nodes(const csgm_scene *scene, csgm_field *field)
 /* Solids without a colour of their own, next to coloured ones. */
 static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
 
-csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out)
+/* Meets all that is written so far with a box around the field's centre. */
+static bool write_clip(compiler *c, csg_box box)
+{
+    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
+    leaf l = {.op = CSG_OP_BOX,
+              .frame = CSG_FRAME_OFFSET,
+              .sigma = 1,
+              .own = {half.x, half.y, half.z, 0},
+              .own_count = OWN_BOX,
+              .magnitude = csg_vec3_norm(half)};
+    const float sharp[CSG_OPERATOR_PARAMETERS] = {[CSG_OPERATOR_N] = 1};
+    uint32_t parameters;
+    if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) || !write_leaf(c, &l, 0))
+        return false;
+    csg_tape_node *node = &c->nodes[c->node_count - 1];
+    node->join = CSG_JOIN_INTERSECTION;
+    node->join_parameters = parameters;
+    node = push_node(c);
+    if (!node)
+        return false;
+    node->op = CSG_OP_INTERSECTION;
+    node->parameters = parameters;
+    node->arity = 2;
+    node->size = (uint32_t)c->node_count;
+    return true;
+}
+
+static bool compile_field(compiler *c, const csg_box *clip)
+{
+    csgm_field *field = c->field;
+    const csgm_scene *scene = c->scene;
+    uint32_t index;
+    field->scene = scene;
+    field->bounds = scene->bounds[scene->root];
+    if (clip)
+        field->bounds = csg_box_intersect(field->bounds, *clip);
+    field->center = center_of(clip ? *clip : field->bounds);
+    count_nodes(scene, field);
+    field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
+    if (clip)
+        field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
+    return push_color(c, default_color, &index) && compile_tree(c) &&
+           (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
+           keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
+                     c->color_count);
+}
+
+static csgm_status compile(csgm_context *context, const csgm_scene *scene, const csg_box *clip,
+                           csgm_field **out)
 {
     compiler c = {.context = context, .scene = scene, .field = field_create(context)};
-    bool done = false;
-    if (c.field) {
-        uint32_t index;
-        c.field->bounds = scene->bounds[scene->root];
-        c.field->center = center_of(c.field->bounds);
-        count_nodes(scene, c.field);
-        c.field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
-        done = push_color(&c, default_color, &index) && compile_tree(&c) && keep_formulas(&c) &&
-               keep_tape(c.field, c.nodes, c.node_count, c.parameters, c.parameter_count, c.colors,
-                         c.color_count);
-    }
+    bool done = c.field && compile_field(&c, clip);
     csg_memory *memory = &context->memory;
     csg_memory_release(memory, c.nodes, c.node_capacity * sizeof *c.nodes);
     csg_memory_release(memory, c.parameters, c.parameter_capacity * sizeof *c.parameters);
@@ -561,63 +599,15 @@ csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, cs
     return CSGM_OK;
 }
 
-/* A box as a leaf of this field's frame. */
-static size_t clip_parameters(const csgm_field *field, csg_box box, float *values)
+csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out)
 {
-    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
-    csg_vec3 at = csg_vec3_sub(csg_box_center(box), field->center);
-    double magnitude = csg_vec3_norm(half) + csg_vec3_norm(at);
-    double all[] = {1, rounding_of(magnitude), 0, at.x, at.y, at.z, half.x, half.y, half.z, 0};
-    size_t count = sizeof all / sizeof *all;
-    for (size_t i = 0; i < count; i++)
-        values[i] = (float)all[i];
-    return count;
+    return compile(context, scene, NULL, out);
 }
 
 csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
                            csgm_field **out)
 {
-    float added[16];
-    size_t box_count = clip_parameters(field, box, added);
-    added[box_count + CSG_OPERATOR_N] = 1;
-    added[box_count + CSG_OPERATOR_SUPPORT] = 0;
-    size_t parameter_count = field->parameter_count + box_count + CSG_OPERATOR_PARAMETERS;
-    uint32_t count = field->tape.count, at = (uint32_t)field->parameter_count;
-    csgm_field *clipped = field_create(context);
-    csg_tape_node *nodes = NULL;
-    float *parameters = NULL;
-    if (clipped) {
-        nodes = csg_arena_alloc(&clipped->arena, (count + 2) * sizeof *nodes);
-        parameters = csg_arena_alloc(&clipped->arena, parameter_count * sizeof *parameters);
-    }
-    if (!nodes || !parameters) {
-        csg_field_destroy(clipped);
-        return csg_context_no_memory(context);
-    }
-    csg_arena arena = clipped->arena;
-    *clipped = *field;
-    clipped->context = context;
-    clipped->arena = arena;
-    memcpy(nodes, field->tape.nodes, count * sizeof *nodes);
-    memcpy(parameters, field->tape.parameters, at * sizeof *parameters);
-    memcpy(parameters + at, added, (parameter_count - at) * sizeof *parameters);
-    uint32_t operator_at = at + (uint32_t)box_count;
-    nodes[count] = (csg_tape_node){.op = CSG_OP_BOX,
-                                   .join = CSG_JOIN_INTERSECTION,
-                                   .parameters = at,
-                                   .join_parameters = operator_at,
-                                   .size = 1};
-    nodes[count + 1] = (csg_tape_node){
-        .op = CSG_OP_INTERSECTION, .parameters = operator_at, .arity = 2, .size = count + 2};
-    clipped->tape.nodes = nodes;
-    clipped->tape.parameters = parameters;
-    clipped->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
-    clipped->tape.count = count + 2;
-    clipped->parameter_count = parameter_count;
-    clipped->depth = csg_tape_depth(&clipped->tape);
-    clipped->bounds = csg_box_intersect(field->bounds, box);
-    *out = clipped;
-    return CSGM_OK;
+    return compile(context, field->scene, &box, out);
 }
 
 void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,

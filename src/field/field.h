@@ -6,10 +6,12 @@
 
 #include "field/tape.h"
 
+/* The scene must outlive the field. */
 csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out);
 void csg_field_destroy(csgm_field *field);
 
-/* A copy cut by a box (scene units): the intersection with it. */
+/* The same scene met with a finite box (scene units) and compiled around the box's centre, so that
+ * floats are fine there however far away the scene's own centre is. */
 csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
                            csgm_field **out);
 

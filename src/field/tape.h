@@ -106,6 +106,7 @@ typedef struct csg_tape {
 
 struct csgm_field {
     csgm_context *context;
+    const csgm_scene *scene; /* borrowed */
     csg_arena arena;
     csg_tape tape;
     size_t parameter_count;

@@ -90,9 +90,9 @@ static csgm_status prepare(csg_mesh_work *w)
         return status;
     status = check_cells(w);
     if (status == CSGM_OK)
-        status = make_lattice(w);
-    if (status == CSGM_OK)
         status = clip(w);
+    if (status == CSGM_OK)
+        status = make_lattice(w);
     if (status == CSGM_OK)
         status = walk_octree(w);
     return status;
