@@ -8,6 +8,7 @@
 
 #include "lang/evaluator.h"
 #include "lang/modules.h"
+#include "lang/symbolic.h"
 
 /* ---- calls
  * ------------------------------------------------------------------------------------------ */
@@ -268,6 +269,7 @@ static csg_value evaluate_binary(csg_eval *e, const csg_expression *x, csg_frame
 {
     csg_value left = csg_evaluate(e, x->as.pair.left, frame);
     if (x->operation == CSG_TOKEN_AND || x->operation == CSG_TOKEN_OR) {
+        csg_symbolic_refuse(e, left, x->where, "a condition");
         bool decided = csg_value_is_true(left) == (x->operation == CSG_TOKEN_OR);
         csg_value_release(&e->heap, left);
         if (decided || e->stop)
@@ -296,6 +298,7 @@ static csg_value evaluate_index(csg_eval *e, const csg_expression *x, csg_frame 
 {
     csg_value object = csg_evaluate(e, x->as.pair.left, frame);
     csg_value index = csg_evaluate(e, x->as.pair.right, frame);
+    csg_symbolic_refuse(e, index, x->where, "an index");
     csg_value result = element_at(e, object, index);
     csg_value_release(&e->heap, object);
     csg_value_release(&e->heap, index);
@@ -397,6 +400,7 @@ static bool evaluate_call(csg_eval *e, position *at, csg_value *result)
 static void choose(csg_eval *e, position *at)
 {
     csg_value condition = csg_evaluate(e, at->x->as.branch.condition, at->frame);
+    csg_symbolic_refuse(e, condition, at->x->where, "a condition");
     at->x = csg_value_is_true(condition) ? at->x->as.branch.then : at->x->as.branch.other;
     csg_value_release(&e->heap, condition);
 }

@@ -37,6 +37,8 @@ typedef struct csg_eval {
     csgm_context *context;
     csg_heap heap;
     csg_scene_builder builder;
+    csg_formula_builder *formula; /* while field() evaluates its function, else NULL */
+    bool refused;                 /* it did what no formula can, and was told so */
     bool stop;
     csgm_status status; /* why stopped; SCENE after a reported mistake */
     uint32_t depth;

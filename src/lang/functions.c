@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "lang/modules.h"
+#include "lang/symbolic.h"
 
 typedef struct row {
     const char *name;
@@ -54,6 +55,9 @@ static csg_value call_row(const row *r, const csg_function_call *call)
                         r->parameters, call->count, call->count == 1 ? "" : "s");
         return csg_value_undef();
     }
+    csg_value result = csg_value_undef();
+    if (call->e->formula && csg_symbolic_call(call, &result))
+        return result;
     return r->handler(call);
 }
 

@@ -33,9 +33,10 @@ typedef struct csg_module_call {
 typedef csg_node_id csg_module_handler(csg_module_call *call);
 
 csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_module_capsule,
-    csg_module_torus, csg_module_ellipsoid, csg_module_plane, csg_module_translate,
-    csg_module_rotate, csg_module_scale, csg_module_mirror, csg_module_multmatrix, csg_module_color,
-    csg_module_operator, csg_module_blend, csg_module_group;
+    csg_module_torus, csg_module_ellipsoid, csg_module_plane, csg_module_field,
+    csg_module_translate, csg_module_rotate, csg_module_scale, csg_module_mirror,
+    csg_module_multmatrix, csg_module_color, csg_module_operator, csg_module_blend,
+    csg_module_group;
 
 void csg_modules_intern(csg_symbols *symbols, bool *ok);
 /* Runs the built-in module of this row: leaves one part. Not for control flow. */

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "lang/evaluator.h"
+#include "lang/symbolic.h"
 
 static csg_value undefined(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
@@ -16,6 +16,26 @@ static csg_value undefined(csg_eval *e, const csg_expression *x, csg_value left,
                         "there is no %.*s of %s and %s, it counts as undef", (int)strlen(sign),
                         sign, csg_value_kind_name(left), csg_value_kind_name(right));
     return csg_value_undef();
+}
+
+static csg_value scalars(csg_eval *e, const csg_expression *x, csg_value a, csg_value b)
+{
+    if (a.kind == CSG_VALUE_TERM || b.kind == CSG_VALUE_TERM)
+        return csg_symbolic_operator(e, x, a, b);
+    switch (x->operation) {
+    case CSG_TOKEN_PLUS:
+        return csg_value_number(a.as.number + b.as.number);
+    case CSG_TOKEN_MINUS:
+        return csg_value_number(a.as.number - b.as.number);
+    case CSG_TOKEN_STAR:
+        return csg_value_number(a.as.number * b.as.number);
+    case CSG_TOKEN_SLASH:
+        return csg_value_number(a.as.number / b.as.number);
+    case CSG_TOKEN_PERCENT:
+        return csg_value_number(fmod(a.as.number, b.as.number));
+    default:
+        return csg_value_number(pow(a.as.number, b.as.number));
+    }
 }
 
 static csg_vector *make_vector(csg_eval *e, const csg_expression *x, size_t count)
@@ -34,10 +54,8 @@ static csg_vector *make_vector(csg_eval *e, const csg_expression *x, size_t coun
 /* Recursion goes as deep as vectors nest: csg_vector.depth bounds it. */
 static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
-    bool minus = x->operation == CSG_TOKEN_MINUS;
-    if (left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER)
-        return csg_value_number(minus ? left.as.number - right.as.number
-                                      : left.as.number + right.as.number);
+    if (csg_value_is_scalar(left) && csg_value_is_scalar(right))
+        return scalars(e, x, left, right);
     if (left.kind != CSG_VALUE_VECTOR || right.kind != CSG_VALUE_VECTOR)
         return undefined(e, x, left, right);
     const csg_vector *a = left.as.vector, *b = right.as.vector;
@@ -48,22 +66,14 @@ static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_v
     return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
 }
 
-static double scale_number(const csg_expression *x, double number, double by, bool number_first)
-{
-    if (x->operation == CSG_TOKEN_STAR)
-        return number * by;
-    return number_first ? by / number : number / by;
-}
-
 /* vector * number, number * vector, vector / number, number / vector. */
-static csg_value scale(csg_eval *e, const csg_expression *x, csg_value value, double by,
+static csg_value scale(csg_eval *e, const csg_expression *x, csg_value value, csg_value by,
                        bool number_first)
 {
-    if (value.kind == CSG_VALUE_NUMBER)
-        return csg_value_number(scale_number(x, value.as.number, by, number_first));
+    if (csg_value_is_scalar(value))
+        return number_first ? scalars(e, x, by, value) : scalars(e, x, value, by);
     if (value.kind != CSG_VALUE_VECTOR)
-        return number_first ? undefined(e, x, csg_value_number(by), value)
-                            : undefined(e, x, value, csg_value_number(by));
+        return number_first ? undefined(e, x, by, value) : undefined(e, x, value, by);
     const csg_vector *vector = value.as.vector;
     csg_vector *made = make_vector(e, x, vector->count);
     for (size_t i = 0; made && i < vector->count && !e->stop; i++)
@@ -77,9 +87,17 @@ static csg_value scale(csg_eval *e, const csg_expression *x, csg_value value, do
 static bool all_numbers(const csg_vector *vector)
 {
     for (uint32_t i = 0; i < vector->count; i++)
-        if (vector->items[i].kind != CSG_VALUE_NUMBER)
+        if (!csg_value_is_scalar(vector->items[i]))
             return false;
     return true;
+}
+
+static bool any_terms(const csg_vector *vector)
+{
+    for (uint32_t i = 0; i < vector->count; i++)
+        if (vector->items[i].kind == CSG_VALUE_TERM)
+            return true;
+    return false;
 }
 
 /* Rows of numbers, all of one length. */
@@ -99,12 +117,14 @@ static bool is_matrix(csg_value value, uint32_t *columns)
     return true;
 }
 
-static double dot(const csg_vector *a, const csg_vector *b)
+static csg_value dot(csg_eval *e, const csg_expression *x, const csg_vector *a, const csg_vector *b)
 {
     double sum = 0;
+    if (e->formula && (any_terms(a) || any_terms(b)))
+        return csg_symbolic_dot(e, a->items, b->items, a->count, x->where);
     for (uint32_t i = 0; i < a->count; i++)
         sum += a->items[i].as.number * b->items[i].as.number;
-    return sum;
+    return csg_value_number(sum);
 }
 
 static csg_value matrix_vector(csg_eval *e, const csg_expression *x, const csg_vector *matrix,
@@ -114,8 +134,22 @@ static csg_value matrix_vector(csg_eval *e, const csg_expression *x, const csg_v
     if (!made || !csg_eval_charge(e, (uint64_t)matrix->count * vector->count / 8, x->where))
         return csg_value_undef();
     for (uint32_t i = 0; i < matrix->count; i++)
-        made->items[i] = csg_value_number(dot(matrix->items[i].as.vector, vector));
+        made->items[i] = dot(e, x, matrix->items[i].as.vector, vector);
     return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
+/* One element of the next, where there may be terms. */
+static csg_value column_sum(csg_eval *e, const csg_expression *x, const csg_vector *vector,
+                            const csg_vector *matrix, uint32_t column)
+{
+    csg_value sum = csg_value_number(0);
+    for (uint32_t i = 0; i < vector->count && !e->stop; i++) {
+        const csg_value *element = &matrix->items[i].as.vector->items[column];
+        csg_value one = csg_symbolic_dot(e, &vector->items[i], element, 1, x->where);
+        if (!e->stop)
+            sum = csg_symbolic_apply(e, CSG_FORMULA_ADD, sum, one, x->where);
+    }
+    return sum;
 }
 
 /* Row vector times matrix: the sum of the rows, weighted. */
@@ -125,7 +159,11 @@ static csg_value vector_matrix(csg_eval *e, const csg_expression *x, const csg_v
     csg_vector *made = make_vector(e, x, columns);
     if (!made || !csg_eval_charge(e, (uint64_t)vector->count * columns / 8, x->where))
         return csg_value_undef();
-    for (uint32_t j = 0; j < columns; j++) {
+    for (uint32_t j = 0; j < columns && !e->stop; j++) {
+        if (e->formula) {
+            made->items[j] = column_sum(e, x, vector, matrix, j);
+            continue;
+        }
         double sum = 0;
         for (uint32_t i = 0; i < vector->count; i++)
             sum += vector->items[i].as.number * matrix->items[i].as.vector->items[j].as.number;
@@ -152,7 +190,7 @@ static csg_value product(csg_eval *e, const csg_expression *x, csg_value left, c
     if (a->count == 0 || b->count == 0)
         return undefined(e, x, left, right);
     if (!left_matrix && !right_matrix && all_numbers(a) && all_numbers(b) && a->count == b->count)
-        return csg_value_number(dot(a, b));
+        return dot(e, x, a, b);
     if (left_matrix && !right_matrix && all_numbers(b) && left_columns == b->count)
         return matrix_vector(e, x, a, b);
     if (!left_matrix && right_matrix && all_numbers(a) && a->count == b->count)
@@ -164,11 +202,10 @@ static csg_value product(csg_eval *e, const csg_expression *x, csg_value left, c
 
 static csg_value multiply(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
-    if (left.kind == CSG_VALUE_NUMBER &&
-        (right.kind == CSG_VALUE_NUMBER || right.kind == CSG_VALUE_VECTOR))
-        return scale(e, x, right, left.as.number, true);
-    if (left.kind == CSG_VALUE_VECTOR && right.kind == CSG_VALUE_NUMBER)
-        return scale(e, x, left, right.as.number, false);
+    if (csg_value_is_scalar(left) && (csg_value_is_scalar(right) || right.kind == CSG_VALUE_VECTOR))
+        return scale(e, x, right, left, true);
+    if (left.kind == CSG_VALUE_VECTOR && csg_value_is_scalar(right))
+        return scale(e, x, left, right, false);
     if (left.kind == CSG_VALUE_VECTOR && right.kind == CSG_VALUE_VECTOR &&
         x->operation == CSG_TOKEN_STAR)
         return product(e, x, left, right);
@@ -247,47 +284,39 @@ static csg_value compare(csg_eval *e, const csg_expression *x, csg_value left, c
 /* ---- entry
  * ---------------------------------------------------------------------------------------------- */
 
-static csg_value numbers(const csg_expression *x, double a, double b)
+static bool is_refused(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
-    switch (x->operation) {
-    case CSG_TOKEN_PLUS:
-        return csg_value_number(a + b);
-    case CSG_TOKEN_MINUS:
-        return csg_value_number(a - b);
-    case CSG_TOKEN_STAR:
-        return csg_value_number(a * b);
-    case CSG_TOKEN_SLASH:
-        return csg_value_number(a / b);
-    case CSG_TOKEN_PERCENT:
-        return csg_value_number(fmod(a, b));
-    default:
-        return csg_value_number(pow(a, b));
-    }
+    return csg_symbolic_refuse(e, left, x->where, "a comparison") ||
+           csg_symbolic_refuse(e, right, x->where, "a comparison");
 }
 
 csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
-    bool both = left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER;
+    bool both = csg_value_is_scalar(left) && csg_value_is_scalar(right);
     if (e->stop)
         return csg_value_undef();
     switch (x->operation) {
     case CSG_TOKEN_EQUAL:
     case CSG_TOKEN_NOT_EQUAL:
+        if (is_refused(e, x, left, right))
+            return csg_value_undef();
         return csg_value_boolean(csg_value_equal(e, left, right, x->where) ==
                                  (x->operation == CSG_TOKEN_EQUAL));
     case CSG_TOKEN_LESS:
     case CSG_TOKEN_LESS_EQUAL:
     case CSG_TOKEN_GREATER:
     case CSG_TOKEN_GREATER_EQUAL:
+        if (is_refused(e, x, left, right))
+            return csg_value_undef();
         return compare(e, x, left, right);
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
         return add(e, x, left, right);
     case CSG_TOKEN_STAR:
     case CSG_TOKEN_SLASH:
-        return both ? numbers(x, left.as.number, right.as.number) : multiply(e, x, left, right);
+        return both ? scalars(e, x, left, right) : multiply(e, x, left, right);
     default:
-        return both ? numbers(x, left.as.number, right.as.number) : undefined(e, x, left, right);
+        return both ? scalars(e, x, left, right) : undefined(e, x, left, right);
     }
 }
 
@@ -295,6 +324,8 @@ static csg_value negate(csg_eval *e, const csg_expression *x, csg_value operand)
 {
     if (operand.kind == CSG_VALUE_NUMBER)
         return csg_value_number(-operand.as.number);
+    if (operand.kind == CSG_VALUE_TERM)
+        return csg_symbolic_apply(e, CSG_FORMULA_NEG, operand, operand, x->where);
     if (operand.kind == CSG_VALUE_VECTOR) {
         const csg_vector *vector = operand.as.vector;
         csg_vector *made = make_vector(e, x, vector->count);
@@ -311,6 +342,8 @@ static csg_value negate(csg_eval *e, const csg_expression *x, csg_value operand)
 
 csg_value csg_eval_unary(csg_eval *e, const csg_expression *x, csg_value operand)
 {
+    csg_symbolic_refuse(e, x->operation == CSG_TOKEN_NOT ? operand : csg_value_undef(), x->where,
+                        "a condition");
     if (x->operation == CSG_TOKEN_NOT)
         return csg_value_boolean(!csg_value_is_true(operand));
     if (x->operation == CSG_TOKEN_MINUS)

@@ -182,7 +182,7 @@ bool csg_value_is_true(csg_value value)
 
 const char *csg_value_kind_name(csg_value value)
 {
-    static const char *const names[] = {"undef",  "number", "bool",  "blend",    "undef",
+    static const char *const names[] = {"undef",  "number", "bool",  "blend",    "formula", "undef",
                                         "string", "vector", "range", "function", "undef"};
     return names[value.kind];
 }

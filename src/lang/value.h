@@ -17,6 +17,7 @@ typedef enum csg_value_kind {
     CSG_VALUE_NUMBER,
     CSG_VALUE_BOOLEAN,
     CSG_VALUE_BLEND,
+    CSG_VALUE_TERM,   /* a number that depends on field()'s point */
     CSG_VALUE_UNSET,  /* a variable of a scope before its assignment */
     CSG_VALUE_STRING, /* from here on: objects */
     CSG_VALUE_VECTOR,
@@ -44,6 +45,7 @@ typedef struct csg_value {
     union {
         double number;
         bool boolean;
+        csg_formula_id term; /* of the evaluator's formula */
         csg_object *object;
         csg_string *string;
         csg_vector *vector;

@@ -154,6 +154,9 @@ void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_
     case CSG_VALUE_BLEND:
         put_blend(text, value);
         break;
+    case CSG_VALUE_TERM:
+        csg_text_put_string(text, "formula");
+        break;
     default:
         csg_text_put_string(text, "undef");
         break;

@@ -192,7 +192,7 @@ static bool append_formula(csg_scene_builder *builder, const csg_formula_step *s
     csg_memory *memory = &builder->context->memory;
     void *formulas = scene->formulas, *all_steps = scene->steps;
     if (formula->count > UINT32_MAX - scene->step_count) {
-        csg_check_fail(builder, CSGM_ERR_LIMIT, "the scene's formulas are too long");
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the scene's formulas are too long");
         return false;
     }
     bool done = csg_memory_reserve(memory, &formulas, &builder->formula_capacity,

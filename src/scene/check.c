@@ -158,7 +158,7 @@ static void check_width(csg_scene_builder *builder, const csg_formula_step *step
     if (!csg_formula_width(&builder->context->memory, steps, count, &width))
         csg_check_fail(builder, CSGM_ERR_MEMORY, "%s", "");
     else if (width + 4 > CSG_FORMULA_SLOTS)
-        csg_check_fail(builder, CSGM_ERR_LIMIT,
+        csg_check_fail(builder, CSGM_ERR_SCENE,
                        "the formula needs %u intermediate values at once, at most %d can be", width,
                        CSG_FORMULA_SLOTS - 4);
 }
@@ -167,7 +167,7 @@ bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, 
                      csg_box bounds, double lipschitz)
 {
     if (count == 0 || count > CSG_LONGEST_FORMULA)
-        csg_check_fail(builder, CSGM_ERR_LIMIT, "the formula has more than %d operations",
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the formula has more than %d operations",
                        CSG_LONGEST_FORMULA);
     for (uint32_t i = 0; i < count && builder->status == CSGM_OK; i++)
         if (!is_sound_step(steps, i))
