@@ -343,6 +343,8 @@ typedef struct csgm_write_options {
     uint32_t draco_level;         /* 0 (fast) .. 10 (small), default 7 */
     bool y_up;      /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
                        Other formats keep the scene's axes. */
+    bool sync;      /* the bytes are on the disk before the file gets its name, so that a power cut
+                       leaves      the old file or the new one; default true */
     csgm_unit unit; /* glTF and GLB: what a scene unit is; one node scales it to metres. NONE */
 } csgm_write_options;
 

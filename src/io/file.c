@@ -154,7 +154,7 @@ static void take_over(int fd, const struct stat *old)
 
 csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *path)
 {
-    *file = (csg_file){.context = context, .path = path, .fd = -1, .pending = -1};
+    *file = (csg_file){.context = context, .path = path, .fd = -1, .sync = true, .pending = -1};
     csg_arena_init(&file->names, &context->memory);
     int descriptor = descriptor_of(path);
     struct stat old;
@@ -186,7 +186,7 @@ static void forget(csg_file *file)
 
 csgm_status csg_file_commit(csg_file *file)
 {
-    int error = file->target && fsync(file->fd) != 0 ? errno : 0;
+    int error = file->target && file->sync && fsync(file->fd) != 0 ? errno : 0;
     if (close(file->fd) != 0 && !error)
         error = errno;
     if (file->target && !error && rename(file->temporary, file->target) != 0)

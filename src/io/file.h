@@ -14,6 +14,7 @@ typedef struct csg_file {
     const char *target;    /* links followed; NULL = written directly */
     const char *temporary; /* beside the target */
     int fd;
+    bool sync;   /* on the disk before it gets its name; true unless changed before the commit */
     int pending; /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
 } csg_file;
 

@@ -308,6 +308,7 @@ csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_form
                                  .max = {-INFINITY, -INFINITY, -INFINITY},
                                  .opaque = true};
     csgm_status status = csg_file_create(&s->file, context, path);
+    s->file.sync = options->sync;
     if (status != CSGM_OK)
         release(s);
     else

@@ -17,6 +17,7 @@ csgm_write_options csg_write_options_default(void)
                                 .draco_color_bits = 8,
                                 .draco_level = 7,
                                 .y_up = true,
+                                .sync = true,
                                 .unit = CSGM_UNIT_NONE};
 }
 
@@ -154,6 +155,7 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
     status = csg_file_create(&file, context, path);
     if (status)
         return status;
+    file.sync = options->sync;
     status = fill(context, mesh, file.fd, path, row, options);
     if (!status)
         return csg_file_commit(&file);
