@@ -184,6 +184,7 @@ typedef struct csgm_scene_info {
     uint32_t primitive_count, operator_count;
     double lipschitz; /* |f(p) - f(q)| <= lipschitz |p - q| */
     bool has_colors;
+    double parse_s, evaluate_s; /* wall time that reading the text and evaluating it took */
 } csgm_scene_info;
 
 CSGM_API csgm_scene_info csgm_scene_get_info(const csgm_scene *scene);

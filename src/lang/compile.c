@@ -211,10 +211,16 @@ static void compile(compilation *c)
     if (c->context->limits.timeout_s > 0)
         program.deadline_s = csg_clock_now_s() + c->context->limits.timeout_s;
     program.stack_end = (uintptr_t)&here - c->stack_bytes;
+    double begin_s = csg_clock_now_s();
     if (c->status == CSGM_OK)
         c->status = parse(&program, c);
+    double parsed_s = csg_clock_now_s();
     if (c->status == CSGM_OK)
         c->status = evaluate(&program, errors, c->out);
+    if (c->status == CSGM_OK) {
+        (*c->out)->parse_s = parsed_s - begin_s;
+        (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
+    }
     csg_program_reset(&program);
 }
 

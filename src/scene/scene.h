@@ -109,6 +109,7 @@ struct csgm_scene {
     csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
     size_t dependency_count;
+    double parse_s, evaluate_s; /* wall time it took to get here; filled by lang/ */
 };
 
 static inline const csg_node_id *csg_scene_children(const csgm_scene *scene, const csg_node *node)

@@ -131,7 +131,7 @@ class Statistics(cli.CliTest):
                      "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
                      "volume", "bounds"],
             "quality": ["max_abs_field", "min_angle_deg", "degenerate"],
-            "time_s": ["scene", "compile", "octree", "mesh", "write", "total"],
+            "time_s": ["parse", "evaluate", "compile", "octree", "mesh", "write", "total"],
         }
         self.assertEqual(set(stats), set(expected))
         for key, members in expected.items():

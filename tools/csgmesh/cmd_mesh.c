@@ -66,7 +66,8 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
                    report->check.degenerate_triangles + report->check.zero_area_triangles);
     cli_json_end(json, '}');
     cli_json_open(json, "time_s", '{');
-    cli_json_number(json, "scene", work->scene_s);
+    cli_json_number(json, "parse", work->info.parse_s);
+    cli_json_number(json, "evaluate", work->info.evaluate_s);
     cli_json_number(json, "compile", work->compile_s);
     cli_json_number(json, "octree", work->stats.octree_s);
     cli_json_number(json, "mesh", work->stats.mesh_s);

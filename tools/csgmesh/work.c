@@ -12,9 +12,7 @@ int cli_work_check(cli_app *app)
 
 int cli_work_load(cli_app *app, cli_work *work, const char *path)
 {
-    double begin_s = cli_now_s();
     csgm_status status = cli_app_load(app, path, &work->scene);
-    work->scene_s = cli_now_s() - begin_s;
     if (status == CSGM_OK)
         work->info = csgm_scene_get_info(work->scene);
     return cli_exit_status(status);

@@ -12,7 +12,7 @@ typedef struct cli_work {
     csgm_mesh *mesh;
     csgm_scene_info info;
     csgm_mesh_stats stats;
-    double scene_s, compile_s;
+    double compile_s;
 } cli_work;
 
 /* Usage faults of -r, -s and --bounds. CLI_DONE or CLI_TROUBLE. */
