@@ -204,14 +204,14 @@ static csg_formula_id apply_binary(csg_formula_builder *builder, csg_formula_op 
         return scaled == CSG_FORMULA_NONE ? scaled
                                           : csg_formula_apply(builder, CSG_FORMULA_EXP, scaled, 0);
     }
+    csg_formula_step step = {(uint8_t)op, a, b, 0}, mirrored = {(uint8_t)op, b, a, 0};
     bool commutes = op == CSG_FORMULA_ADD || op == CSG_FORMULA_MUL || op == CSG_FORMULA_MIN ||
                     op == CSG_FORMULA_MAX;
-    if (commutes && (left || (!right && a > b))) {
-        csg_formula_id swapped = a;
-        a = b;
-        b = swapped;
-    }
-    return append(builder, (csg_formula_step){(uint8_t)op, a, b, 0});
+    if (commutes && left)
+        return append(builder, mirrored);
+    if (commutes && builder->table_size && *find_place(builder, &mirrored))
+        return *find_place(builder, &mirrored) - 1;
+    return append(builder, step);
 }
 
 csg_formula_id csg_formula_apply(csg_formula_builder *builder, csg_formula_op op, csg_formula_id a,
