@@ -17,12 +17,10 @@ static void release_arrays(csg_pruner *pruner)
     size_t n = pruner->capacity;
     csg_memory_release(pruner->memory, pruner->low, n * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->high, n * CSG_OCTANTS * sizeof(float));
-    csg_memory_release(pruner->memory, pruner->demand_low, n * sizeof(float));
-    csg_memory_release(pruner->memory, pruner->demand_high, n * sizeof(float));
     csg_memory_release(pruner->memory, pruner->dropped, n);
     csg_memory_release(pruner->memory, pruner->stack, n * sizeof(csg_emitted));
     csg_memory_release(pruner->memory, pruner->nodes, n * sizeof(csg_tape_node));
-    pruner->low = pruner->high = pruner->demand_low = pruner->demand_high = NULL;
+    pruner->low = pruner->high = NULL;
     pruner->dropped = NULL;
     pruner->stack = NULL;
     pruner->nodes = NULL;
@@ -50,13 +48,10 @@ static bool make_room(csg_pruner *pruner, const csg_tape *tape)
     pruner->capacity = n;
     pruner->low = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
     pruner->high = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
-    pruner->demand_low = csg_memory_alloc(pruner->memory, n * sizeof(float));
-    pruner->demand_high = csg_memory_alloc(pruner->memory, n * sizeof(float));
     pruner->dropped = csg_memory_alloc(pruner->memory, n);
     pruner->stack = csg_memory_alloc(pruner->memory, n * sizeof(csg_emitted));
     pruner->nodes = csg_memory_alloc(pruner->memory, n * sizeof(csg_tape_node));
-    if (pruner->low && pruner->high && pruner->demand_low && pruner->demand_high &&
-        pruner->dropped && pruner->stack && pruner->nodes)
+    if (pruner->low && pruner->high && pruner->dropped && pruner->stack && pruner->nodes)
         return true;
     release_arrays(pruner);
     return false;
@@ -68,6 +63,7 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
     if (!make_room(pruner, tape))
         return false;
     pruner->tape = tape;
+    pruner->decided = false;
     pruner->slack = pruner->rounding * tape->lipschitz;
     pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding, pruner->low,
                               pruner->high, pruner->scratch);
@@ -96,56 +92,102 @@ csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant)
 
 /* ---- demands --------------------------------------------------------------------------------- */
 
+enum { ALL_OCTANTS = (1 << CSG_OCTANTS) - 1 };
+
+static float *lanes(float *of_nodes, uint32_t node)
+{
+    return of_nodes + (size_t)node * CSG_OCTANTS;
+}
+
+/* The largest lower bound among a union's operands, for each octant, and whose it is. turn = -1
+ * mirrors an intersection. */
+static void find_best(const csg_tape_node *nodes, uint32_t node, float *lower, float turn,
+                      float best[CSG_OCTANTS], uint32_t best_child[CSG_OCTANTS])
+{
+    uint32_t child = node - 1;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        best[o] = -INFINITY;
+        best_child[o] = child;
+    }
+    for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size) {
+        const float *bound = lanes(lower, child);
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            bool more = turn * bound[o] > best[o];
+            best[o] = more ? turn * bound[o] : best[o];
+            best_child[o] = more ? child : best_child[o];
+        }
+    }
+}
+
+/* Bit o is set where the child stays below the threshold in octant o and is not the best. */
+static uint8_t below(const float *reach, float turn, const float threshold[CSG_OCTANTS],
+                     uint32_t child, const uint32_t best_child[CSG_OCTANTS])
+{
+    int drop[CSG_OCTANTS], mask = 0;
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        drop[o] = (turn * reach[o] < threshold[o]) & (child != best_child[o]);
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        mask |= drop[o] << o;
+    return (uint8_t)mask;
+}
+
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
- * below the largest sibling, by the blend's support. Intersections are the mirror image. */
-static uint32_t decide_operands(csg_pruner *pruner, uint32_t node, int octant)
+ * below the largest sibling, by the blend's support. Intersections are the mirror image. The
+ * demand on an operand takes the place of its interval, which nobody needs any more. */
+static void decide_operands(csg_pruner *pruner, uint32_t node, const float *demand_low,
+                            const float *demand_high)
 {
     const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
     bool is_union = csg_op_is_union(op->op);
     float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
-    float best = -INFINITY; /* the largest lower bound, of mirrored values for intersections */
-    uint32_t child = node - 1, best_child = child;
+    float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
+    float *lower = is_union ? pruner->low : pruner->high;
+    float *upper = is_union ? pruner->high : pruner->low;
+    uint32_t best_child[CSG_OCTANTS], child = node - 1;
+    find_best(nodes, node, lower, turn, threshold, best_child);
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        float demand = is_union ? demand_low[o] : -demand_high[o];
+        threshold[o] = (demand > threshold[o] ? demand : threshold[o]) - chi - pruner->slack;
+    }
     for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
-        float bound = is_union ? low_of(pruner, child, octant) : -high_of(pruner, child, octant);
-        if (bound > best) {
-            best = bound;
-            best_child = child;
+        uint8_t mask =
+            pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
+        pruner->dropped[child] = mask;
+        pruner->dropped_any |= mask;
+        if (csg_op_is_leaf(nodes[child].op))
+            continue;
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            lanes(pruner->low, child)[o] = demand_low[o] - (is_union ? chi : 0);
+            lanes(pruner->high, child)[o] = demand_high[o] + (is_union ? 0 : chi);
         }
     }
-    float demand = is_union ? pruner->demand_low[node] : -pruner->demand_high[node];
-    float threshold = (demand > best ? demand : best) - chi - pruner->slack;
-    uint32_t dropped = 0;
-    child = node - 1;
-    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
-        float reach = is_union ? high_of(pruner, child, octant) : -low_of(pruner, child, octant);
-        bool drop = reach < threshold && child != best_child;
-        pruner->dropped[child] = drop;
-        dropped += drop;
-        pruner->demand_low[child] = pruner->demand_low[node] - (is_union ? chi : 0);
-        pruner->demand_high[child] = pruner->demand_high[node] + (is_union ? 0 : chi);
-    }
-    return dropped;
 }
 
-/* Marks the root of every subtree that cannot matter; returns how many. */
-static uint32_t decide(csg_pruner *pruner, int octant, float tau)
+/* Marks every node that cannot matter, all octants at once: long tapes are read only twice. */
+static void decide(csg_pruner *pruner, float tau)
 {
     const csg_tape *tape = pruner->tape;
-    uint32_t dropped = 0, i = tape->count;
-    pruner->dropped[i - 1] = false;
-    pruner->demand_low[i - 1] = -tau;
-    pruner->demand_high[i - 1] = tau;
-    while (i > 0) {
-        uint32_t node = i - 1;
-        if (pruner->dropped[node]) {
-            i -= tape->nodes[node].size;
+    uint32_t root = tape->count - 1;
+    float low[CSG_OCTANTS], high[CSG_OCTANTS];
+    pruner->decided = true;
+    pruner->dropped_any = pruner->dropped[root] = 0;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        low[o] = -tau;
+        high[o] = tau;
+    }
+    for (uint32_t i = tape->count; i > 0;) {
+        uint32_t node = i - 1, size = tape->nodes[node].size;
+        if (pruner->dropped[node] == ALL_OCTANTS) {
+            memset(pruner->dropped + i - size, ALL_OCTANTS, size);
+            i -= size;
             continue;
         }
-        if (!csg_op_is_leaf(tape->nodes[node].op))
-            dropped += decide_operands(pruner, node, octant);
+        if (node == root && !csg_op_is_leaf(tape->nodes[node].op))
+            decide_operands(pruner, node, low, high);
+        else if (!csg_op_is_leaf(tape->nodes[node].op))
+            decide_operands(pruner, node, lanes(pruner->low, node), lanes(pruner->high, node));
         i--;
     }
-    return dropped;
 }
 
 /* ---- the shorter tape ------------------------------------------------------------------------ */
@@ -176,37 +218,27 @@ static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t 
     *top -= kept - 1;
 }
 
-/* Copies what is not dropped; returns the new length. */
-static uint32_t emit(csg_pruner *pruner)
+/* Copies what is not dropped in the octant; returns the new length. */
+static uint32_t emit(csg_pruner *pruner, int octant)
 {
     const csg_tape *tape = pruner->tape;
+    const uint8_t *dropped = pruner->dropped;
     csg_emitted *stack = pruner->stack;
     uint32_t count = 0, top = 0;
-    /* Whether a node lies in a dropped subtree is known from its root, which comes later: mark
-     * downwards first. */
-    for (uint32_t i = tape->count; i > 0;) {
-        uint32_t node = i - 1, size = tape->nodes[node].size;
-        if (pruner->dropped[node]) {
-            memset(pruner->dropped + i - size, 1, size);
-            i -= size;
-        } else {
-            i--;
-        }
-    }
     for (uint32_t i = 0; i < tape->count; i++) {
         const csg_tape_node *node = &tape->nodes[i];
-        if (pruner->dropped[i])
+        if (dropped[i] >> octant & 1)
             continue;
         if (csg_op_is_leaf(node->op)) {
             pruner->nodes[count] = *node;
             pruner->nodes[count].join = CSG_JOIN_NONE;
-            stack[top++] = (csg_emitted){count, count};
+            stack[top++] = (csg_emitted){count, count, i};
             count++;
             continue;
         }
-        uint32_t kept = 0, child = i - 1;
-        for (uint32_t k = 0; k < node->arity; k++, child -= tape->nodes[child].size)
-            kept += !pruner->dropped[child];
+        uint32_t kept = 0, first = i + 1 - node->size;
+        while (kept < top && stack[top - 1 - kept].source >= first)
+            kept++;
         emit_operator(pruner, node, kept, &count, stack, &top);
     }
     return count;
@@ -215,9 +247,13 @@ static uint32_t emit(csg_pruner *pruner)
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out)
 {
     *out = *pruner->tape;
-    if (out->count == 1 || !decide(pruner, octant, tau))
+    if (out->count == 1)
         return true;
-    uint32_t count = emit(pruner);
+    if (!pruner->decided)
+        decide(pruner, tau);
+    if (!(pruner->dropped_any >> octant & 1))
+        return true;
+    uint32_t count = emit(pruner, octant);
     csg_tape_node *nodes = csg_arena_alloc(arena, count * sizeof *nodes);
     if (!nodes)
         return false;

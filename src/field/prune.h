@@ -18,6 +18,7 @@ typedef enum csg_cell_state { CSG_CELL_OUTSIDE, CSG_CELL_INSIDE, CSG_CELL_SURFAC
 /* A finished subtree of the shorter tape. */
 typedef struct csg_emitted {
     uint32_t root, begin;
+    uint32_t source; /* its root in the longer tape */
 } csg_emitted;
 
 /* Working arrays of one thread. */
@@ -26,9 +27,10 @@ typedef struct csg_pruner {
     const csg_kernel *kernel;
     float rounding;    /* slack of lengths: rounding error of any distance in the lattice */
     float slack;       /* of comparisons: the same of values */
-    float *low, *high; /* of every node, eight lanes */
-    float *demand_low, *demand_high;
-    uint8_t *dropped;
+    float *low, *high; /* of every node, eight lanes; later the demands on operators */
+    uint8_t *dropped;  /* a bit for each octant */
+    uint8_t dropped_any;
+    bool decided;
     csg_emitted *stack;
     csg_tape_node *nodes; /* the shorter tape */
     float *scratch;
@@ -48,8 +50,9 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
 /* What the last call found about one of the balls. */
 csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
 
-/* The tape for that ball: *out is the same one where nothing could be dropped, else a shorter one
- * in the arena. tau: half width of the band. False: out of memory. */
+/* The tape for that ball: *out is the same one where nothing could
+ * be dropped, else a shorter one in the arena. tau: half width of the band, the same for all eight.
+ * False: out of memory. */
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out);
 
 #endif

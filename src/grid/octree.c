@@ -18,7 +18,8 @@ typedef struct cell {
 } cell;
 
 enum {
-    CELLS_PER_ITEM = 16,
+    CELLS_PER_ITEM = 16, /* at most: the few cells of the upper levels have the longest tapes */
+    ITEMS_PER_WORKER = 16,
     /* Blocks with longer tapes are split into parts with tapes of their own. Measured on a million
      * spheres: see tests/bench/log.md. */
     LONG_TAPE = 6
@@ -55,7 +56,8 @@ struct csg_octree {
     cell *cells; /* the level being split; at the end the frontier */
     size_t cell_count;
     size_t first_cell, end_cell; /* of them, those being split */
-    csg_block **blocks;          /* sampled last, in Morton order */
+    size_t cells_per_item;
+    csg_block **blocks; /* sampled last, in Morton order */
     size_t block_count;
     segment *segments; /* one an item */
     int level;         /* of the children being made */
@@ -269,7 +271,7 @@ static bool split_item(void *user, uint32_t worker_index, size_t item)
     segment *s = &w->segments[item];
     s->worker = worker_index;
     s->first = w->level ? self->cell_count : self->block_count;
-    size_t first = w->first_cell + item * CELLS_PER_ITEM, end = first + CELLS_PER_ITEM;
+    size_t first = w->first_cell + item * w->cells_per_item, end = first + w->cells_per_item;
     for (size_t i = first; i < end && i < w->end_cell; i++) {
         if (!split(w, self, &w->cells[i])) {
             atomic_store(&w->out_of_memory, true);
@@ -317,7 +319,10 @@ static bool join_items(walk *w, size_t item_count, size_t element, void **joined
 static bool run_level(walk *w, size_t element, void **joined, size_t *total)
 {
     csg_memory *memory = &w->context->memory;
-    size_t items = (w->end_cell - w->first_cell + CELLS_PER_ITEM - 1) / CELLS_PER_ITEM;
+    size_t cells = w->end_cell - w->first_cell;
+    size_t most = cells / (ITEMS_PER_WORKER * (size_t)w->worker_count) + 1;
+    w->cells_per_item = most < CELLS_PER_ITEM ? most : CELLS_PER_ITEM;
+    size_t items = (cells + w->cells_per_item - 1) / w->cells_per_item;
     w->segments = csg_memory_alloc(memory, (items + 1) * sizeof(segment));
     if (!w->segments) {
         atomic_store(&w->out_of_memory, true);
