@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""A build by the other compiler writes the same files for every scene of the repository.
+
+Usage: test_compilers.py CELLS; exit status 77 (a skip) where clang is not installed.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from same_bytes import differences, mesh, scenes
+
+PROGRAM = os.environ["CSGMESH"]
+SOURCE = os.environ["CSGMESH_SOURCE"]
+
+
+def build_with(cc, cxx, folder):
+    """The program, without the libraries that take long to compile."""
+    setup = ["meson", "setup", folder, SOURCE, "-Dbuildtype=release", "-Dtests=false", "-Dwerror=false",
+             "-Ddraco=disabled", "-Dopenmesh=disabled", "-Dtinygltf=disabled"]
+    program = os.path.join("tools", "csgmesh", "csgmesh")
+    for command in (setup, ["ninja", "-C", folder, program]):
+        result = subprocess.run(command, env={**os.environ, "CC": cc, "CXX": cxx}, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        if result.returncode != 0:
+            raise AssertionError(f"{' '.join(command)}\n{result.stdout[-4000:]}")
+    return os.path.join(folder, program)
+
+
+def other_compiler():
+    is_clang = "clang" in os.environ["CSGMESH_COMPILER"]
+    cc, cxx = ("gcc", "g++") if is_clang else ("clang", "clang++")
+    return (cc, cxx) if shutil.which(cc) and shutil.which(cxx) else None
+
+
+def main():
+    cells, other = sys.argv[1], other_compiler()
+    if not other:
+        print("there is no other compiler here (clang beside gcc): skipped")
+        return 77
+    faults, every = [], scenes()
+    with tempfile.TemporaryDirectory() as folder:
+        theirs = build_with(*other, os.path.join(folder, "build"))
+        for scene in every:
+            for kind in ("ply", "glb"):
+                out = os.path.join(folder, "out." + kind)
+                faults += differences(scene, mesh(PROGRAM, scene, out, "-r", cells), [
+                    (f"{kind} by {other[0]}", lambda: mesh(theirs, scene, out, "-r", cells))])
+    for fault in faults:
+        print("differs:", fault)
+    print(f"{len(every)} scenes, {len(faults)} differences")
+    return 1 if faults or len(every) < 20 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
