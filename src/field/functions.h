@@ -525,7 +525,9 @@ static inline range range_mod(range a, range b)
     int whole = (b.low == b.high) & (first == last);
     float low = whole ? a.low - first * b.low : a.low < 0 ? -most : 0;
     float high = whole ? a.high - first * b.low : a.high > 0 ? most : 0;
-    return settle(low, high, 0, 0x1p-21f * (length + most), is_known(a) & is_known(b));
+    int sound = is_known(a) & is_known(b) & ((b.low > 0) | (b.high < 0));
+    sound &= length <= 1e30f * smaller(absolute(b.low), absolute(b.high));
+    return settle(low, high, 0, 0x1p-21f * (length + most), sound);
 }
 
 #endif
