@@ -31,6 +31,13 @@ void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64
     atomic_init(&memory->peak_bytes, 0);
 }
 
+static void raise_peak(csg_memory *memory, uint64_t used)
+{
+    uint_fast64_t peak = atomic_load(&memory->peak_bytes);
+    while (used > peak && !atomic_compare_exchange_weak(&memory->peak_bytes, &peak, used)) {
+    }
+}
+
 void *csg_memory_alloc(csg_memory *memory, size_t size_bytes)
 {
     uint64_t used = atomic_fetch_add(&memory->used_bytes, size_bytes) + size_bytes;
@@ -41,9 +48,7 @@ void *csg_memory_alloc(csg_memory *memory, size_t size_bytes)
         atomic_fetch_sub(&memory->used_bytes, size_bytes);
         return NULL;
     }
-    uint_fast64_t peak = atomic_load(&memory->peak_bytes);
-    while (used > peak && !atomic_compare_exchange_weak(&memory->peak_bytes, &peak, used)) {
-    }
+    raise_peak(memory, used);
     return pointer;
 }
 
@@ -53,6 +58,33 @@ void csg_memory_release(csg_memory *memory, void *pointer, size_t size_bytes)
         return;
     memory->allocator.release(memory->allocator.user, pointer, size_bytes);
     atomic_fetch_sub(&memory->used_bytes, size_bytes);
+}
+
+/* The C library's own growing moves the pages of large blocks instead of copying them. */
+static void *grow_by_default(csg_memory *memory, void *data, size_t before, size_t after)
+{
+    uint64_t more = after - before, used = atomic_fetch_add(&memory->used_bytes, more) + more;
+    void *fresh = NULL;
+    if (!memory->limit_bytes || used <= memory->limit_bytes)
+        fresh = realloc(data, after);
+    if (fresh)
+        raise_peak(memory, used);
+    else
+        atomic_fetch_sub(&memory->used_bytes, more);
+    return fresh;
+}
+
+/* A larger block with the same contents in place of `data`; NULL: nothing changed. */
+static void *grow(csg_memory *memory, void *data, size_t before, size_t after)
+{
+    if (memory->allocator.alloc == default_alloc && memory->allocator.release == default_release)
+        return grow_by_default(memory, data, before, after);
+    void *fresh = csg_memory_alloc(memory, after);
+    if (fresh && before)
+        memcpy(fresh, data, before);
+    if (fresh)
+        csg_memory_release(memory, data, before);
+    return fresh;
 }
 
 bool csg_memory_reserve(csg_memory *memory, void **data, size_t *capacity, size_t needed,
@@ -65,12 +97,9 @@ bool csg_memory_reserve(csg_memory *memory, void **data, size_t *capacity, size_
         grown = needed;
     if (grown > SIZE_MAX / element_bytes)
         return false;
-    void *fresh = csg_memory_alloc(memory, grown * element_bytes);
+    void *fresh = grow(memory, *data, *capacity * element_bytes, grown * element_bytes);
     if (!fresh)
         return false;
-    if (*capacity)
-        memcpy(fresh, *data, *capacity * element_bytes);
-    csg_memory_release(memory, *data, *capacity * element_bytes);
     *data = fresh;
     *capacity = grown;
     return true;

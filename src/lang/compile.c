@@ -180,6 +180,7 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
     csgm_status status = csg_eval_init(&e, program);
     if (status == CSGM_OK) {
         root = csg_eval_run(&e);
+        csg_heap_reset(&e.heap); /* sealing needs the room */
         status = e.status;
     }
     if (status == CSGM_OK && program->context->diags.errors > errors)
