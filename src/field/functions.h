@@ -22,14 +22,14 @@
 
 /* ---- helpers ------------------------------------------------------------------------------- */
 
-static inline int32_t bits_of(float a)
+static inline uint32_t bits_of(float a)
 {
-    int32_t bits;
+    uint32_t bits;
     memcpy(&bits, &a, sizeof bits);
     return bits;
 }
 
-static inline float from_bits(int32_t bits)
+static inline float from_bits(uint32_t bits)
 {
     float a;
     memcpy(&a, &bits, sizeof a);
@@ -99,7 +99,7 @@ static inline float wave(float a, int32_t turn)
     quarter += turn;
     float s = sine_near_zero(r), c = cosine_near_zero(r);
     float f = quarter & 1 ? c : s;
-    f = from_bits(bits_of(f) ^ (quarter & 2) << 30);
+    f = from_bits(bits_of(f) ^ (uint32_t)(quarter & 2) << 30);
     return absolute(a) <= FLT_MAX ? f : NAN;
 }
 
@@ -174,7 +174,8 @@ static inline float value_exp(float a, float b)
         r * (0.1666651289f + r * (0.0416661872f + r * (0.008369598194f + r * 0.001395172265f)));
     float e = 1.0f + (r + r * r * p);
     int32_t whole = (int32_t)k, half = whole >> 1;
-    float first = from_bits((half + 127) << 23), second = from_bits((whole - half + 127) << 23);
+    float first = from_bits((uint32_t)(half + 127) << 23);
+    float second = from_bits((uint32_t)(whole - half + 127) << 23);
     float v = e * first * second;
     return a == a ? v : NAN;
 }
@@ -184,9 +185,9 @@ static inline float value_ln(float a, float b)
 {
     int tiny = a < FLT_MIN;
     float scaled = tiny ? a * 0x1p24f : a;
-    int32_t bits = bits_of(scaled);
-    int32_t k = (bits - 0x3f3504f3) >> 23;
-    float x = from_bits(bits - k * (1 << 23)) - 1.0f;
+    uint32_t bits = bits_of(scaled);
+    int32_t k = (int32_t)(bits - 0x3f3504f3u) >> 23;
+    float x = from_bits(bits - ((uint32_t)k << 23)) - 1.0f;
     float e = (float)k - (tiny ? 24.0f : 0.0f);
     float p =
         -0.1662455412f +

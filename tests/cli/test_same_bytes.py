@@ -12,6 +12,16 @@ SCENES = {
     "many": """for (i = [0 : 40]) translate([cos(i * 40), sin(i * 40), i / 15])
   sphere(r = 0.2 + 0.004 * i);
 """,
+    "field": """union(blend = 0.1) {
+  intersection() {
+    sphere(r = 1);
+    field(function (p) 0.3 - abs(sin(400 * p.x) * cos(400 * p.y) + sin(400 * p.y) * cos(400 * p.z)));
+  }
+  rotate([20, 30, 40]) scale([1, 1.5, 0.7])
+    field(function (p) 0.2 - norm([norm([p.x, p.y]) - 0.9, p.z]) + exp(-p.z ^ 2) / 30,
+          bounds = [[-1.5, -1.5, -1], [1.5, 0.4, 1]]);
+}
+""",
 }
 
 
