@@ -231,7 +231,7 @@ static void cycles_are_told_with_their_way(void **state)
 
 static void doubling_includes_end(void **state)
 {
-    char name[16], text[64];
+    char name[32], text[64];
     (void)state;
     for (int i = 0; i < 40; i++) {
         snprintf(name, sizeof name, "d%d.txt", i);
