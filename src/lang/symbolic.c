@@ -222,10 +222,15 @@ bool csg_symbolic_call(const csg_function_call *call, csg_value *result)
                                         "is_bool",     "is_string", "is_list",
                                         "is_function", "is_blend",  NULL};
     static const char *const compositions[] = {"ceil", "round", "log", NULL};
-    uint32_t first = 0;
-    while (first < call->count && !has_terms(call->arguments[first]))
-        first++;
-    if (first == call->count || is_named(call, blind))
+    bool any = false;
+    if (is_named(call, blind))
+        return false;
+    for (uint32_t i = 0; i < call->count && !any; i++) {
+        csg_value argument = call->arguments[i];
+        uint32_t size = argument.kind == CSG_VALUE_VECTOR ? argument.as.vector->count : 0;
+        any = csg_eval_charge(call->e, size / 8, call->where) && has_terms(argument);
+    }
+    if (!any)
         return false;
     const csg_value *values = call->arguments;
     bool scalars = are_scalars(values, call->count);

@@ -11,7 +11,9 @@
 typedef struct csg_node_bounds {
     double below, above; /* l, L: the value must be exact in [-l, L] */
     csg_box level_box;   /* O: contains {f >= -l} */
-    csg_box clamp_box;   /* B: outside it the node is < -l wherever its value matters */
+    /* B: outside it the node is < -l wherever its value matters. The node's value is at most
+     * max(1, lambda) b_B - l, lambda that of the fields in it. */
+    csg_box clamp_box;
 } csg_node_bounds;
 
 /* One entry per node of the scene, for the band `delta` >= 0 at the root; out has
