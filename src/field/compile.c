@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Scene -> tape: a walk over the tree with an explicit stack that carries each node's frame down
  * (place, scale, sign, colour) and writes nodes in postorder.
- *
- * A similarity keeps distances, so its scale goes into the primitive's sizes and only a rotation
- * or an offset stays to be done a point; other maps keep the primitive in its own frame and scale
- * its value by the smallest singular value (scene.h).
  */
-#include <float.h>
 #include <string.h>
 
 #include "field/compile_formula.h"
+#include "field/compile_leaf.h"
 #include "field/dispatch.h"
 #include "field/field.h"
 #include "field/formulas.h"
@@ -93,170 +89,23 @@ static bool push_color(compiler *c, csg_color color, uint32_t *index)
 
 /* ---- leaves ------------------------------------------------------------------------------- */
 
-/* A leaf on its way into floats. */
-typedef struct leaf {
-    uint8_t op;
-    csg_frame frame;
-    double sigma;
-    csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
-    csg_vec3 offset;
-    double own[8];
-    int own_count;
-    double magnitude; /* largest length that takes part in its arithmetic */
-} leaf;
-
-static void own_of_frustum(leaf *l, const double *p, double k)
+/* Where a node's own frame lies, relative to the field's centre. */
+static csg_affine place_of(const compiler *c, const frame *f)
 {
-    double r1 = p[0] * k, r2 = p[1] * k, h = p[2] * k;
-    double length = hypot(2 * h, r1 - r2);
-    double own[] = {r1,       (r1 + r2) / 2, h, 2 * h / length, (r1 - r2) / length, length,
-                    p[3] * k, (r2 - r1) / 2};
-    memcpy(l->own, own, sizeof own);
-    l->own_count = OWN_FRUSTUM;
-    l->magnitude = hypot(fmax(r1, r2), h) + p[3] * k;
-}
-
-static void own_of_capsule(leaf *l, const double *p, double k)
-{
-    double h = p[0] * k, r1 = p[1] * k, r2 = p[2] * k;
-    double s = (r1 - r2) / h;
-    double own[] = {h, 1 / h, r1, r2 - r1, s / sqrt(1 - s * s)};
-    memcpy(l->own, own, sizeof own);
-    l->own_count = OWN_CAPSULE;
-    l->magnitude = h + fmax(r1, r2);
-}
-
-static void own_of_torus(leaf *l, const double *p, double k)
-{
-    double half = p[2] * (3.14159265358979323846 / 180);
-    bool whole = p[2] >= 180;
-    double own[] = {p[0] * k, p[1] * k, whole ? -1 : cos(half), whole ? 0 : sin(half)};
-    memcpy(l->own, own, sizeof own);
-    l->own_count = OWN_TORUS;
-    l->magnitude = own[0] + own[1];
-}
-
-/* formulas.h wants the smallest semi-axis last: turn the frame's rows. */
-static void own_of_ellipsoid(leaf *l, const double *p, double k)
-{
-    int last = p[0] < p[1] ? (p[0] < p[2] ? 0 : 2) : (p[1] < p[2] ? 1 : 2);
-    int order[3] = {(last + 1) % 3, (last + 2) % 3, last};
-    csg_affine turned = l->to_own;
-    for (int i = 0; i < 3; i++) {
-        memcpy(turned.m[i], l->to_own.m[order[i]], sizeof turned.m[i]);
-        turned.t[i] = l->to_own.t[order[i]];
-        l->own[i] = p[order[i]] * k;
-    }
-    l->to_own = turned;
-    if (last != 2)
-        l->frame = CSG_FRAME_AFFINE;
-    double z = l->own[2];
-    l->own[3] = (l->own[0] / z) * (l->own[0] / z);
-    l->own[4] = (l->own[1] / z) * (l->own[1] / z);
-    l->own[5] = 0;
-    l->own_count = OWN_ELLIPSOID;
-    l->magnitude = fmax(l->own[0], l->own[1]);
-}
-
-/* A plane stays a plane under every map: sigma, place and scale all go into n and d. */
-static void own_of_plane(leaf *l, const double *p, double factor)
-{
-    csg_vec3 n = {p[0], p[1], p[2]};
-    csg_vec3 b = {l->to_own.t[0], l->to_own.t[1], l->to_own.t[2]};
-    csg_vec3 normal = csg_vec3_scale(csg_affine_covector(&l->to_own, n), factor);
-    l->own[0] = normal.x;
-    l->own[1] = normal.y;
-    l->own[2] = normal.z;
-    l->own[3] = factor * (p[3] - csg_vec3_dot(n, b));
-    l->own_count = OWN_PLANE;
-    l->frame = CSG_FRAME_OFFSET;
-    l->offset = csg_vec3_make(0, 0, 0);
-    l->sigma = l->sigma < 0 ? -1 : 1;
-    l->magnitude = fabs(l->own[3]);
-}
-
-static void own_parameters(leaf *l, csg_node_kind kind, const double *p, double k, double factor)
-{
-    switch (kind) {
-    case CSG_NODE_SPHERE:
-        l->own[0] = p[0] * k;
-        l->own_count = OWN_SPHERE;
-        l->magnitude = l->own[0];
-        break;
-    case CSG_NODE_BOX:
-        for (int i = 0; i < 3; i++)
-            l->own[i] = (p[i] - p[3]) * k;
-        l->own[3] = p[3] * k;
-        l->own_count = OWN_BOX;
-        l->magnitude = k * sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-        break;
-    case CSG_NODE_FRUSTUM:
-        own_of_frustum(l, p, k);
-        break;
-    case CSG_NODE_CAPSULE:
-        own_of_capsule(l, p, k);
-        break;
-    case CSG_NODE_TORUS:
-        own_of_torus(l, p, k);
-        break;
-    case CSG_NODE_ELLIPSOID:
-        own_of_ellipsoid(l, p, k);
-        break;
-    default:
-        own_of_plane(l, p, factor);
-    }
-}
-
-static bool is_turned(const csg_affine *place)
-{
-    bool turned = false;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            turned |= fabs(place->m[i][j] - (i == j)) > 1e-15;
-    return turned;
-}
-
-/* Chooses the frame of a primitive whose own frame lies at f->place. */
-static void place_leaf(leaf *l, const frame *f, csg_vec3 center, csg_node_kind kind,
-                       const double *p)
-{
-    csg_affine place = f->place;
-    place.t[0] -= center.x;
-    place.t[1] -= center.y;
-    place.t[2] -= center.z;
-    l->op = (uint8_t)(CSG_OP_SPHERE + (kind - CSG_NODE_SPHERE));
-    l->frame = CSG_FRAME_AFFINE;
-    l->offset = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
-    double smallest, largest, k = 1;
-    csg_affine_singular_values(&place, &smallest, &largest);
-    bool similar = largest - smallest <= 1e-12 * largest && kind != CSG_NODE_PLANE;
-    if (similar) {
-        k = smallest;
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                place.m[i][j] /= k;
-        if (!is_turned(&place) || kind == CSG_NODE_SPHERE)
-            l->frame = CSG_FRAME_OFFSET;
-    }
-    l->sigma = (f->negate ? -1 : 1) * (similar ? f->factor / k : f->factor);
-    csg_affine_invert(place, &l->to_own); /* build.h admits only invertible maps */
-    own_parameters(l, kind, p, k, f->factor);
-    /* Lengths as the scene sees them: an own-frame value is multiplied by sigma at the end. */
-    l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
-}
-
-/* A formula has no sizes that could be scaled: its frame is the whole map. */
-static bool place_field(compiler *c, leaf *l, const frame *f, const csg_node *node)
-{
-    csg_memory *memory = &c->context->memory;
     csg_affine place = f->place;
     place.t[0] -= c->field->center.x;
     place.t[1] -= c->field->center.y;
     place.t[2] -= c->field->center.z;
+    return place;
+}
+
+/* A formula has no sizes that could be scaled: its frame is the whole map. */
+static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
+{
+    csg_memory *memory = &c->context->memory;
+    csg_affine place = place_of(c, f);
     l->op = CSG_OP_FIELD;
-    l->frame = is_turned(&place) ? CSG_FRAME_AFFINE : CSG_FRAME_OFFSET;
-    l->offset = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
-    csg_affine_invert(place, &l->to_own);
+    csg_leaf_place(l, &place);
     l->sigma = f->negate ? -f->factor : f->factor;
     l->own[0] = (double)c->formula_count;
     l->own_count = 1;
@@ -272,31 +121,10 @@ static bool place_field(compiler *c, leaf *l, const frame *f, const csg_node *no
     return true;
 }
 
-/* The rounding error of a value is a few units in the last place of the lengths in it. */
-static double rounding_of(double magnitude)
+static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color)
 {
-    return 32 * (double)FLT_EPSILON * magnitude;
-}
-
-static bool write_leaf(compiler *c, const leaf *l, uint32_t color)
-{
-    float values[CSG_LEAF_OWN_AFFINE + 8];
-    size_t count = CSG_LEAF_FRAME;
-    values[CSG_LEAF_SIGMA] = (float)l->sigma;
-    values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude);
-    values[CSG_LEAF_COLOR] = (float)color;
-    if (l->frame == CSG_FRAME_OFFSET) {
-        values[count++] = (float)l->offset.x;
-        values[count++] = (float)l->offset.y;
-        values[count++] = (float)l->offset.z;
-    } else {
-        for (int i = 0; i < 9; i++)
-            values[count++] = (float)l->to_own.m[i / 3][i % 3];
-        for (int i = 0; i < 3; i++)
-            values[count++] = (float)l->to_own.t[i];
-    }
-    for (int i = 0; i < l->own_count; i++)
-        values[count++] = (float)l->own[i];
+    float values[CSG_LEAF_MOST_PARAMETERS];
+    size_t count = csg_leaf_pack(l, color, values);
     csg_tape_node *node = push_node(c);
     if (!node || !push_parameters(c, values, count, &node->parameters))
         return false;
@@ -308,12 +136,14 @@ static bool write_leaf(compiler *c, const leaf *l, uint32_t color)
 
 static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
 {
-    leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
-    if (node->kind == CSG_NODE_FIELD) {
-        if (!place_field(c, &l, f, node))
-            return false;
-    } else if (node->kind != CSG_NODE_EMPTY)
-        place_leaf(&l, f, c->field->center, node->kind, csg_scene_parameters(c->scene, node));
+    csg_leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
+    if (node->kind == CSG_NODE_FIELD && !place_field(c, &l, f, node))
+        return false;
+    if (csg_node_is_primitive(node->kind)) {
+        csg_affine place = place_of(c, f);
+        csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind,
+                           csg_scene_parameters(c->scene, node));
+    }
     return write_leaf(c, &l, f->color);
 }
 
@@ -536,12 +366,12 @@ static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
 static bool write_clip(compiler *c, csg_box box)
 {
     csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
-    leaf l = {.op = CSG_OP_BOX,
-              .frame = CSG_FRAME_OFFSET,
-              .sigma = 1,
-              .own = {half.x, half.y, half.z, 0},
-              .own_count = OWN_BOX,
-              .magnitude = csg_vec3_norm(half)};
+    csg_leaf l = {.op = CSG_OP_BOX,
+                  .frame = CSG_FRAME_OFFSET,
+                  .sigma = 1,
+                  .own = {half.x, half.y, half.z, 0},
+                  .own_count = OWN_BOX,
+                  .magnitude = csg_vec3_norm(half)};
     const float sharp[CSG_OPERATOR_PARAMETERS] = {[CSG_OPERATOR_N] = 1};
     uint32_t parameters;
     if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) || !write_leaf(c, &l, 0))

@@ -433,7 +433,7 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
                 .options = *options,
                 .kernel = csg_kernel_for(context->isa),
                 .worker_count = csg_pool_threads(context->pool)};
-    /* 32 ulp of the extent: see rounding_of in field/compile.c, which covers the leaves' own
+    /* 32 ulp of the extent: see rounding_of in field/compile_leaf.c, which covers the leaves' own
      * lengths. */
     double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
     w->tau = (float)((double)field->tape.lipschitz *

@@ -117,7 +117,7 @@ static void test_the_whole_way(void **state)
     csgm_mesh_view view = csgm_mesh_get_view(r.mesh);
     assert_non_null(view.normals);
     assert_non_null(view.colors);
-    assert_true(csgm_mesh_max_abs_field(r.scene, &view) < 1e-4);
+    assert_true(csgm_mesh_max_abs_field(r.scene, &view, NULL) < 1e-4);
     csgm_scene_info info = csgm_scene_get_info(r.scene);
     assert_int_equal(info.primitive_count, 2);
     assert_int_equal(info.operator_count, 1);

@@ -15,6 +15,7 @@
 typedef struct run_report {
     csgm_mesh_check check;
     double max_abs_field;
+    uint64_t vertices_measured; /* for max_abs_field */
     double write_s, total_s;
     uint64_t peak_rss_bytes; /* of the work, before the mesh was inspected */
 } run_report;
@@ -61,6 +62,7 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
     cli_json_end(json, '}');
     cli_json_open(json, "quality", '{');
     cli_json_number(json, "max_abs_field", report->max_abs_field);
+    cli_json_count(json, "vertices_measured", report->vertices_measured);
     cli_json_number(json, "min_angle_deg", report->check.min_angle_deg);
     cli_json_count(json, "degenerate",
                    report->check.degenerate_triangles + report->check.zero_area_triangles);
@@ -99,7 +101,7 @@ static int write_statistics(cli_app *app, const cli_work *work, run_report *repo
     csgm_status status = csgm_mesh_inspect(app->context, &view, &report->check);
     if (status != CSGM_OK)
         return cli_exit_status(status);
-    report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view);
+    report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view, &report->vertices_measured);
     char *text = NULL;
     size_t length = 0;
     FILE *out = open_memstream(&text, &length);

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * A primitive on its way into the tape: its place, its sizes, its rounding error.
+ *
+ * A similarity keeps distances, so its scale goes into the primitive's sizes and only a rotation
+ * or an offset stays to be done a point; other maps keep the primitive in its own frame and scale
+ * its value by the smallest singular value (scene.h).
+ */
+#ifndef CSG_FIELD_COMPILE_LEAF_H
+#define CSG_FIELD_COMPILE_LEAF_H
+
+#include "field/tape.h"
+
+typedef struct csg_leaf {
+    uint8_t op;
+    csg_frame frame;
+    double sigma;
+    csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
+    csg_vec3 offset;
+    double own[8];
+    int own_count;
+    double magnitude; /* largest length that takes part in its arithmetic */
+} csg_leaf;
+
+enum { CSG_LEAF_MOST_PARAMETERS = CSG_LEAF_OWN_AFFINE + 8 };
+
+/* Frame and offset of a leaf whose own frame lies at `place` (relative to the field's centre). */
+void csg_leaf_place(csg_leaf *leaf, const csg_affine *place);
+/* A placed primitive. factor: product of its ancestors' smallest singular values. */
+void csg_leaf_primitive(csg_leaf *leaf, const csg_affine *place, double factor, bool negate,
+                        csg_node_kind kind, const double *parameters);
+/* The leaf's parameters as tape.h lays them out; returns how many. */
+size_t csg_leaf_pack(const csg_leaf *leaf, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS]);
+
+#endif
