@@ -137,9 +137,10 @@ static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color)
 static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
 {
     csg_leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
-    if (node->kind == CSG_NODE_FIELD && !place_field(c, &l, f, node))
-        return false;
-    if (csg_node_is_primitive(node->kind)) {
+    if (node->kind == CSG_NODE_FIELD) {
+        if (!place_field(c, &l, f, node))
+            return false;
+    } else if (node->kind != CSG_NODE_EMPTY) {
         csg_affine place = place_of(c, f);
         csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind,
                            csg_scene_parameters(c->scene, node));
