@@ -74,7 +74,7 @@ typedef struct csg_mesh_work {
     atomic_bool timed_out, out_of_memory, refused;
 } csg_mesh_work;
 
-enum { CSG_BLOCKS_PER_ITEM = 32 }; /* of parallel loops, and a receiver's run */
+enum { CSG_BLOCKS_PER_ITEM = 64 }; /* of parallel loops, and a receiver's run */
 
 static inline size_t csg_mesh_item_count(const csg_mesh_work *work)
 {
