@@ -283,11 +283,43 @@ static void number_edges(const csg_block *from, const int shift[3],
         }
 }
 
+/* Bit o set: the surface crosses an edge of this block that the upper neighbour o owns (octant
+ * bits: the axes on which it lies above). Those edges lie in the upper faces (one axis) and on the
+ * lines where two of these meet; the neighbour above on all three axes owns none. */
+static unsigned needed_neighbours(const csg_block *block)
+{
+    unsigned any = 0, all = ~0u, any_y = 0, all_y = ~0u, any_z = 0, all_z = ~0u;
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++) {
+            any |= block->inside[k][j];
+            all &= block->inside[k][j];
+        }
+    for (int i = 0; i < N; i++) {
+        any_y |= block->inside[i][E];
+        all_y &= block->inside[i][E];
+        any_z |= block->inside[E][i];
+        all_z &= block->inside[E][i];
+    }
+    const unsigned row = block->inside[E][E], rim = 1u << E, whole = (1u << N) - 1;
+    bool crossed[8] = {
+        [1] = any & ~all & rim,     [2] = any_y != 0 && (all_y & whole) != whole,
+        [3] = any_y & ~all_y & rim, [4] = any_z != 0 && (all_z & whole) != whole,
+        [5] = any_z & ~all_z & rim, [6] = row != 0 && row != whole,
+    };
+    unsigned needed = 0;
+    for (unsigned octant = 0; octant < 8; octant++)
+        needed |= (unsigned)crossed[octant] << octant;
+    return needed;
+}
+
 static void number_all_edges(const csg_marching *m, const csg_block *block,
                              uint32_t vertex[3][CSG_BLOCK_POINTS])
 {
     number_own_edges(block, vertex);
+    unsigned needed = needed_neighbours(block);
     for (unsigned octant = 1; octant < 8; octant++) {
+        if (!(needed >> octant & 1))
+            continue;
         uint32_t at[3];
         int shift[3];
         for (int axis = 0; axis < 3; axis++) {
