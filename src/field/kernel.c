@@ -475,6 +475,43 @@ static void colors(const csg_tape *tape, const float *x, const float *y, const f
 
 /* ---- intervals ------------------------------------------------------------------------------- */
 
+/* Primitives whose value falls with |x|, |y| and |z| in a frame that is not turned: over a cube
+ * they are largest at its point nearest to their centre and smallest at the farthest. */
+static int falls_outwards(const csg_tape_node *node, const float *own)
+{
+    if (node->frame != CSG_FRAME_OFFSET)
+        return 0;
+    return node->op == CSG_OP_SPHERE || node->op == CSG_OP_BOX || node->op == CSG_OP_ELLIPSOID ||
+           (node->op == CSG_OP_FRUSTUM && own[7] == 0); /* a cylinder */
+}
+
+/* The coordinates nearest to and farthest from t within `half` of c. */
+static void near_and_far(const float *c, float t, float half, float *near, float *far)
+{
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        float d = c[o] - t, side = sign_of(d);
+        near[o] = t + side * larger(absolute(d) - half, 0);
+        far[o] = t + side * (absolute(d) + half);
+    }
+}
+
+static void falling_interval(const csg_tape *tape, const csg_tape_node *node, points p, float half,
+                             float *restrict low, float *restrict high)
+{
+    const float *parameters = tape->parameters + node->parameters, *t = parameters + CSG_LEAF_FRAME;
+    float near[3][CSG_OCTANTS], far[3][CSG_OCTANTS], a[CSG_OCTANTS], b[CSG_OCTANTS];
+    near_and_far(p.x, t[0], half, near[0], far[0]);
+    near_and_far(p.y, t[1], half, near[1], far[1]);
+    near_and_far(p.z, t[2], half, near[2], far[2]);
+    leaf_values(tape, node, (points){near[0], near[1], near[2], CSG_OCTANTS}, a);
+    leaf_values(tape, node, (points){far[0], far[1], far[2], CSG_OCTANTS}, b);
+    float slack = parameters[CSG_LEAF_SLACK];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        low[o] = smaller(a[o], b[o]) - slack;
+        high[o] = larger(a[o], b[o]) + slack;
+    }
+}
+
 static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, points p, float radius,
                           float *restrict low, float *restrict high)
 {
@@ -482,8 +519,14 @@ static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, point
         CSG_THIS_FORMULA_KERNEL.intervals(tape, node, p.x, p.y, p.z, radius, low, high);
         return;
     }
+    const float *parameters = tape->parameters + node->parameters;
+    const float half = radius * 0.57735034f; /* of the cube's edge: 1 / sqrt 3, rounded up */
+    if (falls_outwards(node, parameters + CSG_LEAF_OWN_OFFSET)) {
+        falling_interval(tape, node, p, half, low, high);
+        return;
+    }
     leaf_values(tape, node, p, low);
-    float reach = radius + tape->parameters[node->parameters + CSG_LEAF_SLACK];
+    float reach = radius + parameters[CSG_LEAF_SLACK];
     for (int o = 0; o < CSG_OCTANTS; o++) {
         high[o] = low[o] + reach;
         low[o] = low[o] - reach;

@@ -45,7 +45,7 @@ typedef struct csg_kernel {
 
     /* Intervals of every node's value (before its join) over eight cubes, given by the balls
      * around them: low[8 * i + o] <= value of node i over cube o <= high[8 * i + o], rounding of
-     * the leaves included. (Without expression fields they hold over the balls too.) */
+     * the leaves included. */
     void (*intervals)(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch);

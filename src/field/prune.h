@@ -2,8 +2,9 @@
  * Pruning: which part of a tape can matter in a cell. Inside the band |f| <= tau no bit of a value
  * changes, outside it no sign does, so pruned and unpruned runs write the same file.
  *
- * A cell is the ball around it for the bounds (Lipschitz constant 1: value at the centre +-
- * radius; expression fields use the cube, see formula_kernel.h), composed bottom-up through the
+ * A cell is a cube. Primitives give their range over it: exactly where they fall outwards along the
+ * axes, over the ball around it otherwise (Lipschitz constant 1: value at the centre +- radius),
+ * expression fields by interval arithmetic (formula_kernel.h); composed bottom-up through the
  * operators; a demand interval goes top-down: the root's value matters in
  * [-tau, tau]; an operand that stays below (above) what can matter through a union (intersection),
  * or below the largest sibling by the blend's support, is dropped.
@@ -43,14 +44,15 @@ void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *k
                      float rounding);
 void csg_pruner_release(csg_pruner *pruner);
 
-/* Intervals of the whole tape over eight balls. False: out of memory. */
+/* Intervals of the whole tape over eight cubes, given by the balls around them. False: out of
+ * memory. */
 bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[CSG_OCTANTS],
                        const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius);
 
-/* What the last call found about one of the balls. */
+/* What the last call found about one of the cubes. */
 csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
 
-/* The tape for that ball: *out is the same one where nothing could
+/* The tape for that cube: *out is the same one where nothing could
  * be dropped, else a shorter one in the arena. tau: half width of the band, the same for all eight.
  * False: out of memory. */
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What pruning promises, on random scenes and random cells, and on pairs of operands built to sit
  * exactly on the threshold of dropping one:
- *   intervals  contain the value, in float and in double, of every point of the ball
+ *   intervals  contain the value, in float and in double, of every point of the cube
  *   states     OUTSIDE and INSIDE are true of every point
  *   shorter    tapes give the same bits where |f| <= tau (values, gradients, colours), and the same
  *              sign elsewhere; also when they are shortened again in smaller and smaller cells
@@ -213,9 +213,12 @@ static void check_threshold(csg_random *random, csg_blend_kind kind, csg_node_ki
     walk w = {0};
     csg_blend blend = test_random_blend(random, kind);
     double chi = csg_blend_support(blend), half = csg_random_uniform(random, 0.01, 0.2);
-    csg_vec3 along = test_direction(random), center = test_point(random, 1);
+    csg_vec3 center = test_point(random, 1), along = test_point(random, 1);
+    along = csg_vec3_scale(
+        csg_vec3_make(copysign(1, along.x), copysign(1, along.y), copysign(1, along.z)),
+        1 / sqrt(3.0));
     double radius = half * sqrt(3.0), r[2], distance[2], turn = how == CSG_NODE_UNION ? 1 : -1;
-    /* At the end of the ball towards the second sphere: values `f` and f - chi (mirrored for an
+    /* At the cell's corner towards the second sphere: values `f` and f - chi (mirrored for an
      * intersection), within a few ulp. */
     double f = csg_random_uniform(random, -1, 1) * half;
     double value[2] = {f, f - turn * chi + csg_random_uniform(random, -4, 4) * 1e-7};
@@ -234,7 +237,7 @@ static void check_threshold(csg_random *random, csg_blend_kind kind, csg_node_ki
     test_subject_compile(&w.subject,
                          csg_build_operator(&w.subject.builder, how, blend, nodes, 2, NOWHERE));
     walk_begin(&w, 8);
-    /* The cell's child 0 is the ball of the construction. */
+    /* The cell's child 0 is the cube of the construction. */
     csg_vec3 own = csg_vec3_sub(center, w.subject.field->center);
     cube at = {csg_vec3_add(own, csg_vec3_make(half, half, half)), 2 * half};
     prune_children(&w, &w.subject.field->tape, at);
@@ -244,9 +247,11 @@ static void check_threshold(csg_random *random, csg_blend_kind kind, csg_node_ki
     static test_points points;
     static test_results full, other;
     test_points_clear(&points);
-    for (int i = 0; i < 256; i++) { /* in the ball, most of them at its end */
+    for (int i = 0; i < 256; i++) { /* in the cube, most of them at its corner */
         csg_vec3 p = csg_vec3_scale(along, radius * (1 - pow(2, -i / 8.0)));
         p = csg_vec3_add(p, test_point(random, 0.1 * radius * pow(2, -i / 8.0)));
+        p = csg_vec3_make(fmin(fmax(p.x, -half), half), fmin(fmax(p.y, -half), half),
+                          fmin(fmax(p.z, -half), half));
         test_points_add(&points, csg_vec3_add(own, p));
     }
     test_evaluate(w.kernel, &w.subject.field->tape, &points, &full);
