@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Mesh -> Wavefront OBJ: v (with r g b in 0..1 appended, a common extension, only when the mesh has
  * colours), vn, and f with vertex and normal of the same number. Numbers are the shortest that read
- * back as the same float. Written directly: OpenMesh takes 7 times as long.
+ * back as the same float. Written directly: OpenMesh takes several times as long (README.md).
  */
 #include "io/writers.h"
 

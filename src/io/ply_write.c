@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Mesh -> PLY (Turk 1994), binary little endian or ASCII: x y z [nx ny nz] [red green blue alpha],
  * then faces as lists of three. Coordinates are float, or double when the mesh has an origin.
- * Written directly: OpenMesh takes seven times as long for the same bytes.
+ * Written directly: OpenMesh takes several times as long (README.md).
  */
 #include "io/writers.h"
 
