@@ -62,7 +62,7 @@ static uint32_t usable_cores(void)
     return online > 0 ? (uint32_t)online : 1;
 }
 
-/* False when CSGMESH_ISA names nothing known. */
+/* False when CSGMESH_ISA names nothing that this build has. */
 static bool isa_from_environment(csgm_isa *isa)
 {
     const char *name = getenv("CSGMESH_ISA");
@@ -102,8 +102,8 @@ static csgm_status start_context(csgm_context *context, const csgm_context_optio
     csgm_isa wanted = options->isa;
     if (wanted == CSGM_ISA_AUTO && !isa_from_environment(&wanted)) {
         csg_diag_plain(&context->diags, CSG_DIAG_BAD_ENVIRONMENT, NULL,
-                       "use scalar, sse2, avx2, avx512, neon or auto",
-                       "the environment variable CSGMESH_ISA names no instruction set: '%.40s'",
+                       "use auto, scalar, or on x86-64 sse2, avx2, avx512, on ARM neon",
+                       "CSGMESH_ISA names no instruction set that this build has: '%.40s'",
                        getenv("CSGMESH_ISA"));
         return CSGM_ERR_ARGUMENT;
     }
