@@ -359,12 +359,6 @@ static csgm_status write_document(csg_sink *sink, const csgm_mesh_view *mesh,
     return container(sink, &layout, mesh);
 }
 
-uint64_t csg_glb_size(const csgm_mesh_view *mesh)
-{
-    csg_gltf_layout layout = csg_gltf_measure(mesh);
-    return csg_glb_bytes(&layout, CSG_GLTF_JSON_MOST);
-}
-
 csgm_status csg_glb_write(csg_sink *sink, const csgm_mesh_view *mesh,
                           const csgm_write_options *options)
 {

@@ -72,44 +72,6 @@ static void put_binary(csg_sink *sink, const csgm_mesh_view *mesh)
     }
 }
 
-/* ---- ASCII ------------------------------------------------------------------------ */
-
-static void put_ascii_vertices(csg_sink *sink, const csgm_mesh_view *mesh)
-{
-    bool offset = csg_view_is_offset(mesh);
-    for (uint64_t i = 0; i < mesh->vertex_count; i++) {
-        char *at = (char *)csg_sink_room(sink, 10 * (CSG_NUMBER_MOST + 1));
-        for (int k = 0; k < 3; k++) {
-            at = csg_put_coordinate(at, mesh, i, k, offset);
-            *at++ = ' ';
-        }
-        for (uint64_t k = 0; mesh->normals && k < 3; k++) {
-            at = csg_number_put_float(at, mesh->normals[3 * i + k]);
-            *at++ = ' ';
-        }
-        for (uint64_t k = 0; mesh->colors && k < 4; k++) {
-            at = csg_number_put_u64(at, mesh->colors[4 * i + k]);
-            *at++ = ' ';
-        }
-        at[-1] = '\n';
-        csg_sink_took(sink, at);
-    }
-}
-
-static void put_ascii_faces(csg_sink *sink, const csgm_mesh_view *mesh)
-{
-    for (uint64_t i = 0; i < mesh->triangle_count; i++) {
-        char *at = (char *)csg_sink_room(sink, 4 * (CSG_NUMBER_MOST + 1));
-        *at++ = '3';
-        for (uint64_t k = 0; k < 3; k++) {
-            *at++ = ' ';
-            at = csg_number_put_u64(at, mesh->indices[3 * i + k]);
-        }
-        *at++ = '\n';
-        csg_sink_took(sink, at);
-    }
-}
-
 csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh)
 {
     if (mesh->vertex_count <= INT32_MAX)
@@ -128,8 +90,7 @@ csgm_status csg_ply_write(csg_sink *sink, const csgm_mesh_view *mesh,
         return status;
     csg_ply_put_header(sink, mesh, options->ascii);
     if (options->ascii) {
-        put_ascii_vertices(sink, mesh);
-        put_ascii_faces(sink, mesh);
+        csg_put_text_mesh(sink, mesh);
     } else {
         put_binary(sink, mesh);
     }

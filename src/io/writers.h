@@ -21,6 +21,9 @@ typedef csgm_status csg_write_fn(csg_sink *sink, const csgm_mesh_view *mesh,
 csg_write_fn csg_obj_write, csg_ply_write, csg_stl_write, csg_off_write, csg_gltf_write,
     csg_glb_write, csg_drc_write;
 
+/* Vertices and triangles as lines of numbers: ASCII PLY and OFF. */
+void csg_put_text_mesh(csg_sink *sink, const csgm_mesh_view *mesh);
+
 /* Binary PLY in pieces. The header looks at counts, the origin and which arrays there are. */
 enum { CSG_PLY_FACE_BYTES = 1 + 3 * 4 };
 csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh);
@@ -39,9 +42,6 @@ void csg_stl_pack_corners(uint8_t *at, const csgm_vec3 *origin, const float *cor
 /* Reports why this mesh cannot be written in this format. */
 csgm_status csg_write_refuse(csg_sink *sink, const char *hint, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-/* Most bytes of the GLB that would be written without Draco; looks at counts only. */
-uint64_t csg_glb_size(const csgm_mesh_view *mesh);
 
 /* Compresses the mesh with the colours of `colors` (its other fields are not looked at); reports
  * what goes wrong and what is lost. Release `out` when CSGM_OK. */
