@@ -8,7 +8,7 @@ import os
 import re
 import sys
 
-ORDER = ["base", "text", "scene", "lang", "field", "grid", "mesh", "io", "render", "diff", "api"]
+ORDER = ["base", "text", "shape", "outline", "scene", "lang", "field", "grid", "mesh", "io", "render", "diff", "api"]
 
 # The scene layer knows nothing of text: spans are plain numbers there.
 FORBIDDEN = {("scene", "text"): "scenes know nothing of text"}

@@ -51,6 +51,33 @@ csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_nod
 csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                                const csg_node_id *children, size_t count, csg_span where);
 
+/* ---- flat nodes, shapes and warps ------------------------------------------------------------
+ * A flat node is a figure of the plane: its field does not depend on z and its box is infinite
+ * there. CIRCLE, RECTANGLE, regions, and operators, transforms, colours and offsets of flat nodes
+ * are flat. A transform of a flat node must keep the plane (last row and column of m are not looked
+ * at; z is scaled so that the field stays a distance wherever the plane part is a similarity). */
+
+bool csg_build_is_flat(const csg_scene_builder *builder, csg_node_id node);
+/* Takes over one reference to the shape, also on failure. */
+csg_node_id csg_build_shape(csg_scene_builder *builder, csg_shape *shape, csg_span where);
+/* The child grown by r (shrunk where r < 0): its field plus r. Exact on exact distances. */
+csg_node_id csg_build_offset(csg_scene_builder *builder, double r, csg_node_id child,
+                             csg_span where);
+/* The flat child between z = low and z = high; an exact distance where the child's is. exact =
+ * false where the child's field changes with z (below TWIST or TAPER). */
+csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
+                              double high, bool exact, csg_span where);
+/* Fails where csg_warp_scale finds no constant for the child's box. */
+csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child,
+                           csg_span where);
+/* A deep copy; shapes and formulas are shared. */
+csg_node_id csg_build_copy(csg_scene_builder *builder, csg_node_id node);
+/* The box of the node's solid in its own frame (a bound, not always tight), as far as is known
+ * while the scene is being built. */
+csg_box csg_build_box(csg_scene_builder *builder, csg_node_id node);
+/* Seals a copy of what stands below `node`; the builder goes on. */
+csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csgm_scene **out);
+
 /* Seals the scene with this root: copies what is reachable into one arena and computes bounds.
  * dependencies are copied. On success the builder is empty again and *out is the caller's. */
 csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,

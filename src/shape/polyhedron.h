@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * A solid bounded by triangles, as a field: exact distance by a tree of boxes, inside by the winding
+ * number. Triangles as people publish them are first made a closed chain (every edge as often in one
+ * direction as in the other): corners at one place are welded, loose faces turned alike, holes
+ * filled by fans. The winding number of a closed chain is a whole number off the surface, so the
+ * field has no jumps, and what is meshed from it is closed.
+ */
+#ifndef CSG_SHAPE_POLYHEDRON_H
+#define CSG_SHAPE_POLYHEDRON_H
+
+#include "shape/shape.h"
+
+/* What was wrong with the triangles and is mended now. */
+typedef struct csg_repairs {
+    size_t welded;        /* points that lay on another */
+    size_t degenerate;    /* triangles without area, left out */
+    size_t duplicate;     /* the same triangle again, left out */
+    size_t flipped;       /* triangles turned over */
+    size_t holes, filled; /* loops of boundary edges, and triangles that fill them */
+    size_t nonmanifold;   /* edges of more than two triangles */
+    bool inside_out;      /* the whole was turned over */
+    bool overlapping;     /* some places are inside more than once (a hint of self-intersection) */
+} csg_repairs;
+
+/* The inside is where the winding number is 1 or more (of the mended, outward triangles).
+ * CSGM_ERR_SCENE: no triangles with area; coordinates must be finite. */
+csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *triangles,
+                                  csg_repairs *repairs, csg_shape **out);
+/* The mended triangles, valid as long as the shape. */
+const csg_triangles *csg_polyhedron_triangles(const csg_shape *polyhedron);
+/* All edges convex, one piece, nothing mended that matters. */
+bool csg_polyhedron_is_convex(const csg_shape *polyhedron);
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * Explicit geometry as a field: a region of the plane bounded by segments (region.h), or a solid
+ * bounded by triangles (polyhedron.h). Both give the exact signed distance, positive inside,
+ * Lipschitz constant 1; a region does not depend on z. A shape is immutable once made, shared by
+ * counting, and may be read by many threads.
+ */
+#ifndef CSG_SHAPE_SHAPE_H
+#define CSG_SHAPE_SHAPE_H
+
+#include <stdatomic.h>
+
+#include "shape/outline.h"
+#include "shape/triangles.h"
+
+typedef enum csg_shape_kind { CSG_SHAPE_REGION, CSG_SHAPE_POLYHEDRON } csg_shape_kind;
+
+typedef struct csg_shape csg_shape;
+
+/* What each kind brings along. */
+typedef struct csg_shape_operations {
+    void (*destroy)(csg_shape *shape);
+    double (*sample)(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
+    void (*values)(const csg_shape *shape, const float *x, const float *y, const float *z,
+                   size_t count, float *out);
+    void (*gradients)(const csg_shape *shape, const float *x, const float *y, const float *z,
+                      size_t count, float *out, float *gx, float *gy, float *gz);
+    uint64_t (*hash)(const csg_shape *shape);
+} csg_shape_operations;
+
+struct csg_shape {
+    csg_shape_kind kind;
+    const csg_shape_operations *operations;
+    csg_memory *memory;
+    atomic_uint references;
+    csg_box box; /* of the solid; a region's is infinite in z */
+}; /* the first member of the struct of each kind */
+
+void csg_shape_retain(csg_shape *shape);
+void csg_shape_release(csg_shape *shape); /* NULL is a no-op */
+
+/* Signed distance at p and its gradient (unit, out of the surface's nearest point; zero where
+ * there are several nearest points is not asked for: any of them will do). */
+double csg_shape_sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
+
+/* The same for many points, in the shape's own frame. Each result depends on its point alone, not
+ * on its neighbours in the batch, and is the same on every machine. */
+void csg_shape_values(const csg_shape *shape, const float *x, const float *y, const float *z,
+                      size_t count, float *out);
+void csg_shape_gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
+                         size_t count, float *out, float *gx, float *gy, float *gz);
+
+/* A stable hash of the geometry, for printing and comparing. */
+uint64_t csg_shape_hash(const csg_shape *shape);
+
+#endif
