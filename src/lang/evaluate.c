@@ -41,7 +41,9 @@ static void bind_arguments(csg_eval *e, const csg_arguments *parameters,
                            const csg_arguments *arguments, csg_frame *frame, csg_frame *caller,
                            csg_symbol name, csg_list *pending)
 {
+    enum { NAMES_A_STEP = 16 };
     uint32_t position = 0;
+    e->steps += ((uint64_t)arguments->count + 1) * parameters->count / NAMES_A_STEP;
     for (uint32_t i = 0; i < arguments->count && !e->stop; i++) {
         const csg_argument *argument = &arguments->items[i];
         uint32_t slot = argument->name ? find_parameter(parameters, argument->name) : position++;
@@ -129,7 +131,7 @@ static bool to_literal(csg_value value, target *out)
 }
 
 /* A variable that holds a function, in this frame or further out. */
-static bool find_literal(const csg_eval *e, csg_symbol name, const csg_frame *frame, target *out)
+static bool find_literal(csg_eval *e, csg_symbol name, const csg_frame *frame, target *out)
 {
     const csg_value *found = csg_eval_lookup(e, name, frame);
     return found && to_literal(*found, out);
@@ -175,6 +177,8 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
 /* ---- literals, vectors, indices
  * ------------------------------------------------------------------------ */
 
+enum { BYTES_A_STEP = 64 }; /* that are copied or scanned */
+
 csg_value csg_eval_string(csg_eval *e, const char *text, size_t length)
 {
     csg_string *made = csg_string_create(&e->heap, text, length);
@@ -211,12 +215,14 @@ static csg_value evaluate_range(csg_eval *e, const csg_expression *x, csg_frame 
     return made;
 }
 
-static csg_value character_at(csg_eval *e, const csg_string *string, double index)
+static csg_value character_at(csg_eval *e, const csg_string *string, double index, csg_span where)
 {
     if (!(index >= 0) || index >= (double)string->characters)
         return csg_value_undef();
     size_t from = (size_t)index, to = from + 1;
     if (string->characters != string->length) {
+        if (!csg_eval_charge(e, from / BYTES_A_STEP, where))
+            return csg_value_undef();
         size_t skip = from + 1;
         for (from = 0; skip > 0; from++)
             skip -= ((unsigned char)string->text[from] & 0xC0) != 0x80;
@@ -227,13 +233,13 @@ static csg_value character_at(csg_eval *e, const csg_string *string, double inde
     return csg_eval_string(e, string->text + from, to - from);
 }
 
-static csg_value element_at(csg_eval *e, csg_value object, csg_value index)
+static csg_value element_at(csg_eval *e, csg_value object, csg_value index, csg_span where)
 {
     double i = index.kind == CSG_VALUE_NUMBER ? trunc(index.as.number) : -1;
     if (object.kind == CSG_VALUE_VECTOR && i >= 0 && i < object.as.vector->count)
         return csg_value_retain(object.as.vector->items[(size_t)i]);
     if (object.kind == CSG_VALUE_STRING)
-        return character_at(e, object.as.string, i);
+        return character_at(e, object.as.string, i, where);
     if (object.kind == CSG_VALUE_RANGE && i >= 0 && i < 3) {
         const csg_range *range = object.as.range;
         return csg_value_number(i == 0 ? range->begin : i == 1 ? range->step : range->end);
@@ -250,13 +256,13 @@ static csg_value evaluate_member(csg_eval *e, const csg_expression *x, csg_frame
                        : name == e->symbol_y ? 1
                        : name == e->symbol_z ? 2
                                              : -1;
-        result = element_at(e, object, csg_value_number(index));
+        result = element_at(e, object, csg_value_number(index), x->where);
     } else if (object.kind == CSG_VALUE_RANGE) {
         double index = name == e->symbol_begin  ? 0
                        : name == e->symbol_step ? 1
                        : name == e->symbol_end  ? 2
                                                 : -1;
-        result = element_at(e, object, csg_value_number(index));
+        result = element_at(e, object, csg_value_number(index), x->where);
     }
     csg_value_release(&e->heap, object);
     return result;
@@ -299,7 +305,7 @@ static csg_value evaluate_index(csg_eval *e, const csg_expression *x, csg_frame 
     csg_value object = csg_evaluate(e, x->as.pair.left, frame);
     csg_value index = csg_evaluate(e, x->as.pair.right, frame);
     csg_symbolic_refuse(e, index, x->where, "an index");
-    csg_value result = element_at(e, object, index);
+    csg_value result = element_at(e, object, index, x->where);
     csg_value_release(&e->heap, object);
     csg_value_release(&e->heap, index);
     return result;
@@ -315,6 +321,8 @@ static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame 
     case CSG_EXPRESSION_BOOLEAN:
         return csg_value_boolean(x->as.boolean);
     case CSG_EXPRESSION_STRING:
+        if (!csg_eval_charge(e, x->as.string.length / BYTES_A_STEP, x->where))
+            return csg_value_undef();
         return csg_eval_string(e, x->as.string.text, x->as.string.length);
     case CSG_EXPRESSION_NAME:
         return csg_eval_variable(e, x->as.name, frame, x->where);

@@ -134,7 +134,6 @@ void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char 
 bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
 {
     enum { LOOK_AT_CLOCK = 4096 };
-    uint64_t before = e->steps;
     if (e->stop)
         return false;
     e->steps += steps;
@@ -144,8 +143,10 @@ bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
                        (unsigned long long)e->context->limits.eval_steps);
         return false;
     }
-    if (e->program->deadline_s != 0 && before / LOOK_AT_CLOCK != e->steps / LOOK_AT_CLOCK &&
-        csg_clock_now_s() > e->program->deadline_s)
+    if (e->program->deadline_s == 0 || e->steps - e->clock_steps < LOOK_AT_CLOCK)
+        return true;
+    e->clock_steps = e->steps;
+    if (csg_clock_now_s() > e->program->deadline_s)
         csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL,
                        "the evaluation takes more than %g seconds", e->context->limits.timeout_s);
     return !e->stop;
@@ -224,10 +225,11 @@ csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name)
 /* ---- names
  * --------------------------------------------------------------------------------------------- */
 
-static const csg_value *find_in_frame(const csg_eval *e, const csg_frame *frame, csg_symbol name)
+static const csg_value *find_in_frame(csg_eval *e, const csg_frame *frame, csg_symbol name)
 {
-    enum { FEW = 8 };
+    enum { FEW = 8, NAMES_A_STEP = 16 };
     if (frame->names) { /* a later one of the same name hides an earlier one */
+        e->steps += frame->count / NAMES_A_STEP;
         for (uint32_t i = frame->count; i > 0; i--)
             if (frame->names[i - 1].name == name && frame->values[i - 1].kind != CSG_VALUE_UNSET)
                 return &frame->values[i - 1];
@@ -244,7 +246,7 @@ static const csg_value *find_in_frame(const csg_eval *e, const csg_frame *frame,
                : NULL;
 }
 
-const csg_value *csg_eval_lookup(const csg_eval *e, csg_symbol name, const csg_frame *frame)
+const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *frame)
 {
     const csg_value *found = NULL;
     uint32_t head = e->program->symbols.entries[name].special ? e->dynamic_heads[name] : 0;

@@ -42,7 +42,7 @@ typedef struct csg_eval {
     bool stop;
     csgm_status status; /* why stopped; SCENE after a reported mistake */
     uint32_t depth;
-    uint64_t steps;
+    uint64_t steps, clock_steps; /* done so far, and when the clock was last looked at */
 
     csg_dynamic *dynamics;
     size_t dynamic_count, dynamic_capacity;
@@ -95,7 +95,7 @@ void csg_eval_push_trace(csg_eval *e, csg_symbol name, bool module, csg_span whe
 /* The variable's value; UNDEF and a warning when there is none. */
 csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where);
 /* The same, borrowed; NULL when there is none. */
-const csg_value *csg_eval_lookup(const csg_eval *e, csg_symbol name, const csg_frame *frame);
+const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *frame);
 /* The value of a $variable, borrowed; UNSET when it has none. */
 csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name);
 void csg_eval_push_dynamic(csg_eval *e, csg_symbol name, csg_value value); /* consumed */
@@ -128,6 +128,10 @@ csg_value csg_eval_vector(csg_eval *e, const csg_expression *x, csg_frame *frame
 void csg_eval_echo(csg_eval *e, const csg_arguments *arguments, csg_frame *frame);
 /* False when the assertion failed (reported, evaluation stopped). */
 bool csg_eval_assert(csg_eval *e, const csg_arguments *arguments, csg_frame *frame, csg_span where);
+csg_text
+csg_eval_text(const csg_eval *e); /* an empty one, no longer than the steps that are left */
+/* Pays for a text in steps; false, reported: it is too long, or memory ran out. */
+bool csg_eval_text_done(csg_eval *e, const csg_text *text, csg_span where);
 csg_value csg_eval_text_value(csg_eval *e, csg_text *text, csg_span where); /* consumes the text */
 csg_value csg_eval_string(csg_eval *e, const char *text, size_t length);
 

@@ -89,8 +89,10 @@ static bool matches(const searching *s, csg_value what, uint32_t i)
 static void find_in_string(const searching *s, const char *character, size_t length,
                            csg_list *found)
 {
+    enum { BYTES_A_STEP = 16 };
     const csg_string *string = s->where.as.string;
     double index = 0;
+    csg_eval_charge(s->call->e, string->length / BYTES_A_STEP + 1, s->call->where);
     for (size_t at = 0; at < string->length && !s->call->e->stop; index++) {
         size_t step = csg_utf8_length(string->text + at, string->length - at);
         step = step ? step : 1;
@@ -104,7 +106,10 @@ static void find_in_string(const searching *s, const char *character, size_t len
 
 static void find_in_vector(const searching *s, csg_value what, csg_list *found)
 {
-    for (uint32_t i = 0; i < s->where.as.vector->count && !s->call->e->stop; i++) {
+    enum { ELEMENTS_A_STEP = 8 };
+    uint32_t count = s->where.as.vector->count;
+    csg_eval_charge(s->call->e, count / ELEMENTS_A_STEP + 1, s->call->where);
+    for (uint32_t i = 0; i < count && !s->call->e->stop; i++) {
         if (matches(s, what, i))
             csg_list_push(s->call->e, found, csg_value_number(i), s->call->where);
         if (s->returns > 0 && (double)found->count >= s->returns)
@@ -181,10 +186,9 @@ csg_value csg_function_search(const csg_function_call *call)
 
 csg_value csg_function_str(const csg_function_call *call)
 {
-    csg_text text = {.memory = call->e->heap.memory};
+    csg_text text = csg_eval_text(call->e);
     for (uint32_t i = 0; i < call->count; i++)
         csg_text_put_value(&text, call->arguments[i], false, &call->e->program->symbols);
-    csg_eval_charge(call->e, text.length / 16, call->where);
     return csg_eval_text_value(call->e, &text, call->where);
 }
 
@@ -205,7 +209,7 @@ static void put_characters(const csg_function_call *call, csg_text *text, csg_va
 
 csg_value csg_function_chr(const csg_function_call *call)
 {
-    csg_text text = {.memory = call->e->heap.memory};
+    csg_text text = csg_eval_text(call->e);
     for (uint32_t i = 0; i < call->count; i++)
         put_characters(call, &text, call->arguments[i]);
     return csg_eval_text_value(call->e, &text, call->where);

@@ -274,15 +274,32 @@ csg_value csg_eval_vector(csg_eval *e, const csg_expression *x, csg_frame *frame
 /* ---- echo and assert
  * --------------------------------------------------------------------------------- */
 
+enum { BYTES_A_STEP = 16 };
+
+csg_text csg_eval_text(const csg_eval *e)
+{
+    uint64_t all = e->context->limits.eval_steps, left = all > e->steps ? all - e->steps : 0;
+    bool plenty = left > CSG_LONGEST_STRING / BYTES_A_STEP;
+    return (csg_text){.memory = e->heap.memory,
+                      .most = plenty ? CSG_LONGEST_STRING : (size_t)(left + 1) * BYTES_A_STEP};
+}
+
+bool csg_eval_text_done(csg_eval *e, const csg_text *text, csg_span where)
+{
+    if (text->failed && !text->too_long)
+        csg_eval_no_memory(e);
+    else if (csg_eval_charge(e, (text->too_long ? text->most : text->length) / BYTES_A_STEP,
+                             where) &&
+             text->too_long)
+        csg_eval_limit(e, CSG_DIAG_STRING_TOO_LONG, where, NULL, "the text is longer than %d MiB",
+                       CSG_LONGEST_STRING >> 20);
+    return !e->stop;
+}
+
 csg_value csg_eval_text_value(csg_eval *e, csg_text *text, csg_span where)
 {
     csg_value made = csg_value_undef();
-    if (text->too_long)
-        csg_eval_limit(e, CSG_DIAG_STRING_TOO_LONG, where, NULL, "the text is longer than %d MiB",
-                       CSG_LONGEST_STRING >> 20);
-    else if (text->failed)
-        csg_eval_no_memory(e);
-    else
+    if (csg_eval_text_done(e, text, where))
         made = csg_eval_string(e, text->data, text->length);
     csg_text_reset(text);
     return made;
@@ -290,7 +307,7 @@ csg_value csg_eval_text_value(csg_eval *e, csg_text *text, csg_span where)
 
 void csg_eval_echo(csg_eval *e, const csg_arguments *arguments, csg_frame *frame)
 {
-    csg_text text = {.memory = e->heap.memory};
+    csg_text text = csg_eval_text(e);
     csg_text_put_string(&text, "ECHO: ");
     for (uint32_t i = 0; i < arguments->count && !e->stop; i++) {
         const csg_argument *argument = &arguments->items[i];
@@ -305,12 +322,8 @@ void csg_eval_echo(csg_eval *e, const csg_arguments *arguments, csg_frame *frame
         csg_value_release(&e->heap, value);
     }
     csg_text_put(&text, "\n", 1);
-    if (text.too_long)
-        csg_eval_limit(e, CSG_DIAG_STRING_TOO_LONG, csg_span_nowhere(), NULL,
-                       "an echo is longer than %d MiB", CSG_LONGEST_STRING >> 20);
-    else if (text.failed)
-        csg_eval_no_memory(e);
-    else if (!e->stop && e->context->on_echo)
+    csg_span where = arguments->count ? arguments->items[0].where : csg_span_nowhere();
+    if (!e->stop && csg_eval_text_done(e, &text, where) && e->context->on_echo)
         e->context->on_echo(e->context->user, text.data, text.length);
     csg_text_reset(&text);
 }

@@ -92,10 +92,10 @@ static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node
 csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
                            csg_span where)
 {
-    csg_part *parts = e->parts + first;
     size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
     if (e->stop)
         return CSG_NODE_NONE;
+    csg_part *parts = count ? e->parts + first : NULL;
     put_plain_first(e, parts, count, kind);
     csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
     if (children) {

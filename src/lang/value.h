@@ -179,7 +179,8 @@ typedef struct csg_text {
     csg_memory *memory;
     char *data; /* not terminated */
     size_t length, capacity;
-    bool failed; /* memory ran out, or the text grew beyond CSG_LONGEST_STRING: too_long */
+    size_t most; /* bytes; 0 = CSG_LONGEST_STRING */
+    bool failed; /* memory ran out, or the text grew beyond `most`: too_long */
     bool too_long;
 } csg_text;
 

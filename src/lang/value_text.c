@@ -12,7 +12,8 @@ void csg_text_put(csg_text *text, const char *data, size_t length)
 {
     if (text->failed)
         return;
-    text->too_long = length > CSG_LONGEST_STRING || text->length + length > CSG_LONGEST_STRING;
+    size_t most = text->most ? text->most : CSG_LONGEST_STRING;
+    text->too_long = length > most || text->length + length > most;
     if (text->too_long || !csg_memory_reserve(text->memory, (void **)&text->data, &text->capacity,
                                               text->length + length, 1)) {
         text->failed = true;
