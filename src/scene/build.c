@@ -370,7 +370,7 @@ static csg_node_id absorbing_operand(const csgm_scene *scene, csg_node_kind kind
                                      const csg_node_id *children, size_t count)
 {
     size_t deciding = kind == CSG_NODE_UNION ? 0 : kind == CSG_NODE_DIFFERENCE ? 1 : count;
-    for (size_t i = 0; i < deciding; i++)
+    for (size_t i = 0; i < deciding && i < count; i++)
         if (scene->nodes[children[i]].kind == CSG_NODE_EMPTY)
             return children[i];
     return CSG_NODE_NONE;
