@@ -279,6 +279,21 @@ static bool lex_number(lexer *l)
     return push(l, CSG_TOKEN_NUMBER, from);
 }
 
+/* "e-12" at `text`: its value, at most MOST either way, which is beyond all doubles. */
+static int read_exponent(const char *text, uint32_t length)
+{
+    enum { MOST = 100000000 };
+    uint32_t i = 1;
+    bool negative = i < length && text[i] == '-';
+    int value = 0;
+    if (i < length && (text[i] == '-' || text[i] == '+'))
+        i++;
+    for (; i < length && is_digit(text[i]) && value < MOST; i++)
+        value = value * 10 + (text[i] - '0');
+    value = value < MOST ? value : MOST;
+    return negative ? -value : value;
+}
+
 /* A number with more digits than anyone means: correct to a few units in the last place. */
 static double long_number(const char *text, uint32_t length)
 {
@@ -295,9 +310,10 @@ static double long_number(const char *text, uint32_t length)
             scale += point ? 0 : 1;
         }
     }
-    if (i < length)
-        scale += atoi(text + i + 1);
-    return value * pow(10, scale);
+    if (i < length && (text[i] == 'e' || text[i] == 'E'))
+        scale += read_exponent(text + i, length - i);
+    int half = scale / 2; /* in two steps: one alone may leave the range of doubles */
+    return value * pow(10, half) * pow(10, scale - half);
 }
 
 double csg_token_number(const char *text, uint32_t length)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Bytes to tokens, and places of findings.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -103,6 +104,14 @@ static void numbers_have_their_values(void **state)
     memcpy(longest, "0.", 2);
     memcpy(longest + 490, "25e490", 7);
     assert_true(number(longest) > 24.999999 && number(longest) < 25.000001);
+    memset(longest + 102, '3', 300); /* 0.00..0033..33: more digits than a double's exponent */
+    strcpy(longest + 402, "");
+    assert_true(number(longest) > 3.3e-101 && number(longest) < 3.4e-101);
+    memset(longest, '1', 100);
+    strcpy(longest + 100, "e99999999999999999999");
+    assert_true(number(longest) == INFINITY);
+    strcpy(longest + 100, "e-99999999999999999999");
+    assert_true(number(longest) == 0);
 }
 
 static void strings_resolve_their_escapes(void **state)
