@@ -86,6 +86,7 @@ typedef struct csgm_diag {
     const char *hint;        /* what to do, or NULL: "did you mean 'sphere'?" */
     const char *source_line; /* the whole line, not terminated, or NULL */
     uint32_t source_line_length;
+    uint32_t end_line, end_column; /* just behind the last byte covered; 0 = not about text */
 } csgm_diag;
 
 typedef void csgm_diag_fn(void *user, const csgm_diag *diag);
@@ -166,6 +167,9 @@ typedef struct csgm_scene_options {
     size_t define_count;
     const char *const *include_dirs; /* searched after the including file's own folder */
     size_t include_dir_count;
+    /* A set of values from a file in the JSON of OpenSCAD's customizer, both or neither; they
+     * replace the scene's own, and defines replace them. */
+    const char *parameter_file, *parameter_set;
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);
@@ -199,6 +203,62 @@ CSGM_API double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3
 
 /* Primitives that can change the value at this point (the others may be pruned there). */
 CSGM_API uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec3 at);
+
+/* ---- parameters: what a scene offers to be set ----------------------------------------- */
+
+/* The literal assignments at the top of the scene's own file, before its first brace, with what
+ * comments in the style of OpenSCAD's customizer say of them:
+ *
+ *     / * [Size] * /               begins a section (without the blanks at the slashes)
+ *     // outer radius              a line of its own above the assignment: the description
+ *     radius = 10;                 // [5:0.5:50]  or [max], [a, b], [1:small, 2:large], a step
+ */
+typedef enum csgm_param_kind {
+    CSGM_PARAM_NUMBER,
+    CSGM_PARAM_BOOLEAN,
+    CSGM_PARAM_STRING,
+    CSGM_PARAM_VECTOR /* of numbers, at least one */
+} csgm_param_kind;
+
+typedef struct csgm_param_value {
+    csgm_param_kind kind;
+    const double *numbers; /* NUMBER and BOOLEAN (0 or 1): one */
+    size_t number_count;
+    const char *text; /* STRING, else NULL */
+} csgm_param_value;
+
+typedef struct csgm_param_choice {
+    const char *label;
+    csgm_param_value value; /* NUMBER or STRING */
+} csgm_param_choice;
+
+typedef struct csgm_param {
+    const char *name;
+    const char *section;      /* "Parameters" before the first; "Hidden" is not for people */
+    const char *description;  /* or NULL */
+    uint32_t line;            /* of the assignment, 1-based */
+    csgm_param_value initial; /* in the scene's text */
+    csgm_param_value value;   /* after the parameter set and the defines */
+    bool is_overridden;       /* by one of these */
+    double minimum, maximum;  /* of a number or of each in a vector; NaN = not said */
+    double step;              /* NaN = not said */
+    uint32_t length_most;     /* characters of a string; 0 = not said */
+    const csgm_param_choice *choices;
+    size_t choice_count;
+} csgm_param;
+
+typedef struct csgm_params csgm_params;
+
+/* Parses the scene, with what it includes; evaluates only what a define computes. Arguments as for
+ * csgm_scene_parse and csgm_scene_load. */
+CSGM_API csgm_status csgm_params_parse(csgm_context *context, const char *text, size_t text_length,
+                                       const char *name, const csgm_scene_options *options,
+                                       csgm_params **out);
+CSGM_API csgm_status csgm_params_load(csgm_context *context, const char *path,
+                                      const csgm_scene_options *options, csgm_params **out);
+CSGM_API void csgm_params_destroy(csgm_params *params);
+/* In the order of the text; NULL when index is past the end. */
+CSGM_API const csgm_param *csgm_params_get(const csgm_params *params, size_t index);
 
 /* ---- field: the scene compiled to a tape ------------------------------------------ */
 
@@ -325,7 +385,7 @@ CSGM_API csgm_format csgm_format_from_path(const char *path);
 CSGM_API csgm_format csgm_format_from_name(const char *name);
 CSGM_API const char *csgm_format_name(csgm_format format); /* "ply"; static storage */
 CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
-/* One line for --version: which optional libraries this build has, and which it lacks. */
+/* For --version, a line a library: what it is for, and its version or that this build lacks it. */
 CSGM_API const char *csgm_build_features(void);
 
 typedef enum csgm_unit {

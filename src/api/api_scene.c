@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes of the public interface: text in, sealed tree out, and what one may ask of it.
  */
+#include "api/options.h"
 #include "lang/lang.h"
 #include "scene/bounds.h"
 #include "scene/reference.h"
@@ -10,12 +11,13 @@ csgm_scene_options csgm_scene_options_default(void)
     return (csgm_scene_options){.struct_size = sizeof(csgm_scene_options)};
 }
 
-static bool scene_options_are_sound(const csgm_scene_options *options)
+bool csg_scene_options_are_sound(const csgm_scene_options *options)
 {
     if (!options)
         return true;
     if (options->struct_size != sizeof *options || (options->define_count && !options->defines) ||
-        (options->include_dir_count && !options->include_dirs))
+        (options->include_dir_count && !options->include_dirs) ||
+        !options->parameter_file != !options->parameter_set)
         return false;
     for (size_t i = 0; i < options->define_count; i++)
         if (!options->defines[i].name || !options->defines[i].expression)
@@ -32,7 +34,7 @@ csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t tex
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || (!text && text_length) || !scene_options_are_sound(options))
+    if (!context || (!text && text_length) || !csg_scene_options_are_sound(options))
         return CSGM_ERR_ARGUMENT;
     csg_lang_input input = {.path = name ? name : "text",
                             .text = text ? text : "",
@@ -47,7 +49,7 @@ csgm_status csgm_scene_load(csgm_context *context, const char *path,
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !path || !scene_options_are_sound(options))
+    if (!context || !path || !csg_scene_options_are_sound(options))
         return CSGM_ERR_ARGUMENT;
     csg_lang_input input = {.path = path, .options = options};
     return csg_lang_compile(context, &input, out);

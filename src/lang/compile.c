@@ -13,8 +13,10 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "lang/customizer.h"
 #include "lang/evaluator.h"
 #include "lang/loader.h"
+#include "lang/overrides.h"
 
 enum { MAILBOX = 16384 };
 
@@ -33,7 +35,8 @@ typedef struct compilation {
     csgm_context *context;
     const csg_lang_input *input;
     csgm_scene_options options;
-    csgm_scene **out;
+    csgm_scene **out;    /* NULL: the parameters are asked for */
+    csgm_params *params; /* filled then */
     csgm_status status;
     size_t stack_bytes;
     relay relay;
@@ -41,83 +44,6 @@ typedef struct compilation {
     csgm_text_fn *on_echo;
     void *diag_user, *echo_user;
 } compilation;
-
-/* ---- -D
- * ------------------------------------------------------------------------------------------ */
-
-static bool is_name(const char *text)
-{
-    size_t i = text[0] == '$';
-    for (; text[i]; i++) {
-        char c = text[i];
-        bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-        if (!letter && !(c >= '0' && c <= '9' && i > 0))
-            return false;
-    }
-    return i > (text[0] == '$');
-}
-
-static bool add_assignment(csg_program *program, csg_assignment made)
-{
-    csg_scope *scope = program->files[0]->scope;
-    csg_assignment *place = csg_arena_push(&program->arena, (void **)&scope->variables,
-                                           &scope->variable_count, sizeof made);
-    if (place)
-        *place = made;
-    return place && csg_members_add(&program->members, scope->id, CSG_MEMBER_VARIABLE, made.name,
-                                    scope->variable_count - 1);
-}
-
-/* Replaces the assignment of a name in the scene, or adds one. */
-static csgm_status define(csg_program *program, csg_symbol name, csg_expression *value)
-{
-    csg_scope *scope = program->files[0]->scope;
-    const csg_symbol_entry *entry = &program->symbols.entries[name];
-    csg_assignment made = {name, value, value->whole};
-    uint32_t known = csg_members_find(&program->members, scope->id, CSG_MEMBER_VARIABLE, name);
-    if (known != UINT32_MAX) {
-        scope->variables[known] = made;
-        return CSGM_OK;
-    }
-    if (!entry->special)
-        csg_diag_plain(
-            &program->context->diags, CSG_DIAG_UNKNOWN_DEFINE, NULL, NULL,
-            "the scene assigns no variable '%s' at its top level, -D has nothing to replace",
-            entry->name);
-    return add_assignment(program, made) ? CSGM_OK : csg_context_no_memory(program->context);
-}
-
-static csgm_status apply_define(csg_program *program, const csgm_define *given)
-{
-    uint32_t source;
-    const char *expression = given->expression ? given->expression : "";
-    if (!given->name || !is_name(given->name)) {
-        csg_diag_plain(&program->context->diags, CSG_DIAG_BAD_DEFINE, NULL, "write -D name=value",
-                       "'%.60s' is not the name of a variable", given->name ? given->name : "");
-        return CSGM_ERR_SYNTAX;
-    }
-    const char *label = csg_arena_printf(&program->arena, "-D %s", given->name);
-    csg_symbol name = csg_symbol_intern(&program->symbols, given->name, strlen(given->name));
-    if (!label || !name)
-        return csg_context_no_memory(program->context);
-    csgm_status status =
-        csg_source_add(&program->sources, label, expression, strlen(expression), &source);
-    if (status != CSGM_OK)
-        return status;
-    csg_expression *value = csg_parse_lone_expression(program, source);
-    return value ? define(program, name, value) : CSGM_ERR_SYNTAX;
-}
-
-static csgm_status apply_defines(csg_program *program, const csgm_scene_options *options)
-{
-    csgm_status status = CSGM_OK;
-    for (size_t i = 0; i < options->define_count; i++) {
-        csgm_status one = apply_define(program, &options->defines[i]);
-        if (status == CSGM_OK)
-            status = one;
-    }
-    return status;
-}
 
 /* ---- compiling
  * --------------------------------------------------------------------------------------- */
@@ -158,10 +84,12 @@ static csgm_status parse(csg_program *program, const compilation *c)
     if (status != CSGM_OK)
         return status;
     status = csg_parse_program(program, source, &c->options);
+    if (status == CSGM_OK && c->params)
+        status = csg_customizer_collect(program, c->params);
     if (status == CSGM_ERR_MEMORY || status == CSGM_ERR_LIMIT)
         return status;
-    csgm_status defines = apply_defines(program, &c->options);
-    return status != CSGM_OK ? status : defines;
+    csgm_status overrides = csg_overrides_apply(program, &c->options);
+    return status != CSGM_OK ? status : overrides;
 }
 
 static void warn_empty(csg_eval *e, const csgm_scene *scene)
@@ -216,9 +144,11 @@ static void compile(compilation *c)
     if (c->status == CSGM_OK)
         c->status = parse(&program, c);
     double parsed_s = csg_clock_now_s();
-    if (c->status == CSGM_OK)
+    if (c->status == CSGM_OK && c->params)
+        c->status = csg_customizer_take_values(&program, c->params);
+    else if (c->status == CSGM_OK)
         c->status = evaluate(&program, errors, c->out);
-    if (c->status == CSGM_OK) {
+    if (c->status == CSGM_OK && c->out) {
         (*c->out)->parse_s = parsed_s - begin_s;
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
@@ -390,17 +320,52 @@ static void run(compilation *c)
     }
 }
 
+static csgm_status compile_with(compilation *c)
+{
+    csgm_context *context = c->context;
+    if (c->input->options)
+        c->options = *c->input->options;
+    c->on_diag = context->diags.on_diag;
+    c->diag_user = context->diags.user;
+    c->on_echo = context->on_echo;
+    c->echo_user = context->user;
+    run(c);
+    return c->status;
+}
+
 csgm_status csg_lang_compile(csgm_context *context, const csg_lang_input *input, csgm_scene **out)
 {
     if (!context || !input || !out || (!input->text && !input->path))
         return CSGM_ERR_ARGUMENT;
-    compilation c = {.context = context, .input = input, .out = out};
-    if (input->options)
-        c.options = *input->options;
-    c.on_diag = context->diags.on_diag;
-    c.diag_user = context->diags.user;
-    c.on_echo = context->on_echo;
-    c.echo_user = context->user;
-    run(&c);
-    return c.status;
+    return compile_with(&(compilation){.context = context, .input = input, .out = out});
+}
+
+csgm_status csg_lang_parameters(csgm_context *context, const csg_lang_input *input,
+                                csgm_params **out)
+{
+    if (!context || !input || !out || (!input->text && !input->path))
+        return CSGM_ERR_ARGUMENT;
+    uint32_t errors = context->diags.errors;
+    csgm_params *params = csg_memory_alloc(&context->memory, sizeof *params);
+    if (!params)
+        return csg_context_no_memory(context);
+    *params = (csgm_params){.context = context};
+    csg_arena_init(&params->arena, &context->memory);
+    csgm_status status =
+        compile_with(&(compilation){.context = context, .input = input, .params = params});
+    if (status == CSGM_OK && context->diags.errors > errors)
+        status = CSGM_ERR_SCENE; /* warnings as errors */
+    if (status == CSGM_OK)
+        *out = params;
+    else
+        csg_params_destroy(params);
+    return status;
+}
+
+void csg_params_destroy(csgm_params *params)
+{
+    if (!params)
+        return;
+    csg_arena_reset(&params->arena);
+    csg_memory_release(&params->context->memory, params, sizeof *params);
 }

@@ -19,4 +19,9 @@ typedef struct csg_lang_input {
  * MEMORY, ARGUMENT. */
 csgm_status csg_lang_compile(csgm_context *context, const csg_lang_input *input, csgm_scene **out);
 
+/* Only parses, applies what is set from outside and lists the parameters (customizer.h). */
+csgm_status csg_lang_parameters(csgm_context *context, const csg_lang_input *input,
+                                csgm_params **out);
+void csg_params_destroy(csgm_params *params);
+
 #endif

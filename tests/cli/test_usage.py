@@ -10,7 +10,7 @@ class Help(cli.CliTest):
             self.assert_status(result, 0)
             text = result.stdout.decode()
             self.assertIn("csgmesh mug.txt -o mug.glb", text)
-            for command in ("mesh", "check", "info", "eval", "dump", "deps"):
+            for command in ("mesh", "check", "info", "eval", "dump", "params", "deps"):
                 self.assertIn(f"\n  {command}", text)
 
     def test_help_of_commands(self):
@@ -72,9 +72,9 @@ class Mistakes(cli.CliTest):
 
     def test_later_versions(self):
         for option in (["-e", "1"], ["--tolerance=1"], ["--simplify", "5%"], ["--certify"],
-                       ["--features", "sharp"], ["--normals", "crease"], ["-p", "x.json"]):
+                       ["--features", "sharp"], ["--normals", "crease"]):
             self.refused("a.txt", "-o", "a.glb", *option, words=["not available in this version"])
-        for command in ("diff", "render", "batch", "params"):
+        for command in ("diff", "render", "batch"):
             self.refused(command, "a.txt", words=["not available in this version"])
 
     def test_values(self):

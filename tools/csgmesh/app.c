@@ -97,26 +97,54 @@ bool cli_app_is_refused(const cli_app *app)
     return app->options.warnings == 1 && app->console.errors > 0;
 }
 
-static csgm_status load(cli_app *app, const char *path, const csgm_scene_options *options,
-                        csgm_scene **out)
+/* Where the scene is and what is asked of it. */
+typedef struct request {
+    const char *path;
+    csgm_scene **scene; /* one of both */
+    csgm_params **params;
+} request;
+
+static csgm_status parse(cli_app *app, const request *wanted, const char *text, size_t length,
+                         const csgm_scene_options *options)
 {
-    if (strcmp(path, "-") != 0)
-        return csgm_scene_load(app->context, path, options, out);
+    return wanted->scene
+               ? csgm_scene_parse(app->context, text, length, "-", options, wanted->scene)
+               : csgm_params_parse(app->context, text, length, "-", options, wanted->params);
+}
+
+static csgm_status load(cli_app *app, const request *wanted, const csgm_scene_options *options)
+{
+    if (strcmp(wanted->path, "-") != 0)
+        return wanted->scene
+                   ? csgm_scene_load(app->context, wanted->path, options, wanted->scene)
+                   : csgm_params_load(app->context, wanted->path, options, wanted->params);
     size_t length;
     char *text = cli_read_stdin(app, &length);
     if (!text)
         return CSGM_ERR_IO;
-    csgm_status status = csgm_scene_parse(app->context, text, length, "-", options, out);
+    csgm_status status = parse(app, wanted, text, length, options);
     free(text);
     return status;
 }
 
-csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out)
+static csgm_status set_parameter_file(cli_app *app, csgm_scene_options *options)
+{
+    options->parameter_file = app->options.parameter_file;
+    options->parameter_set = app->options.parameter_set;
+    if (!options->parameter_file == !options->parameter_set)
+        return CSGM_OK;
+    cli_usage_error(app, "as -p sets.json -P large", "%s is missing",
+                    options->parameter_file ? "-P, which names one of the file's sets,"
+                                            : "-p, the file of parameter sets,");
+    return CSGM_ERR_ARGUMENT;
+}
+
+static csgm_status load_with_options(cli_app *app, const request *wanted)
 {
     const cli_list *texts = &app->options.defines;
     csgm_scene_options options = csgm_scene_options_default();
     csgm_define *defines = calloc(texts->count + 1, sizeof *defines);
-    csgm_status status = defines ? CSGM_OK : CSGM_ERR_MEMORY;
+    csgm_status status = defines ? set_parameter_file(app, &options) : CSGM_ERR_MEMORY;
     for (size_t i = 0; i < texts->count && status == CSGM_OK; i++)
         if (!split_define(app, texts->items[i], &defines[i]))
             status = CSGM_ERR_ARGUMENT;
@@ -125,16 +153,26 @@ csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out)
     options.include_dirs = app->options.include_dirs.items;
     options.include_dir_count = app->options.include_dirs.count;
     if (status == CSGM_OK)
-        status = load(app, path, &options, out);
-    if (status == CSGM_OK && cli_app_is_refused(app)) {
-        csgm_scene_destroy(*out);
-        *out = NULL;
-        status = CSGM_ERR_SCENE;
-    }
+        status = load(app, wanted, &options);
     for (size_t i = 0; defines && i < texts->count; i++)
         free((char *)defines[i].name);
     free(defines);
     return status;
+}
+
+csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out)
+{
+    csgm_status status = load_with_options(app, &(request){.path = path, .scene = out});
+    if (status != CSGM_OK || !cli_app_is_refused(app))
+        return status;
+    csgm_scene_destroy(*out);
+    *out = NULL;
+    return CSGM_ERR_SCENE;
+}
+
+csgm_status cli_app_load_params(cli_app *app, const char *path, csgm_params **out)
+{
+    return load_with_options(app, &(request){.path = path, .params = out});
 }
 
 int cli_finish_stdout(cli_app *app, int status)

@@ -23,6 +23,7 @@ int cli_app_open(cli_app *app);
 bool cli_app_is_refused(const cli_app *app);
 /* path "-" is standard input. Failures are reported. */
 csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out);
+csgm_status cli_app_load_params(cli_app *app, const char *path, csgm_params **out);
 int cli_exit_status(csgm_status status);
 /* Flushes standard output; reports a failed write of results. */
 int cli_finish_stdout(cli_app *app, int status);

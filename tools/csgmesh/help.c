@@ -5,17 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
-
-enum {
-    MESH = 1 << CLI_MESH,
-    CHECK = 1 << CLI_CHECK,
-    INFO = 1 << CLI_INFO,
-    EVAL = 1 << CLI_EVAL,
-    DUMP = 1 << CLI_DUMP,
-    DEPS = 1 << CLI_DEPS,
-    ANY_SCENE = MESH | CHECK | INFO | EVAL | DUMP | DEPS,
-    ANY = ANY_SCENE
-};
+#include "command_bits.h"
 
 typedef struct command_help {
     const char *name, *operands, *summary, *examples;
@@ -132,12 +122,13 @@ void cli_help(void)
     for (size_t i = 0; i < CLI_COMMAND_COUNT; i++)
         printf("  %-6s %-22s %s\n", commands[i].name, commands[i].operands, commands[i].summary);
     printf("  %-6s %-22s %s\n", "help", "[COMMAND]", "all options of a command, with examples");
-    printf("\nThe options most used (csgmesh help mesh lists all)\n"
-           "  -o FILE         .obj .ply .stl .off .gltf .glb or .drc; - is standard output\n"
-           "  -r N            cells along the longest side\n"
-           "  -s H            or the edge of a cell\n"
-           "  -D NAME=EXPR    replace an assignment of the scene\n"
-           "  --stats         counts, measures and times as JSON\n"
-           "  -q              errors only\n\n"
-           "Exit status: 0 done, 1 the input is at fault, 2 trouble (usage, files, limits).\n");
+    printf(
+        "\nThe options most used (csgmesh help mesh lists all)\n"
+        "  -o FILE         .obj .ply .stl .off .gltf .glb or .drc; - is standard output\n"
+        "  -r N            cells along the longest side\n"
+        "  -s H            or the edge of a cell\n"
+        "  -D NAME=EXPR    replace an assignment of the scene (csgmesh params SCENE lists them)\n"
+        "  --stats         counts, measures and times as JSON\n"
+        "  -q              errors only\n\n"
+        "Exit status: 0 done, 1 the input is at fault, 2 trouble (usage, files, limits).\n");
 }

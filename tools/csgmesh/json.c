@@ -52,10 +52,12 @@ static void put_text(FILE *out, const char *text)
 
 static void put_key(cli_json *json, const char *key)
 {
+    bool breaks = json->breaks || (key && json->pretty && json->depth <= 2);
     if (!json->first)
-        fputs(key && json->pretty && json->depth <= 2 ? "," : ", ", json->out);
-    if (key && json->pretty && json->depth <= 2)
+        fputs(breaks ? "," : ", ", json->out);
+    if (breaks)
         fprintf(json->out, "\n%*s", 2 * json->depth, "");
+    json->breaks = false;
     if (key) {
         put_text(json->out, key);
         fputs(": ", json->out);
@@ -70,6 +72,11 @@ void cli_json_begin(cli_json *json, char bracket)
     json->first = true;
 }
 
+void cli_json_break(cli_json *json)
+{
+    json->breaks = true;
+}
+
 void cli_json_open(cli_json *json, const char *key, char bracket)
 {
     put_key(json, key);
@@ -79,10 +86,10 @@ void cli_json_open(cli_json *json, const char *key, char bracket)
 void cli_json_end(cli_json *json, char bracket)
 {
     json->depth--;
-    if (json->pretty && json->depth <= 1 && bracket == '}')
+    if (json->breaks || (json->pretty && json->depth <= 1 && bracket == '}'))
         fprintf(json->out, "\n%*s", 2 * json->depth, "");
     fputc(bracket, json->out);
-    json->first = false;
+    json->first = json->breaks = false;
     if (json->pretty && json->depth == 0)
         fputc('\n', json->out);
 }

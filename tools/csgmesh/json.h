@@ -14,12 +14,15 @@ typedef struct cli_json {
     FILE *out;
     bool pretty; /* members of the two outer levels on lines of their own */
     bool first;
+    bool breaks; /* the next element begins a line */
     int depth;
 } cli_json;
 
 cli_json cli_json_make(FILE *out, bool pretty);
 /* bracket: '{' or '['; the outermost has no key. */
 void cli_json_begin(cli_json *json, char bracket);
+/* The next member or element begins a line, or the bracket that closes them. */
+void cli_json_break(cli_json *json);
 void cli_json_open(cli_json *json, const char *key, char bracket);
 void cli_json_end(cli_json *json, char bracket);
 void cli_json_count(cli_json *json, const char *key, uint64_t value);

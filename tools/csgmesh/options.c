@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "command_bits.h"
+
 typedef enum kind {
     FLAG,
     TEXT,
@@ -26,17 +28,6 @@ typedef enum kind {
     LEVEL,
     UNAVAILABLE
 } kind;
-
-enum {
-    MESH = 1 << CLI_MESH,
-    CHECK = 1 << CLI_CHECK,
-    INFO = 1 << CLI_INFO,
-    EVAL = 1 << CLI_EVAL,
-    DUMP = 1 << CLI_DUMP,
-    DEPS = 1 << CLI_DEPS,
-    ANY_SCENE = MESH | CHECK | INFO | EVAL | DUMP | DEPS,
-    ANY = ANY_SCENE
-};
 
 typedef struct row {
     kind kind;

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ * Parameters of the public interface: text in, the list of what may be set out.
+ */
+#include "api/options.h"
+#include "lang/customizer.h"
+#include "lang/lang.h"
+
+csgm_status csgm_params_parse(csgm_context *context, const char *text, size_t text_length,
+                              const char *name, const csgm_scene_options *options,
+                              csgm_params **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || (!text && text_length) || !csg_scene_options_are_sound(options))
+        return CSGM_ERR_ARGUMENT;
+    csg_lang_input input = {.path = name ? name : "text",
+                            .text = text ? text : "",
+                            .text_length = text_length,
+                            .options = options};
+    return csg_lang_parameters(context, &input, out);
+}
+
+csgm_status csgm_params_load(csgm_context *context, const char *path,
+                             const csgm_scene_options *options, csgm_params **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || !path || !csg_scene_options_are_sound(options))
+        return CSGM_ERR_ARGUMENT;
+    csg_lang_input input = {.path = path, .options = options};
+    return csg_lang_parameters(context, &input, out);
+}
+
+void csgm_params_destroy(csgm_params *params)
+{
+    csg_params_destroy(params);
+}
+
+const csgm_param *csgm_params_get(const csgm_params *params, size_t index)
+{
+    return index < params->count ? &params->items[index] : NULL;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ * Sets of commands, as the rows of options.def name them: MESH | INFO.
+ */
+#ifndef CLI_COMMAND_BITS_H
+#define CLI_COMMAND_BITS_H
+
+#include "options.h"
+
+enum {
+#define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,
+#define LATER_COMMAND(name)
+#include "commands.def"
+#undef COMMAND
+#undef LATER_COMMAND
+    ANY_SCENE = (1 << CLI_COMMAND_COUNT) - 1,
+    ANY = ANY_SCENE
+};
+
+#endif
