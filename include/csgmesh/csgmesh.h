@@ -325,6 +325,13 @@ CSGM_API csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *fi
                                      csgm_mesh_stats *stats);
 CSGM_API void csgm_mesh_destroy(csgm_mesh *mesh);
 
+/* A stretch of a mesh's triangles that is a thing of its own: a glTF node and mesh, an OBJ object, a
+ * 3MF object; other formats hold all parts one after the other. */
+typedef struct csgm_mesh_part {
+    const char *name; /* UTF-8; NULL = without a name */
+    uint64_t first_triangle, triangle_count;
+} csgm_mesh_part;
+
 /* A borrowed look at a mesh; fill one yourself to write or compare your own arrays. */
 typedef struct csgm_mesh_view {
     csgm_vec3 origin; /* position i in scene units = origin + positions[3*i..]; zero unless the
@@ -334,6 +341,9 @@ typedef struct csgm_mesh_view {
     const uint8_t *colors;   /* 4 * vertex_count, sRGB + alpha, or NULL */
     const uint32_t *indices; /* 3 * triangle_count; counter-clockwise seen from outside */
     uint64_t vertex_count, triangle_count; /* vertex_count < 2^32 */
+    const csgm_mesh_part *parts; /* part_count, all triangles in order; NULL = one without a name */
+    uint64_t part_count;
+    const uint8_t *materials; /* 2 * vertex_count: metallic and roughness as 0..255, or NULL */
 } csgm_mesh_view;
 
 CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);
@@ -377,6 +387,7 @@ typedef enum csgm_format {
     CSGM_FORMAT_GLTF, /* JSON with the buffer embedded as base64 */
     CSGM_FORMAT_GLB,
     CSGM_FORMAT_DRC, /* bare Draco */
+    CSGM_FORMAT_3MF, /* a ZIP package of XML */
     CSGM_FORMAT_COUNT
 } csgm_format;
 
@@ -408,7 +419,8 @@ typedef struct csgm_write_options {
                        Other formats keep the scene's axes. */
     bool sync;      /* the bytes are on the disk before the file gets its name, so that a power cut
                        leaves      the old file or the new one; default true */
-    csgm_unit unit; /* glTF and GLB: what a scene unit is; one node scales it to metres. NONE */
+    csgm_unit unit; /* what a scene unit is; NONE. glTF and GLB: one node scales it to metres; 3MF:
+                       the file says it, millimetres where it is NONE */
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);

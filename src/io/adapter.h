@@ -113,6 +113,28 @@ bool csg_gltf_available(void);
 csgm_status csg_gltf_read(const char *json, size_t json_bytes, const uint8_t *bin, size_t bin_bytes,
                           const csg_gltf_calls *calls, csg_adapter_error *error);
 
+/* ---- 3MF packages (package.c: libzip, expat) ---------------------------------------- */
+
+typedef struct csg_package csg_package;
+
+/* Names of elements are "namespace|name"; attributes are pairs of name and value, NULL behind the
+ * last, named so too where they have a namespace. Anything but CSGM_OK (reported) ends the parse.
+ */
+typedef struct csg_xml_calls {
+    csgm_status (*start)(void *user, const char *name, const char *const *attributes);
+    csgm_status (*end)(void *user, const char *name);
+    void *user;
+} csg_xml_calls;
+
+bool csg_package_available(void);
+/* The bytes stay the caller's and must outlive the package. */
+csgm_status csg_package_open(const uint8_t *bytes, size_t size_bytes, csg_package **out,
+                             csg_adapter_error *error);
+void csg_package_close(csg_package *package); /* NULL is a no-op */
+/* One of the package's files, letters of any case. As csg_gltf_read about errors. */
+csgm_status csg_package_parse(csg_package *package, const char *name, const csg_xml_calls *calls,
+                              csg_adapter_error *error);
+
 #ifdef __cplusplus
 }
 #endif

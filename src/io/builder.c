@@ -9,6 +9,7 @@
 void csg_builder_init(csg_mesh_builder *b, csgm_context *context)
 {
     *b = (csg_mesh_builder){.context = context};
+    csg_arena_init(&b->names, &context->memory);
 }
 
 void csg_builder_release(csg_mesh_builder *b)
@@ -18,6 +19,8 @@ void csg_builder_release(csg_mesh_builder *b)
     csg_memory_release(memory, b->normals, b->normal_room * 3 * sizeof(float));
     csg_memory_release(memory, b->colors, b->color_room * 4);
     csg_memory_release(memory, b->indices, b->index_room * 3 * sizeof(uint32_t));
+    csg_memory_release(memory, b->parts, b->part_room * sizeof *b->parts);
+    csg_arena_reset(&b->names);
     csg_builder_init(b, b->context);
 }
 
@@ -88,6 +91,21 @@ bool csg_builder_triangle(csg_mesh_builder *b, uint32_t i, uint32_t j, uint32_t 
     return true;
 }
 
+bool csg_builder_part(csg_mesh_builder *b, const char *name)
+{
+    bool follows_empty =
+        b->part_count && b->parts[b->part_count - 1].first_triangle == b->triangle_count;
+    size_t index = b->part_count - (follows_empty ? 1 : 0);
+    char *copy = name ? csg_arena_strndup(&b->names, name, strlen(name)) : NULL;
+    if ((name && !copy) || !room(b, &b->parts, &b->part_room, index + 1, sizeof *b->parts)) {
+        b->failed = true;
+        return false;
+    }
+    b->parts[index] = (csgm_mesh_part){.name = copy, .first_triangle = b->triangle_count};
+    b->part_count = index + 1;
+    return true;
+}
+
 float *csg_builder_normals(csg_mesh_builder *b)
 {
     if (!room(b, &b->normals, &b->normal_room, b->vertex_count ? b->vertex_count : 1,
@@ -122,6 +140,21 @@ static csgm_vec3 choose_origin(const csg_mesh_builder *b)
     return (csgm_vec3){center[0], center[1], center[2]};
 }
 
+/* Triangles before the first part are one without a name. */
+static csgm_status add_parts(const csg_mesh_builder *b, csgm_mesh *mesh)
+{
+    size_t count = b->part_count;
+    if (count && b->parts[count - 1].first_triangle == b->triangle_count)
+        count--;
+    bool headless = count && b->parts[0].first_triangle > 0;
+    if (!count || (count == 1 && !headless && !b->parts[0].name))
+        return CSGM_OK;
+    csgm_status status = headless ? csg_mesh_add_part(mesh, NULL, 0) : CSGM_OK;
+    for (size_t i = 0; i < count && !status; i++)
+        status = csg_mesh_add_part(mesh, b->parts[i].name, b->parts[i].first_triangle);
+    return status;
+}
+
 csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
 {
     csgm_mesh *mesh;
@@ -132,6 +165,11 @@ csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
                                          b->colors != NULL, &mesh);
     if (status)
         return status;
+    status = add_parts(b, mesh);
+    if (status) {
+        csg_mesh_destroy(mesh);
+        return status;
+    }
     mesh->origin = choose_origin(b);
     const double *origin = &mesh->origin.x;
     bool moved = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;

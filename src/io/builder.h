@@ -15,6 +15,9 @@ typedef struct csg_mesh_builder {
     uint32_t *indices; /* 3 a triangle */
     size_t vertex_count, triangle_count;
     size_t position_room, normal_room, color_room, index_room; /* in vertices and triangles */
+    csgm_mesh_part *parts; /* names in the arena; counts not yet filled in */
+    size_t part_count, part_room;
+    csg_arena names;
     bool lacks_normals; /* a vertex came without: the mesh will have none */
     bool failed;        /* out of memory; sticky */
 } csg_mesh_builder;
@@ -30,6 +33,9 @@ bool csg_builder_vertex(csg_mesh_builder *builder, const double position[3], con
                         const uint8_t *color);
 /* Indices must be below the vertex count by the time of csg_builder_finish. */
 bool csg_builder_triangle(csg_mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c);
+/* The triangles to come are a part of their own; name: may be NULL, copied. Parts without triangles
+ * vanish, and a single one without a name is none. */
+bool csg_builder_part(csg_mesh_builder *builder, const char *name);
 /* An array for a normal of every vertex that there is, to be filled now; NULL = out of memory. */
 float *csg_builder_normals(csg_mesh_builder *builder);
 

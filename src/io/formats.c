@@ -9,6 +9,8 @@
 
 #include "io/format_table.h"
 
+#define PACKAGE_LIBRARIES "libzip, expat and zlib"
+
 static const csg_format_row rows[] = {
     {CSGM_FORMAT_OBJ, "obj", csg_obj_write, csg_obj_read, NULL, NULL, NULL, NULL},
     {CSGM_FORMAT_PLY, "ply", csg_ply_write, csg_ply_read, NULL, NULL, NULL, NULL},
@@ -20,6 +22,8 @@ static const csg_format_row rows[] = {
      csg_gltf_available},
     {CSGM_FORMAT_DRC, "drc", csg_drc_write, csg_drc_read, "Draco", "Draco", csg_draco_available,
      csg_draco_available},
+    {CSGM_FORMAT_3MF, "3mf", csg_3mf_write, csg_3mf_read, PACKAGE_LIBRARIES, PACKAGE_LIBRARIES,
+     csg_package_available, csg_package_available},
 };
 
 enum { ROWS = sizeof rows / sizeof *rows };
@@ -62,14 +66,26 @@ bool csg_format_available(csgm_format format, bool for_reading)
     return !can || can();
 }
 
-/* Four constant lines rather than one put together: static storage without a lock. */
+/* The build says which libraries it has (meson.build). */
 const char *csg_build_features(void)
 {
-    static const char *const lines[2][2] = {
-        {"without Draco (no .drc, no compressed glTF), without tinygltf (glTF is not read)",
-         "without Draco (no .drc, no compressed glTF), with tinygltf"},
-        {"with Draco, without tinygltf (glTF is not read)", "with Draco, with tinygltf"}};
-    return lines[csg_draco_available()][csg_gltf_available()];
+    return
+#ifdef CSG_DRACO_VERSION
+        "with Draco " CSG_DRACO_VERSION " (.drc, compressed glTF)\n"
+#else
+        "without Draco (no .drc, no compressed glTF)\n"
+#endif
+#ifdef CSG_TINYGLTF_VERSION
+        "with tinygltf " CSG_TINYGLTF_VERSION " (reading glTF)\n"
+#else
+        "without tinygltf (glTF is written but not read)\n"
+#endif
+#ifdef CSG_LIBZIP_VERSION
+        "with libzip " CSG_LIBZIP_VERSION ", expat " CSG_EXPAT_VERSION ", zlib " CSG_ZLIB_VERSION
+        " (.3mf)";
+#else
+        "without libzip, expat or zlib (no .3mf)";
+#endif
 }
 
 csgm_status csg_format_no_library(csgm_context *context, const char *file, const char *library,

@@ -128,6 +128,8 @@ static csgm_format detect(const uint8_t *data, size_t size)
     if (begins(data, size, "OFF") || begins(data, size, "COFF") || begins(data, size, "NOFF") ||
         begins(data, size, "CNOFF"))
         return CSGM_FORMAT_OFF;
+    if (begins(data, size, "PK\3\4"))
+        return CSGM_FORMAT_3MF;
     if (begins(data, size, "{"))
         return CSGM_FORMAT_GLTF;
     return CSGM_FORMAT_AUTO;

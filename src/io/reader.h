@@ -20,7 +20,7 @@ typedef struct csg_input {
 typedef csgm_status csg_read_fn(csg_input *input, csg_mesh_builder *builder);
 
 csg_read_fn csg_obj_read, csg_ply_read, csg_stl_read, csg_off_read, csg_gltf_read_file,
-    csg_drc_read;
+    csg_drc_read, csg_3mf_read;
 
 /* Report why the file is refused. line 0 = not a text file: name the byte in the message. */
 csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *format, ...)

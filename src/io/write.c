@@ -89,6 +89,15 @@ static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh,
         what = "a coordinate of the mesh is infinite or not a number";
     else if (mesh->normals && !all_finite(mesh->normals, 3 * mesh->vertex_count))
         what = "a normal of the mesh is infinite or not a number";
+    uint64_t end = 0;
+    for (uint64_t i = 0; i < mesh->part_count && !what; i++) {
+        const csgm_mesh_part *part = &mesh->parts[i];
+        if (part->first_triangle != end || part->triangle_count > mesh->triangle_count - end)
+            what = "the parts of the mesh do not follow one another";
+        end += part->triangle_count;
+    }
+    if (!what && mesh->part_count && end != mesh->triangle_count)
+        what = "the parts of the mesh leave out triangles";
     if (!what)
         return CSGM_OK;
     csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, file, NULL, "%s", what);

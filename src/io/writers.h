@@ -19,7 +19,7 @@ typedef csgm_status csg_write_fn(csg_sink *sink, const csgm_mesh_view *mesh,
                                  const csgm_write_options *options);
 
 csg_write_fn csg_obj_write, csg_ply_write, csg_stl_write, csg_off_write, csg_gltf_write,
-    csg_glb_write, csg_drc_write;
+    csg_glb_write, csg_drc_write, csg_3mf_write;
 
 /* Vertices and triangles as lines of numbers: ASCII PLY and OFF. */
 void csg_put_text_mesh(csg_sink *sink, const csgm_mesh_view *mesh);

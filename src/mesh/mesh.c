@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "mesh/mesh.h"
 
+#include <string.h>
+
 static bool take(csgm_context *context, void *slot, uint64_t count, size_t element_bytes)
 {
     void **array = slot;
@@ -21,6 +23,7 @@ csgm_status csg_mesh_create(csgm_context *context, uint64_t vertex_count, uint64
         return csg_context_no_memory(context);
     *mesh = (csgm_mesh){
         .context = context, .vertex_count = vertex_count, .triangle_count = triangle_count};
+    csg_arena_init(&mesh->names, &context->memory);
     if (!take(context, &mesh->positions, vertex_count, 3 * sizeof(float)) ||
         (normals && !take(context, &mesh->normals, vertex_count, 3 * sizeof(float))) ||
         (colors && !take(context, &mesh->colors, vertex_count, 4)) ||
@@ -41,7 +44,33 @@ void csg_mesh_destroy(csgm_mesh *mesh)
     csg_memory_release(memory, mesh->normals, mesh->vertex_count * 3 * sizeof(float));
     csg_memory_release(memory, mesh->colors, mesh->vertex_count * 4);
     csg_memory_release(memory, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
+    csg_memory_release(memory, mesh->materials, mesh->vertex_count * 2);
+    csg_memory_release(memory, mesh->parts, mesh->part_room * sizeof *mesh->parts);
+    csg_arena_reset(&mesh->names);
     csg_memory_release(memory, mesh, sizeof *mesh);
+}
+
+csgm_status csg_mesh_add_materials(csgm_mesh *mesh)
+{
+    return take(mesh->context, &mesh->materials, mesh->vertex_count, 2)
+               ? CSGM_OK
+               : csg_context_no_memory(mesh->context);
+}
+
+csgm_status csg_mesh_add_part(csgm_mesh *mesh, const char *name, uint64_t first_triangle)
+{
+    char *copy = name ? csg_arena_strndup(&mesh->names, name, strlen(name)) : NULL;
+    if ((name && !copy) ||
+        !csg_memory_reserve(&mesh->context->memory, (void **)&mesh->parts, &mesh->part_room,
+                            mesh->part_count + 1, sizeof *mesh->parts))
+        return csg_context_no_memory(mesh->context);
+    if (mesh->part_count) {
+        csgm_mesh_part *last = &mesh->parts[mesh->part_count - 1];
+        last->triangle_count = first_triangle - last->first_triangle;
+    }
+    mesh->parts[mesh->part_count++] =
+        (csgm_mesh_part){copy, first_triangle, mesh->triangle_count - first_triangle};
+    return CSGM_OK;
 }
 
 csgm_mesh_view csg_mesh_view(const csgm_mesh *mesh)
@@ -52,5 +81,8 @@ csgm_mesh_view csg_mesh_view(const csgm_mesh *mesh)
                             .colors = mesh->colors,
                             .indices = mesh->indices,
                             .vertex_count = mesh->vertex_count,
-                            .triangle_count = mesh->triangle_count};
+                            .triangle_count = mesh->triangle_count,
+                            .parts = mesh->parts,
+                            .part_count = mesh->part_count,
+                            .materials = mesh->materials};
 }

@@ -14,6 +14,10 @@ struct csgm_mesh {
     uint8_t *colors;   /* 4 * vertex_count or NULL */
     uint32_t *indices; /* 3 * triangle_count */
     uint64_t vertex_count, triangle_count;
+    uint8_t *materials; /* 2 * vertex_count or NULL */
+    csgm_mesh_part *parts;
+    size_t part_count, part_room;
+    csg_arena names; /* of parts */
 };
 
 /* Arrays of these sizes from context->memory, not filled. vertex_count < 2^32; counts may be 0.
@@ -21,6 +25,11 @@ struct csgm_mesh {
 csgm_status csg_mesh_create(csgm_context *context, uint64_t vertex_count, uint64_t triangle_count,
                             bool normals, bool colors, csgm_mesh **out);
 void csg_mesh_destroy(csgm_mesh *mesh);
+/* An array for the materials of all vertices, not filled. Reports what fails (memory only). */
+csgm_status csg_mesh_add_materials(csgm_mesh *mesh);
+/* The triangles from here to the next part's first, or to the end; name (may be NULL) is copied.
+ * The first part begins with triangle 0. */
+csgm_status csg_mesh_add_part(csgm_mesh *mesh, const char *name, uint64_t first_triangle);
 csgm_mesh_view csg_mesh_view(const csgm_mesh *mesh);
 
 #endif

@@ -28,6 +28,7 @@ static const way ways[] = {
     {"i.drc", false, true, false, false, false, false, 20.0 / (1 << 14)},
     {"j.glb", false, true, false, false, false, false, 20.0 / (1 << 14)},
     {"k.gltf", false, true, false, false, false, false, 20.0 / (1 << 14)},
+    {"l.3mf", false, false, true, false, true, true, 0},
 };
 
 enum { WAYS = sizeof ways / sizeof *ways };
