@@ -87,7 +87,7 @@ csg_node_id csg_module_cube(csg_module_call *call)
 /* ---- cylinder
  * -------------------------------------------------------------------------------------- */
 
-enum { H, R1, R2, CENTER, R, D, D1, D2, ROUND };
+enum { H, R1, R2, CENTER, R, D, D1, D2, ROUND, CORE };
 
 static void cylinder_radii(csg_module_call *call, double out[2])
 {
@@ -138,13 +138,16 @@ csg_node_id csg_module_cylinder(csg_module_call *call)
     cylinder_radii(call, radii);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE), half = h / 2;
     look_at_facets(call);
-    if (!call->failed && round > 0 && !shrink(radii, &half, round))
+    bool grows = csg_argument_boolean(call, CORE);
+    if (!call->failed && round > 0 && !grows && !shrink(radii, &half, round))
         csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE, "round is %g, that does not fit",
                            round);
     if (call->failed)
         return empty(call);
     csg_node_id node = frustum(call, radii, half, round);
-    return csg_argument_boolean(call, CENTER) ? finish(call, node) : moved(call, node, 0, 0, h / 2);
+    return csg_argument_boolean(call, CENTER)
+               ? finish(call, node)
+               : moved(call, node, 0, 0, grows ? h / 2 + round : h / 2);
 }
 
 /* ---- the others

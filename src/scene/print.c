@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One call a line, operands indented in braces, numbers as short as still read back exactly.
  * Where the language places a primitive otherwise than its node lies (a partial torus begins at
- * +x there and is centred on +x here; a rounded cylinder is given by its outside there, by its
- * core here) the text undoes that.
+ * +x there and is centred on +x here) the text undoes that.
  */
 #include "scene/print.h"
 
@@ -88,16 +87,17 @@ static void put_box(printer *out, const double *v)
     put(out, ");\n");
 }
 
-/* The outside is the core with its faces moved out by the rounding radius. */
+/* The core's own sizes, since those of the outside would come back with other last bits. */
 static void put_frustum(printer *out, const double *v)
 {
-    double slope = (v[1] - v[0]) / (2 * v[2]), side = v[3] * sqrt(1 + slope * slope);
-    put_argument(out, "cylinder(", "h", 2 * (v[2] + v[3]));
-    put_argument(out, ", ", "r1", v[0] + (side - slope * v[3]));
-    put_argument(out, ", ", "r2", v[1] + (side + slope * v[3]));
+    put_argument(out, "cylinder(", "h", 2 * v[2]);
+    put_argument(out, ", ", "r1", v[0]);
+    put_argument(out, ", ", "r2", v[1]);
     put(out, ", center = true");
-    if (v[3] > 0)
+    if (v[3] > 0) {
         put_argument(out, ", ", "round", v[3]);
+        put(out, ", core = true");
+    }
     put(out, ");\n");
 }
 

@@ -266,6 +266,7 @@ static void printed_scenes_parse_back(void **state)
         "sphere(2);",
         "cube([1, 2, 3], round = 0.25);",
         "cylinder(h = 10, r1 = 6, r2 = 1, round = 0.5);",
+        "cylinder(h = 46, r1 = 14.5, r2 = 12, round = 2);",
         "cylinder(h = 10, r = 4, round = 1, center = true);",
         "torus(10, 2, 75);",
         "capsule([1, 2, 3], [4, 4, 4], 1, 0.5);",
