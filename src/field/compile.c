@@ -9,11 +9,15 @@
 #include "field/dispatch.h"
 #include "field/field.h"
 #include "field/formulas.h"
+#include "field/warp_kernel.h"
 
 /* What a node inherits from its ancestors. */
 typedef struct frame {
-    csg_affine place; /* own frame -> scene */
-    double factor;    /* product of the ancestors' smallest singular values */
+    csg_affine place; /* own frame -> scene, or -> the frame below the warp */
+    double factor;    /* product of the ancestors' smallest singular values and warps' scales */
+    double raise;     /* what offsets above add */
+    uint32_t warp;    /* index + 1, 0 = none */
+    double magnitude; /* of the lengths in the warps' arithmetic */
     bool negate;
     bool colored;
     uint32_t color;
@@ -43,6 +47,8 @@ typedef struct compiler {
     task *tasks;
     csg_tape_step *steps;
     csg_tape_formula *formulas;
+    csg_tape_warp *warps;
+    size_t warp_count, warp_capacity;
     size_t step_count, step_capacity, formula_count, formula_capacity;
     size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
         color_capacity, task_count, task_capacity;
@@ -89,10 +95,12 @@ static bool push_color(compiler *c, csg_color color, uint32_t *index)
 
 /* ---- leaves ------------------------------------------------------------------------------- */
 
-/* Where a node's own frame lies, relative to the field's centre. */
+/* Where a node's own frame lies, relative to the field's centre or in the frame below the warp. */
 static csg_affine place_of(const compiler *c, const frame *f)
 {
     csg_affine place = f->place;
+    if (f->warp)
+        return place;
     place.t[0] -= c->field->center.x;
     place.t[1] -= c->field->center.y;
     place.t[2] -= c->field->center.z;
@@ -121,7 +129,21 @@ static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node
     return true;
 }
 
-static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color)
+static void place_shape(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
+{
+    csg_affine place = place_of(c, f);
+    csg_box box = c->scene->shapes[node->payload]->box;
+    double x = fmax(fabs(box.min.x), fabs(box.max.x)), y = fmax(fabs(box.min.y), fabs(box.max.y));
+    double z = fmax(fabs(box.min.z), fabs(box.max.z));
+    l->op = CSG_OP_SHAPE;
+    csg_leaf_place(l, &place);
+    l->sigma = f->negate ? -f->factor : f->factor;
+    l->own[0] = node->payload;
+    l->own_count = 1;
+    l->magnitude = hypot(hypot(x, y), isfinite(z) ? z : 0) * f->factor + csg_vec3_norm(l->offset);
+}
+
+static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t warp)
 {
     float values[CSG_LEAF_MOST_PARAMETERS];
     size_t count = csg_leaf_pack(l, color, values);
@@ -130,6 +152,7 @@ static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color)
         return false;
     node->op = l->op;
     node->frame = (uint8_t)l->frame;
+    node->warp = warp;
     node->size = 1;
     return true;
 }
@@ -140,12 +163,16 @@ static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
     if (node->kind == CSG_NODE_FIELD) {
         if (!place_field(c, &l, f, node))
             return false;
+    } else if (node->kind == CSG_NODE_SHAPE) {
+        place_shape(c, &l, f, node);
     } else if (node->kind != CSG_NODE_EMPTY) {
         csg_affine place = place_of(c, f);
         csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind,
                            csg_scene_parameters(c->scene, node));
     }
-    return write_leaf(c, &l, f->color);
+    l.magnitude += f->magnitude;
+    l.raise = f->negate ? -f->raise : f->raise;
+    return write_leaf(c, &l, f->color, f->warp);
 }
 
 /* ---- operators ------------------------------------------------------------------------------ */
@@ -170,11 +197,13 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
             float values[CSG_OPERATOR_PARAMETERS] = {
                 t.blend.kind == CSG_BLEND_SHARP ? 1.0f : (float)t.blend.n,
                 (float)csg_blend_support(t.blend)};
+            if (t.blend.kind == CSG_BLEND_ORTHOGONAL)
+                values[CSG_OPERATOR_N] = (float)(f->negate ? -f->raise : f->raise);
             if (!push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t.parameters))
                 return false;
         }
     } else {
-        /* transforms and colours: their child joins in their place */
+        /* transforms, colours, offsets, warps: their child joins in their place */
         t.group = index ? c->tasks[index - 1].group : index;
     }
     c->tasks[c->task_count++] = t;
@@ -185,7 +214,7 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
 static void join_child(compiler *c, task *group)
 {
     if (!csg_node_is_operator(c->scene->nodes[group->node].kind))
-        return; /* the root is a transform or a colour */
+        return; /* nothing above but nodes of one child */
     csg_tape_node *node = &c->nodes[c->node_count - 1];
     if (group->written && group->blend.kind != CSG_BLEND_ROUND) {
         node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
@@ -216,6 +245,31 @@ static bool end_task(compiler *c)
     return true;
 }
 
+/* The frame below a warp. */
+static bool warp_frame(compiler *c, const csg_warp *warp, frame *f)
+{
+    csg_affine place = place_of(c, f), to_own;
+    csg_tape_warp made = {.outer = f->warp, .kind = warp->kind};
+    csg_affine_invert(place, &to_own); /* build.h admits only invertible maps */
+    for (int i = 0; i < 9; i++)
+        made.frame[i] = (float)to_own.m[i / 3][i % 3];
+    for (int i = 0; i < 3; i++)
+        made.frame[9 + i] = (float)to_own.t[i];
+    csg_warp_pack(warp, made.own);
+    csg_box bounds = c->field->bounds;
+    double extent = csg_box_is_finite(bounds) ? csg_vec3_norm(csg_box_size(bounds)) : 0;
+    f->magnitude += csg_warp_magnitude(warp, extent) * f->factor;
+    if (c->warp_count >= UINT32_MAX - 1 ||
+        !csg_memory_reserve(&c->context->memory, (void **)&c->warps, &c->warp_capacity,
+                            c->warp_count + 1, sizeof *c->warps))
+        return false;
+    c->warps[c->warp_count++] = made;
+    f->place = csg_affine_identity();
+    f->factor *= csg_warp_scale(warp);
+    f->warp = (uint32_t)c->warp_count;
+    return true;
+}
+
 /* The frame of the child about to be visited. */
 static bool child_frame(compiler *c, const task *t, frame *f)
 {
@@ -230,6 +284,10 @@ static bool child_frame(compiler *c, const task *t, frame *f)
     } else if (node->kind == CSG_NODE_COLOR && !f->colored) {
         f->colored = true;
         return push_color(c, c->scene->colors[node->payload], &f->color);
+    } else if (node->kind == CSG_NODE_OFFSET) {
+        f->raise += f->factor * csg_scene_parameters(c->scene, node)[0];
+    } else if (node->kind == CSG_NODE_WARP) {
+        return warp_frame(c, &c->scene->warps[node->payload], f);
     } else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0) {
         f->negate = !f->negate;
     }
@@ -330,7 +388,9 @@ static bool keep_formulas(compiler *c)
     csgm_field *field = c->field;
     field->tape.steps = keep(&field->arena, c->steps, c->step_count * sizeof *c->steps);
     field->tape.formulas = keep(&field->arena, c->formulas, c->formula_count * sizeof *c->formulas);
-    return field->tape.steps && field->tape.formulas;
+    field->tape.warps = keep(&field->arena, c->warps, c->warp_count * sizeof *c->warps);
+    field->tape.shapes = c->scene->shapes;
+    return field->tape.steps && field->tape.formulas && field->tape.warps;
 }
 
 static csgm_field *field_create(csgm_context *context)
@@ -375,7 +435,8 @@ static bool write_clip(compiler *c, csg_box box)
                   .magnitude = csg_vec3_norm(half)};
     const float sharp[CSG_OPERATOR_PARAMETERS] = {[CSG_OPERATOR_N] = 1};
     uint32_t parameters;
-    if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) || !write_leaf(c, &l, 0))
+    if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) ||
+        !write_leaf(c, &l, 0, 0))
         return false;
     csg_tape_node *node = &c->nodes[c->node_count - 1];
     node->join = CSG_JOIN_INTERSECTION;
@@ -422,6 +483,7 @@ static csgm_status compile(csgm_context *context, const csgm_scene *scene, const
     csg_memory_release(memory, c.tasks, c.task_capacity * sizeof *c.tasks);
     csg_memory_release(memory, c.steps, c.step_capacity * sizeof *c.steps);
     csg_memory_release(memory, c.formulas, c.formula_capacity * sizeof *c.formulas);
+    csg_memory_release(memory, c.warps, c.warp_capacity * sizeof *c.warps);
     if (!done) {
         csg_field_destroy(c.field);
         return csg_context_no_memory(context);

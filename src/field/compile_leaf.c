@@ -78,11 +78,21 @@ static void own_of_plane(csg_leaf *l, const double *p, double factor)
     l->magnitude = fabs(l->own[3]);
 }
 
+static void own_of_rectangle(csg_leaf *l, const double *p, double k)
+{
+    double own[] = {(p[0] - p[2]) * k, (p[1] - p[2]) * k, p[2] * k};
+    memcpy(l->own, own, sizeof own);
+    l->own_count = OWN_RECTANGLE;
+    l->magnitude = k * hypot(p[0], p[1]);
+}
+
 static void own_parameters(csg_leaf *l, csg_node_kind kind, const double *p, double k,
                            double factor)
 {
     switch (kind) {
     case CSG_NODE_SPHERE:
+    case CSG_NODE_CIRCLE:
+    case CSG_NODE_SLAB:
         l->own[0] = p[0] * k;
         l->own_count = OWN_SPHERE;
         l->magnitude = l->own[0];
@@ -105,6 +115,9 @@ static void own_parameters(csg_leaf *l, csg_node_kind kind, const double *p, dou
         break;
     case CSG_NODE_ELLIPSOID:
         own_of_ellipsoid(l, p, k);
+        break;
+    case CSG_NODE_RECTANGLE:
+        own_of_rectangle(l, p, k);
         break;
     default:
         own_of_plane(l, p, factor);
@@ -160,7 +173,8 @@ size_t csg_leaf_pack(const csg_leaf *l, uint32_t color, float values[CSG_LEAF_MO
 {
     size_t count = CSG_LEAF_FRAME;
     values[CSG_LEAF_SIGMA] = (float)l->sigma;
-    values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude);
+    values[CSG_LEAF_RAISE] = (float)l->raise;
+    values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude + fabs(l->raise));
     values[CSG_LEAF_COLOR] = (float)color;
     if (l->frame == CSG_FRAME_OFFSET) {
         values[count++] = (float)l->offset.x;

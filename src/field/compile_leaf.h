@@ -13,7 +13,7 @@
 typedef struct csg_leaf {
     uint8_t op;
     csg_frame frame;
-    double sigma;
+    double sigma, raise;
     csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
     csg_vec3 offset;
     double own[8];

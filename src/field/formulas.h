@@ -49,7 +49,10 @@ enum {
     OWN_CAPSULE = 5,
     OWN_TORUS = 4,
     OWN_ELLIPSOID = 6,
-    OWN_PLANE = 4
+    OWN_PLANE = 4,
+    OWN_CIRCLE = 1,
+    OWN_RECTANGLE = 3,
+    OWN_SLAB = 1
 };
 
 /* own: r */
@@ -180,6 +183,35 @@ static inline float plane_at(const float *own, point q, point *g)
 {
     *g = (point){-own[0], -own[1], -own[2]};
     return own[3] - (own[0] * q.x + own[1] * q.y + own[2] * q.z);
+}
+
+/* own: r */
+static inline float circle_at(const float *own, point q, point *g)
+{
+    float d = sqrtf(q.x * q.x + q.y * q.y);
+    float s = quotient(-1.0f, d);
+    *g = (point){q.x * s, q.y * s, 0};
+    return own[0] - d;
+}
+
+/* own: half sizes without the rounding, rounding */
+static inline float rectangle_at(const float *own, point q, point *g)
+{
+    float ax = absolute(q.x) - own[0], ay = absolute(q.y) - own[1];
+    float ox = larger(ax, 0), oy = larger(ay, 0);
+    float outside = sqrtf(ox * ox + oy * oy), inside = larger(ax, ay);
+    int is_out = inside > 0;
+    float s = quotient(-1.0f, outside);
+    float fx = ax >= ay ? -1.0f : 0, fy = ax >= ay ? 0 : -1.0f;
+    *g = (point){sign_of(q.x) * (is_out ? ox * s : fx), sign_of(q.y) * (is_out ? oy * s : fy), 0};
+    return own[2] - (is_out ? outside : inside);
+}
+
+/* own: half height */
+static inline float slab_at(const float *own, point q, point *g)
+{
+    *g = (point){0, 0, -sign_of(q.z)};
+    return own[0] - absolute(q.z);
 }
 
 /* ---- blend functions f_b(x, n) and their slopes, x = |a - b| (operators.md 2.1) ------- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The kernels: a tape over batches of points. This file is built once per instruction set (see
  * meson.build); the loops over points are plain C that the compiler turns into vectors, the
- * formulas are in formulas.h. CSG_KERNEL names the build.
+ * formulas are in formulas.h, the leaves in leaf_kernel.c. CSG_KERNEL names the build.
  *
  * Three walks over a tape, all on a stack of slots:
  *   values     a slot is one array
@@ -13,134 +13,11 @@
 
 #include <string.h>
 
-#include "field/formula_kernel.h"
 #include "field/formulas.h"
+#include "field/leaf_kernel.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
-
-/* ---- leaves ---------------------------------------------------------------------------- */
-
-typedef struct points {
-    const float *x, *y, *z;
-    size_t count; /* a multiple of CSG_OCTANTS */
-} points;
-
-static inline point offset_frame(const float *t, float x, float y, float z)
-{
-    return (point){x - t[0], y - t[1], z - t[2]};
-}
-
-static inline point affine_frame(const float *m, float x, float y, float z)
-{
-    return (point){m[0] * x + m[1] * y + m[2] * z + m[9], m[3] * x + m[4] * y + m[5] * z + m[10],
-                   m[6] * x + m[7] * y + m[8] * z + m[11]};
-}
-
-/* transpose(m) g */
-static inline point affine_back(const float *m, point g)
-{
-    return (point){m[0] * g.x + m[3] * g.y + m[6] * g.z, m[1] * g.x + m[4] * g.y + m[7] * g.z,
-                   m[2] * g.x + m[5] * g.y + m[8] * g.z};
-}
-
-#define EACH_PRIMITIVE(X)                                                                          \
-    X(SPHERE, sphere)                                                                              \
-    X(BOX, box)                                                                                    \
-    X(FRUSTUM, frustum) X(CAPSULE, capsule) X(TORUS, torus) X(ELLIPSOID, ellipsoid) X(PLANE, plane)
-
-/* Local copies of the parameters: the compiler then knows that no store changes them. */
-#define VALUE_LOOPS(NAME, name)                                                                    \
-    static void name##_values(const csg_tape_node *node, const float *parameters, points p,        \
-                              float *restrict out)                                                 \
-    {                                                                                              \
-        float own[OWN_##NAME], frame[12];                                                          \
-        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
-        point g;                                                                                   \
-        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
-            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
-            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
-            for (size_t i = 0; i < p.count; i++)                                                   \
-                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
-        } else {                                                                                   \
-            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
-            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
-            for (size_t i = 0; i < p.count; i++)                                                   \
-                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
-        }                                                                                          \
-    }
-EACH_PRIMITIVE(VALUE_LOOPS)
-
-#define GRADIENT_LOOPS(NAME, name)                                                                 \
-    static void name##_gradients(const csg_tape_node *node, const float *parameters, points p,     \
-                                 float *restrict out, float *restrict gx, float *restrict gy,      \
-                                 float *restrict gz)                                               \
-    {                                                                                              \
-        float own[OWN_##NAME], frame[12];                                                          \
-        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
-        point g;                                                                                   \
-        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
-            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
-            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
-            for (size_t i = 0; i < p.count; i++) {                                                 \
-                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
-                gx[i] = sigma * g.x;                                                               \
-                gy[i] = sigma * g.y;                                                               \
-                gz[i] = sigma * g.z;                                                               \
-            }                                                                                      \
-        } else {                                                                                   \
-            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
-            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
-            for (size_t i = 0; i < p.count; i++) {                                                 \
-                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
-                g = affine_back(frame, g);                                                         \
-                gx[i] = sigma * g.x;                                                               \
-                gy[i] = sigma * g.y;                                                               \
-                gz[i] = sigma * g.z;                                                               \
-            }                                                                                      \
-        }                                                                                          \
-    }
-EACH_PRIMITIVE(GRADIENT_LOOPS)
-
-static void leaf_values(const csg_tape *tape, const csg_tape_node *node, points p, float *out)
-{
-    const float *parameters = tape->parameters + node->parameters;
-    switch (node->op) {
-#define CASE(NAME, name)                                                                           \
-    case CSG_OP_##NAME:                                                                            \
-        name##_values(node, parameters, p, out);                                                   \
-        break;
-        EACH_PRIMITIVE(CASE)
-#undef CASE
-    case CSG_OP_FIELD:
-        CSG_THIS_FORMULA_KERNEL.values(tape, node, p.x, p.y, p.z, p.count, out);
-        break;
-    default: /* EMPTY */
-        for (size_t i = 0; i < p.count; i++)
-            out[i] = parameters[CSG_LEAF_SIGMA] * -INFINITY;
-    }
-}
-
-static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, points p, float *out,
-                           float *gx, float *gy, float *gz)
-{
-    const float *parameters = tape->parameters + node->parameters;
-    switch (node->op) {
-#define CASE(NAME, name)                                                                           \
-    case CSG_OP_##NAME:                                                                            \
-        name##_gradients(node, parameters, p, out, gx, gy, gz);                                    \
-        break;
-        EACH_PRIMITIVE(CASE)
-#undef CASE
-    case CSG_OP_FIELD:
-        CSG_THIS_FORMULA_KERNEL.gradients(tape, node, p.x, p.y, p.z, p.count, out, gx, gy, gz);
-        break;
-    default:
-        leaf_values(tape, node, p, out);
-        for (size_t i = 0; i < p.count; i++)
-            gx[i] = gy[i] = gz[i] = 0;
-    }
-}
 
 /* ---- joins: two operands ----------------------------------------------------------------- */
 
@@ -148,6 +25,15 @@ static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, poin
     X(HYPERBOLA, hyperbola)                                                                        \
     X(RECIPROCAL, reciprocal)                                                                      \
     X(OVERBLEND, overblend) X(COSINE, cosine) X(PARABOLA, parabola) X(CHAMFER, chamfer)
+
+/* The intersection of a and b, raised by n, whose gradients are at right angles. Away from the edge
+ * the smaller one, bit for bit. */
+static inline float orthogonal(float n, float a, float b)
+{
+    float u = a - n, v = b - n;
+    float edge = n - sqrtf(u * u + v * v);
+    return (u < 0) & (v < 0) ? edge : smaller(a, b);
+}
 
 /* a = a op b. */
 static void join_values(const csg_tape_node *node, const float *parameters, float *restrict a,
@@ -167,6 +53,10 @@ static void join_values(const csg_tape_node *node, const float *parameters, floa
         break;
         EACH_FOLD(CASE)
 #undef CASE
+    case CSG_BLEND_ORTHOGONAL:
+        for (size_t i = 0; i < count; i++)
+            a[i] = is_union ? -orthogonal(-n, -a[i], -b[i]) : orthogonal(n, a[i], b[i]);
+        break;
     default: /* SHARP */
         if (is_union)
             for (size_t i = 0; i < count; i++)
@@ -177,9 +67,11 @@ static void join_values(const csg_tape_node *node, const float *parameters, floa
     }
 }
 
-/* share[i] of operand a in the derivative; b has the rest. Changes neither. */
+/* share[i] of operand a in the derivative; b has the rest. Changes neither. Where the partial
+ * derivatives do not add up to 1, at an orthogonal edge, gain[i] is their sum. */
 static void join_shares(const csg_tape_node *node, const float *parameters, const float *restrict a,
-                        const float *restrict b, float *restrict share, size_t count)
+                        const float *restrict b, float *restrict share, float *restrict gain,
+                        size_t count)
 {
     const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     const float turn = node->join == CSG_JOIN_UNION ? 1.0f : -1.0f;
@@ -193,6 +85,15 @@ static void join_shares(const csg_tape_node *node, const float *parameters, cons
         break;
         EACH_FOLD(CASE)
 #undef CASE
+    case CSG_BLEND_ORTHOGONAL:
+        for (size_t i = 0; i < count; i++) {
+            float u = turn * (a[i] - n), v = turn * (b[i] - n); /* edge where both are positive */
+            int edge = (u > 0) & (v > 0);
+            float sum = u + v;
+            share[i] = edge ? u / sum : u > v ? 1.0f : 0.0f;
+            gain[i] = edge ? sum / sqrtf(u * u + v * v) : 1.0f;
+        }
+        break;
     default:
         for (size_t i = 0; i < count; i++)
             share[i] = turn * a[i] > turn * b[i] ? 1.0f : 0.0f;
@@ -297,14 +198,14 @@ static void combine_round_values(const csg_tape *tape, const csg_tape_node *node
 }
 
 /* Leaves the result in slot 0; `depth` slots, then the round operator's work. */
-static void walk_values(const csg_tape *tape, points p, slots s, uint32_t depth)
+static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t depth)
 {
     size_t top = 0;
     float *work = slot(s, depth);
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            leaf_values(tape, node, p, slot(s, top++));
+            CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, top++));
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_values(tape, node, s, top++, p.count, work);
@@ -330,6 +231,12 @@ static void mix(float *restrict a, const float *restrict b, const float *restric
 {
     for (size_t i = 0; i < count; i++)
         a[i] = share[i] * a[i] + (1.0f - share[i]) * b[i];
+}
+
+static void stretch(float *restrict a, const float *restrict gain, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        a[i] *= gain[i];
 }
 
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
@@ -368,15 +275,15 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
         gaps[i] = turn * (top[i] + excess[i]);
 }
 
-static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, points p, slots s,
+static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
                        uint32_t depth, size_t index, int channels)
 {
     if (channels == GRADIENT_CHANNELS) {
-        leaf_gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
-                       channel(s, depth, index, 1), channel(s, depth, index, 2));
+        CSG_THIS_LEAF_KERNEL.gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
+                                       channel(s, depth, index, 1), channel(s, depth, index, 2));
         return;
     }
-    leaf_values(tape, node, p, slot(s, index));
+    CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index));
     csg_color color = tape->colors[(uint32_t)tape->parameters[node->parameters + CSG_LEAF_COLOR]];
     const float rgba[COLOR_CHANNELS] = {color.r, color.g, color.b, color.a};
     for (int c = 0; c < COLOR_CHANNELS; c++) {
@@ -386,7 +293,7 @@ static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, points p
     }
 }
 
-static void walk_mixed(const csg_tape *tape, points p, slots s, uint32_t depth, int channels)
+static void walk_mixed(const csg_tape *tape, csg_points p, slots s, uint32_t depth, int channels)
 {
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
@@ -401,9 +308,13 @@ static void walk_mixed(const csg_tape *tape, points p, slots s, uint32_t depth, 
         if (node->join) {
             top--;
             const float *parameters = tape->parameters + node->join_parameters;
-            join_shares(node, parameters, slot(s, top - 1), slot(s, top), work, p.count);
+            float *gain = work + s.stride;
+            join_shares(node, parameters, slot(s, top - 1), slot(s, top), work, gain, p.count);
             for (int c = 0; c < channels; c++)
                 mix(channel(s, depth, top - 1, c), channel(s, depth, top, c), work, p.count);
+            if (node->join_blend == CSG_BLEND_ORTHOGONAL && channels == GRADIENT_CHANNELS)
+                for (int c = 0; c < channels; c++)
+                    stretch(channel(s, depth, top - 1, c), gain, p.count);
             join_values(node, parameters, slot(s, top - 1), slot(s, top), p.count);
         }
     }
@@ -431,7 +342,7 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
                    size_t count, float *out, float *scratch, size_t scratch_floats)
 {
     if (tape->count == 1) { /* most blocks: straight into the result */
-        leaf_values(tape, tape->nodes, (points){x, y, z, padded(count)}, out);
+        CSG_THIS_LEAF_KERNEL.values(tape, tape->nodes, (csg_points){x, y, z, padded(count)}, out);
         return;
     }
     uint32_t depth = csg_tape_depth(tape);
@@ -439,7 +350,7 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
     slots s = {scratch, batch};
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
-        walk_values(tape, (points){x + i, y + i, z + i, padded(n)}, s, depth);
+        walk_values(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth);
         memcpy(out + i, slot(s, 0), n * sizeof(float));
     }
 }
@@ -453,7 +364,7 @@ static void mixed(const csg_tape *tape, const float *x, const float *y, const fl
     slots s = {scratch, batch};
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
-        walk_mixed(tape, (points){x + i, y + i, z + i, padded(n)}, s, depth, channels);
+        walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, channels);
         for (int c = 0; c < channels; c++)
             memcpy(out[c] + i, channel(s, depth, 0, c), n * sizeof(float));
     }
@@ -475,78 +386,21 @@ static void colors(const csg_tape *tape, const float *x, const float *y, const f
 
 /* ---- intervals ------------------------------------------------------------------------------- */
 
-/* Primitives whose value falls with |x|, |y| and |z| in a frame that is not turned: over a cube
- * they are largest at its point nearest to their centre and smallest at the farthest. */
-static int falls_outwards(const csg_tape_node *node, const float *own)
-{
-    if (node->frame != CSG_FRAME_OFFSET)
-        return 0;
-    return node->op == CSG_OP_SPHERE || node->op == CSG_OP_BOX || node->op == CSG_OP_ELLIPSOID ||
-           (node->op == CSG_OP_FRUSTUM && own[7] == 0); /* a cylinder */
-}
-
-/* The coordinates nearest to and farthest from t within `half` of c. */
-static void near_and_far(const float *c, float t, float half, float *near, float *far)
-{
-    for (int o = 0; o < CSG_OCTANTS; o++) {
-        float d = c[o] - t, side = sign_of(d);
-        near[o] = t + side * larger(absolute(d) - half, 0);
-        far[o] = t + side * (absolute(d) + half);
-    }
-}
-
-static void falling_interval(const csg_tape *tape, const csg_tape_node *node, points p, float half,
-                             float *restrict low, float *restrict high)
-{
-    const float *parameters = tape->parameters + node->parameters, *t = parameters + CSG_LEAF_FRAME;
-    float near[3][CSG_OCTANTS], far[3][CSG_OCTANTS], a[CSG_OCTANTS], b[CSG_OCTANTS];
-    near_and_far(p.x, t[0], half, near[0], far[0]);
-    near_and_far(p.y, t[1], half, near[1], far[1]);
-    near_and_far(p.z, t[2], half, near[2], far[2]);
-    leaf_values(tape, node, (points){near[0], near[1], near[2], CSG_OCTANTS}, a);
-    leaf_values(tape, node, (points){far[0], far[1], far[2], CSG_OCTANTS}, b);
-    float slack = parameters[CSG_LEAF_SLACK];
-    for (int o = 0; o < CSG_OCTANTS; o++) {
-        low[o] = smaller(a[o], b[o]) - slack;
-        high[o] = larger(a[o], b[o]) + slack;
-    }
-}
-
-static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, points p, float radius,
-                          float *restrict low, float *restrict high)
-{
-    if (node->op == CSG_OP_FIELD) {
-        CSG_THIS_FORMULA_KERNEL.intervals(tape, node, p.x, p.y, p.z, radius, low, high);
-        return;
-    }
-    const float *parameters = tape->parameters + node->parameters;
-    const float half = radius * 0.57735034f; /* of the cube's edge: 1 / sqrt 3, rounded up */
-    if (falls_outwards(node, parameters + CSG_LEAF_OWN_OFFSET)) {
-        falling_interval(tape, node, p, half, low, high);
-        return;
-    }
-    leaf_values(tape, node, p, low);
-    float reach = radius + parameters[CSG_LEAF_SLACK];
-    for (int o = 0; o < CSG_OCTANTS; o++) {
-        high[o] = low[o] + reach;
-        low[o] = low[o] - reach;
-    }
-}
-
 /* Every operator here is monotone: its value at the operands' ends (operators.md 0). */
 static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch)
 {
     uint32_t depth = csg_tape_depth(tape);
-    points p = {cx, cy, cz, CSG_OCTANTS};
+    csg_points p = {cx, cy, cz, CSG_OCTANTS};
     slots lows = {scratch, CSG_OCTANTS}, highs = {slot(lows, depth), CSG_OCTANTS};
     float *work = slot(highs, depth);
     size_t top = 0;
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            leaf_interval(tape, node, p, radius, slot(lows, top), slot(highs, top));
+            CSG_THIS_LEAF_KERNEL.intervals(tape, node, p, radius, slot(lows, top),
+                                           slot(highs, top));
             top++;
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;

@@ -11,6 +11,7 @@ static const char *const op_names[CSG_OP_COUNT] = {
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
     [CSG_OP_FIELD] = "field",
+    [CSG_OP_SHAPE] = "shape",
     [CSG_OP_UNION] = "union",
     [CSG_OP_INTERSECTION] = "intersection",
     [CSG_OP_ROUND_UNION] = "round_union",
@@ -45,6 +46,10 @@ static void print_leaf(printer *out, const csg_tape *tape, const csg_tape_node *
     for (int i = 0; i < frame; i++)
         print(out, " %.9g", (double)p[CSG_LEAF_FRAME + i]);
     print(out, " color %.0f", (double)p[CSG_LEAF_COLOR]);
+    if (p[CSG_LEAF_RAISE] != 0)
+        print(out, " raise %.9g", (double)p[CSG_LEAF_RAISE]);
+    for (uint32_t w = node->warp; w; w = tape->warps[w - 1].outer)
+        print(out, " in %s", csg_warp_name((csg_warp_kind)tape->warps[w - 1].kind));
 }
 
 csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, void *user)

@@ -141,6 +141,7 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
     bool is_union = csg_op_is_union(op->op);
     float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
     float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
+    float edge = turn * pruner->tape->parameters[op->parameters + CSG_OPERATOR_N] - pruner->slack;
     float *lower = is_union ? pruner->low : pruner->high;
     float *upper = is_union ? pruner->high : pruner->low;
     uint32_t best_child[CSG_OCTANTS], child = node - 1;
@@ -148,6 +149,8 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
     for (int o = 0; o < CSG_OCTANTS; o++) {
         float demand = is_union ? demand_low[o] : -demand_high[o];
         threshold[o] = (demand > threshold[o] ? demand : threshold[o]) - chi - pruner->slack;
+        if (op->blend == CSG_BLEND_ORTHOGONAL) /* at the edge both matter */
+            threshold[o] = fminf(threshold[o], edge);
     }
     for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
         uint8_t mask =

@@ -20,6 +20,7 @@ typedef enum csg_op {
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
     CSG_OP_FIELD,
+    CSG_OP_SHAPE,
     CSG_OP_UNION, /* sharp or folded: the joins of its children did the work */
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
@@ -53,25 +54,29 @@ typedef struct csg_tape_node {
     uint8_t blend; /* operators: csg_blend_kind of the operator; copied to children's joins */
     uint8_t join_blend;
     uint8_t frame;            /* leaves: csg_frame */
+    uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */
     uint32_t join_parameters; /* into the parameters, of the operator that joins */
     uint32_t arity;           /* operators: children */
     uint32_t size;            /* nodes of the subtree, this one included */
 } csg_tape_node;
 
-/* Parameters of a leaf: sigma, slack, color, then the frame (3 or 12 floats), then its own.
+/* Parameters of a leaf: sigma, raise, slack, color, then the frame (3 or 12 floats), then its own.
  *   sigma  +-1, or +-(smallest singular value) where the frame is no similarity
+ *   raise  what offsets above add to sigma times the leaf's own value
  *   slack  bound on the rounding error of a value of this leaf anywhere in the lattice
  *   color  index into the field's colours */
 enum {
     CSG_LEAF_SIGMA,
+    CSG_LEAF_RAISE,
     CSG_LEAF_SLACK,
     CSG_LEAF_COLOR,
     CSG_LEAF_FRAME,
     CSG_LEAF_OWN_OFFSET = CSG_LEAF_FRAME + 3,
     CSG_LEAF_OWN_AFFINE = CSG_LEAF_FRAME + 12
 };
-/* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero. */
+/* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero; for orthogonal
+ * ones it is what offsets above have added to the operands. */
 enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
 
 /* One operation of an expression field over slots of floats, angles in radians. `out` is neither
@@ -93,6 +98,15 @@ typedef struct csg_tape_formula {
     float lipschitz;
 } csg_tape_formula;
 
+/* A map of points, between the frame of the warp above (or the tape's own, outer = 0) and that of
+ * what stands below. */
+typedef struct csg_tape_warp {
+    uint32_t outer;  /* index + 1 */
+    uint8_t kind;    /* csg_warp_kind */
+    float frame[12]; /* rows of m, then t: from the outer frame to the warp's own */
+    float own[CSG_WARP_PARAMETERS];
+} csg_tape_warp;
+
 /* A tape, whole or pruned: `nodes` of one array over shared parameters. */
 typedef struct csg_tape {
     const csg_tape_node *nodes;
@@ -100,7 +114,9 @@ typedef struct csg_tape {
     const csg_color *colors;
     const csg_tape_step *steps;
     const csg_tape_formula *formulas;
-    float lipschitz; /* of the whole field */
+    const csg_tape_warp *warps;
+    csg_shape *const *shapes; /* a CSG_OP_SHAPE's own parameter is an index of these */
+    float lipschitz;          /* of the whole field */
     uint32_t count;
 } csg_tape;
 

@@ -54,10 +54,14 @@ static void hand_down_levels(const csgm_scene *scene, const csg_node *node, uint
         below += support;
     else
         above += support; /* intersection and difference */
-    if (node->kind == CSG_NODE_TRANSFORM) {
-        below /= scene->scales[node->payload];
-        above /= scene->scales[node->payload];
-    }
+    double r = node->kind == CSG_NODE_OFFSET ? csg_scene_parameters(scene, node)[0] : 0;
+    double scale = 1;
+    if (node->kind == CSG_NODE_TRANSFORM)
+        scale = scene->scales[node->payload];
+    else if (node->kind == CSG_NODE_WARP)
+        scale = csg_warp_scale(&scene->warps[node->payload]);
+    below = fmax(below / scale + r, 0);
+    above = fmax(above / scale - r, 0);
     bool subtracted = node->kind == CSG_NODE_DIFFERENCE && index > 0;
     child->below = subtracted ? above : below;
     child->above = subtracted ? below : above;
@@ -72,6 +76,8 @@ static void hand_down_regions(const csgm_scene *scene, const csg_node *node, csg
     uint32_t count = node->child_count;
     if (node->kind == CSG_NODE_TRANSFORM)
         region = csg_affine_box(&scene->inverses[node->payload], region);
+    else if (node->kind == CSG_NODE_WARP)
+        region = csg_box_all();
     for (uint32_t k = 0; k < count; k++)
         out[children[k]].clamp_box = region;
     if (node->kind == CSG_NODE_DIFFERENCE) {

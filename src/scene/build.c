@@ -4,12 +4,13 @@
  * blends become chains); nested n-ary operators are flattened when the scene is sealed (seal.c).
  */
 #include "scene/build.h"
+#include "scene/build_private.h"
 #include "scene/check.h"
 
 #include <float.h>
 #include <string.h>
 
-static csg_node_id fail_memory(csg_scene_builder *builder)
+csg_node_id csg_build_no_memory(csg_scene_builder *builder)
 {
     csg_check_fail(builder, CSGM_ERR_MEMORY, "%s", "");
     return CSG_NODE_NONE;
@@ -22,7 +23,7 @@ csgm_status csg_build_begin(csg_scene_builder *builder, csgm_context *context)
     *builder = (csg_scene_builder){.context = context};
     builder->scene = csg_memory_alloc(&context->memory, sizeof *builder->scene);
     if (!builder->scene) {
-        fail_memory(builder);
+        csg_build_no_memory(builder);
         return builder->status;
     }
     *builder->scene = (csgm_scene){.context = context, .root = CSG_NODE_NONE};
@@ -45,14 +46,19 @@ void csg_build_abandon(csg_scene_builder *builder)
     csg_memory_release(memory, scene->formulas,
                        builder->formula_capacity * sizeof *scene->formulas);
     csg_memory_release(memory, scene->steps, builder->step_capacity * sizeof *scene->steps);
+    csg_memory_release(memory, scene->warps, builder->warp_capacity * sizeof *scene->warps);
+    for (size_t i = 0; i < scene->shape_count; i++)
+        csg_shape_release(scene->shapes[i]);
+    csg_memory_release(memory, scene->shapes, builder->shape_capacity * sizeof *scene->shapes);
     csg_memory_release(memory, scene, sizeof *scene);
     builder->scene = NULL;
+    builder->shape_capacity = builder->warp_capacity = 0;
     builder->node_capacity = builder->child_capacity = builder->parameter_capacity = 0;
     builder->transform_capacity = builder->color_capacity = 0;
     builder->formula_capacity = builder->step_capacity = 0;
 }
 
-static bool has_room_for_nodes(csg_scene_builder *builder)
+bool csg_build_reserve_node(csg_scene_builder *builder)
 {
     csgm_scene *scene = builder->scene;
     uint32_t limit = builder->context->limits.scene_nodes;
@@ -65,14 +71,14 @@ static bool has_room_for_nodes(csg_scene_builder *builder)
     void *nodes = scene->nodes;
     if (!csg_memory_reserve(&builder->context->memory, &nodes, &builder->node_capacity,
                             scene->node_count + 1, sizeof *scene->nodes)) {
-        fail_memory(builder);
+        csg_build_no_memory(builder);
         return false;
     }
     scene->nodes = nodes;
     return true;
 }
 
-static bool reserve_children(csg_scene_builder *builder, size_t more)
+bool csg_build_reserve_children(csg_scene_builder *builder, size_t more)
 {
     csgm_scene *scene = builder->scene;
     if (more > UINT32_MAX - scene->child_count) {
@@ -82,20 +88,20 @@ static bool reserve_children(csg_scene_builder *builder, size_t more)
     void *children = scene->children;
     if (!csg_memory_reserve(&builder->context->memory, &children, &builder->child_capacity,
                             scene->child_count + more, sizeof *scene->children)) {
-        fail_memory(builder);
+        csg_build_no_memory(builder);
         return false;
     }
     scene->children = children;
     return true;
 }
 
-static bool reserve_parameters(csg_scene_builder *builder, size_t more)
+bool csg_build_reserve_parameters(csg_scene_builder *builder, size_t more)
 {
     csgm_scene *scene = builder->scene;
     void *parameters = scene->parameters;
     if (!csg_memory_reserve(&builder->context->memory, &parameters, &builder->parameter_capacity,
                             scene->parameter_count + more, sizeof *scene->parameters)) {
-        fail_memory(builder);
+        csg_build_no_memory(builder);
         return false;
     }
     scene->parameters = parameters;
@@ -103,19 +109,28 @@ static bool reserve_parameters(csg_scene_builder *builder, size_t more)
 }
 
 /* Room was made by has_room_for_nodes, reserve_children and reserve_parameters. */
-static csg_node_id append_node(csg_scene_builder *builder, csg_node node,
-                               const csg_node_id *children, size_t count)
+csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const csg_node_id *children,
+                             size_t count)
 {
     csgm_scene *scene = builder->scene;
     node.first_child = (uint32_t)scene->child_count;
     node.child_count = (uint32_t)count;
+    bool flat = count > 0;
+    for (size_t i = 0; i < count; i++)
+        flat &= (scene->nodes[children[i]].flags & CSG_FLAG_FLAT) != 0;
+    for (size_t i = 0; i < count; i++)
+        if (scene->nodes[children[i]].warps > node.warps)
+            node.warps = scene->nodes[children[i]].warps;
+    node.warps = (uint8_t)(node.warps + (node.kind == CSG_NODE_WARP));
+    if (flat && node.kind != CSG_NODE_WARP)
+        node.flags |= CSG_FLAG_FLAT;
     for (size_t i = 0; i < count; i++)
         scene->children[scene->child_count++] = children[i];
     scene->nodes[scene->node_count] = node;
     return (csg_node_id)scene->node_count++;
 }
 
-static bool is_usable(csg_scene_builder *builder, csg_node_id child)
+bool csg_build_is_usable(csg_scene_builder *builder, csg_node_id child)
 {
     if (builder->status != CSGM_OK)
         return false;
@@ -128,9 +143,9 @@ static bool is_usable(csg_scene_builder *builder, csg_node_id child)
 
 csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where)
 {
-    if (builder->status != CSGM_OK || !has_room_for_nodes(builder))
+    if (builder->status != CSGM_OK || !csg_build_reserve_node(builder))
         return CSG_NODE_NONE;
-    return append_node(builder, (csg_node){.kind = CSG_NODE_EMPTY, .where = where}, NULL, 0);
+    return csg_build_append(builder, (csg_node){.kind = CSG_NODE_EMPTY, .where = where}, NULL, 0);
 }
 
 /* ---- primitives ---------------------------------------------------------------------- */
@@ -142,19 +157,21 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
     double values[MOST_PARAMETERS] = {0};
     if (builder->status != CSGM_OK)
         return CSG_NODE_NONE;
-    bool known = csg_node_is_primitive(kind) && kind != CSG_NODE_FIELD;
+    bool known = csg_node_is_primitive(kind) && kind != CSG_NODE_FIELD && kind != CSG_NODE_SHAPE;
     uint32_t count = known ? csg_primitive_parameter_count(kind) : 0;
     for (uint32_t i = 0; i < count; i++)
         values[i] = parameters[i];
-    if (!csg_check_primitive(builder, kind, values) || !has_room_for_nodes(builder) ||
-        !reserve_parameters(builder, count))
+    if (!csg_check_primitive(builder, kind, values) || !csg_build_reserve_node(builder) ||
+        !csg_build_reserve_parameters(builder, count))
         return CSG_NODE_NONE;
     csgm_scene *scene = builder->scene;
     csg_node node = {
         .kind = (uint8_t)kind, .payload = (uint32_t)scene->parameter_count, .where = where};
+    if (kind == CSG_NODE_CIRCLE || kind == CSG_NODE_RECTANGLE)
+        node.flags = CSG_FLAG_FLAT;
     memcpy(scene->parameters + scene->parameter_count, values, count * sizeof *values);
     scene->parameter_count += count;
-    return append_node(builder, node, NULL, 0);
+    return csg_build_append(builder, node, NULL, 0);
 }
 
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,
@@ -202,7 +219,7 @@ static bool append_formula(csg_scene_builder *builder, const csg_formula_step *s
                                       scene->step_count + formula->count, sizeof *steps);
     scene->steps = all_steps;
     if (!done) {
-        fail_memory(builder);
+        csg_build_no_memory(builder);
         return false;
     }
     scene->formulas[scene->formula_count] = *formula;
@@ -239,15 +256,15 @@ csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *
     if (lipschitz == 0)
         formula.lipschitz = csg_formula_lipschitz(&builder->context->memory, steps, count, bounds);
     if (isnan(formula.lipschitz))
-        return fail_memory(builder);
+        return csg_build_no_memory(builder);
     if (!csg_check_slope(builder, &formula))
         return CSG_NODE_NONE;
-    if (!has_room_for_nodes(builder) || !append_formula(builder, steps, &formula))
+    if (!csg_build_reserve_node(builder) || !append_formula(builder, steps, &formula))
         return CSG_NODE_NONE;
     csg_node node = {.kind = CSG_NODE_FIELD,
                      .payload = (uint32_t)builder->scene->formula_count - 1,
                      .where = where};
-    csg_node_id field = append_node(builder, node, NULL, 0);
+    csg_node_id field = csg_build_append(builder, node, NULL, 0);
     return cut && csg_box_is_finite(bounds) ? cut_by_box(builder, field, bounds, where) : field;
 }
 
@@ -267,21 +284,36 @@ static bool is_identity(const csg_affine *matrix)
     return true;
 }
 
-static csg_node_id append_transform(csg_scene_builder *builder, const csg_affine *matrix,
-                                    csg_node_id child, csg_span where)
+csg_node_id csg_build_append_transform(csg_scene_builder *builder, csg_affine matrix,
+                                       csg_node_id child, csg_span where)
 {
     csgm_scene *scene = builder->scene;
-    if (!has_room_for_nodes(builder) || !reserve_children(builder, 1))
+    if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, 1))
         return CSG_NODE_NONE;
     void *transforms = scene->transforms;
     if (!csg_memory_reserve(&builder->context->memory, &transforms, &builder->transform_capacity,
                             scene->transform_count + 1, sizeof *scene->transforms))
-        return fail_memory(builder);
+        return csg_build_no_memory(builder);
     scene->transforms = transforms;
-    scene->transforms[scene->transform_count] = *matrix;
+    scene->transforms[scene->transform_count] = matrix;
     csg_node node = {
         .kind = CSG_NODE_TRANSFORM, .payload = (uint32_t)scene->transform_count++, .where = where};
-    return append_node(builder, node, &child, 1);
+    return csg_build_append(builder, node, &child, 1);
+}
+
+/* What a map does to a figure of the plane: the plane part; z goes with the smallest stretch of it,
+ * so that a similarity of the plane is one of space and the field stays a distance. */
+static csg_affine within_plane(csg_affine map)
+{
+    double smallest, largest;
+    map.m[0][2] = map.m[1][2] = map.m[2][0] = map.m[2][1] = map.t[2] = 0;
+    map.m[2][2] = 0;
+    csg_affine doubled = map; /* any stretch of z above the others */
+    doubled.m[2][2] =
+        2 * (fabs(map.m[0][0]) + fabs(map.m[0][1]) + fabs(map.m[1][0]) + fabs(map.m[1][1]));
+    csg_affine_singular_values(&doubled, &smallest, &largest);
+    map.m[2][2] = smallest;
+    return map;
 }
 
 /* The child is neither a colour nor empty. */
@@ -289,12 +321,16 @@ static csg_node_id place(csg_scene_builder *builder, const csg_affine *matrix, c
                          csg_span where)
 {
     csgm_scene *scene = builder->scene;
-    if (is_identity(matrix))
-        return child;
     csg_node *node = &scene->nodes[child];
+    bool flat = node->flags & CSG_FLAG_FLAT;
+    csg_affine map = flat ? within_plane(*matrix) : *matrix;
+    if (is_identity(&map))
+        return child;
     if (node->kind != CSG_NODE_TRANSFORM)
-        return append_transform(builder, matrix, child, where);
-    csg_affine both = csg_affine_multiply(*matrix, scene->transforms[node->payload]);
+        return csg_build_append_transform(builder, map, child, where);
+    csg_affine both = csg_affine_multiply(map, scene->transforms[node->payload]);
+    if (flat)
+        both = within_plane(both);
     if (!csg_check_matrix(builder, &both))
         return CSG_NODE_NONE;
     if (is_identity(&both))
@@ -307,9 +343,12 @@ static csg_node_id place(csg_scene_builder *builder, const csg_affine *matrix, c
 csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *matrix,
                                 csg_node_id child, csg_span where)
 {
-    if (!is_usable(builder, child) || !csg_check_matrix(builder, matrix))
+    if (!csg_build_is_usable(builder, child))
         return CSG_NODE_NONE;
     csg_node node = builder->scene->nodes[child];
+    csg_affine map = node.flags & CSG_FLAG_FLAT ? within_plane(*matrix) : *matrix;
+    if (!csg_check_matrix(builder, &map))
+        return CSG_NODE_NONE;
     if (node.kind == CSG_NODE_EMPTY)
         return child;
     if (node.kind != CSG_NODE_COLOR)
@@ -322,10 +361,27 @@ csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *ma
     return child;
 }
 
+csg_node_id csg_build_append_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
+                                   csg_span where)
+{
+    csgm_scene *scene = builder->scene;
+    void *colors = scene->colors;
+    if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, 1))
+        return CSG_NODE_NONE;
+    if (!csg_memory_reserve(&builder->context->memory, &colors, &builder->color_capacity,
+                            scene->color_count + 1, sizeof *scene->colors))
+        return csg_build_no_memory(builder);
+    scene->colors = colors;
+    scene->colors[scene->color_count] = color;
+    csg_node fresh = {
+        .kind = CSG_NODE_COLOR, .payload = (uint32_t)scene->color_count++, .where = where};
+    return csg_build_append(builder, fresh, &child, 1);
+}
+
 csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
                             csg_span where)
 {
-    if (!is_usable(builder, child) || !csg_check_color(builder, color))
+    if (!csg_build_is_usable(builder, child) || !csg_check_color(builder, color))
         return CSG_NODE_NONE;
     csgm_scene *scene = builder->scene;
     const csg_node *node = &scene->nodes[child];
@@ -335,17 +391,7 @@ csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_nod
         scene->colors[node->payload] = color;
         return child;
     }
-    void *colors = scene->colors;
-    if (!has_room_for_nodes(builder) || !reserve_children(builder, 1))
-        return CSG_NODE_NONE;
-    if (!csg_memory_reserve(&builder->context->memory, &colors, &builder->color_capacity,
-                            scene->color_count + 1, sizeof *scene->colors))
-        return fail_memory(builder);
-    scene->colors = colors;
-    scene->colors[scene->color_count] = color;
-    csg_node fresh = {
-        .kind = CSG_NODE_COLOR, .payload = (uint32_t)scene->color_count++, .where = where};
-    return append_node(builder, fresh, &child, 1);
+    return csg_build_append_color(builder, color, child, where);
 }
 
 /* ---- operators ------------------------------------------------------------------------ */
@@ -354,15 +400,15 @@ static csg_node_id append_operator(csg_scene_builder *builder, csg_node_kind kin
                                    const csg_node_id *children, size_t count, csg_span where)
 {
     csgm_scene *scene = builder->scene;
-    if (!has_room_for_nodes(builder) || !reserve_children(builder, count) ||
-        !reserve_parameters(builder, 1))
+    if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, count) ||
+        !csg_build_reserve_parameters(builder, 1))
         return CSG_NODE_NONE;
     csg_node node = {.kind = (uint8_t)kind,
                      .blend = (uint8_t)blend.kind,
                      .payload = (uint32_t)scene->parameter_count,
                      .where = where};
     scene->parameters[scene->parameter_count++] = blend.n;
-    return append_node(builder, node, children, count);
+    return csg_build_append(builder, node, children, count);
 }
 
 /* The operand that alone decides that the result is empty, or CSG_NODE_NONE. */
@@ -407,7 +453,7 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
     if (builder->status != CSGM_OK || !csg_check_operator(builder, kind, &blend))
         return CSG_NODE_NONE;
     for (size_t i = 0; i < count; i++)
-        if (!is_usable(builder, children[i]))
+        if (!csg_build_is_usable(builder, children[i]))
             return CSG_NODE_NONE;
     csg_node_id empty = absorbing_operand(builder->scene, kind, children, count);
     if (empty != CSG_NODE_NONE)
@@ -415,7 +461,7 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
     csg_memory *memory = &builder->context->memory;
     csg_node_id *kept = count ? csg_memory_alloc(memory, count * sizeof *kept) : NULL;
     if (count && !kept)
-        return fail_memory(builder);
+        return csg_build_no_memory(builder);
     size_t left = count ? drop_empty(builder->scene, children, count, kept) : 0;
     csg_node_id result = left    ? join(builder, kind, blend, kept, left, where)
                          : count ? children[0]

@@ -17,7 +17,7 @@ typedef struct csg_scene_builder {
     csgm_context *context;
     csgm_scene *scene; /* growing; arrays are from context->memory until csg_build_finish */
     size_t node_capacity, child_capacity, parameter_capacity, transform_capacity, color_capacity,
-        formula_capacity, step_capacity;
+        formula_capacity, step_capacity, shape_capacity, warp_capacity;
     csgm_status status; /* first failure, sticky */
     char problem[160];  /* one sentence about it, "" for memory */
 } csg_scene_builder;
@@ -63,11 +63,13 @@ csg_node_id csg_build_shape(csg_scene_builder *builder, csg_shape *shape, csg_sp
 /* The child grown by r (shrunk where r < 0): its field plus r. Exact on exact distances. */
 csg_node_id csg_build_offset(csg_scene_builder *builder, double r, csg_node_id child,
                              csg_span where);
-/* The flat child between z = low and z = high; an exact distance where the child's is. exact =
- * false where the child's field changes with z (below TWIST or TAPER). */
+/* The child between z = low and z = high. An exact distance where a flat child's is; a child that
+ * is not flat (twisted) is cut sharply. */
 csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
-                              double high, bool exact, csg_span where);
-/* Fails where csg_warp_scale finds no constant for the child's box. */
+                              double high, csg_span where);
+/* `warp` with the parameters given. Fails where csg_warp_settle says that it cannot be done. Cuts
+ * what a warp does away from the solid. Sharp operators, colours and what more is below the warp
+ * keep their meaning. */
 csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child,
                            csg_span where);
 /* A deep copy; shapes and formulas are shared. */

@@ -94,6 +94,17 @@ static bool check_torus(csg_scene_builder *builder, const double *v)
     return builder->status == CSGM_OK;
 }
 
+static bool check_rectangle(csg_scene_builder *builder, const double *v)
+{
+    if (!check_positive(builder, v[0], "the size") || !check_positive(builder, v[1], "the size") ||
+        !check_not_negative(builder, v[2], "the rounding radius"))
+        return false;
+    if (v[2] > fmin(v[0], v[1]))
+        csg_check_fail(builder, CSGM_ERR_SCENE,
+                       "the rounding radius is more than half the smallest side");
+    return builder->status == CSGM_OK;
+}
+
 /* A normal that is of unit length already, to the last bits, is left alone: printing and parsing
  * a scene again must not move its planes. */
 static bool check_plane(csg_scene_builder *builder, double *v)
@@ -134,6 +145,12 @@ bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double 
                check_positive(builder, v[2], "the semi-axis");
     case CSG_NODE_PLANE:
         return check_plane(builder, v);
+    case CSG_NODE_CIRCLE:
+        return check_positive(builder, v[0], "the radius");
+    case CSG_NODE_RECTANGLE:
+        return check_rectangle(builder, v);
+    case CSG_NODE_SLAB:
+        return check_positive(builder, v[0], "the height");
     default:
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
         return false;
@@ -253,5 +270,30 @@ bool csg_check_color(csg_scene_builder *builder, csg_color color)
     for (int i = 0; i < 4; i++)
         if (!(channels[i] >= 0 && channels[i] <= 1))
             csg_check_fail(builder, CSGM_ERR_SCENE, "a colour's numbers must lie between 0 and 1");
+    return builder->status == CSGM_OK;
+}
+
+bool csg_check_offset(csg_scene_builder *builder, double r)
+{
+    return check_range(builder, r, "the distance");
+}
+
+bool csg_check_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child)
+{
+    const double *v = warp->parameters;
+    if ((unsigned)warp->kind >= CSG_WARP_COUNT) {
+        csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such warp");
+        return false;
+    }
+    for (uint32_t i = 0; i < csg_warp_given(warp->kind); i++)
+        if (!check_range(builder, v[i], "a number of the deformation"))
+            return false;
+    if (warp->kind == CSG_WARP_BEND && !check_positive(builder, v[CSG_BEND_RADIUS], "the radius"))
+        return false;
+    if (warp->kind == CSG_WARP_TWIST && !(v[CSG_TWIST_LOW] <= v[CSG_TWIST_HIGH]))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "the twist ends below its beginning");
+    if (builder->scene->nodes[child].warps >= CSG_MOST_WARPS)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "more than %d deformations one inside the other",
+                       CSG_MOST_WARPS);
     return builder->status == CSGM_OK;
 }

@@ -24,6 +24,9 @@ bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double
 bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix);
 /* A blend without width becomes sharp. */
 bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend);
+bool csg_check_offset(csg_scene_builder *builder, double r);
+/* The numbers given, and that warps do not nest too deeply. */
+bool csg_check_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child);
 bool csg_check_color(csg_scene_builder *builder, csg_color color);
 
 #endif

@@ -38,9 +38,10 @@ typedef struct table {
     csg_box *work;  /* of one operator's children */
     bool whole;     /* all boxes in the root's frame, cut by regions */
     /* for the whole tree only */
-    csg_box *regions;    /* per slot */
-    uint32_t *frame;     /* the innermost transform around each node, or NONE */
-    csg_affine *to_root; /* per transform, from inside it to the root's frame */
+    const struct table *own; /* boxes in the nodes' own frames */
+    csg_box *regions;        /* per slot */
+    uint32_t *frame;         /* the innermost transform around each node, or NONE */
+    csg_affine *to_root;     /* per transform, from inside it to the root's frame */
 } table;
 
 /* ---- planning the levels ---------------------------------------------------------------- */
@@ -106,13 +107,29 @@ static void union_levels(const csgm_scene *scene, const csg_node *node, double *
     *support = csg_blend_support(blend);
 }
 
+/* One child, whose level is another. */
+static bool is_scaled(uint8_t kind)
+{
+    return kind == CSG_NODE_TRANSFORM || kind == CSG_NODE_OFFSET || kind == CSG_NODE_WARP;
+}
+
+/* A solid that is shrunk lies within what it was. */
+static double inner_level(const csgm_scene *scene, const csg_node *node, double level)
+{
+    if (node->kind == CSG_NODE_TRANSFORM)
+        return level / scene->scales[node->payload];
+    if (node->kind == CSG_NODE_WARP)
+        return level / csg_warp_scale(&scene->warps[node->payload]);
+    return fmax(level + csg_scene_parameters(scene, node)[0], 0);
+}
+
 /* What a node at `level` asks of its child number `index`. */
 static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, double level,
                 level_list *list)
 {
     double excess, support;
-    if (node->kind == CSG_NODE_TRANSFORM) {
-        add_level(list, level / scene->scales[node->payload]);
+    if (is_scaled(node->kind)) {
+        add_level(list, inner_level(scene, node, level));
     } else if (node->kind == CSG_NODE_UNION) {
         union_levels(scene, node, &excess, &support);
         add_level(list, level);
@@ -190,7 +207,10 @@ static bool is_leaf_box(const table *t, csg_node_id id, double level, csg_box *b
         }
         node = &scene->nodes[csg_scene_children(scene, node)[0]];
     }
-    *box = csg_primitive_box(leaf->kind, csg_scene_parameters(scene, leaf), &map, level);
+    if (leaf->kind == CSG_NODE_SHAPE)
+        *box = csg_affine_box(&map, csg_box_grow(scene->shapes[leaf->payload]->box, level));
+    else
+        *box = csg_primitive_box(leaf->kind, csg_scene_parameters(scene, leaf), &map, level);
     return true;
 }
 
@@ -263,11 +283,25 @@ static csg_box half_space_box(const csg_half_space *h)
     return csg_primitive_box(CSG_NODE_PLANE, v, &identity, 0);
 }
 
-static csg_box transform_box(const table *t, const csg_node *node, double level)
+/* Of a node with one child. */
+static csg_box wrapped_box(const table *t, const csg_node *node, double level)
 {
-    csg_box box =
-        box_at(t, csg_scene_children(t->scene, node)[0], level / t->scene->scales[node->payload]);
-    return t->whole ? box : csg_affine_box(&t->scene->transforms[node->payload], box);
+    const csgm_scene *scene = t->scene;
+    csg_node_id child = csg_scene_children(scene, node)[0];
+    csg_box box = box_at(t, child, is_scaled(node->kind) ? inner_level(scene, node, level) : level);
+    if (node->kind == CSG_NODE_WARP)
+        return csg_warp_box(&scene->warps[node->payload], box);
+    return node->kind == CSG_NODE_TRANSFORM && !t->whole
+               ? csg_affine_box(&scene->transforms[node->payload], box)
+               : box;
+}
+
+/* Nodes whose box is not better known in the root's frame than in their own: warps, which have no
+ * affine way there, and extrusions, whose operands are infinite along axes that may be turned. */
+static bool is_opaque(const csg_node *node)
+{
+    return node->kind == CSG_NODE_WARP ||
+           (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
 }
 
 /* The first operand, or all of an intersection, cut by all half-spaces among the operands. */
@@ -299,10 +333,12 @@ static csg_box node_box(const table *t, size_t index, double level)
     csg_box box;
     if (is_leaf_box(t, (csg_node_id)index, level, &box))
         return box;
-    if (node->kind == CSG_NODE_TRANSFORM)
-        return transform_box(t, node, level);
-    if (node->kind == CSG_NODE_COLOR)
-        return box_at(t, csg_scene_children(t->scene, node)[0], level);
+    if (t->own && is_opaque(node)) {
+        csg_affine frame = frame_of(t, index);
+        return csg_affine_box(&frame, box_at(t->own, (csg_node_id)index, level));
+    }
+    if (!csg_node_is_operator(node->kind))
+        return wrapped_box(t, node, level);
     return node->kind == CSG_NODE_UNION ? union_box(t, node, level) : cut_box(t, index, level);
 }
 
@@ -413,24 +449,47 @@ static bool is_same_box(csg_box a, csg_box b)
            (csg_box_contains_box(a, b) && csg_box_contains_box(b, a));
 }
 
+static bool has_opaque_nodes(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++)
+        if (is_opaque(&scene->nodes[i]))
+            return true;
+    return false;
+}
+
+/* Up and down until nothing changes. */
+static void settle(table *t, csg_box *out)
+{
+    for (size_t slot = 0; slot < t->slot_count; slot++)
+        t->regions[slot] = csg_box_all();
+    csg_box last = csg_box_all();
+    for (int pass = 0; pass < MOST_PASSES; pass++) {
+        compute_upward(t);
+        *out = box_at(t, t->scene->root, 0);
+        if (is_same_box(*out, last) && pass > 1)
+            break;
+        last = *out;
+        t->regions[0] = *out;
+        compute_downward(t);
+    }
+}
+
 csgm_status csg_level_box_of_root(const csgm_scene *scene, csg_box *out)
 {
-    table t;
-    csgm_status status = table_begin(&t, scene, NULL, true);
+    table t, own = {.arena.memory = &scene->context->memory};
+    csgm_status status = CSGM_OK;
+    bool opaque = has_opaque_nodes(scene);
+    if (opaque)
+        status = table_begin(&own, scene, NULL, false);
+    if (status == CSGM_OK && opaque)
+        compute_upward(&own);
     if (status == CSGM_OK) {
-        for (size_t slot = 0; slot < t.slot_count; slot++)
-            t.regions[slot] = csg_box_all();
-        csg_box last = csg_box_all();
-        for (int pass = 0; pass < MOST_PASSES; pass++) {
-            compute_upward(&t);
-            *out = box_at(&t, scene->root, 0);
-            if (is_same_box(*out, last) && pass > 1)
-                break;
-            last = *out;
-            t.regions[0] = *out;
-            compute_downward(&t);
-        }
+        status = table_begin(&t, scene, NULL, true);
+        t.own = opaque ? &own : NULL;
+        if (status == CSGM_OK)
+            settle(&t, out);
+        table_end(&t);
     }
-    table_end(&t);
+    table_end(&own);
     return status;
 }

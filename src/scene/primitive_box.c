@@ -25,6 +25,24 @@ static double plane_support(const double *v, csg_vec3 n)
     return along > 0 && across <= 2 * DBL_EPSILON * along ? along * v[3] : INFINITY;
 }
 
+/* Flat figures reach everywhere along z, slabs everywhere else. */
+static double circle_support(const double *v, csg_vec3 n)
+{
+    return n.z == 0 ? v[0] * hypot(n.x, n.y) : INFINITY;
+}
+
+static double rectangle_support(const double *v, csg_vec3 n)
+{
+    if (n.z != 0)
+        return INFINITY;
+    return fabs(n.x) * (v[0] - v[2]) + fabs(n.y) * (v[1] - v[2]) + v[2] * hypot(n.x, n.y);
+}
+
+static double slab_support(const double *v, csg_vec3 n)
+{
+    return n.x == 0 && n.y == 0 ? v[0] * fabs(n.z) : INFINITY;
+}
+
 double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
 {
     double length = csg_vec3_norm(n), across;
@@ -45,6 +63,12 @@ double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
         return csg_vec3_norm(csg_vec3_make(v[0] * n.x, v[1] * n.y, v[2] * n.z));
     case CSG_NODE_PLANE:
         return plane_support(v, n);
+    case CSG_NODE_CIRCLE:
+        return circle_support(v, n);
+    case CSG_NODE_RECTANGLE:
+        return rectangle_support(v, n);
+    case CSG_NODE_SLAB:
+        return slab_support(v, n);
     case CSG_NODE_FIELD: /* a formula may be inside anywhere */
         return INFINITY;
     default:

@@ -50,6 +50,8 @@ static void place_points(workspace *w, const csgm_scene *scene, csg_vec3 p)
         csg_vec3 inner = w->points[i];
         if (node->kind == CSG_NODE_TRANSFORM)
             inner = csg_affine_point(&scene->inverses[node->payload], inner);
+        else if (node->kind == CSG_NODE_WARP)
+            inner = csg_warp_at(&scene->warps[node->payload], inner).at;
         for (uint32_t k = 0; k < node->child_count; k++)
             w->points[csg_scene_children(scene, node)[k]] = inner;
     }
@@ -88,9 +90,31 @@ static csg_sample transform(const csgm_scene *scene, const csg_node *node, csg_s
     return (csg_sample){scale * inner.value, csg_vec3_scale(gradient, scale)};
 }
 
+static csg_sample warp(const csgm_scene *scene, const csg_node *node, csg_vec3 p, csg_sample inner)
+{
+    const csg_warp *map = &scene->warps[node->payload];
+    csg_warped warped = csg_warp_at(map, p);
+    double scale = csg_warp_scale(map), gradient[3];
+    for (int i = 0; i < 3; i++)
+        gradient[i] = csg_vec3_dot(warped.column[i], inner.gradient);
+    return (csg_sample){scale * inner.value,
+                        {scale * gradient[0], scale * gradient[1], scale * gradient[2]}};
+}
+
+static csg_sample offset(const csgm_scene *scene, const csg_node *node, csg_sample inner)
+{
+    inner.value += csg_scene_parameters(scene, node)[0];
+    return inner;
+}
+
 static csg_sample sample_leaf(workspace *w, const csgm_scene *scene, const csg_node *node,
                               csg_vec3 p)
 {
+    if (node->kind == CSG_NODE_SHAPE) {
+        csg_sample sample;
+        sample.value = csg_shape_sample(scene->shapes[node->payload], p, &sample.gradient);
+        return sample;
+    }
     if (node->kind != CSG_NODE_FIELD)
         return csg_reference_primitive(node->kind, csg_scene_parameters(scene, node), p);
     csg_formula_dual dual =
@@ -107,6 +131,10 @@ static void evaluate(workspace *w, const csgm_scene *scene)
             w->samples[i] = transform(scene, node, w->samples[children[0]]);
         else if (node->kind == CSG_NODE_COLOR)
             w->samples[i] = w->samples[children[0]];
+        else if (node->kind == CSG_NODE_OFFSET)
+            w->samples[i] = offset(scene, node, w->samples[children[0]]);
+        else if (node->kind == CSG_NODE_WARP)
+            w->samples[i] = warp(scene, node, w->points[i], w->samples[children[0]]);
         else if (csg_node_is_operator(node->kind))
             w->samples[i] = combine(w, scene, node);
         else

@@ -135,10 +135,23 @@ static double round_union(double w, const double *values, size_t count, double *
     return max + t;
 }
 
+/* The union of solids whose complements meet at right angles (scene.h). */
+static double orthogonal_union(const double *values, double *partials)
+{
+    double a = values[0], b = values[1], both = sqrt(a * a + b * b);
+    if (!(a > 0 && b > 0))
+        return choose(values, 2, largest_of(values, 2), partials);
+    partials[0] = a / both;
+    partials[1] = b / both;
+    return both;
+}
+
 double csg_reference_union(csg_blend blend, const double *values, size_t count, double *partials)
 {
     assert(count > 0);
     size_t top = largest_of(values, count);
+    if (blend.kind == CSG_BLEND_ORTHOGONAL && count == 2)
+        return orthogonal_union(values, partials);
     if (count == 1 || blend.kind == CSG_BLEND_SHARP || !(blend.n > 0) || isinf(values[top]))
         return choose(values, count, top, partials);
     if (blend.kind == CSG_BLEND_ROUND)

@@ -204,6 +204,23 @@ static csg_sample ellipsoid(const double *e, csg_vec3 p)
     return (csg_sample){(1 - u) * norm, gradient};
 }
 
+static csg_sample circle(double r, csg_vec3 p)
+{
+    double rho = hypot(p.x, p.y);
+    return revolve(p, rho, r - rho, -1, 0);
+}
+
+static csg_sample rectangle(const double *v, csg_vec3 p)
+{
+    double qx = fabs(p.x) - (v[0] - v[2]), qy = fabs(p.y) - (v[1] - v[2]);
+    double sx = -sign(p.x), sy = -sign(p.y);
+    if (qx > 0 && qy > 0) {
+        double corner = hypot(qx, qy);
+        return (csg_sample){v[2] - corner, vec3(sx * qx / corner, sy * qy / corner, 0)};
+    }
+    return (csg_sample){v[2] - fmax(qx, qy), qx >= qy ? vec3(sx, 0, 0) : vec3(0, sy, 0)};
+}
+
 csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p)
 {
     switch (kind) {
@@ -223,6 +240,12 @@ csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters,
         csg_vec3 normal = vec3(parameters[0], parameters[1], parameters[2]);
         return (csg_sample){parameters[3] - csg_vec3_dot(normal, p), csg_vec3_scale(normal, -1)};
     }
+    case CSG_NODE_CIRCLE:
+        return circle(parameters[0], p);
+    case CSG_NODE_RECTANGLE:
+        return rectangle(parameters, p);
+    case CSG_NODE_SLAB:
+        return (csg_sample){parameters[0] - fabs(p.z), vec3(0, 0, -sign(p.z))};
     default:
         assert(kind == CSG_NODE_EMPTY);
         return (csg_sample){-INFINITY, vec3(0, 0, 0)};

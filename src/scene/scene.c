@@ -12,10 +12,12 @@ typedef struct kind_row {
 
 static const kind_row kinds[] = {
     [CSG_NODE_EMPTY] = {"empty", 0},           [CSG_NODE_FIELD] = {"field", 0},
+    [CSG_NODE_SHAPE] = {"shape", 0},
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
     [CSG_NODE_TRANSFORM] = {"transform", 0},   [CSG_NODE_COLOR] = {"color", 0},
+    [CSG_NODE_OFFSET] = {"offset", 1},         [CSG_NODE_WARP] = {"warp", 0},
     [CSG_NODE_UNION] = {"union", 0},           [CSG_NODE_INTERSECTION] = {"intersection", 0},
     [CSG_NODE_DIFFERENCE] = {"difference", 0},
 };
@@ -52,8 +54,8 @@ static bool has_area(csg_blend_kind kind)
 
 const char *csg_blend_name(csg_blend_kind kind)
 {
-    assert(kind < CSG_BLEND_COUNT);
-    return blends[kind].name;
+    assert(kind <= CSG_BLEND_ORTHOGONAL);
+    return kind == CSG_BLEND_ORTHOGONAL ? "orthogonal" : blends[kind].name;
 }
 
 double csg_blend_raw(csg_blend_kind kind, double width)
@@ -64,12 +66,14 @@ double csg_blend_raw(csg_blend_kind kind, double width)
 
 double csg_blend_support(csg_blend blend)
 {
-    return blend.kind == CSG_BLEND_SHARP ? 0 : blends[blend.kind].support * blend.n;
+    if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL)
+        return 0;
+    return blends[blend.kind].support * blend.n;
 }
 
 double csg_blend_excess(csg_blend blend, uint32_t operands)
 {
-    if (blend.kind == CSG_BLEND_SHARP || operands < 2)
+    if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL || operands < 2)
         return 0;
     if (blend.kind == CSG_BLEND_ROUND)
         return blend.n * (1 - 1 / sqrt((double)operands));
@@ -112,6 +116,8 @@ void csg_scene_destroy(csgm_scene *scene)
     if (!scene)
         return;
     csg_memory *memory = &scene->context->memory;
+    for (size_t i = 0; i < scene->shape_count; i++)
+        csg_shape_release(scene->shapes[i]);
     csg_arena_reset(&scene->arena);
     csg_memory_release(memory, scene, sizeof *scene);
 }

@@ -6,12 +6,16 @@
  * Field of a node (f > 0 inside):
  *   primitive      its exact signed distance in its own frame
  *   field          its formula (scene/formula.h), Lipschitz constant as stated there
+ *   shape          exact signed distance of explicit geometry (shape/shape.h)
  *   transform M    f(p) = s g(M^-1 p), s = smallest singular value of M: Lipschitz constant kept;
  *                  for similarities this is the exact distance again
  *   color          its child
+ *   offset         its child plus r
+ *   warp           scene/warp.h
  *   operator       scene/operators.def; difference is the intersection of the first child with
  *                  the negated others
  *   empty          -infinity
+ * A flat node's field does not depend on z: a figure of the plane.
  */
 #ifndef CSG_SCENE_SCENE_H
 #define CSG_SCENE_SCENE_H
@@ -22,6 +26,8 @@
 #include "base/geometry.h"
 #include "base/span.h"
 #include "scene/formula.h"
+#include "scene/warp.h"
+#include "shape/shape.h"
 
 typedef uint32_t csg_node_id;
 #define CSG_NODE_NONE UINT32_MAX
@@ -29,17 +35,20 @@ typedef uint32_t csg_node_id;
 typedef enum csg_node_kind {
     CSG_NODE_EMPTY,
     CSG_NODE_FIELD,
+    CSG_NODE_SHAPE,
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_NODE_##NAME,
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
     CSG_NODE_TRANSFORM,
     CSG_NODE_COLOR,
+    CSG_NODE_OFFSET,
+    CSG_NODE_WARP,
     CSG_NODE_UNION,
     CSG_NODE_INTERSECTION,
     CSG_NODE_DIFFERENCE
 } csg_node_kind;
 
-/* A leaf that is a solid: a field too. */
+/* A leaf that is a solid: a field or a shape too. */
 static inline bool csg_node_is_primitive(csg_node_kind kind)
 {
     return kind > CSG_NODE_EMPTY && kind < CSG_NODE_TRANSFORM;
@@ -50,20 +59,24 @@ static inline bool csg_node_is_operator(csg_node_kind kind)
 }
 /* "sphere", "union", ...; static storage. */
 const char *csg_node_kind_name(csg_node_kind kind);
-/* Doubles in a primitive's payload; a field has none. */
+/* Doubles in a primitive's payload; a field and a shape have none. */
 uint32_t csg_primitive_parameter_count(csg_node_kind kind);
 
 typedef enum csg_blend_kind {
 #define CSG_BLEND(NAME, name, raw, support, excess, fold, doc) CSG_BLEND_##NAME,
 #include "scene/operators.def"
 #undef CSG_BLEND
-    CSG_BLEND_COUNT
+    CSG_BLEND_COUNT,
+    /* Intersection of fields with gradients at right angles, as of an extrusion's outline and its
+     * ends: where both are negative -sqrt(a^2 + b^2), so that exact distances give an exact
+     * distance. Made by csg_build_extrude only, not in the language. */
+    CSG_BLEND_ORTHOGONAL = CSG_BLEND_COUNT
 } csg_blend_kind;
 
 /* A blend with its parameter n of operators.md section 2 (w of section 12 for ROUND). */
 typedef struct csg_blend {
     csg_blend_kind kind;
-    double n; /* > 0; 0 for SHARP. HYPERBOLA and RECIPROCAL: area, else length */
+    double n; /* > 0; 0 for SHARP and ORTHOGONAL. HYPERBOLA and RECIPROCAL: area, else length */
 } csg_blend;
 
 const char *csg_blend_name(csg_blend_kind kind); /* as in the scene language */
@@ -81,13 +94,19 @@ typedef struct csg_color {
     float r, g, b, a; /* 0..1, sRGB */
 } csg_color;
 
+enum { CSG_FLAG_FLAT = 1 };
+
 typedef struct csg_node {
     uint8_t kind;         /* csg_node_kind */
     uint8_t blend;        /* operators: csg_blend_kind */
+    uint8_t flags;        /* CSG_FLAG_ */
+    uint8_t warps;        /* most warps on a way to a leaf, this one included */
     uint32_t first_child; /* into children */
     uint32_t child_count;
-    uint32_t payload; /* primitives: into parameters; fields: into formulas; transforms: into
-                         transforms; colours: into colors; operators: into parameters, where n is */
+    uint32_t payload; /* primitives: into parameters; fields: into formulas; shapes: into shapes;
+                         transforms: into transforms; colours: into colors; offsets: into
+                         parameters, where r is; warps: into warps; operators: into parameters,
+                         where n is */
     csg_span where;
 } csg_node;
 
@@ -103,8 +122,10 @@ struct csgm_scene {
     csg_color *colors;
     csg_formula *formulas;
     csg_formula_step *steps; /* of all formulas */
+    csg_shape **shapes;      /* one reference each */
+    csg_warp *warps;
     size_t node_count, child_count, parameter_count, transform_count, color_count, formula_count,
-        step_count;
+        step_count, shape_count, warp_count;
     csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
     csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */

@@ -18,24 +18,61 @@ typedef struct visit {
 /* Reachable nodes, parents before children, right before left. */
 typedef struct walk {
     visit *stack, *order;
-    uint8_t *seen; /* per node of the builder */
+    uint8_t *seen;      /* per node of the builder, from `lowest` on */
+    csg_node_id lowest; /* the smallest of the reachable nodes */
     uint32_t stacked, count;
 } walk;
 
-static bool walk_begin(walk *w, csg_arena *scratch, size_t node_count)
+/* The smallest index of a node below root: parts of large scenes are sealed by themselves, and what
+ * was built before them should not cost. */
+static csgm_status find_lowest(csg_memory *memory, const csgm_scene *scene, csg_node_id root,
+                               csg_node_id *lowest)
+{
+    void *data = NULL;
+    size_t capacity = 0, stacked = 0, visited = 0;
+    csgm_status status = CSGM_OK;
+    csg_node_id at = root;
+    *lowest = root;
+    for (;;) {
+        const csg_node *node = &scene->nodes[at];
+        *lowest = at < *lowest ? at : *lowest;
+        if (++visited > scene->node_count) /* a node was used twice */
+            status = CSGM_ERR_INTERNAL;
+        else if (!csg_memory_reserve(memory, &data, &capacity, stacked + node->child_count,
+                                     sizeof(csg_node_id)))
+            status = CSGM_ERR_MEMORY;
+        if (status != CSGM_OK)
+            break;
+        csg_node_id *stack = data;
+        for (uint32_t i = 0; i < node->child_count; i++)
+            stack[stacked++] = csg_scene_children(scene, node)[i];
+        if (!stacked)
+            break;
+        at = stack[--stacked];
+    }
+    csg_memory_release(memory, data, capacity * sizeof(csg_node_id));
+    return status;
+}
+
+static csgm_status walk_begin(walk *w, csg_arena *scratch, const csgm_scene *scene,
+                              csg_node_id root)
 {
     *w = (walk){0};
-    w->stack = csg_arena_calloc(scratch, node_count, sizeof *w->stack);
-    w->order = csg_arena_calloc(scratch, node_count, sizeof *w->order);
-    w->seen = csg_arena_calloc(scratch, node_count, sizeof *w->seen);
-    return w->stack && w->order && w->seen;
+    csgm_status status = find_lowest(scratch->memory, scene, root, &w->lowest);
+    size_t most = root - w->lowest + 1;
+    if (status != CSGM_OK)
+        return status;
+    w->stack = csg_arena_calloc(scratch, most, sizeof *w->stack);
+    w->order = csg_arena_calloc(scratch, most, sizeof *w->order);
+    w->seen = csg_arena_calloc(scratch, most, sizeof *w->seen);
+    return w->stack && w->order && w->seen ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
 static bool push(walk *w, csg_node_id node, uint32_t parent)
 {
-    if (w->seen[node])
+    if (w->seen[node - w->lowest])
         return false;
-    w->seen[node] = 1;
+    w->seen[node - w->lowest] = 1;
     w->stack[w->stacked++] = (visit){node, parent};
     return true;
 }
@@ -67,12 +104,19 @@ static bool walk_from(walk *w, const csgm_scene *scene, csg_node_id root)
 
 /* ---- copying -------------------------------------------------------------------------- */
 
+/* Doubles that a node has among the parameters. */
+static uint32_t parameter_count(const csg_node *node)
+{
+    return csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
+}
+
 static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
     for (uint32_t i = 0; i < w->count; i++) {
         const csg_node *node = &from->nodes[w->order[i].node];
-        out->parameter_count +=
-            csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
+        out->parameter_count += parameter_count(node);
+        out->shape_count += node->kind == CSG_NODE_SHAPE;
+        out->warp_count += node->kind == CSG_NODE_WARP;
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
         out->color_count += node->kind == CSG_NODE_COLOR;
         if (node->kind == CSG_NODE_FIELD) {
@@ -93,8 +137,11 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
     out->colors = csg_arena_calloc(arena, out->color_count, sizeof *out->colors);
     out->formulas = csg_arena_calloc(arena, out->formula_count, sizeof *out->formulas);
     out->steps = csg_arena_calloc(arena, out->step_count, sizeof *out->steps);
-    return out->formulas && out->steps && out->nodes && out->bounds && out->children &&
-           out->parameters && out->transforms && out->inverses && out->scales && out->colors;
+    out->shapes = csg_arena_calloc(arena, out->shape_count, sizeof *out->shapes);
+    out->warps = csg_arena_calloc(arena, out->warp_count, sizeof *out->warps);
+    return out->shapes && out->warps && out->formulas && out->steps && out->nodes && out->bounds &&
+           out->children && out->parameters && out->transforms && out->inverses && out->scales &&
+           out->colors;
 }
 
 static void copy_transform(csgm_scene *out, csg_affine matrix)
@@ -127,9 +174,15 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
     } else if (node->kind == CSG_NODE_FIELD) {
         node->payload = (uint32_t)out->formula_count;
         copy_formula(out, from, from->formulas[old]);
+    } else if (node->kind == CSG_NODE_SHAPE) {
+        node->payload = (uint32_t)out->shape_count;
+        csg_shape_retain(from->shapes[old]);
+        out->shapes[out->shape_count++] = from->shapes[old];
+    } else if (node->kind == CSG_NODE_WARP) {
+        node->payload = (uint32_t)out->warp_count;
+        out->warps[out->warp_count++] = from->warps[old];
     } else {
-        uint32_t count =
-            csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
+        uint32_t count = parameter_count(node);
         node->payload = (uint32_t)out->parameter_count;
         for (uint32_t i = 0; i < count; i++)
             out->parameters[out->parameter_count++] = from->parameters[old + i];
@@ -140,7 +193,7 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
 static void copy_nodes(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
     out->parameter_count = out->transform_count = out->color_count = 0;
-    out->formula_count = out->step_count = 0;
+    out->formula_count = out->step_count = out->shape_count = out->warp_count = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         uint32_t place = w->count - 1 - i;
         csg_node node = from->nodes[w->order[place].node];
@@ -181,14 +234,55 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
                         csgm_scene *out)
 {
     walk w;
-    if (!walk_begin(&w, scratch, builder->scene->node_count))
-        return CSGM_ERR_MEMORY;
+    csgm_status status = walk_begin(&w, scratch, builder->scene, root);
+    if (status != CSGM_OK)
+        return status;
     if (!walk_from(&w, builder->scene, root))
         return CSGM_ERR_INTERNAL;
-    if (!reserve_sealed(out, builder->scene, &w))
+    if (!reserve_sealed(out, builder->scene, &w)) {
+        out->shape_count = 0; /* none was taken over */
         return CSGM_ERR_MEMORY;
+    }
     copy_nodes(out, builder->scene, &w);
     return CSGM_OK;
+}
+
+/* A sealed copy of what stands below root, without bounds. */
+static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_scene **out)
+{
+    csg_memory *memory = &builder->context->memory;
+    csgm_scene *scene = csg_memory_alloc(memory, sizeof *scene);
+    if (!scene)
+        return CSGM_ERR_MEMORY;
+    *scene = (csgm_scene){.context = builder->context};
+    csg_arena_init(&scene->arena, memory);
+    csg_arena scratch;
+    csg_arena_init(&scratch, memory);
+    csgm_status status = seal(builder, root, &scratch, scene);
+    csg_arena_reset(&scratch);
+    if (status == CSGM_OK)
+        *out = scene;
+    else
+        csg_scene_destroy(scene);
+    return status;
+}
+
+csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csgm_scene **out)
+{
+    if (builder->status != CSGM_OK)
+        return builder->status;
+    if (node >= builder->scene->node_count)
+        return CSGM_ERR_ARGUMENT;
+    csgm_scene *scene;
+    csgm_status status = seal_copy(builder, node, &scene);
+    if (status != CSGM_OK)
+        return status;
+    status = csg_bounds_fill(scene);
+    if (status == CSGM_OK)
+        *out = scene;
+    else
+        csg_scene_destroy(scene);
+    return status;
 }
 
 csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
@@ -203,20 +297,12 @@ csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
         return builder->status;
     if (root >= builder->scene->node_count)
         return builder->status = CSGM_ERR_ARGUMENT;
-    csg_memory *memory = &builder->context->memory;
-    csgm_scene *scene = csg_memory_alloc(memory, sizeof *scene);
-    if (!scene)
-        return builder->status = CSGM_ERR_MEMORY;
-    *scene = (csgm_scene){.context = builder->context};
-    csg_arena_init(&scene->arena, memory);
-    csg_arena scratch;
-    csg_arena_init(&scratch, memory);
-    csgm_status status = seal(builder, root, &scratch, scene);
-    csg_arena_reset(&scratch);
-    if (status == CSGM_OK) { /* bounds need room too */
-        csg_build_abandon(builder);
-        status = csg_bounds_fill(scene);
-    }
+    csgm_scene *scene;
+    csgm_status status = seal_copy(builder, root, &scene);
+    if (status != CSGM_OK)
+        return builder->status = status;
+    csg_build_abandon(builder); /* bounds need room too */
+    status = csg_bounds_fill(scene);
     if (status == CSGM_OK && !copy_dependencies(scene, dependencies, dependency_count))
         status = CSGM_ERR_MEMORY;
     if (status != CSGM_OK) {

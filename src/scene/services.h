@@ -9,8 +9,8 @@
 #include "shape/triangles.h"
 
 typedef struct csg_services {
-    /* The triangles of a mesh file. On failure `problem` says what is wrong, in one sentence without
-     * a place, and nothing was reported. */
+    /* The triangles of a mesh file. On failure `problem` says what is wrong, in one sentence
+     * without a place, and nothing was reported. */
     csgm_status (*read_mesh)(csgm_context *context, const char *path, csg_triangles *out,
                              char *problem, size_t problem_size);
     /* Triangles on the scene's surface, `cells` along the longest side of its bounds. */
