@@ -343,7 +343,7 @@ typedef struct csgm_mesh_view {
     uint64_t vertex_count, triangle_count; /* vertex_count < 2^32 */
     const csgm_mesh_part *parts; /* part_count, all triangles in order; NULL = one without a name */
     uint64_t part_count;
-    const uint8_t *materials; /* 2 * vertex_count: metallic and roughness as 0..255, or NULL */
+    const uint16_t *materials; /* 2 * vertex_count: metallic and roughness times 10000, or NULL */
 } csgm_mesh_view;
 
 CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);

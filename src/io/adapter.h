@@ -43,6 +43,8 @@ typedef struct csg_adapter_part {
     uint32_t color_components; /* 3 or 4 */
     const uint32_t *indices;   /* index_count, a multiple of 3, each below vertex_count */
     uint64_t vertex_count, index_count;
+    bool begins;      /* a part of the mesh: the first primitive of a node */
+    const char *name; /* of that, or NULL */
 } csg_adapter_part;
 
 /* ---- Draco (draco.cc) ------------------------------------------------------------- */
@@ -56,8 +58,8 @@ typedef struct csg_draco_encoded {
     void *owner; /* pass to csg_draco_release */
     const uint8_t *bytes;
     size_t size_bytes;
-    uint64_t vertex_count, triangle_count;     /* of the mesh as encoded */
-    uint32_t position_id, normal_id, color_id; /* unique attribute ids */
+    uint64_t vertex_count, triangle_count;                    /* of the mesh as encoded */
+    uint32_t position_id, normal_id, color_id, coordinate_id; /* unique attribute ids */
 } csg_draco_encoded;
 
 /* What to encode: positions finite, at least one triangle, indices in range. Colours are whole
@@ -66,6 +68,8 @@ typedef struct csg_draco_mesh {
     const float *positions, *normals; /* normals may be NULL */
     const void *colors;               /* NULL, or 4 * vertex_count of color_bytes each */
     uint32_t color_bytes;             /* 1 or 2 */
+    const uint16_t *coordinates;      /* of a texture, 2 * vertex_count, or NULL */
+    const float *grid;                /* NULL, or the low corner and size of what is quantised */
     const uint32_t *indices;
     uint64_t vertex_count, triangle_count;
 } csg_draco_mesh;

@@ -60,6 +60,9 @@ csgm_status encode(const csg_draco_mesh *in, const csg_draco_settings *settings,
                                     in->color_bytes == 2 ? draco::DT_UINT16 : draco::DT_UINT8, true,
                                     in->colors, count)
                     : -1;
+    int coordinate = in->coordinates ? add_attribute(&mesh, draco::GeometryAttribute::TEX_COORD, 2,
+                                                     draco::DT_UINT16, true, in->coordinates, count)
+                                     : -1;
     mesh.SetNumFaces(in->triangle_count);
     for (uint64_t i = 0; i < in->triangle_count; i++) {
         draco::Mesh::Face face;
@@ -72,7 +75,11 @@ csgm_status encode(const csg_draco_mesh *in, const csg_draco_settings *settings,
     encoder.SetSpeedOptions(speed, speed);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
     encoder.SetTrackEncodedProperties(true);
-    encoder.SetAttributeQuantization(position, static_cast<int>(settings->position_bits));
+    if (in->grid)
+        encoder.SetAttributeExplicitQuantization(
+            position, static_cast<int>(settings->position_bits), 3, in->grid, in->grid[3]);
+    else
+        encoder.SetAttributeQuantization(position, static_cast<int>(settings->position_bits));
     if (normal >= 0)
         encoder.SetAttributeQuantization(normal, static_cast<int>(settings->normal_bits));
     auto owner = std::make_unique<encoded_owner>();
@@ -89,6 +96,7 @@ csgm_status encode(const csg_draco_mesh *in, const csg_draco_settings *settings,
     out->position_id = mesh.attribute(position)->unique_id();
     out->normal_id = normal >= 0 ? mesh.attribute(normal)->unique_id() : 0;
     out->color_id = color >= 0 ? mesh.attribute(color)->unique_id() : 0;
+    out->coordinate_id = coordinate >= 0 ? mesh.attribute(coordinate)->unique_id() : 0;
     out->owner = owner.release();
     return CSGM_OK;
 }

@@ -162,6 +162,8 @@ json keep_meshes(document &doc, const json &meshes)
                 note_draco(doc, out.size(), i, (*from)[i], primitives[i]);
         }
         out.push_back({{"primitives", std::move(primitives)}});
+        if (const json *name = member(mesh, "name"); name && name->is_string())
+            out.back()["name"] = *name;
     }
     return out;
 }
@@ -177,7 +179,7 @@ json cut_down(document &doc, const json &root)
     if (const json *scene = member(root, "scene"))
         out["scene"] = *scene;
     copy("scenes", {"nodes"});
-    copy("nodes", {"children", "mesh", "matrix", "translation", "rotation", "scale"});
+    copy("nodes", {"children", "mesh", "name", "matrix", "translation", "rotation", "scale"});
     copy("accessors",
          {"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "sparse"});
     copy("bufferViews", {"buffer", "byteOffset", "byteLength", "byteStride"});
@@ -463,7 +465,14 @@ arrays read_plain(const document &doc, const tinygltf::Primitive &primitive)
 
 using transform = std::array<double, 12>;
 
-void emit_compressed(const document &doc, const compressed &from, const transform &place)
+/* Where primitives of a mesh come from: its node's place, and the name of the part they are. */
+struct origin {
+    transform place;
+    const char *name;
+    bool begins;
+};
+
+void emit_compressed(const document &doc, const compressed &from, const origin &at)
 {
     span bytes = view_bytes(doc, from.view);
     csg_adapter_error error = {};
@@ -475,20 +484,22 @@ void emit_compressed(const document &doc, const compressed &from, const transfor
                                           &decoded, &error);
     if (status)
         refuse(status, "a compressed primitive: %s", error.text);
-    status = doc.calls->part(doc.calls->user, &decoded.part, place.data());
+    decoded.part.begins = at.begins;
+    decoded.part.name = at.name;
+    status = doc.calls->part(doc.calls->user, &decoded.part, at.place.data());
     csg_draco_release_decoded(&decoded);
     if (status)
         throw trouble{status, ""};
 }
 
-void emit_primitive(const document &doc, size_t mesh, size_t index, const transform &place)
+void emit_primitive(const document &doc, size_t mesh, size_t index, const origin &at)
 {
     const tinygltf::Primitive &primitive = doc.model.meshes[mesh].primitives[index];
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
         return; /* points and lines are no surface */
     auto draco = doc.draco.find({mesh, index});
     if (draco != doc.draco.end()) {
-        emit_compressed(doc, draco->second, place);
+        emit_compressed(doc, draco->second, at);
         return;
     }
     arrays in = read_plain(doc, primitive);
@@ -500,7 +511,9 @@ void emit_primitive(const document &doc, size_t mesh, size_t index, const transf
     part.indices = in.indices.data();
     part.vertex_count = in.positions.size() / 3;
     part.index_count = in.indices.size();
-    csgm_status status = doc.calls->part(doc.calls->user, &part, place.data());
+    part.begins = at.begins;
+    part.name = at.name;
+    csgm_status status = doc.calls->part(doc.calls->user, &part, at.place.data());
     if (status)
         throw trouble{status, ""};
 }
@@ -553,15 +566,16 @@ transform node_transform(const tinygltf::Node &node)
     return out;
 }
 
-void emit_mesh(const document &doc, int mesh, const transform &place)
+void emit_mesh(const document &doc, int mesh, const transform &place, const std::string &node_name)
 {
     if (mesh < 0)
         return;
     if (static_cast<size_t>(mesh) >= doc.model.meshes.size())
         refuse(CSGM_ERR_FORMAT, "there is no mesh %d", mesh);
-    size_t count = doc.model.meshes[static_cast<size_t>(mesh)].primitives.size();
-    for (size_t i = 0; i < count; i++)
-        emit_primitive(doc, static_cast<size_t>(mesh), i, place);
+    const tinygltf::Mesh &from = doc.model.meshes[static_cast<size_t>(mesh)];
+    const std::string &name = node_name.empty() ? from.name : node_name;
+    for (size_t i = 0; i < from.primitives.size(); i++)
+        emit_primitive(doc, static_cast<size_t>(mesh), i, {place, name.c_str(), i == 0});
 }
 
 /* The nodes of the scene that is shown, or, without scenes, those that are nobody's children. */
@@ -605,12 +619,12 @@ void walk(const document &doc)
         seen[static_cast<size_t>(index)] = true;
         const tinygltf::Node &node = nodes[static_cast<size_t>(index)];
         transform place = multiply(parent, node_transform(node));
-        emit_mesh(doc, node.mesh, place);
+        emit_mesh(doc, node.mesh, place, node.name);
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
             stack.push_back({*child, place});
     }
     for (size_t i = 0; nodes.empty() && i < doc.model.meshes.size(); i++)
-        emit_mesh(doc, static_cast<int>(i), identity());
+        emit_mesh(doc, static_cast<int>(i), identity(), {});
 }
 
 void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)

@@ -96,6 +96,8 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
     bool mirrored = determinant < 0;
     uint64_t first = g->builder->vertex_count;
     csgm_status status = CSGM_OK;
+    if (part->begins)
+        csg_builder_part(g->builder, part->name && *part->name ? part->name : NULL);
     if (first + part->vertex_count > UINT32_MAX)
         return csg_read_unsupported(g->input, "more than 4294967295 vertices in all");
     for (uint64_t i = 0; i < part->vertex_count && !status && !g->builder->failed; i++)

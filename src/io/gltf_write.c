@@ -4,7 +4,7 @@
  * metres: one node matrix turns, scales and adds the origin, the floats stay those of the mesh.
  * Colours become linear in 16 bits, since 8 linear bits cannot hold 8 bits of sRGB. Normals
  * that are not of unit length (critical points of the field) are made so: the format demands it.
- * Does not handle: buffers of 4 GiB and more (GLB's own limit), several meshes.
+ * Does not handle: buffers of 4 GiB and more (GLB's own limit).
  */
 #include <math.h>
 
@@ -50,24 +50,25 @@ void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
     }
 }
 
-static void position_range(csg_gltf_layout *layout, const csgm_mesh_view *mesh)
+static void position_range(csg_gltf_part *part, const csgm_mesh_view *mesh)
 {
     for (int k = 0; k < 3; k++) {
-        layout->min[k] = INFINITY;
-        layout->max[k] = -INFINITY;
+        part->min[k] = INFINITY;
+        part->max[k] = -INFINITY;
     }
-    for (uint64_t i = 0; i < mesh->vertex_count; i++)
-        for (uint64_t k = 0; k < 3; k++) {
-            float p = mesh->positions[3 * i + k];
-            layout->min[k] = p < layout->min[k] ? p : layout->min[k];
-            layout->max[k] = p > layout->max[k] ? p : layout->max[k];
+    const float *p = mesh->positions + 3 * part->first_vertex;
+    for (uint64_t i = 0; i < part->vertex_count; i++, p += 3)
+        for (int k = 0; k < 3; k++) {
+            part->min[k] = p[k] < part->min[k] ? p[k] : part->min[k];
+            part->max[k] = p[k] > part->max[k] ? p[k] : part->max[k];
         }
 }
 
-static bool all_opaque(const csgm_mesh_view *mesh)
+static bool all_opaque(const csg_gltf_part *part, const csgm_mesh_view *mesh)
 {
     bool opaque = true;
-    for (uint64_t i = 0; mesh->colors && i < mesh->vertex_count; i++)
+    uint64_t end = part->first_vertex + part->vertex_count;
+    for (uint64_t i = part->first_vertex; mesh->colors && i < end; i++)
         opaque &= mesh->colors[4 * i + 3] == 255;
     return opaque;
 }
@@ -78,7 +79,11 @@ csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh)
                               .index_count = 3 * mesh->triangle_count,
                               .normals = mesh->normals,
                               .colors = mesh->colors,
-                              .wide_colors = true};
+                              .wide_colors = true,
+                              .part_count = 1};
+    layout.only = (csg_gltf_part){.vertex_count = layout.vertex_count,
+                                  .index_count = layout.index_count,
+                                  .material = {CSG_MATERIAL_METALLIC, CSG_MATERIAL_ROUGHNESS}};
     /* 65535 itself would be the primitive restart value */
     layout.short_indices = mesh->vertex_count <= UINT16_MAX;
     layout.position_bytes = 12 * mesh->vertex_count;
@@ -87,6 +92,71 @@ csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh)
     layout.index_bytes = layout.index_count * (layout.short_indices ? 2 : 4);
     layout.buffer_bytes = layout.position_bytes + layout.normal_bytes + layout.color_bytes +
                           ((layout.index_bytes + 3) & ~(uint64_t)3);
+    return layout;
+}
+
+/* Where metallic and roughness change over a part, they are the coordinates of a vertex in this
+ * texture of 2 x 2 pixels: green is roughness, from 0 above to 1 below, and blue is metallic, from
+ * 0 at the left to 1 at the right, so that what the viewer interpolates between their centres is
+ * the mixture itself. A PNG, padded to four bytes. */
+static const uint8_t mixing_texture[] = {
+    0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x02, 0x08, 0x02, 0x00, 0x00, 0x00, 0xFD,
+    0xD4, 0x9A, 0x73, 0x00, 0x00, 0x00, 0x0F, 0x49, 0x44, 0x41, 0x54, 0x78, 0xDA, 0x63, 0x60,
+    0x00, 0x81, 0xFF, 0x10, 0xF4, 0x1F, 0x00, 0x0F, 0xFE, 0x03, 0xFD, 0x4B, 0x85, 0x65, 0xCA,
+    0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
+
+/* One side of it: from the centre of the first pixel to that of the second. */
+static uint32_t texture_coordinate(uint16_t value)
+{
+    return (uint32_t)(65535.0 * (0.25 + 0.5 * value / CSG_MATERIAL_ONE) + 0.5);
+}
+
+/* Parts of one look share a material. */
+static void number_materials(csg_gltf_part *parts, uint64_t count)
+{
+    uint32_t next = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        csg_gltf_part *p = &parts[i];
+        p->material_index = next;
+        for (uint64_t k = 0; k < i && p->material_index == next; k++)
+            if (parts[k].opaque == p->opaque && parts[k].textured == p->textured &&
+                (p->textured || memcmp(parts[k].material, p->material, sizeof p->material) == 0))
+                p->material_index = parts[k].material_index;
+        next += p->material_index == next;
+    }
+}
+
+static void measure_part(csg_gltf_layout *layout, csg_gltf_part *out, const csgm_mesh_view *mesh,
+                         uint64_t index)
+{
+    csg_part part = csg_part_get(mesh, index);
+    *out = (csg_gltf_part){.name = part.name,
+                           .first_vertex = part.first_vertex,
+                           .vertex_count = part.vertex_count,
+                           .first_index = 3 * part.first_triangle,
+                           .index_count = 3 * part.triangle_count};
+    position_range(out, mesh);
+    out->opaque = all_opaque(out, mesh);
+    out->textured = !csg_part_has_one_material(mesh, &part, out->material);
+    layout->textured |= out->textured;
+}
+
+/* All of the layout; parts has room for all, those without triangles are left out. */
+static csg_gltf_layout measure_parts(csg_gltf_part *parts, const csgm_mesh_view *mesh)
+{
+    csg_gltf_layout layout = csg_gltf_measure(mesh);
+    layout.parts = parts;
+    layout.part_count = 0;
+    for (uint64_t i = 0; i < csg_part_count(mesh); i++)
+        if (!mesh->part_count || mesh->parts[i].triangle_count)
+            measure_part(&layout, &parts[layout.part_count++], mesh, i);
+    number_materials(parts, layout.part_count);
+    if (layout.textured) {
+        layout.coordinate_bytes = 4 * mesh->vertex_count;
+        layout.image_bytes = sizeof mixing_texture;
+        layout.buffer_bytes += layout.coordinate_bytes + layout.image_bytes;
+    }
     return layout;
 }
 
@@ -192,35 +262,66 @@ static void put_colors(body *b, const csgm_mesh_view *mesh)
     body_put(b, chunk, (size_t)(at - chunk));
 }
 
-static void put_indices(body *b, const csgm_mesh_view *mesh, bool narrow)
+static void put_coordinates(body *b, const csgm_mesh_view *mesh)
 {
     uint8_t chunk[CHUNK + 4], *at = chunk;
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
-        at = narrow ? csg_store_u16(at, mesh->indices[i]) : csg_store_u32(at, mesh->indices[i]);
+    for (uint64_t i = 0; i < 2 * mesh->vertex_count; i++) {
+        at = csg_store_u16(at, texture_coordinate(mesh->materials[i]));
         if (at >= chunk + CHUNK) {
             body_put(b, chunk, (size_t)(at - chunk));
             at = chunk;
         }
     }
-    if (narrow && mesh->triangle_count % 2)
-        at = csg_store_u16(at, 0);
     body_put(b, chunk, (size_t)(at - chunk));
+}
+
+static void put_indices(body *b, const csgm_mesh_view *mesh, const csg_gltf_part *part, bool narrow)
+{
+    const uint32_t *indices = mesh->indices + part->first_index;
+    uint32_t first = (uint32_t)part->first_vertex;
+    uint8_t chunk[CHUNK + 4], *at = chunk;
+    for (uint64_t i = 0; i < part->index_count; i++) {
+        at = narrow ? csg_store_u16(at, indices[i] - first) : csg_store_u32(at, indices[i] - first);
+        if (at >= chunk + CHUNK) {
+            body_put(b, chunk, (size_t)(at - chunk));
+            at = chunk;
+        }
+    }
+    body_put(b, chunk, (size_t)(at - chunk));
+}
+
+static void put_plain_body(body *b, const csg_gltf_layout *layout, const csgm_mesh_view *mesh)
+{
+    static const uint8_t zeros[4];
+    put_positions(b, mesh);
+    put_normals(b, mesh);
+    put_colors(b, mesh);
+    if (layout->textured)
+        put_coordinates(b, mesh);
+    for (uint64_t i = 0; i < layout->part_count; i++)
+        put_indices(b, mesh, csg_gltf_part_at(layout, i), layout->short_indices);
+    body_put(b, zeros, (size_t)(-layout->index_bytes & 3));
+}
+
+static void put_compressed_body(body *b, const csg_gltf_layout *layout)
+{
+    static const uint8_t zeros[4];
+    for (uint64_t i = 0; i < layout->part_count; i++) {
+        const csg_draco_encoded *encoded = &csg_gltf_part_at(layout, i)->draco;
+        body_put(b, encoded->bytes, encoded->size_bytes);
+        body_put(b, zeros, -encoded->size_bytes & 3);
+    }
 }
 
 static void put_body(csg_sink *sink, const csg_gltf_layout *layout, const csgm_mesh_view *mesh,
                      bool base64)
 {
-    static const uint8_t zeros[4];
     body b = {.sink = sink, .base64 = base64};
-    if (layout->draco) {
-        body_put(&b, layout->draco->bytes, layout->draco->size_bytes);
-        body_put(&b, zeros, layout->buffer_bytes - layout->draco->size_bytes);
-    } else {
-        put_positions(&b, mesh);
-        put_normals(&b, mesh);
-        put_colors(&b, mesh);
-        put_indices(&b, mesh, layout->short_indices);
-    }
+    if (layout->compressed)
+        put_compressed_body(&b, layout);
+    else
+        put_plain_body(&b, layout, mesh);
+    body_put(&b, mixing_texture, layout->image_bytes);
     body_end(&b);
 }
 
@@ -231,25 +332,30 @@ uint64_t csg_glb_bytes(const csg_gltf_layout *layout, size_t json_bytes)
     return 12 + 8 + json_bytes + (layout->buffer_bytes ? 8 + layout->buffer_bytes : 0);
 }
 
-size_t csg_glb_json(const csg_gltf_layout *layout, char *text)
+void csg_glb_json(const csg_gltf_layout *layout, csg_gltf_text *text)
 {
-    size_t length = csg_gltf_json(layout, false, text);
-    size_t wanted = layout->index_count && !layout->draco ? (size_t)CSG_GLB_JSON_BYTES : length;
-    while (length < wanted || length % 4)
-        text[length++] = ' ';
-    return length;
+    csg_gltf_json(layout, false, text);
+    size_t wanted = layout->index_count && !layout->compressed ? (size_t)CSG_GLB_JSON_BYTES : 0;
+    wanted = wanted > text->length ? wanted : (text->length + 3) & ~(size_t)3;
+    if (text->memory && !text->failed)
+        text->failed =
+            !csg_memory_reserve(text->memory, (void **)&text->text, &text->capacity, wanted, 1);
+    while (!text->failed && text->length < wanted)
+        text->text[text->length++] = ' ';
 }
 
-uint8_t *csg_glb_put_head(uint8_t *at, const csg_gltf_layout *layout, const char *json,
-                          size_t json_bytes)
+uint8_t *csg_glb_put_head(uint8_t *at, const csg_gltf_layout *layout, size_t json_bytes)
 {
     memcpy(at, "glTF", 4);
     at = csg_store_u32(at + 4, 2);
     at = csg_store_u32(at, (uint32_t)csg_glb_bytes(layout, json_bytes));
     at = csg_store_u32(at, (uint32_t)json_bytes);
     memcpy(at, "JSON", 4);
-    memcpy(at + 4, json, json_bytes);
-    at += 4 + json_bytes;
+    return at + 4;
+}
+
+uint8_t *csg_glb_put_body_head(uint8_t *at, const csg_gltf_layout *layout)
+{
     if (!layout->buffer_bytes)
         return at;
     at = csg_store_u32(at, (uint32_t)layout->buffer_bytes);
@@ -258,32 +364,36 @@ uint8_t *csg_glb_put_head(uint8_t *at, const csg_gltf_layout *layout, const char
 }
 
 static csgm_status put_glb(csg_sink *sink, const csg_gltf_layout *layout,
-                           const csgm_mesh_view *mesh)
+                           const csgm_mesh_view *mesh, csg_gltf_text *json)
 {
-    char json[CSG_GLTF_JSON_MOST + 4];
-    size_t length = csg_glb_json(layout, json);
-    uint64_t total = csg_glb_bytes(layout, length);
+    csg_glb_json(layout, json);
+    if (json->failed)
+        return csg_context_no_memory(sink->context);
+    uint64_t total = csg_glb_bytes(layout, json->length);
     if (total > CSG_GLB_MOST)
         return csg_write_refuse(sink, "write PLY instead, which has no such limit",
                                 "GLB files end at 4 GiB, this one would have %llu bytes",
                                 (unsigned long long)total);
-    csg_sink_took(sink, csg_glb_put_head(csg_sink_room(sink, length + CSG_GLB_HEAD_MOST), layout,
-                                         json, length));
-    if (!layout->buffer_bytes)
-        return CSGM_OK;
-    put_body(sink, layout, mesh, false);
+    uint8_t head[CSG_GLB_HEAD_MOST];
+    csg_sink_put(sink, head, (size_t)(csg_glb_put_head(head, layout, json->length) - head));
+    csg_sink_put(sink, json->text, json->length);
+    csg_sink_put(sink, head, (size_t)(csg_glb_put_body_head(head, layout) - head));
+    if (layout->buffer_bytes)
+        put_body(sink, layout, mesh, false);
     return CSGM_OK;
 }
 
 static csgm_status put_gltf(csg_sink *sink, const csg_gltf_layout *layout,
-                            const csgm_mesh_view *mesh)
+                            const csgm_mesh_view *mesh, csg_gltf_text *json)
 {
-    char json[CSG_GLTF_JSON_MOST];
     if (layout->buffer_bytes > CSG_GLB_MOST)
         return csg_write_refuse(sink, "write PLY instead, which has no such limit",
                                 "glTF buffers end at 4 GiB, this one would have %llu bytes",
                                 (unsigned long long)layout->buffer_bytes);
-    csg_sink_put(sink, json, csg_gltf_json(layout, true, json));
+    csg_gltf_json(layout, true, json);
+    if (json->failed)
+        return csg_context_no_memory(sink->context);
+    csg_sink_put(sink, json->text, json->length);
     if (layout->index_count) {
         put_body(sink, layout, mesh, true);
         csg_sink_text(sink, csg_gltf_json_tail);
@@ -295,14 +405,22 @@ static csgm_status put_gltf(csg_sink *sink, const csg_gltf_layout *layout,
 /* ---- Draco ------------------------------------------------------------------------ */
 
 typedef csgm_status container_fn(csg_sink *sink, const csg_gltf_layout *layout,
-                                 const csgm_mesh_view *mesh);
+                                 const csgm_mesh_view *mesh, csg_gltf_text *json);
 
-/* Linear colours for the encoder, of one byte when that holds the wanted bits. */
-static void *linear_colors(csg_sink *sink, const csgm_mesh_view *mesh, uint32_t bits, size_t *bytes)
+/* What the encoder gets of a part: its own arrays, from memory. */
+typedef struct extract {
+    csg_memory *memory;
+    void *colors; /* linear, of one byte when that holds the wanted bits */
+    uint16_t *coordinates;
+    uint32_t *indices; /* from the part's first vertex on; NULL = the mesh's own */
+    size_t color_bytes, coordinate_bytes, index_bytes;
+} extract;
+
+static bool fill_colors(extract *e, const csgm_mesh_view *mesh, uint32_t bits)
 {
     bool wide = bits > 8;
-    *bytes = (size_t)mesh->vertex_count * (wide ? 8 : 4);
-    uint8_t *colors = csg_memory_alloc(&sink->context->memory, *bytes);
+    e->color_bytes = (size_t)mesh->vertex_count * (wide ? 8 : 4);
+    uint8_t *colors = e->colors = csg_memory_alloc(e->memory, e->color_bytes);
     csg_color_table table = csg_color_table_make(bits, wide);
     for (uint64_t i = 0; colors && i < 4 * mesh->vertex_count; i++) {
         const uint16_t *curve = i % 4 == 3 ? table.alpha : table.linear;
@@ -315,48 +433,144 @@ static void *linear_colors(csg_sink *sink, const csgm_mesh_view *mesh, uint32_t 
     return colors;
 }
 
-static csgm_status write_compressed(csg_sink *sink, csg_gltf_layout *layout,
-                                    const csgm_mesh_view *mesh, const csgm_write_options *options,
-                                    container_fn *container)
+static bool fill_coordinates(extract *e, const csgm_mesh_view *mesh)
 {
-    size_t color_bytes = 0;
-    void *colors = NULL;
+    e->coordinate_bytes = (size_t)mesh->vertex_count * 2 * sizeof *e->coordinates;
+    e->coordinates = csg_memory_alloc(e->memory, e->coordinate_bytes);
+    for (uint64_t i = 0; e->coordinates && i < 2 * mesh->vertex_count; i++)
+        e->coordinates[i] = (uint16_t)texture_coordinate(mesh->materials[i]);
+    return e->coordinates;
+}
+
+static bool fill_indices(extract *e, const csgm_mesh_view *mesh, uint64_t first)
+{
+    e->index_bytes = (size_t)mesh->triangle_count * 3 * sizeof *e->indices;
+    e->indices = csg_memory_alloc(e->memory, e->index_bytes);
+    for (uint64_t i = 0; e->indices && i < 3 * mesh->triangle_count; i++)
+        e->indices[i] = mesh->indices[i] - (uint32_t)first;
+    return e->indices;
+}
+
+static void release_extract(extract *e)
+{
+    csg_memory_release(e->memory, e->colors, e->color_bytes);
+    csg_memory_release(e->memory, e->coordinates, e->coordinate_bytes);
+    csg_memory_release(e->memory, e->indices, e->index_bytes);
+}
+
+static csgm_mesh_view view_of(const csg_gltf_part *part, const csgm_mesh_view *mesh)
+{
+    csgm_mesh_view view = {.origin = mesh->origin,
+                           .positions = mesh->positions + 3 * part->first_vertex,
+                           .indices = mesh->indices + part->first_index,
+                           .vertex_count = part->vertex_count,
+                           .triangle_count = part->index_count / 3};
+    if (mesh->normals)
+        view.normals = mesh->normals + 3 * part->first_vertex;
+    if (mesh->colors)
+        view.colors = mesh->colors + 4 * part->first_vertex;
+    if (mesh->materials)
+        view.materials = mesh->materials + 2 * part->first_vertex;
+    return view;
+}
+
+static csgm_status compress_part(csg_sink *sink, const csg_gltf_layout *layout, csg_gltf_part *part,
+                                 const csgm_mesh_view *mesh, const csgm_write_options *options,
+                                 const float grid[4])
+{
+    extract e = {.memory = &sink->context->memory};
+    csgm_mesh_view view = view_of(part, mesh);
+    csgm_status status = CSGM_OK;
+    if ((view.colors && !fill_colors(&e, &view, options->draco_color_bits)) ||
+        (part->textured && !fill_coordinates(&e, &view)) ||
+        (part->first_vertex && !fill_indices(&e, &view, part->first_vertex)))
+        status = csg_context_no_memory(sink->context);
+    if (e.indices)
+        view.indices = e.indices;
+    csg_draco_mesh source = {.colors = e.colors,
+                             .color_bytes = layout->wide_colors ? 2 : 1,
+                             .coordinates = e.coordinates,
+                             .grid = grid};
+    if (!status)
+        status = csg_write_draco(sink, &view, &source, options, &part->draco);
+    release_extract(&e);
+    part->vertex_count = part->draco.vertex_count;
+    part->index_count = 3 * part->draco.triangle_count;
+    return status;
+}
+
+/* One grid for all parts, so that faces that met still meet: the low corner and the longest side.
+ */
+static void common_grid(const csg_gltf_layout *layout, float grid[4])
+{
+    float high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int k = 0; k < 3; k++)
+        grid[k] = INFINITY;
+    grid[3] = 0;
+    for (uint64_t i = 0; i < layout->part_count; i++)
+        for (int k = 0; k < 3; k++) {
+            grid[k] = fminf(grid[k], layout->parts[i].min[k]);
+            high[k] = fmaxf(high[k], layout->parts[i].max[k]);
+        }
+    for (int k = 0; k < 3; k++)
+        grid[3] = fmaxf(grid[3], high[k] - grid[k]);
+}
+
+static csgm_status compress(csg_sink *sink, csg_gltf_layout *layout, csg_gltf_part *parts,
+                            const csgm_mesh_view *mesh, const csgm_write_options *options)
+{
+    float grid[4];
+    csgm_status status = CSGM_OK;
+    bool several = layout->part_count > 1;
+    common_grid(layout, grid);
+    layout->compressed = layout->short_indices = true;
     layout->wide_colors = options->draco_color_bits > 8;
-    if (mesh->colors) {
-        colors = linear_colors(sink, mesh, options->draco_color_bits, &color_bytes);
-        if (!colors)
-            return csg_context_no_memory(sink->context);
+    layout->buffer_bytes = layout->image_bytes;
+    for (uint64_t i = 0; i < layout->part_count && !status; i++) {
+        parts[i].draco_at = layout->buffer_bytes - layout->image_bytes;
+        status = compress_part(sink, layout, &parts[i], mesh, options, several ? grid : NULL);
+        layout->buffer_bytes += ((uint64_t)parts[i].draco.size_bytes + 3) & ~(uint64_t)3;
+        layout->short_indices &= parts[i].vertex_count <= UINT16_MAX;
     }
-    csg_draco_mesh source = {.colors = colors, .color_bytes = layout->wide_colors ? 2 : 1};
-    csg_draco_encoded encoded;
-    csgm_status status = csg_write_draco(sink, mesh, &source, options, &encoded);
-    csg_memory_release(&sink->context->memory, colors, color_bytes);
-    if (status)
-        return status;
-    layout->draco = &encoded;
-    layout->vertex_count = encoded.vertex_count;
-    layout->index_count = 3 * encoded.triangle_count;
-    layout->short_indices = encoded.vertex_count <= UINT16_MAX;
-    layout->buffer_bytes = ((uint64_t)encoded.size_bytes + 3) & ~(uint64_t)3;
-    status = container(sink, layout, mesh);
-    csg_draco_release(&encoded);
+    return status;
+}
+
+/* ---- documents -------------------------------------------------------------------- */
+
+static csgm_status write_parts(csg_sink *sink, csg_gltf_part *parts, const csgm_mesh_view *mesh,
+                               const csgm_write_options *options, container_fn *container,
+                               csg_gltf_text *json)
+{
+    csgm_status status = CSGM_OK;
+    csg_gltf_layout layout = measure_parts(parts, mesh);
+    csg_gltf_place(&layout, &mesh->origin, options);
+    if (options->draco)
+        status = compress(sink, &layout, parts, mesh, options);
+    if (!status)
+        status = container(sink, &layout, mesh, json);
+    for (uint64_t i = 0; i < layout.part_count; i++)
+        csg_draco_release(&parts[i].draco);
     return status;
 }
 
 static csgm_status write_document(csg_sink *sink, const csgm_mesh_view *mesh,
                                   const csgm_write_options *options, container_fn *container)
 {
-    csg_gltf_layout layout = csg_gltf_measure(mesh);
+    csg_memory *memory = &sink->context->memory;
+    csg_gltf_text json = {.memory = memory};
+    csgm_status status;
     if (!mesh->triangle_count) { /* a buffer must not be empty, nor a mesh */
-        layout = (csg_gltf_layout){0};
-        return container(sink, &layout, mesh);
+        csg_gltf_layout nothing = {0};
+        status = container(sink, &nothing, mesh, &json);
+    } else {
+        size_t bytes = (size_t)csg_part_count(mesh) * sizeof(csg_gltf_part);
+        csg_gltf_part *parts = csg_memory_alloc(memory, bytes);
+        status = parts ? write_parts(sink, parts, mesh, options, container, &json)
+                       : csg_context_no_memory(sink->context);
+        csg_memory_release(memory, parts, bytes);
     }
-    position_range(&layout, mesh);
-    layout.opaque = all_opaque(mesh);
-    csg_gltf_place(&layout, &mesh->origin, options);
-    if (options->draco)
-        return write_compressed(sink, &layout, mesh, options, container);
-    return container(sink, &layout, mesh);
+    csg_memory_release(memory, json.text, json.capacity);
+    return status;
 }
 
 csgm_status csg_glb_write(csg_sink *sink, const csgm_mesh_view *mesh,

@@ -164,14 +164,37 @@ static csgm_status read_face(obj *o)
 /* Statements that say nothing about triangles. */
 static bool is_skipped(const char *word, size_t length)
 {
-    static const char *const known[] = {"vt",       "vp",         "g",        "o",      "s",
-                                        "l",        "p",          "mg",       "usemtl", "mtllib",
-                                        "lod",      "bevel",      "maplib",   "usemap", "c_interp",
-                                        "d_interp", "shadow_obj", "trace_obj"};
+    static const char *const known[] = {
+        "vt",  "vp",    "s",      "l",      "p",        "mg",       "usemtl",     "mtllib",
+        "lod", "bevel", "maplib", "usemap", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (csg_scan_is(word, length, known[i]))
             return true;
     return false;
+}
+
+/* "o name" or "g names": the rest of the line, without the blanks at its ends. */
+static csgm_status read_part(obj *o)
+{
+    csg_scan_blanks(&o->scan);
+    const char *begin = o->scan.at, *end = begin;
+    while (end < o->scan.end && *end != '\n' && *end != '\r')
+        end++;
+    while (end > begin && (end[-1] == ' ' || end[-1] == '\t'))
+        end--;
+    char *name = NULL;
+    csg_memory *memory = &o->input->context->memory;
+    size_t length = (size_t)(end - begin);
+    if (length) {
+        name = csg_memory_alloc(memory, length + 1);
+        if (!name)
+            return csg_context_no_memory(o->input->context);
+        memcpy(name, begin, length);
+        name[length] = 0;
+    }
+    csg_builder_part(o->builder, name);
+    csg_memory_release(memory, name, length + 1);
+    return CSGM_OK;
 }
 
 static csgm_status read_line(obj *o)
@@ -184,6 +207,8 @@ static csgm_status read_line(obj *o)
         return read_normal(o);
     if (length == 1 && *word == 'f')
         return read_face(o);
+    if (length == 1 && (*word == 'o' || *word == 'g'))
+        return read_part(o);
     if (is_skipped(word, length))
         return CSGM_OK;
     if (csg_scan_is(word, length, "cstype") || csg_scan_is(word, length, "curv") ||

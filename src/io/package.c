@@ -189,9 +189,9 @@ csgm_status csg_package_parse(csg_package *package, const char *name, const csg_
         XML_SetStartDoctypeDeclHandler(p.parser, on_doctype);
         status = feed(package, file, &p);
     }
-    if (status == CSGM_ERR_MEMORY && !*p.problem)
-        p.problem = "out of memory";
     bool reported = p.status != CSGM_OK && !*p.problem;
+    if (status == CSGM_ERR_MEMORY && !reported)
+        p.problem = "out of memory";
     if (status != CSGM_OK && !reported)
         fail(error, status, "in the package's ", name, p.problem);
     XML_ParserFree(p.parser);

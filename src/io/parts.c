@@ -27,16 +27,16 @@ csg_part csg_part_get(const csgm_mesh_view *mesh, uint64_t index)
     return out;
 }
 
-bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part *part, uint8_t pair[2])
+bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part *part, uint16_t pair[2])
 {
     pair[0] = CSG_MATERIAL_METALLIC;
     pair[1] = CSG_MATERIAL_ROUGHNESS;
     if (!mesh->materials || !part->vertex_count)
         return true;
-    const uint8_t *at = mesh->materials + 2 * part->first_vertex;
-    memcpy(pair, at, 2);
+    const uint16_t *at = mesh->materials + 2 * part->first_vertex;
+    memcpy(pair, at, 2 * sizeof *at);
     for (uint64_t i = 1; i < part->vertex_count; i++)
-        if (memcmp(at, at + 2 * i, 2) != 0)
+        if (memcmp(at, at + 2 * i, 2 * sizeof *at) != 0)
             return false;
     return true;
 }

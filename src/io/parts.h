@@ -21,9 +21,9 @@ static inline uint64_t csg_part_count(const csgm_mesh_view *mesh)
 csg_part csg_part_get(const csgm_mesh_view *mesh, uint64_t index);
 
 /* True when one pair of metallic and roughness, stored in `pair`, holds for all these vertices. */
-bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part *part, uint8_t pair[2]);
+bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part *part, uint16_t pair[2]);
 
-/* What a vertex of a mesh without materials has. */
-enum { CSG_MATERIAL_METALLIC = 0, CSG_MATERIAL_ROUGHNESS = 153 };
+/* What a vertex of a mesh without materials has, and what 1 is. */
+enum { CSG_MATERIAL_METALLIC = 0, CSG_MATERIAL_ROUGHNESS = 6000, CSG_MATERIAL_ONE = 10000 };
 
 #endif

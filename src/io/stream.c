@@ -237,24 +237,28 @@ static bool put_glb(csg_stream *s, worker *self, const csg_mesh_run *run)
 static bool end_glb(csg_stream *s)
 {
     csg_gltf_layout *layout = &s->layout;
-    char json[CSG_GLTF_JSON_MOST + 4];
-    uint8_t head[CSG_GLTF_JSON_MOST + 4 + CSG_GLB_HEAD_MOST];
+    char text[CSG_GLTF_JSON_MOST];
+    csg_gltf_text json = {.text = text, .capacity = sizeof text};
+    uint8_t head[CSG_GLTF_JSON_MOST + CSG_GLB_HEAD_MOST];
     if (!s->view.triangle_count) /* a buffer must not be empty, nor a mesh */
         *layout = (csg_gltf_layout){0};
-    layout->opaque = true;
+    csg_gltf_part *part = &layout->only;
+    part->opaque = true;
     for (int k = 0; k < 3; k++) {
-        layout->min[k] = INFINITY;
-        layout->max[k] = -INFINITY;
+        part->min[k] = INFINITY;
+        part->max[k] = -INFINITY;
         for (uint32_t i = 0; i < s->worker_count; i++) {
-            layout->min[k] = fminf(layout->min[k], s->workers[i].min[k]);
-            layout->max[k] = fmaxf(layout->max[k], s->workers[i].max[k]);
+            part->min[k] = fminf(part->min[k], s->workers[i].min[k]);
+            part->max[k] = fmaxf(part->max[k], s->workers[i].max[k]);
         }
     }
     for (uint32_t i = 0; i < s->worker_count; i++)
-        layout->opaque &= s->workers[i].opaque;
-    size_t json_bytes = csg_glb_json(layout, json);
-    uint8_t *end = csg_glb_put_head(head, layout, json, json_bytes);
-    uint64_t total = csg_glb_bytes(layout, json_bytes);
+        part->opaque &= s->workers[i].opaque;
+    csg_glb_json(layout, &json);
+    uint8_t *end = csg_glb_put_head(head, layout, json.length);
+    memcpy(end, json.text, json.length);
+    end = csg_glb_put_body_head(end + json.length, layout);
+    uint64_t total = csg_glb_bytes(layout, json.length);
     if (ftruncate(s->file.fd, (off_t)total) != 0) {
         atomic_store(&s->error, errno);
         return false;

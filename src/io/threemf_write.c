@@ -5,6 +5,7 @@
  * made and compressed piece by piece, by all threads. Normals are not kept: the format has none.
  */
 #include "io/parts.h"
+#include "io/reader.h"
 #include "io/writers.h"
 #include "io/zip_write.h"
 
@@ -33,14 +34,14 @@ typedef struct model {
 
 static uint64_t look_of(const csgm_mesh_view *mesh, uint64_t vertex)
 {
-    uint8_t bytes[8] = {199, 199, 204, 255, CSG_MATERIAL_METALLIC, CSG_MATERIAL_ROUGHNESS};
-    uint64_t look;
-    if (mesh->colors)
-        memcpy(bytes, mesh->colors + 4 * vertex, 4);
-    if (mesh->materials)
-        memcpy(bytes + 4, mesh->materials + 2 * vertex, 2);
-    memcpy(&look, bytes, sizeof look);
-    return look;
+    static const uint8_t gray[4] = {199, 199, 204, 255};
+    const uint8_t *color = mesh->colors ? mesh->colors + 4 * vertex : gray;
+    uint64_t metallic = CSG_MATERIAL_METALLIC, roughness = CSG_MATERIAL_ROUGHNESS;
+    if (mesh->materials) {
+        metallic = mesh->materials[2 * vertex];
+        roughness = mesh->materials[2 * vertex + 1];
+    }
+    return roughness << 48 | metallic << 32 | csg_load_u32(color);
 }
 
 static size_t slot_of(const palette *p, uint64_t look)
@@ -120,12 +121,10 @@ static size_t color_piece(void *user, uint64_t piece, char *text)
     const palette *p = &((model *)user)->palette;
     char *at = text;
     for (uint64_t i = piece * PIECE; i < end_of(piece, p->look_count); i++) {
-        uint8_t bytes[8];
-        memcpy(bytes, &p->looks[i], sizeof bytes);
         at = put_text(at, "<m:color color=\"#");
         for (int k = 0; k < 4; k++) {
-            *at++ = digits[bytes[k] >> 4];
-            *at++ = digits[bytes[k] & 15];
+            *at++ = digits[p->looks[i] >> (8 * k + 4) & 15];
+            *at++ = digits[p->looks[i] >> 8 * k & 15];
         }
         at = put_text(at, "\"/>\n");
     }
@@ -137,13 +136,12 @@ static size_t display_piece(void *user, uint64_t piece, char *text)
     const palette *p = &((model *)user)->palette;
     char *at = text;
     for (uint64_t i = piece * PIECE; i < end_of(piece, p->look_count); i++) {
-        uint8_t bytes[8];
-        memcpy(bytes, &p->looks[i], sizeof bytes);
         at = put_number(at, "<m:pbmetallic name=\"", i);
         at = put_text(at, "\" metallicness=\"");
-        at = csg_number_put_float(at, (float)bytes[4] / 255.0f);
+        at =
+            csg_number_put_float(at, (float)(p->looks[i] >> 32 & 0xFFFF) / (float)CSG_MATERIAL_ONE);
         at = put_text(at, "\" roughness=\"");
-        at = csg_number_put_float(at, (float)bytes[5] / 255.0f);
+        at = csg_number_put_float(at, (float)(p->looks[i] >> 48) / (float)CSG_MATERIAL_ONE);
         at = put_text(at, "\"/>\n");
     }
     return (size_t)(at - text);

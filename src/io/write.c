@@ -8,6 +8,7 @@
 
 #include "io/file.h"
 #include "io/format_table.h"
+#include "io/parts.h"
 
 csgm_write_options csg_write_options_default(void)
 {
@@ -89,6 +90,11 @@ static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh,
         what = "a coordinate of the mesh is infinite or not a number";
     else if (mesh->normals && !all_finite(mesh->normals, 3 * mesh->vertex_count))
         what = "a normal of the mesh is infinite or not a number";
+    uint16_t most = 0;
+    for (uint64_t i = 0; mesh->materials && i < 2 * mesh->vertex_count; i++)
+        most = mesh->materials[i] > most ? mesh->materials[i] : most;
+    if (!what && most > CSG_MATERIAL_ONE)
+        what = "a material of the mesh is out of range";
     uint64_t end = 0;
     for (uint64_t i = 0; i < mesh->part_count && !what; i++) {
         const csgm_mesh_part *part = &mesh->parts[i];

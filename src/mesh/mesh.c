@@ -44,7 +44,7 @@ void csg_mesh_destroy(csgm_mesh *mesh)
     csg_memory_release(memory, mesh->normals, mesh->vertex_count * 3 * sizeof(float));
     csg_memory_release(memory, mesh->colors, mesh->vertex_count * 4);
     csg_memory_release(memory, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
-    csg_memory_release(memory, mesh->materials, mesh->vertex_count * 2);
+    csg_memory_release(memory, mesh->materials, mesh->vertex_count * 2 * sizeof(uint16_t));
     csg_memory_release(memory, mesh->parts, mesh->part_room * sizeof *mesh->parts);
     csg_arena_reset(&mesh->names);
     csg_memory_release(memory, mesh, sizeof *mesh);
@@ -52,7 +52,7 @@ void csg_mesh_destroy(csgm_mesh *mesh)
 
 csgm_status csg_mesh_add_materials(csgm_mesh *mesh)
 {
-    return take(mesh->context, &mesh->materials, mesh->vertex_count, 2)
+    return take(mesh->context, &mesh->materials, mesh->vertex_count, 2 * sizeof(uint16_t))
                ? CSGM_OK
                : csg_context_no_memory(mesh->context);
 }

@@ -14,7 +14,7 @@ struct csgm_mesh {
     uint8_t *colors;   /* 4 * vertex_count or NULL */
     uint32_t *indices; /* 3 * triangle_count */
     uint64_t vertex_count, triangle_count;
-    uint8_t *materials; /* 2 * vertex_count or NULL */
+    uint16_t *materials; /* 2 * vertex_count or NULL */
     csgm_mesh_part *parts;
     size_t part_count, part_room;
     csg_arena names; /* of parts */

@@ -32,8 +32,8 @@ void io_context_check(const io_context *io)
     assert_int_equal(io->context.memory.used_bytes, 0);
 }
 
-const char *const io_shape_names[IO_SHAPES] = {"tetrahedron", "cube", "sphere",
-                                               "empty",       "far",  "two_cubes"};
+const char *const io_shape_names[IO_SHAPES] = {"tetrahedron", "cube",      "sphere", "empty",
+                                               "far",         "two_cubes", "parts"};
 
 csgm_mesh *io_sphere_make(csgm_context *context, uint32_t columns, uint32_t rows)
 {
@@ -101,6 +101,33 @@ static csgm_mesh *cubes_make(csgm_context *context, bool two)
     return from_arrays(context, positions, two ? 16 : 8, indices, two ? 24 : 12);
 }
 
+/* Three spheres in a row. */
+static csgm_mesh *parts_make(csgm_context *context)
+{
+    static const char *const names[3] = {NULL, "Deckel \303\266ben", "a <b> & \"c\" \\d"};
+    csgm_mesh *one = io_sphere_make(context, 12, 8), *mesh = NULL;
+    size_t vertices = (size_t)one->vertex_count, triangles = (size_t)one->triangle_count;
+    assert_int_equal(csg_mesh_create(context, 3 * vertices, 3 * triangles, true, true, &mesh),
+                     CSGM_OK);
+    assert_int_equal(csg_mesh_add_materials(mesh), CSGM_OK);
+    for (size_t part = 0; part < 3; part++) {
+        size_t first = part * vertices;
+        assert_int_equal(csg_mesh_add_part(mesh, names[part], part * triangles), CSGM_OK);
+        memcpy(mesh->positions + 3 * first, one->positions, vertices * 12);
+        memcpy(mesh->normals + 3 * first, one->normals, vertices * 12);
+        memcpy(mesh->colors + 4 * first, one->colors, vertices * 4);
+        for (size_t i = 0; i < vertices; i++) {
+            mesh->positions[3 * (first + i)] += 20 * (float)part;
+            mesh->materials[2 * (first + i)] = part == 1 ? (uint16_t)(100 * (i % 101)) : 10000;
+            mesh->materials[2 * (first + i) + 1] = (uint16_t)(2500 * part);
+        }
+        for (size_t i = 0; i < 3 * triangles; i++)
+            mesh->indices[3 * part * triangles + i] = one->indices[i] + (uint32_t)first;
+    }
+    csg_mesh_destroy(one);
+    return mesh;
+}
+
 csgm_mesh *io_shape_make(csgm_context *context, io_shape shape)
 {
     static const float corners[12] = {0, 0, 0, 1, 0, 0, 0, 1.1f, 0, 0, 0.1f, 1e-3f};
@@ -119,6 +146,8 @@ csgm_mesh *io_shape_make(csgm_context *context, io_shape shape)
         mesh = io_sphere_make(context, 40, 26);
         mesh->origin = (csgm_vec3){1e7, -2e7, 3e7};
         return mesh;
+    case IO_PARTS:
+        return parts_make(context);
     case IO_EMPTY:
     case IO_SHAPES:
         break;

@@ -32,6 +32,7 @@ typedef enum io_shape {
     IO_EMPTY,
     IO_FAR,       /* the sphere around (1e7, -2e7, 3e7) */
     IO_TWO_CUBES, /* sharing one edge: not a manifold */
+    IO_PARTS,     /* a sphere without a name, two with; materials: one, mixed, another */
     IO_SHAPES
 } io_shape;
 

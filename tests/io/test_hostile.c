@@ -25,7 +25,8 @@ static const sample samples[] = {
     {"e.obj", IO_CUBE, false, false},       {"f.off", IO_CUBE, false, false},
     {"g.glb", IO_CUBE, false, false},       {"h.gltf", IO_TETRAHEDRON, false, false},
     {"i.drc", IO_CUBE, false, true},        {"j.glb", IO_TETRAHEDRON, false, true},
-    {"k.ply", IO_TETRAHEDRON, true, false},
+    {"k.ply", IO_TETRAHEDRON, true, false}, {"l.3mf", IO_PARTS, false, false},
+    {"m.obj", IO_PARTS, false, false},
 };
 
 enum {

@@ -101,6 +101,20 @@ static void same_solid(const way *w, const csgm_mesh_view *a, const csgm_mesh_vi
         expect_near(w->name, in[k], out[k], 2e-3 * fabs(in[k]) + 1e-4);
 }
 
+/* Names and stretches of parts, in formats that have such. */
+static void same_parts(const way *w, const csgm_mesh_view *a, const csgm_mesh_view *b)
+{
+    bool kept = strstr(w->name, ".obj") || strstr(w->name, ".gl") || strstr(w->name, ".3mf");
+    assert_int_equal(b->part_count, kept ? a->part_count : 0);
+    for (uint64_t i = 0; i < b->part_count; i++) {
+        assert_int_equal(a->parts[i].triangle_count, b->parts[i].triangle_count);
+        assert_int_equal(a->parts[i].first_triangle, b->parts[i].first_triangle);
+        assert_int_equal(!a->parts[i].name, !b->parts[i].name);
+        if (a->parts[i].name)
+            assert_string_equal(a->parts[i].name, b->parts[i].name);
+    }
+}
+
 static void check_way(const way *w, io_shape shape, const char *folder)
 {
     io_context io;
@@ -141,6 +155,7 @@ static void check_way(const way *w, io_shape shape, const char *folder)
         same_corners(w, &view, &read, floats_only ? 4 : far ? 1e-6 : 0);
     }
     assert_int_equal(view.triangle_count, read.triangle_count);
+    same_parts(w, &view, &read);
     if (w->keeps_vertices)
         same_attributes(w, &view, &read);
     assert_int_equal(io.findings, 0);
