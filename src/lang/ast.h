@@ -96,6 +96,7 @@ typedef enum csg_statement_kind { CSG_STATEMENT_CALL, CSG_STATEMENT_IF } csg_sta
 typedef struct csg_statement {
     uint8_t kind;
     bool root, highlight, background; /* the modifiers ! # % */
+    bool childless;                   /* CALL: a ';' stands where children may */
     csg_span where;                   /* of the name */
     csg_symbol name;
     csg_arguments arguments;

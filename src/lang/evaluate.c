@@ -148,9 +148,13 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
         csg_value value = csg_evaluate(e, callee, frame);
         bool found = to_literal(value, out);
         if (!found)
-            csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->whole, NULL,
-                            "this is a %s, only a function can be called",
-                            csg_value_kind_name(value));
+            csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->whole,
+                            callee->kind == CSG_EXPRESSION_MEMBER
+                                ? "a function stands in front of its arguments: len(v), not v.len()"
+                            : value.kind == CSG_VALUE_NUMBER ? "a multiplication needs '*'"
+                                                             : NULL,
+                            "only a function can be called, this is %s%s",
+                            value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value));
         csg_value_release(&e->heap, value);
         return found;
     }

@@ -54,9 +54,12 @@ static const char *find_file(csg_parser *parser, csg_span path)
     if (!found && name[0] != '/')
         found = search_folders(parser, name);
     if (!found && !parser->stop) {
-        csg_source_report(&parser->program->sources, CSG_DIAG_INCLUDE_NOT_FOUND, path,
-                          "looked for beside this file, in each -I folder and in CSGMESH_PATH",
-                          "there is no file '%.200s'", name);
+        csg_source_report(
+            &parser->program->sources, CSG_DIAG_INCLUDE_NOT_FOUND, path,
+            strchr(name, '\\')
+                ? "folders are separated by '/'"
+                : "looked for beside this file, in each -I folder and in CSGMESH_PATH",
+            "there is no file '%.200s'", name);
         parser->program->failed_io = true;
     }
     return found;

@@ -32,7 +32,7 @@ enum how { NAMED, POSITIONAL };
 
 static const csg_parameter_row parameters[] = {
 #define CSG_PARAMETER(module, name, how, otherwise, unit, range, doc)                              \
-    {#name, range, MODULE_##module, how == POSITIONAL},
+    {#name, range, doc, MODULE_##module, how == POSITIONAL},
 #include "lang/modules.def"
 };
 
@@ -111,18 +111,21 @@ static void warn_unknown(csg_module_call *call, const csg_argument *argument)
                         "%s() joins nothing, its blend is not used", call->name);
         return;
     }
-    for (uint32_t i = 0, at = 0; i < call->parameter_count && at < sizeof hint; i++)
+    const char *name = csg_symbol_name(symbols, argument->name);
+    bool facets = strcmp(name, "fn") == 0 || strcmp(name, "fa") == 0 || strcmp(name, "fs") == 0;
+    if (facets)
+        snprintf(hint, sizeof hint, "did you mean '$%s'?", name);
+    for (uint32_t i = 0, at = 0; !facets && i < call->parameter_count && at < sizeof hint; i++)
         at += (uint32_t)snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "it takes ",
                                  call->parameters[i].name);
     csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, argument->where, hint[0] ? hint : NULL,
-                    "%s() has no parameter '%s', this is ignored", call->name,
-                    csg_symbol_name(symbols, argument->name));
+                    "%s() has no parameter '%s', this is ignored", call->name, name);
 }
 
 /* The parameter an argument goes to; parameter_count when there is none (reported). */
 static uint32_t find_slot(csg_module_call *call, const csg_argument *argument, uint32_t *position)
 {
-    uint32_t slot = 0;
+    uint32_t slot = 0, named = 0;
     if (argument->name) {
         const char *name = csg_symbol_name(&call->e->program->symbols, argument->name);
         while (slot < call->parameter_count && strcmp(call->parameters[slot].name, name) != 0)
@@ -134,11 +137,34 @@ static uint32_t find_slot(csg_module_call *call, const csg_argument *argument, u
     slot = (*position)++;
     if (slot < call->parameter_count && call->parameters[slot].positional)
         return slot;
+    while (named < call->parameter_count && call->parameters[named].positional)
+        named++;
     csg_eval_report(call->e, CSG_DIAG_TOO_MANY_ARGUMENTS, argument->where,
-                    slot < call->parameter_count ? "write the others as name = value" : NULL,
-                    "%s() takes %u argument%s without a name, this is ignored", call->name, slot,
-                    slot == 1 ? "" : "s");
+                    call->parameter_count && strchr(call->parameters[0].doc, '[')
+                        ? "a list stands in square brackets: [1, 2, 3]"
+                    : named < call->parameter_count ? "write the others as name = value"
+                                                    : NULL,
+                    "%s() takes %u argument%s without a name, this is ignored", call->name, named,
+                    named == 1 ? "" : "s");
     return call->parameter_count;
+}
+
+/* A special variable of this name may be meant for the children: only what looks like a slip. */
+static void warn_misspelt(const csg_module_call *call, const csg_argument *argument)
+{
+    static const char *const known[] = {"$fn", "$fa", "$fs"};
+    const csg_eval *e = call->e;
+    const char *name = csg_symbol_name(&e->program->symbols, argument->name);
+    char hint[32];
+    if (csg_eval_dynamic(e, argument->name).kind != CSG_VALUE_UNSET)
+        return;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (csg_edit_distance(name, known[i], 1) == 1) {
+            snprintf(hint, sizeof hint, "did you mean '%s'?", known[i]);
+            csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, argument->where, hint,
+                            "the language knows no '%s'", name);
+            return;
+        }
 }
 
 static void bind(csg_module_call *call)
@@ -149,6 +175,7 @@ static void bind(csg_module_call *call)
     for (uint32_t i = 0; i < arguments->count && !e->stop; i++) {
         const csg_argument *argument = &arguments->items[i];
         if (argument->name && e->program->symbols.entries[argument->name].special) {
+            warn_misspelt(call, argument);
             csg_eval_push_dynamic(e, argument->name, csg_evaluate(e, argument->value, call->frame));
             continue;
         }
@@ -162,13 +189,27 @@ static void bind(csg_module_call *call)
             continue;
         }
         if (call->values[slot].kind != CSG_VALUE_UNDEF)
-            csg_eval_report(e, CSG_DIAG_DUPLICATE_ARGUMENT, argument->where, NULL,
+            csg_eval_report(e, CSG_DIAG_DUPLICATE_ARGUMENT, argument->where,
+                            argument->name ? NULL : "a decimal number has a point: 2.5",
                             "%s() gets '%s' twice, the last one holds", call->name,
                             call->parameters[slot].name);
         csg_value_release(&e->heap, call->values[slot]);
         call->values[slot] = value;
         call->spans[slot] = argument->value->whole;
     }
+}
+
+/* `translate([1, 2, 3]); sphere(1);`: groups may be empty, a transform of nothing is a mistake. */
+static void warn_childless(const csg_module_call *call, int row)
+{
+    static const char *const transforms[] = {"translate", "rotate", "scale", "mirror", "color"};
+    if (!modules[row].children || !call->statement->childless)
+        return;
+    for (size_t i = 0; i < sizeof transforms / sizeof *transforms; i++)
+        if (strcmp(call->name, transforms[i]) == 0)
+            csg_eval_report(call->e, CSG_DIAG_NO_CHILDREN, call->statement->where,
+                            "is the ';' behind it one too many?", "%s() has no solid to act on",
+                            call->name);
 }
 
 void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame)
@@ -182,6 +223,7 @@ void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_f
         csg_eval_report(e, CSG_DIAG_CHILDREN_IGNORED, statement->children->statements[0]->where,
                         "is a ';' missing before it?", "%s() takes no children, this is ignored",
                         call.name);
+    warn_childless(&call, row);
     csg_node_id node = e->stop ? CSG_NODE_NONE : modules[row].handler(&call);
     if (node != CSG_NODE_NONE && !e->stop)
         csg_push_part(e, csg_part_plain(node));
@@ -225,7 +267,7 @@ static bool in_range(double number, csg_range_kind range)
 static void out_of_range(csg_module_call *call, uint32_t index, double number, csg_range_kind range)
 {
     csg_argument_error(call, index, CSG_DIAG_OUT_OF_RANGE, "%s is %g, it must be %s",
-                       call->parameters[index].name, number,
+                       call->parameters[index].name, isnan(number) ? fabs(number) : number,
                        !isfinite(number)       ? "a finite number"
                        : range == CSG_POSITIVE ? "above 0"
                                                : "at least 0");

@@ -12,6 +12,7 @@ enum { CSG_MOST_PARAMETERS = 10 };
 typedef struct csg_parameter_row {
     const char *name;
     const char *range; /* in words, "" = any */
+    const char *doc;
     int module;
     bool positional;
 } csg_parameter_row;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "lang/hints.h"
 #include "lang/loader.h"
 #include "lang/parser_private.h"
 
@@ -71,13 +72,21 @@ static bool describe_token(const csg_parser *parser, char *out, size_t size)
     return token->kind != CSG_TOKEN_BAD; /* the lexer has told about that one */
 }
 
+static void report_unexpected(csg_parser *parser, csg_diag_code code, csg_token_kind wanted,
+                              const char *expected, const char *hint)
+{
+    char found[80];
+    if (!describe_token(parser, found, sizeof found) || parser->stop)
+        return;
+    const char *better = csg_parser_hint(parser, wanted);
+    csg_source_report(&parser->program->sources, code, csg_parser_span(parser),
+                      better ? better : hint, "expected %s but found %s", expected, found);
+}
+
 void csg_parser_unexpected(csg_parser *parser, csg_diag_code code, const char *expected,
                            const char *hint)
 {
-    char found[80];
-    if (describe_token(parser, found, sizeof found) && !parser->stop)
-        csg_source_report(&parser->program->sources, code, csg_parser_span(parser), hint,
-                          "expected %s but found %s", expected, found);
+    report_unexpected(parser, code, CSG_TOKEN_END, expected, hint);
 }
 
 /* The place right behind the token before the current one. */
@@ -104,7 +113,7 @@ bool csg_parser_expect(csg_parser *parser, csg_token_kind kind, const char *cont
         return true;
     char expected[96];
     snprintf(expected, sizeof expected, "%s %s", csg_token_kind_name(kind), context);
-    csg_parser_unexpected(parser, CSG_DIAG_EXPECTED, expected, NULL);
+    report_unexpected(parser, CSG_DIAG_EXPECTED, kind, expected, NULL);
     return false;
 }
 
@@ -117,8 +126,9 @@ bool csg_parser_close(csg_parser *parser, csg_token_kind kind, csg_span open)
         return false;
     bool cut = begins_line(parser) || csg_parser_peek(parser) == CSG_TOKEN_SEMICOLON;
     csg_span where = cut ? place_behind(parser) : csg_parser_span(parser);
-    csg_source_report(&parser->program->sources, CSG_DIAG_UNCLOSED, where, NULL,
-                      "expected %s but found %s", csg_token_kind_name(kind), found);
+    csg_source_report(&parser->program->sources, CSG_DIAG_UNCLOSED, where,
+                      csg_parser_hint(parser, kind), "expected %s but found %s",
+                      csg_token_kind_name(kind), found);
     csg_source_note(&parser->program->sources, open, "to close this '%c'",
                     parser->text[open.offset]);
     return false;
@@ -285,10 +295,31 @@ static bool starts_statement(csg_token_kind kind)
            kind == CSG_TOKEN_NAME;
 }
 
+/* Brackets that the broken statement has open here. */
+static uint32_t count_open(const csg_parser *parser, size_t from)
+{
+    uint32_t open = 0;
+    for (size_t i = from; i < parser->at; i++) {
+        csg_token_kind kind = parser->tokens.items[i].kind;
+        bool closes = kind == CSG_TOKEN_CLOSE_ROUND || kind == CSG_TOKEN_CLOSE_SQUARE;
+        open += kind == CSG_TOKEN_OPEN_ROUND || kind == CSG_TOKEN_OPEN_SQUARE;
+        open -= closes && open > 0;
+    }
+    return open;
+}
+
+/* Is this ';' inside brackets, and more follows on its line? As in C's for (i = 0; i < 5; i++) */
+static bool is_inside(const csg_parser *parser, uint32_t open)
+{
+    csg_parser next = *parser;
+    next.at++;
+    return open > 0 && parser->at + 1 < parser->tokens.count && !begins_line(&next);
+}
+
 /* To where a statement may begin. `from`: the token at which the broken one began. */
 static void resynchronize(csg_parser *parser, size_t from)
 {
-    uint32_t braces = 0;
+    uint32_t braces = 0, open = count_open(parser, from);
     if (parser->at == from && csg_parser_peek(parser) != CSG_TOKEN_CLOSE_CURLY)
         csg_parser_next(parser);
     for (;; csg_parser_next(parser)) {
@@ -300,8 +331,11 @@ static void resynchronize(csg_parser *parser, size_t from)
             return;
         if (kind == CSG_TOKEN_OPEN_CURLY)
             braces++;
+        open += kind == CSG_TOKEN_OPEN_ROUND || kind == CSG_TOKEN_OPEN_SQUARE;
+        open -= (kind == CSG_TOKEN_CLOSE_ROUND || kind == CSG_TOKEN_CLOSE_SQUARE) && open > 0;
         bool closes = kind == CSG_TOKEN_CLOSE_CURLY && --braces == 0;
-        if (closes || (braces == 0 && kind == CSG_TOKEN_SEMICOLON)) {
+        bool ends = kind == CSG_TOKEN_SEMICOLON && !is_inside(parser, open);
+        if (closes || (braces == 0 && ends)) {
             csg_parser_next(parser);
             return;
         }
@@ -357,8 +391,9 @@ static csg_scope *parse_children(csg_parser *parser)
     if (kind == CSG_TOKEN_CLOSE_CURLY || kind == CSG_TOKEN_END || kind == CSG_TOKEN_MODULE ||
         kind == CSG_TOKEN_FUNCTION || kind == CSG_TOKEN_ELSE || kind == CSG_TOKEN_ASSIGN) {
         csg_source_report(&parser->program->sources, CSG_DIAG_EXPECTED, place_behind(parser),
-                          kind == CSG_TOKEN_ASSIGN ? "'==' compares, '=' assigns to a plain name"
-                                                   : NULL,
+                          kind == CSG_TOKEN_ASSIGN
+                              ? "a module has no '=', it makes a solid: module name() sphere(3);"
+                              : NULL,
                           "expected ';', a child or '{'");
         return kind == CSG_TOKEN_ASSIGN ? NULL : scope;
     }
@@ -439,12 +474,14 @@ static bool parse_call(csg_parser *parser, csg_scope *scope)
     made->name = csg_parser_symbol(parser, made->where);
     csg_parser_next(parser);
     if (csg_parser_peek(parser) != CSG_TOKEN_OPEN_ROUND) {
-        csg_parser_unexpected(parser, CSG_DIAG_EXPECTED, "'(' or '='",
-                              "a call is name(...); an assignment is name = value;");
+        csg_parser_unexpected(
+            parser, CSG_DIAG_EXPECTED, "'(' or '='",
+            "a call is name(...); an assignment is name = value; a comment begins with //");
         return false;
     }
     if (!csg_parse_arguments(parser, &made->arguments))
         return false;
+    made->childless = csg_parser_peek(parser) == CSG_TOKEN_SEMICOLON;
     made->children = parse_children(parser);
     return made->children && add_statement(parser, into, made);
 }
@@ -509,8 +546,11 @@ static bool parse_include(csg_parser *parser, csg_scope *scope)
     csg_parser_next(parser);
     csg_span path = csg_parser_span(parser);
     if (csg_parser_peek(parser) != CSG_TOKEN_PATH || path.length <= 2) {
+        bool name = csg_parser_peek(parser) == CSG_TOKEN_ASSIGN;
         csg_source_report(&parser->program->sources, CSG_DIAG_BAD_INCLUDE, path,
-                          use ? "write: use <file.txt>" : "write: include <file.txt>",
+                          name  ? "this is a word of the language: choose another name"
+                          : use ? "write: use <file.txt>"
+                                : "write: include <file.txt>",
                           "expected a file name in < >");
         return false;
     }
@@ -523,6 +563,17 @@ static bool parse_include(csg_parser *parser, csg_scope *scope)
     return true;
 }
 
+/* `module wheel(r); { ... }`: the block was to belong to what the ';' ended. */
+static void warn_cut_off(csg_parser *parser)
+{
+    const csg_token *tokens = parser->tokens.items;
+    if (parser->at >= 2 && tokens[parser->at - 1].kind == CSG_TOKEN_SEMICOLON &&
+        tokens[parser->at - 2].kind == CSG_TOKEN_CLOSE_ROUND)
+        csg_source_report(&parser->program->sources, CSG_DIAG_STRAY_BLOCK, csg_parser_span(parser),
+                          "is the ';' before it one too many?",
+                          "this block stands alone: it belongs to no module or call");
+}
+
 static bool parse_statement(csg_parser *parser, csg_scope *scope)
 {
     switch (csg_parser_peek(parser)) {
@@ -530,6 +581,7 @@ static bool parse_statement(csg_parser *parser, csg_scope *scope)
         csg_parser_next(parser);
         return true;
     case CSG_TOKEN_OPEN_CURLY: /* bare braces are no scope of their own, as in OpenSCAD */
+        warn_cut_off(parser);
         return parse_block(parser, scope);
     case CSG_TOKEN_MODULE:
         return parse_module(parser, scope);

@@ -369,26 +369,41 @@ static bool lex_name(lexer *l)
 
 static const char *hint_for_character(uint32_t character)
 {
-    switch (character) {
-    case '\'':
-    case 0x2018:
-    case 0x2019:
-    case 0x201C:
-    case 0x201D:
-        return "strings stand in straight double quotes: \"text\"";
-    case 0x2212:
-    case 0x2013:
-    case 0x2014:
-        return "the minus sign is '-'";
-    case 0xD7:
-        return "multiplication is '*'";
-    case '&':
-        return "logical and is '&&'";
-    case '|':
-        return "logical or is '||'";
-    default:
-        return NULL;
-    }
+    static const struct {
+        uint32_t first, last;
+        const char *hint;
+    } table[] = {
+        {'\'', '\'', "strings stand in straight double quotes: \"text\""},
+        {'`', '`', "strings stand in straight double quotes: \"text\""},
+        {0x2018, 0x201F, "strings stand in straight double quotes: \"text\""},
+        {0xAB, 0xAB, "strings stand in straight double quotes: \"text\""},
+        {0xBB, 0xBB, "strings stand in straight double quotes: \"text\""},
+        {0x2010, 0x2015, "the minus sign is '-'"},
+        {0x2212, 0x2212, "the minus sign is '-'"},
+        {0xD7, 0xD7, "multiplication is '*'"},
+        {0xB7, 0xB7, "multiplication is '*'"},
+        {0xF7, 0xF7, "division is '/'"},
+        {0xB2, 0xB3, "a power is x ^ 2"},
+        {0xB0, 0xB0, "angles are in degrees, without a sign"},
+        {0x2264, 0x2264, "less or equal is '<='"},
+        {0x2265, 0x2265, "greater or equal is '>='"},
+        {0x2260, 0x2260, "not equal is '!='"},
+        {0xA0, 0xA0, "it is a no-break space, from a word processor or web page: type a space"},
+        {0x2000, 0x200F, "it is an invisible character, from a word processor or web page"},
+        {0xFEFF, 0xFEFF, "it is an invisible character, from a word processor or web page"},
+        {0xFF01, 0xFF5E, "it is a wide character: type the plain one"},
+        {'&', '&', "logical and is '&&'"},
+        {'|', '|', "logical or is '||'"},
+        {'~', '~', "logical not is '!'"},
+        {'\\', '\\', "division is '/'"},
+        {0xC0, 0x24F, "names are made of a-z, A-Z, 0-9 and _"},
+        {0x370, 0x1FFF, "names are made of a-z, A-Z, 0-9 and _"},
+        {0x3040, 0xD7FF, "names are made of a-z, A-Z, 0-9 and _"},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (character >= table[i].first && character <= table[i].last)
+            return table[i].hint;
+    return NULL;
 }
 
 static bool lex_strange(lexer *l)

@@ -89,7 +89,7 @@ static void every_bad_scene_says_what_is_wrong(void **state)
     }
     closedir(folder);
     assert_int_equal(wrong, 0);
-    assert_true(count >= 36);
+    assert_true(count >= 105);
 }
 
 int main(void)
