@@ -59,14 +59,16 @@ static void run_for(csg_eval *e, const looping *l, uint32_t k, csg_frame *frame)
 static void for_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     const looping l = {statement, false};
-    run_for(e, &l, 0, frame);
+    if (statement->arguments.count)
+        run_for(e, &l, 0, frame);
 }
 
 static void intersection_for(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     const looping l = {statement, true};
     size_t first = e->part_count;
-    run_for(e, &l, 0, frame);
+    if (statement->arguments.count)
+        run_for(e, &l, 0, frame);
     csg_node_id node = csg_join_parts(e, first, CSG_NODE_INTERSECTION, sharp, statement->where);
     if (node != CSG_NODE_NONE)
         csg_push_part(e, csg_part_plain(node));
@@ -133,6 +135,10 @@ static void run_chosen(csg_eval *e, const family *f, csg_value index)
     while (begun && csg_iteration_next(e, &iteration, &element, f->asking->where)) {
         if (element.kind == CSG_VALUE_NUMBER)
             run_child(e, f, trunc(element.as.number));
+        else
+            csg_eval_report(e, CSG_DIAG_CHILD_INDEX, f->asking->where, NULL,
+                            "an index of children is a number, not a %s",
+                            csg_value_kind_name(element));
         csg_value_release(&e->heap, element);
     }
 }
@@ -174,7 +180,7 @@ static void children(csg_eval *e, const csg_statement *statement, csg_frame *fra
         }
         csg_value_release(&e->heap, index);
         index = value;
-        given = value.kind != CSG_VALUE_UNDEF;
+        given = true;
     }
     family f = {module->children, module->children_frame, statement};
     if (!e->stop)

@@ -65,6 +65,20 @@ static void bind_arguments(csg_eval *e, const csg_arguments *parameters,
     }
 }
 
+/* A call into a used file: the $variables that the file assigns hold in it. */
+static void push_file_dynamics(csg_eval *e, const csg_frame *home, const csg_frame *caller)
+{
+    if (!home || !home->has_dynamics)
+        return;
+    while (caller && caller->parent)
+        caller = caller->parent;
+    for (uint32_t i = 0; caller != home && i < home->count && !e->stop; i++) {
+        csg_symbol name = home->scope->variables[i].name;
+        if (e->program->symbols.entries[name].special)
+            csg_eval_push_dynamic(e, name, csg_value_retain(home->values[i]));
+    }
+}
+
 csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
                          const csg_arguments *arguments, csg_frame *home, csg_frame *caller,
                          csg_symbol name)
@@ -77,6 +91,7 @@ csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
     }
     frame->names = parameters->items;
     bind_arguments(e, parameters, arguments, frame, caller, name, &pending);
+    push_file_dynamics(e, home, caller);
     for (uint32_t i = 0; i < parameters->count && !e->stop; i++)
         if (frame->values[i].kind == CSG_VALUE_UNSET)
             frame->values[i] = parameters->items[i].value
@@ -159,14 +174,14 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
         return found;
     }
     out->name = callee->as.name;
+    if (e->program->symbols.entries[out->name].variable && find_literal(e, out->name, frame, out))
+        return true; /* as in OpenSCAD, a variable's function goes before a named one */
     if (csg_eval_find_definition(e, CSG_MEMBER_FUNCTION, out->name, frame, &home, &definition)) {
         out->parameters = &definition->parameters;
         out->body = definition->value;
         out->home = csg_frame_retain(home);
         return true;
     }
-    if (find_literal(e, out->name, frame, out))
-        return true;
     out->builtin = e->program->symbols.entries[out->name].function;
     if (out->builtin < 0 && !e->stop &&
         !csg_report_unsupported(e, CSG_MEMBER_FUNCTION, out->name, callee->where))

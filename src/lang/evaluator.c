@@ -252,8 +252,11 @@ const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *
     uint32_t head = e->program->symbols.entries[name].special ? e->dynamic_heads[name] : 0;
     if (head)
         return &e->dynamics[head - 1].value;
-    for (const csg_frame *at = frame; at && !found; at = at->parent)
+    for (const csg_frame *at = frame; at && !found; at = at->parent) {
         found = at->count ? find_in_frame(e, at, name) : NULL;
+        if (name == e->symbol_children_count && !found && at->children)
+            found = &at->child_count;
+    }
     return found;
 }
 
@@ -265,11 +268,17 @@ csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_
         return csg_value_retain(*found);
     if (name == e->symbol_pi)
         return csg_value_number(3.14159265358979323846);
+    const char *text = csg_symbol_name(&e->program->symbols, name);
+    if (text[0] >= '0' && text[0] <= '9') {
+        csg_eval_report(e, CSG_DIAG_BAD_NUMBER, where,
+                        "numbers have no units, a multiplication needs '*'",
+                        "'%s' is not a number, and no variable has this name", text);
+        return csg_value_undef();
+    }
     csg_eval_report(
         e, CSG_DIAG_UNKNOWN_VARIABLE, where,
         csg_suggest(e, CSG_DIAG_UNKNOWN_VARIABLE, name, frame, where, hint, sizeof hint),
-        "there is no variable '%s' here, it counts as undef",
-        csg_symbol_name(&e->program->symbols, name));
+        "there is no variable '%s' here, it counts as undef", text);
     return csg_value_undef();
 }
 
@@ -286,10 +295,10 @@ static const csg_definition *find_in_scope(const csg_eval *e, const csg_scope *s
 static bool find_in_used(csg_eval *e, csg_member_kind kind, csg_symbol name, const csg_file *file,
                          csg_frame **home, const csg_definition **out)
 {
-    for (uint32_t i = 0; i < file->use_count; i++) {
-        *out = find_in_scope(e, file->uses[i]->scope, kind, name);
+    for (uint32_t i = file->use_count; i > 0; i--) { /* the last one goes before */
+        *out = find_in_scope(e, file->uses[i - 1]->scope, kind, name);
         if (*out) {
-            *home = csg_eval_file_frame(e, file->uses[i]);
+            *home = csg_eval_file_frame(e, file->uses[i - 1]);
             return *home != NULL;
         }
     }
@@ -327,6 +336,19 @@ static void assign_variables(csg_eval *e, const csg_scope *scope, csg_frame *fra
     }
 }
 
+/* The $variables of a used file hold in the calls into it: they are kept in its frame. */
+static void keep_dynamics(csg_eval *e, csg_frame *frame, size_t dynamics)
+{
+    for (uint32_t i = 0; i < frame->count && !e->stop && e->dynamic_count > dynamics; i++) {
+        csg_symbol name = frame->scope->variables[i].name;
+        if (!e->program->symbols.entries[name].special)
+            continue;
+        frame->values[i] = csg_value_retain(csg_eval_dynamic(e, name));
+        frame->has_dynamics = true;
+    }
+    csg_eval_pop_dynamics(e, dynamics);
+}
+
 csg_frame *csg_eval_scope(csg_eval *e, const csg_scope *scope, csg_frame *parent)
 {
     if (parent && scope->variable_count + scope->function_count + scope->module_count == 0)
@@ -356,7 +378,7 @@ csg_frame *csg_eval_file_frame(csg_eval *e, const csg_file *file)
     (*frame)->file = file;
     assign_variables(e, file->scope, *frame);
     if (file->index != 0) /* the scene's own $variables hold for all of the run */
-        csg_eval_pop_dynamics(e, dynamics);
+        keep_dynamics(e, *frame, dynamics);
     return *frame;
 }
 
@@ -373,13 +395,21 @@ static bool intern_symbols(csg_eval *e)
     const struct {
         csg_symbol *symbol;
         const char *name;
-    } table[] = {{&e->symbol_pi, "PI"},       {&e->symbol_children_count, "$children"},
-                 {&e->symbol_fn, "$fn"},      {&e->symbol_round, "round"},
-                 {&e->symbol_x, "x"},         {&e->symbol_y, "y"},
-                 {&e->symbol_z, "z"},         {&e->symbol_begin, "begin"},
-                 {&e->symbol_step, "step"},   {&e->symbol_end, "end"},
-                 {&e->symbol_blend, "blend"}, {&e->symbol_n, "n"},
-                 {&e->symbol_r, "r"},         {&e->symbol_children, "children"},
+    } table[] = {{&e->symbol_pi, "PI"},
+                 {&e->symbol_children_count, "$children"},
+                 {&e->symbol_parent_modules, "$parent_modules"},
+                 {&e->symbol_fn, "$fn"},
+                 {&e->symbol_round, "round"},
+                 {&e->symbol_x, "x"},
+                 {&e->symbol_y, "y"},
+                 {&e->symbol_z, "z"},
+                 {&e->symbol_begin, "begin"},
+                 {&e->symbol_step, "step"},
+                 {&e->symbol_end, "end"},
+                 {&e->symbol_blend, "blend"},
+                 {&e->symbol_n, "n"},
+                 {&e->symbol_r, "r"},
+                 {&e->symbol_children, "children"},
                  {&e->symbol_w, "w"}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (!(*table[i].symbol = intern(e, table[i].name)))
@@ -393,11 +423,10 @@ static void push_constants(csg_eval *e)
     static const struct {
         const char *name;
         double value;
-    } numbers[] = {{"$fn", 0}, {"$fa", 12}, {"$fs", 2}, {"$t", 0}, {"$vpd", 140}, {"$vpf", 22.5}};
+    } numbers[] = {{"$fn", 0}, {"$fa", 12}, {"$fs", 2}, {"$t", 0}, {"$vpd", 500}, {"$vpf", 22.5}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         csg_eval_push_dynamic(e, intern(e, numbers[i].name), csg_value_number(numbers[i].value));
     csg_eval_push_dynamic(e, intern(e, "$preview"), csg_value_boolean(false));
-    csg_eval_push_dynamic(e, e->symbol_children_count, csg_value_number(0));
     for (int i = 0; i < 2; i++) {
         csg_vector *vector = csg_vector_create(&e->heap, 3);
         if (!vector) {
@@ -405,7 +434,7 @@ static void push_constants(csg_eval *e)
             return;
         }
         for (size_t k = 0; k < 3; k++)
-            vector->items[k] = csg_value_number(i == 0 && k == 0 ? 55 : i == 0 && k == 2 ? 25 : 0);
+            vector->items[k] = csg_value_number(0);
         csg_eval_push_dynamic(e, intern(e, i == 0 ? "$vpr" : "$vpt"),
                               csg_value_object(vector, CSG_VALUE_VECTOR));
     }

@@ -32,6 +32,13 @@ typedef struct csg_trace_entry {
     csg_span where; /* of the call */
 } csg_trace_entry;
 
+enum { CSG_TWISTER_WORDS = 624 };
+
+typedef struct csg_twister { /* of rands() */
+    uint32_t words[CSG_TWISTER_WORDS];
+    uint32_t next; /* word, CSG_TWISTER_WORDS = twist first */
+} csg_twister;
+
 typedef struct csg_eval {
     csg_program *program;
     csgm_context *context;
@@ -59,10 +66,12 @@ typedef struct csg_eval {
     uint64_t *reported;      /* places already told about: an open-addressing set */
     size_t reported_count, reported_slots;
 
+    csg_twister *twister; /* two: of calls without a seed, and with; NULL before the first call */
+
     csg_node_id root; /* what a ! modifier chose, or NONE */
-    csg_symbol symbol_pi, symbol_children_count, symbol_fn, symbol_round, symbol_x, symbol_y,
-        symbol_z, symbol_begin, symbol_step, symbol_end, symbol_blend, symbol_n, symbol_r,
-        symbol_children, symbol_w;
+    csg_symbol symbol_pi, symbol_children_count, symbol_parent_modules, symbol_fn, symbol_round,
+        symbol_x, symbol_y, symbol_z, symbol_begin, symbol_step, symbol_end, symbol_blend, symbol_n,
+        symbol_r, symbol_children, symbol_w;
 } csg_eval;
 
 csgm_status csg_eval_init(csg_eval *e, csg_program *program);
@@ -123,7 +132,13 @@ csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
 csg_frame *csg_eval_let(csg_eval *e, const csg_arguments *assignments, csg_frame *frame);
 csg_value csg_eval_unary(csg_eval *e, const csg_expression *x, csg_value operand);
 csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, csg_value right);
+/* Warns that there is no such operation, unless an operand is undef; UNDEF. */
+csg_value csg_eval_no_operation(csg_eval *e, const csg_expression *x, csg_value left,
+                                csg_value right);
+csg_value csg_eval_compare(csg_eval *e, const csg_expression *x, csg_value left, csg_value right);
 bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span where);
+/* False also where the values have no order. */
+bool csg_value_is_less(csg_eval *e, csg_value left, csg_value right, csg_span where);
 csg_value csg_eval_vector(csg_eval *e, const csg_expression *x, csg_frame *frame);
 void csg_eval_echo(csg_eval *e, const csg_arguments *arguments, csg_frame *frame);
 /* False when the assertion failed (reported, evaluation stopped). */

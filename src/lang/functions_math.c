@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Numbers: trigonometry in degrees, exact where the result is rational, elementary functions,
- * vectors, random numbers.
+ * vectors.
  */
 #include <math.h>
 #include <string.h>
 
-#include "base/random.h"
 #include "lang/functions.h"
 
 /* ---- trigonometry -----------------------------------------------------------------------------
@@ -50,7 +49,7 @@ static double tangent(double degrees)
     double a = fmod(degrees, 180);
     a = a > 90 ? a - 180 : a < -90 ? a + 180 : a; /* [-90, 90] */
     if (fabs(a) == 90)
-        return copysign(INFINITY, fmod(degrees, 360) > 180 || fmod(degrees, 360) < 0 ? -1 : 1);
+        return fmod(floor(degrees / 180), 2) == 0 ? INFINITY : -INFINITY;
     if (fabs(a) == 45)
         return copysign(1, a);
     return a == 0 ? 0 : sine(a) / cosine(a);
@@ -104,7 +103,7 @@ csg_value csg_function_number(const csg_function_call *call)
         const char *name;
         double (*function)(double);
     } table[] = {{"abs", fabs},  {"sign", sign}, {"floor", floor}, {"ceil", ceil},
-                 {"sqrt", sqrt}, {"exp", exp},   {"ln", log},      {"log", log10}};
+                 {"sqrt", sqrt}, {"exp", exp},   {"ln", log}};
     if (call->arguments[0].kind != CSG_VALUE_NUMBER)
         return csg_bad_argument(call, 0, "a number");
     size_t i = 0;
@@ -121,23 +120,43 @@ csg_value csg_function_pow(const csg_function_call *call)
     return csg_value_number(pow(call->arguments[0].as.number, call->arguments[1].as.number));
 }
 
+csg_value csg_function_log(const csg_function_call *call)
+{
+    for (uint32_t i = 0; i < call->count; i++)
+        if (call->arguments[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "a number");
+    double x = call->arguments[call->count - 1].as.number;
+    return csg_value_number(call->count == 1 ? log10(x)
+                                             : log(x) / log(call->arguments[0].as.number));
+}
+
+/* Of a list: by the order of values, what has no order does not count. */
+static csg_value extreme_of(const csg_function_call *call, const csg_vector *list, bool smallest)
+{
+    csg_value best = csg_value_undef();
+    for (uint32_t i = 0; i < list->count; i++) {
+        csg_value item = list->items[i];
+        if (i == 0 ||
+            csg_value_is_less(call->e, smallest ? item : best, smallest ? best : item, call->where))
+            best = item;
+    }
+    return csg_value_retain(best);
+}
+
 csg_value csg_function_extreme(const csg_function_call *call)
 {
     const csg_value *values = call->arguments;
-    uint32_t count = call->count;
-    bool list = count == 1 && values[0].kind == CSG_VALUE_VECTOR;
-    if (list) {
-        count = values[0].as.vector->count;
-        values = values[0].as.vector->items;
-    }
-    if (count == 0 || !csg_eval_charge(call->e, count / 8, call->where))
-        return csg_value_undef();
-    for (uint32_t i = 0; i < count; i++)
-        if (values[i].kind != CSG_VALUE_NUMBER)
-            return csg_bad_argument(call, list ? 0 : i, "numbers");
-    double best = values[0].as.number;
     bool smallest = strcmp(call->name, "min") == 0;
-    for (uint32_t i = 1; i < count; i++)
+    if (!csg_eval_charge(call->e, call->count / 8, call->where))
+        return csg_value_undef();
+    if (call->count == 1 && values[0].kind == CSG_VALUE_VECTOR)
+        return values[0].as.vector->count ? extreme_of(call, values[0].as.vector, smallest)
+                                          : csg_bad_argument(call, 0, "a list of numbers");
+    for (uint32_t i = 0; i < call->count; i++)
+        if (values[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "numbers");
+    double best = values[0].as.number;
+    for (uint32_t i = 1; i < call->count; i++)
         if (smallest ? values[i].as.number < best : values[i].as.number > best)
             best = values[i].as.number;
     return csg_value_number(best);
@@ -178,6 +197,9 @@ csg_value csg_function_cross(const csg_function_call *call)
         return csg_bad_argument(call, 0, "two vectors of 3 (or 2) numbers");
     if (!csg_value_numbers(call->arguments[1], 3, b))
         return csg_bad_argument(call, 1, "two vectors of 3 (or 2) numbers");
+    for (uint32_t i = 0; i < 3; i++)
+        if (!isfinite(a[i]) || !isfinite(b[i]))
+            return csg_bad_argument(call, isfinite(a[i]) ? 1 : 0, "finite numbers");
     csg_vector *made = csg_vector_create(&call->e->heap, 3);
     if (!made) {
         csg_eval_no_memory(call->e);
@@ -201,25 +223,4 @@ csg_value csg_function_dot(const csg_function_call *call)
     for (uint32_t i = 0; i < v[0].as.vector->count; i++)
         sum += v[0].as.vector->items[i].as.number * v[1].as.vector->items[i].as.number;
     return csg_value_number(sum);
-}
-
-/* ---- random numbers
- * -------------------------------------------------------------------------------- */
-
-csg_value csg_function_rands(const csg_function_call *call)
-{
-    for (uint32_t i = 0; i < call->count; i++)
-        if (call->arguments[i].kind != CSG_VALUE_NUMBER || !isfinite(call->arguments[i].as.number))
-            return csg_bad_argument(call, i, "finite numbers");
-    double low = call->arguments[0].as.number, high = call->arguments[1].as.number;
-    double count = trunc(call->arguments[2].as.number),
-           seed = call->count > 3 ? call->arguments[3].as.number : 0;
-    csg_random random = {0};
-    memcpy(&random.state, &seed, sizeof random.state);
-    csg_list list = {0};
-    csg_list_reserve(call->e, &list, fmax(count, 0), call->where);
-    for (double i = 0; i < count && !call->e->stop; i++)
-        csg_list_push(call->e, &list, csg_value_number(csg_random_uniform(&random, low, high)),
-                      call->where);
-    return csg_list_finish(call->e, &list);
 }

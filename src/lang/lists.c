@@ -53,19 +53,25 @@ csg_value csg_list_finish(csg_eval *e, csg_list *list)
 /* ---- iterating
  * ------------------------------------------------------------------------------------- */
 
+static void begin_range(csg_eval *e, csg_iteration *iteration, csg_span where)
+{
+    iteration->count = csg_range_count(iteration->over.as.range);
+    if (isinf(iteration->count)) { /* as in OpenSCAD */
+        csg_eval_report(e, CSG_DIAG_BAD_RANGE, where, "is the range's step right?",
+                        "the range has no end, it counts as empty");
+        iteration->count = 0;
+    } else if (iteration->count > (double)(e->context->limits.eval_steps - e->steps)) {
+        csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where, "is the range's step right?",
+                       "the range has %.0f elements", iteration->count);
+    }
+}
+
 bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, csg_span where)
 {
     *iteration = (csg_iteration){.over = over};
     switch (over.kind) {
     case CSG_VALUE_RANGE:
-        iteration->count = csg_range_count(over.as.range);
-        if (iteration->count > (double)(e->context->limits.eval_steps - e->steps)) {
-            csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where, "is the range's step right?",
-                           isinf(iteration->count) ? "the range has no end"
-                                                   : "the range has %.0f elements",
-                           iteration->count);
-            return false;
-        }
+        begin_range(e, iteration, where);
         break;
     case CSG_VALUE_VECTOR:
         iteration->count = over.as.vector->count;
@@ -100,7 +106,8 @@ bool csg_iteration_next(csg_eval *e, csg_iteration *iteration, csg_value *out, c
     const csg_value over = iteration->over;
     double index = iteration->next++;
     if (over.kind == CSG_VALUE_RANGE)
-        *out = csg_value_number(over.as.range->begin + index * over.as.range->step);
+        *out = csg_value_number(index == 0 ? over.as.range->begin
+                                           : over.as.range->begin + index * over.as.range->step);
     else if (over.kind == CSG_VALUE_VECTOR)
         *out = csg_value_retain(over.as.vector->items[(size_t)index]);
     else if (over.kind == CSG_VALUE_STRING)
@@ -148,33 +155,24 @@ static void add_for(csg_eval *e, const csg_expression *x, uint32_t k, csg_frame 
     csg_value_release(&e->heap, over);
 }
 
-/* The variables after one round: those of `next` new, the others as they were. */
-static csg_frame *next_round(csg_eval *e, const csg_expression *x, csg_frame *now)
+/* The variables after one round: those of `next` hide those of `first`. */
+static csg_frame *next_round(csg_eval *e, const csg_expression *x, csg_frame *first, csg_frame *now)
 {
-    const csg_arguments *first = &x->as.loop.first, *next = &x->as.loop.next;
-    csg_frame *made = csg_eval_let(e, next, now);
-    csg_frame *fresh = made ? csg_frame_create(&e->heap, now->parent, first->count) : NULL;
-    if (!fresh)
-        csg_eval_no_memory(e);
-    for (uint32_t i = 0; fresh && i < first->count; i++) {
-        csg_value value = now->values[i];
-        for (uint32_t k = 0; k < next->count; k++)
-            if (next->items[k].name == first->items[i].name)
-                value = made->values[k];
-        fresh->values[i] = csg_value_retain(value);
+    csg_frame *made = csg_eval_let(e, &x->as.loop.next, now);
+    if (made) { /* it has all that `now` has, except for what stays as it was */
+        csg_frame_release(&e->heap, made->parent);
+        made->parent = csg_frame_retain(first);
     }
-    if (fresh)
-        fresh->names = first->items;
-    csg_frame_release(&e->heap, made);
     csg_frame_release(&e->heap, now);
-    return fresh;
+    return made;
 }
 
 static void add_loop(csg_eval *e, const csg_expression *x, csg_frame *frame, csg_list *list)
 {
     enum { MOST_ROUNDS = 1000000 }; /* as in OpenSCAD */
     size_t dynamics = e->dynamic_count;
-    csg_frame *now = csg_eval_let(e, &x->as.loop.first, frame);
+    csg_frame *first = csg_eval_let(e, &x->as.loop.first, frame);
+    csg_frame *now = csg_frame_retain(first);
     for (uint32_t round = 0; now && csg_eval_charge(e, 1, x->where); round++) {
         csg_value condition = csg_evaluate(e, x->as.loop.condition, now);
         bool more = csg_value_is_true(condition);
@@ -188,9 +186,10 @@ static void add_loop(csg_eval *e, const csg_expression *x, csg_frame *frame, csg
             break;
         }
         add_element(e, x->as.loop.body, now, list);
-        now = next_round(e, x, now);
+        now = next_round(e, x, first, now);
     }
     csg_frame_release(&e->heap, now);
+    csg_frame_release(&e->heap, first);
     csg_eval_pop_dynamics(e, dynamics);
 }
 

@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- finding -------------------------------------------------------------------------------- */
 
@@ -215,15 +216,33 @@ static csg_file *load_used(csg_parser *parser, csg_span path)
     return file;
 }
 
+static bool is_font(const csg_parser *parser, csg_span path)
+{
+    enum { SUFFIX = 5 }; /* ".ttf>" */
+    const char *end = parser->text + path.offset + path.length;
+    return path.length > SUFFIX && (strncasecmp(end - SUFFIX, ".ttf>", SUFFIX) == 0 ||
+                                    strncasecmp(end - SUFFIX, ".otf>", SUFFIX) == 0);
+}
+
 void csg_load_use(csg_parser *parser, csg_span path)
 {
+    if (is_font(parser, path)) {
+        csg_source_report(&parser->program->sources, CSG_DIAG_FONT_IGNORED, path, NULL,
+                          "use of a font file changes nothing");
+        return;
+    }
     if (!csg_parser_enter(parser))
         return;
     csg_file *used = load_used(parser, path);
     csg_parser_leave(parser);
-    for (uint32_t i = 0; used && i < parser->file->use_count; i++)
-        if (parser->file->uses[i] == used)
+    csg_file *self = parser->file;
+    for (uint32_t i = 0; used && i < self->use_count; i++)
+        if (self->uses[i] == used) { /* the last use of a file counts */
+            memmove(self->uses + i, self->uses + i + 1,
+                    (self->use_count - i - 1) * sizeof *self->uses);
+            self->uses[self->use_count - 1] = used;
             return;
+        }
     if (!used || parser->stop)
         return;
     csg_file **place = csg_arena_push(&parser->program->arena, (void **)&parser->file->uses,

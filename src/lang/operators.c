@@ -8,7 +8,8 @@
 
 #include "lang/symbolic.h"
 
-static csg_value undefined(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+csg_value csg_eval_no_operation(csg_eval *e, const csg_expression *x, csg_value left,
+                                csg_value right)
 {
     const char *sign = csg_token_kind_name(x->operation);
     if (left.kind != CSG_VALUE_UNDEF && right.kind != CSG_VALUE_UNDEF)
@@ -57,7 +58,7 @@ static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_v
     if (csg_value_is_scalar(left) && csg_value_is_scalar(right))
         return scalars(e, x, left, right);
     if (left.kind != CSG_VALUE_VECTOR || right.kind != CSG_VALUE_VECTOR)
-        return undefined(e, x, left, right);
+        return csg_eval_no_operation(e, x, left, right);
     const csg_vector *a = left.as.vector, *b = right.as.vector;
     size_t count = a->count < b->count ? a->count : b->count;
     csg_vector *made = make_vector(e, x, count);
@@ -73,7 +74,8 @@ static csg_value scale(csg_eval *e, const csg_expression *x, csg_value value, cs
     if (csg_value_is_scalar(value))
         return number_first ? scalars(e, x, by, value) : scalars(e, x, value, by);
     if (value.kind != CSG_VALUE_VECTOR)
-        return number_first ? undefined(e, x, by, value) : undefined(e, x, value, by);
+        return number_first ? csg_eval_no_operation(e, x, by, value)
+                            : csg_eval_no_operation(e, x, value, by);
     const csg_vector *vector = value.as.vector;
     csg_vector *made = make_vector(e, x, vector->count);
     for (size_t i = 0; made && i < vector->count && !e->stop; i++)
@@ -188,7 +190,7 @@ static csg_value product(csg_eval *e, const csg_expression *x, csg_value left, c
     bool left_matrix = is_matrix(left, &left_columns),
          right_matrix = is_matrix(right, &right_columns);
     if (a->count == 0 || b->count == 0)
-        return undefined(e, x, left, right);
+        return csg_eval_no_operation(e, x, left, right);
     if (!left_matrix && !right_matrix && all_numbers(a) && all_numbers(b) && a->count == b->count)
         return dot(e, x, a, b);
     if (left_matrix && !right_matrix && all_numbers(b) && left_columns == b->count)
@@ -197,7 +199,7 @@ static csg_value product(csg_eval *e, const csg_expression *x, csg_value left, c
         return vector_matrix(e, x, a, b, right_columns);
     if (left_matrix && right_matrix && left_columns == b->count)
         return matrix_matrix(e, x, a, b, right_columns);
-    return undefined(e, x, left, right);
+    return csg_eval_no_operation(e, x, left, right);
 }
 
 static csg_value multiply(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
@@ -209,76 +211,7 @@ static csg_value multiply(csg_eval *e, const csg_expression *x, csg_value left, 
     if (left.kind == CSG_VALUE_VECTOR && right.kind == CSG_VALUE_VECTOR &&
         x->operation == CSG_TOKEN_STAR)
         return product(e, x, left, right);
-    return undefined(e, x, left, right);
-}
-
-/* ---- comparison
- * -------------------------------------------------------------------------------------- */
-
-static bool equal_vectors(csg_eval *e, const csg_vector *a, const csg_vector *b, csg_span where)
-{
-    if (a->count != b->count)
-        return false;
-    for (uint32_t i = 0; i < a->count; i++)
-        if (!csg_value_equal(e, a->items[i], b->items[i], where))
-            return false;
-    return true;
-}
-
-bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span where)
-{
-    if (left.kind != right.kind || !csg_eval_charge(e, 1, where))
-        return false;
-    switch (left.kind) {
-    case CSG_VALUE_NUMBER:
-        return left.as.number == right.as.number;
-    case CSG_VALUE_BOOLEAN:
-        return left.as.boolean == right.as.boolean;
-    case CSG_VALUE_BLEND:
-        return left.blend == right.blend && left.as.number == right.as.number;
-    case CSG_VALUE_STRING:
-        return left.as.string->length == right.as.string->length &&
-               memcmp(left.as.string->text, right.as.string->text, left.as.string->length) == 0;
-    case CSG_VALUE_VECTOR:
-        return equal_vectors(e, left.as.vector, right.as.vector, where);
-    case CSG_VALUE_RANGE:
-        return left.as.range->begin == right.as.range->begin &&
-               left.as.range->step == right.as.range->step &&
-               left.as.range->end == right.as.range->end;
-    case CSG_VALUE_FUNCTION:
-        return left.as.function == right.as.function;
-    default:
-        return true;
-    }
-}
-
-static csg_value by_order(csg_token_kind operation, double difference)
-{
-    switch (operation) {
-    case CSG_TOKEN_LESS:
-        return csg_value_boolean(difference < 0);
-    case CSG_TOKEN_LESS_EQUAL:
-        return csg_value_boolean(difference <= 0);
-    case CSG_TOKEN_GREATER:
-        return csg_value_boolean(difference > 0);
-    default:
-        return csg_value_boolean(difference >= 0);
-    }
-}
-
-static csg_value compare(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
-{
-    if (left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER) {
-        double a = left.as.number, b = right.as.number;
-        return by_order(x->operation, a < b ? -1 : a > b ? 1 : a == b ? 0 : (double)NAN);
-    }
-    if (left.kind == CSG_VALUE_BOOLEAN && right.kind == CSG_VALUE_BOOLEAN)
-        return by_order(x->operation, (double)left.as.boolean - (double)right.as.boolean);
-    if (left.kind == CSG_VALUE_STRING && right.kind == CSG_VALUE_STRING) {
-        int order = strcmp(left.as.string->text, right.as.string->text);
-        return by_order(x->operation, order);
-    }
-    return undefined(e, x, left, right);
+    return csg_eval_no_operation(e, x, left, right);
 }
 
 /* ---- entry
@@ -308,7 +241,7 @@ csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, 
     case CSG_TOKEN_GREATER_EQUAL:
         if (is_refused(e, x, left, right))
             return csg_value_undef();
-        return compare(e, x, left, right);
+        return csg_eval_compare(e, x, left, right);
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
         return add(e, x, left, right);
@@ -316,7 +249,7 @@ csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, 
     case CSG_TOKEN_SLASH:
         return both ? scalars(e, x, left, right) : multiply(e, x, left, right);
     default:
-        return both ? scalars(e, x, left, right) : undefined(e, x, left, right);
+        return both ? scalars(e, x, left, right) : csg_eval_no_operation(e, x, left, right);
     }
 }
 

@@ -50,6 +50,7 @@ static bool parse_argument(csg_parser *parser, csg_arguments *out)
     csg_argument argument = {.where = csg_parser_span(parser)};
     if (at_assignment(parser)) {
         argument.name = csg_parser_symbol(parser, argument.where);
+        parser->program->symbols.entries[argument.name].variable = true;
         csg_parser_next(parser);
         csg_parser_next(parser);
     }
@@ -75,6 +76,26 @@ bool csg_parse_arguments(csg_parser *parser, csg_arguments *out)
     return csg_parser_close(parser, CSG_TOKEN_CLOSE_ROUND, open);
 }
 
+void csg_parser_drop_doubles(csg_parser *parser, csg_arguments *assignments)
+{
+    enum { MOST = 1000 }; /* the check is quadratic */
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < assignments->count && assignments->count <= MOST; i++) {
+        const csg_argument *made = &assignments->items[i];
+        uint32_t before = 0;
+        while (before < kept && (!made->name || assignments->items[before].name != made->name))
+            before++;
+        if (before == kept)
+            assignments->items[kept++] = *made;
+        else
+            csg_source_report(&parser->program->sources, CSG_DIAG_DUPLICATE_ARGUMENT, made->where,
+                              NULL, "'%s' is assigned twice here, the first one holds",
+                              csg_symbol_name(&parser->program->symbols, made->name));
+    }
+    if (assignments->count <= MOST)
+        assignments->count = kept;
+}
+
 static bool parse_parameter(csg_parser *parser, csg_arguments *out)
 {
     csg_argument parameter = {.where = csg_parser_span(parser)};
@@ -83,6 +104,7 @@ static bool parse_parameter(csg_parser *parser, csg_arguments *out)
         return false;
     }
     parameter.name = csg_parser_symbol(parser, parameter.where);
+    parser->program->symbols.entries[parameter.name].variable = true;
     csg_parser_next(parser);
     if (csg_parser_accept(parser, CSG_TOKEN_ASSIGN)) {
         parameter.value = csg_parse_expression(parser);
@@ -158,6 +180,8 @@ static csg_expression *parse_prefixed(csg_parser *parser, csg_expression_kind ki
     csg_parser_next(parser);
     if (!made || !csg_parse_arguments(parser, &made->as.call.arguments))
         return NULL;
+    if (kind == CSG_EXPRESSION_LET)
+        csg_parser_drop_doubles(parser, &made->as.call.arguments);
     bool optional = kind == CSG_EXPRESSION_ASSERT || kind == CSG_EXPRESSION_ECHO;
     if (optional && !begins_expression(csg_parser_peek(parser)))
         return finish(parser, made, from);
@@ -204,6 +228,8 @@ static csg_expression *parse_loop(csg_parser *parser, csg_expression *made, csg_
         !parse_assignments(parser, CSG_TOKEN_CLOSE_ROUND, &made->as.loop.next) ||
         !csg_parser_close(parser, CSG_TOKEN_CLOSE_ROUND, open))
         return NULL;
+    csg_parser_drop_doubles(parser, &made->as.loop.first);
+    csg_parser_drop_doubles(parser, &made->as.loop.next);
     made->as.loop.body = parse_element(parser);
     return made->as.loop.body ? made : NULL;
 }

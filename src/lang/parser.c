@@ -397,6 +397,11 @@ static csg_scope *parse_children(csg_parser *parser)
                           "expected ';', a child or '{'");
         return kind == CSG_TOKEN_ASSIGN ? NULL : scope;
     }
+    if (kind == CSG_TOKEN_NAME && parser->tokens.items[parser->at + 1].kind == CSG_TOKEN_ASSIGN)
+        csg_source_report(&parser->program->sources, CSG_DIAG_EXPECTED, csg_parser_span(parser),
+                          "a variable has one value in its scope: x = condition ? 1 : 2;",
+                          "an assignment alone has no effect here, it holds only inside its own "
+                          "{ }");
     if (!csg_parser_enter(parser))
         return NULL;
     bool ok = parse_statement(parser, scope);
@@ -481,7 +486,12 @@ static bool parse_call(csg_parser *parser, csg_scope *scope)
     }
     if (!csg_parse_arguments(parser, &made->arguments))
         return false;
+<<<<<<< src/lang/parser.c
+    if (kind == CSG_TOKEN_LET)
+        csg_parser_drop_doubles(parser, &made->arguments);
+=======
     made->childless = csg_parser_peek(parser) == CSG_TOKEN_SEMICOLON;
+>>>>>>> /tmp/fz/new.f
     made->children = parse_children(parser);
     return made->children && add_statement(parser, into, made);
 }
@@ -490,6 +500,7 @@ static bool parse_assignment(csg_parser *parser, csg_scope *scope)
 {
     csg_assignment made = {.where = csg_parser_span(parser)};
     made.name = csg_parser_symbol(parser, made.where);
+    parser->program->symbols.entries[made.name].variable = true;
     csg_parser_next(parser);
     csg_parser_next(parser);
     made.value = csg_parse_expression(parser);

@@ -54,6 +54,8 @@ csg_symbol csg_parser_symbol(csg_parser *parser, csg_span name);
 csg_expression *csg_parse_expression(csg_parser *parser);
 /* "(a, b = 1)" with its parentheses: arguments, or parameters of a definition. */
 bool csg_parse_arguments(csg_parser *parser, csg_arguments *out);
+/* Of a let and the like: the first assignment of a name holds, the others are told and dropped. */
+void csg_parser_drop_doubles(csg_parser *parser, csg_arguments *assignments);
 bool csg_parse_parameters(csg_parser *parser, csg_arguments *out);
 
 #endif

@@ -128,8 +128,10 @@ static void run_body(csg_eval *e, const csg_definition *module, csg_frame *call,
                      const csg_statement *statement)
 {
     size_t first = e->part_count;
-    csg_eval_push_dynamic(e, e->symbol_children_count,
-                          csg_value_number(statement->children->statement_count));
+    csg_value outer = csg_eval_dynamic(e, e->symbol_parent_modules);
+    csg_eval_push_dynamic(
+        e, e->symbol_parent_modules,
+        csg_value_number(outer.kind == CSG_VALUE_NUMBER ? outer.as.number + 1 : 1));
     if (!e->stop)
         csg_run_scope(e, module->body, call, true);
     csg_node_id node =
@@ -149,6 +151,7 @@ static void run_module(csg_eval *e, const csg_definition *module, csg_frame *hom
         csg_eval_bind(e, &module->parameters, &statement->arguments, home, frame, statement->name);
     if (call && !e->stop) {
         call->children = statement->children;
+        call->child_count = csg_value_number(statement->children->statement_count);
         call->children_frame = csg_frame_retain(frame);
         size_t trace = e->trace_count;
         csg_eval_push_trace(e, statement->name, true, statement->where);

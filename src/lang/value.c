@@ -152,6 +152,8 @@ csg_frame *csg_frame_create(csg_heap *heap, csg_frame *parent, uint32_t count)
     made->children = NULL;
     made->children_frame = NULL;
     made->names = NULL;
+    made->has_dynamics = false;
+    made->child_count = (csg_value){.kind = CSG_VALUE_UNSET};
     made->count = count;
     for (uint32_t i = 0; i < count; i++)
         made->values[i] = (csg_value){.kind = CSG_VALUE_UNSET};
@@ -203,6 +205,10 @@ double csg_range_count(const csg_range *range)
 {
     if (isnan(range->begin) || isnan(range->step) || isnan(range->end))
         return 0;
+    if (isinf(range->step) && isfinite(range->begin) && isfinite(range->end)) {
+        double length = range->end - range->begin;
+        return length == 0 || signbit(length) == signbit(range->step) ? 1 : 0;
+    }
     if (range->step == 0 || isinf(range->begin) || isinf(range->end))
         return range->step != 0 && (range->end - range->begin) / range->step < 0 ? 0 : INFINITY;
     double span = (range->end - range->begin) / range->step;

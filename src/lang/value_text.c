@@ -67,10 +67,32 @@ static void put_exponent(csg_text *text, const char *digits, int count, int expo
     csg_text_put_string(text, tail);
 }
 
+/* The six significant digits of a positive number, and its decimal exponent. A tie goes up, as in
+ * OpenSCAD (printf's goes to the even digit), so the digits are rounded here. */
+static int round_digits(double number, char digits[8])
+{
+    char exact[48]; /* d.(25 digits)e+xxx: a tie ends at the seventh digit */
+    int exponent = 0, last = 5;
+    snprintf(exact, sizeof exact, "%.25e", number);
+    sscanf(exact + 28, "%d", &exponent);
+    digits[0] = exact[0];
+    memcpy(digits + 1, exact + 2, 5);
+    if (exact[7] < '5')
+        return exponent;
+    while (last >= 0 && digits[last] == '9')
+        digits[last--] = '0';
+    if (last >= 0) {
+        digits[last]++;
+        return exponent;
+    }
+    digits[0] = '1'; /* 9.999995 */
+    return exponent + 1;
+}
+
 void csg_text_put_number(csg_text *text, double number)
 {
-    char scientific[32], digits[8];
-    int exponent = 0, count = 6;
+    char whole[16], digits[8];
+    int count = 6;
     if (isnan(number) || isinf(number)) {
         csg_text_put_string(text, isnan(number) ? "nan" : number < 0 ? "-inf" : "inf");
         return;
@@ -79,10 +101,11 @@ void csg_text_put_number(csg_text *text, double number)
         csg_text_put(text, "0", 1);
         return;
     }
-    snprintf(scientific, sizeof scientific, "%.5e", fabs(number)); /* d.ddddde+xx */
-    digits[0] = scientific[0];
-    memcpy(digits + 1, scientific + 2, 5);
-    sscanf(scientific + 8, "%d", &exponent);
+    if (fabs(number) < 1e6 && number == trunc(number)) { /* by far the most */
+        csg_text_put(text, whole, (size_t)snprintf(whole, sizeof whole, "%d", (int)number));
+        return;
+    }
+    int exponent = round_digits(fabs(number), digits);
     while (count > 1 && digits[count - 1] == '0')
         count--;
     if (number < 0)
@@ -183,6 +206,21 @@ static void put_arguments(csg_text *text, const csg_arguments *arguments,
     }
 }
 
+static void put_enclosed(csg_text *text, const csg_expression *e, const csg_symbols *symbols)
+{
+    csg_text_put(text, "(", 1);
+    csg_text_put_expression(text, e, symbols);
+    csg_text_put(text, ")", 1);
+}
+
+static bool is_generator(const csg_expression *e)
+{
+    while (e->kind == CSG_EXPRESSION_LET)
+        e = e->as.call.body;
+    return e->kind == CSG_EXPRESSION_FOR || e->kind == CSG_EXPRESSION_FOR_LOOP ||
+           e->kind == CSG_EXPRESSION_IF || e->kind == CSG_EXPRESSION_EACH;
+}
+
 static void put_call(csg_text *text, const char *name, const csg_expression *call,
                      const csg_symbols *symbols)
 {
@@ -190,10 +228,41 @@ static void put_call(csg_text *text, const char *name, const csg_expression *cal
     csg_text_put(text, "(", 1);
     put_arguments(text, &call->as.call.arguments, symbols);
     csg_text_put(text, ")", 1);
-    if (call->as.call.body) {
-        csg_text_put(text, " ", 1);
+    if (!call->as.call.body)
+        return;
+    csg_text_put(text, " ", 1);
+    if (call->kind == CSG_EXPRESSION_LET && is_generator(call->as.call.body))
+        put_enclosed(text, call->as.call.body, symbols);
+    else
         csg_text_put_expression(text, call->as.call.body, symbols);
+}
+
+/* Several variables are loops in each other. */
+static void put_for(csg_text *text, const csg_expression *e, const csg_symbols *symbols)
+{
+    const csg_arguments *variables = &e->as.call.arguments;
+    for (uint32_t i = 0; i < variables->count; i++) {
+        const csg_arguments one = {variables->items + i, 1};
+        csg_text_put_string(text, i ? "(for(" : "for(");
+        put_arguments(text, &one, symbols);
+        csg_text_put_string(text, ") ");
     }
+    put_enclosed(text, e->as.call.body, symbols);
+    for (uint32_t i = 1; i < variables->count; i++)
+        csg_text_put(text, ")", 1);
+}
+
+static void put_string(csg_text *text, const char *data, size_t length)
+{
+    static const char special[] = "\n\t\r\"\\", letters[] = "ntr\"\\";
+    csg_text_put(text, "\"", 1);
+    for (size_t i = 0; i < length; i++) {
+        const char *found = data[i] ? strchr(special, data[i]) : NULL;
+        if (found)
+            csg_text_put(text, "\\", 1);
+        csg_text_put(text, found ? &letters[found - special] : &data[i], 1);
+    }
+    csg_text_put(text, "\"", 1);
 }
 
 static void put_operator(csg_text *text, const csg_expression *e, const csg_symbols *symbols)
@@ -275,9 +344,7 @@ static void put_literal(csg_text *text, const csg_expression *e, const csg_symbo
         csg_text_put_string(text, e->as.boolean ? "true" : "false");
         break;
     case CSG_EXPRESSION_STRING:
-        csg_text_put(text, "\"", 1);
-        csg_text_put(text, e->as.string.text, e->as.string.length);
-        csg_text_put(text, "\"", 1);
+        put_string(text, e->as.string.text, e->as.string.length);
         break;
     case CSG_EXPRESSION_NAME:
         csg_text_put_string(text, csg_symbol_name(symbols, e->as.name));
@@ -313,7 +380,10 @@ void csg_text_put_expression(csg_text *text, const csg_expression *e, const csg_
         csg_text_put_string(text, csg_symbol_name(symbols, e->as.member.name));
         break;
     case CSG_EXPRESSION_CALL:
-        csg_text_put_expression(text, e->as.call.callee, symbols);
+        if (e->as.call.callee->kind == CSG_EXPRESSION_NAME)
+            csg_text_put_expression(text, e->as.call.callee, symbols);
+        else
+            put_enclosed(text, e->as.call.callee, symbols);
         put_call(text, "", e, symbols);
         break;
     case CSG_EXPRESSION_FUNCTION:
@@ -329,14 +399,14 @@ void csg_text_put_expression(csg_text *text, const csg_expression *e, const csg_
         put_call(text, "echo", e, symbols);
         break;
     case CSG_EXPRESSION_FOR:
-        put_call(text, "for", e, symbols);
+        put_for(text, e, symbols);
         break;
     case CSG_EXPRESSION_FOR_LOOP:
         put_loop(text, e, symbols);
         break;
     case CSG_EXPRESSION_EACH:
         csg_text_put_string(text, "each ");
-        csg_text_put_expression(text, e->as.inner, symbols);
+        put_enclosed(text, e->as.inner, symbols);
         break;
     case CSG_EXPRESSION_VECTOR:
         put_list(text, e, symbols);

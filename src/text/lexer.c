@@ -18,6 +18,7 @@ typedef struct lexer {
     const char *text;
     uint32_t source, length, at;
     bool told_utf8, told_nul;
+    uint32_t counted, quotes; /* how many quotes stand at `counted` and behind; 0, 0: not known */
 } lexer;
 
 static const struct {
@@ -170,7 +171,9 @@ static uint32_t read_escape(const char *text, uint32_t room, uint32_t *character
     char utf8[4];
     bool complete = braces ? digits > 0 && begin + digits < room && text[begin + digits] == '}'
                            : most > 0 && digits == most;
-    if (!complete || value == 0 || csg_utf8_encode(value, utf8) == 0)
+    if (kind == 'x' && value == 0) /* OpenSCAD's way to keep NUL out of strings */
+        value = ' ';
+    if (!complete || (kind == 'x' && value > 0x7F) || csg_utf8_encode(value, utf8) == 0)
         return 0;
     *character = value;
     return begin + digits + (braces ? 1 : 0);
@@ -189,14 +192,48 @@ static void lex_escape(lexer *l)
     csg_source_report(
         l->sources, CSG_DIAG_BAD_ESCAPE, span(l, l->at, next + (shown ? 1 : 0)),
         "known are \\n \\t \\r \\\" \\\\ \\xHH \\uHHHH \\u{H...}; a backslash itself is \\\\",
-        "unknown escape in a string");
+        "unknown escape in a string, the backslash is left out");
     l->at++;
+}
+
+/* How many quotes that no backslash hides stand here and behind. Each byte is looked at once. */
+static uint32_t count_quotes(lexer *l)
+{
+    uint32_t passed = 0;
+    uint32_t end = l->counted ? l->at : l->length;
+    for (uint32_t i = l->counted ? l->counted : l->at; i < end; i++) {
+        if (l->text[i] == '\\')
+            i++;
+        else if (l->text[i] == '"')
+            passed++;
+    }
+    l->quotes = l->counted ? l->quotes - passed : passed;
+    l->counted = l->at;
+    return l->quotes;
+}
+
+/* At a line's end inside a string. OpenSCAD lets strings go on, without the line break. But when
+ * the quotes behind pair up, it is the closing one that was forgotten. */
+static bool goes_on(lexer *l, uint32_t from)
+{
+    if (count_quotes(l) % 2 == 0)
+        return false;
+    csg_source_report(l->sources, CSG_DIAG_STRING_OVER_LINES, span(l, from, from + 1),
+                      "write \\n for a line break, str(\"one\", \"two\") for a long text",
+                      "this string goes on over the end of the line; the break is left out");
+    return true;
 }
 
 static bool lex_string(lexer *l)
 {
     uint32_t from = l->at++;
-    while (l->at < l->length && l->text[l->at] != '"' && l->text[l->at] != '\n') {
+    bool over_lines = false;
+    while (l->at < l->length && l->text[l->at] != '"') {
+        if (l->text[l->at] == '\n' && !over_lines) {
+            over_lines = goes_on(l, from);
+            if (!over_lines)
+                break;
+        }
         if (l->text[l->at] == '\\')
             lex_escape(l);
         else
@@ -225,6 +262,8 @@ char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size
         if (escape) {
             written += csg_utf8_encode(character, out + written);
             i += 1 + escape;
+        } else if (text[i] == '\\' || text[i] == '\n') { /* told about */
+            i++;
         } else {
             out[written++] = text[i++];
         }
@@ -251,6 +290,24 @@ static void skip_exponent(lexer *l)
     }
 }
 
+static bool lex_name(lexer *l);
+
+/* As in OpenSCAD, the longer one holds: 2d and 3rd_part are names, 2e3 is a number. */
+static bool is_name_longer(const lexer *l, uint32_t from)
+{
+    uint32_t end = from;
+    while (end < l->length && is_name(l->text[end]))
+        end++;
+    return end > l->at;
+}
+
+static void check_finite(const lexer *l, uint32_t from)
+{
+    if (isinf(csg_token_number(l->text + from, l->at - from)))
+        csg_source_report(l->sources, CSG_DIAG_BAD_NUMBER, span(l, from, l->at),
+                          "infinity is 1 / 0", "this number is too large");
+}
+
 static bool lex_number(lexer *l)
 {
     uint32_t from = l->at;
@@ -266,6 +323,10 @@ static bool lex_number(lexer *l)
         }
         skip_exponent(l);
     }
+    if (is_name_longer(l, from)) {
+        l->at = from;
+        return lex_name(l);
+    }
     bool broken = is_name(peek(l, 0)) || (peek(l, 0) == '.' && is_digit(peek(l, 1)));
     if (broken) {
         while (is_name(peek(l, 0)) || peek(l, 0) == '.')
@@ -275,6 +336,8 @@ static bool lex_number(lexer *l)
                           "a decimal point is '.'",
                           "'%.*s' is not a number", (int)(l->at - from < 60 ? l->at - from : 60),
                           l->text + from);
+    } else {
+        check_finite(l, from);
     }
     return push(l, CSG_TOKEN_NUMBER, from);
 }
@@ -439,8 +502,12 @@ static bool lex_punctuation(lexer *l)
 bool csg_lex(const csg_sources *sources, uint32_t source, csg_token_array *out)
 {
     const csg_source *text = &sources->items[source];
-    lexer l = {sources, &sources->context->memory, out, text->text, source, text->length, 0, false,
-               false};
+    lexer l = {.sources = sources,
+               .memory = &sources->context->memory,
+               .out = out,
+               .text = text->text,
+               .source = source,
+               .length = text->length};
     if (l.length >= 3 && memcmp(l.text, "\xEF\xBB\xBF", 3) == 0)
         l.at = 3;
     bool ok = true;

@@ -35,7 +35,9 @@ static void loops_and_recursion_end(void **state)
     check_limit("for (i = [0 : 1e9]) sphere(1);", 904);
     check_limit("for (i = [0 : 1000], j = [0 : 1000], k = [0 : 1000]) let (a = 1) {}", 904);
     check_limit("x = [for (i = 0; true; i = i + 1) 0];", 904);
-    check_limit("x = [for (i = [0 : 0 : 1]) 0];", 904);
+    check_limit("x = [for (i = [0 : 1e-9 : 1]) 0];", 904);
+    assert_int_equal(bench_compile(&b, "x = [for (i = [0 : 0 : 1]) 0];"), CSGM_OK);
+    assert_non_null(strstr(b.text, "W0211"));
     check_limit("function f(n) = f(n + 1); x = f(0);", 904);
     check_limit("function f(n) = 1 + f(n + 1); x = f(0);", 903);
     check_limit("f = function (n) 1 + f(n + 1); x = f(0);", 903);

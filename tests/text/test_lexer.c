@@ -121,7 +121,8 @@ static void strings_resolve_their_escapes(void **state)
     } table[] = {{"\"\"", ""},
                  {"\"a\\nb\\t\\\\\\\"\"", "a\nb\t\\\""},
                  {"\"\\x41\\u00e9\\U01F600\"", "A\xC3\xA9\xF0\x9F\x98\x80"},
-                 {"\"\\u{e9}\\u{1F600}\"", "\xC3\xA9\xF0\x9F\x98\x80"}};
+                 {"\"\\u{e9}\\u{1F600}\"", "\xC3\xA9\xF0\x9F\x98\x80"},
+                 {"\"\\x00\"", " "}};
     (void)state;
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         size_t length;
@@ -131,6 +132,41 @@ static void strings_resolve_their_escapes(void **state)
             csg_token_string(&arena, table[i].written, (uint32_t)strlen(table[i].written), &length);
         assert_string_equal(text, table[i].meant);
         assert_int_equal(length, strlen(table[i].meant));
+    }
+}
+
+/* What is told about and left out: the backslash of an unknown escape, the break of a line. */
+static void strings_lose_what_has_no_meaning(void **state)
+{
+    static const struct {
+        const char *written, *meant;
+    } table[] = {{"\"a\\qb\"", "aqb"}, {"\"\\x80\"", "x80"}, {"\"a\nb\"", "ab"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        size_t length;
+        lex(table[i].written);
+        assert_int_equal(found_count, 1);
+        assert_string_equal(
+            csg_token_string(&arena, table[i].written, (uint32_t)strlen(table[i].written), &length),
+            table[i].meant);
+    }
+}
+
+static void names_may_begin_with_digits(void **state)
+{
+    static const char *const names[] = {"2d", "3rd_part", "1e", "2e3x", "0xyz", "10mm"};
+    static const char *const numbers[] = {"2", "1e5", "0x1F", "5.", "1.5e+3"};
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        lex(names[i]);
+        assert_int_equal(found_count, 0);
+        assert_int_equal(tokens.count, 2);
+        assert_int_equal(tokens.items[0].kind, CSG_TOKEN_NAME);
+    }
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        lex(numbers[i]);
+        assert_int_equal(tokens.count, 2);
+        assert_int_equal(tokens.items[0].kind, CSG_TOKEN_NUMBER);
     }
 }
 
@@ -152,9 +188,12 @@ static void mistakes_have_places(void **state)
     check_found("\"a\\q\"", 106, 1, 3);
     check_found("\"\\u12\"", 106, 1, 2);
     check_found("\"\\u{110000}\"", 106, 1, 2);
-    check_found("x = 12abc;", 111, 1, 5);
-    assert_int_equal(found[0].length, 5);
-    assert_string_equal(found[0].source_line, "x = 12abc;");
+    check_found("x = 1.2abc;", 111, 1, 5);
+    assert_int_equal(found[0].length, 6);
+    assert_string_equal(found[0].source_line, "x = 1.2abc;");
+    check_found("x = 1e400;", 111, 1, 5);
+    check_found("x = \"a\nb\"; y = \"c\";", 117, 1, 5);
+    check_found("x = \"a;\ny = \"c\";", 104, 1, 5);
     check_found("a\r\n\xC3", 103, 2, 1);
     assert_string_equal(found[0].source_line, "\xC3");
     check_found("// \xE9\n", 114, 1, 4);
@@ -210,6 +249,8 @@ int main(void)
         cmocka_unit_test(tokens_are_told_apart),
         cmocka_unit_test(numbers_have_their_values),
         cmocka_unit_test(strings_resolve_their_escapes),
+        cmocka_unit_test(strings_lose_what_has_no_meaning),
+        cmocka_unit_test(names_may_begin_with_digits),
         cmocka_unit_test(mistakes_have_places),
         cmocka_unit_test(utf8_is_checked),
     };

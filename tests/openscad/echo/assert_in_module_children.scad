@@ -1,0 +1,4 @@
+module m() { assert($children > 0, "needs children"); children(); }
+m() echo("ok");
+m();
+echo("after");

@@ -1,0 +1,3 @@
+module m(n = $children) echo(n, $children);
+m();
+m() { cube(); sphere(); }

@@ -1,0 +1,4 @@
+children();
+children(0);
+echo($children);
+echo("end");

@@ -1,0 +1,7 @@
+;;
+{ }
+{ ; }
+echo("a");;
+module m() { ; }
+m();;
+{ { echo("nested"); } }

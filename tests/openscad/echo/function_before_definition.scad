@@ -1,0 +1,3 @@
+echo(late(2), value);
+function late(x) = x + value;
+value = 40;

@@ -1,0 +1,10 @@
+function adder(n) = function(x) x + n;
+a5 = adder(5);
+n = 100;
+echo(a5(1), adder(1)(1));
+counter = let (k = 3) function() k;
+k = 9;
+echo(counter());
+make = function(i) function(x) x * i;
+fs = [for (i = [0 : 2]) make(i)];
+echo([for (f = fs) f(10)]);

@@ -1,0 +1,4 @@
+union() {
+    include <lib/inner.scad>
+    echo("block");
+}

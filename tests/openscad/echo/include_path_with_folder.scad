@@ -1,0 +1,2 @@
+include <lib/../lib/defs.scad>
+echo(lib_variable);

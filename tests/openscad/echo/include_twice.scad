@@ -1,0 +1,3 @@
+include <lib/defs.scad>
+include <lib/defs.scad>
+echo(lib_function(1));

@@ -1,0 +1,3 @@
+include <lib/defs.scad>
+echo(lib_variable, lib_function(2));
+lib_module();

@@ -1,0 +1,3 @@
+depth = 2;
+function inner_chain() = depth;
+module inner_module() echo("b", depth);

@@ -1,0 +1,1 @@
+echo("inner file"); inner_value = 3;

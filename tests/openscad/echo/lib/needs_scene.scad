@@ -1,0 +1,2 @@
+function scaled(x) = x * scale_of_scene;
+module scaled_module() echo(scaled(10));

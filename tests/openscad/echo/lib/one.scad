@@ -1,0 +1,2 @@
+module which() echo("one");
+function which_f() = 1;

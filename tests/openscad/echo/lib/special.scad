@@ -1,0 +1,3 @@
+$sp = "library";
+module show_special() echo($sp);
+function get_special() = $sp;

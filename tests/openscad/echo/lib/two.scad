@@ -1,0 +1,2 @@
+module which() echo("two");
+function which_f() = 2;

@@ -1,0 +1,3 @@
+union() { echo("a"); !echo("root"); echo("b"); }
+module m() { !echo("m root"); }
+m();

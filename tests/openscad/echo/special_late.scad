@@ -1,0 +1,4 @@
+echo($late);
+module m() echo($late);
+m();
+$late = 4;

@@ -1,0 +1,2 @@
+echo($nothing);
+echo(is_undef($nothing), $nothing == undef);

@@ -1,0 +1,1 @@
+echo($vpr, $vpt, $vpd, $vpf);

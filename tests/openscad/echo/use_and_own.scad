@@ -1,0 +1,4 @@
+use <lib/one.scad>
+module which() echo("own");
+which();
+echo(which_f());

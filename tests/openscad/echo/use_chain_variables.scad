@@ -1,0 +1,3 @@
+use <lib/chain_a.scad>
+echo(chain());
+chain_module();

@@ -1,0 +1,2 @@
+use <lib/no_such_font.ttf>
+echo("still here");

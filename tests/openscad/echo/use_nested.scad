@@ -1,0 +1,2 @@
+use <lib/uses_defs.scad>
+echo(twice_lib(2));

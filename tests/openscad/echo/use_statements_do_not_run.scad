@@ -1,0 +1,2 @@
+use <lib/statements.scad>
+echo(is_undef(from_statements));

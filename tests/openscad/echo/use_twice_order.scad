@@ -1,0 +1,5 @@
+use <lib/two.scad>
+use <lib/one.scad>
+use <lib/two.scad>
+which();
+echo(which_f());

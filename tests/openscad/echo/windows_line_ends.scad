@@ -1,0 +1,3 @@
+echo("a");// comment
+x = 1;
+echo(x);
