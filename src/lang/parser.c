@@ -486,12 +486,9 @@ static bool parse_call(csg_parser *parser, csg_scope *scope)
     }
     if (!csg_parse_arguments(parser, &made->arguments))
         return false;
-<<<<<<< src/lang/parser.c
     if (kind == CSG_TOKEN_LET)
         csg_parser_drop_doubles(parser, &made->arguments);
-=======
     made->childless = csg_parser_peek(parser) == CSG_TOKEN_SEMICOLON;
->>>>>>> /tmp/fz/new.f
     made->children = parse_children(parser);
     return made->children && add_statement(parser, into, made);
 }
