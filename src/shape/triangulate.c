@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: MIT
+ * Triangles of a clean outline by cutting ears (Meisters 1975): holes are joined to the ring around
+ * them (rings.h), then corners whose triangle holds no other corner are cut off one by one. Only
+ * corners that are not convex can stand in the way; they lie in a grid of cells, so that an ear
+ * looks at few of them and ordinary outlines take about linear time.
+ *
+ * Whatever the coordinates, every edge of the rings is used once and every diagonal twice, in both
+ * directions. Where rounding left no ear (loops that touch along edges), the demands are
+ * relaxed step by step, so it always ends.
+ */
+#include <stdlib.h>
+
+#include "shape/polygons.h"
+#include "shape/rings.h"
+
+typedef struct cells {
+    uint32_t *first; /* per cell: a blocker, or none */
+    uint32_t width, height;
+    double left, bottom, per_x, per_y; /* cells a length */
+} cells;
+
+typedef struct ring_start {
+    csg_vec2 at;
+    uint32_t corner;
+} ring_start;
+
+typedef struct cutter {
+    csg_memory *memory;
+    csg_rings rings;
+    size_t corner_capacity;
+    ring_start *starts;                        /* per ring or hole: its leftmost corner */
+    size_t ring_count, hole_count, loop_count; /* rings first in starts, then holes */
+    cells cells;
+    size_t cell_capacity;
+    uint32_t *indices;
+    size_t index_count;
+} cutter;
+
+/* What an ear may be, from the best on. */
+typedef enum ear_kind {
+    SPIKE,     /* no angle */
+    PROPER,    /* area, and nothing else in it or at its edges */
+    NOT_WRONG, /* nothing inside it; may be flat */
+    NOT_TURNED,
+    ANY
+} ear_kind;
+
+/* ---- rings -------------------------------------------------------------------------------- */
+
+static double doubled_area(const csg_outline *outline, size_t first, size_t end)
+{
+    csg_vec2 o = outline->points[first];
+    double area = 0;
+    for (size_t i = first; i < end; i++) {
+        csg_vec2 a = outline->points[i], b = outline->points[i + 1 < end ? i + 1 : first];
+        area += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+    }
+    return area;
+}
+
+static bool is_left_of(csg_vec2 a, csg_vec2 b)
+{
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+static uint32_t link_loop(cutter *c, size_t first, size_t end, bool is_ring)
+{
+    const csg_vec2 *points = c->rings.outline->points;
+    uint32_t leftmost = (uint32_t)first;
+    for (size_t i = first; i < end; i++) {
+        c->rings.corners[i] = (csg_ring_corner){
+            .point = (uint32_t)i,
+            .previous = (uint32_t)(i > first ? i - 1 : end - 1),
+            .next = (uint32_t)(i + 1 < end ? i + 1 : first),
+            .is_joined = is_ring,
+        };
+        if (is_left_of(points[i], points[leftmost]))
+            leftmost = (uint32_t)i;
+    }
+    return leftmost;
+}
+
+static void link_loops(cutter *c)
+{
+    const csg_outline *outline = c->rings.outline;
+    c->rings.corner_count = (uint32_t)csg_outline_first(outline, outline->loop_count);
+    for (size_t loop = 0; loop < outline->loop_count; loop++) {
+        size_t first = csg_outline_first(outline, loop), end = outline->ends[loop];
+        bool is_ring = doubled_area(outline, first, end) >= 0;
+        uint32_t corner = link_loop(c, first, end, is_ring);
+        ring_start start = {outline->points[corner], corner};
+        if (is_ring)
+            c->starts[c->ring_count++] = start;
+        else
+            c->starts[outline->loop_count - ++c->hole_count] = start;
+    }
+}
+
+static int compare_starts(const void *left, const void *right)
+{
+    const ring_start *a = left, *b = right;
+    return is_left_of(a->at, b->at)   ? -1
+           : is_left_of(b->at, a->at) ? 1
+                                      : (a->corner > b->corner) - (a->corner < b->corner);
+}
+
+/* Holes that lie in nothing stay rings of their own, behind the others. */
+static void join_holes(cutter *c)
+{
+    ring_start *holes = c->starts + c->ring_count;
+    qsort(holes, c->hole_count, sizeof *holes, compare_starts);
+    size_t left_over = 0;
+    for (size_t i = 0; i < c->hole_count; i++) {
+        if (!csg_ring_join(&c->rings, holes[i].corner))
+            holes[left_over++] = holes[i];
+    }
+    c->ring_count += left_over;
+}
+
+/* ---- cells of blockers -------------------------------------------------------------------- */
+
+static uint32_t cell_along(double at, double low, double per_length, uint32_t count)
+{
+    double cell = (at - low) * per_length;
+    return cell < count - 1 ? (cell > 0 ? (uint32_t)cell : 0) : count - 1;
+}
+
+static uint32_t *cell_of(const cells *g, csg_vec2 p)
+{
+    uint32_t x = cell_along(p.x, g->left, g->per_x, g->width);
+    uint32_t y = cell_along(p.y, g->bottom, g->per_y, g->height);
+    return &g->first[(size_t)y * g->width + x];
+}
+
+static int turn_at(const csg_rings *rings, uint32_t i)
+{
+    const csg_ring_corner *c = &rings->corners[i];
+    return csg_turn(csg_ring_at(rings, c->previous), csg_ring_at(rings, i),
+                    csg_ring_at(rings, c->next));
+}
+
+/* Marks the ring's blockers; its box and its number of corners. */
+static size_t survey(cutter *c, uint32_t start, csg_box *box, size_t *blockers)
+{
+    size_t count = 0;
+    uint32_t i = start;
+    *box = csg_box_empty();
+    *blockers = 0;
+    do {
+        csg_vec2 p = csg_ring_at(&c->rings, i);
+        csg_vec3 at = csg_vec3_make(p.x, p.y, 0);
+        *box = csg_box_hull(*box, (csg_box){at, at});
+        c->rings.corners[i].is_blocker = turn_at(&c->rings, i) <= 0;
+        *blockers += c->rings.corners[i].is_blocker;
+        count++;
+        i = c->rings.corners[i].next;
+    } while (i != start);
+    return count;
+}
+
+/* About two cells a blocker, never more than were allocated. */
+static void fill_cells(cutter *c, uint32_t start, csg_box box, size_t blockers)
+{
+    cells *g = &c->cells;
+    double width = box.max.x - box.min.x, height = box.max.y - box.min.y;
+    double most = fmin(2 * (double)blockers + 1, (double)c->cell_capacity);
+    double side = sqrt(width * height / most);
+    g->width = side > 0 ? (uint32_t)fmin(fmax(width / side, 1), most) : 1;
+    g->height = (uint32_t)fmax(most / g->width, 1);
+    g->left = box.min.x;
+    g->bottom = box.min.y;
+    g->per_x = width > 0 ? g->width / width : 0;
+    g->per_y = height > 0 ? g->height / height : 0;
+    for (size_t i = 0; i < (size_t)g->width * g->height; i++)
+        g->first[i] = CSG_CORNER_NONE;
+    uint32_t i = start;
+    do {
+        csg_ring_corner *corner = &c->rings.corners[i];
+        if (corner->is_blocker) {
+            uint32_t *cell = cell_of(g, csg_ring_at(&c->rings, i));
+            corner->next_in_cell = *cell;
+            *cell = i;
+        }
+        i = corner->next;
+    } while (i != start);
+}
+
+/* ---- ears --------------------------------------------------------------------------------- */
+
+static bool is_same(csg_vec2 a, csg_vec2 b)
+{
+    return a.x == b.x && a.y == b.y;
+}
+
+/* Whether a neighbour of r, which lies on the ear's tip, leads into the ear. */
+static bool leads_into(const csg_rings *rings, uint32_t r, const csg_vec2 *ear)
+{
+    const csg_ring_corner *c = &rings->corners[r];
+    csg_vec2 ways[2] = {csg_ring_at(rings, c->previous), csg_ring_at(rings, c->next)};
+    for (int k = 0; k < 2; k++) {
+        if (csg_turn(ear[1], ear[2], ways[k]) > 0 && csg_turn(ear[1], ways[k], ear[0]) > 0)
+            return true;
+    }
+    return false;
+}
+
+static bool is_blocked_by(const csg_rings *rings, uint32_t r, const csg_vec2 *ear, ear_kind kind)
+{
+    csg_vec2 p = csg_ring_at(rings, r);
+    if (is_same(p, ear[0]) || is_same(p, ear[2]))
+        return false;
+    if (is_same(p, ear[1]))
+        return leads_into(rings, r, ear);
+    int inside = kind == PROPER ? 0 : 1;
+    return csg_turn(ear[0], ear[1], p) >= inside && csg_turn(ear[1], ear[2], p) >= inside &&
+           csg_turn(ear[2], ear[0], p) >= inside;
+}
+
+static bool is_blocked(const cutter *c, uint32_t tip, const csg_vec2 *ear, ear_kind kind)
+{
+    const cells *g = &c->cells;
+    const csg_ring_corner *corners = c->rings.corners;
+    double x0 = fmin(ear[0].x, fmin(ear[1].x, ear[2].x));
+    double x1 = fmax(ear[0].x, fmax(ear[1].x, ear[2].x));
+    double y0 = fmin(ear[0].y, fmin(ear[1].y, ear[2].y));
+    double y1 = fmax(ear[0].y, fmax(ear[1].y, ear[2].y));
+    uint32_t left = cell_along(x0, g->left, g->per_x, g->width),
+             right = cell_along(x1, g->left, g->per_x, g->width),
+             top = cell_along(y1, g->bottom, g->per_y, g->height);
+    for (uint32_t y = cell_along(y0, g->bottom, g->per_y, g->height); y <= top; y++) {
+        for (uint32_t x = left; x <= right; x++) {
+            uint32_t r = g->first[(size_t)y * g->width + x];
+            for (; r != CSG_CORNER_NONE; r = corners[r].next_in_cell) {
+                if (corners[r].is_blocker && r != tip && r != corners[tip].previous &&
+                    r != corners[tip].next && is_blocked_by(&c->rings, r, ear, kind))
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* A corner without an angle: what led to it leads back. Cut off at once, or the two sides of that
+ * way would become ears that cover each other. */
+static bool is_spike(const csg_rings *rings, uint32_t tip)
+{
+    const csg_ring_corner *corner = &rings->corners[tip];
+    csg_vec2 a = csg_ring_at(rings, corner->previous), b = csg_ring_at(rings, tip),
+             c = csg_ring_at(rings, corner->next);
+    return csg_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
+}
+
+static bool is_ear(const cutter *c, uint32_t tip, ear_kind kind)
+{
+    const csg_ring_corner *corner = &c->rings.corners[tip];
+    int turn = turn_at(&c->rings, tip);
+    if (kind == SPIKE)
+        return is_spike(&c->rings, tip);
+    if (kind == ANY)
+        return true;
+    if (turn < 0 || (turn == 0 && kind == PROPER))
+        return false;
+    if (kind == NOT_TURNED)
+        return true;
+    csg_vec2 ear[3] = {csg_ring_at(&c->rings, corner->previous), csg_ring_at(&c->rings, tip),
+                       csg_ring_at(&c->rings, corner->next)};
+    return !is_blocked(c, tip, ear, kind);
+}
+
+static void cut_ear(cutter *c, uint32_t tip)
+{
+    csg_ring_corner *corners = c->rings.corners;
+    uint32_t before = corners[tip].previous, after = corners[tip].next;
+    c->indices[c->index_count++] = corners[before].point;
+    c->indices[c->index_count++] = corners[tip].point;
+    c->indices[c->index_count++] = corners[after].point;
+    corners[before].next = after;
+    corners[after].previous = before;
+    corners[tip].is_blocker = false;
+    /* what was convex stays so */
+    corners[before].is_blocker &= turn_at(&c->rings, before) <= 0;
+    corners[after].is_blocker &= turn_at(&c->rings, after) <= 0;
+}
+
+static void cut_ring(cutter *c, uint32_t start)
+{
+    csg_box box;
+    size_t blockers, left = survey(c, start, &box, &blockers), misses = 0;
+    ear_kind kind = SPIKE;
+    fill_cells(c, start, box, blockers);
+    for (uint32_t i = start; left >= 3;) {
+        uint32_t before = c->rings.corners[i].previous, next = c->rings.corners[i].next;
+        if (is_ear(c, i, kind)) {
+            cut_ear(c, i);
+            left--;
+            misses = 0;
+            bool is_before = is_spike(&c->rings, before), is_next = is_spike(&c->rings, next);
+            kind = kind == SPIKE || is_before || is_next ? SPIKE : PROPER;
+            i = is_before ? before
+                : is_next ? next
+                          : c->rings.corners[next].next; /* not the neighbour: no fans */
+            continue;
+        }
+        i = next;
+        if (++misses >= left) {
+            misses = 0;
+            kind += kind < ANY;
+        }
+    }
+}
+
+/* ---- all ---------------------------------------------------------------------------------- */
+
+static bool allocate(cutter *c)
+{
+    const csg_outline *outline = c->rings.outline;
+    size_t points = csg_outline_first(outline, outline->loop_count);
+    c->loop_count = outline->loop_count;
+    c->corner_capacity = points + 2 * outline->loop_count;
+    c->cell_capacity = 2 * c->corner_capacity;
+    c->rings.corners = csg_memory_alloc(c->memory, c->corner_capacity * sizeof *c->rings.corners);
+    c->starts = csg_memory_alloc(c->memory, c->loop_count * sizeof *c->starts);
+    c->cells.first = csg_memory_alloc(c->memory, c->cell_capacity * sizeof *c->cells.first);
+    return c->corner_capacity < UINT32_MAX / 4 && c->rings.corners && c->starts && c->cells.first;
+}
+
+static void release(cutter *c)
+{
+    csg_memory_release(c->memory, c->rings.corners, c->corner_capacity * sizeof *c->rings.corners);
+    csg_memory_release(c->memory, c->starts, c->loop_count * sizeof *c->starts);
+    csg_memory_release(c->memory, c->cells.first, c->cell_capacity * sizeof *c->cells.first);
+}
+
+csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, uint32_t **indices,
+                                     size_t *index_count)
+{
+    cutter c = {.memory = memory, .rings = {.outline = in}};
+    *indices = NULL;
+    *index_count = 0;
+    if (!in->loop_count)
+        return CSGM_OK;
+    bool is_room = allocate(&c);
+    if (is_room) {
+        link_loops(&c);
+        join_holes(&c);
+        /* a ring of n corners makes n - 2 triangles */
+        size_t count = 3 * (c.rings.corner_count - 2 * c.ring_count);
+        c.indices = csg_memory_alloc(memory, count * sizeof *c.indices);
+        is_room = c.indices != NULL;
+    }
+    for (size_t i = 0; is_room && i < c.ring_count; i++)
+        cut_ring(&c, c.starts[i].corner);
+    if (is_room) {
+        *indices = c.indices;
+        *index_count = c.index_count;
+    }
+    release(&c);
+    return is_room ? CSGM_OK : CSGM_ERR_MEMORY;
+}

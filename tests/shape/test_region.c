@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: MIT
+ * The field of a region against brute force: distance, sign, gradient, batches, what touches and
+ * what is not clean, corners and levels of corners, far and near; every allocation failing once.
+ */
+#include "outline_support.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "shape/region.h"
+
+static csg_memory memory;
+static csg_outline outline;
+static csg_shape *region;
+static csg_random dice;
+
+static int begin(void **state)
+{
+    csg_memory_init(&memory, NULL, 0);
+    csg_outline_init(&outline, &memory);
+    region = NULL;
+    dice.state = 11;
+    return 0;
+}
+
+static int end(void **state)
+{
+    csg_shape_release(region);
+    csg_outline_release(&outline);
+    assert_int_equal(memory.used_bytes, 0);
+    return 0;
+}
+
+static void make_region(void)
+{
+    csg_shape_release(region);
+    assert_int_equal(csg_region_create(&memory, &outline, &region), CSGM_OK);
+}
+
+static double value_of(double x, double y)
+{
+    csg_vec3 gradient;
+    return csg_shape_sample(region, csg_vec3_make(x, y, 0), &gradient);
+}
+
+static void check_at(double x, double y, double extent)
+{
+    csg_vec3 gradient;
+    double value = csg_shape_sample(region, csg_vec3_make(x, y, 7), &gradient);
+    double expected = distance_of(&outline, (csg_vec2){x, y}), slack = 1e-14 * (extent + expected);
+    assert_true(fabs(fabs(value) - expected) <= slack);
+    if (expected > slack)
+        assert_int_equal(value > 0, winding_of(&outline, (csg_vec2){x, y}) > 0);
+    assert_true(gradient.z == 0);
+    assert_true(fabs(hypot(gradient.x, gradient.y) - 1) < 1e-7 || expected < 1e-7 * extent);
+    if (expected > 1e-6 * extent) { /* it leads to the nearest point */
+        csg_vec2 foot = {x - value * gradient.x, y - value * gradient.y};
+        assert_true(distance_of(&outline, foot) <= 1e-13 * (extent + expected));
+    }
+}
+
+static void check_around(double extent, int count)
+{
+    for (int i = 0; i < count; i++) {
+        double spread = i % 8 ? 1.2 * extent : 100 * extent;
+        check_at(csg_random_uniform(&dice, -spread, spread),
+                 csg_random_uniform(&dice, -spread, spread), extent);
+        csg_vec2 p = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];
+        double near = extent * pow(10, csg_random_uniform(&dice, -12, -1));
+        check_at(p.x + csg_random_uniform(&dice, -near, near),
+                 p.y + csg_random_uniform(&dice, -near, near), extent);
+        check_at(p.x, csg_random_uniform(&dice, -extent, extent), extent);
+        check_at(csg_random_uniform(&dice, -extent, extent), p.y, extent);
+        check_at(p.x, p.y, extent);
+    }
+}
+
+/* ---- against brute force ------------------------------------------------------------------ */
+
+static void squares_are_what_they_are(void **state)
+{
+    add_rectangle(&outline, -1, -2, 3, 4);
+    make_region();
+    assert_true(value_of(0, 0) == 1 && value_of(1, 1) == 2 && value_of(-4, -6) == -5);
+    assert_true(value_of(-1, 0) == 0 && value_of(3, 4) == 0 && value_of(1, 5) == -1);
+    assert_int_equal(region->kind, CSG_SHAPE_REGION);
+    assert_true(region->box.min.x == -1 && region->box.max.y == 4);
+    assert_true(isinf(region->box.min.z) && isinf(region->box.max.z));
+    check_around(4, 2000);
+}
+
+static void stars_with_holes(void **state)
+{
+    for (int round = 0; round < 12; round++) {
+        csg_outline_release(&outline);
+        int corners = 3 + round * round;
+        add_star(&outline, &dice, (csg_vec2){0, 0}, 0.6, 1, corners, false);
+        add_star(&outline, &dice, (csg_vec2){0, 0}, 0.2, 0.5, corners, true);
+        add_star(&outline, &dice, (csg_vec2){2, 1}, 0.1, 0.9, corners, false);
+        make_region();
+        check_around(3, 300);
+    }
+}
+
+static void small_and_large_and_far_off(void **state)
+{
+    const double scales[] = {1e-100, 1e-9, 1e6, 1e100};
+    for (int k = 0; k < 4; k++) {
+        csg_outline_release(&outline);
+        add_star(&outline, &dice, (csg_vec2){0, 0}, 0.3, 1, 30, false);
+        csg_affine map = csg_affine_scale(csg_vec3_make(scales[k], scales[k], 1));
+        csg_outline_transform(&outline, &map);
+        make_region();
+        check_around(scales[k], 300);
+    }
+    csg_outline_release(&outline);
+    add_star(&outline, &dice, (csg_vec2){1e5, -1e5}, 0.3, 1, 30, false);
+    make_region();
+    for (int i = 0; i < 2000; i++)
+        check_at(1e5 + csg_random_uniform(&dice, -2, 2), -1e5 + csg_random_uniform(&dice, -2, 2),
+                 1e5);
+}
+
+/* Spikes and notches: all kinds of corners, on common levels. */
+static void lattice_polygons(void **state)
+{
+    for (int round = 0; round < 200; round++) {
+        csg_outline_release(&outline);
+        add_star(&outline, &dice, (csg_vec2){0, 0}, 1, 9, 3 + (int)csg_random_below(&dice, 20),
+                 false);
+        for (size_t i = 0; i < outline.point_count; i++) {
+            outline.points[i].x = nearbyint(outline.points[i].x);
+            outline.points[i].y = nearbyint(outline.points[i].y);
+        }
+        make_region();
+        for (int x = -10; x <= 10; x++) {
+            for (int y = -10; y <= 10; y++)
+                check_at(x, y, 10);
+        }
+        check_around(10, 30);
+    }
+}
+
+/* Loops that cross and overlap: the sign is the winding number's all the same. */
+static void scribbles(void **state)
+{
+    for (int round = 0; round < 60; round++) {
+        csg_outline_release(&outline);
+        add_scribble(&outline, &dice, 3, 3 + round);
+        make_region();
+        check_around(3, 100);
+    }
+}
+
+static void what_touches(void **state)
+{
+    add_rectangle(&outline, 0, 0, 1, 1); /* with a common edge, a common corner */
+    add_rectangle(&outline, 1, 0, 2, 1);
+    add_rectangle(&outline, 2, 1, 3, 2);
+    make_region();
+    assert_true(value_of(0.5, 2) == -1 && value_of(1.25, 0.5) == 0.25 && value_of(1, -1) == -1);
+    assert_true(value_of(2.5, 0.5) == -0.5 && value_of(2.25, 1.5) == 0.25);
+    check_around(3, 2000);
+}
+
+static void crossings_by_a_rounding_error(void **state)
+{
+    const csg_vec2 wall[] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}},
+                   hole[] = {{1, -1e-9}, {1, 8}, {8, 8}, {8, 1e-9}};
+    for (int i = 0; i < 4; i++)
+        assert_true(csg_outline_add(&outline, wall[i]));
+    assert_true(csg_outline_close(&outline));
+    for (int i = 0; i < 4; i++)
+        assert_true(csg_outline_add(&outline, hole[i]));
+    assert_true(csg_outline_close(&outline));
+    make_region();
+    assert_true(value_of(4, 3) < -2.9 && value_of(4, -3) < -2.9 && value_of(4, 8.5) > 0);
+    check_around(9, 2000);
+}
+
+/* ---- laws --------------------------------------------------------------------------------- */
+
+static void make_text_like(int segments)
+{
+    csg_outline_release(&outline);
+    int glyphs = segments / 50 + 1;
+    for (int i = 0; i < glyphs; i++) {
+        csg_vec2 center = {(i % 40) * 2.2, i / 40 * 2.5};
+        add_star(&outline, &dice, center, 0.8, 1, 30, false);
+        add_star(&outline, &dice, center, 0.4, 0.5, 20, true);
+    }
+    make_region();
+}
+
+static void differences_stay_below_distances(void **state)
+{
+    make_text_like(2000);
+    for (int i = 0; i < 200000; i++) {
+        double x = csg_random_uniform(&dice, -3, 90), y = csg_random_uniform(&dice, -3, 9);
+        double near = pow(10, csg_random_uniform(&dice, -6, 1));
+        double dx = csg_random_uniform(&dice, -near, near),
+               dy = csg_random_uniform(&dice, -near, near);
+        assert_true(fabs(value_of(x, y) - value_of(x + dx, y + dy)) <= hypot(dx, dy) + 1e-13);
+    }
+}
+
+static void batches_are_their_points(void **state)
+{
+    enum { COUNT = 700 };
+    static float x[COUNT], y[COUNT], z[COUNT], out[COUNT], again[COUNT], one, g[4][COUNT];
+    make_text_like(1000);
+    for (int i = 0; i < COUNT; i++) { /* some of them twice */
+        int j = i % 3 ? i : (int)csg_random_below(&dice, (uint32_t)i + 1);
+        x[i] = j < i ? x[j] : (float)csg_random_uniform(&dice, -3, 90);
+        y[i] = j < i ? y[j] : (float)csg_random_uniform(&dice, -3, 9);
+        z[i] = (float)i;
+    }
+    x[5] = NAN, y[6] = INFINITY, x[7] = -0.0f, x[8] = 0.0f, y[7] = y[8] = 0.5f;
+    csg_shape_values(region, x, y, z, COUNT, out);
+    csg_shape_gradients(region, x, y, z, COUNT, again, g[0], g[1], g[2]);
+    for (int i = 0; i < COUNT; i++) {
+        csg_shape_values(region, &x[i], &y[i], &z[i], 1, &one);
+        assert_memory_equal(&one, &out[i], sizeof one);
+        assert_memory_equal(&again[i], &out[i], sizeof one);
+        csg_vec3 gradient;
+        double value =
+            csg_shape_sample(region, csg_vec3_make((double)x[i], (double)y[i], 0), &gradient);
+        assert_true(out[i] == (float)value);
+        assert_true(g[0][i] == (float)gradient.x && g[1][i] == (float)gradient.y && g[2][i] == 0);
+    }
+    assert_true(isinf(out[5]) && out[5] < 0 && isinf(out[6]) && out[6] < 0);
+}
+
+static void shapes_are_counted_and_named(void **state)
+{
+    make_text_like(500);
+    uint64_t hash = csg_shape_hash(region);
+    const csg_outline *kept = csg_region_outline(region);
+    assert_int_equal(kept->point_count, outline.point_count);
+    assert_memory_equal(kept->points, outline.points, kept->point_count * sizeof *kept->points);
+    csg_shape_retain(region);
+    csg_shape_release(region);
+    make_region();
+    assert_true(csg_shape_hash(region) == hash);
+    outline.points[3].x = nextafter(outline.points[3].x, 0);
+    make_region();
+    assert_true(csg_shape_hash(region) != hash);
+}
+
+static void nothing_and_nonsense(void **state)
+{
+    make_region();
+    assert_true(csg_box_is_empty(region->box));
+    assert_true(isinf(value_of(0, 0)) && value_of(0, 0) < 0);
+    add_rectangle(&outline, 0, 0, 1, 1);
+    outline.points[2].y = NAN;
+    csg_shape *none = NULL;
+    assert_int_equal(csg_region_create(&memory, &outline, &none), CSGM_ERR_SCENE);
+    outline.points[2].y = -INFINITY;
+    assert_int_equal(csg_region_create(&memory, &outline, &none), CSGM_ERR_SCENE);
+    assert_null(none);
+    for (int i = 0; i < 4; i++) /* no area at all */
+        outline.points[i] = (csg_vec2){1, 1 + 1e-200 * i};
+    make_region();
+    assert_true(value_of(0, 0) < 0);
+    for (int i = 0; i < 4; i++) /* there and back */
+        outline.points[i] = (csg_vec2){i % 2, 0};
+    make_region();
+    assert_true(value_of(0.5, 0.5) == -0.5 && value_of(0.5, -0.5) == -0.5);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    csgm_status status = CSGM_ERR_MEMORY;
+    long n = 0;
+    add_star(&outline, &dice, (csg_vec2){0, 0}, 0.3, 1, 100, false);
+    for (; status; n++) {
+        failing f;
+        csg_shape *shape = NULL;
+        failing_init(&f, n);
+        status = csg_region_create(&f.memory, &outline, &shape);
+        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        csg_shape_release(shape);
+        assert_int_equal(f.live, 0);
+    }
+    assert_true(n > 8);
+}
+
+/* ---- speed -------------------------------------------------------------------------------- */
+
+static double nanoseconds_a_point(double spread)
+{
+    enum { BATCH = 256, ROUNDS = 400 };
+    static float x[ROUNDS][BATCH], y[ROUNDS][BATCH], z[BATCH], out[BATCH];
+    for (int r = 0; r < ROUNDS; r++) {
+        csg_vec2 p = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];
+        for (int i = 0; i < BATCH; i++) { /* a block's worth of points, all different */
+            x[r][i] = (float)(p.x + spread * (i % 16 - 8 + csg_random_uniform(&dice, 0, 0.1)));
+            y[r][i] = (float)(p.y + spread * (i / 16 - 8));
+        }
+    }
+    clock_t start = clock();
+    for (int r = 0; r < ROUNDS; r++)
+        csg_shape_values(region, x[r], y[r], z, BATCH, out);
+    return (double)(clock() - start) / CLOCKS_PER_SEC * 1e9 / (ROUNDS * BATCH);
+}
+
+static void points_are_quick(void **state)
+{
+    const int sizes[] = {100, 1000, 10000, 100000};
+    for (int k = 0; k < 4; k++) {
+        clock_t start = clock();
+        make_text_like(sizes[k]);
+        double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+        double near = nanoseconds_a_point(0.01), wide = nanoseconds_a_point(0.3);
+        print_message("%6d segments: made in %.4f s; %.0f ns a point near, %.0f ns around\n",
+                      (int)outline.point_count, seconds, near, wide);
+        assert_true(near < 10000 && wide < 10000); /* all segments would be far more */
+    }
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+    const struct CMUnitTest tests[] = {
+        TEST(squares_are_what_they_are),
+        TEST(stars_with_holes),
+        TEST(small_and_large_and_far_off),
+        TEST(lattice_polygons),
+        TEST(scribbles),
+        TEST(what_touches),
+        TEST(crossings_by_a_rounding_error),
+        TEST(differences_stay_below_distances),
+        TEST(batches_are_their_points),
+        TEST(shapes_are_counted_and_named),
+        TEST(nothing_and_nonsense),
+        TEST(every_allocation_may_fail),
+        TEST(points_are_quick),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT
+ * Convex hulls and triangles of outlines made by hand and at random: with holes, islands in them,
+ * holes that touch, corners on straight edges; every allocation failing once.
+ */
+#include "outline_support.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+#include "shape/polygons.h"
+#include "shape/turn.h"
+
+static csg_memory memory;
+static csg_outline outline;
+
+static int begin(void **state)
+{
+    csg_memory_init(&memory, NULL, 0);
+    csg_outline_init(&outline, &memory);
+    return 0;
+}
+
+static int end(void **state)
+{
+    csg_outline_release(&outline);
+    assert_int_equal(memory.used_bytes, 0);
+    return 0;
+}
+
+static void add_loop(const double (*points)[2], int count)
+{
+    for (int i = 0; i < count; i++)
+        assert_true(csg_outline_add(&outline, (csg_vec2){points[i][0], points[i][1]}));
+    assert_true(csg_outline_close(&outline));
+}
+#define ADD_LOOP(...)                                                                              \
+    do {                                                                                           \
+        const double points[][2] = {__VA_ARGS__};                                                  \
+        add_loop(points, sizeof points / sizeof *points);                                          \
+    } while (0)
+
+static size_t triangulate(double slack)
+{
+    uint32_t *indices;
+    size_t count;
+    assert_int_equal(csg_polygons_triangulate(&outline, &memory, &indices, &count), CSGM_OK);
+    check_triangles(&outline, indices, count, slack);
+    csg_memory_release(&memory, indices, count * sizeof *indices);
+    return count / 3;
+}
+
+/* ---- which way points turn ---------------------------------------------------------------- */
+
+static void turns_are_exact(void **state)
+{
+    csg_random random = {3};
+    for (int i = 0; i < 100000; i++) {
+        int64_t v[6];
+        for (int k = 0; k < 6; k++)
+            v[k] = (int64_t)csg_random_below(&random, 1u << 30) - (1 << 29);
+        if (i % 2) { /* nearly on a line */
+            v[4] = v[0] + 2 * (v[2] - v[0]) + csg_random_below(&random, 2);
+            v[5] = v[1] + 2 * (v[3] - v[1]);
+        }
+        int64_t det = (v[2] - v[0]) * (v[5] - v[1]) - (v[3] - v[1]) * (v[4] - v[0]);
+        csg_vec2 a = {(double)v[0], (double)v[1]}, b = {(double)v[2], (double)v[3]},
+                 c = {(double)v[4], (double)v[5]};
+        assert_int_equal(csg_turn(a, b, c), (det > 0) - (det < 0));
+    }
+}
+
+/* ---- hull --------------------------------------------------------------------------------- */
+
+static void hulls_hold_all_points(void **state)
+{
+    csg_random random = {4};
+    for (int round = 0; round < 100; round++) {
+        csg_outline hull;
+        csg_outline_release(&outline);
+        for (int loops = 1 + round % 3; loops > 0; loops--)
+            add_scribble(&outline, &random, 3, 3 + (int)csg_random_below(&random, 60));
+        for (size_t i = 0; round % 2 && i < outline.point_count; i++) { /* many on one line */
+            outline.points[i].x = nearbyint(outline.points[i].x);
+            outline.points[i].y = nearbyint(outline.points[i].y);
+        }
+        assert_int_equal(csg_polygons_hull(&outline, &hull), CSGM_OK);
+        if (hull.loop_count) {
+            for (size_t i = 0; i < hull.point_count; i++) {
+                csg_vec2 a = hull.points[i], b = hull.points[(i + 1) % hull.point_count];
+                for (size_t j = 0; j < outline.point_count; j++)
+                    assert_true(csg_turn(a, b, outline.points[j]) >= 0);
+                assert_int_equal(csg_turn(a, b, hull.points[(i + 2) % hull.point_count]), 1);
+            }
+        }
+        assert_true(hull.loop_count || round % 2);
+        csg_outline_release(&hull);
+    }
+}
+
+static void hulls_of_lines_are_empty(void **state)
+{
+    csg_outline hull;
+    assert_int_equal(csg_polygons_hull(&outline, &hull), CSGM_OK);
+    assert_int_equal(hull.loop_count, 0);
+    ADD_LOOP({0, 0}, {1, 1}, {3, 3}, {2, 2}, {0, 0}, {3, 3});
+    assert_int_equal(csg_polygons_hull(&outline, &hull), CSGM_OK);
+    assert_int_equal(hull.loop_count, 0);
+    assert_int_equal(hull.point_count, 0);
+    csg_outline_release(&hull);
+    outline.points[1].x = NAN;
+    assert_int_equal(csg_polygons_hull(&outline, &hull), CSGM_ERR_SCENE);
+}
+
+/* ---- triangles ---------------------------------------------------------------------------- */
+
+static void nothing_has_no_triangles(void **state)
+{
+    assert_int_equal(triangulate(0), 0);
+}
+
+static void holes_and_islands(void **state)
+{
+    add_rectangle(&outline, 0, 0, 10, 10);
+    assert_int_equal(triangulate(0), 2);
+    ADD_LOOP({1, 1}, {1, 9}, {9, 9}, {9, 1});
+    assert_int_equal(triangulate(0), 8);
+    add_rectangle(&outline, 2, 2, 8, 8); /* an island */
+    ADD_LOOP({3, 3}, {3, 4}, {4, 4}, {4, 3});
+    ADD_LOOP({5, 5}, {5, 7}, {7, 6});
+    ADD_LOOP({5, 3}, {5, 4}, {7, 4}, {7, 3});
+    assert_int_equal(triangulate(0), 8 + 2 + 4 + 4 + 3 + 2 * 3);
+}
+
+static void straight_corners_stay(void **state)
+{
+    ADD_LOOP({0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {0, 2}, {0, 1});
+    ADD_LOOP({1, 0.5}, {1, 1}, {1, 1.5}, {2, 1.5}, {2, 1}, {2, 0.5});
+    assert_int_equal(triangulate(0), 15);
+}
+
+static void loops_that_touch(void **state)
+{
+    /* a hole whose leftmost corner is a corner of the ring, one that touches an edge, one that
+       touches another hole */
+    ADD_LOOP({0, 0}, {8, 0}, {8, 8}, {0, 8}, {0, 4});
+    ADD_LOOP({0, 4}, {2, 5}, {2, 3});
+    ADD_LOOP({3, 0}, {4, 2}, {5, 1});
+    ADD_LOOP({4, 2}, {3, 6}, {5, 6});
+    assert_int_equal(triangulate(0), 5 + 9 + 6 - 2);
+    csg_outline_release(&outline);
+    /* two squares that touch at a corner, as one loop and as two */
+    ADD_LOOP({0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {2, 2}, {0, 2});
+    add_rectangle(&outline, 4, 4, 6, 6);
+    assert_int_equal(triangulate(0), 8);
+}
+
+/* Star-shaped loops in each cell of a board, holes in them, islands in those. */
+static void add_board(csg_random *random, int side, int corners)
+{
+    for (int i = 0; i < side; i++) {
+        for (int j = 0; j < side; j++) {
+            csg_vec2 center = {i * 2.1, j * 2.1};
+            add_star(&outline, random, center, 0.7, 1, corners, false);
+            add_star(&outline, random, center, 0.35, 0.6, corners, true);
+            add_star(&outline, random, center, 0.1, 0.3, corners, false);
+        }
+    }
+}
+
+static void boards_of_stars(void **state)
+{
+    csg_random random = {5};
+    for (int round = 0; round < 20; round++) {
+        csg_outline_release(&outline);
+        add_board(&random, 1 + round % 4, 3 + 4 * round);
+        triangulate(0);
+    }
+}
+
+/* One square with many holes, given in any order. */
+static void add_sieve(csg_random *random, int side, int corners)
+{
+    add_rectangle(&outline, -2, -2, side * 2.1, side * 2.1);
+    for (int k = 0; k < side * side; k++) {
+        int at = k * 37 % (side * side);
+        csg_vec2 center = {at % side * 2.1, at / side * 2.1};
+        add_star(&outline, random, center, 0.2, 1, corners, true);
+    }
+}
+
+static void sieves(void **state)
+{
+    csg_random random = {6};
+    for (int side = 1; side < 12; side++) {
+        csg_outline_release(&outline);
+        add_sieve(&random, side, 3 + (int)csg_random_below(&random, 20));
+        size_t holes = (size_t)(side * side);
+        assert_int_equal(triangulate(0), outline.point_count + 2 * holes - 2);
+    }
+}
+
+static void twenty_thousand_points_are_quick(void **state)
+{
+    csg_random random = {7};
+    add_sieve(&random, 25, 32);
+    clock_t start = clock();
+    triangulate(0);
+    csg_outline_release(&outline);
+    add_star(&outline, &random, (csg_vec2){0, 0}, 0.999, 1, 20000, false);
+    triangulate(0);
+    double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    print_message("2 x 20 000 points: %.2f s\n", seconds);
+    assert_true(seconds <
+                20); /* quadratic would be minutes; sanitizers and busy machines slow it */
+}
+
+/* What is not clean still has the right edges; area may be turned over. */
+static void scribbles_keep_their_edges(void **state)
+{
+    csg_random random = {8};
+    for (int round = 0; round < 200; round++) {
+        csg_outline_release(&outline);
+        add_scribble(&outline, &random, 3, 3 + (int)csg_random_below(&random, 40));
+        add_scribble(&outline, &random, 2, 3 + (int)csg_random_below(&random, 40));
+        for (size_t i = 0; round % 2 && i < outline.point_count; i++) {
+            outline.points[i].x = nearbyint(outline.points[i].x);
+            outline.points[i].y = nearbyint(outline.points[i].y);
+        }
+        triangulate(INFINITY);
+    }
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    csg_random random = {9};
+    add_board(&random, 2, 6);
+    csgm_status status = CSGM_ERR_MEMORY;
+    long n = 0;
+    for (; status; n++) {
+        failing f;
+        uint32_t *indices;
+        size_t count;
+        failing_init(&f, n);
+        status = csg_polygons_triangulate(&outline, &f.memory, &indices, &count);
+        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        csg_memory_release(&f.memory, indices, count * sizeof *indices);
+        assert_int_equal(f.live, 0);
+    }
+    assert_true(n > 3);
+    for (status = CSGM_ERR_MEMORY, n = 0; status; n++) {
+        failing f;
+        csg_outline hull, copy = outline;
+        failing_init(&f, n);
+        copy.memory = &f.memory;
+        status = csg_polygons_hull(&copy, &hull);
+        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        csg_outline_release(&hull);
+        assert_int_equal(f.live, 0);
+    }
+    assert_true(n > 2);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+    const struct CMUnitTest tests[] = {
+        TEST(turns_are_exact),
+        TEST(hulls_hold_all_points),
+        TEST(hulls_of_lines_are_empty),
+        TEST(nothing_has_no_triangles),
+        TEST(holes_and_islands),
+        TEST(straight_corners_stay),
+        TEST(loops_that_touch),
+        TEST(boards_of_stars),
+        TEST(sieves),
+        TEST(twenty_thousand_points_are_quick),
+        TEST(scribbles_keep_their_edges),
+        TEST(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
