@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/screen.h"
+
 static const struct {
     csg_diag_code code;
     csgm_severity severity;
@@ -69,6 +71,17 @@ void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, c
     csg_diag_report(sink, code, (csgm_diag){.source_name = name, .message = message, .hint = hint});
 }
 
+void csg_diag_count_dropped(csg_diag_sink *sink, uint32_t count)
+{
+    char message[80];
+    snprintf(message, sizeof message, "%u more %s not shown", count,
+             count == 1 ? "finding is" : "findings are");
+    if (sink->on_diag)
+        sink->on_diag(
+            sink->user,
+            &(csgm_diag){.severity = CSGM_NOTE, .code = CSG_DIAG_NOTE, .message = message});
+}
+
 /* ---- formatting --------------------------------------------------------------------- */
 
 typedef struct writer {
@@ -100,20 +113,75 @@ static void put_place(writer *w, const csgm_diag *diag)
     put_string(w, diag->source_name ? ": " : "csgmesh: ");
 }
 
+/* The part of the source line that is shown: all of it, or some columns around the caret. */
+typedef struct window {
+    const char *text;
+    size_t from, to;      /* bytes */
+    size_t caret, behind; /* bytes that the caret and its tail stand under */
+    bool cut_left, cut_right;
+} window;
+
+static const char CUT[] = "...";
+
+/* The end of the character that makes the columns from `at` on too many, or the end of the line. */
+static size_t advance(const char *text, size_t at, size_t length, uint32_t columns)
+{
+    while (at < length) {
+        csg_screen_cell cell = csg_screen_cell_at(text + at, length - at);
+        if (cell.columns > columns)
+            break;
+        columns -= cell.columns;
+        at += cell.bytes;
+    }
+    return at;
+}
+
+static window make_window(const csgm_diag *diag)
+{
+    enum { WIDEST = 160, BEFORE = 70, AROUND = 140 };
+    size_t length = diag->source_line_length, caret = diag->column ? diag->column - 1 : 0;
+    caret = caret < length ? caret : length;
+    window w = {.text = diag->source_line, .to = length, .caret = caret};
+    w.behind = length - caret < diag->length ? length : caret + diag->length;
+    if (advance(w.text, 0, length, WIDEST) == length)
+        return w;
+    w.from = caret;
+    for (uint32_t columns = 0; w.from > 0 && columns < BEFORE;) {
+        size_t before = csg_screen_step_back(w.text, w.from);
+        columns += csg_screen_cell_at(w.text + before, w.from - before).columns;
+        w.from = before;
+    }
+    w.to = advance(w.text, w.from, length, AROUND);
+    w.cut_left = w.from > 0;
+    w.cut_right = w.to < length;
+    return w;
+}
+
 static void put_caret(writer *w, const csgm_diag *diag)
 {
-    put(w, diag->source_line, diag->source_line_length);
-    put_string(w, "\n");
-    for (uint32_t i = 0; i + 1 < diag->column && i < diag->source_line_length; i++) {
-        char c = diag->source_line[i];
-        if (((unsigned char)c & 0xC0) == 0x80) /* UTF-8 continuation: no column on the screen */
-            continue;
-        put_string(w, c == '\t' ? "\t" : " ");
+    window shown = make_window(diag);
+    csg_screen_cell cell;
+    put_string(w, shown.cut_left ? CUT : "");
+    for (size_t at = shown.from; at < shown.to; at += cell.bytes) {
+        cell = csg_screen_cell_at(shown.text + at, shown.to - at);
+        if (cell.is_shown)
+            put(w, shown.text + at, cell.bytes);
+        else
+            put_string(w, "\xEF\xBF\xBD"); /* U+FFFD */
+    }
+    put_string(w, shown.cut_right ? CUT : "");
+    put_string(w, shown.cut_left ? "\n   " : "\n");
+    for (size_t at = shown.from; at < shown.caret; at += cell.bytes) {
+        cell = csg_screen_cell_at(shown.text + at, shown.caret - at);
+        put_string(w, shown.text[at] == '\t' ? "\t" : "  " + (2 - cell.columns));
     }
     put_string(w, "^");
-    uint32_t room =
-        diag->source_line_length >= diag->column ? diag->source_line_length - diag->column : 0;
-    for (uint32_t i = 1; i < diag->length && i <= room; i++)
+    uint32_t tail = 0;
+    for (size_t at = shown.caret; at < shown.behind && at < shown.to; at += cell.bytes) {
+        cell = csg_screen_cell_at(shown.text + at, shown.to - at);
+        tail += cell.columns;
+    }
+    for (; tail > 1; tail--)
         put_string(w, "~");
     put_string(w, "\n");
 }

@@ -39,4 +39,7 @@ void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag);
 void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 
+/* A note that so many findings were above the cap. */
+void csg_diag_count_dropped(csg_diag_sink *sink, uint32_t count);
+
 #endif

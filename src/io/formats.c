@@ -82,9 +82,14 @@ const char *csg_build_features(void)
 #endif
 #ifdef CSG_LIBZIP_VERSION
         "with libzip " CSG_LIBZIP_VERSION ", expat " CSG_EXPAT_VERSION ", zlib " CSG_ZLIB_VERSION
-        " (.3mf)";
+        " (.3mf)\n"
 #else
-        "without libzip, expat or zlib (no .3mf)";
+        "without libzip, expat or zlib (no .3mf)\n"
+#endif
+#ifdef CSG_JSON_VERSION
+        "with nlohmann-json " CSG_JSON_VERSION " (parameter sets)";
+#else
+        "without nlohmann-json (no parameter sets)";
 #endif
 }
 

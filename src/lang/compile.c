@@ -329,7 +329,10 @@ static csgm_status compile_with(compilation *c)
     c->diag_user = context->diags.user;
     c->on_echo = context->on_echo;
     c->echo_user = context->user;
+    uint32_t dropped = context->diags.dropped;
     run(c);
+    if (context->diags.dropped > dropped)
+        csg_diag_count_dropped(&context->diags, context->diags.dropped - dropped);
     return c->status;
 }
 

@@ -378,7 +378,7 @@ static csgm_status evaluate_values(csg_program *program, csgm_params *params)
         const csg_value *value = param->is_overridden ? csg_eval_lookup(&e, name, frame) : NULL;
         if (value && !value_from(*value, &params->arena, &param->value, &no_memory) && !no_memory)
             csg_diag_plain(&program->context->diags, CSG_DIAG_PARAMETER_KIND, NULL, NULL,
-                           "'%.60s' is set to a %s, which no parameter can be", param->name,
+                           "'%.60s' is set to what no parameter can be: %s", param->name,
                            csg_value_kind_name(*value));
     }
     status = status == CSGM_OK ? e.status : status;

@@ -67,32 +67,13 @@ static bool is_news(csg_eval *e, csg_diag_code code, csg_span where)
     return true;
 }
 
-static void note_calls(const csg_eval *e)
-{
-    enum { INNER = 5, OUTER = 3 };
-    for (size_t i = e->trace_count; i > 0; i--) {
-        const csg_trace_entry *entry = &e->trace[i - 1];
-        size_t from_inside = e->trace_count - i;
-        if (e->trace_count > INNER + OUTER + 1 && from_inside == INNER) {
-            csg_source_note(&e->program->sources, entry->where, "and %zu more calls",
-                            e->trace_count - INNER - OUTER);
-            i = OUTER + 1;
-            continue;
-        }
-        csg_source_note(&e->program->sources, entry->where, "in the call of %s '%s'",
-                        entry->module ? "module" : "function",
-                        entry->name ? csg_symbol_name(&e->program->symbols, entry->name)
-                                    : "(literal)");
-    }
-}
-
 static void report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                    const char *format, va_list arguments)
 {
     char message[512];
     vsnprintf(message, sizeof message, format, arguments);
     csg_source_report(&e->program->sources, code, where, hint, "%s", message);
-    note_calls(e);
+    csg_eval_note_calls(e);
 }
 
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,

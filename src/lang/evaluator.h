@@ -84,6 +84,8 @@ csg_node_id csg_eval_run(csg_eval *e);
 /* Reports once a place, with the trace of calls. An error makes the status SCENE. */
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* The trace of calls, innermost first, as notes; what repeats itself is counted (call_trace.c). */
+void csg_eval_note_calls(const csg_eval *e);
 /* Was this finding reported before at this place? */
 bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
 void csg_eval_no_memory(csg_eval *e);

@@ -17,7 +17,6 @@
 enum {
     LARGEST_TEXT = 64 << 20, /* bytes of one file */
     MOST_SOURCES = 10000,    /* an include that includes twice is a tree of 2^depth files */
-    LONGEST_LINE = 400,      /* bytes of a line that is shown */
     SNIFFED = 8192           /* bytes looked at to tell text from binary */
 };
 
@@ -49,6 +48,19 @@ void csg_source_place(const csg_source *source, uint32_t offset, uint32_t *line,
 
 /* ---- findings ------------------------------------------------------------------------- */
 
+/* From the place where the finding begins, which is filled in. */
+static void place_end(const csg_source *source, uint32_t offset, csgm_diag *diag)
+{
+    diag->end_line = diag->line;
+    diag->end_column = diag->column;
+    for (uint32_t i = 0; i < diag->length; i++) {
+        bool breaks = offset < source->length && i < source->length - offset &&
+                      source->text[offset + i] == '\n';
+        diag->end_line += breaks;
+        diag->end_column = breaks ? 1 : diag->end_column + 1;
+    }
+}
+
 static void report_at(const csg_sources *sources, csg_diag_code code, csg_span where,
                       const char *hint, const char *message)
 {
@@ -67,10 +79,9 @@ static void report_at(const csg_sources *sources, csg_diag_code code, csg_span w
         uint32_t end = begin;
         while (end < source->length && source->text[end] != '\n' && source->text[end] != '\r')
             end++;
-        if (end - begin <= LONGEST_LINE) { /* else the caret would stand screens away */
-            diag.source_line = source->text + begin;
-            diag.source_line_length = end - begin;
-        }
+        diag.source_line = source->text + begin;
+        diag.source_line_length = end - begin;
+        place_end(source, where.offset, &diag);
     }
     csg_diag_report(&sources->context->diags, code, diag);
 }

@@ -78,6 +78,70 @@ static void test_caret_under_tabs_and_utf8(void **state)
                         "\t    ^\n");
 }
 
+/* A wide character takes two columns, one that combines none. */
+static void test_caret_under_wide_characters(void **state)
+{
+    static const char text[] = "\xE6\xBC\xA2 e\xCC\x81 \xE6\xBC\xA2\xE5\xAD\x97;";
+    csgm_diag diag = finding();
+    diag.hint = NULL;
+    diag.source_line = text;
+    diag.source_line_length = sizeof text - 1;
+    diag.column = 9;
+    diag.length = 6;
+    check_format(&diag, "part.txt:4:9: error E0107: the radius must be positive\n"
+                        "\xE6\xBC\xA2 e\xCC\x81 \xE6\xBC\xA2\xE5\xAD\x97;\n"
+                        "     ^~~~\n");
+}
+
+/* Nothing of a scene can command the terminal, or turn the direction of its text. */
+static void test_control_characters(void **state)
+{
+    static const char text[] = "a\x1B[31m\xE2\x80\xAE\xFF\x01 b";
+    csgm_diag diag = finding();
+    diag.hint = NULL;
+    diag.source_line = text;
+    diag.source_line_length = sizeof text - 1;
+    diag.column = sizeof text - 1;
+    diag.length = 1;
+    check_format(&diag, "part.txt:4:13: error E0107: the radius must be positive\n"
+                        "a\xEF\xBF\xBD[31m\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD b\n"
+                        "          ^\n");
+}
+
+/* Of a long line, what stands around the caret; whole characters. */
+static void test_long_lines(void **state)
+{
+    enum { LENGTH = 3000 };
+    char text[LENGTH], shown[4096];
+    csgm_diag diag = finding();
+    for (size_t i = 0; i < LENGTH; i += 3)
+        memcpy(text + i, "\xE6\xBC\xA2", 3);
+    diag.hint = NULL;
+    diag.source_line = text;
+    diag.source_line_length = LENGTH;
+    diag.length = 3;
+    for (uint32_t at = 0; at < LENGTH; at += 3) {
+        diag.column = at + 1;
+        size_t length = csgm_diag_format(&diag, shown, sizeof shown);
+        assert_true(length < sizeof shown);
+        const char *line_begin = strchr(shown, '\n') + 1,
+                   *caret_line = strchr(line_begin, '\n') + 1;
+        size_t bytes = (size_t)(caret_line - 1 - line_begin);
+        bool left = strncmp(line_begin, "...", 3) == 0;
+        bool right = strncmp(caret_line - 4, "...", 3) == 0;
+        assert_true(left == (at > 105) && right == (at < LENGTH - 105)); /* 70 columns */
+        assert_true(bytes <= 3 + 210 + 3);
+        assert_int_equal((bytes - 3 * (size_t)left - 3 * (size_t)right) % 3, 0);
+        size_t before = left ? 3 + 70 : at / 3 * 2;
+        assert_int_equal(strspn(caret_line, " "), before);
+        assert_string_equal(caret_line + before, "^~\n");
+    }
+    diag.source_line_length = 240; /* 160 columns: all of it */
+    diag.column = 1;
+    csgm_diag_format(&diag, shown, sizeof shown);
+    assert_null(strstr(shown, "..."));
+}
+
 static void test_small_buffers(void **state)
 {
     csgm_diag diag = finding();
@@ -134,6 +198,16 @@ static void test_cap(void **state)
     assert_int_equal(sink.dropped, 5);
 }
 
+static void test_dropped_findings_are_counted(void **state)
+{
+    heard h = {0};
+    csg_diag_sink sink = {.on_diag = hear, .user = &h};
+    csg_diag_count_dropped(&sink, 3);
+    assert_int_equal(h.count, 1);
+    assert_int_equal(h.last.severity, CSGM_NOTE);
+    csg_diag_count_dropped(&(csg_diag_sink){0}, 1); /* nobody listens */
+}
+
 static void test_out_of_memory(void **state)
 {
     heard h = {0};
@@ -152,9 +226,13 @@ int main(void)
         cmocka_unit_test(test_error),
         cmocka_unit_test(test_plainer_ones),
         cmocka_unit_test(test_caret_under_tabs_and_utf8),
+        cmocka_unit_test(test_caret_under_wide_characters),
+        cmocka_unit_test(test_control_characters),
+        cmocka_unit_test(test_long_lines),
         cmocka_unit_test(test_small_buffers),
         cmocka_unit_test(test_severity_comes_from_the_table),
         cmocka_unit_test(test_cap),
+        cmocka_unit_test(test_dropped_findings_are_counted),
         cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -34,9 +34,12 @@ class Help(cli.CliTest):
     def test_version(self):
         result = cli.run("--version")
         self.assert_status(result, 0)
-        first, features = result.stdout.decode().splitlines()
+        first, *features = result.stdout.decode().splitlines()
         self.assertRegex(first, r"^csgmesh \d+\.\d+\.\d+ \((avx512|avx2|sse2|neon|scalar)\)$")
-        self.assertTrue(features)
+        for library in ("Draco", "tinygltf", "libzip", "nlohmann-json"):
+            lines = [line for line in features if library in line]
+            self.assertEqual(len(lines), 1, features)
+            self.assertRegex(lines[0], rf"^(with {library} \d+\.\d+\S*|without .*{library}).* \(.+\)$")
         scalar = cli.run("--version", env={"CSGMESH_ISA": "scalar"})
         self.assertIn(b"(scalar)", scalar.stdout)
 
@@ -109,6 +112,34 @@ class Mistakes(cli.CliTest):
         self.refused("dump", "--scene", "--tape", "a.txt", words=["--scene or --tape"])
         self.refused("eval", "a.txt", words=["add --at"])
         self.refused("eval", "a.txt", "--at", "1,2", words=["X,Y,Z"])
+
+
+class Order(cli.CliTest):
+    """Options may stand before the command."""
+
+    def test_options_before_the_command(self):
+        self.write("a.txt", cli.BALL)
+        usual = self.run_in("info", "--json", "-r", "8", "a.txt")
+        self.assert_status(usual, 0)
+        for arguments in (["-q", "info", "--json", "-r", "8", "a.txt"],
+                          ["-r", "8", "--json", "info", "a.txt"],
+                          ["-qr8", "info", "a.txt", "--json"],
+                          ["--resolution=8", "-D", "x=1", "info", "-q", "--json", "a.txt"]):
+            result = self.run_in(*arguments)
+            self.assert_status(result, 0)
+            self.assertEqual(result.stdout, usual.stdout)
+        self.assertIn(b"csgmesh deps", self.run_in("-q", "help", "deps").stdout)
+        self.assert_refused(self.run_in("-q", "diff", "a.txt", "a.txt"), 2, "not available")
+
+    def test_an_options_value_is_no_command(self):
+        self.write("a.txt", cli.BALL)
+        self.assert_status(self.run_in("-o", "info", "-f", "ply", "a.txt", "-r", "8"), 0)
+        self.assert_files("a.txt", "info")
+
+    def test_behind_a_double_dash_stand_files(self):
+        self.write("check", cli.BALL)
+        self.assert_status(self.run_in("-r", "8", "-o", "a.ply", "--", "check"), 0)
+        self.assert_files("a.ply", "check")
 
 
 class Effects(cli.CliTest):

@@ -11,7 +11,6 @@
 
 #include "cli.h"
 #include "interrupt.h"
-#include "json.h"
 
 static const char RESET[] = "\033[0m", BOLD[] = "\033[1m", GREEN[] = "\033[1;32m";
 static const char *const severity_colors[] = {"\033[1;36m", "\033[1;35m", "\033[1;31m"};
@@ -44,28 +43,74 @@ static bool is_muted(cli_console *console, csgm_severity severity)
     return console->mute_notes;
 }
 
-static void print_json(csgm_severity severity, const csgm_diag *diag)
+static void put_place(cli_json *json, const csgm_diag *diag)
 {
-    cli_json json = cli_json_make(stderr, false);
-    cli_json_begin(&json, '{');
-    cli_json_string(&json, "severity", severity_names[severity]);
-    if (diag->code) {
+    if (diag->source_name)
+        cli_json_string(json, "file", diag->source_name);
+    if (!diag->line)
+        return;
+    cli_json_count(json, "line", diag->line);
+    cli_json_count(json, "column", diag->column);
+    cli_json_count(json, "end_line", diag->end_line);
+    cli_json_count(json, "end_column", diag->end_column);
+}
+
+void cli_console_flush(cli_console *console)
+{
+    if (!console->held)
+        return;
+    if (console->held_has_notes)
+        cli_json_end(&console->held_json, ']');
+    cli_json_end(&console->held_json, '}');
+    fputc('\n', console->held);
+    if (fclose(console->held) == 0)
+        fwrite(console->held_text, 1, console->held_length, stderr);
+    free(console->held_text);
+    console->held = NULL;
+    console->held_text = NULL;
+    console->held_has_notes = false;
+}
+
+static void put_finding(cli_json *json, csgm_severity severity, const csgm_diag *diag)
+{
+    cli_json_begin(json, '{');
+    cli_json_string(json, "severity", severity_names[severity]);
+    if (diag->code && severity != CSGM_NOTE) {
         char code[16];
         snprintf(code, sizeof code, "%c%04u", "NWE"[severity], diag -> code);
-        cli_json_string(&json, "code", code);
+        cli_json_string(json, "code", code);
     }
-    if (diag->source_name)
-        cli_json_string(&json, "file", diag->source_name);
-    if (diag->line) {
-        cli_json_count(&json, "line", diag->line);
-        cli_json_count(&json, "column", diag->column);
-        cli_json_count(&json, "length", diag->length);
-    }
-    cli_json_string(&json, "message", diag->message);
+    put_place(json, diag);
+    cli_json_string(json, "message", diag->message);
     if (diag->hint)
-        cli_json_string(&json, "hint", diag->hint);
-    cli_json_end(&json, '}');
-    fputc('\n', stderr);
+        cli_json_string(json, "hint", diag->hint);
+}
+
+/* A finding is held back until its notes have come: they stand inside it. */
+static void print_json(cli_console *console, csgm_severity severity, const csgm_diag *diag)
+{
+    cli_json *json = &console->held_json;
+    if (severity == CSGM_NOTE && diag->line && console->held) {
+        if (!console->held_has_notes)
+            cli_json_open(json, "notes", '[');
+        console->held_has_notes = true;
+        cli_json_open(json, NULL, '{');
+        put_place(json, diag);
+        cli_json_string(json, "message", diag->message);
+        cli_json_end(json, '}');
+        return;
+    }
+    cli_console_flush(console);
+    console->held = open_memstream(&console->held_text, &console->held_length);
+    if (!console->held) { /* no memory: its notes become findings of their own */
+        cli_json direct = cli_json_make(stderr, false);
+        put_finding(&direct, severity, diag);
+        cli_json_end(&direct, '}');
+        fputc('\n', stderr);
+        return;
+    }
+    *json = cli_json_make(console->held, false);
+    put_finding(json, severity, diag);
 }
 
 /* The place bold, "error E0107:" in its colour, the caret line green. */
@@ -104,7 +149,7 @@ void cli_console_diag(void *user, const csgm_diag *diag)
         return;
     cli_console_end_progress(console);
     if (console->json) {
-        print_json(diag->severity, diag);
+        print_json(console, diag->severity, diag);
         return;
     }
     size_t size = csgm_diag_format(diag, NULL, 0) + 1;
@@ -139,6 +184,7 @@ void cli_console_echo(void *user, const char *text, size_t length)
     if (console->quiet)
         return;
     cli_console_end_progress(console);
+    cli_console_flush(console);
     if (console->json)
         print_echo_json(text, length);
     else
@@ -157,7 +203,7 @@ void cli_console_say(cli_console *console, csgm_severity severity, const char *h
         return;
     cli_console_end_progress(console);
     if (console->json) {
-        print_json(severity, &(csgm_diag){.message = message, .hint = hint});
+        print_json(console, severity, &(csgm_diag){.message = message, .hint = hint});
         return;
     }
     fprintf(stderr, "%scsgmesh: %s%s:%s %s\n", console->color ? BOLD : "",

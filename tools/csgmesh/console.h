@@ -5,6 +5,9 @@
 #ifndef CLI_CONSOLE_H
 #define CLI_CONSOLE_H
 
+#include <stdio.h>
+
+#include "json.h"
 #include "options.h"
 
 typedef struct cli_console {
@@ -13,12 +16,20 @@ typedef struct cli_console {
     uint32_t errors; /* said so far, warnings made errors by -Werror included */
     int progress;    /* index of --progress: auto, always, never */
     double stage_start_s;
-    int stage; /* csgm_stage, -1 before the first */
+    int stage;  /* csgm_stage, -1 before the first */
+    FILE *held; /* --diagnostics=json: a finding that waits for its notes, or NULL */
+    cli_json held_json;
+    bool held_has_notes;
+    char *held_text;
+    size_t held_length;
 } cli_console;
 
 /* Where messages go before the options are known. */
 cli_console cli_console_make(void);
 void cli_console_configure(cli_console *console, const cli_options *options);
+
+/* Writes what still waits. */
+void cli_console_flush(cli_console *console);
 
 /* csgm_diag_fn and csgm_text_fn; user is a cli_console. */
 void cli_console_diag(void *user, const csgm_diag *diag);

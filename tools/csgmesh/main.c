@@ -84,21 +84,32 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
     return commands[command].run(app);
 }
 
+/* Where the command's name stands: the first argument that is neither an option nor the value of
+ * one. 0: there is none, it is a scene to be meshed. */
+static int find_named(int argc, char **argv, cli_command *command)
+{
+    int operand = cli_options_first_operand(argc, argv);
+    return operand < argc && find_command(argv[operand], command) ? operand : 0;
+}
+
 static int run(cli_app *app, int argc, char **argv)
 {
     cli_command command = CLI_MESH;
-    const char *first = argc > 1 ? argv[1] : NULL;
-    if (!first) {
+    if (argc < 2) {
         cli_help();
         cli_finish_stdout(app, CLI_DONE);
         return CLI_TROUBLE;
     }
-    if (strcmp(first, "help") == 0)
-        return help(app, argc > 2 ? argv[2] : NULL);
-    if (is_later_command(first))
-        return cli_usage_error(app, NULL, "'%s' is not available in this version", first);
-    bool is_named = find_command(first, &command);
-    return run_command(app, command, is_named, argc - 1 - is_named, argv + 1 + is_named);
+    int operand = cli_options_first_operand(argc, argv);
+    if (operand < argc && strcmp(argv[operand], "help") == 0)
+        return help(app, operand + 1 < argc ? argv[operand + 1] : NULL);
+    if (operand < argc && is_later_command(argv[operand]))
+        return cli_usage_error(app, NULL, "'%s' is not available in this version", argv[operand]);
+    int named = find_named(argc, argv, &command);
+    if (named > 0) /* the options before it go where those behind it are */
+        memmove(argv + 2, argv + 1, (size_t)(named - 1) * sizeof *argv);
+    int skipped = 1 + (named > 0);
+    return run_command(app, command, named > 0, argc - skipped, argv + skipped);
 }
 
 int main(int argc, char **argv)
@@ -106,6 +117,7 @@ int main(int argc, char **argv)
     cli_app app = {.start_s = cli_now_s(), .console = cli_console_make()};
     cli_interrupt_install();
     int status = run(&app, argc, argv);
+    cli_console_flush(&app.console);
     csgm_context_destroy(app.context);
     cli_options_release(&app.options);
     return status;

@@ -375,15 +375,28 @@ static const char *next_argument(parser *p)
     return p->next < p->argc ? p->argv[p->next++] : NULL;
 }
 
+static const row *find_long(const char *name, size_t length)
+{
+    for (size_t i = 0; i < ROW_COUNT; i++)
+        if (rows[i].name && strlen(rows[i].name) == length &&
+            strncmp(rows[i].name, name, length) == 0)
+            return &rows[i];
+    return NULL;
+}
+
+static const row *find_short(char letter)
+{
+    for (size_t i = 0; i < ROW_COUNT; i++)
+        if (rows[i].letter == letter)
+            return &rows[i];
+    return NULL;
+}
+
 static bool parse_long(parser *p, const char *name)
 {
     size_t length = strcspn(name, "=");
     const char *value = name[length] ? name + length + 1 : NULL;
-    const row *option = NULL;
-    for (size_t i = 0; i < ROW_COUNT && !option; i++)
-        if (rows[i].name && strlen(rows[i].name) == length &&
-            strncmp(rows[i].name, name, length) == 0)
-            option = &rows[i];
+    const row *option = find_long(name, length);
     if (!option)
         return refuse_unknown(p, name, length);
     if (!check_row(p, option))
@@ -402,10 +415,7 @@ static bool parse_long(parser *p, const char *name)
 static bool parse_short(parser *p, const char *letters)
 {
     for (; *letters; letters++) {
-        const row *option = NULL;
-        for (size_t i = 0; i < ROW_COUNT && !option; i++)
-            if (rows[i].letter == *letters)
-                option = &rows[i];
+        const row *option = find_short(*letters);
         if (!option)
             return refuse(p, "csgmesh --help lists the options", "unknown option '-%c'", *letters);
         if (!check_row(p, option))
@@ -445,6 +455,35 @@ bool cli_options_parse(cli_options *options, cli_command command, int argc, char
             return false;
     }
     return true;
+}
+
+/* Does the argument after this one belong to it? */
+static bool takes_next(const char *option)
+{
+    const row *found;
+    if (option[1] == '-') {
+        size_t length = strcspn(option + 2, "=");
+        found = find_long(option + 2, length);
+        return found && !option[2 + length] && found->kind != FLAG && found->kind != REPORT;
+    }
+    for (const char *letter = option + 1; *letter; letter++) {
+        found = find_short(*letter);
+        if (!found || found->kind != FLAG)
+            return found && !letter[1];
+    }
+    return false;
+}
+
+int cli_options_first_operand(int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--") == 0)
+            return argc; /* what follows is files */
+        if (argv[i][0] != '-' || argv[i][1] == '\0')
+            return i;
+        i += takes_next(argv[i]);
+    }
+    return argc;
 }
 
 void cli_options_release(cli_options *options)

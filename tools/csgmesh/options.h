@@ -80,6 +80,9 @@ typedef struct cli_problem {
  * either way. */
 bool cli_options_parse(cli_options *options, cli_command command, int argc, char **argv,
                        cli_problem *problem);
+/* The index of the first argument that is neither an option nor an option's value; argc: none. What
+ * is wrong with the options is not told here. */
+int cli_options_first_operand(int argc, char **argv);
 void cli_options_release(cli_options *options);
 
 /* The name in `names` (NULL at the end) nearest to `text`, NULL when none is near. */

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""How findings reach people and editors: places, traces, the cap, JSON lines, -Werror, colour."""
+import json
+
+import cli
+
+NESTED = {"a.txt": "use <b.txt>\nouter(1);\n", "b.txt": "include <c.txt>\nmodule outer(x) inner(x);\n",
+          "c.txt": "module inner(x) { cube([x, -1, 1]); }\n"}
+
+
+class Text(cli.CliTest):
+    def test_include_and_call_trace(self):
+        for name, text in NESTED.items():
+            self.write(name, text)
+        result = self.run_in("check", "a.txt")
+        self.assert_status(result, 1)
+        lines = result.stderr.splitlines()
+        self.assertRegex(lines[0], r"^c\.txt:1:\d+: error E0302: ")
+        places = [line.split(" note: ") for line in lines if " note: " in line]
+        self.assertEqual([what for _, what in places],
+                         ["included from here", "used from here", "in the call of module 'inner'",
+                          "in the call of module 'outer'"])
+        self.assertTrue(places[0][0].startswith("b.txt:1:"))
+        self.assertTrue(places[1][0].startswith("a.txt:1:"))
+
+    def test_recursion_is_folded(self):
+        self.write("a.txt", "function f(n) = 1 + f(n + 1);\nx = f(0);\nsphere(x);\n")
+        result = self.run_in("check", "a.txt")
+        self.assert_refused_briefly(result)
+        self.assertIn("and 9998 more like this", result.stderr)
+        self.write("b.txt", "module a(n) b(n);\nmodule b(n) a(n + 1);\na(0);\n")
+        result = self.run_in("check", "b.txt")
+        self.assert_refused_briefly(result)
+        self.assertIn("more calls like these", result.stderr)
+
+    def assert_refused_briefly(self, result):
+        self.assert_clean(result)
+        self.assert_status(result, 2)
+        self.assertLess(len(result.stderr.splitlines()), 20, result.stderr)
+
+    def test_twenty_and_the_rest_is_counted(self):
+        self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(30)) + "sphere(1);\n")
+        result = self.run_in("check", "a.txt")
+        self.assert_status(result, 0)
+        self.assertEqual(result.stderr.count("warning W0203"), 20)
+        self.assertTrue(result.stderr.endswith("note: 10 more findings are not shown\n"))
+
+    def test_werror(self):
+        self.write("a.txt", "sphere(r = 1, colour = 2);\n")
+        self.assert_status(self.run_in("check", "a.txt"), 0)
+        for arguments in (["check", "-Werror", "a.txt"], ["-W", "error", "check", "a.txt"],
+                          ["a.txt", "-Werror", "-o", "a.ply"], ["params", "-Werror", "-D", "zz=1",
+                                                                "a.txt"]):
+            result = self.run_in(*arguments)
+            self.assert_status(result, 1)
+            self.assertIn("error E0", result.stderr)
+        self.assert_files("a.txt")
+
+    def test_color(self):
+        self.write("a.txt", "sphere(;\n")
+        for arguments, env, wanted in (([], {}, False), (["--color=always"], {}, True),
+                                       (["--color=always"], {"NO_COLOR": "1"}, True),
+                                       (["--color=never"], {}, False), ([], {"NO_COLOR": "1"}, False)):
+            result = self.run_in("check", "a.txt", *arguments, env=env)
+            self.assertEqual("\033[" in result.stderr, wanted)
+
+    def test_place_of_a_define(self):
+        self.write("a.txt", "x = 1;\nsphere(x);\n")
+        result = self.run_in("check", "a.txt", "-D", "x=[1,")
+        self.assert_status(result, 1)
+        self.assertIn("-D x:1:4: error", result.stderr)
+
+
+class Json(cli.CliTest):
+    def findings(self, *arguments, status):
+        result = self.run_in(*arguments, "--diagnostics=json")
+        self.assert_status(result, status)
+        return [json.loads(line) for line in result.stderr.splitlines()]
+
+    def test_a_finding(self):
+        self.write("a.txt", 'echo("one");\nsphere(1);\n  shpere(2);\n')
+        echo, finding = self.findings("check", "a.txt", status=1)
+        self.assertEqual(echo, {"echo": 'ECHO: "one"'})
+        self.assertEqual(finding, {"severity": "error", "code": "E0201", "file": "a.txt", "line": 3,
+                                   "column": 3, "end_line": 3, "end_column": 9,
+                                   "message": "there is no module 'shpere'",
+                                   "hint": "did you mean 'sphere'?"})
+
+    def test_notes_stand_inside(self):
+        self.write("a.txt", "a = 1;\na = 2;\nmodule m() sphere(-a);\nm();\nm();\nb = 1;\nb = 2;\n")
+        found = self.findings("check", "a.txt", status=1)
+        self.assertEqual([f["severity"] for f in found], ["warning", "warning", "error"])
+        self.assertEqual([[n["message"] for n in f.get("notes", [])] for f in found],
+                         [["the earlier assignment"], ["the earlier assignment"],
+                          ["in the call of module 'm'"]])
+        self.assertEqual(found[2]["notes"][0]["line"], 4)
+        self.assertEqual(found[2]["notes"][0]["file"], "a.txt")
+
+    def test_what_is_not_about_text(self):
+        found = self.findings("check", "missing.txt", status=2)
+        self.assertEqual(len(found), 1)
+        self.assertEqual((found[0]["severity"], found[0]["file"]), ("error", "missing.txt"))
+        self.assertNotIn("line", found[0])
+        usage = self.findings("mesh", status=2)
+        self.assertEqual(usage[0]["severity"], "error")
+        self.assertIn("hint", usage[0])
+
+    def test_the_rest_is_counted(self):
+        self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(30)) + "sphere(1);\n")
+        found = self.findings("check", "a.txt", status=0)
+        self.assertEqual(len(found), 21)
+        self.assertEqual(found[20]["severity"], "note")
+        self.assertIn("10 more", found[20]["message"])
+
+    def test_bytes_that_are_no_text(self):
+        self.write("a.txt", b"sphere(1); // \xff\xfe\n\x01\n")
+        for finding in self.findings("check", "a.txt", status=1):
+            self.assertIn(finding["severity"], ("error", "warning"))
+
+    def test_findings_over_lines(self):
+        self.write("a.txt", 's = "one\ntwo;\nsphere(1);\n')
+        found = self.findings("check", "a.txt", status=1)
+        self.assertTrue(all(f["end_line"] >= f["line"] for f in found))
+        self.assertTrue(all((f["end_line"], f["end_column"]) > (f["line"], f["column"])
+                            for f in found))
+
+    def test_quiet(self):
+        self.write("a.txt", "a = 1;\na = 2;\nsphere(-a);\necho(1);\n")
+        found = self.findings("check", "-q", "a.txt", status=1)
+        self.assertEqual([f["code"] for f in found], ["E0302"])
+
+
+if __name__ == "__main__":
+    cli.main()
