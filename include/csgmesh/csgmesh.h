@@ -161,6 +161,11 @@ typedef struct csgm_define {
     const char *expression; /* in the scene language: "50", "[1, 2]", "\"text\"" */
 } csgm_define;
 
+typedef enum csgm_facets {
+    CSGM_FACETS_ROUND, /* curves are round, but $fn from 3 to 16 makes a polygon, prism, polytope */
+    CSGM_FACETS_EXACT  /* $fn, $fa and $fs hold everywhere, as in OpenSCAD */
+} csgm_facets;
+
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
     const csgm_define *defines;
@@ -170,6 +175,7 @@ typedef struct csgm_scene_options {
     /* A set of values from a file in the JSON of OpenSCAD's customizer, both or neither; they
      * replace the scene's own, and defines replace them. */
     const char *parameter_file, *parameter_set;
+    csgm_facets facets; /* default ROUND */
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

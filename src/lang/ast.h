@@ -134,6 +134,9 @@ typedef struct csg_program {
     uint32_t dependency_count;
     double deadline_s;   /* of the monotonic clock; 0 = none */
     bool failed_io;      /* a file could not be read */
+    bool exact_facets;   /* $fn, $fa and $fs everywhere, as in OpenSCAD */
+    const csgm_scene_options *options;   /* NULL = defaults */
+    const struct csg_services *services; /* NULL: no meshes, read or made */
     uintptr_t stack_end; /* lowest address of the stack that parser and evaluator may use */
 } csg_program;
 

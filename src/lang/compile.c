@@ -139,6 +139,9 @@ static void compile(compilation *c)
     c->status = csg_program_init(&program, c->context);
     if (c->context->limits.timeout_s > 0)
         program.deadline_s = csg_clock_now_s() + c->context->limits.timeout_s;
+    program.options = &c->options;
+    program.services = c->input->services;
+    program.exact_facets = c->options.facets == CSGM_FACETS_EXACT;
     program.stack_end = (uintptr_t)&here - c->stack_bytes;
     double begin_s = csg_clock_now_s();
     if (c->status == CSGM_OK)

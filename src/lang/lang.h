@@ -11,7 +11,8 @@ typedef struct csg_lang_input {
         *path; /* file to read, or the name of `text` in diagnostics ("-" for standard input) */
     const char *text; /* NULL = read path */
     size_t text_length;
-    const csgm_scene_options *options; /* NULL = defaults */
+    const csgm_scene_options *options;   /* NULL = defaults */
+    const struct csg_services *services; /* scene/services.h; NULL: no meshes, read or made */
 } csg_lang_input;
 
 /* Reports what is wrong through context->diags. *out is set only on CSGM_OK. Status: SYNTAX or

@@ -7,7 +7,7 @@
 
 #include "lang/evaluator.h"
 
-enum { CSG_MOST_PARAMETERS = 10 };
+enum { CSG_MOST_PARAMETERS = 12 };
 
 typedef struct csg_parameter_row {
     const char *name;
@@ -37,7 +37,12 @@ csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_
     csg_module_torus, csg_module_ellipsoid, csg_module_plane, csg_module_field,
     csg_module_translate, csg_module_rotate, csg_module_scale, csg_module_mirror,
     csg_module_multmatrix, csg_module_color, csg_module_operator, csg_module_blend,
-    csg_module_group;
+    csg_module_group, csg_module_circle, csg_module_square, csg_module_polygon, csg_module_offset,
+    csg_module_projection, csg_module_linear_extrude, csg_module_rotate_extrude,
+    csg_module_polyhedron, csg_module_import, csg_module_surface, csg_module_tube,
+    csg_module_spline, csg_module_periodic, csg_module_hull, csg_module_minkowski,
+    csg_module_resize, csg_module_offset3d, csg_module_shell, csg_module_repeat, csg_module_twist,
+    csg_module_bend;
 
 void csg_modules_intern(csg_symbols *symbols, bool *ok);
 /* Runs the built-in module of this row: leaves one part. Not for control flow. */

@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "lang/modules.h"
+#include "lang/shapes.h"
 
 static csg_node_id finish(csg_module_call *call, csg_node_id node)
 {
@@ -29,35 +29,15 @@ static csg_node_id moved(csg_module_call *call, csg_node_id node, double x, doub
                                                                     call->statement->where));
 }
 
-/* $fn from 3 to 16 asks for a polygon in OpenSCAD; solids are round here. */
-static void look_at_facets(const csg_module_call *call)
-{
-    csg_value fn = csg_eval_dynamic(call->e, call->e->symbol_fn);
-    if (fn.kind == CSG_VALUE_NUMBER && fn.as.number >= 3 && fn.as.number <= 16)
-        csg_eval_report(call->e, CSG_DIAG_FACETS_IGNORED, call->statement->where,
-                        "an intersection of planes makes a prism",
-                        "$fn = %g does not make a polygon of %s(), it stays round", fn.as.number,
-                        call->name);
-}
-
-/* A radius by itself or as a diameter. */
-static double radius(csg_module_call *call, uint32_t r, uint32_t d, double otherwise,
-                     csg_range_kind range)
-{
-    if (!csg_has_argument(call, d))
-        return csg_argument_number(call, r, otherwise, range);
-    if (csg_has_argument(call, r))
-        csg_eval_report(call->e, CSG_DIAG_CONFLICT, call->spans[r], NULL,
-                        "%s() gets a radius and a diameter, the diameter holds", call->name);
-    return csg_argument_number(call, d, 2 * otherwise, range) / 2;
-}
-
 csg_node_id csg_module_sphere(csg_module_call *call)
 {
     enum { R, D };
-    double r = radius(call, R, D, 1, CSG_POSITIVE);
-    look_at_facets(call);
-    return call->failed ? empty(call) : finish(call, primitive(call, CSG_NODE_SPHERE, &r));
+    double r = csg_argument_radius(call, R, D, 1, CSG_POSITIVE);
+    if (call->failed)
+        return empty(call);
+    uint32_t facets = csg_facets(call->e, r);
+    return facets ? csg_faceted_sphere(call, r, facets)
+                  : finish(call, primitive(call, CSG_NODE_SPHERE, &r));
 }
 
 csg_node_id csg_module_cube(csg_module_call *call)
@@ -91,9 +71,9 @@ enum { H, R1, R2, CENTER, R, D, D1, D2, ROUND, CORE };
 
 static void cylinder_radii(csg_module_call *call, double out[2])
 {
-    double both = radius(call, R, D, 1, CSG_POSITIVE);
-    out[0] = radius(call, R1, D1, both, CSG_NOT_NEGATIVE);
-    out[1] = radius(call, R2, D2, both, CSG_NOT_NEGATIVE);
+    double both = csg_argument_radius(call, R, D, 1, CSG_POSITIVE);
+    out[0] = csg_argument_radius(call, R1, D1, both, CSG_NOT_NEGATIVE);
+    out[1] = csg_argument_radius(call, R2, D2, both, CSG_NOT_NEGATIVE);
     bool ends = csg_has_argument(call, R1) || csg_has_argument(call, R2) ||
                 csg_has_argument(call, D1) || csg_has_argument(call, D2);
     bool one = (csg_has_argument(call, R1) || csg_has_argument(call, D1)) &&
@@ -132,19 +112,36 @@ static csg_node_id frustum(csg_module_call *call, const double radii[2], double 
                              call->statement->where);
 }
 
+/* A prism or pyramid, its edges rounded. */
+static csg_node_id faceted(csg_module_call *call, double radii[2], double half, double round,
+                           uint32_t facets)
+{
+    csg_node_id node = csg_faceted_frustum(call, radii, half, facets);
+    if (round == 0 || node == CSG_NODE_NONE)
+        return node;
+    return finish(call, csg_build_offset(&call->e->builder, round, node, call->statement->where));
+}
+
 csg_node_id csg_module_cylinder(csg_module_call *call)
 {
     double radii[2], h = csg_argument_number(call, H, 1, CSG_POSITIVE);
     cylinder_radii(call, radii);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE), half = h / 2;
-    look_at_facets(call);
     bool grows = csg_argument_boolean(call, CORE);
+    uint32_t facets = grows ? 0 : csg_facets(call->e, fmax(radii[0], radii[1]));
+    double inner = facets ? csg_cosine_deg(180.0 / facets) : 1;
+    radii[0] *= inner; /* rounding moves the faces, which are nearer to the axis than the edges */
+    radii[1] *= inner;
     if (!call->failed && round > 0 && !grows && !shrink(radii, &half, round))
         csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE, "round is %g, that does not fit",
                            round);
+    radii[0] /= inner;
+    radii[1] /= inner;
     if (call->failed)
         return empty(call);
-    csg_node_id node = frustum(call, radii, half, round);
+    bool pointed = radii[0] > 0 || radii[1] > 0;
+    csg_node_id node = facets && pointed ? faceted(call, radii, half, round, facets)
+                                         : frustum(call, radii, half, round);
     return csg_argument_boolean(call, CENTER)
                ? finish(call, node)
                : moved(call, node, 0, 0, grows ? h / 2 + round : h / 2);

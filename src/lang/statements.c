@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "lang/modules.h"
+#include "lang/shapes.h"
 
 /* ---- parts -------------------------------------------------------------------------------------
  */
@@ -92,9 +92,10 @@ static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node
 csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
                            csg_span where)
 {
-    size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
     if (e->stop)
         return CSG_NODE_NONE;
+    csg_shape_keep_alike(e, first, where);
+    size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
     csg_part *parts = count ? e->parts + first : NULL;
     put_plain_first(e, parts, count, kind);
     csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
@@ -270,5 +271,5 @@ csg_node_id csg_eval_run(csg_eval *e)
     if (frame && !e->stop)
         csg_run_statements(e, scene->scope, frame, true);
     csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, whole);
-    return e->root != CSG_NODE_NONE ? e->root : node;
+    return csg_shape_of_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
 }

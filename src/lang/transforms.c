@@ -3,16 +3,49 @@
  */
 #include <math.h>
 
-#include "lang/modules.h"
+#include "lang/shapes.h"
+
+/* A figure of the plane stays in it, as in OpenSCAD: what turns out of it is told and left out. The
+ * map becomes its plane part; false: nothing of the figure is left. */
+static bool keep_plane(csg_module_call *call, csg_affine *by)
+{
+    const double slack = 1e-12;
+    csg_span where = call->statement->where;
+    double size = fabs(by->m[0][0]) + fabs(by->m[0][1]) + fabs(by->m[1][0]) + fabs(by->m[1][1]);
+    double out = fabs(by->m[0][2]) + fabs(by->m[1][2]) + fabs(by->m[2][0]) + fabs(by->m[2][1]);
+    double area = by->m[0][0] * by->m[1][1] - by->m[0][1] * by->m[1][0];
+    if (fabs(area) <= slack * fmax(size * size, 1)) {
+        csg_eval_report(call->e, CSG_DIAG_LEAVES_PLANE, where,
+                        "linear_extrude makes a solid of a figure",
+                        "%s() leaves nothing of this flat figure", call->name);
+        return false;
+    }
+    if (out > slack * size)
+        csg_eval_report(call->e, CSG_DIAG_LEAVES_PLANE, where,
+                        "linear_extrude makes a solid of a figure",
+                        "%s() takes a flat figure out of its plane: it stays there", call->name);
+    by->m[0][2] = by->m[1][2] = by->m[2][0] = by->m[2][1] = by->t[2] = 0;
+    by->m[2][2] = 1;
+    return true;
+}
 
 static csg_node_id transformed(csg_module_call *call, const csg_affine *by)
 {
     csg_eval *e = call->e;
+    csg_affine map = *by;
     csg_node_id children = csg_module_children(call);
-    if (call->failed || children == CSG_NODE_NONE)
+    if (call->failed || children == CSG_NODE_NONE || e->stop)
         return children;
-    return csg_check_node(e, csg_build_transform(&e->builder, by, children, call->statement->where),
-                          call->statement->where);
+    bool flat = csg_shape_is_flat(e, children);
+    if (flat && !keep_plane(call, &map))
+        return csg_shape_empty(call);
+    if (!flat && csg_affine_determinant(map) == 0 && !csg_shape_is_empty(e, children)) {
+        csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "%s",
+                           call->name[0] == 's' ? "a factor of 0 flattens the solid"
+                                                : "this matrix flattens the solid");
+        return csg_shape_empty(call);
+    }
+    return csg_shape_moved(call, children, &map);
 }
 
 csg_node_id csg_module_translate(csg_module_call *call)
@@ -48,8 +81,6 @@ csg_node_id csg_module_rotate(csg_module_call *call)
 csg_node_id csg_module_scale(csg_module_call *call)
 {
     csg_vec3 v = csg_argument_vector(call, 0, csg_vec3_make(1, 1, 1), true);
-    if (v.x == 0 || v.y == 0 || v.z == 0)
-        csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "a factor of 0 flattens the solid");
     csg_affine by = csg_affine_scale(v);
     return transformed(call, &by);
 }
@@ -102,8 +133,6 @@ csg_node_id csg_module_multmatrix(csg_module_call *call)
             by.m[i][j] = m[i][j] / m[3][3];
         by.t[i] = m[i][3] / m[3][3];
     }
-    if (!call->failed && csg_affine_determinant(by) == 0)
-        csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "this matrix flattens the solid");
     return transformed(call, &by);
 }
 
