@@ -34,7 +34,8 @@ csgm_status csg_polygons_minkowski(const csg_outline *a, const csg_outline *b, c
 csgm_status csg_polygons_hull(const csg_outline *in, csg_outline *out);
 
 /* Triangles of a clean outline: 3 indices each into its points, counter-clockwise, from `memory`;
- * every edge of the outline is an edge of just one of them. *indices is released by the caller,
+ * of points at one place (where loops touch) the first stands for all. Every edge of the outline is
+ * an edge of just one of them, every other edge of two. *indices is released by the caller,
  * *index_count * sizeof(uint32_t) bytes; NULL where there are none. (Our own: triangulate.c.) */
 csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, uint32_t **indices,
                                      size_t *index_count);

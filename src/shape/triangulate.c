@@ -8,7 +8,7 @@
  * directions. Where rounding left no ear (loops that touch along edges), the demands are
  * relaxed step by step, so it always ends.
  */
-#include <stdlib.h>
+#include <string.h>
 
 #include "shape/polygons.h"
 #include "shape/rings.h"
@@ -19,21 +19,16 @@ typedef struct cells {
     double left, bottom, per_x, per_y; /* cells a length */
 } cells;
 
-typedef struct ring_start {
-    csg_vec2 at;
-    uint32_t corner;
-} ring_start;
-
 typedef struct cutter {
     csg_memory *memory;
     csg_rings rings;
     size_t corner_capacity;
-    ring_start *starts;                        /* per ring or hole: its leftmost corner */
-    size_t ring_count, hole_count, loop_count; /* rings first in starts, then holes */
+    csg_ring_start *starts;
+    size_t ring_count, start_capacity;
     cells cells;
     size_t cell_capacity;
     uint32_t *indices;
-    size_t index_count;
+    size_t index_count, index_capacity;
 } cutter;
 
 /* What an ear may be, from the best on. */
@@ -45,72 +40,12 @@ typedef enum ear_kind {
     ANY
 } ear_kind;
 
-/* ---- rings -------------------------------------------------------------------------------- */
-
-static double doubled_area(const csg_outline *outline, size_t first, size_t end)
-{
-    csg_vec2 o = outline->points[first];
-    double area = 0;
-    for (size_t i = first; i < end; i++) {
-        csg_vec2 a = outline->points[i], b = outline->points[i + 1 < end ? i + 1 : first];
-        area += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-    }
-    return area;
-}
-
-static bool is_left_of(csg_vec2 a, csg_vec2 b)
-{
-    return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
-
-static uint32_t link_loop(cutter *c, size_t first, size_t end, bool is_ring)
-{
-    const csg_vec2 *points = c->rings.outline->points;
-    uint32_t leftmost = (uint32_t)first;
-    for (size_t i = first; i < end; i++) {
-        c->rings.corners[i] = (csg_ring_corner){
-            .point = (uint32_t)i,
-            .previous = (uint32_t)(i > first ? i - 1 : end - 1),
-            .next = (uint32_t)(i + 1 < end ? i + 1 : first),
-            .is_joined = is_ring,
-        };
-        if (is_left_of(points[i], points[leftmost]))
-            leftmost = (uint32_t)i;
-    }
-    return leftmost;
-}
-
-static void link_loops(cutter *c)
-{
-    const csg_outline *outline = c->rings.outline;
-    c->rings.corner_count = (uint32_t)csg_outline_first(outline, outline->loop_count);
-    for (size_t loop = 0; loop < outline->loop_count; loop++) {
-        size_t first = csg_outline_first(outline, loop), end = outline->ends[loop];
-        bool is_ring = doubled_area(outline, first, end) >= 0;
-        uint32_t corner = link_loop(c, first, end, is_ring);
-        ring_start start = {outline->points[corner], corner};
-        if (is_ring)
-            c->starts[c->ring_count++] = start;
-        else
-            c->starts[outline->loop_count - ++c->hole_count] = start;
-    }
-}
-
-static int compare_starts(const void *left, const void *right)
-{
-    const ring_start *a = left, *b = right;
-    return is_left_of(a->at, b->at)   ? -1
-           : is_left_of(b->at, a->at) ? 1
-                                      : (a->corner > b->corner) - (a->corner < b->corner);
-}
-
 /* Holes that lie in nothing stay rings of their own, behind the others. */
-static void join_holes(cutter *c)
+static void join_holes(cutter *c, size_t hole_count)
 {
-    ring_start *holes = c->starts + c->ring_count;
-    qsort(holes, c->hole_count, sizeof *holes, compare_starts);
+    csg_ring_start *holes = c->starts + c->ring_count;
     size_t left_over = 0;
-    for (size_t i = 0; i < c->hole_count; i++) {
+    for (size_t i = 0; i < hole_count; i++) {
         if (!csg_ring_join(&c->rings, holes[i].corner))
             holes[left_over++] = holes[i];
     }
@@ -240,14 +175,14 @@ static bool is_blocked(const cutter *c, uint32_t tip, const csg_vec2 *ear, ear_k
     return false;
 }
 
-/* A corner without an angle: what led to it leads back. Cut off at once, or the two sides of that
- * way would become ears that cover each other. */
+/* A corner without an angle: what led to it leads back, or it stands where its neighbour does. Cut
+ * off at once, or the two sides of such a way would become ears that cover each other. */
 static bool is_spike(const csg_rings *rings, uint32_t tip)
 {
     const csg_ring_corner *corner = &rings->corners[tip];
     csg_vec2 a = csg_ring_at(rings, corner->previous), b = csg_ring_at(rings, tip),
              c = csg_ring_at(rings, corner->next);
-    return csg_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
+    return csg_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) >= 0;
 }
 
 static bool is_ear(const cutter *c, uint32_t tip, ear_kind kind)
@@ -271,9 +206,12 @@ static void cut_ear(cutter *c, uint32_t tip)
 {
     csg_ring_corner *corners = c->rings.corners;
     uint32_t before = corners[tip].previous, after = corners[tip].next;
-    c->indices[c->index_count++] = corners[before].point;
-    c->indices[c->index_count++] = corners[tip].point;
-    c->indices[c->index_count++] = corners[after].point;
+    uint32_t i = corners[before].point, j = corners[tip].point, k = corners[after].point;
+    if (i != j && j != k && k != i) { /* else its edges would cancel out */
+        c->indices[c->index_count++] = i;
+        c->indices[c->index_count++] = j;
+        c->indices[c->index_count++] = k;
+    }
     corners[before].next = after;
     corners[after].previous = before;
     corners[tip].is_blocker = false;
@@ -315,20 +253,34 @@ static bool allocate(cutter *c)
 {
     const csg_outline *outline = c->rings.outline;
     size_t points = csg_outline_first(outline, outline->loop_count);
-    c->loop_count = outline->loop_count;
-    c->corner_capacity = points + 2 * outline->loop_count;
+    if (points >= UINT32_MAX / 8)
+        return false;
+    c->start_capacity = points;
+    c->corner_capacity = points + 2 * (points / 3); /* a hole has three corners or more */
     c->cell_capacity = 2 * c->corner_capacity;
+    c->index_capacity = 3 * c->corner_capacity;
     c->rings.corners = csg_memory_alloc(c->memory, c->corner_capacity * sizeof *c->rings.corners);
-    c->starts = csg_memory_alloc(c->memory, c->loop_count * sizeof *c->starts);
+    c->starts = csg_memory_alloc(c->memory, c->start_capacity * sizeof *c->starts);
     c->cells.first = csg_memory_alloc(c->memory, c->cell_capacity * sizeof *c->cells.first);
-    return c->corner_capacity < UINT32_MAX / 4 && c->rings.corners && c->starts && c->cells.first;
+    c->indices = csg_memory_alloc(c->memory, c->index_capacity * sizeof *c->indices);
+    return c->rings.corners && c->starts && c->cells.first && c->indices;
 }
 
 static void release(cutter *c)
 {
     csg_memory_release(c->memory, c->rings.corners, c->corner_capacity * sizeof *c->rings.corners);
-    csg_memory_release(c->memory, c->starts, c->loop_count * sizeof *c->starts);
+    csg_memory_release(c->memory, c->starts, c->start_capacity * sizeof *c->starts);
     csg_memory_release(c->memory, c->cells.first, c->cell_capacity * sizeof *c->cells.first);
+    csg_memory_release(c->memory, c->indices, c->index_capacity * sizeof *c->indices);
+}
+
+static void cut_rings(cutter *c)
+{
+    size_t holes;
+    csg_rings_link(&c->rings, c->starts, &c->ring_count, &holes);
+    join_holes(c, holes);
+    for (size_t i = 0; i < c->ring_count; i++)
+        cut_ring(c, c->starts[i].corner);
 }
 
 csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, uint32_t **indices,
@@ -340,19 +292,16 @@ csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, 
     if (!in->loop_count)
         return CSGM_OK;
     bool is_room = allocate(&c);
-    if (is_room) {
-        link_loops(&c);
-        join_holes(&c);
-        /* a ring of n corners makes n - 2 triangles */
-        size_t count = 3 * (c.rings.corner_count - 2 * c.ring_count);
-        c.indices = csg_memory_alloc(memory, count * sizeof *c.indices);
-        is_room = c.indices != NULL;
-    }
-    for (size_t i = 0; is_room && i < c.ring_count; i++)
-        cut_ring(&c, c.starts[i].corner);
-    if (is_room) {
-        *indices = c.indices;
-        *index_count = c.index_count;
+    if (is_room)
+        cut_rings(&c);
+    if (is_room && c.index_count) {
+        size_t bytes = c.index_count * sizeof **indices;
+        *indices = csg_memory_alloc(memory, bytes);
+        is_room = *indices != NULL;
+        if (is_room) {
+            memcpy(*indices, c.indices, bytes);
+            *index_count = c.index_count;
+        }
     }
     release(&c);
     return is_room ? CSGM_OK : CSGM_ERR_MEMORY;

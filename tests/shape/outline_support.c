@@ -120,13 +120,28 @@ static int compare_edges(const void *left, const void *right)
                           : (high_a > high_b) - (high_a < high_b);
 }
 
+/* The first point at the same place. */
+static uint32_t place_of(const csg_outline *outline, size_t point)
+{
+    csg_vec2 p = outline->points[point];
+    for (size_t i = 0; i < point; i++) {
+        if (outline->points[i].x == p.x && outline->points[i].y == p.y)
+            return (uint32_t)i;
+    }
+    return (uint32_t)point;
+}
+
 static size_t add_outline_edges(const csg_outline *outline, edge *edges)
 {
     size_t n = 0;
     for (size_t loop = 0; loop < outline->loop_count; loop++) {
         size_t first = csg_outline_first(outline, loop), end = outline->ends[loop];
-        for (size_t i = first; i < end; i++)
-            edges[n++] = (edge){(uint32_t)i, (uint32_t)(i + 1 < end ? i + 1 : first), -1};
+        for (size_t i = first; i < end; i++) {
+            uint32_t from = place_of(outline, i),
+                     to = place_of(outline, i + 1 < end ? i + 1 : first);
+            if (from != to)
+                edges[n++] = (edge){from, to, -1};
+        }
     }
     return n;
 }
@@ -137,11 +152,8 @@ static void check_edges(const csg_outline *outline, const uint32_t *indices, siz
     assert_non_null(edges);
     size_t n = add_outline_edges(outline, edges);
     for (size_t i = 0; i < count; i += 3) {
-        for (size_t k = 0; k < 3; k++) {
-            uint32_t from = indices[i + k], to = indices[i + (k + 1) % 3];
-            if (from != to) /* of a flat triangle, in what is not clean */
-                edges[n++] = (edge){from, to, 1};
-        }
+        for (size_t k = 0; k < 3; k++)
+            edges[n++] = (edge){indices[i + k], indices[i + (k + 1) % 3], 1};
     }
     qsort(edges, n, sizeof *edges, compare_edges);
     for (size_t i = 0, end; i < n; i = end) {
@@ -165,7 +177,8 @@ void check_triangles(const csg_outline *outline, const uint32_t *indices, size_t
         csg_vec2 a = outline->points[indices[i]], b = outline->points[indices[i + 1]],
                  c = outline->points[indices[i + 2]];
         double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        assert_true(indices[i] != indices[i + 1] || isinf(slack));
+        assert_true(indices[i] != indices[i + 1] && indices[i + 1] != indices[i + 2] &&
+                    indices[i + 2] != indices[i]);
         area += 0.5 * twice;
         turned -= twice < 0 ? 0.5 * twice : 0;
     }

@@ -146,12 +146,12 @@ static void loops_that_touch(void **state)
     ADD_LOOP({0, 4}, {2, 5}, {2, 3});
     ADD_LOOP({3, 0}, {4, 2}, {5, 1});
     ADD_LOOP({4, 2}, {3, 6}, {5, 6});
-    assert_int_equal(triangulate(0), 5 + 9 + 6 - 2);
+    assert_int_equal(triangulate(0), 14); /* of 8 + 6 corners and a cut; one is flat */
     csg_outline_release(&outline);
     /* two squares that touch at a corner, as one loop and as two */
     ADD_LOOP({0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {2, 2}, {0, 2});
     add_rectangle(&outline, 4, 4, 6, 6);
-    assert_int_equal(triangulate(0), 8);
+    assert_int_equal(triangulate(0), 6);
 }
 
 /* Star-shaped loops in each cell of a board, holes in them, islands in those. */
@@ -246,7 +246,7 @@ static void every_allocation_may_fail(void **state)
         csg_memory_release(&f.memory, indices, count * sizeof *indices);
         assert_int_equal(f.live, 0);
     }
-    assert_true(n > 3);
+    assert_true(n > 4);
     for (status = CSGM_ERR_MEMORY, n = 0; status; n++) {
         failing f;
         csg_outline hull, copy = outline;
