@@ -15,7 +15,7 @@
 typedef struct frame {
     csg_affine place; /* own frame -> scene, or -> the frame below the warp */
     double factor;    /* product of the ancestors' smallest singular values and warps' scales */
-    double raise;     /* what offsets above add */
+    double raise;     /* what offsets above add to the value with its sign */
     uint32_t warp;    /* index + 1, 0 = none */
     double magnitude; /* of the lengths in the warps' arithmetic */
     bool negate;
@@ -171,7 +171,7 @@ static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
                            csg_scene_parameters(c->scene, node));
     }
     l.magnitude += f->magnitude;
-    l.raise = f->negate ? -f->raise : f->raise;
+    l.raise = f->raise;
     return write_leaf(c, &l, f->color, f->warp);
 }
 
@@ -198,7 +198,7 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
                 t.blend.kind == CSG_BLEND_SHARP ? 1.0f : (float)t.blend.n,
                 (float)csg_blend_support(t.blend)};
             if (t.blend.kind == CSG_BLEND_ORTHOGONAL)
-                values[CSG_OPERATOR_N] = (float)(f->negate ? -f->raise : f->raise);
+                values[CSG_OPERATOR_N] = (float)f->raise;
             if (!push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t.parameters))
                 return false;
         }
@@ -285,7 +285,7 @@ static bool child_frame(compiler *c, const task *t, frame *f)
         f->colored = true;
         return push_color(c, c->scene->colors[node->payload], &f->color);
     } else if (node->kind == CSG_NODE_OFFSET) {
-        f->raise += f->factor * csg_scene_parameters(c->scene, node)[0];
+        f->raise += (f->negate ? -f->factor : f->factor) * csg_scene_parameters(c->scene, node)[0];
     } else if (node->kind == CSG_NODE_WARP) {
         return warp_frame(c, &c->scene->warps[node->payload], f);
     } else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0) {

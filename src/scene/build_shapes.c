@@ -150,7 +150,7 @@ static csg_node_id end_plane(csg_scene_builder *builder, double radius, double a
 static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, csg_box child,
                              csg_span where)
 {
-    csg_box box = csg_warp_box(warp, child);
+    csg_box box = csg_warp_box(warp, child, false);
     csg_vec3 size = csg_box_size(box);
     box = csg_box_grow(box, 0.25 * fmax(size.x, fmax(size.y, size.z)));
     csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);

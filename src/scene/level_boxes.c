@@ -290,7 +290,7 @@ static csg_box wrapped_box(const table *t, const csg_node *node, double level)
     csg_node_id child = csg_scene_children(scene, node)[0];
     csg_box box = box_at(t, child, is_scaled(node->kind) ? inner_level(scene, node, level) : level);
     if (node->kind == CSG_NODE_WARP)
-        return csg_warp_box(&scene->warps[node->payload], box);
+        return csg_warp_box(&scene->warps[node->payload], box, level > 0);
     return node->kind == CSG_NODE_TRANSFORM && !t->whole
                ? csg_affine_box(&scene->transforms[node->payload], box)
                : box;

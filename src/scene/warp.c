@@ -170,10 +170,12 @@ static csg_box ring_box(double radius, double low, double high)
                       : (csg_box){{-radius, -radius, low}, {radius, radius, high}};
 }
 
-static csg_box bend_box(double radius, csg_box child)
+static csg_box bend_box(double radius, csg_box child, bool all_round)
 {
     double nearest = fmax(radius - child.max.z, 0), farthest = fmax(radius - child.min.z, 0);
     double low = fmax(child.min.x / radius, -PI), high = fmin(child.max.x / radius, PI);
+    low = all_round ? -PI : low;
+    high = all_round ? PI : high;
     csg_box box = csg_box_empty();
     double angles[7] = {low, high, -PI, -PI / 2, 0, PI / 2, PI};
     for (int i = 0; i < 7; i++) {
@@ -191,7 +193,7 @@ static csg_box bend_box(double radius, csg_box child)
     return isfinite(farthest) ? box : csg_box_all();
 }
 
-csg_box csg_warp_box(const csg_warp *warp, csg_box child)
+csg_box csg_warp_box(const csg_warp *warp, csg_box child, bool all_round)
 {
     if (csg_box_is_empty(child))
         return child;
@@ -207,6 +209,6 @@ csg_box csg_warp_box(const csg_warp *warp, csg_box child)
         return ring_box(farthest_from_axis(child), child.min.z, child.max.z);
     default:
         assert(warp->kind == CSG_WARP_BEND);
-        return bend_box(warp->parameters[CSG_BEND_RADIUS], child);
+        return bend_box(warp->parameters[CSG_BEND_RADIUS], child, all_round);
     }
 }

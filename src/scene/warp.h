@@ -48,7 +48,8 @@ typedef struct csg_warped {
 csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p);
 /* 1 / L */
 double csg_warp_scale(const csg_warp *warp);
-/* Contains every p of which w(p) lies in the child's box. */
-csg_box csg_warp_box(const csg_warp *warp, csg_box child);
+/* Contains every p of which w(p) lies in the child's box, and for a bend every p within the angles
+ * of its ends, where the builder cuts; all_round: the rest too. */
+csg_box csg_warp_box(const csg_warp *warp, csg_box child, bool all_round);
 
 #endif

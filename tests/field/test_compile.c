@@ -163,6 +163,7 @@ static void test_random_scenes(void **state)
         enum { COUNT = 150 }; /* more than one batch of csg_field_eval */
         float x[COUNT], y[COUNT], z[COUNT], f[COUNT];
         test_subject s;
+        test_random_shapes = i % 2;
         test_subject_begin(&s);
         test_subject_compile(&s, test_random_scene(&s.builder, &random, 1 + i * 11 % 60));
         for (int k = 0; k < COUNT; k++) {

@@ -382,6 +382,7 @@ static void test_random_trees(void **state)
     csg_random random = {5};
     for (int i = 0; i < 60; i++) {
         test_subject subject;
+        test_random_shapes = i % 2;
         test_subject_begin(&subject);
         test_subject_compile(&subject,
                              test_random_scene(&subject.builder, &random, 1 + (unsigned)i % 12));

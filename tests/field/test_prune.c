@@ -183,6 +183,7 @@ static void test_random_scenes(void **state)
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "random scene %u", i);
+        test_random_shapes = i % 2;
         test_subject_begin(&w.subject);
         test_subject_compile(&w.subject,
                              test_random_scene(&w.subject.builder, &random, 1 + i * 7 % 50));

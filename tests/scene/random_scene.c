@@ -121,11 +121,15 @@ static csg_node_id colored(csg_scene_builder *builder, csg_random *random, csg_n
     return csg_build_color(builder, color, node, nowhere);
 }
 
+bool test_random_shapes = false;
+
 /* A bounded primitive somewhere, one in eight of them cut by a half-space. */
 static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
 {
     csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
-    csg_node_id node = test_random_primitive(builder, random, kind, NULL);
+    bool shaped = test_random_shapes && chance(random, 0.25);
+    csg_node_id node = shaped ? test_random_shaped(builder, random)
+                              : test_random_primitive(builder, random, kind, NULL);
     if (chance(random, 0.125)) {
         csg_node_id cut[2] = {node, test_random_primitive(builder, random, CSG_NODE_PLANE, NULL)};
         csg_node_kind how = chance(random, 0.5) ? CSG_NODE_INTERSECTION : CSG_NODE_DIFFERENCE;

@@ -12,6 +12,13 @@
 /* A scene of about that many primitives (>= 1); CSG_NODE_NONE when the builder failed. */
 csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, unsigned primitives);
 
+/* Whether a quarter of the leaves are extrusions, revolutions, twisted and bent solids, offsets
+ * and slices. Off at first: the numbers drawn are then the same as without them. */
+extern bool test_random_shapes;
+
+/* One such solid, finite, not placed. */
+csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
+
 /* A primitive of this kind with random parameters (sizes 0.1 to 0.8), not placed; its parameters
  * are also copied to `parameters` (room for 4) unless that is NULL. */
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
