@@ -10,7 +10,16 @@ csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene, c
     *out = NULL;
     if (!context || !scene)
         return CSGM_ERR_ARGUMENT;
-    return csg_field_compile(context, scene, out);
+    csgm_field *field;
+    csgm_status status = csg_field_compile(context, scene, &field);
+    if (status != CSGM_OK)
+        return status;
+    status = csg_field_compile_parts(field);
+    if (status == CSGM_OK)
+        *out = field;
+    else
+        csg_field_destroy(field);
+    return status;
 }
 
 void csgm_field_destroy(csgm_field *field)

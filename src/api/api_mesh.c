@@ -2,11 +2,17 @@
  * Meshes of the public interface: a field in, an indexed triangle mesh out, and its inspection.
  */
 #include "api/view.h"
+
+#include <math.h>
+#include <string.h>
+
 #include "base/pool.h"
+#include "io/parts.h"
 #include "io/stream.h"
 #include "mesh/build.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
+#include "scene/parts.h"
 #include "scene/reference.h"
 
 csgm_mesh_options csgm_mesh_options_default(void)
@@ -88,7 +94,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats ignored;
     csg_mesh_counts made = {0};
-    bool streams = csg_stream_is_possible(path, format, write_options);
+    bool streams =
+        csg_mesh_can_stream(field, options) && csg_stream_is_possible(path, format, write_options);
     csgm_status status = (streams ? stream_file : build_and_write)(
         context, field, options, path, format, write_options, &made, stats ? stats : &ignored);
     if (counts) {
@@ -116,15 +123,13 @@ csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
     return csg_mesh_inspect(context, mesh, out);
 }
 
-double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh,
-                               uint64_t *measured)
+/* Vertices of [first, end), every step-th. */
+static double max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh, uint64_t first,
+                            uint64_t end, uint64_t step, uint64_t *count)
 {
-    static const uint64_t MOST_NODES = 50000000; /* evaluated in all: some seconds */
-    uint64_t affordable = MOST_NODES / (scene->node_count + 1) + 1;
-    uint64_t step = mesh->vertex_count / affordable + 1, count = 0;
     double largest = 0;
     csgm_status status = CSGM_OK;
-    for (uint64_t i = 0; i < mesh->vertex_count; i += step, count++) {
+    for (uint64_t i = first; i < end; i += step, ++*count) {
         const float *p = mesh->positions + 3 * i;
         csgm_vec3 at =
             csg_vec3_add(mesh->origin, csg_vec3_make((double)p[0], (double)p[1], (double)p[2]));
@@ -133,6 +138,47 @@ double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh_view *me
             return NAN;
         largest = value > largest ? value : largest;
     }
+    return largest;
+}
+
+static bool same_name(const char *a, const char *b)
+{
+    return a && b ? strcmp(a, b) == 0 : a == b;
+}
+
+/* Each part of the mesh against the part of the scene with its name: where parts touch, the scene's
+ * own field knows no surface. NaN when there is none of that name or memory runs out. */
+static double max_abs_of_part(const csg_parts *parts, const csgm_mesh_view *mesh, uint64_t index,
+                              uint64_t step, uint64_t *count)
+{
+    csg_part part = csg_part_get(mesh, index);
+    size_t i = 0;
+    csgm_scene *scene;
+    while (i < parts->count && !same_name(csg_parts_name(parts, i), part.name))
+        i++;
+    if (i == parts->count || csg_parts_scene(parts, i, &scene) != CSGM_OK)
+        return NAN;
+    double value = max_abs_field(scene, mesh, part.first_vertex,
+                                 part.first_vertex + part.vertex_count, step, count);
+    csg_scene_destroy(scene);
+    return value;
+}
+
+double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh,
+                               uint64_t *measured)
+{
+    static const uint64_t MOST_NODES = 50000000; /* evaluated in all: some seconds */
+    uint64_t affordable = MOST_NODES / (scene->node_count + 1) + 1;
+    uint64_t step = mesh->vertex_count / affordable + 1, count = 0;
+    csg_parts parts = {.scene = scene};
+    double largest = csg_parts_find(&parts, scene) == CSGM_OK ? 0 : NAN;
+    if (!parts.count || !mesh->part_count)
+        largest += max_abs_field(scene, mesh, 0, mesh->vertex_count, step, &count);
+    for (uint64_t i = 0; parts.count && i < mesh->part_count; i++) {
+        double value = max_abs_of_part(&parts, mesh, i, step, &count);
+        largest = isnan(value) || value > largest ? value : largest;
+    }
+    csg_parts_reset(&parts);
     if (measured)
         *measured = count;
     return largest;

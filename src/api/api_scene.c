@@ -64,7 +64,7 @@ csgm_scene_info csgm_scene_get_info(const csgm_scene *scene)
 {
     csgm_scene_info info = {.bounds = csg_bounds_of_solid(scene),
                             .lipschitz = csg_scene_lipschitz(scene),
-                            .has_colors = scene->color_count > 0,
+                            .has_colors = csg_scene_has_colors(scene),
                             .parse_s = scene->parse_s,
                             .evaluate_s = scene->evaluate_s};
     for (size_t i = 0; i < scene->node_count; i++) {

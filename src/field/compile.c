@@ -19,7 +19,8 @@ typedef struct frame {
     uint32_t warp;    /* index + 1, 0 = none */
     double magnitude; /* of the lengths in the warps' arithmetic */
     bool negate;
-    bool colored;
+    bool colored, shaded;      /* by a colour, by a material from further out */
+    csg_color paint, material; /* what `color` is the number of */
     uint32_t color;
 } frame;
 
@@ -43,7 +44,7 @@ typedef struct compiler {
     csgm_field *field;
     csg_tape_node *nodes;
     float *parameters;
-    csg_color *colors;
+    csg_color *colors, *materials; /* as many of both */
     task *tasks;
     csg_tape_step *steps;
     csg_tape_formula *formulas;
@@ -51,7 +52,7 @@ typedef struct compiler {
     size_t warp_count, warp_capacity;
     size_t step_count, step_capacity, formula_count, formula_capacity;
     size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
-        color_capacity, task_count, task_capacity;
+        color_capacity, material_capacity, task_count, task_capacity;
 } compiler;
 
 static bool push_parameters(compiler *c, const float *values, size_t count, uint32_t *at)
@@ -77,20 +78,42 @@ static csg_tape_node *push_node(compiler *c)
     return node;
 }
 
-static bool push_color(compiler *c, csg_color color, uint32_t *index)
+/* Colour and material of the solids in this frame get a number. */
+static bool push_color(compiler *c, frame *f)
 {
+    size_t count = c->color_count, bytes = sizeof(csg_color);
+    csg_memory *memory = &c->context->memory;
     /* Neighbouring solids mostly share one colour; an index must be exact in a float. */
-    if (c->color_count && !memcmp(&c->colors[c->color_count - 1], &color, sizeof color)) {
-        *index = (uint32_t)c->color_count - 1;
+    if (count && !memcmp(&c->colors[count - 1], &f->paint, bytes) &&
+        !memcmp(&c->materials[count - 1], &f->material, bytes)) {
+        f->color = (uint32_t)count - 1;
         return true;
     }
-    if (c->color_count >= 1 << 24 ||
-        !csg_memory_reserve(&c->context->memory, (void **)&c->colors, &c->color_capacity,
-                            c->color_count + 1, sizeof color))
+    if (count >= 1 << 24 ||
+        !csg_memory_reserve(memory, (void **)&c->colors, &c->color_capacity, count + 1, bytes) ||
+        !csg_memory_reserve(memory, (void **)&c->materials, &c->material_capacity, count + 1,
+                            bytes))
         return false;
-    *index = (uint32_t)c->color_count;
-    c->colors[c->color_count++] = color;
+    f->color = (uint32_t)count;
+    c->colors[count] = f->paint;
+    c->materials[count] = f->material;
+    c->color_count++;
     return true;
+}
+
+/* The outermost colour and the outermost material hold. */
+static bool take_look(compiler *c, frame *f, const csg_look *look)
+{
+    bool paints = look->has_color && !f->colored, shades = look->has_material && !f->shaded;
+    if (paints)
+        f->paint = look->color;
+    if (shades)
+        f->material = (csg_color){look->metallic, look->roughness, 0, 0};
+    f->colored |= paints;
+    f->shaded |= shades;
+    c->field->has_colors |= paints;
+    c->field->has_materials |= shades;
+    return (!paints && !shades) || push_color(c, f);
 }
 
 /* ---- leaves ------------------------------------------------------------------------------- */
@@ -281,9 +304,8 @@ static bool child_frame(compiler *c, const task *t, frame *f)
         csg_affine_singular_values(matrix, &smallest, &largest);
         f->place = csg_affine_multiply(t->frame.place, *matrix);
         f->factor *= smallest;
-    } else if (node->kind == CSG_NODE_COLOR && !f->colored) {
-        f->colored = true;
-        return push_color(c, c->scene->colors[node->payload], &f->color);
+    } else if (node->kind == CSG_NODE_COLOR) {
+        return take_look(c, f, &c->scene->looks[node->payload]);
     } else if (node->kind == CSG_NODE_OFFSET) {
         f->raise += (f->negate ? -f->factor : f->factor) * csg_scene_parameters(c->scene, node)[0];
     } else if (node->kind == CSG_NODE_WARP) {
@@ -294,10 +316,19 @@ static bool child_frame(compiler *c, const task *t, frame *f)
     return true;
 }
 
+/* Solids without a colour or material of their own, next to others. */
+static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
+const csg_color csg_default_material = {0.0f, 0.6f, 0.0f, 0.0f};
+
 static bool compile_tree(compiler *c)
 {
-    frame outermost = {.place = csg_affine_identity(), .factor = 1};
+    frame outermost = {.place = csg_affine_identity(),
+                       .factor = 1,
+                       .paint = default_color,
+                       .material = csg_default_material};
     const csg_node *root = &c->scene->nodes[c->scene->root];
+    if (!push_color(c, &outermost))
+        return false;
     if (!root->child_count)
         return compile_leaf(c, root, &outermost);
     if (!begin_task(c, c->scene->root, &outermost))
@@ -390,6 +421,11 @@ static bool keep_formulas(compiler *c)
     field->tape.formulas = keep(&field->arena, c->formulas, c->formula_count * sizeof *c->formulas);
     field->tape.warps = keep(&field->arena, c->warps, c->warp_count * sizeof *c->warps);
     field->tape.shapes = c->scene->shapes;
+    if (field->has_materials) {
+        field->materials = keep(&field->arena, c->materials, c->color_count * sizeof *c->materials);
+        if (!field->materials)
+            return false;
+    }
     return field->tape.steps && field->tape.formulas && field->tape.warps;
 }
 
@@ -408,6 +444,7 @@ void csg_field_destroy(csgm_field *field)
     if (!field)
         return;
     csg_memory *memory = &field->context->memory;
+    csg_field_release_parts(field);
     csg_arena_reset(&field->arena);
     csg_memory_release(memory, field, sizeof *field);
 }
@@ -419,9 +456,6 @@ static void count_nodes(const csgm_scene *scene, csgm_field *field)
         field->operator_count += csg_node_is_operator(scene->nodes[i].kind);
     }
 }
-
-/* Solids without a colour of their own, next to coloured ones. */
-static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
 
 /* Meets all that is written so far with a box around the field's centre. */
 static bool write_clip(compiler *c, csg_box box)
@@ -455,7 +489,6 @@ static bool compile_field(compiler *c, const csg_box *clip)
 {
     csgm_field *field = c->field;
     const csgm_scene *scene = c->scene;
-    uint32_t index;
     field->scene = scene;
     field->bounds = scene->bounds[scene->root];
     if (clip)
@@ -465,8 +498,7 @@ static bool compile_field(compiler *c, const csg_box *clip)
     field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
     if (clip)
         field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
-    return push_color(c, default_color, &index) && compile_tree(c) &&
-           (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
+    return compile_tree(c) && (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
            keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
                      c->color_count);
 }
@@ -480,6 +512,7 @@ static csgm_status compile(csgm_context *context, const csgm_scene *scene, const
     csg_memory_release(memory, c.nodes, c.node_capacity * sizeof *c.nodes);
     csg_memory_release(memory, c.parameters, c.parameter_capacity * sizeof *c.parameters);
     csg_memory_release(memory, c.colors, c.color_capacity * sizeof *c.colors);
+    csg_memory_release(memory, c.materials, c.material_capacity * sizeof *c.materials);
     csg_memory_release(memory, c.tasks, c.task_capacity * sizeof *c.tasks);
     csg_memory_release(memory, c.steps, c.step_capacity * sizeof *c.steps);
     csg_memory_release(memory, c.formulas, c.formula_capacity * sizeof *c.formulas);

@@ -6,9 +6,16 @@
 
 #include "field/tape.h"
 
+/* Metallic in r, roughness in g. */
+extern const csg_color csg_default_material;
+
 /* The scene must outlive the field. */
 csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out);
 void csg_field_destroy(csgm_field *field);
+
+/* For a scene with named parts: a field for each in field->parts, which the field owns. */
+csgm_status csg_field_compile_parts(csgm_field *field);
+void csg_field_release_parts(csgm_field *field);
 
 /* The same scene met with a finite box (scene units) and compiled around the box's centre, so that
  * floats are fine there however far away the scene's own centre is. */

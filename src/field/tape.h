@@ -127,11 +127,22 @@ struct csgm_field {
     csg_tape tape;
     size_t parameter_count;
     uint32_t color_count; /* 1 = no colours in the scene: only the default */
-    uint32_t depth;       /* value slots that an evaluation needs */
-    csg_vec3 center;      /* of the floats */
-    csg_box bounds;       /* of the solid (scene/bounds.h) */
+    bool has_colors, has_materials;
+    const csg_color *materials;   /* for each colour: metallic in r, roughness in g; NULL = none */
+    struct csg_field_part *parts; /* of a scene with named parts (parts.c); else NULL */
+    size_t part_count;
+    uint32_t depth;  /* value slots that an evaluation needs */
+    csg_vec3 center; /* of the floats */
+    csg_box bounds;  /* of the solid (scene/bounds.h) */
     uint32_t primitive_count, operator_count;
 };
+
+/* A part of the scene as a field of its own. */
+typedef struct csg_field_part {
+    const char *name; /* borrowed of the scene; NULL = none */
+    csgm_scene *scene;
+    csgm_field *field;
+} csg_field_part;
 
 /* Value slots an evaluation of this tape needs. */
 uint32_t csg_tape_depth(const csg_tape *tape);

@@ -117,7 +117,13 @@ static bool touches_bounds(const csg_mesh_work *w)
 static void warn(csg_mesh_work *w)
 {
     csg_diag_sink *diags = &w->context->diags;
-    if (!w->counts.triangle_count && (w->clipped || !csg_box_is_empty(w->field->bounds)))
+    if (!w->counts.triangle_count && w->share)
+        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
+                       "it may lie outside the bounds, or be thinner than a cell: try a higher -r",
+                       w->share->name ? "no surface of the part \"%.60s\" was found"
+                                      : "no surface was found of what is in no part%s",
+                       w->share->name ? w->share->name : "");
+    else if (!w->counts.triangle_count && (w->clipped || !csg_box_is_empty(w->field->bounds)))
         csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
                        "the solid may lie outside the bounds, or be thinner than a cell: try a "
                        "higher -r",
@@ -177,7 +183,8 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
     w->stage = CSGM_STAGE_OCTREE;
     w->stage_share = 1;
     if (w->context->limits.timeout_s > 0)
-        w->deadline_s = w->started_s + w->context->limits.timeout_s;
+        w->deadline_s =
+            (w->share ? w->share->started_s : w->started_s) + w->context->limits.timeout_s;
     csgm_status status = prepare(w);
     if (status == CSGM_OK)
         status = make_mesh(w);
@@ -196,7 +203,15 @@ csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
                            const csgm_mesh_options *options, csgm_mesh **out,
                            csgm_mesh_stats *stats)
 {
-    csg_mesh_work work = {.context = context, .options = options, .field = field};
+    return field->part_count ? csg_mesh_build_parts(context, field, options, out, stats)
+                             : csg_mesh_build_one(context, field, options, NULL, out, stats);
+}
+
+csgm_status csg_mesh_build_one(csgm_context *context, const csgm_field *field,
+                               const csgm_mesh_options *options, const csg_mesh_share *share,
+                               csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    csg_mesh_work work = {.context = context, .options = options, .field = field, .share = share};
     csgm_status status = run(&work, stats);
     if (status == CSGM_OK)
         *out = work.mesh;

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/field.h"
+
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 
 /* ---- finding blocks ---------------------------------------------------------------------------
@@ -196,7 +198,37 @@ static void write_colors(const csg_edges *e, float *const rgba[4], uint8_t *out)
         }
 }
 
-/* Roots, normals and colours of the collected edges. */
+/* Steps of 1 / 10000: what was mixed of equal parts is equal again. */
+static void write_materials(const csg_edges *e, float *const pair[2], uint16_t *out)
+{
+    for (uint32_t i = 0; i < e->count; i++)
+        for (int c = 0; c < 2; c++) {
+            float v = pair[c][i] * 10000.0f + 0.5f;
+            out[2 * e->rank[i] + c] = (uint16_t)(v < 0 ? 0 : v > 10000 ? 10000 : v);
+        }
+}
+
+/* Metallic and roughness are mixed as colours are: as two channels of a tape's other paint box. A
+ * field without any, beside others in one mesh, has the default. */
+static void make_materials(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
+                           uint16_t *out, float *const channels[4], float *scratch,
+                           size_t scratch_floats)
+{
+    const csg_edges *e = &room->edges;
+    csg_tape shaded = *tape;
+    shaded.colors = m->field->materials;
+    if (shaded.colors) {
+        m->kernel->colors(&shaded, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
+    } else {
+        for (uint32_t i = 0; i < e->count; i++) {
+            channels[0][i] = csg_default_material.r;
+            channels[1][i] = csg_default_material.g;
+        }
+    }
+    write_materials(e, channels, out);
+}
+
+/* Roots, normals, colours and materials of the collected edges. */
 static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
                               const csg_marching_output *out, float *scratch, size_t scratch_floats)
 {
@@ -216,6 +248,8 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_m
         m->kernel->colors(tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
         write_colors(e, channels, out->colors);
     }
+    if (out->materials)
+        make_materials(m, tape, room, out->materials, channels, scratch, scratch_floats);
     return evaluations;
 }
 

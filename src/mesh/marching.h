@@ -38,7 +38,8 @@ uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *table
 typedef struct csg_marching_output {
     float *positions, *normals; /* of the block's first vertex */
     uint8_t *colors;
-    uint32_t *indices; /* of the block's first triangle */
+    uint32_t *indices;   /* of the block's first triangle */
+    uint16_t *materials; /* may be NULL, as normals and colors */
 } csg_marching_output;
 
 enum { CSG_BLOCK_MOST_INDICES = 8 * 8 * 8 * CSG_CELL_MOST_INDICES };

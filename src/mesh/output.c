@@ -49,6 +49,7 @@ static void make_blocks(csg_mesh_work *w, csg_mesh_worker *self, size_t first, s
             .normals = out->normals ? out->normals + 3 * v : NULL,
             .colors = out->colors ? out->colors + 4 * v : NULL,
             .indices = out->indices + 3 * t,
+            .materials = out->materials ? out->materials + 2 * v : NULL,
         };
         make_block(w, self, block, &place);
     }
@@ -84,7 +85,10 @@ static bool fill_indexed(csg_mesh_work *w, csg_mesh_worker *self, size_t first, 
     csg_run_buffer *buffer = &self->run;
     if (!reserve_run(w, buffer, (size_t)run->vertex_count, (size_t)run->triangle_count))
         return false;
-    csg_marching_output out = {buffer->positions, buffer->normals, buffer->colors, buffer->indices};
+    csg_marching_output out = {.positions = buffer->positions,
+                               .normals = buffer->normals,
+                               .colors = buffer->colors,
+                               .indices = buffer->indices};
     make_blocks(w, self, first, end, &out);
     run->positions = buffer->positions;
     run->normals = buffer->normals;
@@ -149,6 +153,7 @@ static void keep_in_mesh(csg_mesh_work *w, uint32_t worker_index, size_t first, 
         .normals = mesh->normals ? mesh->normals + 3 * v : NULL,
         .colors = mesh->colors ? mesh->colors + 4 * v : NULL,
         .indices = mesh->indices + 3 * start->first_triangle,
+        .materials = mesh->materials ? mesh->materials + 2 * v : NULL,
     };
     make_blocks(w, &w->workers[worker_index], first, end, &out);
 }
@@ -170,10 +175,10 @@ static bool make_item(void *user, uint32_t worker_index, size_t item)
 
 /* Far from the scene's origin floats are coarse: there the mesh keeps its own. Up to 64 times the
  * size, an ulp is below 1e-5 of it. */
-static csg_vec3 origin_of(const csg_mesh_work *w)
+csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds)
 {
     enum { FAR = 64 };
-    csg_vec3 center = w->field->center, size = csg_box_size(w->bounds);
+    csg_vec3 size = csg_box_size(bounds);
     double extent = fmax(size.x, fmax(size.y, size.z));
     return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
 }
@@ -199,14 +204,18 @@ static csgm_status begin_arrays(csg_mesh_work *w)
 {
     csg_mesh_counts *counts = &w->counts;
     counts->normals = w->options->normals;
-    counts->colors = w->options->colors && w->field->color_count > 1;
-    counts->origin = origin_of(w);
+    const csg_mesh_share *share = w->share;
+    bool materials = w->options->colors && (share ? share->materials : w->field->has_materials);
+    counts->colors = w->options->colors && (share ? share->colors : csg_mesh_is_colored(w->field));
+    counts->origin = share ? share->origin : csg_mesh_origin(w->field->center, w->bounds);
     if (w->receiver)
         return w->receiver->begin(w->receiver->user, counts);
     csgm_status status = csg_mesh_create(w->context, counts->vertex_count, counts->triangle_count,
                                          counts->normals, counts->colors, &w->mesh);
     if (status == CSGM_OK)
         w->mesh->origin = counts->origin;
+    if (status == CSGM_OK && materials)
+        status = csg_mesh_add_materials(w->mesh);
     return status;
 }
 

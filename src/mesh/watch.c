@@ -28,7 +28,10 @@ void csg_mesh_report_progress(void *user, double fraction)
     if (now - w->last_report_s < 1.0 / REPORTS_PER_SECOND)
         return;
     w->last_report_s = now;
-    monitor->progress(monitor->user, w->stage, w->stage_done + w->stage_share * fraction);
+    fraction = w->stage_done + w->stage_share * fraction;
+    if (w->share)
+        fraction = w->share->before + w->share->amount * fraction;
+    monitor->progress(monitor->user, w->stage, fraction);
 }
 
 void csg_mesh_poll(void *user, size_t done, size_t count)

@@ -40,8 +40,18 @@ typedef struct csg_mesh_worker {
     uint64_t point_evaluations, gradient_evaluations, primitive_evaluations;
 } csg_mesh_worker;
 
+/* What the parts of one mesh have in common, and where in the whole one of them stands. */
+typedef struct csg_mesh_share {
+    const char *name; /* NULL = the part without a name */
+    bool colors, materials;
+    csg_vec3 origin;
+    double started_s;      /* for the time limit */
+    double before, amount; /* of the work: fractions */
+} csg_mesh_share;
+
 typedef struct csg_mesh_work {
     csgm_context *context;
+    const csg_mesh_share *share; /* NULL = the mesh has one part */
     const csgm_mesh_options *options;
     const csgm_field *field;
     csgm_field *clipped; /* owned, NULL when the bounds cut nothing */
@@ -99,6 +109,23 @@ csgm_status csg_mesh_count_slabs(csg_mesh_work *work);
  * their numbers are known by then. make() finds the slab's blocks at hand. */
 csgm_status csg_mesh_each_slab(csg_mesh_work *work, csgm_status (*make)(csg_mesh_work *work));
 void csg_mesh_release_slabs(csg_mesh_work *work);
+
+/* ---- parts.c ----------------------------------------------------------------------------------
+ */
+
+/* As csg_mesh_build, for one field. */
+csgm_status csg_mesh_build_one(csgm_context *context, const csgm_field *field,
+                               const csgm_mesh_options *options, const csg_mesh_share *share,
+                               csgm_mesh **out, csgm_mesh_stats *stats);
+csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options, csgm_mesh **out,
+                                 csgm_mesh_stats *stats);
+/* Where the floats of a mesh in these bounds have their zero. */
+csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds);
+static inline bool csg_mesh_is_colored(const csgm_field *field)
+{
+    return field->has_colors && field->color_count > 1;
+}
 
 /* ---- output.c ---------------------------------------------------------------------------------
  */

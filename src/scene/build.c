@@ -42,7 +42,7 @@ void csg_build_abandon(csg_scene_builder *builder)
                        builder->parameter_capacity * sizeof *scene->parameters);
     csg_memory_release(memory, scene->transforms,
                        builder->transform_capacity * sizeof *scene->transforms);
-    csg_memory_release(memory, scene->colors, builder->color_capacity * sizeof *scene->colors);
+    csg_memory_release(memory, scene->looks, builder->look_capacity * sizeof *scene->looks);
     csg_memory_release(memory, scene->formulas,
                        builder->formula_capacity * sizeof *scene->formulas);
     csg_memory_release(memory, scene->steps, builder->step_capacity * sizeof *scene->steps);
@@ -50,11 +50,15 @@ void csg_build_abandon(csg_scene_builder *builder)
     for (size_t i = 0; i < scene->shape_count; i++)
         csg_shape_release(scene->shapes[i]);
     csg_memory_release(memory, scene->shapes, builder->shape_capacity * sizeof *scene->shapes);
+    for (uint32_t i = 0; i < scene->part_count; i++)
+        csg_memory_release(memory, (char *)scene->part_names[i], strlen(scene->part_names[i]) + 1);
+    csg_memory_release(memory, scene->part_names,
+                       builder->part_capacity * sizeof *scene->part_names);
     csg_memory_release(memory, scene, sizeof *scene);
     builder->scene = NULL;
     builder->shape_capacity = builder->warp_capacity = 0;
     builder->node_capacity = builder->child_capacity = builder->parameter_capacity = 0;
-    builder->transform_capacity = builder->color_capacity = 0;
+    builder->transform_capacity = builder->look_capacity = builder->part_capacity = 0;
     builder->formula_capacity = builder->step_capacity = 0;
 }
 
@@ -361,37 +365,51 @@ csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *ma
     return child;
 }
 
-csg_node_id csg_build_append_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
-                                   csg_span where)
+csg_node_id csg_build_append_look(csg_scene_builder *builder, const csg_look *look,
+                                  csg_node_id child, csg_span where)
 {
     csgm_scene *scene = builder->scene;
-    void *colors = scene->colors;
+    void *looks = scene->looks;
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, 1))
         return CSG_NODE_NONE;
-    if (!csg_memory_reserve(&builder->context->memory, &colors, &builder->color_capacity,
-                            scene->color_count + 1, sizeof *scene->colors))
+    if (!csg_memory_reserve(&builder->context->memory, &looks, &builder->look_capacity,
+                            scene->look_count + 1, sizeof *scene->looks))
         return csg_build_no_memory(builder);
-    scene->colors = colors;
-    scene->colors[scene->color_count] = color;
+    scene->looks = looks;
+    scene->looks[scene->look_count] = *look;
     csg_node fresh = {
-        .kind = CSG_NODE_COLOR, .payload = (uint32_t)scene->color_count++, .where = where};
+        .kind = CSG_NODE_COLOR, .payload = (uint32_t)scene->look_count++, .where = where};
     return csg_build_append(builder, fresh, &child, 1);
 }
 
-csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
-                            csg_span where)
+csg_node_id csg_build_look(csg_scene_builder *builder, const csg_look *look, csg_node_id child,
+                           csg_span where)
 {
-    if (!csg_build_is_usable(builder, child) || !csg_check_color(builder, color))
+    if (!csg_build_is_usable(builder, child) || !csg_check_look(builder, look))
         return CSG_NODE_NONE;
     csgm_scene *scene = builder->scene;
     const csg_node *node = &scene->nodes[child];
     if (node->kind == CSG_NODE_EMPTY)
         return child;
-    if (node->kind == CSG_NODE_COLOR) {
-        scene->colors[node->payload] = color;
-        return child;
+    csg_look *inner = node->kind == CSG_NODE_COLOR ? &scene->looks[node->payload] : NULL;
+    if (!inner || (inner->part && look->part)) /* a part in a part stays to be seen */
+        return csg_build_append_look(builder, look, child, where);
+    if (look->has_color)
+        inner->color = look->color;
+    if (look->has_material) {
+        inner->metallic = look->metallic;
+        inner->roughness = look->roughness;
     }
-    return csg_build_append_color(builder, color, child, where);
+    inner->has_color |= look->has_color;
+    inner->has_material |= look->has_material;
+    inner->part = look->part ? look->part : inner->part;
+    return child;
+}
+
+csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
+                            csg_span where)
+{
+    return csg_build_look(builder, &(csg_look){.color = color, .has_color = true}, child, where);
 }
 
 /* ---- operators ------------------------------------------------------------------------ */

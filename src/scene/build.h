@@ -16,8 +16,8 @@
 typedef struct csg_scene_builder {
     csgm_context *context;
     csgm_scene *scene; /* growing; arrays are from context->memory until csg_build_finish */
-    size_t node_capacity, child_capacity, parameter_capacity, transform_capacity, color_capacity,
-        formula_capacity, step_capacity, shape_capacity, warp_capacity;
+    size_t part_capacity, node_capacity, child_capacity, parameter_capacity, transform_capacity,
+        look_capacity, formula_capacity, step_capacity, shape_capacity, warp_capacity;
     csgm_status status; /* first failure, sticky */
     char problem[160];  /* one sentence about it, "" for memory */
 } csg_scene_builder;
@@ -46,6 +46,12 @@ csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *ma
 /* The outermost colour holds, as in OpenSCAD. */
 csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
                             csg_span where);
+/* Colour, material and part in one. */
+csg_node_id csg_build_look(csg_scene_builder *builder, const csg_look *look, csg_node_id child,
+                           csg_span where);
+/* The child as a part of this name (parts.h says what becomes of it). */
+csg_node_id csg_build_part(csg_scene_builder *builder, const char *name, csg_node_id child,
+                           csg_span where);
 /* kind: UNION, INTERSECTION or DIFFERENCE; any count, 0 gives EMPTY. EMPTY operands: of a union
  * or subtracted ones vanish; in an intersection or first of a difference they make it EMPTY. */
 csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,

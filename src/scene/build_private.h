@@ -21,7 +21,7 @@ csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const cs
 /* A node of its own around the child, nothing folded. */
 csg_node_id csg_build_append_transform(csg_scene_builder *builder, csg_affine matrix,
                                        csg_node_id child, csg_span where);
-csg_node_id csg_build_append_color(csg_scene_builder *builder, csg_color color, csg_node_id child,
-                                   csg_span where);
+csg_node_id csg_build_append_look(csg_scene_builder *builder, const csg_look *look,
+                                  csg_node_id child, csg_span where);
 
 #endif

@@ -264,12 +264,15 @@ bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blen
     return true;
 }
 
-bool csg_check_color(csg_scene_builder *builder, csg_color color)
+bool csg_check_look(csg_scene_builder *builder, const csg_look *look)
 {
-    const float channels[4] = {color.r, color.g, color.b, color.a};
+    const float channels[4] = {look->color.r, look->color.g, look->color.b, look->color.a};
     for (int i = 0; i < 4; i++)
         if (!(channels[i] >= 0 && channels[i] <= 1))
             csg_check_fail(builder, CSGM_ERR_SCENE, "a colour's numbers must lie between 0 and 1");
+    if (!(look->metallic >= 0 && look->metallic <= 1 && look->roughness >= 0 &&
+          look->roughness <= 1))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "a material's numbers must lie between 0 and 1");
     return builder->status == CSGM_OK;
 }
 

@@ -27,6 +27,6 @@ bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blen
 bool csg_check_offset(csg_scene_builder *builder, double r);
 /* The numbers given, and that warps do not nest too deeply. */
 bool csg_check_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child);
-bool csg_check_color(csg_scene_builder *builder, csg_color color);
+bool csg_check_look(csg_scene_builder *builder, const csg_look *look);
 
 #endif

@@ -201,7 +201,47 @@ static void put_color(printer *out, csg_color color)
         put(out, i ? ", " : "[");
         put_float(out, channels[i]);
     }
-    put(out, "])\n");
+    put(out, "])");
+}
+
+/* Control characters as \u escapes, so that a name stays on its line. */
+static void put_string(printer *out, const char *text)
+{
+    put(out, "\"");
+    for (; *text; text++) {
+        char escape[16] = {*text};
+        if (*text == '"' || *text == '\\')
+            snprintf(escape, sizeof escape, "\\%c", *text);
+        else if ((unsigned char)*text < ' ')
+            snprintf(escape, sizeof escape, "\\u%04x", (unsigned char)*text);
+        put(out, escape);
+    }
+    put(out, "\"");
+}
+
+static void put_look(printer *out, const csg_look *look)
+{
+    const char *blank = "";
+    if (look->part) {
+        put(out, "part(");
+        put_string(out, out->scene->part_names[look->part - 1]);
+        put(out, ")");
+        blank = " ";
+    }
+    if (look->has_material) {
+        put(out, blank);
+        put(out, "material(metallic = ");
+        put_float(out, look->metallic);
+        put(out, ", roughness = ");
+        put_float(out, look->roughness);
+        put(out, ")");
+        blank = " ";
+    }
+    if (look->has_color) {
+        put(out, blank);
+        put_color(out, look->color);
+    }
+    put(out, "\n");
 }
 
 static void put_operator(printer *out, const csg_node *node)
@@ -229,7 +269,7 @@ static bool open_children(printer *out, csg_node_id id)
     if (node->kind == CSG_NODE_TRANSFORM)
         put_matrix(out, &scene->transforms[node->payload]);
     else if (node->kind == CSG_NODE_COLOR)
-        put_color(out, scene->colors[node->payload]);
+        put_look(out, &scene->looks[node->payload]);
     else if (csg_node_is_operator(node->kind))
         put_operator(out, node);
     else if (node->kind != CSG_NODE_FIELD)

@@ -111,6 +111,14 @@ double csg_scene_lipschitz(const csgm_scene *scene)
     return largest > 0 ? largest : 1;
 }
 
+bool csg_scene_has_colors(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->look_count; i++)
+        if (scene->looks[i].has_color)
+            return true;
+    return false;
+}
+
 void csg_scene_destroy(csgm_scene *scene)
 {
     if (!scene)

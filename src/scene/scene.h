@@ -9,7 +9,7 @@
  *   shape          exact signed distance of explicit geometry (shape/shape.h)
  *   transform M    f(p) = s g(M^-1 p), s = smallest singular value of M: Lipschitz constant kept;
  *                  for similarities this is the exact distance again
- *   color          its child
+ *   color          its child, whatever it says of it (csg_look)
  *   offset         its child plus r
  *   warp           scene/warp.h
  *   operator       scene/operators.def; difference is the intersection of the first child with
@@ -94,6 +94,15 @@ typedef struct csg_color {
     float r, g, b, a; /* 0..1, sRGB */
 } csg_color;
 
+/* What a COLOR node says of the solids below; of each thing the outermost node that says it holds.
+ */
+typedef struct csg_look {
+    csg_color color;
+    float metallic, roughness; /* 0..1 */
+    bool has_color, has_material;
+    uint32_t part; /* 1 + index into part_names; 0 = none (parts.h) */
+} csg_look;
+
 enum { CSG_FLAG_FLAT = 1 };
 
 typedef struct csg_node {
@@ -104,7 +113,7 @@ typedef struct csg_node {
     uint32_t first_child; /* into children */
     uint32_t child_count;
     uint32_t payload; /* primitives: into parameters; fields: into formulas; shapes: into shapes;
-                         transforms: into transforms; colours: into colors; offsets: into
+                         transforms: into transforms; colours: into looks; offsets: into
                          parameters, where r is; warps: into warps; operators: into parameters,
                          where n is */
     csg_span where;
@@ -119,13 +128,15 @@ struct csgm_scene {
     csg_affine *transforms;
     csg_affine *inverses; /* once sealed: of transforms */
     double *scales;       /* once sealed: smallest singular values of transforms */
-    csg_color *colors;
+    csg_look *looks;
     csg_formula *formulas;
     csg_formula_step *steps; /* of all formulas */
     csg_shape **shapes;      /* one reference each */
     csg_warp *warps;
-    size_t node_count, child_count, parameter_count, transform_count, color_count, formula_count,
+    size_t node_count, child_count, parameter_count, transform_count, look_count, formula_count,
         step_count, shape_count, warp_count;
+    const char **part_names; /* once sealed owned by arena */
+    uint32_t part_count;
     csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
     csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
@@ -142,6 +153,8 @@ static inline const double *csg_scene_parameters(const csgm_scene *scene, const 
     return scene->parameters + node->payload;
 }
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
+
+bool csg_scene_has_colors(const csgm_scene *scene);
 
 /* Gives back a sealed scene, the struct itself too. NULL is a no-op. */
 void csg_scene_destroy(csgm_scene *scene);

@@ -118,7 +118,7 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
         out->shape_count += node->kind == CSG_NODE_SHAPE;
         out->warp_count += node->kind == CSG_NODE_WARP;
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
-        out->color_count += node->kind == CSG_NODE_COLOR;
+        out->look_count += node->kind == CSG_NODE_COLOR;
         if (node->kind == CSG_NODE_FIELD) {
             out->formula_count++;
             out->step_count += from->formulas[node->payload].count;
@@ -134,14 +134,14 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
     out->transforms = csg_arena_calloc(arena, out->transform_count, sizeof *out->transforms);
     out->inverses = csg_arena_calloc(arena, out->transform_count, sizeof *out->inverses);
     out->scales = csg_arena_calloc(arena, out->transform_count, sizeof *out->scales);
-    out->colors = csg_arena_calloc(arena, out->color_count, sizeof *out->colors);
+    out->looks = csg_arena_calloc(arena, out->look_count, sizeof *out->looks);
     out->formulas = csg_arena_calloc(arena, out->formula_count, sizeof *out->formulas);
     out->steps = csg_arena_calloc(arena, out->step_count, sizeof *out->steps);
     out->shapes = csg_arena_calloc(arena, out->shape_count, sizeof *out->shapes);
     out->warps = csg_arena_calloc(arena, out->warp_count, sizeof *out->warps);
     return out->shapes && out->warps && out->formulas && out->steps && out->nodes && out->bounds &&
            out->children && out->parameters && out->transforms && out->inverses && out->scales &&
-           out->colors;
+           out->looks;
 }
 
 static void copy_transform(csgm_scene *out, csg_affine matrix)
@@ -169,8 +169,8 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
         node->payload = (uint32_t)out->transform_count;
         copy_transform(out, from->transforms[old]);
     } else if (node->kind == CSG_NODE_COLOR) {
-        node->payload = (uint32_t)out->color_count;
-        out->colors[out->color_count++] = from->colors[old];
+        node->payload = (uint32_t)out->look_count;
+        out->looks[out->look_count++] = from->looks[old];
     } else if (node->kind == CSG_NODE_FIELD) {
         node->payload = (uint32_t)out->formula_count;
         copy_formula(out, from, from->formulas[old]);
@@ -192,7 +192,7 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
 /* The list backwards is the sealed order: children first, left before right. */
 static void copy_nodes(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
-    out->parameter_count = out->transform_count = out->color_count = 0;
+    out->parameter_count = out->transform_count = out->look_count = 0;
     out->formula_count = out->step_count = out->shape_count = out->warp_count = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         uint32_t place = w->count - 1 - i;
@@ -230,6 +230,21 @@ static bool copy_dependencies(csgm_scene *out, const char *const *names, size_t 
     return true;
 }
 
+static bool copy_part_names(csgm_scene *out, const csgm_scene *from)
+{
+    if (!from->part_count)
+        return true;
+    out->part_names = csg_arena_calloc(&out->arena, from->part_count, sizeof *out->part_names);
+    for (uint32_t i = 0; out->part_names && i < from->part_count; i++) {
+        const char *name = from->part_names[i];
+        out->part_names[i] = csg_arena_strndup(&out->arena, name, strlen(name));
+        if (!out->part_names[i])
+            return false;
+    }
+    out->part_count = from->part_count;
+    return out->part_names;
+}
+
 static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
                         csgm_scene *out)
 {
@@ -244,7 +259,7 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
         return CSGM_ERR_MEMORY;
     }
     copy_nodes(out, builder->scene, &w);
-    return CSGM_OK;
+    return copy_part_names(out, builder->scene) ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
 /* A sealed copy of what stands below root, without bounds. */

@@ -180,7 +180,7 @@ static void test_transforms_fold(void **state)
     csgm_scene *scene = test_seal(&f.builder, node);
     assert_int_equal(scene->node_count, 3);
     assert_int_equal(scene->nodes[2].kind, CSG_NODE_COLOR);
-    assert_true(scene->colors[0].g == 1); /* the outermost */
+    assert_true(scene->looks[0].color.g == 1); /* the outermost */
     test_near(scene->scales[0], 2, 1e-15);
     csg_vec3 p = {1, 2, 4};
     test_near(test_sample(scene, p).value, 1, 1e-15);
