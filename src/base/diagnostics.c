@@ -60,6 +60,20 @@ void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag)
         sink->on_diag(sink->user, &diag);
 }
 
+void csg_diag_make_line(char *message)
+{
+    size_t length = strlen(message), tail = 0;
+    for (size_t i = 0; i < length; i++)
+        if ((unsigned char)message[i] < 0x20 || message[i] == 0x7F)
+            message[i] = ' ';
+    while (tail < length && tail < 3 && ((unsigned char)message[length - 1 - tail] & 0xC0) == 0x80)
+        tail++;
+    unsigned char lead = tail < length ? (unsigned char)message[length - 1 - tail] : 0;
+    size_t wanted = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
+    if (wanted > tail) /* cut within a character */
+        message[length - 1 - tail] = '\0';
+}
+
 void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, const char *hint,
                     const char *format, ...)
 {
@@ -68,6 +82,7 @@ void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, c
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
+    csg_diag_make_line(message);
     csg_diag_report(sink, code, (csgm_diag){.source_name = name, .message = message, .hint = hint});
 }
 

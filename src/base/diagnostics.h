@@ -35,6 +35,9 @@ const char *csg_diag_summary(csg_diag_code code);
 /* Fills severity and code, applies warnings_as_errors and the cap, counts, calls on_diag. */
 void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag);
 
+/* Makes a message one line of whole characters, whatever the text of a scene put into it. */
+void csg_diag_make_line(char *message);
+
 /* A finding that is not about text: name may be NULL or the file it is about. */
 void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));

@@ -62,7 +62,7 @@ static void begin_range(csg_eval *e, csg_iteration *iteration, csg_span where)
         iteration->count = 0;
     } else if (iteration->count > (double)(e->context->limits.eval_steps - e->steps)) {
         csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where, "is the range's step right?",
-                       "the range has %.0f elements", iteration->count);
+                       "the range has %.15g elements", iteration->count);
     }
 }
 

@@ -93,6 +93,7 @@ void csg_source_note(const csg_sources *sources, csg_span where, const char *for
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
+    csg_diag_make_line(message);
     report_at(sources, CSG_DIAG_NOTE, where, NULL, message);
 }
 
@@ -121,6 +122,7 @@ void csg_source_report(const csg_sources *sources, csg_diag_code code, csg_span 
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
+    csg_diag_make_line(message);
     report_at(sources, code, where, hint, message);
     note_includes(sources, where);
 }
@@ -273,6 +275,12 @@ static csgm_status read_file(csg_sources *sources, const csg_source_request *req
                     "give the path of a scene file in it", "this is a directory");
         return CSGM_ERR_IO;
     }
+    if (request->from.source < sources->count && !S_ISREG(info.st_mode)) {
+        report_file(sources, CSG_DIAG_UNREADABLE_SOURCE, request->from, request->path,
+                    "only the scene itself may come from a pipe or device",
+                    "this is not a regular file");
+        return CSGM_ERR_IO;
+    }
     csg_memory *memory = &sources->context->memory;
     buffer data = {0};
     int problem = read_all(memory, file, &data);
@@ -305,7 +313,9 @@ csgm_status csg_source_read(csg_sources *sources, const csg_source_request *requ
         again.textual = request->textual;
         return add(sources, again, out);
     }
-    int file = open(request->path, O_RDONLY | O_CLOEXEC);
+    /* A scene must not make the program wait for a pipe that nobody writes to. */
+    int wait = request->from.source < sources->count ? O_NONBLOCK : 0;
+    int file = open(request->path, O_RDONLY | O_CLOEXEC | wait);
     if (file < 0) {
         report_file(sources, CSG_DIAG_UNREADABLE_SOURCE, request->from, request->path, NULL,
                     strerror(errno));
