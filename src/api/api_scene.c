@@ -2,6 +2,7 @@
  * Scenes of the public interface: text in, sealed tree out, and what one may ask of it.
  */
 #include "api/options.h"
+#include "api/services.h"
 #include "lang/lang.h"
 #include "scene/bounds.h"
 #include "scene/reference.h"
@@ -39,7 +40,8 @@ csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t tex
     csg_lang_input input = {.path = name ? name : "text",
                             .text = text ? text : "",
                             .text_length = text_length,
-                            .options = options};
+                            .options = options,
+                            .services = csg_api_services()};
     return csg_lang_compile(context, &input, out);
 }
 
@@ -51,7 +53,7 @@ csgm_status csgm_scene_load(csgm_context *context, const char *path,
     *out = NULL;
     if (!context || !path || !csg_scene_options_are_sound(options))
         return CSGM_ERR_ARGUMENT;
-    csg_lang_input input = {.path = path, .options = options};
+    csg_lang_input input = {.path = path, .options = options, .services = csg_api_services()};
     return csg_lang_compile(context, &input, out);
 }
 

@@ -13,7 +13,8 @@ typedef struct csg_services {
      * without a place, and nothing was reported. */
     csgm_status (*read_mesh)(csgm_context *context, const char *path, csg_triangles *out,
                              char *problem, size_t problem_size);
-    /* Triangles on the scene's surface, `cells` along the longest side of its bounds. */
+    /* Triangles on the scene's surface, `cells` along the longest side of its bounds; none where it
+     * has no surface. Reports nothing. */
     csgm_status (*tessellate)(csgm_context *context, const csgm_scene *scene, uint32_t cells,
                               csg_triangles *out);
 } csg_services;

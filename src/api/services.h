@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ * What the language gets from the layers below it (scene/services.h).
+ */
+#ifndef CSG_API_SERVICES_H
+#define CSG_API_SERVICES_H
+
+#include "scene/services.h"
+
+const csg_services *csg_api_services(void);
+
+#endif
