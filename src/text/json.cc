@@ -16,6 +16,15 @@ namespace
 
 using nlohmann::json;
 
+/* "[json.exception...] parse error at line 1, column 2: what is wrong" */
+void describe(size_t position, const json::exception &problem, csg_json_error *error)
+{
+    const char *text = problem.what();
+    const char *colon = std::strstr(text, ": ");
+    std::snprintf(error->text, sizeof error->text, "%s", colon ? colon + 2 : text);
+    error->offset = position > 0 ? position - 1 : 0;
+}
+
 struct stream {
     csg_json_fn *event;
     void *user;
@@ -81,13 +90,9 @@ struct stream {
         return tell(CSG_JSON_END, "", 0);
     }
 
-    /* "[json.exception...] parse error at line 1, column 2: what is wrong" */
     bool parse_error(size_t position, const std::string &, const json::exception &problem)
     {
-        const char *text = problem.what();
-        const char *colon = std::strstr(text, ": ");
-        std::snprintf(error->text, sizeof error->text, "%s", colon ? colon + 2 : text);
-        error->offset = position > 0 ? position - 1 : 0;
+        describe(position, problem, error);
         broken = true;
         return false;
     }

@@ -177,6 +177,40 @@ static void test_options_not_made_by_default(void **state)
     end(&r);
 }
 
+static void test_params(void **state)
+{
+    static const char text[] = "// how wide\nwidth = 3; // [1:5]\ncube(width);\n";
+    csgm_define define = {"width", "4"};
+    csgm_scene_options options = csgm_scene_options_default();
+    csgm_context *context;
+    csgm_params *params;
+    (void)state;
+    options.defines = &define;
+    options.define_count = 1;
+    assert_int_equal(csgm_context_create(NULL, &context), CSGM_OK);
+    assert_int_equal(csgm_params_parse(context, text, sizeof text - 1, "a.txt", &options, &params),
+                     CSGM_OK);
+    const csgm_param *param = csgm_params_get(params, 0);
+    assert_non_null(param);
+    assert_null(csgm_params_get(params, 1));
+    assert_string_equal(param->name, "width");
+    assert_string_equal(param->description, "how wide");
+    assert_true(param->initial.numbers[0] == 3 && param->value.numbers[0] == 4);
+    assert_true(param->minimum == 1 && param->maximum == 5 && isnan(param->step));
+    csgm_params_destroy(params);
+    assert_int_equal(csgm_params_load(context, "/nowhere/a.txt", NULL, &params), CSGM_ERR_IO);
+    assert_null(params);
+    options.parameter_set = "a set of no file";
+    assert_int_equal(csgm_params_parse(context, text, sizeof text - 1, "a", &options, &params),
+                     CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_params_parse(context, text, sizeof text - 1, "a", NULL, NULL),
+                     CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_params_parse(NULL, text, sizeof text - 1, "a", NULL, &params),
+                     CSGM_ERR_ARGUMENT);
+    csgm_params_destroy(NULL);
+    csgm_context_destroy(context);
+}
+
 static void test_null_arguments(void **state)
 {
     csgm_context *context;
@@ -334,6 +368,7 @@ int main(void)
         cmocka_unit_test(test_field_agrees_with_the_reference),
         cmocka_unit_test(test_destroy_of_nothing),
         cmocka_unit_test(test_options_not_made_by_default),
+        cmocka_unit_test(test_params),
         cmocka_unit_test(test_null_arguments),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_findings_reach_the_caller),
