@@ -46,7 +46,9 @@ need_core_packages() {
         return 0
     fi
     need_packages gcc g++ meson ninja-build pkg-config:pkgconf libopenmesh-dev libdraco-dev \
-        libtinygltf-dev nlohmann-json3-dev "$@"
+        libpolyclipping-dev libexpat1-dev libpng-dev libfreetype-dev libharfbuzz-dev \
+        libfontconfig-dev fonts-liberation fonts-dejavu-core \
+        libtinygltf-dev nlohmann-json3-dev libqhull-dev "$@"
 }
 
 # quietly COMMAND...: its output only when it fails.

@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT
+ * Outlines of flat figures against their fields: what the field calls inside, the outline goes
+ * around once, for polygons up to the tolerance and for what is traced up to a cell; areas;
+ * trouble.
+ */
+#include "scene_support.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+#include "scene/flatten.h"
+#include "shape/polygons.h"
+#include "shape/region.h"
+
+static csgm_context context;
+static csg_scene_builder builder;
+static csg_outline outline;
+static csg_random dice;
+
+static int begin(void **state)
+{
+    test_context_init(&context);
+    csg_outline_init(&outline, &context.memory);
+    dice.state = 23;
+    return csg_build_begin(&builder, &context) != CSGM_OK;
+}
+
+static int end(void **state)
+{
+    csg_outline_release(&outline);
+    csg_build_abandon(&builder);
+    test_context_end(&context);
+    return 0;
+}
+
+/* ---- figures ------------------------------------------------------------------------------ */
+
+static csg_node_id circle(double r)
+{
+    return csg_build_primitive(&builder, CSG_NODE_CIRCLE, &r, NOWHERE);
+}
+
+static csg_node_id rectangle(double x, double y, double round)
+{
+    return csg_build_primitive(&builder, CSG_NODE_RECTANGLE, (double[]){x, y, round}, NOWHERE);
+}
+
+static csg_node_id moved(double x, double y, csg_node_id child)
+{
+    csg_affine by = csg_affine_translate(csg_vec3_make(x, y, 0));
+    return csg_build_transform(&builder, &by, child, NOWHERE);
+}
+
+static csg_node_id turned(double angle, csg_node_id child)
+{
+    csg_affine by = csg_affine_rotate(angle, csg_vec3_make(0, 0, 1));
+    return csg_build_transform(&builder, &by, child, NOWHERE);
+}
+
+static csg_node_id operate(csg_node_kind kind, double width, csg_node_id a, csg_node_id b,
+                           csg_node_id c)
+{
+    csg_blend blend = {width > 0 ? CSG_BLEND_ROUND : CSG_BLEND_SHARP, width};
+    return csg_build_operator(&builder, kind, blend, (csg_node_id[]){a, b, c},
+                              c == CSG_NODE_NONE ? 2 : 3, NOWHERE);
+}
+
+static csg_node_id triangle_with_hole(void)
+{
+    const csg_vec2 points[7] = {{-2, -1}, {2, -1}, {0, 3}, {0, 0}, {-0.5, 1}, {0.5, 1}, {0, 0}};
+    csg_outline loops;
+    csg_shape *shape;
+    csg_outline_init(&loops, &context.memory);
+    for (int i = 0; i < 6; i++) {
+        assert_true(csg_outline_add(&loops, points[i]));
+        if (i % 3 == 2)
+            assert_true(csg_outline_close(&loops));
+    }
+    assert_int_equal(csg_region_create(&context.memory, &loops, &shape), CSGM_OK);
+    csg_outline_release(&loops);
+    return csg_build_shape(&builder, shape, NOWHERE);
+}
+
+/* ---- checks ------------------------------------------------------------------------------- */
+
+static int winding_of(csg_vec2 p)
+{
+    double turn = 0;
+    for (size_t loop = 0, i = 0; loop < outline.loop_count; loop++) {
+        size_t first = i;
+        for (; i < outline.ends[loop]; i++) {
+            csg_vec2 a = outline.points[i],
+                     b = outline.points[i + 1 < outline.ends[loop] ? i + 1 : first];
+            double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+            turn += atan2(ax * by - ay * bx, ax * bx + ay * by);
+        }
+    }
+    return (int)lrint(turn / (2 * 3.14159265358979323846));
+}
+
+static double area(void)
+{
+    double sum = 0;
+    for (size_t loop = 0, i = 0; loop < outline.loop_count; loop++) {
+        size_t first = i;
+        for (; i < outline.ends[loop]; i++) {
+            csg_vec2 a = outline.points[i],
+                     b = outline.points[i + 1 < outline.ends[loop] ? i + 1 : first];
+            sum += 0.5 * (a.x * b.y - a.y * b.x);
+        }
+    }
+    return sum;
+}
+
+/* The field's sign is the outline's wherever |f| > slack. */
+static void check(csg_node_id node, double tolerance, double slack, double reach)
+{
+    csgm_scene *scene;
+    csg_outline_release(&outline);
+    assert_int_not_equal(node, CSG_NODE_NONE);
+    assert_int_equal(csg_flatten(&builder, node, tolerance, &outline), CSGM_OK);
+    assert_int_equal(csg_build_snapshot(&builder, node, &scene), CSGM_OK);
+    for (int i = 0; i < 1000; i++) {
+        csg_vec3 p = test_point(&dice, reach);
+        double value = test_sample(scene, p).value;
+        if (fabs(value) > slack)
+            assert_int_equal(winding_of((csg_vec2){p.x, p.y}), value > 0);
+    }
+    csg_scene_destroy(scene);
+}
+
+/* ---- polygons ----------------------------------------------------------------------------- */
+
+static void leaves(void **state)
+{
+    check(circle(2), 1e-3, 1.01e-3, 3);
+    test_near(area(), 3.14159265358979 * 4, 0.02);
+    assert_true(outline.point_count > 90 && outline.point_count < 110);
+    check(rectangle(2, 1, 0), 1e-3, 1e-9, 3);
+    assert_int_equal(outline.point_count, 4);
+    assert_true(area() == 8);
+    check(rectangle(2, 1, 0.5), 1e-3, 1.01e-3, 3);
+    check(rectangle(1, 1, 1), 1e-3, 1.01e-3, 3);
+    check(triangle_with_hole(), 1e-3, 1e-9, 3);
+    assert_true(area() == 7.5);
+}
+
+static void placed_and_coloured(void **state)
+{
+    csg_affine mirrored = csg_affine_mirror(csg_vec3_make(1, 2, 0));
+    csg_node_id node = csg_build_transform(&builder, &mirrored, triangle_with_hole(), NOWHERE);
+    check(csg_build_color(&builder, (csg_color){1, 0, 0, 1}, node, NOWHERE), 1e-3, 1e-9, 4);
+    test_near(area(), 7.5, 1e-12);
+    csg_affine flat = csg_affine_multiply(csg_affine_rotate(30, csg_vec3_make(0, 0, 1)),
+                                          csg_affine_scale(csg_vec3_make(3, 0.5, 1)));
+    check(csg_build_transform(&builder, &flat, circle(1), NOWHERE), 1e-4, 1.01e-4, 4);
+    test_near(area(), 3.14159265358979 * 1.5, 1e-3);
+    assert_true(outline.point_count > 300); /* the tolerance is that of the placed circle */
+}
+
+static void nothing_is_empty(void **state)
+{
+    csg_node_id node = csg_build_empty(&builder, NOWHERE);
+    assert_int_equal(csg_flatten(&builder, node, 0.1, &outline), CSGM_OK);
+    assert_int_equal(outline.loop_count, 0);
+}
+
+/* ---- with the polygon library ------------------------------------------------------------- */
+
+static bool has_polygons(void)
+{
+    csg_outline none;
+    csg_outline_release(&outline);
+    assert_int_equal(csg_flatten(&builder, circle(1), 0.1, &outline), CSGM_OK);
+    csgm_status status = csg_polygons_clean(&outline, CSG_FILL_NONZERO, &none);
+    csg_outline_release(&none);
+    csg_outline_release(&outline);
+    return status != CSGM_ERR_UNSUPPORTED;
+}
+
+static void sharp_operators_and_offsets(void **state)
+{
+    if (!has_polygons())
+        skip();
+    csg_node_id cross = operate(CSG_NODE_UNION, 0, rectangle(2, 0.5, 0),
+                                turned(90, rectangle(2, 0.5, 0)), moved(1.5, 1.5, circle(0.5)));
+    csg_node_id cut = operate(CSG_NODE_DIFFERENCE, 0, cross, moved(1.8, 0, circle(0.4)),
+                              moved(-2, 0, rectangle(0.5, 3, 0)));
+    check(operate(CSG_NODE_INTERSECTION, 0, cut, circle(2.2), rectangle(3, 1.9, 0.2)), 1e-4,
+          1.01e-4, 3);
+    check(csg_build_offset(&builder, 0.5, triangle_with_hole(), NOWHERE), 1e-4, 1.01e-4, 4);
+    check(csg_build_offset(&builder, -0.2, triangle_with_hole(), NOWHERE), 1e-4, 1.01e-4, 4);
+    check(csg_build_offset(&builder, -5, triangle_with_hole(), NOWHERE), 1e-4, 1.01e-4, 4);
+    assert_int_equal(outline.loop_count, 0);
+}
+
+/* ---- traced ------------------------------------------------------------------------------- */
+
+static void blends_are_traced(void **state)
+{
+    csg_node_id blend = operate(CSG_NODE_UNION, 0.7, circle(1), moved(1.8, 0, circle(0.8)),
+                                moved(0, -1.5, rectangle(1, 0.2, 0)));
+    check(blend, 1e-3, 0.01, 4);
+    assert_int_equal(outline.loop_count, 1);
+    csg_node_id ring = operate(CSG_NODE_DIFFERENCE, 0.1, circle(2), circle(1), CSG_NODE_NONE);
+    check(ring, 1e-3, 1e-4, 3); /* smooth: far better than a cell */
+    assert_int_equal(outline.loop_count, 2);
+}
+
+static void slices_are_traced(void **state)
+{
+    const csg_warp slice = {.kind = CSG_WARP_SLICE};
+    csg_affine place = csg_affine_multiply(csg_affine_translate(csg_vec3_make(0, 0, 0.1)),
+                                           csg_affine_rotate(90, csg_vec3_make(1, 0, 0)));
+    csg_node_id torus =
+        csg_build_primitive(&builder, CSG_NODE_TORUS, (double[]){2, 0.5, 180}, NOWHERE);
+    csg_node_id node = csg_build_transform(&builder, &place, torus, NOWHERE);
+    node = csg_build_warp(&builder, &slice, node, NOWHERE);
+    check(node, 1e-3, 1e-3, 4);
+    assert_int_equal(outline.loop_count, 2);
+    if (has_polygons())
+        check(operate(CSG_NODE_UNION, 0, node, moved(0, 0.2, rectangle(2, 0.1, 0)), CSG_NODE_NONE),
+              1e-3, 1e-3, 4);
+}
+
+/* Two saddles' worth of ways in one cell, and figures much smaller than a cell. */
+static void traces_close_at_random(void **state)
+{
+    for (int round = 0; round < 6; round++) {
+        csg_node_id nodes[40];
+        for (int k = 0; k < 40; k++)
+            nodes[k] = moved(csg_random_uniform(&dice, -3, 3), csg_random_uniform(&dice, -3, 3),
+                             circle(csg_random_uniform(&dice, 0.001, 0.6)));
+        csg_blend blend = {CSG_BLEND_ROUND, 0.01};
+        check(csg_build_operator(&builder, CSG_NODE_UNION, blend, nodes, 40, NOWHERE), 1e-3, 0.015,
+              4);
+    }
+}
+
+/* ---- trouble ------------------------------------------------------------------------------ */
+
+static void solids_are_refused(void **state)
+{
+    csg_node_id ball = csg_build_primitive(&builder, CSG_NODE_SPHERE, (double[]){1}, NOWHERE);
+    assert_int_equal(csg_flatten(&builder, ball, 0.1, &outline), CSGM_ERR_SCENE);
+    assert_int_equal(csg_flatten(&builder, CSG_NODE_NONE, 0.1, &outline), CSGM_ERR_SCENE);
+    const csg_warp slice = {.kind = CSG_WARP_SLICE};
+    csg_node_id half =
+        csg_build_primitive(&builder, CSG_NODE_PLANE, (double[]){1, 0, 0, 0}, NOWHERE);
+    half = csg_build_warp(&builder, &slice, half, NOWHERE);
+    assert_int_equal(csg_flatten(&builder, half, 0.1, &outline), CSGM_ERR_SCENE);
+    assert_null(outline.points);
+}
+
+static void depth_is_no_matter(void **state)
+{
+    csg_node_id node = circle(1);
+    for (int i = 0; i < 100000; i++) {
+        /* a colour and a shear in turns do not fold */
+        csg_affine shear = csg_affine_identity();
+        shear.m[0][1] = i % 4 ? 1e-6 : -1e-6;
+        node = csg_build_transform(&builder, &shear, node, NOWHERE);
+        node = csg_build_color(&builder, (csg_color){1, 0, 0, 1}, node, NOWHERE);
+    }
+    assert_int_equal(csg_flatten(&builder, node, 1e-3, &outline), CSGM_OK);
+    test_near(area(), 3.14159265358979, 0.01);
+}
+
+typedef struct failing {
+    long left, live;
+} failing;
+
+static void *failing_alloc(void *user, size_t size)
+{
+    failing *f = user;
+    void *memory = f->left-- > 0 ? malloc(size) : NULL;
+    f->live += memory != NULL;
+    return memory;
+}
+
+static void failing_release(void *user, void *memory, size_t size)
+{
+    (void)size;
+    ((failing *)user)->live--;
+    free(memory);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    failing f = {LONG_MAX, 0};
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
+    bool has = has_polygons();
+    csg_build_abandon(&builder);
+    csg_memory_init(&context.memory, &allocator, 0);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    csg_node_id node =
+        operate(CSG_NODE_DIFFERENCE, 0.1, circle(2), moved(0, 1, circle(1)), CSG_NODE_NONE);
+    if (has)
+        node = operate(CSG_NODE_UNION, 0, node, moved(5, 0, triangle_with_hole()),
+                       csg_build_offset(&builder, 1, rectangle(1, 2, 0), NOWHERE));
+    long before = f.live, n = 0;
+    for (csgm_status status = CSGM_ERR_MEMORY; status; n++) {
+        f.left = n;
+        status = csg_flatten(&builder, node, 1e-3, &outline);
+        bool failed = f.left < 0;
+        f.left = LONG_MAX;
+        assert_int_equal(status, failed ? CSGM_ERR_MEMORY : CSGM_OK);
+        csg_outline_release(&outline);
+        assert_int_equal(f.live, before);
+        builder.status = CSGM_OK; /* a snapshot notes its failure */
+    }
+    assert_true(n > 10);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+    const struct CMUnitTest tests[] = {
+        TEST(leaves),
+        TEST(placed_and_coloured),
+        TEST(nothing_is_empty),
+        TEST(sharp_operators_and_offsets),
+        TEST(blends_are_traced),
+        TEST(slices_are_traced),
+        TEST(traces_close_at_random),
+        TEST(solids_are_refused),
+        TEST(depth_is_no_matter),
+        TEST(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
