@@ -23,19 +23,21 @@ typedef struct walk {
     uint32_t stacked, count;
 } walk;
 
-/* The smallest index of a node below root: parts of large scenes are sealed by themselves, and what
- * was built before them should not cost. */
-static csgm_status find_lowest(csg_memory *memory, const csgm_scene *scene, csg_node_id root,
-                               csg_node_id *lowest)
+/* The smallest and the largest index of a node below root: parts of large scenes are sealed by
+ * themselves, and what was built before them should not cost. Root need not be the largest: a
+ * transform goes below the colour that it is put on. */
+static csgm_status find_range(csg_memory *memory, const csgm_scene *scene, csg_node_id root,
+                              csg_node_id *lowest, csg_node_id *highest)
 {
     void *data = NULL;
     size_t capacity = 0, stacked = 0, visited = 0;
     csgm_status status = CSGM_OK;
     csg_node_id at = root;
-    *lowest = root;
+    *lowest = *highest = root;
     for (;;) {
         const csg_node *node = &scene->nodes[at];
         *lowest = at < *lowest ? at : *lowest;
+        *highest = at > *highest ? at : *highest;
         if (++visited > scene->node_count) /* a node was used twice */
             status = CSGM_ERR_INTERNAL;
         else if (!csg_memory_reserve(memory, &data, &capacity, stacked + node->child_count,
@@ -58,8 +60,9 @@ static csgm_status walk_begin(walk *w, csg_arena *scratch, const csgm_scene *sce
                               csg_node_id root)
 {
     *w = (walk){0};
-    csgm_status status = find_lowest(scratch->memory, scene, root, &w->lowest);
-    size_t most = root - w->lowest + 1;
+    csg_node_id highest = root;
+    csgm_status status = find_range(scratch->memory, scene, root, &w->lowest, &highest);
+    size_t most = highest - w->lowest + 1;
     if (status != CSGM_OK)
         return status;
     w->stack = csg_arena_calloc(scratch, most, sizeof *w->stack);

@@ -152,8 +152,12 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     options.define_count = texts->count;
     options.include_dirs = app->options.include_dirs.items;
     options.include_dir_count = app->options.include_dirs.count;
+    uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);
+    if (status != CSGM_OK && status != CSGM_ERR_ARGUMENT && app->console.errors == errors)
+        cli_console_say(&app->console, CSGM_ERROR, "please report it, with the scene",
+                        "%s failed without saying why: %s", wanted->path, csgm_status_name(status));
     for (size_t i = 0; defines && i < texts->count; i++)
         free((char *)defines[i].name);
     free(defines);
