@@ -9,14 +9,16 @@
 #include "outline/dxf_entity.h"
 #include "shape/polygons.h"
 
-enum { MOST_DEPTH = 32, MOST_VISITS = 8 << 20, MOST_ARRAY = 10000 };
+enum { MOST_DEPTH = 32, MOST_VISITS = 2 << 20, MOST_ARRAY = 10000 };
 
 typedef struct drawing {
     const csg_dxf_request *request;
     csg_dxf_report *report;
     csg_dxf_file file;
     csg_polylines lines;
-    size_t visits, depth;
+    size_t visits;           /* of entities of blocks, and of their bytes */
+    size_t open[MOST_DEPTH]; /* the blocks that are being drawn */
+    size_t depth;
     csgm_status status;
 } drawing;
 
@@ -62,7 +64,10 @@ static void draw_insert(drawing *d, const csg_dxf_entity *e, const place *p)
 {
     size_t block = find_block(&d->file, csg_dxf_get_text(e, 2));
     d->visits += d->file.block_count / 64; /* the search costs time too */
-    if (block == 0 || d->depth >= MOST_DEPTH) {
+    bool inside = d->depth >= MOST_DEPTH;
+    for (size_t i = 0; i < d->depth && !inside; i++)
+        inside = d->open[i] == block;
+    if (block == 0 || inside) {
         d->report->unresolved++;
         return;
     }
@@ -75,7 +80,7 @@ static void draw_insert(drawing *d, const csg_dxf_entity *e, const place *p)
     double columns = count_at(e, 70), rows = count_at(e, 71);
     double dx = csg_dxf_get(e, 44, 0), dy = csg_dxf_get(e, 45, 0);
     place q = *p;
-    d->depth++;
+    d->open[d->depth++] = block;
     for (double row = 0; row < rows && d->status == CSGM_OK; row++)
         for (double column = 0; column < columns && d->status == CSGM_OK; column++) {
             csg_affine cell = csg_affine_multiply(put, shift(column * dx, row * dy));
@@ -136,7 +141,8 @@ static void draw_block(drawing *d, size_t block, const place *p)
     const csg_dxf_block *b = &d->file.blocks[block];
     for (size_t i = 0; i < b->count && d->status == CSGM_OK; i++) {
         const csg_dxf_entity *e = &d->file.entities[b->first + i];
-        d->visits += 1 + (size_t)(e->end - e->begin) / 16; /* each is looked through anew */
+        if (d->depth > 0) /* each is looked through anew */
+            d->visits += 1 + (size_t)(e->end - e->begin) / 64;
         if (d->visits > MOST_VISITS) {
             d->status = csg_problem_set(&d->report->problem, CSGM_ERR_LIMIT,
                                         "its blocks hold too many entities");

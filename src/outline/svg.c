@@ -11,8 +11,10 @@
 #include "shape/polygons.h"
 
 enum {
-    MOST_DEPTH = 400,      /* of elements and uses */
-    MOST_VISITS = 4 << 20, /* of elements and their bytes, each time one is used anew */
+    MOST_DEPTH = 400,       /* of elements and uses */
+    MOST_VISITS = 4 << 20,  /* of elements and their bytes, each time one is used anew */
+    USED_SHAPE_VISITS = 16, /* a use takes few bytes, its shape much time */
+    MOST_USES = 32,         /* within each other */
     MOST_SHAPE_POINTS = 1 << 20
 };
 
@@ -26,6 +28,8 @@ typedef struct drawing {
     uint32_t *ids;       /* a hash table of elements, id_mask + 1 places */
     uint32_t id_mask;
     size_t visits, depth;
+    uint32_t used[MOST_USES]; /* the targets of the uses that are being drawn */
+    size_t used_count;
     csgm_status status;
 } drawing;
 
@@ -231,6 +235,7 @@ static void draw_shape(drawing *d, uint32_t e, const place *p)
     double stretch = hypot(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1])); /* at least */
     double tolerance = d->request->tolerance / (stretch > 0 ? stretch : 1);
     csg_polylines_clear(&d->lines);
+    d->visits += d->used_count ? USED_SHAPE_VISITS : 0;
     if (strcmp(name, "path") == 0)
         draw_path(d, e, tolerance);
     else if (strcmp(name, "rect") == 0)
@@ -314,27 +319,43 @@ static bool make_ids(drawing *d)
     return true;
 }
 
+/* Inside itself, or too deep in others. */
+static bool is_in_use(const drawing *d, uint32_t target, uint32_t use)
+{
+    if (d->used_count == MOST_USES)
+        return true;
+    for (size_t i = 0; i < d->used_count; i++)
+        if (d->used[i] == target)
+            return true;
+    for (; use != CSG_XML_NONE; use = d->xml.elements[use].parent)
+        if (use == target)
+            return true;
+    return false;
+}
+
 static void draw_use(drawing *d, uint32_t e, const place *p)
 {
     const csg_xml *xml = &d->xml;
     const char *href = csg_xml_get(xml, e, "href");
     uint32_t target = href && *href == '#' ? find_id(d, href + 1) : CSG_XML_NONE;
-    if (target == CSG_XML_NONE) {
+    if (target == CSG_XML_NONE || is_in_use(d, target, e)) {
         d->report->unresolved++;
         return;
     }
+    d->used[d->used_count++] = target;
     csg_affine shift =
         csg_affine_translate(csg_vec3_make(csg_svg_attribute(xml, e, "x", p->width, 0),
                                            csg_svg_attribute(xml, e, "y", p->height, 0), 0));
     place inner = *p;
     move_by(&inner, &shift);
-    if (strcmp(xml->elements[target].name, "symbol") != 0) {
+    if (strcmp(xml->elements[target].name, "symbol") == 0) {
+        csg_svg_style_apply(xml, target, &inner.style);
+        draw_viewport(d, target, &inner, csg_svg_attribute(xml, e, "width", p->width, p->width),
+                      csg_svg_attribute(xml, e, "height", p->height, p->height));
+    } else {
         draw_element(d, target, &inner);
-        return;
     }
-    csg_svg_style_apply(xml, target, &inner.style);
-    draw_viewport(d, target, &inner, csg_svg_attribute(xml, e, "width", p->width, p->width),
-                  csg_svg_attribute(xml, e, "height", p->height, p->height));
+    d->used_count--;
 }
 
 static void draw_inner_svg(drawing *d, uint32_t e, const place *p)
@@ -427,7 +448,7 @@ static void draw_inside(drawing *d, uint32_t element, const place *outer)
 static void draw_element(drawing *d, uint32_t element, const place *outer)
 {
     if (d->depth >= MOST_DEPTH) {
-        d->report->unresolved++; /* only use of use gets so deep */
+        d->report->unresolved++;
         return;
     }
     d->visits += 1 + d->xml.elements[element].bytes / 64;
