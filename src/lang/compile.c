@@ -119,8 +119,12 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
         if (status == CSGM_ERR_MEMORY)
             csg_context_no_memory(program->context);
     }
-    if (status == CSGM_OK)
+    if (status == CSGM_OK) {
         warn_empty(&e, scene);
+        status = csg_warn_lost_parts(&e, scene);
+        if (status != CSGM_OK)
+            csg_scene_destroy(scene);
+    }
     if (status == CSGM_OK && program->context->diags.errors > errors) {
         csg_scene_destroy(scene);
         status = CSGM_ERR_SCENE;

@@ -89,6 +89,8 @@ void csg_eval_note_calls(const csg_eval *e);
 /* Was this finding reported before at this place? */
 bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
 void csg_eval_no_memory(csg_eval *e);
+/* Tells of parts that are only operands (scene/parts.h); CSGM_ERR_MEMORY is reported. */
+csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
 void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Counts steps of work; false: the limit of steps or time is reached. */
