@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: MIT
+ * tube and spline: a ball swept along a polyline, Bezier curves or a Catmull-Rom curve, its radius
+ * changing with the parameter. A polyline is a union of capsules, exactly; curves are polylines
+ * within 1e-4 of the radius.
+ */
+#include <math.h>
+
+#include "lang/shapes.h"
+
+static const double tolerance = 1e-4; /* of the largest radius */
+
+typedef struct knot { /* of a skeleton */
+    csg_vec3 at;
+    double radius;
+} knot;
+
+typedef struct skeleton {
+    csg_module_call *call;
+    knot *knots; /* as given */
+    size_t count;
+    csg_node_id *parts;
+    size_t part_count, part_capacity;
+    knot last; /* where the next capsule begins */
+    double within;
+    bool ok;
+} skeleton;
+
+static knot mix(knot a, knot b, double t)
+{
+    return (knot){csg_vec3_add(csg_vec3_scale(a.at, 1 - t), csg_vec3_scale(b.at, t)),
+                  a.radius * (1 - t) + b.radius * t};
+}
+
+/* A capsule from where the last one ended. */
+static void line_to(skeleton *s, knot to)
+{
+    csg_eval *e = s->call->e;
+    csg_span where = s->call->statement->where;
+    s->ok = s->ok && csg_eval_charge(e, 10, where);
+    if (!s->ok)
+        return;
+    csg_node_id node = csg_shape_done(s->call, csg_build_capsule(&e->builder, s->last.at, to.at,
+                                                                 s->last.radius, to.radius, where));
+    s->ok = node != CSG_NODE_NONE;
+    if (s->ok && !csg_memory_reserve(e->heap.memory, (void **)&s->parts, &s->part_capacity,
+                                     s->part_count + 1, sizeof node)) {
+        csg_eval_no_memory(e);
+        s->ok = false;
+    }
+    if (s->ok)
+        s->parts[s->part_count++] = node;
+    s->last = to;
+}
+
+/* A cubic by de Casteljau's scheme. */
+static knot cubic_at(const knot c[4], double t)
+{
+    knot ab = mix(c[0], c[1], t), bc = mix(c[1], c[2], t), cd = mix(c[2], c[3], t);
+    return mix(mix(ab, bc, t), mix(bc, cd, t), t);
+}
+
+/* A chord over 1 / n of a cubic stays within |second difference| * 6 / (8 n^2) of it. */
+static void cubic_to(skeleton *s, const knot c[4])
+{
+    const double most = 1e5;
+    double bend = 0;
+    for (int i = 0; i < 2; i++) {
+        csg_vec3 second =
+            csg_vec3_add(csg_vec3_sub(c[i].at, csg_vec3_scale(c[i + 1].at, 2)), c[i + 2].at);
+        double swell = c[i].radius - 2 * c[i + 1].radius + c[i + 2].radius;
+        bend = fmax(bend, csg_vec3_norm(second) + fabs(swell));
+    }
+    double n = fmin(fmax(ceil(sqrt(6 * bend / (8 * s->within))), 1), most);
+    for (uint32_t i = 1; i <= (uint32_t)n && s->ok; i++)
+        line_to(s, cubic_at(c, i / n));
+}
+
+/* ---- the kinds of curves --------------------------------------------------------------------- */
+
+static void polyline(skeleton *s)
+{
+    for (size_t i = 1; i < s->count; i++)
+        line_to(s, s->knots[i]);
+}
+
+static void quadratics(skeleton *s)
+{
+    for (size_t i = 0; i + 2 < s->count; i += 2) {
+        const knot *k = &s->knots[i];
+        cubic_to(s, (knot[]){k[0], mix(k[0], k[1], 2.0 / 3), mix(k[2], k[1], 2.0 / 3), k[2]});
+    }
+}
+
+static void cubics(skeleton *s)
+{
+    for (size_t i = 0; i + 3 < s->count; i += 3)
+        cubic_to(s, &s->knots[i]);
+}
+
+/* Catmull-Rom: through all knots, tangents parallel to the chord of the neighbours. */
+static void catmull_rom(skeleton *s, bool closed)
+{
+    size_t n = s->count, pieces = closed ? n : n - 1;
+    for (size_t i = 0; i < pieces; i++) {
+        knot b = s->knots[i], c = s->knots[(i + 1) % n];
+        knot a = i > 0 ? s->knots[i - 1] : closed ? s->knots[n - 1] : mix(b, c, -1);
+        knot d = i + 2 < n ? s->knots[i + 2] : closed ? s->knots[(i + 2) % n] : mix(c, b, -1);
+        knot after = {csg_vec3_add(b.at, csg_vec3_scale(csg_vec3_sub(c.at, a.at), 1.0 / 6)),
+                      fmax(b.radius + (c.radius - a.radius) / 6, 0)};
+        knot before = {csg_vec3_sub(c.at, csg_vec3_scale(csg_vec3_sub(d.at, b.at), 1.0 / 6)),
+                       fmax(c.radius - (d.radius - b.radius) / 6, 0)};
+        cubic_to(s, (knot[]){b, after, before, c});
+    }
+}
+
+/* ---- arguments ------------------------------------------------------------------------------- */
+
+static void read_radii(csg_module_call *call, uint32_t index, skeleton *s)
+{
+    csg_value value = call->values[index];
+    if (value.kind != CSG_VALUE_VECTOR) {
+        double r = csg_argument_number(call, index, 1, CSG_POSITIVE);
+        for (size_t i = 0; i < s->count; i++)
+            s->knots[i].radius = r;
+        return;
+    }
+    if (value.as.vector->count != s->count) {
+        csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "%u radii for %zu points",
+                           value.as.vector->count, s->count);
+        return;
+    }
+    for (uint32_t i = 0; i < s->count; i++) {
+        csg_value r = value.as.vector->items[i];
+        bool sound = r.kind == CSG_VALUE_NUMBER && isfinite(r.as.number) && r.as.number >= 0;
+        if (!sound)
+            csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "r[%u] is not a number above 0",
+                               i);
+        s->knots[i].radius = sound ? r.as.number : 1;
+    }
+}
+
+/* Points and radii; false after a report, or when memory ran out. */
+static bool read_knots(csg_module_call *call, uint32_t points, uint32_t radii, skeleton *s)
+{
+    csg_value value = call->values[points];
+    if (value.kind != CSG_VALUE_VECTOR || value.as.vector->count < 2) {
+        csg_argument_error(call, points, CSG_DIAG_BAD_TYPE,
+                           "points must be a list of at least two [x, y, z]");
+        return false;
+    }
+    size_t count = value.as.vector->count;
+    s->knots = csg_memory_alloc(call->e->heap.memory, count * sizeof *s->knots);
+    if (!s->knots) {
+        csg_eval_no_memory(call->e);
+        return false;
+    }
+    s->count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        double v[3] = {0, 0, 0};
+        bool known = csg_value_numbers(value.as.vector->items[i], 3, v) ||
+                     csg_value_numbers(value.as.vector->items[i], 2, v);
+        if (!known || !isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
+            csg_argument_error(call, points, CSG_DIAG_BAD_POINTS, "points[%u] is not [x, y, z]", i);
+        s->knots[i] = (knot){csg_vec3_make(v[0], v[1], v[2]), 1};
+    }
+    read_radii(call, radii, s);
+    return !call->failed;
+}
+
+static void begin(skeleton *s)
+{
+    double largest = 0;
+    for (size_t i = 0; i < s->count; i++)
+        largest = fmax(largest, s->knots[i].radius);
+    s->within = tolerance * largest;
+    s->last = s->knots[0];
+    s->ok = largest > 0;
+    if (!s->ok)
+        csg_argument_error(s->call, 1, CSG_DIAG_OUT_OF_RANGE, "all radii are 0");
+}
+
+static csg_node_id finish(skeleton *s)
+{
+    csg_eval *e = s->call->e;
+    csg_node_id node = CSG_NODE_NONE;
+    if (s->call->failed)
+        node = csg_shape_empty(s->call);
+    else if (s->ok && !e->stop)
+        node =
+            csg_shape_done(s->call, csg_build_operator(&e->builder, CSG_NODE_UNION,
+                                                       (csg_blend){CSG_BLEND_SHARP, 0}, s->parts,
+                                                       s->part_count, s->call->statement->where));
+    csg_memory_release(e->heap.memory, s->knots, s->count * sizeof *s->knots);
+    csg_memory_release(e->heap.memory, s->parts, s->part_capacity * sizeof *s->parts);
+    return node;
+}
+
+csg_node_id csg_module_tube(csg_module_call *call)
+{
+    enum { POINTS, RADIUS, DEGREE };
+    skeleton s = {.call = call};
+    bool known = read_knots(call, POINTS, RADIUS, &s);
+    double degree = csg_argument_number(call, DEGREE, 1, CSG_POSITIVE);
+    if (known && degree != 1 && degree != 2 && degree != 3)
+        csg_argument_error(call, DEGREE, CSG_DIAG_OUT_OF_RANGE, "degree is %g", degree);
+    if (known && !call->failed && (s.count - 1) % (size_t)degree != 0)
+        csg_argument_error(call, POINTS, CSG_DIAG_BAD_POINTS,
+                           "curves of degree %g share their ends: 1 + %g n points, not %zu", degree,
+                           degree, s.count);
+    if (!known || call->failed)
+        return finish(&s);
+    begin(&s);
+    if (degree == 1)
+        polyline(&s);
+    else if (degree == 2)
+        quadratics(&s);
+    else
+        cubics(&s);
+    return finish(&s);
+}
+
+csg_node_id csg_module_spline(csg_module_call *call)
+{
+    enum { POINTS, RADIUS, CLOSED };
+    skeleton s = {.call = call};
+    if (!read_knots(call, POINTS, RADIUS, &s))
+        return finish(&s);
+    begin(&s);
+    if (s.ok)
+        catmull_rom(&s, csg_argument_boolean(call, CLOSED));
+    return finish(&s);
+}
