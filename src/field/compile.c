@@ -35,6 +35,7 @@ typedef struct task {
     uint32_t begin;   /* of a group: first node */
     uint32_t parameters;
     bool is_union;
+    bool combines; /* by a formula */
     csg_blend blend;
 } task;
 
@@ -130,26 +131,33 @@ static csg_affine place_of(const compiler *c, const frame *f)
     return place;
 }
 
-/* A formula has no sizes that could be scaled: its frame is the whole map. */
-static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
+/* The formula's steps join the tape's, and the leaf names them. */
+static bool take_formula(compiler *c, csg_leaf *l, const csg_formula *formula)
 {
     csg_memory *memory = &c->context->memory;
-    csg_affine place = place_of(c, f);
-    l->op = CSG_OP_FIELD;
-    csg_leaf_place(l, &place);
-    l->sigma = f->negate ? -f->factor : f->factor;
     l->own[0] = (double)c->formula_count;
     l->own_count = 1;
     if (c->formula_count >= 1 << 24 || /* an index must be exact in a float */
         !csg_memory_reserve(memory, (void **)&c->formulas, &c->formula_capacity,
                             c->formula_count + 1, sizeof *c->formulas) ||
-        !csg_formula_compile(memory, c->scene->steps, &c->scene->formulas[node->payload], &c->steps,
-                             &c->step_count, &c->step_capacity, &c->formulas[c->formula_count]))
+        !csg_formula_compile(memory, c->scene->steps, formula, &c->steps, &c->step_count,
+                             &c->step_capacity, &c->formulas[c->formula_count]))
         return false;
-    /* How far a shift of the point by its rounding moves the value. */
-    l->magnitude = (double)c->formulas[c->formula_count].lipschitz * csg_vec3_norm(l->offset);
     c->formula_count++;
     return true;
+}
+
+/* A formula has no sizes that could be scaled: its frame is the whole map. */
+static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
+{
+    const csg_formula *formula = &c->scene->formulas[node->payload];
+    csg_affine place = place_of(c, f);
+    l->op = CSG_OP_FIELD;
+    csg_leaf_place(l, &place);
+    l->sigma = f->negate ? -f->factor : f->factor;
+    /* How far a shift of the point by its rounding moves the value. */
+    l->magnitude = formula->lipschitz * csg_vec3_norm(l->offset);
+    return take_formula(c, l, formula);
 }
 
 static void place_shape(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
@@ -200,6 +208,26 @@ static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
 
 /* ---- operators ------------------------------------------------------------------------------ */
 
+/* Whether children join it: an operator, or fields combined by a formula. */
+static bool is_group(const compiler *c, const task *t)
+{
+    return t->combines || csg_node_is_operator(c->scene->nodes[t->node].kind);
+}
+
+/* The parameters of an expression field over the operands' values: they come times the factor of
+ * the frame, and so must the result. */
+static bool push_combination(compiler *c, const csg_node *node, const frame *f, uint32_t *at)
+{
+    const csg_formula *formula = &c->scene->formulas[node->payload];
+    csg_leaf l = {.op = CSG_OP_COMBINE, .frame = CSG_FRAME_AFFINE, .raise = f->raise};
+    l.to_own = csg_affine_scale(csg_vec3_make(1 / f->factor, 1 / f->factor, 1 / f->factor));
+    l.sigma = (f->negate ? -f->factor : f->factor) / formula->lipschitz;
+    float values[CSG_LEAF_MOST_PARAMETERS];
+    if (!take_formula(c, &l, formula))
+        return false;
+    return push_parameters(c, values, csg_leaf_pack(&l, 0, values), at);
+}
+
 static bool begin_task(compiler *c, csg_node_id id, const frame *f)
 {
     if (!csg_memory_reserve(&c->context->memory, (void **)&c->tasks, &c->task_capacity,
@@ -212,7 +240,8 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
         t.is_union = (node->kind == CSG_NODE_UNION) != f->negate;
         t.blend = csg_blend_scale(csg_scene_blend(c->scene, node), f->factor);
         const task *outer = index ? &c->tasks[c->tasks[index - 1].group] : NULL;
-        bool outer_operates = outer && csg_node_is_operator(c->scene->nodes[outer->node].kind);
+        bool outer_operates =
+            outer && !outer->combines && csg_node_is_operator(c->scene->nodes[outer->node].kind);
         if (outer_operates && t.blend.kind == CSG_BLEND_SHARP &&
             outer->blend.kind == CSG_BLEND_SHARP && outer->is_union == t.is_union) {
             t.group = c->tasks[index - 1].group; /* max of max, min of min: one operator */
@@ -225,6 +254,10 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
             if (!push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t.parameters))
                 return false;
         }
+    } else if (node->kind == CSG_NODE_COMBINE) {
+        t.combines = true;
+        if (!push_combination(c, node, f, &t.parameters))
+            return false;
     } else {
         /* transforms, colours, offsets, warps: their child joins in their place */
         t.group = index ? c->tasks[index - 1].group : index;
@@ -236,10 +269,10 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
 /* The last node written completes a child of this group. */
 static void join_child(compiler *c, task *group)
 {
-    if (!csg_node_is_operator(c->scene->nodes[group->node].kind))
+    if (!is_group(c, group))
         return; /* nothing above but nodes of one child */
     csg_tape_node *node = &c->nodes[c->node_count - 1];
-    if (group->written && group->blend.kind != CSG_BLEND_ROUND) {
+    if (group->written && group->blend.kind != CSG_BLEND_ROUND && !group->combines) {
         node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
         node->join_blend = (uint8_t)group->blend.kind;
         node->join_parameters = group->parameters;
@@ -251,7 +284,7 @@ static bool end_task(compiler *c)
 {
     uint32_t index = (uint32_t)--c->task_count;
     task t = c->tasks[index];
-    if (t.group != index || !csg_node_is_operator(c->scene->nodes[t.node].kind))
+    if (t.group != index || !is_group(c, &t))
         return true;
     csg_tape_node *node = push_node(c);
     if (!node)
@@ -259,6 +292,10 @@ static bool end_task(compiler *c)
     bool is_round = t.blend.kind == CSG_BLEND_ROUND;
     node->op = (uint8_t)(is_round ? (t.is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION)
                                   : (t.is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION));
+    if (t.combines) {
+        node->op = CSG_OP_COMBINE;
+        node->frame = CSG_FRAME_AFFINE;
+    }
     node->blend = (uint8_t)t.blend.kind;
     node->parameters = t.parameters;
     node->arity = t.written;
@@ -308,6 +345,9 @@ static bool child_frame(compiler *c, const task *t, frame *f)
         return take_look(c, f, &c->scene->looks[node->payload]);
     } else if (node->kind == CSG_NODE_OFFSET) {
         f->raise += (f->negate ? -f->factor : f->factor) * csg_scene_parameters(c->scene, node)[0];
+    } else if (node->kind == CSG_NODE_COMBINE) {
+        f->negate = false;
+        f->raise = 0;
     } else if (node->kind == CSG_NODE_WARP) {
         return warp_frame(c, &c->scene->warps[node->payload], f);
     } else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0) {
@@ -367,7 +407,7 @@ uint32_t csg_tape_depth(const csg_tape *tape)
         const csg_tape_node *node = &tape->nodes[i];
         if (csg_op_is_leaf(node->op))
             top++;
-        else if (csg_op_is_round(node->op))
+        else if (csg_op_takes_all(node->op))
             top -= node->arity - 1;
         if (top > most)
             most = top;

@@ -370,18 +370,10 @@ static void meet(const ranges *result, float sigma, float reach, float *restrict
     }
 }
 
-static void intervals(const csg_tape *tape, const csg_tape_node *node, const float *cx,
-                      const float *cy, const float *cz, float radius, float *low, float *high)
+static void run_ranges(const csg_tape *tape, const csg_tape_formula *formula, ranges *slots)
 {
-    ranges slots[CSG_FORMULA_SLOTS], constant;
-    const csg_tape_formula *formula = formula_of(tape, node);
+    ranges constant;
     const csg_tape_step *steps = tape->steps + formula->first;
-    const float *parameters = tape->parameters + node->parameters;
-    const float *const c[3] = {cx, cy, cz};
-    const float edge = radius * 0.57735034f; /* just above 1 / sqrt(3) */
-    for (int axis = 0; axis < 3; axis++)
-        place_cubes(row_of(node, parameters + CSG_LEAF_FRAME, axis), c, edge, formula->low[axis],
-                    formula->high[axis], &slots[axis]);
     for (uint32_t s = 0; s < formula->count; s++) {
         const csg_tape_step *step = &steps[s];
         const ranges *a = &slots[step->a], *b = &slots[step->b];
@@ -391,12 +383,55 @@ static void intervals(const csg_tape *tape, const csg_tape_node *node, const flo
             b = constant_ranges(step->value, &constant);
         step_ranges(step, a, b, &slots[step->out]);
     }
+}
+
+static void intervals(const csg_tape *tape, const csg_tape_node *node, const float *cx,
+                      const float *cy, const float *cz, float radius, float *low, float *high)
+{
+    ranges slots[CSG_FORMULA_SLOTS];
+    const csg_tape_formula *formula = formula_of(tape, node);
+    const float *parameters = tape->parameters + node->parameters;
+    const float *const c[3] = {cx, cy, cz};
+    const float edge = radius * 0.57735034f; /* just above 1 / sqrt(3) */
+    for (int axis = 0; axis < 3; axis++)
+        place_cubes(row_of(node, parameters + CSG_LEAF_FRAME, axis), c, edge, formula->low[axis],
+                    formula->high[axis], &slots[axis]);
+    run_ranges(tape, formula, slots);
     float reach = formula->lipschitz * radius * (1.0f + 0x1p-20f);
     meet(&slots[formula->result], parameters[CSG_LEAF_SIGMA], reach + parameters[CSG_LEAF_SLACK],
          low, high);
 }
 
+/* What the formula gets for a value: the frame's scale, nothing else, is applied to it. */
+static void box_intervals(const csg_tape *tape, const csg_tape_node *node,
+                          const float *const low[3], const float *const high[3], float *out_low,
+                          float *out_high)
+{
+    ranges slots[CSG_FORMULA_SLOTS];
+    const csg_tape_formula *formula = formula_of(tape, node);
+    const float *parameters = tape->parameters + node->parameters;
+    const float sigma = parameters[CSG_LEAF_SIGMA], far = (float)CSG_FORMULA_FAR;
+    for (int axis = 0; axis < 3; axis++) {
+        float scale = parameters[CSG_LEAF_FRAME + 4 * axis];
+        for (int i = 0; i < RANGE_LANES; i++) {
+            float a = scale * low[axis][i % CSG_OCTANTS], b = scale * high[axis][i % CSG_OCTANTS];
+            slots[axis].low[i] = a - 0x1p-20f * absolute(a);
+            slots[axis].high[i] = b + 0x1p-20f * absolute(b);
+        }
+    }
+    run_ranges(tape, formula, slots);
+    const ranges *result = &slots[formula->result];
+    for (int i = 0; i < CSG_OCTANTS; i++) {
+        int known = result->low[i] <= result->high[i];
+        float bottom = known ? kept(result->low[i]) : -far;
+        float top = known ? kept(result->high[i]) : far;
+        out_low[i] = sigma < 0 ? sigma * top : sigma * bottom;
+        out_high[i] = sigma < 0 ? sigma * bottom : sigma * top;
+    }
+}
+
 const csg_formula_kernel CSG_THIS_FORMULA_KERNEL = {
+    .box_intervals = box_intervals,
     .values = values,
     .gradients = gradients,
     .intervals = intervals,

@@ -18,6 +18,10 @@ typedef struct csg_formula_kernel {
      * Lipschitz constant, every rounding included. */
     void (*intervals)(const csg_tape *tape, const csg_tape_node *node, const float *cx,
                       const float *cy, const float *cz, float radius, float *low, float *high);
+    /* Bounds over eight boxes low[i] .. high[i]; node: a CSG_OP_COMBINE. */
+    void (*box_intervals)(const csg_tape *tape, const csg_tape_node *node,
+                          const float *const low[3], const float *const high[3], float *out_low,
+                          float *out_high);
 } csg_formula_kernel;
 
 #ifdef CSG_KERNEL

@@ -13,6 +13,7 @@
 
 #include <string.h>
 
+#include "field/formula_kernel.h"
 #include "field/formulas.h"
 #include "field/leaf_kernel.h"
 
@@ -197,6 +198,32 @@ static void combine_round_values(const csg_tape *tape, const csg_tape_node *node
         out[i] = turn * (top[i] + excess[i]);
 }
 
+/* ---- fields combined by a formula -------------------------------------------------------------
+ */
+
+static float combine_raise(const csg_tape *tape, const csg_tape_node *node)
+{
+    return tape->parameters[node->parameters + CSG_LEAF_RAISE];
+}
+
+/* Operands that a formula of fewer does not read are the first one. */
+static float *operand(slots s, size_t first, uint32_t arity, uint32_t k)
+{
+    return slot(s, k < arity ? first + k : first);
+}
+
+static void combine_values(const csg_tape *tape, const csg_tape_node *node, slots s, size_t first,
+                           size_t count, float *work)
+{
+    const float raise = combine_raise(tape, node);
+    const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
+    CSG_THIS_FORMULA_KERNEL.values(tape, node, a, b, operand(s, first, node->arity, 2), count,
+                                   work);
+    float *out = slot(s, first);
+    for (size_t i = 0; i < count; i++)
+        out[i] = work[i] + raise;
+}
+
 /* Leaves the result in slot 0; `depth` slots, then the round operator's work. */
 static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t depth)
 {
@@ -209,6 +236,9 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_values(tape, node, s, top++, p.count, work);
+        } else if (node->op == CSG_OP_COMBINE) {
+            top -= node->arity;
+            combine_values(tape, node, s, top++, p.count, work);
         }
         if (node->join) {
             top--;
@@ -275,6 +305,38 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
         gaps[i] = turn * (top[i] + excess[i]);
 }
 
+/* Gradients by the chain rule; colours in the proportions of the partial derivatives' sizes. */
+static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
+                          size_t first, int channels, size_t count, float *work)
+{
+    const float raise = combine_raise(tape, node);
+    float *partial[3] = {work + s.stride, work + 2 * s.stride, work + 3 * s.stride};
+    const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
+    CSG_THIS_FORMULA_KERNEL.gradients(tape, node, a, b, operand(s, first, node->arity, 2), count,
+                                      work, partial[0], partial[1], partial[2]);
+    if (channels == COLOR_CHANNELS)
+        for (size_t i = 0; i < count; i++) {
+            float sum = 0;
+            for (uint32_t k = 0; k < node->arity; k++)
+                sum += absolute(partial[k][i]);
+            for (uint32_t k = 0; k < node->arity; k++)
+                partial[k][i] = sum > 0 ? absolute(partial[k][i]) / sum : k == 0;
+        }
+    for (int c = 0; c < channels; c++) {
+        float *out = channel(s, depth, first, c);
+        for (size_t i = 0; i < count; i++)
+            out[i] = partial[0][i] * out[i];
+        for (uint32_t k = 1; k < node->arity; k++) {
+            const float *in = channel(s, depth, first + k, c);
+            for (size_t i = 0; i < count; i++)
+                out[i] += partial[k][i] * in[i];
+        }
+    }
+    float *out = slot(s, first);
+    for (size_t i = 0; i < count; i++)
+        out[i] = work[i] + raise;
+}
+
 static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
                        uint32_t depth, size_t index, int channels)
 {
@@ -304,6 +366,9 @@ static void walk_mixed(const csg_tape *tape, csg_points p, slots s, uint32_t dep
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_mixed(tape, node, s, depth, top++, channels, p.count, work);
+        } else if (node->op == CSG_OP_COMBINE) {
+            top -= node->arity;
+            combine_mixed(tape, node, s, depth, top++, channels, p.count, work);
         }
         if (node->join) {
             top--;
@@ -386,7 +451,24 @@ static void colors(const csg_tape *tape, const float *x, const float *y, const f
 
 /* ---- intervals ------------------------------------------------------------------------------- */
 
-/* Every operator here is monotone: its value at the operands' ends (operators.md 0). */
+static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, slots lows,
+                              slots highs, size_t first)
+{
+    const float raise = combine_raise(tape, node);
+    const float *low[3], *high[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        low[k] = operand(lows, first, node->arity, k);
+        high[k] = operand(highs, first, node->arity, k);
+    }
+    float *out_low = slot(lows, first), *out_high = slot(highs, first);
+    CSG_THIS_FORMULA_KERNEL.box_intervals(tape, node, low, high, out_low, out_high);
+    for (int i = 0; i < CSG_OCTANTS; i++) {
+        out_low[i] += raise;
+        out_high[i] += raise;
+    }
+}
+
+/* Operators but these are monotone: its value at the operands' ends (operators.md 0). */
 static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch)
@@ -407,6 +489,9 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
             combine_round_values(tape, node, lows, top, CSG_OCTANTS, work);
             combine_round_values(tape, node, highs, top, CSG_OCTANTS, work);
             top++;
+        } else if (node->op == CSG_OP_COMBINE) {
+            top -= node->arity;
+            combine_intervals(tape, node, lows, highs, top++);
         }
         memcpy(low + (size_t)n * CSG_OCTANTS, slot(lows, top - 1), CSG_OCTANTS * sizeof(float));
         memcpy(high + (size_t)n * CSG_OCTANTS, slot(highs, top - 1), CSG_OCTANTS * sizeof(float));

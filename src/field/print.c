@@ -16,6 +16,7 @@ static const char *const op_names[CSG_OP_COUNT] = {
     [CSG_OP_INTERSECTION] = "intersection",
     [CSG_OP_ROUND_UNION] = "round_union",
     [CSG_OP_ROUND_INTERSECTION] = "round_intersection",
+    [CSG_OP_COMBINE] = "combine",
     [CSG_OP_EMPTY] = "empty",
 };
 
@@ -62,6 +63,8 @@ csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, vo
         print(&out, "%u %s", i, op_names[node->op]);
         if (csg_op_is_leaf(node->op))
             print_leaf(&out, &field->tape, node);
+        else if (node->op == CSG_OP_COMBINE)
+            print(&out, " of %u", node->arity);
         else
             print(&out, " of %u, blend %s n %.9g support %.9g", node->arity,
                   csg_blend_name(node->blend),

@@ -131,6 +131,20 @@ static uint8_t below(const float *reach, float turn, const float threshold[CSG_O
     return (uint8_t)mask;
 }
 
+/* Of fields combined by a formula any value may matter. */
+static void demand_all(csg_pruner *pruner, uint32_t node)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    uint32_t child = node - 1;
+    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
+        pruner->dropped[child] = pruner->dropped[node];
+        for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(nodes[child].op); o++) {
+            lanes(pruner->low, child)[o] = -INFINITY;
+            lanes(pruner->high, child)[o] = INFINITY;
+        }
+    }
+}
+
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
  * below the largest sibling, by the blend's support. Intersections are the mirror image. The
  * demand on an operand takes the place of its interval, which nobody needs any more. */
@@ -138,6 +152,10 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
                             const float *demand_high)
 {
     const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    if (op->op == CSG_OP_COMBINE) {
+        demand_all(pruner, node);
+        return;
+    }
     bool is_union = csg_op_is_union(op->op);
     float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
     float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
@@ -200,11 +218,11 @@ static void decide(csg_pruner *pruner, float tau)
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {
-    if (kept == 1)
+    if (kept == 1 && op->op != CSG_OP_COMBINE)
         return; /* the operand stands for its operator */
     csg_tape_node *nodes = pruner->nodes;
     csg_emitted *first = &stack[*top - kept];
-    for (uint32_t k = 0; k < kept && !csg_op_is_round(op->op); k++) {
+    for (uint32_t k = 0; k < kept && !csg_op_takes_all(op->op); k++) {
         csg_tape_node *operand = &nodes[first[k].root];
         operand->join = CSG_JOIN_NONE;
         if (k > 0)

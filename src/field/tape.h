@@ -25,7 +25,8 @@ typedef enum csg_op {
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
     CSG_OP_ROUND_INTERSECTION,
-    CSG_OP_EMPTY, /* -infinity (or +infinity, negated): only ever the whole tape */
+    CSG_OP_COMBINE, /* takes `arity` values from the stack, x, y, z of a formula */
+    CSG_OP_EMPTY,   /* -infinity (or +infinity, negated): only ever the whole tape */
     CSG_OP_COUNT
 } csg_op;
 
@@ -40,6 +41,12 @@ static inline bool csg_op_is_union(uint8_t op)
 static inline bool csg_op_is_round(uint8_t op)
 {
     return op == CSG_OP_ROUND_UNION || op == CSG_OP_ROUND_INTERSECTION;
+}
+
+/* Operators that look at all their operands' values at once. */
+static inline bool csg_op_takes_all(uint8_t op)
+{
+    return csg_op_is_round(op) || op == CSG_OP_COMBINE;
 }
 
 /* How a node's value merges with the value of its elder siblings. */
@@ -90,7 +97,9 @@ typedef struct csg_tape_step {
 
 enum { CSG_CONSTANT_NONE, CSG_CONSTANT_A, CSG_CONSTANT_B };
 
-/* A CSG_OP_FIELD's own parameter is the index of one of these. */
+/* A CSG_OP_FIELD's own parameter is the index of one of these. A CSG_OP_COMBINE has the parameters
+ * of such a leaf too; its frame is affine and takes the operands' values to what the formula
+ * expects. */
 typedef struct csg_tape_formula {
     uint32_t first, count; /* into the steps */
     uint32_t slots, result;

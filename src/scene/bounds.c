@@ -53,7 +53,11 @@ static void hand_down_levels(const csgm_scene *scene, const csg_node *node, uint
     if (node->kind == CSG_NODE_UNION)
         below += support;
     else
-        above += support; /* intersection and difference */
+        above += support;                 /* intersection and difference */
+    if (node->kind == CSG_NODE_COMBINE) { /* not monotone: any value of an operand may matter */
+        child->below = child->above = INFINITY;
+        return;
+    }
     double r = node->kind == CSG_NODE_OFFSET ? csg_scene_parameters(scene, node)[0] : 0;
     double scale = 1;
     if (node->kind == CSG_NODE_TRANSFORM)

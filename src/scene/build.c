@@ -206,8 +206,8 @@ csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 
 
 /* ---- fields --------------------------------------------------------------------------- */
 
-static bool append_formula(csg_scene_builder *builder, const csg_formula_step *steps,
-                           const csg_formula *formula)
+bool csg_build_append_formula(csg_scene_builder *builder, const csg_formula_step *steps,
+                              const csg_formula *formula)
 {
     csgm_scene *scene = builder->scene;
     csg_memory *memory = &builder->context->memory;
@@ -263,7 +263,7 @@ csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *
         return csg_build_no_memory(builder);
     if (!csg_check_slope(builder, &formula))
         return CSG_NODE_NONE;
-    if (!csg_build_reserve_node(builder) || !append_formula(builder, steps, &formula))
+    if (!csg_build_reserve_node(builder) || !csg_build_append_formula(builder, steps, &formula))
         return CSG_NODE_NONE;
     csg_node node = {.kind = CSG_NODE_FIELD,
                      .payload = (uint32_t)builder->scene->formula_count - 1,

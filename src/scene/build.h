@@ -78,6 +78,12 @@ csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, dou
  * keep their meaning. */
 csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child,
                            csg_span where);
+/* F(children), one to three of them, x, y, z of the formula being their fields (scene.h). slope: a
+ * bound on the sum of the partial derivatives' sizes; 0: computed, which fails for formulas that
+ * are too steep to tell. */
+csg_node_id csg_build_combine(csg_scene_builder *builder, const csg_formula_step *steps,
+                              uint32_t count, double slope, const csg_node_id *children,
+                              size_t child_count, csg_span where);
 /* A deep copy; shapes and formulas are shared. */
 csg_node_id csg_build_copy(csg_scene_builder *builder, csg_node_id node);
 /* The box of the node's solid in its own frame (a bound, not always tight), as far as is known

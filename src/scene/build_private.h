@@ -23,5 +23,8 @@ csg_node_id csg_build_append_transform(csg_scene_builder *builder, csg_affine ma
                                        csg_node_id child, csg_span where);
 csg_node_id csg_build_append_look(csg_scene_builder *builder, const csg_look *look,
                                   csg_node_id child, csg_span where);
+/* A formula of its own, its steps with it. */
+bool csg_build_append_formula(csg_scene_builder *builder, const csg_formula_step *steps,
+                              const csg_formula *formula);
 
 #endif

@@ -248,7 +248,7 @@ static csg_node_id copy_node(csg_scene_builder *builder, csg_node_id id, csg_nod
                    ? csg_build_append_transform(builder, scene->transforms[node.payload], copies[0],
                                                 node.where)
                    : csg_build_append_look(builder, &scene->looks[node.payload], copies[0],
-                                            node.where);
+                                           node.where);
     }
     return csg_build_append(builder, node, copies, count); /* formulas and warps are shared */
 }

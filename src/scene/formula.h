@@ -98,5 +98,12 @@ csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_f
  * box make it; INFINITY where that finds none. NAN: out of memory. */
 double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                              csg_box box);
+/* An upper bound of the sum of the partial derivatives' sizes anywhere; INFINITY where interval
+ * arithmetic finds none. NAN: out of memory. */
+double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count);
+/* +1, -1 or 0 for each of x, y, z: the formula never falls, never rises, or neither is known (also
+ * without memory). */
+void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        int trends[3]);
 
 #endif

@@ -561,3 +561,41 @@ double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, 
     csg_memory_release(memory, parts, bytes);
     return length;
 }
+
+/* The last step's bound on a box. False: out of memory. */
+static bool bound_of_result(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                            csg_box box, bound *out)
+{
+    bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
+    if (!bounds)
+        return false;
+    bound_on_box(steps, count, box, bounds);
+    *out = bounds[count - 1];
+    csg_memory_release(memory, bounds, count * sizeof *bounds);
+    return true;
+}
+
+double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count)
+{
+    bound result;
+    if (!bound_of_result(memory, steps, count, csg_box_all(), &result))
+        return NAN;
+    double total = 0;
+    for (int i = 0; i < 3; i++)
+        total += largest(result.gradient[i]);
+    double by_length = result.length * 1.7320508075688774; /* Cauchy and Schwarz, three operands */
+    double least = fmin(total, by_length) * (1 + 8 * DBL_EPSILON);
+    return isnan(least) ? INFINITY : least;
+}
+
+void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        int trends[3])
+{
+    const double rounding = 1e-12; /* of slopes that are 0 */
+    bound result;
+    bool known = bound_of_result(memory, steps, count, csg_box_all(), &result);
+    for (int i = 0; i < 3; i++) {
+        range slope = known ? result.gradient[i] : unknown();
+        trends[i] = slope.low >= -rounding ? 1 : slope.high <= rounding ? -1 : 0;
+    }
+}

@@ -13,6 +13,7 @@
 
 #include <string.h>
 
+#include "scene/combine.h"
 #include "scene/half_spaces.h"
 #include "scene/primitive_box.h"
 
@@ -128,7 +129,12 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
                 level_list *list)
 {
     double excess, support;
-    if (is_scaled(node->kind)) {
+    if (node->kind == CSG_NODE_COMBINE) {
+        csg_combine combine;
+        csg_combine_begin(&combine, scene, node);
+        add_level(list, csg_combine_inner_level(&combine, level));
+        csg_combine_end(&combine);
+    } else if (is_scaled(node->kind)) {
         add_level(list, inner_level(scene, node, level));
     } else if (node->kind == CSG_NODE_UNION) {
         union_levels(scene, node, &excess, &support);
@@ -296,6 +302,20 @@ static csg_box wrapped_box(const table *t, const csg_node *node, double level)
                : box;
 }
 
+/* Hull of the children that it rises with, at the level below which it shows nothing of them. */
+static csg_box combined_box(const table *t, const csg_node *node, double level)
+{
+    csg_combine combine;
+    csg_combine_begin(&combine, t->scene, node);
+    double inner = csg_combine_inner_level(&combine, level);
+    csg_box box = csg_box_empty();
+    for (uint32_t k = 0; k < node->child_count; k++)
+        if (combine.trends[k] > 0 || !isfinite(inner))
+            box = csg_box_hull(box, box_at(t, csg_scene_children(t->scene, node)[k], inner));
+    csg_combine_end(&combine);
+    return box;
+}
+
 /* Nodes whose box is not better known in the root's frame than in their own: warps, which have no
  * affine way there, and extrusions, whose operands are infinite along axes that may be turned. */
 static bool is_opaque(const csg_node *node)
@@ -337,6 +357,8 @@ static csg_box node_box(const table *t, size_t index, double level)
         csg_affine frame = frame_of(t, index);
         return csg_affine_box(&frame, box_at(t->own, (csg_node_id)index, level));
     }
+    if (node->kind == CSG_NODE_COMBINE)
+        return combined_box(t, node, level);
     if (!csg_node_is_operator(node->kind))
         return wrapped_box(t, node, level);
     return node->kind == CSG_NODE_UNION ? union_box(t, node, level) : cut_box(t, index, level);

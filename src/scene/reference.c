@@ -107,6 +107,23 @@ static csg_sample offset(const csgm_scene *scene, const csg_node *node, csg_samp
     return inner;
 }
 
+static csg_sample combine_by_formula(workspace *w, const csgm_scene *scene, const csg_node *node)
+{
+    const csg_formula *formula = &scene->formulas[node->payload];
+    const csg_node_id *children = csg_scene_children(scene, node);
+    double values[3] = {0};
+    for (uint32_t k = 0; k < node->child_count; k++)
+        values[k] = w->samples[children[k]].value;
+    csg_formula_dual dual = csg_formula_evaluate(
+        scene->steps, formula, csg_vec3_make(values[0], values[1], values[2]), w->steps);
+    const double partials[3] = {dual.gradient.x, dual.gradient.y, dual.gradient.z};
+    csg_sample out = {dual.value / formula->lipschitz, {0, 0, 0}};
+    for (uint32_t k = 0; k < node->child_count; k++)
+        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(w->samples[children[k]].gradient,
+                                                                 partials[k] / formula->lipschitz));
+    return out;
+}
+
 static csg_sample sample_leaf(workspace *w, const csgm_scene *scene, const csg_node *node,
                               csg_vec3 p)
 {
@@ -135,6 +152,8 @@ static void evaluate(workspace *w, const csgm_scene *scene)
             w->samples[i] = offset(scene, node, w->samples[children[0]]);
         else if (node->kind == CSG_NODE_WARP)
             w->samples[i] = warp(scene, node, w->points[i], w->samples[children[0]]);
+        else if (node->kind == CSG_NODE_COMBINE)
+            w->samples[i] = combine_by_formula(w, scene, node);
         else if (csg_node_is_operator(node->kind))
             w->samples[i] = combine(w, scene, node);
         else

@@ -12,6 +12,8 @@
  *   color          its child, whatever it says of it (csg_look)
  *   offset         its child plus r
  *   warp           scene/warp.h
+ *   combine        F(children) / K: a formula whose x, y, z are the fields of up to three children,
+ *                  K >= 1 a bound on the sum of its partial derivatives' sizes
  *   operator       scene/operators.def; difference is the intersection of the first child with
  *                  the negated others
  *   empty          -infinity
@@ -43,6 +45,7 @@ typedef enum csg_node_kind {
     CSG_NODE_COLOR,
     CSG_NODE_OFFSET,
     CSG_NODE_WARP,
+    CSG_NODE_COMBINE,
     CSG_NODE_UNION,
     CSG_NODE_INTERSECTION,
     CSG_NODE_DIFFERENCE
@@ -112,9 +115,9 @@ typedef struct csg_node {
     uint8_t warps;        /* most warps on a way to a leaf, this one included */
     uint32_t first_child; /* into children */
     uint32_t child_count;
-    uint32_t payload; /* primitives: into parameters; fields: into formulas; shapes: into shapes;
-                         transforms: into transforms; colours: into looks; offsets: into
-                         parameters, where r is; warps: into warps; operators: into parameters,
+    uint32_t payload; /* primitives: into parameters; fields and combine: into formulas; shapes:
+                         into shapes; transforms: into transforms; colours: into looks; offsets:
+                         into parameters, where r is; warps: into warps; operators: into parameters,
                          where n is */
     csg_span where;
 } csg_node;

@@ -113,6 +113,11 @@ static uint32_t parameter_count(const csg_node *node)
     return csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
 }
 
+static bool has_formula(const csg_node *node)
+{
+    return node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE;
+}
+
 static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
     for (uint32_t i = 0; i < w->count; i++) {
@@ -122,7 +127,7 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
         out->warp_count += node->kind == CSG_NODE_WARP;
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
         out->look_count += node->kind == CSG_NODE_COLOR;
-        if (node->kind == CSG_NODE_FIELD) {
+        if (has_formula(node)) {
             out->formula_count++;
             out->step_count += from->formulas[node->payload].count;
         }
@@ -174,7 +179,7 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
     } else if (node->kind == CSG_NODE_COLOR) {
         node->payload = (uint32_t)out->look_count;
         out->looks[out->look_count++] = from->looks[old];
-    } else if (node->kind == CSG_NODE_FIELD) {
+    } else if (has_formula(node)) {
         node->payload = (uint32_t)out->formula_count;
         copy_formula(out, from, from->formulas[old]);
     } else if (node->kind == CSG_NODE_SHAPE) {

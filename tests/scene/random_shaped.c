@@ -85,10 +85,62 @@ static csg_node_id slice(csg_scene_builder *builder, csg_random *random)
     return extrusion(builder, random, warped(builder, (csg_warp){CSG_WARP_SLICE, {0}}, node));
 }
 
+typedef struct terms {
+    csg_formula_builder builder;
+} terms;
+
+static csg_formula_id apply(terms *t, csg_formula_op op, csg_formula_id a, csg_formula_id b)
+{
+    return csg_formula_apply(&t->builder, op, a, b);
+}
+
+/* A smooth maximum of two, (a + b + sqrt((a - b)^2 + e)) / 2, or of three a maximum less a part of
+ * the third: steep, not monotone, or both. */
+static csg_formula_id random_formula(terms *t, csg_random *random, bool three)
+{
+    csg_formula_id a = apply(t, CSG_FORMULA_X, 0, 0), b = apply(t, CSG_FORMULA_Y, 0, 0);
+    if (three) {
+        csg_formula_id c = apply(t, CSG_FORMULA_Z, 0, 0);
+        csg_formula_id part = csg_formula_constant(&t->builder, uniform(random, 0.2, 0.6));
+        csg_formula_id less = apply(t, CSG_FORMULA_MUL, part, apply(t, CSG_FORMULA_ABS, c, c));
+        return apply(t, CSG_FORMULA_SUB, apply(t, CSG_FORMULA_MAX, a, b), less);
+    }
+    csg_formula_id d = apply(t, CSG_FORMULA_SUB, a, b);
+    csg_formula_id e = csg_formula_constant(&t->builder, uniform(random, 0.001, 0.02));
+    csg_formula_id under = apply(t, CSG_FORMULA_ADD, apply(t, CSG_FORMULA_MUL, d, d), e);
+    csg_formula_id sum = apply(t, CSG_FORMULA_ADD, apply(t, CSG_FORMULA_ADD, a, b),
+                               apply(t, CSG_FORMULA_SQRT, under, under));
+    return apply(t, CSG_FORMULA_MUL, csg_formula_constant(&t->builder, 0.5), sum);
+}
+
+static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
+{
+    terms t;
+    csg_formula_step steps[64];
+    bool three = chance(random, 0.4);
+    csg_node_id operands[3];
+    for (int k = 0; k < 3; k++) {
+        csg_affine place = test_random_affine(random, 0.6, 1.2, 0.3);
+        operands[k] = csg_build_transform(builder, &place, solid(builder, random), nowhere);
+    }
+    csg_formula_begin(&t.builder, &builder->context->memory);
+    csg_formula_id result = random_formula(&t, random, three);
+    uint32_t count = csg_formula_collect(&t.builder, result, steps);
+    csg_formula_end(&t.builder);
+    csg_node_id node =
+        csg_build_combine(builder, steps, count, 0, operands, three ? 3 : 2, nowhere);
+    if (!three)
+        return node;
+    double half[4] = {1.2, 1.2, 1.2, 0}; /* of |c| no trend is known, and so no box */
+    csg_node_id cut[2] = {node, csg_build_primitive(builder, CSG_NODE_BOX, half, nowhere)};
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0}, cut,
+                              2, nowhere);
+}
+
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
 {
     csg_node_id node;
-    switch (csg_random_below(random, 7)) {
+    switch (csg_random_below(random, 8)) {
     case 0:
         return extrusion(builder, random, flat(builder, random, false));
     case 1:
@@ -104,6 +156,8 @@ csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
     case 5:
         return warped(builder, (csg_warp){CSG_WARP_BEND, {uniform(random, 2.6, 4)}},
                       solid(builder, random));
+    case 6:
+        return combined(builder, random);
     default:
         return slice(builder, random);
     }

@@ -246,6 +246,15 @@ static double operate(const csg_node *node, const csgm_scene *scene, double *val
            csg_reference_union(csg_scene_blend(scene, node), values, node->child_count, partials);
 }
 
+static double formula_value(const valuer *v, const csg_node *node, const double *values)
+{
+    csg_formula_dual work[64];
+    const csg_formula *formula = &v->scene->formulas[node->payload];
+    csg_vec3 at = {values[0], node->child_count > 1 ? values[1] : 0,
+                   node->child_count > 2 ? values[2] : 0};
+    return csg_formula_evaluate(v->scene->steps, formula, at, work).value / formula->lipschitz;
+}
+
 static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
 {
     const csgm_scene *scene = v->scene;
@@ -272,6 +281,8 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
         value = csg_reference_primitive(node->kind, csg_scene_parameters(scene, node), p).value;
     if (v->clamp && isfinite(v->clamp[id].below))
         value = fmin(value, csg_box_field(v->clamp[id].clamp_box, p) - v->clamp[id].below);
+    if (node->kind == CSG_NODE_COMBINE)
+        value = formula_value(v, node, values);
     bool bend = node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind == CSG_WARP_BEND;
     if (v->contain && value >= 0 && !bend) /* behind its ends the builder cuts */
         assert_true(csg_box_contains_box(v->contain[id], (csg_box){p, p}));
