@@ -129,6 +129,35 @@ static void control_flow_runs_in_order(void **state)
     check("assign (a = 3) echo(a);", "3\n");
 }
 
+/* Where OpenSCAD 2021.01 says something else, and this is better. */
+static void differences_are_on_purpose(void **state)
+{
+    check("echo(0x1F, \"\\u{e9}\");", "31, \"\xC3\xA9\"\n");
+    check("fs = [for (i = [0 : 2]) function (x) x * i]; echo([for (f = fs) f(1)]);", "[0, 1, 2]\n");
+    check("function f(x) = echo(x) x; echo(f(1) + f(2) * f(3));", "1\n2\n3\n7\n");
+    check("module m(a, b) echo(a, b); m(echo(\"a\") 1, echo(\"b\") 2);", "\"a\"\n\"b\"\n1, 2\n");
+    check("function f(a, b) = a + b; echo(f(1, 2, ), max(1, 2, ), [for (i = [0 : 1]) (each [i])]);",
+          "3, 2, [0, 1]\n");
+    check("echo(rands(0, 1, 1)[0], rands(0, 1, 1)[0]);", "0.592845, 0.844266\n");
+    check("echo(cos(1e22) == cos(1e22), $preview);", "true, false\n");
+    assert_int_equal(bench_compile(&b, "x = 10mm;"), CSGM_ERR_SCENE);
+    assert_int_equal(bench_compile(&b, "x = nothing(1);"), CSGM_ERR_SCENE);
+    assert_int_equal(bench_compile(&b, "if (true) x = 1;"), CSGM_ERR_SYNTAX);
+}
+
+/* `next` of a loop may add variables; a function of a variable goes before a named one. */
+static void names_are_found_where_openscad_finds_them(void **state)
+{
+    check("echo([for (i = 0; i < 3; i = i + 1, k = i) is_undef(k) ? -1 : k]);", "[-1, 1, 2]\n");
+    check("function f(x) = 1; echo(f(0)); module m(f) echo(f(0)); m(function (x) 2); m(3);",
+          "1\n2\n1\n");
+    check("module m() { n() echo($children); } module n() children(); m() { echo(1); echo(2); }",
+          "2\n");
+    check("module m() { echo($parent_modules); if ($parent_modules < 3) m(); } m();", "1\n2\n3\n");
+    check("1st = 5; function 2nd(3rd) = 3rd + 1st; echo(2nd(1), 2nd(3rd = 2));", "6, 7\n");
+    check("let (a = 1, a = 2) echo(a);", "1\n");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -138,6 +167,8 @@ int main(void)
         cmocka_unit_test(children_are_chosen_by_index),
         cmocka_unit_test(functions_recurse_and_tail_calls_are_free),
         cmocka_unit_test(control_flow_runs_in_order),
+        cmocka_unit_test(differences_are_on_purpose),
+        cmocka_unit_test(names_are_found_where_openscad_finds_them),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
