@@ -68,6 +68,9 @@ bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const flo
         b->failed = true;
         return false;
     }
+    const double FARTHEST = 1e38; /* so are differences of two still floats */
+    for (int k = 0; k < 3; k++)
+        b->too_far |= !(fabs(position[k]) <= FARTHEST);
     memcpy(b->positions + 3 * b->vertex_count, position, 3 * sizeof(double));
     if (!normal)
         b->lacks_normals = true;
@@ -175,8 +178,8 @@ csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
     bool moved = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
     for (size_t i = 0; i < 3 * b->vertex_count; i++) /* -0 - 0 is -0: no bit is lost */
         mesh->positions[i] = (float)(moved ? b->positions[i] - origin[i % 3] : b->positions[i]);
-    if (normals)
-        memcpy(mesh->normals, b->normals, b->vertex_count * 3 * sizeof(float));
+    for (size_t i = 0; normals && i < 3 * b->vertex_count; i++)
+        mesh->normals[i] = isfinite(b->normals[i]) ? b->normals[i] : 0;
     if (b->colors)
         memcpy(mesh->colors, b->colors, b->vertex_count * 4);
     if (b->triangle_count)

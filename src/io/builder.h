@@ -20,6 +20,7 @@ typedef struct csg_mesh_builder {
     csg_arena names;
     bool lacks_normals; /* a vertex came without: the mesh will have none */
     bool failed;        /* out of memory; sticky */
+    bool too_far;       /* a coordinate is beyond what floats hold; sticky */
 } csg_mesh_builder;
 
 void csg_builder_init(csg_mesh_builder *builder, csgm_context *context);

@@ -153,6 +153,8 @@ csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_
     csg_mesh_builder builder;
     csg_builder_init(&builder, context);
     csgm_status status = row->read(&input, &builder);
+    if (!status && builder.too_far)
+        status = csg_read_broken(&input, 0, "a coordinate is beyond the range of floats");
     if (!status)
         status = csg_builder_finish(&builder, out);
     csg_builder_release(&builder);
