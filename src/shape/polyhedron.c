@@ -206,18 +206,20 @@ static void polyhedron_gradients(const csg_shape *shape, const float *x, const f
 /* ---- making it --------------------------------------------------------------------------------
  */
 
-static void turn_piece(polyhedron *solid, csg_chain *chain, uint32_t piece)
+static size_t turn_pieces(polyhedron *solid, csg_chain *chain, const bool *turned)
 {
+    size_t count = 0;
     for (size_t place = 0; place < solid->tree.count; place++) {
         uint32_t t = solid->tree.triangles[place].index;
-        if (chain->pieces[t] != piece)
+        if (!turned[chain->pieces[t]])
             continue;
         csg_tree_turn(&solid->tree, place);
         uint32_t *corners = chain->triangles.corners[t], corner = corners[1];
         corners[1] = corners[2];
         corners[2] = corner;
+        count++;
     }
-    chain->volumes[piece] = -chain->volumes[piece];
+    return count;
 }
 
 /* A place in the tree with a triangle of each piece. */
@@ -249,22 +251,21 @@ static size_t list_inverted(const csg_chain *chain, uint64_t *keys)
 static bool turn_inverted_pieces(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
                                  csg_repairs *repairs)
 {
-    enum { MOST = 1000 }; /* each costs a ray through and a pass over all */
+    enum { MOST = 20000 }; /* rays */
     uint64_t *keys = csg_arena_alloc(scratch, chain->piece_count * sizeof *keys);
+    bool *turned = csg_arena_calloc(scratch, chain->piece_count, sizeof *turned);
     uint32_t *places = find_places(scratch, solid, chain);
-    if (!keys || !places)
+    if (!keys || !turned || !places)
         return false;
     size_t count = list_inverted(chain, keys);
     for (size_t i = 0; i < count && i < MOST; i++) {
         uint32_t piece = (uint32_t)keys[i];
-        csg_tree_filter others = {chain->pieces, piece};
-        const csg_tree_triangle *t = &solid->tree.triangles[places[piece]];
-        if (csg_tree_winding(&solid->tree, t->a, &others) >= 1)
-            continue;
-        turn_piece(solid, chain, piece);
-        for (size_t k = 0; k < chain->triangles.count; k++)
-            repairs->flipped += chain->pieces[k] == piece;
+        csg_tree_filter others = {chain->pieces, turned, piece};
+        csg_vec3 p = solid->tree.triangles[places[piece]].a;
+        turned[piece] = csg_tree_winding(&solid->tree, p, &others) < 1;
     }
+    if (count)
+        repairs->flipped += turn_pieces(solid, chain, turned);
     return true;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Triangles as published -> a closed chain in a frame: on every edge as many triangles run one way
  * as the other. The steps, in order: round to the lattice and weld (repair_weld.c), drop what is
- * there twice, turn neighbours alike (repair_turn.c), fill holes (repair_holes.c), turn the whole
- * outwards, find the pieces.
+ * there twice, turn neighbours alike (repair_turn.c), fill holes (repair_holes.c), find the pieces
+ * and turn the whole outwards (repair_pieces.c).
  */
 #ifndef CSG_SHAPE_REPAIR_H
 #define CSG_SHAPE_REPAIR_H
@@ -15,8 +15,8 @@ typedef struct csg_chain {
     csg_frame frame;
     csg_triangles triangles; /* in the frame; those without area are gone */
     uint32_t *pieces;        /* per triangle; pieces share no edge */
-    size_t piece_count, piece_room;
-    double *volumes; /* per piece, in the frame, not 0 in all */
+    size_t piece_count;
+    double *volumes; /* per piece, in the frame */
 } csg_chain;
 
 /* CSGM_ERR_SCENE: not finite, out of range, or nothing is left that bounds a volume.
@@ -42,6 +42,10 @@ bool csg_repair_turn(csg_arena *scratch, csg_triangles *triangles, const csg_edg
                      size_t *flipped);
 bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
                      csg_repairs *repairs);
+
+/* Fills pieces and volumes. CSGM_ERR_SCENE: nothing is left. */
+csgm_status csg_repair_pieces(csg_arena *scratch, const csg_edges *edges, csg_chain *chain,
+                              csg_repairs *repairs);
 
 /* Exactly on one line. */
 bool csg_repair_is_flat(const csg_triangles *triangles, const uint32_t corners[3]);

@@ -17,8 +17,8 @@ typedef struct csg_tree_triangle {
     uint32_t is_needle; /* so thin that the plane is lost in rounding: its edges stand for it */
 } csg_tree_triangle;
 
-/* Up to four triangles that follow each other, and for each a disc that holds it: what can be said of
- * its distance in float, for four at once. */
+/* Up to four triangles that follow each other, and for each a disc that holds it: what can be said
+ * of its distance in float, for four at once. */
 typedef struct csg_tree_leaf {
     float center[3][4], normal[3][4], radius[4];
     uint32_t first, count;
@@ -61,7 +61,8 @@ csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *
 /* Chooses which triangles count; NULL: all. */
 typedef struct csg_tree_filter {
     const uint32_t *pieces; /* per triangle of the chain */
-    uint32_t without;
+    const bool *turned;     /* per piece: counts as if turned over */
+    uint32_t without;       /* a piece that does not count */
 } csg_tree_filter;
 
 /* Winding number of a point on the lattice, in the box. */

@@ -103,8 +103,13 @@ static int leaf_crossings(const csg_tree *tree, const csg_tree_leaf *leaf, const
     int sum = 0;
     for (uint32_t place = leaf->first; place < leaf->first + leaf->count; place++) {
         const csg_tree_triangle *t = &tree->triangles[place];
-        if (!r->filter || r->filter->pieces[t->index] != r->filter->without)
+        if (!r->filter) {
             sum += crossing(t, r->p, r->length);
+            continue;
+        }
+        uint32_t piece = r->filter->pieces[t->index];
+        if (piece != r->filter->without)
+            sum += crossing(t, r->p, r->length) * (r->filter->turned[piece] ? -1 : 1);
     }
     return sum;
 }

@@ -340,6 +340,39 @@ static void add_corner_triangle(broken *b, csg_vec3 p, csg_vec3 q, csg_vec3 r)
                 csg_triangles_add(&b->triangles, first, first + 1, first + 2));
 }
 
+/* A loose flat sheet beside a box is nothing; not even a surface. */
+static void test_loose_sheet(void **state)
+{
+    broken b;
+    begin(&b);
+    add_box(&b, -0.5, 0.5, false);
+    csg_vec3 p = {0.7, -1, -1}, q = {0.7, 1, -1}, r = {0.9, 1, 1}, s = {0.9, -1, 1};
+    add_corner_triangle(&b, p, q, r);
+    add_corner_triangle(&b, p, r, s);
+    make(&b);
+    assert_int_equal(csg_polyhedron_triangles(b.shape)->count, 12);
+    assert_true(fabs(value(&b, 0.8, 0, 0) + 0.3) < 1e-11);
+    end(&b);
+}
+
+/* A loop like an 8, extruded: one lobe runs the other way round, both have the same volume. */
+static void test_bow_tie(void **state)
+{
+    static const double loop[4][2] = {{-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
+    static const uint32_t faces[6][4] = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
+                                         {3, 0, 4, 7}, {3, 2, 1, 0}, {4, 5, 6, 7}};
+    broken b;
+    begin(&b);
+    for (int i = 0; i < 8; i++)
+        assert_true(csg_triangles_add_point(&b.triangles,
+                                            csg_vec3_make(loop[i % 4][0], loop[i % 4][1], i / 4)));
+    for (int i = 0; i < 6; i++)
+        assert_true(csg_triangles_add_face(&b.triangles, faces[i], 4));
+    make(&b);
+    assert_true((value(&b, 0.7, 0, 0.5) > 0) != (value(&b, -0.7, 0, 0.5) > 0));
+    end(&b);
+}
+
 static void test_nothing_left(void **state)
 {
     for (int kind = 0; kind < 7; kind++) {
@@ -398,6 +431,67 @@ static void test_mended_is_clean(void **state)
     end(&b);
 }
 
+/* ---- soups of triangles over a few lattice points ---------------------------------------------
+ */
+
+static void add_soup(broken *b, csg_random *random, uint32_t side)
+{
+    uint32_t points = 4 + csg_random_below(random, 14), count = 1 + csg_random_below(random, 40);
+    for (uint32_t i = 0; i < points; i++) {
+        double x = csg_random_below(random, side), y = csg_random_below(random, side);
+        assert_true(csg_triangles_add_point(&b->triangles,
+                                            csg_vec3_make(x, y, csg_random_below(random, side))));
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t p = csg_random_below(random, points), q = csg_random_below(random, points);
+        assert_true(csg_triangles_add(&b->triangles, p, q, csg_random_below(random, points)));
+    }
+}
+
+/* Rows that run along edges and through corners, or just beside them. */
+static void check_rows(const broken *b, csg_random *random, uint32_t side)
+{
+    enum { COUNT = 60 };
+    float x[COUNT], y[COUNT], z[COUNT], f[COUNT];
+    const csg_triangles *t = csg_polyhedron_triangles(b->shape);
+    for (int i = 0; i < COUNT; i++) {
+        bool begins = i % 5 == 0;
+        x[i] = (float)csg_random_uniform(random, -1, side);
+        y[i] = begins ? 0.5f * (float)csg_random_below(random, 2 * side) : y[i - 1];
+        z[i] = begins ? 0.5f * (float)csg_random_below(random, 2 * side) + (i % 2 ? 1e-6f : 0)
+                      : z[i - 1];
+    }
+    csg_shape_values(b->shape, x, y, z, COUNT, f);
+    for (int i = 0; i < COUNT; i++) {
+        csg_vec3 p = {(double)x[i], (double)y[i], (double)z[i]};
+        double distance = solid_distance(t, p), w = solid_winding(t, p);
+        assert_true(fabs(fabs((double)f[i]) - distance) < 1e-6 * (1 + distance));
+        if (distance > 1e-5) {
+            assert_true(fabs(w - round(w)) < 1e-4);
+            assert_int_equal(f[i] > 0, round(w) >= 1);
+        }
+    }
+}
+
+static void test_soups(void **state)
+{
+    csg_random random = {14};
+    int made = 0;
+    for (int i = 0; i < 500; i++) {
+        broken b;
+        uint32_t side = 2 + csg_random_below(&random, 4);
+        begin(&b);
+        add_soup(&b, &random, side);
+        csgm_status status = try_make(&b);
+        assert_true(status == CSGM_OK || status == CSGM_ERR_SCENE);
+        if (status == CSGM_OK)
+            check_rows(&b, &random, side);
+        made += status == CSGM_OK;
+        end(&b);
+    }
+    assert_true(made > 300);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -407,8 +501,9 @@ int main(void)
         cmocka_unit_test(test_nonmanifold),     cmocka_unit_test(test_fins),
         cmocka_unit_test(test_nested),          cmocka_unit_test(test_one_of_two_inverted),
         cmocka_unit_test(test_seams),           cmocka_unit_test(test_t_junction),
-        cmocka_unit_test(test_sheets),          cmocka_unit_test(test_nothing_left),
-        cmocka_unit_test(test_mended_is_clean),
+        cmocka_unit_test(test_sheets),          cmocka_unit_test(test_loose_sheet),
+        cmocka_unit_test(test_bow_tie),         cmocka_unit_test(test_nothing_left),
+        cmocka_unit_test(test_mended_is_clean), cmocka_unit_test(test_soups),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
