@@ -157,9 +157,9 @@ csg_character_kind csg_character_kind_of(uint32_t character)
     case HB_UNICODE_GENERAL_CATEGORY_ENCLOSING_MARK:
         if ((character >= 0xfe00 && character <= 0xfe0f) || character >= 0xe0100)
             return CSG_CHARACTER_INVISIBLE; /* selectors of variants */
-        return CSG_CHARACTER_CLINGS;
+        return CSG_CHARACTER_MARK;
     case HB_UNICODE_GENERAL_CATEGORY_SPACE_SEPARATOR:
-        return CSG_CHARACTER_CLINGS;
+        return CSG_CHARACTER_BLANK;
     default:
         return CSG_CHARACTER_PLAIN;
     }

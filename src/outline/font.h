@@ -38,7 +38,8 @@ csg_font_metrics csg_font_get_metrics(const csg_font *font);
 
 typedef enum csg_character_kind {
     CSG_CHARACTER_PLAIN,
-    CSG_CHARACTER_CLINGS,    /* blanks, marks: set in the font of what stands before */
+    CSG_CHARACTER_BLANK, /* these and marks are set in the font of what stands before */
+    CSG_CHARACTER_MARK,
     CSG_CHARACTER_DIGIT,     /* runs from left to right in every script */
     CSG_CHARACTER_INVISIBLE, /* joiners, selectors: no font needs them */
     CSG_CHARACTER_CONTROL    /* line ends and the like: no font has them */

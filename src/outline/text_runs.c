@@ -60,22 +60,59 @@ static void set_scripts(maker *m)
     }
 }
 
+/* What a character says of directions: L, R, a number in R, or nothing by itself. */
+enum { NEUTRAL, LEFTWARDS_NUMBER, TO_RIGHT, TO_LEFT };
+
+static int direction_of(const maker *m, size_t i, int before)
+{
+    uint32_t c = m->out->characters[i];
+    csg_character_kind kind = csg_character_kind_of(c);
+    if (kind == CSG_CHARACTER_DIGIT)
+        return before == TO_LEFT || before == LEFTWARDS_NUMBER ? LEFTWARDS_NUMBER : TO_RIGHT;
+    if (kind == CSG_CHARACTER_MARK || kind == CSG_CHARACTER_INVISIBLE)
+        return before;
+    if (!csg_script_of_name(m->request->script) && !csg_character_script(c))
+        return NEUTRAL;
+    return csg_script_is_rtl(m->traits[i].script) ? TO_LEFT : TO_RIGHT;
+}
+
+/* Rules N1 and N2 of UAX #9: between two of one direction of that one, else of the whole's. */
+static void settle_neutrals(maker *m, int base)
+{
+    size_t count = m->out->character_count;
+    int before = base;
+    for (size_t i = 0; i < count;) {
+        size_t end = i;
+        while (end < count && m->traits[end].level == NEUTRAL)
+            end++;
+        int after = end < count ? m->traits[end].level : base;
+        after = after == LEFTWARDS_NUMBER ? TO_LEFT : after;
+        for (; i < end; i++)
+            m->traits[i].level = before == after ? before : base;
+        if (i < count)
+            before = m->traits[i].level == LEFTWARDS_NUMBER ? TO_LEFT : m->traits[i].level;
+        i++;
+    }
+}
+
 static void set_levels(maker *m)
 {
     size_t count = m->out->character_count;
     csg_text_direction asked = m->request->direction;
-    int base = asked == CSG_TEXT_RTL ||
-               (asked == CSG_TEXT_AUTO && count > 0 && csg_script_is_rtl(m->traits[0].script));
+    bool leftwards = asked == CSG_TEXT_RTL || (asked == CSG_TEXT_AUTO && count > 0 &&
+                                               csg_script_is_rtl(m->traits[0].script));
+    int base = leftwards ? TO_LEFT : TO_RIGHT, before = base;
     for (size_t i = 0; i < count; i++) {
-        bool digit = csg_character_kind_of(m->out->characters[i]) == CSG_CHARACTER_DIGIT;
-        int level = csg_script_is_rtl(m->traits[i].script) ? (digit ? 2 : 1) : 2 * base;
-        m->traits[i].level = asked == CSG_TEXT_AUTO ? level : base;
+        int own = direction_of(m, i, before);
+        m->traits[i].level = own;
+        before = own == NEUTRAL ? before : own;
     }
-    if (base && asked == CSG_TEXT_AUTO) /* the blank after a foreign run is of the whole */
-        for (size_t i = 0; i + 1 < count; i++)
-            if (m->traits[i].level == 2 && m->traits[i + 1].level == 1 &&
-                csg_character_kind_of(m->out->characters[i]) == CSG_CHARACTER_CLINGS)
-                m->traits[i].level = 1;
+    settle_neutrals(m, base);
+    for (size_t i = 0; i < count; i++) {
+        int own = m->traits[i].level;
+        int level = own == TO_LEFT ? 1 : own == LEFTWARDS_NUMBER || leftwards ? 2 : 0;
+        m->traits[i].level = asked == CSG_TEXT_AUTO ? level : leftwards;
+    }
 }
 
 /* ---- fonts ---------------------------------------------------------------------------------- */
@@ -121,7 +158,8 @@ static csgm_status set_fonts(maker *m)
         if (kind == CSG_CHARACTER_CONTROL)
             note_missing(m->report, c);
         else if (kind == CSG_CHARACTER_INVISIBLE ||
-                 (kind == CSG_CHARACTER_CLINGS && csg_font_has(before, c)))
+                 ((kind == CSG_CHARACTER_MARK || kind == CSG_CHARACTER_BLANK) &&
+                  csg_font_has(before, c)))
             m->traits[i].font = before;
         else if (!csg_font_has(m->primary, c))
             status = borrow(m, i);

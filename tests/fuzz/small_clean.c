@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Keeps large outlines from Clipper, whose time grows with the square of what lies on each other:
- * the readers are what is looked at. The linker's --wrap puts this in the place of csg_polygons_clean.
+ * the readers are what is looked at. The linker's --wrap puts this in the place of
+ * csg_polygons_clean.
  */
 #include "shape/polygons.h"
 

@@ -235,6 +235,16 @@ static double extent_of(const char *text)
     return extent;
 }
 
+static double width_of(const char *text)
+{
+    csg_text_request request = request_of(text);
+    request.font = "DejaVu Sans";
+    set(&request);
+    double width = report.extent.x;
+    csg_outline_release(&outline);
+    return width;
+}
+
 /* The order of runs, by where the narrow "I" (a bar) stands. */
 static void test_mixed_directions(void **state)
 {
@@ -244,6 +254,15 @@ static void test_mixed_directions(void **state)
     support_near(left_of("I \xd8\xad\xd8\xad"), left_of("I"), 1e-9);
     assert_true(left_of("\xd8\xad\xd8\xad 17") < left_of("17 ") + 1e-9);
     support_near(left_of("\xd8\xad\xd8\xad 17"), left_of("17"), 1e-9);
+    /* Latin first: what stands between the two, and at the end, is of the whole */
+    support_near(extent_of("I \xd8\xad\xd8\xad! I"),
+                 extent_of("I ") + extent_of("\xd8\xad\xd8\xad") + extent_of("! I"), 1e-9);
+    csg_text_request request = request_of("I \xd8\xad\xd8\xad!");
+    request.font = "DejaVu Sans";
+    set(&request);
+    double right = report.position.x + report.extent.x;
+    csg_outline_release(&outline);
+    support_near(right, extent_of("I \xd8\xad\xd8\xad") + left_of("!") + width_of("!"), 1e-9);
     /* and nothing is lost */
     support_near(extent_of("\xd8\xad\xd8\xad I"), extent_of("\xd8\xad\xd8\xad ") + extent_of("I"),
                  1e-9);
