@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * A solid bounded by triangles, as a field: exact distance by a tree of boxes, inside by the winding
- * number. Triangles as people publish them are first made a closed chain (every edge as often in one
- * direction as in the other): corners at one place are welded, loose faces turned alike, holes
- * filled by fans. The winding number of a closed chain is a whole number off the surface, so the
- * field has no jumps, and what is meshed from it is closed.
+ * A solid bounded by triangles, as a field: exact distance by a tree of boxes, inside by the
+ * winding number. Triangles as people publish them are first made a closed chain (every edge as
+ * often in one direction as in the other): corners at one place are welded, loose faces turned
+ * alike, holes filled. The winding number of a closed chain is a whole number off the
+ * surface, so the field has no jumps, and what is meshed from it is closed.
+ *
+ * Shells that overlap unite, but their triangles within others stay: the field is 0 on them and
+ * positive on both sides. That shows only where the solid is shrunk or hollowed.
  */
 #ifndef CSG_SHAPE_POLYHEDRON_H
 #define CSG_SHAPE_POLYHEDRON_H
@@ -13,7 +16,7 @@
 /* What was wrong with the triangles and is mended now. */
 typedef struct csg_repairs {
     size_t welded;        /* points that lay on another */
-    size_t degenerate;    /* triangles without area, left out */
+    size_t degenerate;    /* triangles without area, or of loose flat sheets; left out */
     size_t duplicate;     /* the same triangle again, left out */
     size_t flipped;       /* triangles turned over */
     size_t holes, filled; /* loops of boundary edges, and triangles that fill them */
