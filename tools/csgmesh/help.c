@@ -124,7 +124,7 @@ void cli_help(void)
     printf("  %-6s %-22s %s\n", "help", "[COMMAND]", "all options of a command, with examples");
     printf(
         "\nThe options most used (csgmesh help mesh lists all)\n"
-        "  -o FILE         .obj .ply .stl .off .gltf .glb or .drc; - is standard output\n"
+        "  -o FILE         .obj .ply .stl .off .gltf .glb .drc .3mf; - is standard output\n"
         "  -r N            cells along the longest side\n"
         "  -s H            or the edge of a cell\n"
         "  -D NAME=EXPR    replace an assignment of the scene (csgmesh params SCENE lists them)\n"

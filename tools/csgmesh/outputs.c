@@ -39,9 +39,9 @@ static int refuse_no_output(cli_app *app, const char *scene_path)
     char hint[160];
     int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
     if (strcmp(name, "-") == 0)
-        snprintf(hint, sizeof hint, "add -o part.glb (or .stl .ply .obj .off .gltf .drc)");
+        snprintf(hint, sizeof hint, "add -o part.glb (or .stl .ply .obj .off .gltf .drc .3mf)");
     else
-        snprintf(hint, sizeof hint, "add -o %.*s.glb (or .stl .ply .obj .off .gltf .drc)",
+        snprintf(hint, sizeof hint, "add -o %.*s.glb (or .stl .ply .obj .off .gltf .drc .3mf)",
                  stem < 80 ? stem : 80, name);
     return cli_usage_error(app, hint, "no output file");
 }
@@ -110,10 +110,11 @@ static int check_collisions(cli_app *app)
 static void warn_without_effect(cli_app *app)
 {
     const cli_options *options = &app->options;
-    bool gltf = false, draco = false, text = false;
+    bool gltf = false, draco = false, text = false, unit = false;
     for (size_t i = 0; i < options->outputs.count; i++) {
         csgm_format format = cli_outputs_format(options, i);
         gltf = gltf || is_gltf(format);
+        unit = unit || is_gltf(format) || format == CSGM_FORMAT_3MF;
         draco = draco || format == CSGM_FORMAT_DRC || (options->draco && is_gltf(format));
         text = text || format == CSGM_FORMAT_PLY || format == CSGM_FORMAT_STL;
     }
@@ -124,7 +125,7 @@ static void warn_without_effect(cli_app *app)
     } rows[] = {
         {CLI_OPTION_ascii, text, "ascii", "PLY or STL"},
         {CLI_OPTION_up, gltf, "up", "glTF or GLB"},
-        {CLI_OPTION_unit, gltf, "unit", "glTF or GLB"},
+        {CLI_OPTION_unit, unit, "unit", "glTF, GLB or 3MF"},
         {CLI_OPTION_draco, gltf, "draco", "glTF or GLB"},
         {CLI_OPTION_draco_bits, draco, "draco-bits", "Draco (.drc, or --draco with .glb)"},
         {CLI_OPTION_draco_level, draco, "draco-level", "Draco (.drc, or --draco with .glb)"},
