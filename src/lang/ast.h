@@ -132,9 +132,11 @@ typedef struct csg_program {
     uint32_t scope_count;
     const char **dependencies;
     uint32_t dependency_count;
-    double deadline_s;   /* of the monotonic clock; 0 = none */
-    bool failed_io;      /* a file could not be read */
-    bool exact_facets;   /* $fn, $fa and $fs everywhere, as in OpenSCAD */
+    double deadline_s;  /* of the monotonic clock; 0 = none */
+    bool failed_io;     /* a file could not be read */
+    bool exact_facets;  /* $fn, $fa and $fs everywhere, as in OpenSCAD */
+    const char **fonts; /* files behind use <font.ttf> */
+    uint32_t font_count;
     const csgm_scene_options *options;   /* NULL = defaults */
     const struct csg_services *services; /* NULL: no meshes, read or made */
     uintptr_t stack_end; /* lowest address of the stack that parser and evaluator may use */

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "lang/loader.h"
+#include "outline/text.h"
 
 /* ---- findings ----------------------------------------------------------------------------------
  */
@@ -459,6 +460,7 @@ void csg_eval_reset(csg_eval *e)
 {
     csg_memory *memory = &e->context->memory;
     csg_build_abandon(&e->builder);
+    csg_fonts_destroy(e->fonts);
     csg_heap_reset(&e->heap);
     csg_memory_release(memory, e->dynamics, e->dynamic_capacity * sizeof *e->dynamics);
     csg_memory_release(memory, e->trace, e->trace_capacity * sizeof *e->trace);

@@ -68,6 +68,8 @@ typedef struct csg_eval {
 
     csg_twister *twister; /* two: of calls without a seed, and with; NULL before the first call */
 
+    struct csg_fonts *fonts; /* of text(); NULL before the first one */
+
     csg_node_id root; /* what a ! modifier chose, or NONE */
     csg_symbol symbol_pi, symbol_children_count, symbol_parent_modules, symbol_fn, symbol_round,
         symbol_x, symbol_y, symbol_z, symbol_begin, symbol_step, symbol_end, symbol_blend, symbol_n,

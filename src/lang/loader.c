@@ -224,11 +224,26 @@ static bool is_font(const csg_parser *parser, csg_span path)
                                     strncasecmp(end - SUFFIX, ".otf>", SUFFIX) == 0);
 }
 
+/* text() opens it. */
+static void load_font(csg_parser *parser, csg_span where)
+{
+    csg_program *program = parser->program;
+    const char *path = find_file(parser, where);
+    if (!path)
+        return;
+    add_dependency(parser, path);
+    const char **place = csg_arena_push(&program->arena, (void **)&program->fonts,
+                                        &program->font_count, sizeof path);
+    if (place)
+        *place = path;
+    else
+        csg_parser_no_memory(parser);
+}
+
 void csg_load_use(csg_parser *parser, csg_span path)
 {
     if (is_font(parser, path)) {
-        csg_source_report(&parser->program->sources, CSG_DIAG_FONT_IGNORED, path, NULL,
-                          "use of a font file changes nothing");
+        load_font(parser, path);
         return;
     }
     if (!csg_parser_enter(parser))
