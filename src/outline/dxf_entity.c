@@ -135,6 +135,14 @@ static csgm_status close_corners(artist *a, corners *c, bool closed)
     return finish(a, c->done, closed);
 }
 
+enum { POLYLINE_CLOSED = 1, POLYLINE_MESH = 16, POLYLINE_FACES = 64, VERTEX_OF_FRAME = 16 };
+
+static int flags_of(const csg_dxf_entity *e)
+{
+    double flags = csg_dxf_get(e, 70, 0);
+    return flags > 0 && flags < 65536 ? (int)flags : 0;
+}
+
 static csgm_status draw_light_polyline(artist *a)
 {
     corners c = {.done = true};
@@ -157,15 +165,7 @@ static csgm_status draw_light_polyline(artist *a)
     }
     if (open)
         add_corner(a, &c, now);
-    return close_corners(a, &c, (int)csg_dxf_get(a->entity, 70, 0) & 1);
-}
-
-enum { POLYLINE_CLOSED = 1, POLYLINE_MESH = 16, POLYLINE_FACES = 64, VERTEX_OF_FRAME = 16 };
-
-static int flags_of(const csg_dxf_entity *e)
-{
-    double flags = csg_dxf_get(e, 70, 0);
-    return flags > 0 && flags < 65536 ? (int)flags : 0;
+    return close_corners(a, &c, flags_of(a->entity) & POLYLINE_CLOSED);
 }
 
 static csgm_status draw_polyline(artist *a)
