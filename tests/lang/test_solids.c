@@ -218,13 +218,13 @@ static void colors_are_read(void **state)
         char scene[128];
         snprintf(scene, sizeof scene, "%s sphere(1);", table[i].call);
         assert_int_equal(bench_compile(&b, scene), CSGM_OK);
-        assert_int_equal(b.scene->color_count, 1);
-        const csg_color *c = b.scene->colors;
+        assert_int_equal(b.scene->look_count, 1);
+        const csg_color *c = &b.scene->looks[0].color;
         assert_true(c->r == table[i].r && c->g == table[i].g && c->b == table[i].b &&
                     c->a == table[i].a);
     }
     assert_int_equal(bench_compile(&b, "color() sphere(1);"), CSGM_OK);
-    assert_int_equal(b.scene->color_count, 0);
+    assert_int_equal(b.scene->look_count, 0);
 }
 
 static void the_mug_of_the_manual_compiles(void **state)
