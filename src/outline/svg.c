@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "outline/svg_path.h"
+#include "outline/svg_shape.h"
 #include "outline/svg_value.h"
 #include "shape/polygons.h"
 
@@ -37,8 +37,8 @@ typedef struct drawing {
 typedef struct place {
     csg_affine map; /* to mm */
     csg_svg_style style;
-    double width, height; /* of the viewport: what percentages are of */
-    bool chosen;          /* by id and layer */
+    csg_svg_viewport viewport;
+    bool chosen; /* by id and layer */
 } place;
 
 static void draw_element(drawing *d, uint32_t element, const place *outer);
@@ -46,116 +46,6 @@ static void draw_element(drawing *d, uint32_t element, const place *outer);
 static csgm_status out_of_memory(drawing *d)
 {
     return d->status = CSGM_ERR_MEMORY;
-}
-
-/* ---- shapes: lines in the element's own coordinates ------------------------------------ */
-
-static csg_outline *pen_of(drawing *d)
-{
-    return &d->lines.pen;
-}
-
-static void finish(drawing *d, bool closed)
-{
-    csgm_status status = csg_polylines_finish(&d->lines, closed);
-    if (status != CSGM_OK && d->status == CSGM_OK)
-        d->status = status;
-}
-
-static void draw_to(drawing *d, double x, double y)
-{
-    if (!csg_outline_add(pen_of(d), (csg_vec2){x, y}))
-        out_of_memory(d);
-}
-
-static void draw_corner(drawing *d, csg_vec2 center, double rx, double ry, double from,
-                        double tolerance)
-{
-    const double quarter = 1.57079632679489661923;
-    if (!csg_svg_ellipse(pen_of(d), center, (csg_vec2){rx, 0}, (csg_vec2){0, ry}, from * quarter,
-                         quarter, tolerance))
-        out_of_memory(d);
-}
-
-static void draw_rectangle(drawing *d, uint32_t e, const place *p, double tolerance)
-{
-    const csg_xml *xml = &d->xml;
-    double x = csg_svg_attribute(xml, e, "x", p->width, 0);
-    double y = csg_svg_attribute(xml, e, "y", p->height, 0);
-    double w = csg_svg_attribute(xml, e, "width", p->width, 0);
-    double h = csg_svg_attribute(xml, e, "height", p->height, 0);
-    double rx = csg_svg_attribute(xml, e, "rx", p->width, -1);
-    double ry = csg_svg_attribute(xml, e, "ry", p->height, -1);
-    if (!(w > 0 && h > 0))
-        return;
-    rx = rx < 0 ? ry : rx; /* one stands for both */
-    ry = ry < 0 ? rx : ry;
-    rx = fmin(fmax(rx, 0), w / 2);
-    ry = fmin(fmax(ry, 0), h / 2);
-    if (rx > 0 && ry > 0) {
-        draw_to(d, x + w, y + h - ry);
-        draw_corner(d, (csg_vec2){x + w - rx, y + h - ry}, rx, ry, 0, tolerance);
-        draw_to(d, x + rx, y + h);
-        draw_corner(d, (csg_vec2){x + rx, y + h - ry}, rx, ry, 1, tolerance);
-        draw_to(d, x, y + ry);
-        draw_corner(d, (csg_vec2){x + rx, y + ry}, rx, ry, 2, tolerance);
-        draw_to(d, x + w - rx, y);
-        draw_corner(d, (csg_vec2){x + w - rx, y + ry}, rx, ry, 3, tolerance);
-    } else {
-        draw_to(d, x, y);
-        draw_to(d, x + w, y);
-        draw_to(d, x + w, y + h);
-        draw_to(d, x, y + h);
-    }
-    finish(d, true);
-}
-
-static void draw_ellipse(drawing *d, uint32_t e, const place *p, double tolerance)
-{
-    const csg_xml *xml = &d->xml;
-    csg_vec2 center = {csg_svg_attribute(xml, e, "cx", p->width, 0),
-                       csg_svg_attribute(xml, e, "cy", p->height, 0)};
-    double diagonal = hypot(p->width, p->height) / 1.41421356237309504880;
-    double r = csg_svg_attribute(xml, e, "r", diagonal, 0);
-    double rx = csg_svg_attribute(xml, e, "rx", p->width, r);
-    double ry = csg_svg_attribute(xml, e, "ry", p->height, r);
-    if (strcmp(xml->elements[e].name, "circle") == 0)
-        rx = ry = r;
-    if (!(rx > 0 && ry > 0))
-        return;
-    for (int quarter = 0; quarter < 4; quarter++)
-        draw_corner(d, center, rx, ry, quarter, tolerance);
-    finish(d, true);
-}
-
-static void draw_line(drawing *d, uint32_t e, const place *p)
-{
-    const csg_xml *xml = &d->xml;
-    draw_to(d, csg_svg_attribute(xml, e, "x1", p->width, 0),
-            csg_svg_attribute(xml, e, "y1", p->height, 0));
-    draw_to(d, csg_svg_attribute(xml, e, "x2", p->width, 0),
-            csg_svg_attribute(xml, e, "y2", p->height, 0));
-    finish(d, false);
-}
-
-static void draw_points(drawing *d, uint32_t e, bool closed)
-{
-    const char *at = csg_xml_get(&d->xml, e, "points");
-    double x, y;
-    while (at && *at && d->status == CSGM_OK && csg_svg_number(&at, &x) && csg_svg_number(&at, &y))
-        draw_to(d, x, y);
-    d->report->broken += at && *at;
-    finish(d, closed);
-}
-
-static void draw_path(drawing *d, uint32_t e, double tolerance)
-{
-    const char *text = csg_xml_get(&d->xml, e, "d");
-    bool broken = false;
-    csgm_status status = text ? csg_svg_path(text, tolerance, &d->lines, &broken) : CSGM_OK;
-    d->report->broken += broken;
-    if (status != CSGM_OK)
-        d->status = status;
 }
 
 /* ---- from lines to areas ---------------------------------------------------------------- */
@@ -230,22 +120,13 @@ static void add_lines(drawing *d, const place *p, double tolerance)
 
 static void draw_shape(drawing *d, uint32_t e, const place *p)
 {
-    const char *name = d->xml.elements[e].name;
     const double(*m)[3] = p->map.m;
     double stretch = hypot(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1])); /* at least */
     double tolerance = d->request->tolerance / (stretch > 0 ? stretch : 1);
     csg_polylines_clear(&d->lines);
     d->visits += d->used_count ? USED_SHAPE_VISITS : 0;
-    if (strcmp(name, "path") == 0)
-        draw_path(d, e, tolerance);
-    else if (strcmp(name, "rect") == 0)
-        draw_rectangle(d, e, p, tolerance);
-    else if (strcmp(name, "circle") == 0 || strcmp(name, "ellipse") == 0)
-        draw_ellipse(d, e, p, tolerance);
-    else if (strcmp(name, "polygon") == 0 || strcmp(name, "polyline") == 0)
-        draw_points(d, e, strcmp(name, "polygon") == 0);
-    else
-        draw_line(d, e, p);
+    d->status =
+        csg_svg_shape_lines(&d->xml, e, &p->viewport, tolerance, &d->lines, &d->report->broken);
     if (d->status == CSGM_OK && d->lines.count) {
         d->report->shapes++;
         add_lines(d, p, tolerance);
@@ -273,8 +154,8 @@ static void draw_viewport(drawing *d, uint32_t e, const place *p, double width, 
     csg_affine map = csg_svg_view_map(&view, width, height);
     place inner = *p;
     move_by(&inner, &map);
-    inner.width = view.width > 0 ? view.width : width;
-    inner.height = view.height > 0 ? view.height : height;
+    inner.viewport.width = view.width > 0 ? view.width : width;
+    inner.viewport.height = view.height > 0 ? view.height : height;
     draw_children(d, e, &inner);
 }
 
@@ -343,15 +224,16 @@ static void draw_use(drawing *d, uint32_t e, const place *p)
         return;
     }
     d->used[d->used_count++] = target;
-    csg_affine shift =
-        csg_affine_translate(csg_vec3_make(csg_svg_attribute(xml, e, "x", p->width, 0),
-                                           csg_svg_attribute(xml, e, "y", p->height, 0), 0));
+    csg_affine shift = csg_affine_translate(
+        csg_vec3_make(csg_svg_attribute(xml, e, "x", p->viewport.width, 0),
+                      csg_svg_attribute(xml, e, "y", p->viewport.height, 0), 0));
     place inner = *p;
     move_by(&inner, &shift);
     if (strcmp(xml->elements[target].name, "symbol") == 0) {
         csg_svg_style_apply(xml, target, &inner.style);
-        draw_viewport(d, target, &inner, csg_svg_attribute(xml, e, "width", p->width, p->width),
-                      csg_svg_attribute(xml, e, "height", p->height, p->height));
+        draw_viewport(d, target, &inner,
+                      csg_svg_attribute(xml, e, "width", p->viewport.width, p->viewport.width),
+                      csg_svg_attribute(xml, e, "height", p->viewport.height, p->viewport.height));
     } else {
         draw_element(d, target, &inner);
     }
@@ -362,12 +244,13 @@ static void draw_inner_svg(drawing *d, uint32_t e, const place *p)
 {
     const csg_xml *xml = &d->xml;
     place inner = *p;
-    csg_affine shift =
-        csg_affine_translate(csg_vec3_make(csg_svg_attribute(xml, e, "x", p->width, 0),
-                                           csg_svg_attribute(xml, e, "y", p->height, 0), 0));
+    csg_affine shift = csg_affine_translate(
+        csg_vec3_make(csg_svg_attribute(xml, e, "x", p->viewport.width, 0),
+                      csg_svg_attribute(xml, e, "y", p->viewport.height, 0), 0));
     move_by(&inner, &shift);
-    draw_viewport(d, e, &inner, csg_svg_attribute(xml, e, "width", p->width, p->width),
-                  csg_svg_attribute(xml, e, "height", p->height, p->height));
+    draw_viewport(d, e, &inner,
+                  csg_svg_attribute(xml, e, "width", p->viewport.width, p->viewport.width),
+                  csg_svg_attribute(xml, e, "height", p->viewport.height, p->viewport.height));
 }
 
 static bool is_one_of(const char *name, const char *const *names)
@@ -437,9 +320,7 @@ static void draw_inside(drawing *d, uint32_t element, const place *outer)
     csg_svg_style_apply(&d->xml, element, &p.style);
     if (csg_xml_get(&d->xml, element, "clip-path") || csg_xml_get(&d->xml, element, "mask"))
         d->report->clips++;
-    static const char *const shapes[] = {"path",    "rect",     "circle", "ellipse",
-                                         "polygon", "polyline", "line",   NULL};
-    if (!is_one_of(d->xml.elements[element].name, shapes))
+    if (!csg_svg_is_shape(d->xml.elements[element].name))
         draw_container(d, element, &p);
     else if (p.chosen)
         draw_shape(d, element, &p);
@@ -481,10 +362,10 @@ static void draw_document(drawing *d)
 {
     csg_svg_view view = csg_svg_view_of(&d->xml, 0);
     double width = side(d, "width", view.width), height = side(d, "height", view.height);
-    place page = {.style = csg_svg_style_initial(), .width = view.width, .height = view.height};
+    place page = {.style = csg_svg_style_initial(), .viewport = {view.width, view.height}};
     if (view.width <= 0) {
-        page.width = width;
-        page.height = height;
+        page.viewport.width = width;
+        page.viewport.height = height;
     }
     csg_affine flip = csg_svg_matrix(1, 0, 0, -1, 0, height);
     page.map = csg_affine_multiply(flip, csg_svg_view_map(&view, width, height));
