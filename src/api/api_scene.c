@@ -18,7 +18,8 @@ bool csg_scene_options_are_sound(const csgm_scene_options *options)
         return true;
     if (options->struct_size != sizeof *options || (options->define_count && !options->defines) ||
         (options->include_dir_count && !options->include_dirs) ||
-        !options->parameter_file != !options->parameter_set)
+        !options->parameter_file != !options->parameter_set ||
+        (options->facets != CSGM_FACETS_ROUND && options->facets != CSGM_FACETS_EXACT))
         return false;
     for (size_t i = 0; i < options->define_count; i++)
         if (!options->defines[i].name || !options->defines[i].expression)

@@ -152,6 +152,7 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     options.define_count = texts->count;
     options.include_dirs = app->options.include_dirs.items;
     options.include_dir_count = app->options.include_dirs.count;
+    options.facets = app->options.facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);
