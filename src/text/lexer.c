@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The lexer; see lexer.h. One pass, one character of look-ahead except for punctuation of two.
- * Broken UTF-8 is reported once a file: an error in code and strings, a warning in comments, where
- * old files have Latin-1.
+ * Broken UTF-8 is reported once a file: an error in code and strings, and a warning in comments,
+ * where old files have Latin-1.
  */
 #include "text/lexer.h"
 
@@ -17,7 +17,7 @@ typedef struct lexer {
     csg_token_array *out;
     const char *text;
     uint32_t source, length, at;
-    bool told_utf8, told_nul;
+    bool told_utf8, told_comment, told_nul;
     uint32_t counted, quotes; /* how many quotes stand at `counted` and behind; 0, 0: not known */
 } lexer;
 
@@ -82,12 +82,13 @@ static csg_span span(const lexer *l, uint32_t from, uint32_t to)
 
 static void bad_utf8(lexer *l, bool in_comment)
 {
-    if (!l->told_utf8)
+    bool *told = in_comment ? &l->told_comment : &l->told_utf8;
+    if (!*told)
         csg_source_report(l->sources, in_comment ? CSG_DIAG_COMMENT_UTF8 : CSG_DIAG_BAD_UTF8,
                           span(l, l->at, l->at + 1), "save the file as UTF-8",
                           "byte 0x%02X is not part of a UTF-8 character",
                           (unsigned)(unsigned char)l->text[l->at]);
-    l->told_utf8 = true;
+    *told = true;
 }
 
 static void nul_byte(lexer *l)

@@ -52,6 +52,16 @@ static void loops_and_recursion_end(void **state)
     check_limit("function f(s) = f(str(s, s)); x = f(\"ab\");", 907);
     check_limit("function f(v, n) = n == 0 ? v : f([v, v], n - 1); s = str(f(1, 40));", 907);
     check_limit("x = rands(0, 1, 1e9);", 906);
+    check_limit("a = [for (i = [0 : 90000]) i]; for (i = [0 : 90000]) echo(a);", 904);
+    check_limit("function f(s, n) = n == 0 ? s : f(str(s, s), n - 1); a = f(\"ab\", 19); "
+                "x = search(a, a);",
+                904);
+    check_limit("function f(s, n) = n == 0 ? s : f(str(s, s), n - 1); a = f(\"\\u{e9}\", 19); "
+                "x = [for (i = [0 : len(a) - 1]) a[i]];",
+                904);
+    check_limit("function f(s, n) = n == 0 ? s : f(str(s, s), n - 1); a = f(\"ab\", 19); "
+                "for (i = [0 : 90000]) if (len(str(a)) < 0) sphere(1);",
+                904);
     b.context.limits.eval_steps = 1000000000;
     check_limit("function f(v) = f(concat(v, v)); x = f([1]);", 906);
     b.context.limits.scene_nodes = 1000;
