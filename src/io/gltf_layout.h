@@ -74,6 +74,17 @@ csg_gltf_layout csg_gltf_measure(const csgm_mesh_view *mesh);
 void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
                     const csgm_write_options *options);
 
+/* A vertex's metallic or roughness as coordinate of the mixing texture (gltf_write.c): one side of
+ * it, from the centre of the first pixel to that of the second. */
+static inline uint32_t csg_gltf_coordinate(uint16_t value)
+{
+    return (uint32_t)(65535.0 * (0.25 + 0.5 * value / CSG_MATERIAL_ONE) + 0.5);
+}
+
+/* Compresses each part into parts[i].draco and counts the buffer anew. */
+csgm_status csg_gltf_compress(csg_sink *sink, csg_gltf_layout *layout, csg_gltf_part *parts,
+                              const csgm_mesh_view *mesh, const csgm_write_options *options);
+
 /* ---- GLB -------------------------------------------------------------------------- */
 
 #define CSG_GLB_MOST UINT32_MAX /* bytes of a file */
