@@ -331,8 +331,8 @@ CSGM_API csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *fi
                                      csgm_mesh_stats *stats);
 CSGM_API void csgm_mesh_destroy(csgm_mesh *mesh);
 
-/* A stretch of a mesh's triangles that is a thing of its own: a glTF node and mesh, an OBJ object, a
- * 3MF object; other formats hold all parts one after the other. */
+/* A stretch of a mesh's triangles that is a thing of its own: a glTF node and mesh, an OBJ object,
+ * a 3MF object; other formats hold all parts one after the other. */
 typedef struct csgm_mesh_part {
     const char *name; /* UTF-8; NULL = without a name */
     uint64_t first_triangle, triangle_count;
