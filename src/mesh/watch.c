@@ -29,9 +29,14 @@ void csg_mesh_report_progress(void *user, double fraction)
         return;
     w->last_report_s = now;
     fraction = w->stage_done + w->stage_share * fraction;
-    if (w->share)
-        fraction = w->share->before + w->share->amount * fraction;
-    monitor->progress(monitor->user, w->stage, fraction);
+    if (!w->share) {
+        monitor->progress(monitor->user, w->stage, fraction);
+        return;
+    }
+    /* parts alternate between the stages: a half each of what is told as one */
+    fraction = (fraction + (w->stage == CSGM_STAGE_OCTREE ? 0 : 1)) / 2;
+    monitor->progress(monitor->user, CSGM_STAGE_MESH,
+                      w->share->before + w->share->amount * fraction);
 }
 
 void csg_mesh_poll(void *user, size_t done, size_t count)
