@@ -45,12 +45,20 @@ def code(text):
     return f"`{text}`" if text else ""
 
 
+# What makes a figure of the plane; what makes one solid or figure of others.
+FIGURES = {"circle", "square", "polygon", "text"}
+SHAPING = {"linear_extrude", "rotate_extrude", "offset", "projection", "hull", "minkowski", "resize",
+           "offset3d", "shell", "repeat", "twist", "bend"}
+
+
 def module_group(name, handler, children):
     if handler == "control":
         return "control"
     if handler in ("operator", "blend", "group"):
         return "operators"
-    return "transforms" if children == "1" else "solids"
+    if children == "1":
+        return "shaping" if name in SHAPING else "transforms"
+    return "figures" if name in FIGURES else "solids"
 
 
 def modules(group):
@@ -96,7 +104,9 @@ def diagnostics():
 
 
 TABLES = {
+    "figures": lambda: modules("figures"),
     "solids": lambda: modules("solids"),
+    "shaping": lambda: modules("shaping"),
     "transforms": lambda: modules("transforms"),
     "operators": lambda: modules("operators"),
     "control": lambda: modules("control"),
