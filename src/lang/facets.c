@@ -8,7 +8,7 @@
 
 #include "lang/shapes.h"
 
-static double special(const csg_eval *e, const char *name, double otherwise)
+double csg_special_number(const csg_eval *e, const char *name, double otherwise)
 {
     csg_symbol symbol = csg_symbol_intern(&e->program->symbols, name, strlen(name));
     csg_value value = csg_eval_dynamic(e, symbol);
@@ -24,19 +24,19 @@ bool csg_facets_are_exact(const csg_eval *e)
 uint32_t csg_fragments(const csg_eval *e, double radius)
 {
     const double smallest_circle = 1.0 / 1024 / 1024, least = 0.01, most = 1e6;
-    double fn = special(e, "$fn", 0);
+    double fn = csg_special_number(e, "$fn", 0);
     if (fabs(radius) < smallest_circle)
         return 3;
     if (fn > 0)
         return (uint32_t)fmin(fmax(fn, 3), most);
-    double by_angle = 360 / fmax(special(e, "$fa", 12), least);
-    double by_length = 2 * acos(-1) * fabs(radius) / fmax(special(e, "$fs", 2), least);
+    double by_angle = 360 / fmax(csg_special_number(e, "$fa", 12), least);
+    double by_length = 2 * acos(-1) * fabs(radius) / fmax(csg_special_number(e, "$fs", 2), least);
     return (uint32_t)fmin(ceil(fmax(fmin(by_angle, by_length), 5)), most);
 }
 
 uint32_t csg_facets(const csg_eval *e, double radius)
 {
-    double fn = special(e, "$fn", 0);
+    double fn = csg_special_number(e, "$fn", 0);
     bool few = fn >= 3 && fn <= 16;
     return few || csg_facets_are_exact(e) ? csg_fragments(e, radius) : 0;
 }

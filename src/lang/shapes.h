@@ -46,6 +46,8 @@ csg_node_id csg_shape_of_scene(csg_eval *e, csg_node_id node, csg_span where);
 
 /* ---- facets (facets.c) ---------------------------------------------------------------------- */
 
+/* The value of $fn, $fa or $fs, `otherwise` where it is no number. */
+double csg_special_number(const csg_eval *e, const char *name, double otherwise);
 /* Edges of a circle of this radius by $fn, $fa and $fs, as OpenSCAD counts them. */
 uint32_t csg_fragments(const csg_eval *e, double radius);
 /* The same where facets are asked for ($fn from 3 to 16, or the option for all of them), else 0:

@@ -81,6 +81,41 @@ static csg_node_id cone(csg_module_call *call, const straight *s, double radius)
     return csg_shape_moved(call, csg_shape_done(call, node), &up);
 }
 
+/* Steps of a twist or an uneven scale as OpenSCAD counts them: by $fn, or by the smaller of what
+ * $fa asks of the angle and $fs of the way of the farthest point. */
+static uint32_t helix_slices(csg_module_call *call, csg_node_id flat, const straight *s)
+{
+    enum { PARTS = 64 };
+    const double most = 1e6, least = 0.01, degree = acos(-1) / 180;
+    csg_eval *e = call->e;
+    csg_outline outline;
+    double twist = fabs(s->twist), r = 0, way = 0, drift = 0;
+    double lowest = fmax(ceil(twist / 120), 1), fn = csg_special_number(e, "$fn", 0);
+    if (twist == 0 && s->scale[0] == s->scale[1])
+        return 1;
+    if (fn > 0)
+        return (uint32_t)fmin(fmax(ceil(twist == 0 ? fn : twist / 360 * fn), lowest), most);
+    if (csg_flat_outline(call, flat, &outline) != CSGM_OK)
+        return 1;
+    for (size_t i = 0; i < outline.point_count; i++) {
+        csg_vec2 p = outline.points[i];
+        r = fmax(r, hypot(p.x, p.y));
+        drift = fmax(drift, hypot(p.x * (s->scale[0] - 1), p.y * (s->scale[1] - 1)));
+    }
+    csg_outline_release(&outline);
+    double grows = fmax(s->scale[0], s->scale[1]) - 1;
+    for (int i = 0; i < PARTS; i++) {
+        double across = r * (1 + grows * (i + 0.5) / PARTS) * twist * degree;
+        way += sqrt(s->height * s->height + across * across + r * r * grows * grows) / PARTS;
+    }
+    if (twist == 0)
+        return (uint32_t)fmin(
+            ceil(hypot(drift, s->height) / fmax(csg_special_number(e, "$fs", 2), least)), most);
+    double by_angle = ceil(twist / fmax(csg_special_number(e, "$fa", 12), least));
+    double by_length = ceil(way / fmax(csg_special_number(e, "$fs", 2), least));
+    return (uint32_t)fmin(fmax(fmin(by_angle, by_length), lowest), most);
+}
+
 /* Between z = 0 and z = height. */
 static csg_node_id raise(csg_module_call *call, csg_node_id flat, const straight *s)
 {
@@ -90,14 +125,13 @@ static csg_node_id raise(csg_module_call *call, csg_node_id flat, const straight
     if (s->scaled && is_cone(call, flat, s, &radius))
         return cone(call, s, radius);
     if (s->scaled || (facets && s->twist != 0)) {
-        uint32_t count = csg_fragments(e, s->height);
         csg_sweep sweep = {.height = s->height,
                            .twist = s->twist,
                            .scale = {s->scale[0], s->scale[1]},
                            .slices = s->slices,
                            .smooth = !facets};
-        if (facets && !s->slices && s->twist != 0)
-            sweep.slices = (uint32_t)fmax(ceil(count * fabs(s->twist) / 360), 2);
+        if (facets && !s->slices)
+            sweep.slices = helix_slices(call, flat, s);
         return csg_sweep_up(call, flat, &sweep);
     }
     if (s->twist == 0)

@@ -38,13 +38,27 @@ static void add_quad(sweeping *w, uint32_t below, uint32_t above, uint32_t a, ui
                 csg_triangles_add(t, above + a, below + b, above + b);
 }
 
-static void add_belts(sweeping *w, uint32_t below, uint32_t above, bool first)
+/* Is the diagonal from (below, a) to (above, b) the shorter one, seen from above? `otherwise` where
+ * both are as long. OpenSCAD cuts so. */
+static bool is_first_shorter(const csg_triangles *t, const uint32_t c[4], bool otherwise)
+{
+    const double alike = 1e-5;
+    csg_vec3 first = csg_vec3_sub(t->points[c[0]], t->points[c[2]]);
+    csg_vec3 second = csg_vec3_sub(t->points[c[1]], t->points[c[3]]);
+    double p = hypot(first.x, first.y), q = hypot(second.x, second.y);
+    return fabs(p - q) <= alike * (p + q) ? otherwise : p < q;
+}
+
+static void add_belts(sweeping *w, uint32_t below, uint32_t above, bool diagonal)
 {
     for (size_t loop = 0; loop < w->outline.loop_count && w->ok; loop++) {
         uint32_t start = (uint32_t)csg_outline_first(&w->outline, loop);
         uint32_t end = w->outline.ends[loop];
-        for (uint32_t i = start; i < end && w->ok; i++)
-            add_quad(w, below, above, i, i + 1 < end ? i + 1 : start, first);
+        for (uint32_t i = start; i < end && w->ok; i++) {
+            uint32_t next = i + 1 < end ? i + 1 : start;
+            const uint32_t corners[4] = {below + i, below + next, above + next, above + i};
+            add_quad(w, below, above, i, next, is_first_shorter(&w->triangles, corners, diagonal));
+        }
     }
 }
 
@@ -140,7 +154,7 @@ csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_swee
     for (uint32_t i = 0; i <= slices && status == CSGM_OK && w.ok; i++) {
         add_level(&w, sweep, (double)i / slices);
         if (i > 0)
-            add_belts(&w, (i - 1) * points, i * points, sweep->twist >= 0);
+            add_belts(&w, (i - 1) * points, i * points, sweep->twist > 0);
     }
     if (status == CSGM_OK)
         status = add_lid(&w, call, 0, false);
