@@ -121,6 +121,21 @@ static void bad_targets_are_one_finding(void **state)
     assert_int_equal(io_folder_count(f->folder), 1);
 }
 
+static void every_format_tells_a_full_disk(void **state)
+{
+    fixture *f = *state;
+    for (int i = CSGM_FORMAT_AUTO + 1; i < CSGM_FORMAT_COUNT; i++) {
+        csgm_format format = (csgm_format)i;
+        if (!csg_format_available(format, false))
+            continue;
+        uint32_t before = f->io.findings;
+        csgm_status status = csg_io_write(&f->io.context, &f->view, "/dev/full", format, NULL);
+        if (status != CSGM_ERR_IO || f->io.findings != before + 1 ||
+            !strstr(f->io.last, "No space left"))
+            fail_msg("%s: status %d, '%s'", csg_format_name(format), (int)status, f->io.last);
+    }
+}
+
 static void read_only_targets_are_refused(void **state)
 {
     fixture *f = *state;
@@ -242,11 +257,12 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(new_file_honours_the_umask),    TEST(old_file_keeps_its_mode),
-        TEST(link_is_written_through),       TEST(bad_targets_are_one_finding),
-        TEST(read_only_targets_are_refused), TEST(refused_mesh_leaves_the_old_file),
-        TEST(full_disk_leaves_nothing),      TEST(devices_and_pipes_are_written_directly),
-        TEST(cleanup_removes_a_temporary),   TEST(names_and_options_are_checked),
+        TEST(new_file_honours_the_umask),     TEST(old_file_keeps_its_mode),
+        TEST(link_is_written_through),        TEST(bad_targets_are_one_finding),
+        TEST(read_only_targets_are_refused),  TEST(refused_mesh_leaves_the_old_file),
+        TEST(full_disk_leaves_nothing),       TEST(devices_and_pipes_are_written_directly),
+        TEST(cleanup_removes_a_temporary),    TEST(names_and_options_are_checked),
+        TEST(every_format_tells_a_full_disk),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
