@@ -10,6 +10,8 @@
 #include "lang/pieces.h"
 #include "shape/polygons.h"
 
+enum { POINT_STEPS = 100 }; /* a point costs its triangles, their mending and their tree */
+
 typedef struct sweeping {
     csg_outline outline; /* of the figure, clean */
     csg_triangles triangles;
@@ -128,10 +130,10 @@ static void add_level(sweeping *w, const csg_sweep *sweep, double at)
 
 static uint32_t slice_count(const csg_sweep *sweep)
 {
-    const double smooth_deg = 1.5;
+    const double smooth_deg = 1.5, most = 20000;
     if (sweep->slices)
         return sweep->slices;
-    return sweep->twist == 0 ? 1 : (uint32_t)fmin(ceil(fabs(sweep->twist) / smooth_deg) + 1, 1e6);
+    return sweep->twist == 0 ? 1 : (uint32_t)fmin(ceil(fabs(sweep->twist) / smooth_deg) + 1, most);
 }
 
 csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_sweep *sweep)
@@ -149,7 +151,7 @@ csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_swee
         w.ok = divide_edges(&w.outline, fmax(size.x, size.y) / 24);
     }
     points = (uint32_t)w.outline.point_count;
-    if (!csg_eval_charge(e, (uint64_t)points * slices, call->statement->where))
+    if (!csg_eval_charge(e, (uint64_t)points * slices * POINT_STEPS, call->statement->where))
         status = CSGM_ERR_MEMORY;
     for (uint32_t i = 0; i <= slices && status == CSGM_OK && w.ok; i++) {
         add_level(&w, sweep, (double)i / slices);
@@ -184,7 +186,7 @@ csg_node_id csg_sweep_around(csg_module_call *call, csg_outline *outline, double
     csg_outline_init(outline, w.outline.memory);
     uint32_t points = (uint32_t)w.outline.point_count;
     bool whole = fabs(angle) >= 360;
-    if (!csg_eval_charge(call->e, (uint64_t)points * steps, call->statement->where))
+    if (!csg_eval_charge(call->e, (uint64_t)points * steps * POINT_STEPS, call->statement->where))
         status = CSGM_ERR_MEMORY;
     for (uint32_t i = 0; i < steps + !whole && w.ok && status == CSGM_OK; i++) {
         add_meridian(&w, start + angle * i / steps);
