@@ -333,6 +333,8 @@ static csgm_status finish(csg_arena *scratch, polyhedron *solid, csg_chain *chai
     repairs->overlapping = is_overlapping(solid);
     solid->is_convex = chain->piece_count == 1 && !repairs->overlapping && !repairs->holes &&
                        csg_chain_is_convex(&chain->triangles, &edges);
+    if (!csg_repair_number(scratch, &chain->triangles))
+        return CSGM_ERR_MEMORY;
     take_triangles(solid, &chain->triangles);
     return CSGM_OK;
 }

@@ -3,6 +3,8 @@
  */
 #include "shape/repair.h"
 
+#include <string.h>
+
 bool csg_repair_is_flat(const csg_triangles *triangles, const uint32_t corners[3])
 {
     csg_vec3 a = triangles->points[corners[0]];
@@ -81,6 +83,45 @@ static bool close_chain(csg_arena *scratch, csg_triangles *triangles, csg_edges 
                                          csg_edges_make(scratch, triangles, edges));
 }
 
+/* Rounding and mending move the box: into the frame of what is there now. No point changes its
+ * place, since the steps of the new frame are as fine and its centre is a multiple of them. */
+static void settle_frame(csg_chain *chain)
+{
+    csg_triangles *triangles = &chain->triangles;
+    csg_box box = used_box(triangles);
+    csg_frame frame;
+    box.min = csg_frame_leave(&chain->frame, box.min);
+    box.max = csg_frame_leave(&chain->frame, box.max);
+    if (!csg_frame_make(box, &frame) || frame.scale < chain->frame.scale)
+        return;
+    for (size_t i = 0; i < triangles->point_count; i++)
+        triangles->points[i] =
+            csg_frame_enter(&frame, csg_frame_leave(&chain->frame, triangles->points[i]));
+    chain->frame = frame;
+}
+
+bool csg_repair_number(csg_arena *scratch, csg_triangles *triangles)
+{
+    size_t count = triangles->point_count, numbered = 0;
+    uint32_t *number = csg_arena_alloc(scratch, count * sizeof *number);
+    csg_vec3 *points = csg_arena_alloc(scratch, count * sizeof *points);
+    if (!number || !points)
+        return false;
+    memset(number, 0xff, count * sizeof *number);
+    for (size_t t = 0; t < triangles->count; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t *corner = &triangles->corners[t][k];
+            if (number[*corner] == UINT32_MAX) {
+                points[numbered] = triangles->points[*corner];
+                number[*corner] = (uint32_t)numbered++;
+            }
+            *corner = number[*corner];
+        }
+    memcpy(triangles->points, points, numbered * sizeof *points);
+    triangles->point_count = numbered;
+    return true;
+}
+
 static csgm_status repair(csg_arena *scratch, const csg_triangles *in, csg_chain *out,
                           csg_repairs *repairs)
 {
@@ -88,7 +129,10 @@ static csgm_status repair(csg_arena *scratch, const csg_triangles *in, csg_chain
     if (!csg_repair_weld(scratch, &out->frame, in, &out->triangles, repairs) ||
         !close_chain(scratch, &out->triangles, &edges, repairs))
         return CSGM_ERR_MEMORY;
-    return csg_repair_pieces(scratch, &edges, out, repairs);
+    csgm_status status = csg_repair_pieces(scratch, &edges, out, repairs);
+    if (status == CSGM_OK)
+        settle_frame(out);
+    return status;
 }
 
 csgm_status csg_repair(csg_memory *memory, csg_arena *scratch, const csg_triangles *in,

@@ -47,6 +47,10 @@ bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_edg
 csgm_status csg_repair_pieces(csg_arena *scratch, const csg_edges *edges, csg_chain *chain,
                               csg_repairs *repairs);
 
+/* Numbers the points in the order of the corners; points that no triangle has are gone. With the
+ * frame of what is left (csg_repair sees to that) a chain that is repaired again stays as it is. */
+bool csg_repair_number(csg_arena *scratch, csg_triangles *triangles);
+
 /* Exactly on one line. */
 bool csg_repair_is_flat(const csg_triangles *triangles, const uint32_t corners[3]);
 

@@ -195,8 +195,10 @@ bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles, const cs
 /* Triangles over the same three corners. */
 typedef struct alike {
     uint32_t corners[3]; /* rising */
-    int32_t net;         /* those that run so, less those that run back */
-    uint32_t first, count;
+    uint32_t first[3];   /* of the first of them, as they came: what stays begins where it did */
+    bool is_rising;      /* the first one */
+    int32_t net;         /* those that run as they rise, less those that run back */
+    uint32_t count;
 } alike;
 
 /* True: the corners run as they rise, up to rotation. */
@@ -226,7 +228,9 @@ static size_t gather(const csg_triangles *triangles, table *places, alike *group
                memcmp(groups[places->slots[at]].corners, key, sizeof key) != 0)
             at = (at + 1) & places->mask;
         if (places->slots[at] == UINT32_MAX) {
-            groups[count] = (alike){{key[0], key[1], key[2]}, 0, t, 0};
+            const uint32_t *first = triangles->corners[t];
+            groups[count] =
+                (alike){{key[0], key[1], key[2]}, {first[0], first[1], first[2]}, rising, 0, 0};
             places->slots[at] = (uint32_t)count++;
         }
         groups[places->slots[at]].net += rising ? 1 : -1;
@@ -262,9 +266,10 @@ bool csg_repair_drop(csg_arena *scratch, csg_triangles *triangles, bool only_can
         uint32_t copies = copies_of(group, only_cancel, 2 * pairs > count, &rising);
         for (uint32_t k = 0; k < copies; k++) {
             uint32_t *to = triangles->corners[kept++];
-            to[0] = group->corners[0];
-            to[1] = group->corners[rising ? 1 : 2];
-            to[2] = group->corners[rising ? 2 : 1];
+            bool as_first = rising == group->is_rising;
+            to[0] = group->first[0];
+            to[1] = group->first[as_first ? 1 : 2];
+            to[2] = group->first[as_first ? 2 : 1];
         }
         repairs->duplicate += only_cancel ? 0 : group->count - copies;
     }
