@@ -214,9 +214,12 @@ static inline csg_part csg_part_plain(csg_node_id node)
 {
     return (csg_part){.node = node};
 }
-/* Joins the parts above `first` into one node and takes them off the stack. */
+/* Joins the parts above `first` into one node and takes them off the stack. Of figures and solids
+ * the first one's dimension rules, unless they may be mixed. */
 csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
                            csg_span where);
+csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                                 csg_span where);
 /* Joins them without blend and puts the result on the stack. */
 void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
 /* After every csg_build_*: a failure becomes a finding, and the node EMPTY. */

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * field(): its function is evaluated once, on a point of terms, and what it gives is the formula.
+ * combine() does so with the fields of its children (combine_solid.c).
  */
 #include <math.h>
 
-#include "lang/modules.h"
+#include "lang/formula_call.h"
 #include "lang/symbolic.h"
-
-enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN };
 
 static csg_value point_of_terms(csg_eval *e)
 {
@@ -24,8 +23,17 @@ static csg_value point_of_terms(csg_eval *e)
     return csg_value_object(point, CSG_VALUE_VECTOR);
 }
 
-/* The function's value at the point of terms. */
-static csg_value call_function(csg_module_call *call, const csg_function *function)
+static csg_value coordinate(csg_eval *e, uint32_t axis)
+{
+    csg_formula_id id = csg_formula_apply(e->formula, CSG_FORMULA_X + axis, 0, 0);
+    if (id == CSG_FORMULA_NONE)
+        csg_eval_no_memory(e);
+    return (csg_value){.kind = CSG_VALUE_TERM, .as.term = id};
+}
+
+/* The function's value at the point of terms, or of as many terms as there are operands. */
+static csg_value call_function(csg_module_call *call, const csg_function *function,
+                               uint32_t operands)
 {
     csg_eval *e = call->e;
     const csg_arguments *parameters = &function->literal->as.call.arguments;
@@ -36,8 +44,11 @@ static csg_value call_function(csg_module_call *call, const csg_function *functi
         return result;
     }
     frame->names = parameters->items;
-    frame->values[0] = point_of_terms(e);
-    for (uint32_t i = 1; i < parameters->count && !e->stop; i++)
+    for (uint32_t i = 0; i < operands && i < parameters->count; i++)
+        frame->values[i] = coordinate(e, i);
+    if (!operands)
+        frame->values[0] = point_of_terms(e);
+    for (uint32_t i = operands ? operands : 1; i < parameters->count && !e->stop; i++)
         frame->values[i] = parameters->items[i].value
                                ? csg_evaluate(e, parameters->items[i].value, function->frame)
                                : csg_value_undef();
@@ -48,18 +59,18 @@ static csg_value call_function(csg_module_call *call, const csg_function *functi
 }
 
 /* The steps of the formula, from the heap's memory; NULL after a report. */
-static csg_formula_step *make_steps(csg_module_call *call, csg_formula_builder *builder,
-                                    uint32_t *count)
+static csg_formula_step *make_steps(csg_module_call *call, uint32_t index, uint32_t operands,
+                                    csg_formula_builder *builder, uint32_t *count)
 {
     csg_eval *e = call->e;
-    csg_value value = call_function(call, call->values[FUNCTION].as.function);
+    csg_value value = call_function(call, call->values[index].as.function, operands);
     csg_formula_id result = CSG_FORMULA_NONE;
     if (value.kind == CSG_VALUE_TERM)
         result = value.as.term;
     else if (value.kind == CSG_VALUE_NUMBER && !e->stop)
         result = csg_formula_constant(builder, value.as.number);
     else if (!e->stop && !e->refused)
-        csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
+        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE,
                            "the function gives a %s, it must give a number",
                            csg_value_kind_name(value));
     csg_value_release(&e->heap, value);
@@ -72,8 +83,29 @@ static csg_formula_step *make_steps(csg_module_call *call, csg_formula_builder *
     return steps;
 }
 
-/* [[x, y, z], [x, y, z]], or all of space when it was not given. */
-static csg_box argument_box(csg_module_call *call, uint32_t index)
+bool csg_argument_is_function(const csg_module_call *call, uint32_t index, uint32_t least)
+{
+    csg_value function = call->values[index];
+    return function.kind == CSG_VALUE_FUNCTION &&
+           function.as.function->literal->as.call.arguments.count >= least;
+}
+
+csg_formula_step *csg_formula_of_function(csg_module_call *call, uint32_t index, uint32_t operands,
+                                          uint32_t *count, size_t *bytes)
+{
+    csg_eval *e = call->e;
+    csg_formula_builder builder;
+    csg_formula_begin(&builder, e->heap.memory);
+    e->formula = &builder;
+    e->refused = false;
+    csg_formula_step *steps = make_steps(call, index, operands, &builder, count);
+    e->formula = NULL;
+    *bytes = builder.count * sizeof *steps;
+    csg_formula_end(&builder);
+    return steps;
+}
+
+csg_box csg_argument_box(csg_module_call *call, uint32_t index)
 {
     csg_box box = csg_box_all();
     csg_value value = call->values[index];
@@ -97,30 +129,24 @@ static csg_box argument_box(csg_module_call *call, uint32_t index)
 
 csg_node_id csg_module_field(csg_module_call *call)
 {
+    enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN };
     csg_eval *e = call->e;
     csg_span where = call->statement->where;
-    csg_value function = call->values[FUNCTION];
-    bool callable = function.kind == CSG_VALUE_FUNCTION &&
-                    function.as.function->literal->as.call.arguments.count > 0;
-    if (!callable)
+    if (!csg_argument_is_function(call, FUNCTION, 1))
         csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
                            "it needs a function of a point, as function (p) 1 - norm(p)");
     bool cut = csg_has_argument(call, BOUNDS);
-    csg_box box = argument_box(call, cut ? BOUNDS : DOMAIN);
+    csg_box box = csg_argument_box(call, cut ? BOUNDS : DOMAIN);
     double lipschitz = csg_argument_number(call, LIPSCHITZ, 0, CSG_POSITIVE);
     csg_node_id node = CSG_NODE_NONE;
-    csg_formula_builder builder;
     uint32_t count = 0;
-    csg_formula_begin(&builder, e->heap.memory);
-    e->formula = &builder;
-    e->refused = false;
-    csg_formula_step *steps = call->failed ? NULL : make_steps(call, &builder, &count);
-    e->formula = NULL;
+    size_t bytes = 0;
+    csg_formula_step *steps =
+        call->failed ? NULL : csg_formula_of_function(call, FUNCTION, 0, &count, &bytes);
     if (steps && count && !call->failed)
         node = csg_build_field(&e->builder, steps, count, box, cut, lipschitz, where);
     else if (!e->stop)
         node = csg_build_empty(&e->builder, where);
-    csg_memory_release(e->heap.memory, steps, builder.count * sizeof *steps);
-    csg_formula_end(&builder);
+    csg_memory_release(e->heap.memory, steps, bytes);
     return e->stop ? CSG_NODE_NONE : csg_check_node(e, node, where);
 }

@@ -42,7 +42,8 @@ csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_
     csg_module_polyhedron, csg_module_import, csg_module_surface, csg_module_tube,
     csg_module_spline, csg_module_periodic, csg_module_hull, csg_module_minkowski,
     csg_module_resize, csg_module_part, csg_module_material, csg_module_offset3d, csg_module_shell,
-    csg_module_repeat, csg_module_twist, csg_module_bend;
+    csg_module_repeat, csg_module_twist, csg_module_bend, csg_module_combine, csg_module_slab,
+    csg_module_extrude, csg_module_warp;
 
 void csg_modules_intern(csg_symbols *symbols, bool *ok);
 /* Runs the built-in module of this row: leaves one part. Not for control flow. */

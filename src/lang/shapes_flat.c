@@ -121,15 +121,16 @@ static bool add_paths(csg_module_call *call, uint32_t index, csg_vector *points,
 
 csg_node_id csg_module_polygon(csg_module_call *call)
 {
-    enum { POINTS, PATHS };
+    enum { POINTS, PATHS, CONVEXITY, CLEAN };
     csg_outline outline;
     csg_outline_init(&outline, call->e->heap.memory);
     if (call->values[POINTS].kind != CSG_VALUE_VECTOR)
         csg_argument_error(call, POINTS, CSG_DIAG_BAD_TYPE, "points must be a list of [x, y]");
     else
         add_paths(call, PATHS, call->values[POINTS].as.vector, &outline);
+    bool clean = csg_argument_boolean(call, CLEAN);
     if (!call->failed && !call->e->stop)
-        return csg_shape_area(call, &outline, true);
+        return clean ? csg_shape_region(call, &outline) : csg_shape_area(call, &outline, true);
     csg_outline_release(&outline);
     return csg_shape_empty(call);
 }

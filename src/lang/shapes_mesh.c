@@ -72,7 +72,7 @@ static bool add_face(csg_module_call *call, uint32_t index, uint32_t number, csg
 
 csg_node_id csg_module_polyhedron(csg_module_call *call)
 {
-    enum { POINTS, FACES, CONVEXITY, TRIANGLES };
+    enum { POINTS, FACES, CONVEXITY, TRIANGLES, CLEAN };
     csg_eval *e = call->e;
     uint32_t index =
         csg_has_argument(call, FACES) || !csg_has_argument(call, TRIANGLES) ? FACES : TRIANGLES;
@@ -85,7 +85,7 @@ csg_node_id csg_module_polyhedron(csg_module_call *call)
     for (uint32_t i = 0; ok && !call->failed && i < faces.as.vector->count; i++)
         ok = add_face(call, index, i, faces.as.vector->items[i], &triangles);
     if (ok && !call->failed)
-        return csg_shape_solid(call, &triangles, true);
+        return csg_shape_solid(call, &triangles, !csg_argument_boolean(call, CLEAN));
     csg_triangles_release(&triangles);
     return csg_shape_empty(call);
 }

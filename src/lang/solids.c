@@ -171,7 +171,7 @@ csg_node_id csg_module_capsule(csg_module_call *call)
 /* The primitive's arc lies on both sides of +x; the language's begins there. */
 csg_node_id csg_module_torus(csg_module_call *call)
 {
-    enum { RING, TUBE, ANGLE };
+    enum { RING, TUBE, ANGLE, MIDDLE };
     double r = csg_argument_number(call, RING, 1, CSG_POSITIVE);
     double tube = csg_argument_number(call, TUBE, 0.25, CSG_POSITIVE);
     double angle = csg_argument_number(call, ANGLE, 360, CSG_ANY);
@@ -181,7 +181,7 @@ csg_node_id csg_module_torus(csg_module_call *call)
         return empty(call);
     const double parameters[3] = {r, tube, fabs(angle) / 2};
     csg_node_id node = finish(call, primitive(call, CSG_NODE_TORUS, parameters));
-    if (fabs(angle) == 360 || node == CSG_NODE_NONE)
+    if (fabs(angle) == 360 || csg_argument_boolean(call, MIDDLE) || node == CSG_NODE_NONE)
         return node;
     csg_affine turn = csg_affine_rotate(angle / 2, csg_vec3_make(0, 0, 1));
     return finish(call,

@@ -92,9 +92,16 @@ static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node
 csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
                            csg_span where)
 {
+    if (!e->stop)
+        csg_shape_keep_alike(e, first, where);
+    return csg_join_mixed_parts(e, first, kind, blend, where);
+}
+
+csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                                 csg_span where)
+{
     if (e->stop)
         return CSG_NODE_NONE;
-    csg_shape_keep_alike(e, first, where);
     size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
     csg_part *parts = count ? e->parts + first : NULL;
     put_plain_first(e, parts, count, kind);

@@ -191,6 +191,7 @@ csg_node_id csg_module_operator(csg_module_call *call)
                          : call->name[0] == 'i' ? CSG_NODE_INTERSECTION
                                                 : CSG_NODE_DIFFERENCE;
     csg_blend blend = csg_argument_blend(call, 0);
+    bool mixed = csg_argument_boolean(call, 1);
     size_t first = e->part_count;
     /* Only a union may take what a for loop or children() makes one by one: the others would
      * mean something else than in OpenSCAD. */
@@ -199,7 +200,8 @@ csg_node_id csg_module_operator(csg_module_call *call)
         csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, call->spans[0], NULL,
                         "this %s has %s, its blend is not used", call->name,
                         e->part_count == first ? "no children" : "only one child");
-    return csg_join_parts(e, first, kind, blend, call->statement->where);
+    return mixed ? csg_join_mixed_parts(e, first, kind, blend, call->statement->where)
+                 : csg_join_parts(e, first, kind, blend, call->statement->where);
 }
 
 csg_node_id csg_module_blend(csg_module_call *call)

@@ -233,10 +233,10 @@ bool csg_build_append_formula(csg_scene_builder *builder, const csg_formula_step
     return true;
 }
 
-/* field & box: what lies outside the bounds is outside the solid. */
-static csg_node_id cut_by_box(csg_scene_builder *builder, csg_node_id field, csg_box box,
-                              csg_span where)
+csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box box, csg_span where)
 {
+    if (!csg_build_is_usable(builder, node))
+        return CSG_NODE_NONE;
     csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
     csg_affine place = csg_affine_translate(csg_box_center(box));
     csg_node_id cutter =
@@ -247,7 +247,7 @@ static csg_node_id cut_by_box(csg_scene_builder *builder, csg_node_id field, csg
     if (cutter == CSG_NODE_NONE)
         return CSG_NODE_NONE;
     return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
-                              (csg_node_id[]){field, cutter}, 2, where);
+                              (csg_node_id[]){node, cutter}, 2, where);
 }
 
 csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
@@ -269,7 +269,7 @@ csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *
                      .payload = (uint32_t)builder->scene->formula_count - 1,
                      .where = where};
     csg_node_id field = csg_build_append(builder, node, NULL, 0);
-    return cut && csg_box_is_finite(bounds) ? cut_by_box(builder, field, bounds, where) : field;
+    return cut && csg_box_is_finite(bounds) ? csg_build_cut(builder, field, bounds, where) : field;
 }
 
 /* ---- transforms and colours ----------------------------------------------------------- */

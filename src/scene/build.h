@@ -73,11 +73,20 @@ csg_node_id csg_build_offset(csg_scene_builder *builder, double r, csg_node_id c
  * is not flat (twisted) is cut sharply. */
 csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
                               double high, csg_span where);
+/* A flat child where |z - middle| <= half: csg_build_extrude in the numbers of its nodes. */
+csg_node_id csg_build_plate(csg_scene_builder *builder, csg_node_id child, double half,
+                            double middle, csg_span where);
 /* `warp` with the parameters given. Fails where csg_warp_settle says that it cannot be done. Cuts
  * what a warp does away from the solid. Sharp operators, colours and what more is below the warp
  * keep their meaning. */
 csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child,
                            csg_span where);
+/* The WARP node of csg_build_warp alone, nothing cut. */
+csg_node_id csg_build_bare_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_id child,
+                                csg_span where);
+/* The node within a finite box: a sharp intersection. */
+csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box box,
+                          csg_span where);
 /* F(children), one to three of them, x, y, z of the formula being their fields (scene.h). slope: a
  * bound on the sum of the partial derivatives' sizes; 0: computed, which fails for formulas that
  * are too steep to tell. */

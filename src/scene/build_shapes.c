@@ -52,8 +52,8 @@ static csg_node_id offset(csg_scene_builder *builder, double r, csg_node_id chil
     csgm_scene *scene = builder->scene;
     csg_node *node = &scene->nodes[child];
     if (node->kind == CSG_NODE_OFFSET) {
-        scene->parameters[node->payload] += r;
-        return child;
+        double *sum = &scene->parameters[node->payload];
+        return (*sum += r) == 0 ? csg_scene_children(scene, node)[0] : child;
     }
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, 1) ||
         !csg_build_reserve_parameters(builder, 1))
@@ -90,6 +90,29 @@ static csg_node_id meet(csg_scene_builder *builder, csg_blend_kind blend, csg_no
     return csg_build_append(builder, node, (csg_node_id[]){a, b}, 2);
 }
 
+static csg_node_id plate(csg_scene_builder *builder, csg_blend_kind blend, csg_node_id child,
+                         double half, double middle, csg_span where)
+{
+    csg_affine place = csg_affine_translate(csg_vec3_make(0, 0, middle));
+    csg_node_id slab = csg_build_primitive(builder, CSG_NODE_SLAB, &half, where);
+    if (slab != CSG_NODE_NONE)
+        slab = csg_build_transform(builder, &place, slab, where);
+    return slab == CSG_NODE_NONE ? slab : meet(builder, blend, child, slab, where);
+}
+
+csg_node_id csg_build_plate(csg_scene_builder *builder, csg_node_id child, double half,
+                            double middle, csg_span where)
+{
+    if (!csg_build_is_usable(builder, child))
+        return CSG_NODE_NONE;
+    if (builder->scene->nodes[child].kind == CSG_NODE_EMPTY)
+        return child;
+    if (csg_build_is_flat(builder, child))
+        return plate(builder, CSG_BLEND_ORTHOGONAL, child, half, middle, where);
+    csg_check_fail(builder, CSGM_ERR_SCENE, "what is extruded must be flat");
+    return CSG_NODE_NONE;
+}
+
 csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
                               double high, csg_span where)
 {
@@ -98,14 +121,9 @@ csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, dou
     if (builder->scene->nodes[child].kind == CSG_NODE_EMPTY)
         return child;
     bool exact = csg_build_is_flat(builder, child);
-    csg_affine place = csg_affine_translate(csg_vec3_make(0, 0, low + (high - low) / 2));
-    csg_node_id slab =
-        csg_build_primitive(builder, CSG_NODE_SLAB, (double[]){(high - low) / 2}, where);
-    if (slab != CSG_NODE_NONE)
-        slab = csg_build_transform(builder, &place, slab, where);
-    if (slab == CSG_NODE_NONE)
-        return CSG_NODE_NONE;
-    return meet(builder, exact ? CSG_BLEND_ORTHOGONAL : CSG_BLEND_SHARP, child, slab, where);
+    double half = (high - low) / 2;
+    return plate(builder, exact ? CSG_BLEND_ORTHOGONAL : CSG_BLEND_SHARP, child, half, low + half,
+                 where);
 }
 
 /* ---- warps -------------------------------------------------------------------------------------
@@ -174,27 +192,48 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
                               2, where);
 }
 
-csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *given, csg_node_id child,
-                           csg_span where)
+/* Checks and settles the warp of a child that is not empty. *box: of the child's solid, where the
+ * warp needs it; false after a failure. */
+static bool settle(csg_scene_builder *builder, csg_warp *warp, csg_node_id child, csg_box *box)
+{
+    const char *why = "";
+    bool needs_box = warp->kind == CSG_WARP_TWIST || warp->kind == CSG_WARP_BEND;
+    *box = needs_box ? csg_build_box(builder, child) : csg_box_all();
+    if (builder->status != CSGM_OK)
+        return false;
+    if (!csg_warp_settle(warp, *box, &why))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s", why);
+    return builder->status == CSGM_OK;
+}
+
+csg_node_id csg_build_bare_warp(csg_scene_builder *builder, const csg_warp *given,
+                                csg_node_id child, csg_span where)
 {
     csg_warp warp = *given;
-    const char *why = "";
+    csg_box box;
     if (!csg_build_is_usable(builder, child) || !csg_check_warp(builder, &warp, child))
         return CSG_NODE_NONE;
     if (builder->scene->nodes[child].kind == CSG_NODE_EMPTY)
         return child;
-    bool cut = warp.kind == CSG_WARP_TWIST || warp.kind == CSG_WARP_BEND;
-    csg_box box = cut ? csg_build_box(builder, child) : csg_box_all();
-    if (builder->status != CSGM_OK)
+    return settle(builder, &warp, child, &box) ? append_warp(builder, &warp, child, where)
+                                               : CSG_NODE_NONE;
+}
+
+csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *given, csg_node_id child,
+                           csg_span where)
+{
+    csg_warp warp = *given;
+    csg_box box;
+    if (!csg_build_is_usable(builder, child) || !csg_check_warp(builder, &warp, child))
         return CSG_NODE_NONE;
-    if (cut && csg_box_is_empty(box))
+    if (builder->scene->nodes[child].kind == CSG_NODE_EMPTY)
+        return child;
+    if (!settle(builder, &warp, child, &box))
+        return CSG_NODE_NONE;
+    if (csg_box_is_empty(box))
         return csg_build_empty(builder, where);
-    if (!csg_warp_settle(&warp, box, &why)) {
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s", why);
-        return CSG_NODE_NONE;
-    }
     csg_node_id warped = append_warp(builder, &warp, child, where);
-    if (!cut || warped == CSG_NODE_NONE)
+    if (warped == CSG_NODE_NONE || (warp.kind != CSG_WARP_TWIST && warp.kind != CSG_WARP_BEND))
         return warped;
     csg_node_id room = warp.kind == CSG_WARP_TWIST ? wall(builder, &warp, where)
                                                    : bend_room(builder, &warp, box, where);

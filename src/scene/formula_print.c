@@ -13,6 +13,7 @@ enum { DEEPEST_NESTING = 12 };
 typedef struct printer {
     const csg_formula_step *steps;
     uint8_t *named; /* per step */
+    const csg_formula_words *words;
     csgm_text_fn *sink;
     void *user;
 } printer;
@@ -66,8 +67,7 @@ static void put_operand(printer *out, uint32_t index)
     if (step->op == CSG_FORMULA_CONSTANT) {
         csg_print_number(out->sink, out->user, step->constant);
     } else if (step->op <= CSG_FORMULA_Z) {
-        put(out, "p.");
-        put(out, csg_formula_op_name(step->op));
+        put(out, out->words->coordinates[step->op - CSG_FORMULA_X]);
     } else if (out->named[index]) {
         put_name(out, index);
     } else {
@@ -116,15 +116,17 @@ static void choose_names(printer *out, uint32_t count, uint32_t *uses, uint32_t 
 }
 
 bool csg_formula_print(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                       csgm_text_fn *sink, void *user)
+                       const csg_formula_words *words, csgm_text_fn *sink, void *user)
 {
     size_t bytes = count * (2 * sizeof(uint32_t) + 1);
     uint32_t *work = csg_memory_alloc(memory, bytes);
     if (!work)
         return false;
-    printer out = {steps, (uint8_t *)(work + 2 * count), sink, user};
+    printer out = {steps, (uint8_t *)(work + 2 * count), words, sink, user};
     choose_names(&out, count, work, work + count);
-    put(&out, "function (p) ");
+    put(&out, "function (");
+    put(&out, words->parameters);
+    put(&out, ") ");
     bool any = false;
     for (uint32_t i = 0; i < count; i++) {
         if (!out.named[i])

@@ -6,9 +6,14 @@
 
 #include "scene/formula.h"
 
+/* The words for x, y and z, and for the parameters that they come from. */
+typedef struct csg_formula_words {
+    const char *parameters, *coordinates[3];
+} csg_formula_words;
+
 /* "function (p) ..."; steps that are used again become variables. False: out of memory. */
 bool csg_formula_print(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                       csgm_text_fn *sink, void *user);
+                       const csg_formula_words *words, csgm_text_fn *sink, void *user);
 
 /* A number as short as it reads back exactly. */
 void csg_print_number(csgm_text_fn *sink, void *user, double value);

@@ -86,6 +86,8 @@ static void solids_have_their_sizes(void **state)
     check("torus(r = 10, tube = 2, angle = 90);", 0, 10, 0, 2);
     check("torus(r = 10, tube = 2, angle = 90);", 10, -3, 0, -1);
     check("torus(r = 10, tube = 2, angle = -90);", 10, 3, 0, -1);
+    check("torus(r = 10, tube = 2, angle = 180, center = true);", 0, 13, 0, -1);
+    check("torus(r = 10, tube = 2, angle = 180, center = true);", -3, -10, 0, -1);
     check("ellipsoid([1, 2, 3]);", 0, 0, 5, -2);
     check("ellipsoid(2);", 3, 0, 0, -1);
     check("plane([0, 0, 2], 3);", 7, 8, 5, -2);

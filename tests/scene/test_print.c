@@ -71,14 +71,20 @@ static void test_primitives(void **state)
     check_text(primitive(CSG_NODE_FRUSTUM, 1, 0, 2, 0),
                "cylinder(h = 4, r1 = 1, r2 = 0, center = true);\n");
     check_text(primitive(CSG_NODE_FRUSTUM, 1, 1, 2, 0.5),
-               "cylinder(h = 5, r1 = 1.5, r2 = 1.5, center = true, round = 0.5);\n");
+               "cylinder(h = 4, r1 = 1, r2 = 1, center = true, round = 0.5, core = true);\n");
     check_text(primitive(CSG_NODE_CAPSULE, 3, 1, 0.5, 0),
                "capsule(p1 = [0, 0, 0], p2 = [0, 0, 3], r1 = 1, r2 = 0.5);\n");
     check_text(primitive(CSG_NODE_TORUS, 2, 0.5, 180, 0), "torus(r = 2, tube = 0.5);\n");
     check_text(primitive(CSG_NODE_TORUS, 2, 0.5, 45, 0),
-               "rotate([0, 0, -45]) torus(r = 2, tube = 0.5, angle = 90);\n");
+               "torus(r = 2, tube = 0.5, angle = 90, center = true);\n");
     check_text(primitive(CSG_NODE_ELLIPSOID, 1, 2, 3, 0), "ellipsoid(r = [1, 2, 3]);\n");
     check_text(primitive(CSG_NODE_PLANE, 0, 0, -1, 0.5), "plane(normal = [0, 0, -1], d = 0.5);\n");
+    check_text(primitive(CSG_NODE_CIRCLE, 0.5, 0, 0, 0), "circle(r = 0.5);\n");
+    check_text(primitive(CSG_NODE_RECTANGLE, 1, 2, 0, 0),
+               "square(size = [2, 4], center = true);\n");
+    check_text(primitive(CSG_NODE_RECTANGLE, 1, 2, 0.5, 0),
+               "square(size = [2, 4], center = true, round = 0.5);\n");
+    check_text(primitive(CSG_NODE_SLAB, 3, 0, 0, 0), "slab(h = 3);\n");
 }
 
 static void test_tree(void **state)
@@ -110,6 +116,36 @@ static void test_tree(void **state)
                "    sphere(r = 4);\n"
                "  }\n"
                "  sphere(r = 5);\n"
+               "}\n");
+}
+
+static void test_plates_and_warps(void **state)
+{
+    csg_node_id circle = primitive(CSG_NODE_CIRCLE, 1, 0, 0, 0);
+    check_text(csg_build_extrude(&builder, circle, 1, 4, NOWHERE),
+               "extrude(half = 1.5, middle = 2.5)\n"
+               "  circle(r = 1);\n");
+    const csg_warp twist = {CSG_WARP_TWIST, {3, -1, 1}};
+    csg_node_id solid =
+        csg_build_warp(&builder, &twist, primitive(CSG_NODE_BOX, 3, 4, 1, 0), NOWHERE);
+    check_text(csg_build_offset(&builder, 0.5, solid, NOWHERE),
+               "offset3d(r = 0.5)\n"
+               "  intersection(mixed = true) {\n"
+               "    warp(\"twist\", [3, -1, 1])\n"
+               "      cube(size = [6, 8, 2], center = true);\n"
+               "    circle(r = 6.25);\n"
+               "  }\n");
+    csg_node_id grown =
+        csg_build_offset(&builder, 2, primitive(CSG_NODE_SPHERE, 1, 0, 0, 0), NOWHERE);
+    check_text(csg_build_offset(&builder, -2, grown, NOWHERE), "sphere(r = 1);\n");
+    const csg_formula_step steps[] = {
+        {CSG_FORMULA_X, 0, 0, 0}, {CSG_FORMULA_Y, 0, 0, 0}, {CSG_FORMULA_MAX, 0, 1, 0}};
+    csg_node_id pair[2] = {primitive(CSG_NODE_SPHERE, 1, 0, 0, 0),
+                           primitive(CSG_NODE_SPHERE, 2, 0, 0, 0)};
+    check_text(csg_build_combine(&builder, steps, 3, 1, pair, 2, NOWHERE),
+               "combine(function (a, b) max(a, b), lipschitz = 1) {\n"
+               "  sphere(r = 1);\n"
+               "  sphere(r = 2);\n"
                "}\n");
 }
 
@@ -191,8 +227,8 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
-        TEST(test_primitives),    TEST(test_tree),      TEST(test_numbers_read_back),
-        TEST(test_random_scenes), TEST(test_deep_tree),
+        TEST(test_primitives),        TEST(test_tree),          TEST(test_plates_and_warps),
+        TEST(test_numbers_read_back), TEST(test_random_scenes), TEST(test_deep_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

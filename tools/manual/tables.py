@@ -48,13 +48,13 @@ def code(text):
 # What makes a figure of the plane; what makes one solid or figure of others.
 FIGURES = {"circle", "square", "polygon", "text"}
 SHAPING = {"linear_extrude", "rotate_extrude", "offset", "projection", "hull", "minkowski", "resize",
-           "offset3d", "shell", "repeat", "twist", "bend"}
+           "offset3d", "shell", "repeat", "twist", "bend", "extrude", "warp"}
 
 
 def module_group(name, handler, children):
     if handler == "control":
         return "control"
-    if handler in ("operator", "blend", "group"):
+    if handler in ("operator", "blend", "group", "combine"):
         return "operators"
     if children == "1":
         return "shaping" if name in SHAPING else "transforms"
