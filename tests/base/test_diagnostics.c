@@ -185,6 +185,26 @@ static void test_severity_comes_from_the_table(void **state)
     assert_null(csg_diag_summary((csg_diag_code)9999));
 }
 
+/* Two findings of one number: this does not compile. */
+static const char *name_of(int number)
+{
+    switch (number) {
+#define CSG_DIAG(name, number, severity, summary)                                                  \
+    case number:                                                                                   \
+        return #name;
+#include "base/diagnostics.def"
+#undef CSG_DIAG
+    default:
+        return NULL;
+    }
+}
+
+static void test_numbers_are_unique(void **state)
+{
+    assert_string_equal(name_of(901), "OUT_OF_MEMORY");
+    assert_null(name_of(999));
+}
+
 static void test_cap(void **state)
 {
     heard h = {0};
@@ -231,6 +251,7 @@ int main(void)
         cmocka_unit_test(test_long_lines),
         cmocka_unit_test(test_small_buffers),
         cmocka_unit_test(test_severity_comes_from_the_table),
+        cmocka_unit_test(test_numbers_are_unique),
         cmocka_unit_test(test_cap),
         cmocka_unit_test(test_dropped_findings_are_counted),
         cmocka_unit_test(test_out_of_memory),
