@@ -7,6 +7,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -491,6 +492,66 @@ static void flat_transforms_keep_the_plane(void **state)
     check(&mirrored, 40, NULL);
 }
 
+/* ---- memory ------------------------------------------------------------------------------------
+ */
+
+typedef struct failing {
+    long left; /* allocations before the one that fails */
+    size_t live;
+} failing;
+
+static void *failing_alloc(void *user, size_t size)
+{
+    failing *f = user;
+    void *memory = f->left-- > 0 ? malloc(size) : NULL;
+    f->live += memory != NULL;
+    return memory;
+}
+
+static void failing_release(void *user, void *memory, size_t size)
+{
+    (void)size;
+    ((failing *)user)->live--;
+    free(memory);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    static const char scene[] =
+        "linear_extrude(3, twist = 20, scale = 0.5) offset(r = -0.2) union() { square(3);"
+        " polygon([[0,0], [4,1], [1,4]]); }\n"
+        "rotate_extrude(angle = 40) square([2, 1]); sphere(2, $fn = 5); cylinder(2, 1, 0, $fn = "
+        "4);\n"
+        "hull() { cube(1); translate([2, 0, 0]) sphere(1); cylinder(h = 1, r = 1, $fn = 3); }\n"
+        "minkowski() { cube(1); polyhedron([[0,0,0], [1,0,0], [0,1,0], [0,0,1]], [[0,1,2], [0,3,1],"
+        " [0,2,3], [1,3,2]]); }\n"
+        "linear_extrude(1) projection() rotate([20, 0, 0]) cube(2);\n"
+        "shell(0.1) resize([1, 2, 3]) repeat([2, 0, 0], 2) tube([[0,0,0], [1,0,0]], 0.5);\n";
+    static bench poor;
+    failing f = {0};
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
+    long failures = 0;
+    (void)state;
+    bench_open(&poor, &allocator);
+    for (long n = 0;; n += n < 100 ? 1 : 1 + n / 60) {
+        f.left = n;
+        csgm_status status = bench_compile(&poor, scene);
+        if (f.left >= 0) {
+            if (status != CSGM_OK)
+                print_error("%s", poor.text);
+            assert_int_equal(status, CSGM_OK);
+            break;
+        }
+        if (status != CSGM_ERR_MEMORY)
+            print_error("allocation %ld: status %d\n%s", n, status, poor.text);
+        assert_int_equal(status, CSGM_ERR_MEMORY);
+        assert_int_equal(f.live, 0);
+        failures++;
+    }
+    bench_close(&poor);
+    assert_true(failures > 100);
+}
+
 static int open_bench(void **state)
 {
     (void)state;
@@ -523,6 +584,7 @@ int main(void)
         cmocka_unit_test(exact_facets_follow_fa_and_fs),
         cmocka_unit_test(what_cannot_be_is_told),
         cmocka_unit_test(flat_transforms_keep_the_plane),
+        cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, open_bench, close_bench);
 }
