@@ -284,7 +284,8 @@ static void expect_bomb(char *model, const char *message)
 static char *doubling(int depth)
 {
     char *text = malloc(300 * (size_t)depth + 2000), *at = text;
-    assert_non_null(text);
+    if (!text)
+        abort();
     at += sprintf(at, MODEL "<resources><object id=\"1\"><components/></object>");
     for (int i = 2; i <= depth; i++)
         at += sprintf(at,
