@@ -1,0 +1,2 @@
+$fn = 100;
+linear_extrude(5) import("plate.dxf", layer = "holes");

@@ -1,0 +1,1 @@
+difference() { import("octahedron.off"); cube(8); }

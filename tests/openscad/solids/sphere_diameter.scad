@@ -1,0 +1,1 @@
+translate([3, 4, 5]) sphere(d = 15, $fn = 150);

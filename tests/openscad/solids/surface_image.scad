@@ -1,0 +1,1 @@
+scale([1, 1, 0.1]) surface("dots.png");
