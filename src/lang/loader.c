@@ -40,7 +40,8 @@ static const char *search_folders(csg_parser *parser, const char *name)
     return found;
 }
 
-static const char *find_file(csg_parser *parser, csg_span path)
+/* `code` says that it was not found: a font is not missed as a source is. */
+static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code code)
 {
     const char *name =
         csg_arena_strndup(&parser->program->arena, parser->text + path.offset + 1, path.length - 2);
@@ -56,12 +57,12 @@ static const char *find_file(csg_parser *parser, csg_span path)
         found = search_folders(parser, name);
     if (!found && !parser->stop) {
         csg_source_report(
-            &parser->program->sources, CSG_DIAG_INCLUDE_NOT_FOUND, path,
+            &parser->program->sources, code, path,
             strchr(name, '\\')
                 ? "folders are separated by '/'"
                 : "looked for beside this file, in each -I folder and in CSGMESH_PATH",
             "there is no file '%.200s'", name);
-        parser->program->failed_io = true;
+        parser->program->failed_io |= code == CSG_DIAG_INCLUDE_NOT_FOUND;
     }
     return found;
 }
@@ -99,7 +100,7 @@ static void add_dependency(csg_parser *parser, const char *path)
 /* Finds and reads the file of a PATH token. */
 static bool read_asked(csg_parser *parser, csg_span where, bool textual, uint32_t *out)
 {
-    const char *path = find_file(parser, where);
+    const char *path = find_file(parser, where, CSG_DIAG_INCLUDE_NOT_FOUND);
     if (!path)
         return false;
     if (is_cycle(parser, path)) {
@@ -196,7 +197,7 @@ static csg_file *find_used(const csg_parser *parser, const char *path)
 static csg_file *load_used(csg_parser *parser, csg_span path)
 {
     uint32_t source;
-    const char *found = find_file(parser, path);
+    const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
     if (!found)
         return NULL;
     if (is_cycle(parser, found)) {
@@ -228,7 +229,7 @@ static bool is_font(const csg_parser *parser, csg_span path)
 static void load_font(csg_parser *parser, csg_span where)
 {
     csg_program *program = parser->program;
-    const char *path = find_file(parser, where);
+    const char *path = find_file(parser, where, CSG_DIAG_FONT_NOT_FOUND);
     if (!path)
         return;
     add_dependency(parser, path);
