@@ -461,9 +461,10 @@ CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csg
 
 /* ---- looking inside (stable text, for tests and for people) -------------------------- */
 
-typedef enum csgm_dump { CSGM_DUMP_SCENE, CSGM_DUMP_TAPE } csgm_dump;
+typedef enum csgm_dump { CSGM_DUMP_SCENE, CSGM_DUMP_TAPE, CSGM_DUMP_VM } csgm_dump;
 
-/* SCENE parses back to the same tree. */
+/* SCENE parses back to the same tree. VM is the scene's formula as the programs fidget and libfive
+ * read it, negative inside; CSGM_ERR_UNSUPPORTED: no formula is known for one of its solids. */
 CSGM_API csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm_dump what,
                                      csgm_text_fn *sink, void *user);
 

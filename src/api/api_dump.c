@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Dumps of the public interface: the evaluated tree or the tape as stable text.
+ * Dumps of the public interface: the evaluated tree, the tape or the formula
+ * as stable text.
  */
 #include "field/field.h"
 #include "scene/print.h"
+#include "scene/vm.h"
 
 static csgm_status dump_tape(csgm_context *context, const csgm_scene *scene, csgm_text_fn *sink,
                              void *user)
@@ -25,6 +27,8 @@ csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm
         return csg_scene_print(scene, sink, user);
     case CSGM_DUMP_TAPE:
         return dump_tape(context, scene, sink, user);
+    case CSGM_DUMP_VM:
+        return csg_vm_print(scene, sink, user);
     }
     return CSGM_ERR_ARGUMENT;
 }

@@ -277,14 +277,29 @@ static csg_node_id centered(csg_module_call *call, csg_node_id node)
 
 csg_node_id csg_module_import(csg_module_call *call)
 {
-    enum { FILE_NAME, LAYER, CONVEXITY, ORIGIN, SCALE, CENTER, DPI, ID };
+    enum {
+        FILE_NAME,
+        LAYER,
+        CONVEXITY,
+        ORIGIN,
+        SCALE,
+        CENTER,
+        DPI,
+        ID,
+        TIMESTAMP,
+        BOUNDS,
+        LIPSCHITZ
+    };
     const drawing d = {FILE_NAME, LAYER, ORIGIN, SCALE, CENTER, DPI, ID};
+    char extension[8];
     const char *path = csg_import_find(call, FILE_NAME);
     if (!path)
         return csg_shape_empty(call);
     csg_node_id node = import_drawing(call, &d, path);
     if (node != CSG_NODE_NONE || call->e->stop)
         return node;
-    node = import_mesh(call, FILE_NAME, path);
+    csg_import_extension(path, extension);
+    node = strcmp(extension, "vm") == 0 ? csg_import_tape(call, path, FILE_NAME, BOUNDS, LIPSCHITZ)
+                                        : import_mesh(call, FILE_NAME, path);
     return csg_argument_boolean(call, CENTER) ? centered(call, node) : node;
 }

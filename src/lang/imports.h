@@ -11,6 +11,9 @@
 const char *csg_import_find(csg_module_call *call, uint32_t index);
 /* Letters behind the last dot of a path, in small letters; "" when there is none. */
 void csg_import_extension(const char *path, char out[8]);
+/* The solid of a .vm tape; arguments as of field(). */
+csg_node_id csg_import_tape(csg_module_call *call, const char *path, uint32_t file, uint32_t bounds,
+                            uint32_t lipschitz);
 /* A flat figure from an SVG or DXF file; layer and origin are arguments. */
 csg_node_id csg_import_figure(csg_module_call *call, uint32_t file, uint32_t layer,
                               uint32_t origin);
