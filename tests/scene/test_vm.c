@@ -361,6 +361,30 @@ static void test_limits(void **state)
     free(tape);
 }
 
+static void test_no_memory(void **state)
+{
+    csg_random random = {6};
+    test_random_shapes = true;
+    csgm_scene *scene = test_seal(&builder, test_random_scene(&builder, &random, 8));
+    test_random_shapes = false;
+    uint64_t used = atomic_load(&context.memory.used_bytes), limit = context.memory.limit_bytes;
+    csgm_status status = CSGM_ERR_MEMORY;
+    int failures = 0;
+    for (uint64_t more = 0; status != CSGM_OK; more += more / 8 + 500, failures++) {
+        text tape = {0};
+        context.memory.limit_bytes = used + more;
+        status = csg_vm_print(scene, collect, &tape);
+        assert_true(status == CSGM_OK || status == CSGM_ERR_MEMORY);
+        assert_int_equal(atomic_load(&context.memory.used_bytes), used);
+        free(tape.data);
+    }
+    assert_true(failures > 10);
+    context.memory.limit_bytes = limit;
+    context.diags.errors = 0;
+    csg_scene_destroy(scene);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
@@ -368,6 +392,7 @@ int main(void)
         TEST(test_primitives),   TEST(test_thin_ellipsoids), TEST(test_blends),
         TEST(test_random_trees), TEST(test_regions),         TEST(test_polyhedra),
         TEST(test_operations),   TEST(test_wrong_tapes),     TEST(test_limits),
+        TEST(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
