@@ -3,15 +3,17 @@
 
 Compared are volume, area, bounds and the number of components. What OpenSCAD makes of the scenes is
 kept in goldens.csv, so the quick run needs csgmesh only; it has a coarser lattice and tolerances to
-match. --fine: a fine lattice, volume and area within 0.5 %, bounds within a cell. --openscad: the
-goldens are what the installed OpenSCAD makes (exit status 77, a skip, where none is installed).
---write: goldens.csv is written anew. More arguments are the names of the scenes to run.
+match. --fine: a fine lattice, volume and area within 0.5 %, bounds within a cell. --exact: with
+--facets=exact, so that all solids are polyhedra, and volumes within 1e-4. --openscad: the goldens
+are what the installed OpenSCAD makes (exit status 77, a skip, where none is installed). --write:
+goldens.csv is written anew. More arguments are the names of the scenes to run.
 
 Marching cubes cut off sharp edges, which takes about a quarter of a cell of area from each unit of
 their length, and leave crumbs of a very acute one. So what differs at one resolution is tried at the
 next; a difference of solids stays.
 
-A scene may say, in a comment, `// components: not compared, the reason`; likewise for area.
+A scene may say, in a comment, `// components: not compared, the reason`; likewise for area, and for
+--exact as a whole.
 """
 import array
 import concurrent.futures
@@ -29,6 +31,8 @@ PROGRAM = os.environ.get("CSGMESH")
 FIELDS = ["scene", "volume", "area", "components", "x0", "y0", "z0", "x1", "y1", "z1"]
 QUICK = {"resolutions": [64, 128, 256], "volume": 0.01, "area": 0.03, "cells": 1.5}
 FINE = {"resolutions": [256, 512, 1024], "volume": 0.005, "area": 0.005, "cells": 1}
+EXACT = {**FINE, "resolutions": [256, 512, 1024, 2048], "volume": 1e-4,
+         "options": ["--facets=exact"]}
 
 
 def names():
@@ -93,9 +97,9 @@ def openscad_facts(name):
         return (measure(out) if result.returncode == 0 and os.path.exists(out) else None), said
 
 
-def csgmesh_facts(name, resolution):
+def csgmesh_facts(name, resolution, options=()):
     """(facts or None, what was said)"""
-    result = subprocess.run([PROGRAM, "info", "--json", "-r", str(resolution),
+    result = subprocess.run([PROGRAM, "info", "--json", "-r", str(resolution), *options,
                              os.path.join(HERE, name + ".scad")], capture_output=True, timeout=600,
                             check=False)
     said = result.stderr.decode("utf-8", "replace")
@@ -129,7 +133,7 @@ def differences(ours, theirs, limits):
     for key in ("volume", "area"):
         ratio = ours[key] / theirs[key] - 1
         if abs(ratio) > limits[key]:
-            found[key] = f"{ours[key]:.6g}, of OpenSCAD {theirs[key]:.6g} ({100 * ratio:+.2f} %)"
+            found[key] = f"{ours[key]:.6g}, of OpenSCAD {theirs[key]:.6g} ({100 * ratio:+.3f} %)"
     worst = max(abs(a - b) for a, b in zip(sum(ours["bounds"], []), sum(theirs["bounds"], [])))
     if worst > limits["cells"] * ours["cell"]:
         found["bounds"] = (f"{ours['bounds']}, of OpenSCAD {theirs['bounds']}: "
@@ -146,7 +150,7 @@ def faults_of(name, theirs, limits):
         if f"// {key}: not compared" in source(name):
             left.remove(key)
     for resolution in limits["resolutions"]:
-        ours, said = csgmesh_facts(name, resolution)
+        ours, said = csgmesh_facts(name, resolution, limits.get("options", ()))
         if not ours:
             return ["not meshed\n" + said]
         if any(ours[key] for key in ("boundary_edges", "nonmanifold_edges", "misoriented_edges")):
@@ -211,7 +215,10 @@ def main(arguments):
     chosen = [a for a in arguments if not a.startswith("-")] or names()
     if "--openscad" in arguments or "--write" in arguments:
         return check_openscad(chosen, "--write" in arguments)
-    return check(chosen, FINE if "--fine" in arguments else QUICK)
+    limits = {"--fine": FINE, "--exact": EXACT}
+    if "--exact" in arguments:
+        chosen = [name for name in chosen if "// --exact: not compared" not in source(name)]
+    return check(chosen, next((limits[a] for a in arguments if a in limits), QUICK))
 
 
 if __name__ == "__main__":

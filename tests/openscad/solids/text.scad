@@ -1,2 +1,3 @@
+// --exact: not compared, letters get steps of another number
 $fn = 40;
 linear_extrude(4) text("Rag 5", size = 20);
