@@ -11,12 +11,17 @@ import cli
 PATIENCE_S = 2.0 if os.environ.get("CSGMESH_SANITIZED") == "1" else 0.1
 
 
+def as_from_a_terminal():
+    """Under nohup the program would rightly go on after SIGHUP."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 class Interrupt(cli.CliTest):
     def interrupted(self, *arguments, number=signal.SIGINT, after_s=0.4):
         begun = set(os.listdir(self.folder))
         process = subprocess.Popen([cli.PROGRAM, *arguments], cwd=self.folder,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE)
+                                   stderr=subprocess.PIPE, preexec_fn=as_from_a_terminal)
         time.sleep(after_s)
         self.assertIsNone(process.poll(), "the work ended before it could be interrupted")
         sent = time.monotonic()
