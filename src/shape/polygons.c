@@ -9,7 +9,10 @@
 #include "shape/polygons.h"
 
 #include "shape/clipper.h"
+#include "shape/crossings.h"
+#include "shape/offset_loops.h"
 #include "shape/simple_loops.h"
+#include "shape/twins.h"
 
 enum { MOST_POINTS = 1 << 24, CLIPPER_BYTES_PER_POINT = 400 };
 
@@ -110,6 +113,18 @@ static bool whole_append(whole_loops *loops, const grid *g, const csg_outline *o
     return true;
 }
 
+static bool whole_append_whole(whole_loops *loops, const whole_loops *more)
+{
+    size_t before = loops->point_count;
+    if (!whole_reserve(loops, before + more->point_count, loops->loop_count + more->loop_count))
+        return false;
+    for (size_t i = 0; i < more->point_count; i++)
+        loops->points[loops->point_count++] = more->points[i];
+    for (size_t loop = 0; loop < more->loop_count; loop++)
+        loops->ends[loops->loop_count++] = (uint32_t)before + more->ends[loop];
+    return true;
+}
+
 static csg_clipper_loops whole_view(const whole_loops *loops)
 {
     return (csg_clipper_loops){loops->points, loops->ends, loops->loop_count};
@@ -118,13 +133,17 @@ static csg_clipper_loops whole_view(const whole_loops *loops)
 typedef struct result {
     const grid *grid;
     csg_outline *outline;
+    bool turned; /* points come a quarter turn later */
 } result;
 
 static bool take_simple(void *user, const csg_clipper_point *points, size_t count)
 {
     const result *r = user;
     for (size_t i = 0; i < count; i++) {
-        if (!csg_outline_add(r->outline, from_grid(r->grid, points[i])))
+        csg_clipper_point p = points[i];
+        if (r->turned)
+            p = (csg_clipper_point){p.y, -p.x};
+        if (!csg_outline_add(r->outline, from_grid(r->grid, p)))
             return false;
     }
     return csg_outline_close(r->outline);
@@ -152,14 +171,57 @@ static csgm_status settle(csgm_status status, csg_outline *out)
 
 /* ---- set operations ----------------------------------------------------------------------- */
 
-static csgm_status combine(csg_polygons_op op, csg_fill fill, const grid *g, const whole_loops *a,
-                           const whole_loops *b, csg_outline *out)
+static void turn_quarter(whole_loops *loops)
 {
-    result r = {g, out};
-    csg_clipper_loops left = whole_view(a), right = whole_view(b);
+    for (size_t i = 0; i < loops->point_count; i++)
+        loops->points[i] = (csg_clipper_point){-loops->points[i].y, loops->points[i].x};
+}
+
+/* Whether Clipper would be done soon; it cannot be stopped. All the loops, in one list. */
+static csgm_status check_work(const whole_loops *loops, csg_fill fill, bool *turned)
+{
+    csg_clipper_loops view = whole_view(loops);
+    csgm_status status = csg_beams_check(loops->memory, &view, turned);
+    return status ? status : csg_crossings_check(loops->memory, &view, fill);
+}
+
+static csgm_status check_both(const whole_loops *a, const whole_loops *b, csg_fill fill,
+                              bool *turned)
+{
+    whole_loops both = {.memory = a->memory};
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (!b->loop_count)
+        return check_work(a, fill, turned);
+    if (whole_append_whole(&both, a) && whole_append_whole(&both, b))
+        status = check_work(&both, fill, turned);
+    whole_release(&both);
+    return status;
+}
+
+/* May turn the operands. */
+static csgm_status combine(csg_polygons_op op, csg_fill fill, const grid *g, whole_loops *a,
+                           whole_loops *b, csg_outline *out)
+{
+    result r = {.grid = g, .outline = out};
     if (!has_room(out->memory, (double)(a->point_count + b->point_count)))
         return CSGM_ERR_MEMORY;
+    csgm_status status = check_both(a, b, fill, &r.turned);
+    if (status)
+        return status;
+    if (r.turned) {
+        turn_quarter(a);
+        turn_quarter(b);
+    }
+    csg_clipper_loops left = whole_view(a), right = whole_view(b);
     return settle(csg_clipper_combine(op, fill, &left, &right, take_loop, &r), out);
+}
+
+static bool drop_twins(whole_loops *loops)
+{
+    if (!csg_twins_drop(loops->memory, loops->points, loops->ends, &loops->loop_count))
+        return false;
+    loops->point_count = loops->loop_count ? loops->ends[loops->loop_count - 1] : 0;
+    return true;
 }
 
 static csgm_status run(csg_polygons_op op, csg_fill fill, const csg_outline *a,
@@ -172,7 +234,8 @@ static csgm_status run(csg_polygons_op op, csg_fill fill, const csg_outline *a,
         !make_grid(csg_box_hull(csg_outline_box(a), csg_outline_box(b)), 0, &g))
         return CSGM_ERR_SCENE;
     csgm_status status = CSGM_ERR_MEMORY;
-    if (whole_append(&left, &g, a) && whole_append(&right, &g, b))
+    if (whole_append(&left, &g, a) && whole_append(&right, &g, b) &&
+        (fill == CSG_FILL_NONZERO || drop_twins(&left)))
         status = combine(op, fill, &g, &left, &right, out);
     whole_release(&left);
     whole_release(&right);
@@ -210,23 +273,85 @@ static double offset_points(const csg_outline *outline, double sagitta)
     return count;
 }
 
+static bool add_raw(void *user, double x, double y)
+{
+    whole_loops *loops = user;
+    const double most = 0x1p31 - 2;
+    if (!whole_reserve(loops, loops->point_count + 1, loops->loop_count))
+        return false;
+    loops->points[loops->point_count++] = (csg_clipper_point){(int64_t)fmin(fmax(x, -most), most),
+                                                              (int64_t)fmin(fmax(y, -most), most)};
+    return true;
+}
+
+/* There is room for it: as many loops as before. */
+static void close_raw(void *user)
+{
+    whole_loops *loops = user;
+    loops->ends[loops->loop_count++] = (uint32_t)loops->point_count;
+}
+
+/* Points that became one on the grid. */
+static void drop_repeats(whole_loops *loops)
+{
+    size_t at = 0, first = 0;
+    for (size_t loop = 0; loop < loops->loop_count; loop++) {
+        size_t end = loops->ends[loop];
+        csg_clipper_point begin = loops->points[first];
+        for (size_t i = first; i < end; i++) {
+            csg_clipper_point p = loops->points[i],
+                              next = i + 1 < end ? loops->points[i + 1] : begin;
+            if (p.x != next.x || p.y != next.y)
+                loops->points[at++] = p;
+        }
+        first = end;
+        loops->ends[loop] = (uint32_t)at;
+    }
+    loops->point_count = at;
+}
+
+static csgm_status check_offset(const whole_loops *loops, double by, csg_corner corner,
+                                double sagitta)
+{
+    whole_loops raw = {.memory = loops->memory};
+    csg_clipper_loops view = whole_view(loops);
+    csg_offset_sink sink = {add_raw, close_raw, &raw};
+    csgm_status status = CSGM_ERR_MEMORY;
+    bool turned;
+    if (whole_reserve(&raw, loops->point_count, loops->loop_count) &&
+        csg_offset_loops(&view, by, corner, 2 * acos(1 - fmin(sagitta, 1)), sink))
+        status = check_work(&raw, CSG_FILL_NONZERO, &turned);
+    whole_release(&raw);
+    return status;
+}
+
+static csgm_status offset_whole(const whole_loops *loops, double by, csg_corner corner,
+                                double sagitta, result *r)
+{
+    csgm_status status = check_offset(loops, by * r->grid->steps, corner, sagitta);
+    if (status)
+        return status;
+    csg_clipper_loops view = whole_view(loops);
+    return settle(csg_clipper_offset(&view, by * r->grid->steps, corner,
+                                     sagitta * fabs(by) * r->grid->steps, take_loop, r),
+                  r->outline);
+}
+
 static csgm_status offset_clean(const csg_outline *clean, double by, csg_corner corner,
                                 double tolerance, csg_outline *out)
 {
     double sagitta = fmax(tolerance / fabs(by), 1e-6);
     whole_loops loops = {.memory = clean->memory};
     grid g;
-    result r = {&g, out};
+    result r = {.grid = &g, .outline = out};
     if (!make_grid(csg_outline_box(clean), fabs(by), &g))
         return CSGM_ERR_SCENE;
     csgm_status status = CSGM_ERR_MEMORY;
     if (has_room(clean->memory, corner == CSG_CORNER_ROUND ? offset_points(clean, sagitta)
                                                            : 3 * (double)clean->point_count) &&
         whole_append(&loops, &g, clean)) {
-        csg_clipper_loops view = whole_view(&loops);
-        status = settle(csg_clipper_offset(&view, by * g.steps, corner,
-                                           sagitta * fabs(by) * g.steps, take_loop, &r),
-                        out);
+        drop_repeats(&loops);
+        status = offset_whole(&loops, by, corner, sagitta, &r);
     }
     whole_release(&loops);
     return status;

@@ -12,8 +12,10 @@
 #include "shape/polygons_terms.h"
 
 /* All of these: *out is initialised and filled on CSGM_OK, else left empty. CSGM_ERR_MEMORY (more
- * than 2^24 points count as that), CSGM_ERR_SCENE: a coordinate is not finite, or
- * CSGM_ERR_UNSUPPORTED where the program was built without the library. */
+ * than 2^24 points count as that), CSGM_ERR_SCENE: a coordinate is not finite, CSGM_ERR_LIMIT: it
+ * crosses itself so often, or so many of its edges lie beside each other, that it would take more
+ * than some seconds (crossings.h), or CSGM_ERR_UNSUPPORTED where the program was built without the
+ * library. */
 
 /* The area that the loops enclose by the rule, as clean loops. */
 csgm_status csg_polygons_clean(const csg_outline *in, csg_fill fill, csg_outline *out);
@@ -36,7 +38,8 @@ csgm_status csg_polygons_hull(const csg_outline *in, csg_outline *out);
 /* Triangles of a clean outline: 3 indices each into its points, counter-clockwise, from `memory`;
  * of points at one place (where loops touch) the first stands for all. Every edge of the outline is
  * an edge of just one of them, every other edge of two. *indices is released by the caller,
- * *index_count * sizeof(uint32_t) bytes; NULL where there are none. (Our own: triangulate.c.) */
+ * *index_count * sizeof(uint32_t) bytes; NULL where there are none. CSGM_ERR_LIMIT: it would take
+ * more than some seconds. (Our own: triangulate.c.) */
 csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, uint32_t **indices,
                                      size_t *index_count);
 

@@ -29,7 +29,11 @@ typedef struct cutter {
     size_t cell_capacity;
     uint32_t *indices;
     size_t index_count, index_capacity;
+    uint64_t work; /* corners looked at */
 } cutter;
+
+/* About two seconds. Ordinary outlines of a million corners need a tenth of it. */
+static const uint64_t most_work = 600000000;
 
 /* What an ear may be, from the best on. */
 typedef enum ear_kind {
@@ -45,7 +49,8 @@ static void join_holes(cutter *c, size_t hole_count)
 {
     csg_ring_start *holes = c->starts + c->ring_count;
     size_t left_over = 0;
-    for (size_t i = 0; i < hole_count; i++) {
+    for (size_t i = 0; i < hole_count && c->work <= most_work; i++) {
+        c->work += c->rings.corner_count;
         if (!csg_ring_join(&c->rings, holes[i].corner))
             holes[left_over++] = holes[i];
     }
@@ -151,7 +156,7 @@ static bool is_blocked_by(const csg_rings *rings, uint32_t r, const csg_vec2 *ea
            csg_turn(ear[2], ear[0], p) >= inside;
 }
 
-static bool is_blocked(const cutter *c, uint32_t tip, const csg_vec2 *ear, ear_kind kind)
+static bool is_blocked(cutter *c, uint32_t tip, const csg_vec2 *ear, ear_kind kind)
 {
     const cells *g = &c->cells;
     const csg_ring_corner *corners = c->rings.corners;
@@ -165,7 +170,9 @@ static bool is_blocked(const cutter *c, uint32_t tip, const csg_vec2 *ear, ear_k
     for (uint32_t y = cell_along(y0, g->bottom, g->per_y, g->height); y <= top; y++) {
         for (uint32_t x = left; x <= right; x++) {
             uint32_t r = g->first[(size_t)y * g->width + x];
+            c->work++;
             for (; r != CSG_CORNER_NONE; r = corners[r].next_in_cell) {
+                c->work++;
                 if (corners[r].is_blocker && r != tip && r != corners[tip].previous &&
                     r != corners[tip].next && is_blocked_by(&c->rings, r, ear, kind))
                     return true;
@@ -185,7 +192,7 @@ static bool is_spike(const csg_rings *rings, uint32_t tip)
     return csg_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) >= 0;
 }
 
-static bool is_ear(const cutter *c, uint32_t tip, ear_kind kind)
+static bool is_ear(cutter *c, uint32_t tip, ear_kind kind)
 {
     const csg_ring_corner *corner = &c->rings.corners[tip];
     int turn = turn_at(&c->rings, tip);
@@ -226,7 +233,7 @@ static void cut_ring(cutter *c, uint32_t start)
     size_t blockers, left = survey(c, start, &box, &blockers), misses = 0;
     ear_kind kind = SPIKE;
     fill_cells(c, start, box, blockers);
-    for (uint32_t i = start; left >= 3;) {
+    for (uint32_t i = start; left >= 3 && c->work <= most_work;) {
         uint32_t before = c->rings.corners[i].previous, next = c->rings.corners[i].next;
         if (is_ear(c, i, kind)) {
             cut_ear(c, i);
@@ -294,6 +301,10 @@ csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, 
     bool is_room = allocate(&c);
     if (is_room)
         cut_rings(&c);
+    if (c.work > most_work) {
+        release(&c);
+        return CSGM_ERR_LIMIT;
+    }
     if (is_room && c.index_count) {
         size_t bytes = c.index_count * sizeof **indices;
         *indices = csg_memory_alloc(memory, bytes);
