@@ -27,13 +27,14 @@ typedef struct csg_shape_operations {
     uint64_t (*hash)(const csg_shape *shape);
 } csg_shape_operations;
 
+/* The first member of the struct of each kind. */
 struct csg_shape {
     csg_shape_kind kind;
     const csg_shape_operations *operations;
     csg_memory *memory;
     atomic_uint references;
     csg_box box; /* of the solid; a region's is infinite in z */
-}; /* the first member of the struct of each kind */
+};
 
 void csg_shape_retain(csg_shape *shape);
 void csg_shape_release(csg_shape *shape); /* NULL is a no-op */

@@ -295,12 +295,13 @@ static void the_nth_allocation_fails(void **state)
     (void)state;
     if (!csg_json_available())
         skip();
+    static const char sets[] = "{\"parameterSets\": {\"s\": {\"n\": 3, \"v\": [1, 2]}}}";
     for (size_t n = 0; status != CSGM_OK; n++) {
         bench_close(&b);
         bench_open(&b, &allocator);
         allocations_left = n;
         status = with_set("/* [A] */\n// b\nn = 1; // [1:x, \"2\":y]\ns = \"\"; // 4\nv = [1];\n",
-                          "{\"parameterSets\": {\"s\": {\"n\": 3, \"v\": [1, 2]}}}", 49);
+                          sets, sizeof sets - 1);
         assert_true((status == CSGM_OK) == (params != NULL));
         allocations_left = SIZE_MAX;
         csg_params_destroy(params);
