@@ -66,33 +66,6 @@ bool csg_format_available(csgm_format format, bool for_reading)
     return !can || can();
 }
 
-/* The build says which libraries it has (meson.build). */
-const char *csg_build_features(void)
-{
-    return
-#ifdef CSG_DRACO_VERSION
-        "with Draco " CSG_DRACO_VERSION " (.drc, compressed glTF)\n"
-#else
-        "without Draco (no .drc, no compressed glTF)\n"
-#endif
-#ifdef CSG_TINYGLTF_VERSION
-        "with tinygltf " CSG_TINYGLTF_VERSION " (reading glTF)\n"
-#else
-        "without tinygltf (glTF is written but not read)\n"
-#endif
-#ifdef CSG_LIBZIP_VERSION
-        "with libzip " CSG_LIBZIP_VERSION ", expat " CSG_EXPAT_VERSION ", zlib " CSG_ZLIB_VERSION
-        " (.3mf)\n"
-#else
-        "without libzip, expat or zlib (no .3mf)\n"
-#endif
-#ifdef CSG_JSON_VERSION
-        "with nlohmann-json " CSG_JSON_VERSION " (parameter sets)";
-#else
-        "without nlohmann-json (no parameter sets)";
-#endif
-}
-
 csgm_status csg_format_no_library(csgm_context *context, const char *file, const char *library,
                                   const char *what)
 {

@@ -125,10 +125,13 @@ bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
                        (unsigned long long)e->context->limits.eval_steps);
         return false;
     }
-    if (e->program->deadline_s == 0 || e->steps - e->clock_steps < LOOK_AT_CLOCK)
-        return true;
+    return e->steps - e->clock_steps < LOOK_AT_CLOCK || csg_eval_check_time(e, where);
+}
+
+bool csg_eval_check_time(csg_eval *e, csg_span where)
+{
     e->clock_steps = e->steps;
-    if (csg_clock_now_s() > e->program->deadline_s)
+    if (e->program->deadline_s != 0 && csg_clock_now_s() > e->program->deadline_s)
         csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL,
                        "the evaluation takes more than %g seconds", e->context->limits.timeout_s);
     return !e->stop;

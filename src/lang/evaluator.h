@@ -97,6 +97,8 @@ void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char 
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Counts steps of work; false: the limit of steps or time is reached. */
 bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where);
+/* Before and after what may take long in one step: reports that the time is up. False: stop. */
+bool csg_eval_check_time(csg_eval *e, csg_span where);
 /* Into a call or a nesting; false: too deep. Pair with csg_eval_leave when true. */
 bool csg_eval_enter(csg_eval *e, csg_span where);
 void csg_eval_leave(csg_eval *e);

@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "base/clock.h"
 #include "lang/pieces.h"
 #include "scene/flatten.h"
 #include "scene/services.h"
@@ -90,11 +91,13 @@ bool csg_finite_size(csg_module_call *call, csg_node_id node, double *out)
     *out = longest_side(box, flat);
     if (isfinite(*out) && !csg_box_is_empty(box))
         return true;
-    csg_eval_report(e, CSG_DIAG_NOT_EXACT, call->statement->where,
-                    "cut it first, by an intersection with a box",
-                    csg_box_is_empty(box) ? "%s() of a solid without a surface"
-                                          : "%s() of a solid without bounds",
-                    call->name);
+    if (csg_box_is_empty(box))
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, call->statement->where, NULL,
+                        "%s() of a solid without a surface is nothing", call->name);
+    else
+        csg_eval_report(e, CSG_DIAG_NOT_EXACT, call->statement->where,
+                        "cut it first, by an intersection with a box",
+                        "%s() of a solid without bounds", call->name);
     call->failed = true;
     return false;
 }
@@ -109,21 +112,38 @@ csgm_status csg_flat_outline(csg_module_call *call, csg_node_id node, csg_outlin
     csg_outline_init(out, e->heap.memory);
     if (!csg_finite_size(call, node, &size))
         return e->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
+    if (!csg_eval_check_time(e, call->statement->where))
+        return CSGM_ERR_LIMIT;
     return csg_flatten(&e->builder, node, fine * size, out);
+}
+
+/* In what is left of the evaluation's time. */
+static csgm_status tessellate_in_time(csg_module_call *call, const csgm_scene *scene,
+                                      uint32_t cells, csg_triangles *out)
+{
+    csg_eval *e = call->e;
+    double whole = e->context->limits.timeout_s, deadline = e->program->deadline_s;
+    if (!csg_eval_check_time(e, call->statement->where))
+        return CSGM_ERR_LIMIT;
+    if (deadline != 0)
+        e->context->limits.timeout_s = fmax(deadline - csg_clock_now_s(), 1e-3);
+    csgm_status status = e->program->services->tessellate(e->context, scene, cells, out);
+    e->context->limits.timeout_s = whole;
+    csg_eval_check_time(e, call->statement->where);
+    return status;
 }
 
 csgm_status csg_solid_triangles(csg_module_call *call, csg_node_id node, csg_triangles *out)
 {
     enum { CELLS = 160 };
     csg_eval *e = call->e;
-    const csg_services *services = e->program->services;
     csgm_scene *scene = NULL;
-    if (!services)
+    if (!e->program->services)
         return CSGM_ERR_UNSUPPORTED;
     csgm_status status = csg_build_snapshot(&e->builder, node, &scene);
     if (status != CSGM_OK)
         return status;
-    status = services->tessellate(e->context, scene, CELLS, out);
+    status = tessellate_in_time(call, scene, CELLS, out);
     csg_scene_destroy(scene);
     return status;
 }

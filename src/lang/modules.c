@@ -245,10 +245,11 @@ void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code cod
     vsnprintf(problem, sizeof problem, format, arguments);
     va_end(arguments);
     snprintf(hint, sizeof hint, "%s must be %s", row->name, row->range);
-    csg_eval_report(call->e, code,
-                    csg_has_argument(call, index) ? call->spans[index] : call->statement->where,
-                    code == CSG_DIAG_OUT_OF_RANGE && row->range[0] ? hint : NULL, "%s(): %s",
-                    call->name, problem);
+    csg_eval_report(
+        call->e, code, csg_has_argument(call, index) ? call->spans[index] : call->statement->where,
+        (code == CSG_DIAG_OUT_OF_RANGE || code == CSG_DIAG_EMPTY_SHAPE) && row->range[0] ? hint
+                                                                                         : NULL,
+        "%s(): %s", call->name, problem);
     call->failed = true;
 }
 
@@ -259,18 +260,22 @@ bool csg_has_argument(const csg_module_call *call, uint32_t index)
 
 static bool in_range(double number, csg_range_kind range)
 {
-    return isfinite(number) &&
-           (range == CSG_ANY || number > 0 || (range == CSG_NOT_NEGATIVE && number == 0));
+    bool point = range == CSG_NOT_NEGATIVE || range == CSG_SIZE_OR_POINT;
+    return isfinite(number) && (range == CSG_ANY || number > 0 || (point && number == 0));
 }
 
 /* `what` completes "r is": "-1", "nan". */
 static void out_of_range(csg_module_call *call, uint32_t index, double number, csg_range_kind range)
 {
-    csg_argument_error(call, index, CSG_DIAG_OUT_OF_RANGE, "%s is %g, it must be %s",
-                       call->parameters[index].name, isnan(number) ? fabs(number) : number,
-                       !isfinite(number)       ? "a finite number"
-                       : range == CSG_POSITIVE ? "above 0"
-                                               : "at least 0");
+    bool above = range == CSG_POSITIVE || range == CSG_SIZE;
+    bool nothing = isfinite(number) && (range == CSG_SIZE || range == CSG_SIZE_OR_POINT);
+    csg_argument_error(call, index, nothing ? CSG_DIAG_EMPTY_SHAPE : CSG_DIAG_OUT_OF_RANGE,
+                       "%s is %g, %s %s", call->parameters[index].name,
+                       isnan(number) ? fabs(number) : number,
+                       nothing ? "so there is nothing: it must be" : "it must be",
+                       !isfinite(number) ? "a finite number"
+                       : above           ? "above 0"
+                                         : "at least 0");
 }
 
 double csg_argument_number(csg_module_call *call, uint32_t index, double otherwise,

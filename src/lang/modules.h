@@ -54,7 +54,13 @@ bool csg_report_unsupported(csg_eval *e, csg_member_kind kind, csg_symbol name, 
 
 /* ---- arguments: index = position in modules.def --------------------------------------------- */
 
-typedef enum csg_range_kind { CSG_ANY, CSG_POSITIVE, CSG_NOT_NEGATIVE } csg_range_kind;
+typedef enum csg_range_kind {
+    CSG_ANY,
+    CSG_POSITIVE,
+    CSG_NOT_NEGATIVE,
+    CSG_SIZE,         /* above 0, else the solid has nothing inside: only a warning, */
+    CSG_SIZE_OR_POINT /* as real files compute sizes that OpenSCAD takes in silence */
+} csg_range_kind;
 
 bool csg_has_argument(const csg_module_call *call, uint32_t index);
 /* The number given, or `otherwise`; reports what is no number or out of range. */

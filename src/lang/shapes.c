@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "shape/crossings.h"
 #include "shape/polygons.h"
 #include "shape/polyhedron.h"
 #include "shape/region.h"
@@ -37,9 +38,17 @@ csg_node_id csg_shape_moved(csg_module_call *call, csg_node_id node, const csg_a
 csg_node_id csg_shape_failed(csg_module_call *call, csgm_status status, const char *what)
 {
     csg_eval *e = call->e;
-    if (status == CSGM_ERR_MEMORY) {
+    if (status == CSGM_ERR_MEMORY)
         csg_eval_no_memory(e);
+    if (e->stop)
         return CSG_NODE_NONE;
+    if (status == CSGM_ERR_LIMIT) {
+        csg_eval_report(e, CSG_DIAG_BAD_SHAPE, call->statement->where,
+                        "fewer points, or fewer parts on top of each other, are quicker",
+                        "%s(): cannot %s: its outline crosses itself more than %d times, or too "
+                        "many of its edges lie side by side",
+                        call->name, what, CSG_MOST_CROSSINGS);
+        return csg_shape_empty(call);
     }
     csg_eval_report(e, CSG_DIAG_BAD_SHAPE, call->statement->where,
                     status == CSGM_ERR_UNSUPPORTED ? "the library for it was missing when this "
@@ -61,8 +70,9 @@ csg_node_id csg_shape_region(csg_module_call *call, csg_outline *clean)
     csg_eval *e = call->e;
     csg_shape *shape = NULL;
     size_t loops = clean->loop_count;
-    csgm_status status =
-        loops && !e->stop ? csg_region_create(e->heap.memory, clean, &shape) : CSGM_OK;
+    csgm_status status = loops && csg_eval_check_time(e, call->statement->where)
+                             ? csg_region_create(e->heap.memory, clean, &shape)
+                             : CSGM_OK;
     csg_outline_release(clean);
     if (e->stop)
         return CSG_NODE_NONE;
@@ -121,8 +131,9 @@ csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, boo
     csg_shape *shape = NULL;
     csg_repairs repairs = {0};
     char text[256];
-    csgm_status status =
-        e->stop ? CSGM_OK : csg_polyhedron_create(e->heap.memory, triangles, &repairs, &shape);
+    csgm_status status = !csg_eval_check_time(e, call->statement->where)
+                             ? CSGM_OK
+                             : csg_polyhedron_create(e->heap.memory, triangles, &repairs, &shape);
     csg_triangles_release(triangles);
     if (e->stop)
         return CSG_NODE_NONE;

@@ -42,7 +42,7 @@ static straight read_straight(csg_module_call *call)
                                "v lies in the plane of the figure");
     }
     if (call->values[HEIGHT].kind != CSG_VALUE_STRING)
-        s.height = csg_argument_number(call, HEIGHT, s.height, CSG_POSITIVE);
+        s.height = csg_argument_number(call, HEIGHT, s.height, CSG_SIZE);
     s.twist = csg_argument_number(call, TWIST, 0, CSG_ANY);
     csg_argument_pair(call, SCALE, s.scale);
     s.scale[0] = fmax(s.scale[0], 0);

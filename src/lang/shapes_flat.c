@@ -13,7 +13,7 @@ csg_node_id csg_module_circle(csg_module_call *call)
 {
     enum { R, D };
     csg_eval *e = call->e;
-    double r = csg_argument_radius(call, R, D, 1, CSG_POSITIVE);
+    double r = csg_argument_radius(call, R, D, 1, CSG_SIZE);
     if (call->failed)
         return csg_shape_empty(call);
     uint32_t facets = csg_facets(e, r);
@@ -31,7 +31,7 @@ csg_node_id csg_module_square(csg_module_call *call)
     bool known = csg_argument_pair(call, SIZE, size);
     double smallest = fmin(size[0], size[1]);
     if (known && !(smallest > 0))
-        csg_argument_error(call, SIZE, CSG_DIAG_OUT_OF_RANGE,
+        csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
                            "an edge of length %g makes no figure, it must be above 0", smallest);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE);
     if (!call->failed && round > smallest / 2)
@@ -119,6 +119,16 @@ static bool add_paths(csg_module_call *call, uint32_t index, csg_vector *points,
     return true;
 }
 
+/* As the scene says it is clean; a search in what is not at all would be too slow. */
+static csg_node_id clean_region(csg_module_call *call, csg_outline *outline)
+{
+    csgm_status status = csg_polygons_check(outline);
+    if (status == CSGM_OK)
+        return csg_shape_region(call, outline);
+    csg_outline_release(outline);
+    return csg_shape_failed(call, status, "make a figure of this outline");
+}
+
 csg_node_id csg_module_polygon(csg_module_call *call)
 {
     enum { POINTS, PATHS, CONVEXITY, CLEAN };
@@ -130,7 +140,7 @@ csg_node_id csg_module_polygon(csg_module_call *call)
         add_paths(call, PATHS, call->values[POINTS].as.vector, &outline);
     bool clean = csg_argument_boolean(call, CLEAN);
     if (!call->failed && !call->e->stop)
-        return clean ? csg_shape_region(call, &outline) : csg_shape_area(call, &outline, true);
+        return clean ? clean_region(call, &outline) : csg_shape_area(call, &outline, true);
     csg_outline_release(&outline);
     return csg_shape_empty(call);
 }

@@ -32,7 +32,7 @@ static csg_node_id moved(csg_module_call *call, csg_node_id node, double x, doub
 csg_node_id csg_module_sphere(csg_module_call *call)
 {
     enum { R, D };
-    double r = csg_argument_radius(call, R, D, 1, CSG_POSITIVE);
+    double r = csg_argument_radius(call, R, D, 1, CSG_SIZE);
     if (call->failed)
         return empty(call);
     uint32_t facets = csg_facets(call->e, r);
@@ -49,7 +49,7 @@ csg_node_id csg_module_cube(csg_module_call *call)
         call->values[SIZE].as.vector->count != 3)
         csg_argument_error(call, SIZE, CSG_DIAG_BAD_TYPE, "size must be a number or [x, y, z]");
     if (!call->failed && !(smallest > 0))
-        csg_argument_error(call, SIZE, CSG_DIAG_OUT_OF_RANGE,
+        csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
                            "an edge of length %g makes no solid, it must be above 0", smallest);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE);
     if (!call->failed && round > smallest / 2)
@@ -71,9 +71,9 @@ enum { H, R1, R2, CENTER, R, D, D1, D2, ROUND, CORE };
 
 static void cylinder_radii(csg_module_call *call, double out[2])
 {
-    double both = csg_argument_radius(call, R, D, 1, CSG_POSITIVE);
-    out[0] = csg_argument_radius(call, R1, D1, both, CSG_NOT_NEGATIVE);
-    out[1] = csg_argument_radius(call, R2, D2, both, CSG_NOT_NEGATIVE);
+    double both = csg_argument_radius(call, R, D, 1, CSG_SIZE);
+    out[0] = csg_argument_radius(call, R1, D1, both, CSG_SIZE_OR_POINT);
+    out[1] = csg_argument_radius(call, R2, D2, both, CSG_SIZE_OR_POINT);
     bool ends = csg_has_argument(call, R1) || csg_has_argument(call, R2) ||
                 csg_has_argument(call, D1) || csg_has_argument(call, D2);
     bool one = (csg_has_argument(call, R1) || csg_has_argument(call, D1)) &&
@@ -86,7 +86,7 @@ static void cylinder_radii(csg_module_call *call, double out[2])
                            csg_has_argument(call, R2)   ? R2
                            : csg_has_argument(call, R1) ? R1
                                                         : D1,
-                           CSG_DIAG_OUT_OF_RANGE, "the radii at both ends are 0");
+                           CSG_DIAG_EMPTY_SHAPE, "the radii at both ends are 0");
 }
 
 /* The frustum that grows to this one by `round`: its sides move inwards by round along their
@@ -124,7 +124,7 @@ static csg_node_id faceted(csg_module_call *call, double radii[2], double half, 
 
 csg_node_id csg_module_cylinder(csg_module_call *call)
 {
-    double radii[2], h = csg_argument_number(call, H, 1, CSG_POSITIVE);
+    double radii[2], h = csg_argument_number(call, H, 1, CSG_SIZE);
     cylinder_radii(call, radii);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE), half = h / 2;
     bool grows = csg_argument_boolean(call, CORE);

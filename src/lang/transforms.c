@@ -70,9 +70,7 @@ csg_node_id csg_module_rotate(csg_module_call *call)
     } else {
         double angle = csg_argument_number(call, ANGLE, 0, CSG_ANY);
         csg_vec3 axis = csg_argument_vector(call, AXIS, csg_vec3_make(0, 0, 1), false);
-        if (!call->failed && axis.x == 0 && axis.y == 0 && axis.z == 0)
-            csg_argument_error(call, AXIS, CSG_DIAG_OUT_OF_RANGE, "the axis has no direction");
-        else
+        if (axis.x != 0 || axis.y != 0 || axis.z != 0) /* else OpenSCAD leaves it as it is */
             by = csg_affine_rotate(angle, csg_vec3_normalize(axis));
     }
     return transformed(call, &by);
@@ -139,6 +137,16 @@ csg_node_id csg_module_multmatrix(csg_module_call *call)
 /* ---- colour
  * -------------------------------------------------------------------------------------------- */
 
+/* A look that cannot be is no reason to refuse the solid: the nearest is taken. */
+static double component(csg_module_call *call, uint32_t index, const char *what, double value)
+{
+    if (!(value >= 0 && value <= 1))
+        csg_eval_report(call->e, CSG_DIAG_UNKNOWN_COLOR, call->spans[index], NULL,
+                        "color(): %s %g, it is from 0 to 1%s", what, value,
+                        value > 1 ? " (of 255? divide by it)" : "");
+    return fmin(fmax(value, 0), 1);
+}
+
 static bool read_color(csg_module_call *call, csg_color *out)
 {
     csg_value value = call->values[0];
@@ -149,7 +157,6 @@ static bool read_color(csg_module_call *call, csg_color *out)
         csg_eval_report(call->e, CSG_DIAG_UNKNOWN_COLOR, call->spans[0],
                         "names are those of CSS; or \"#rrggbb\", or [r, g, b] from 0 to 1",
                         "there is no colour \"%.60s\"", value.as.string->text);
-        call->failed = true;
         return false;
     }
     if (!csg_value_numbers(value, 4, v) && !csg_value_numbers(value, 3, v)) {
@@ -157,11 +164,9 @@ static bool read_color(csg_module_call *call, csg_color *out)
         return false;
     }
     for (int i = 0; i < 4; i++)
-        if (!(v[i] >= 0 && v[i] <= 1))
-            csg_argument_error(call, 0, CSG_DIAG_OUT_OF_RANGE, "the colour has a component of %g%s",
-                               v[i], v[i] > 1 ? " (of 255? divide by it)" : "");
+        v[i] = component(call, 0, "the colour has a component of", v[i]);
     *out = (csg_color){(float)v[0], (float)v[1], (float)v[2], (float)v[3]};
-    return !call->failed;
+    return true;
 }
 
 csg_node_id csg_module_color(csg_module_call *call)
@@ -170,10 +175,8 @@ csg_node_id csg_module_color(csg_module_call *call)
     csg_eval *e = call->e;
     csg_color color = {0, 0, 0, 1};
     bool colored = csg_has_argument(call, COLOR) && read_color(call, &color);
-    double alpha = csg_argument_number(call, ALPHA, color.a, CSG_NOT_NEGATIVE);
-    if (alpha > 1)
-        csg_argument_error(call, ALPHA, CSG_DIAG_OUT_OF_RANGE, "alpha is %g", alpha);
-    color.a = (float)alpha;
+    double alpha = csg_argument_number(call, ALPHA, color.a, CSG_ANY);
+    color.a = (float)component(call, ALPHA, "alpha is", alpha);
     csg_node_id children = csg_module_children(call);
     if (!colored || call->failed || children == CSG_NODE_NONE)
         return children;

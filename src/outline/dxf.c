@@ -20,6 +20,7 @@ typedef struct drawing {
     size_t open[MOST_DEPTH]; /* the blocks that are being drawn */
     size_t depth;
     csgm_status status;
+    bool is_tangled; /* too much so to make areas of its lines */
 } drawing;
 
 typedef struct place {
@@ -194,6 +195,8 @@ static csgm_status make_outline(drawing *d, csg_memory *memory, csg_outline *out
     if (status == CSGM_OK && loops.loop_count > 0) {
         csg_outline_release(out);
         status = csg_polygons_clean(&loops, CSG_FILL_EVEN_ODD, out);
+        if (status == CSGM_ERR_LIMIT)
+            d->is_tangled = true;
     }
     csg_outline_release(&loops);
     return status;
@@ -213,7 +216,9 @@ static csgm_status draw_all(drawing *d, csg_memory *memory, csg_outline *out)
     if (d->status == CSGM_OK)
         d->status = make_outline(d, memory, out);
     if (d->status == CSGM_ERR_LIMIT)
-        csg_problem_set(&d->report->problem, d->status, "its curves have too many points");
+        csg_problem_set(&d->report->problem, d->status,
+                        d->is_tangled ? "its lines cross or cover each other too often"
+                                      : "its curves have too many points");
     csg_polylines_release(&d->lines);
     return d->status;
 }

@@ -96,6 +96,9 @@ static void add_clean(drawing *d, const csg_affine *map, csg_fill fill)
         return;
     }
     d->status = csg_polygons_clean(&d->loops, fill, &clean);
+    if (d->status == CSGM_ERR_LIMIT)
+        csg_problem_set(&d->report->problem, d->status,
+                        "a path crosses or covers itself too often");
     if (d->status == CSGM_OK && !csg_outline_append(d->out, &clean))
         out_of_memory(d);
     csg_outline_release(&clean);

@@ -249,6 +249,21 @@ csgm_status csg_polygons_clean(const csg_outline *in, csg_fill fill, csg_outline
     return run(CSG_POLYGONS_UNION, fill, in, &none, out);
 }
 
+csgm_status csg_polygons_check(const csg_outline *in)
+{
+    whole_loops loops = {.memory = in->memory};
+    grid g;
+    if (!is_finite(in) || !make_grid(csg_outline_box(in), 0, &g))
+        return CSGM_ERR_SCENE;
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (whole_append(&loops, &g, in)) {
+        csg_clipper_loops view = whole_view(&loops);
+        status = csg_crossings_check(loops.memory, &view, CSG_FILL_EVEN_ODD);
+    }
+    whole_release(&loops);
+    return status;
+}
+
 csgm_status csg_polygons_combine(csg_polygons_op op, const csg_outline *a, const csg_outline *b,
                                  csg_outline *out)
 {

@@ -23,6 +23,8 @@ csgm_status csg_polygons_clean(const csg_outline *in, csg_fill fill, csg_outline
  * with NONZERO is their union.) */
 csgm_status csg_polygons_combine(csg_polygons_op op, const csg_outline *a, const csg_outline *b,
                                  csg_outline *out);
+/* CSGM_ERR_LIMIT: csg_polygons_clean would say that, for what is said to be clean already. */
+csgm_status csg_polygons_check(const csg_outline *in);
 /* Grown (or shrunk) by `by`; round corners within `tolerance` of true arcs, but not finer than 1e-6
  * of the radius. Chamfers are cut at the distance `by` from the corner. Loops are read by NONZERO.
  */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The lexer; see lexer.h. One pass, one character of look-ahead except for punctuation of two.
- * Broken UTF-8 is reported once a file: an error in code and strings, and a warning in comments,
+ * Broken UTF-8 is reported once a file: an error in code, a warning in strings and in comments,
  * where old files have Latin-1.
  */
 #include "text/lexer.h"
@@ -11,13 +11,15 @@
 
 #include "text/utf8.h"
 
+typedef enum place { IN_CODE, IN_STRING, IN_COMMENT } place;
+
 typedef struct lexer {
     const csg_sources *sources;
     csg_memory *memory;
     csg_token_array *out;
     const char *text;
     uint32_t source, length, at;
-    bool told_utf8, told_comment, told_nul;
+    bool told_code, told_string, told_comment, told_nul;
     uint32_t counted, quotes; /* how many quotes stand at `counted` and behind; 0, 0: not known */
 } lexer;
 
@@ -80,14 +82,17 @@ static csg_span span(const lexer *l, uint32_t from, uint32_t to)
     return (csg_span){l->source, from, to - from};
 }
 
-static void bad_utf8(lexer *l, bool in_comment)
+static void bad_utf8(lexer *l, place in)
 {
-    bool *told = in_comment ? &l->told_comment : &l->told_utf8;
+    bool *told = in == IN_CODE     ? &l->told_code
+                 : in == IN_STRING ? &l->told_string
+                                   : &l->told_comment;
     if (!*told)
-        csg_source_report(l->sources, in_comment ? CSG_DIAG_COMMENT_UTF8 : CSG_DIAG_BAD_UTF8,
+        csg_source_report(l->sources, in == IN_CODE ? CSG_DIAG_BAD_UTF8 : CSG_DIAG_COMMENT_UTF8,
                           span(l, l->at, l->at + 1), "save the file as UTF-8",
-                          "byte 0x%02X is not part of a UTF-8 character",
-                          (unsigned)(unsigned char)l->text[l->at]);
+                          "byte 0x%02X is not part of a UTF-8 character%s",
+                          (unsigned)(unsigned char)l->text[l->at],
+                          in == IN_STRING ? ", it is read as Latin-1" : "");
     *told = true;
 }
 
@@ -99,14 +104,14 @@ static void nul_byte(lexer *l)
     l->told_nul = true;
 }
 
-/* Over one character of a comment or string, whatever it is. */
-static void skip_character(lexer *l, bool in_comment)
+/* Over one character, whatever it is. */
+static void skip_character(lexer *l, place in)
 {
     size_t length = csg_utf8_length(l->text + l->at, l->length - l->at);
     if (l->text[l->at] == '\0')
         nul_byte(l);
     if (length == 0)
-        bad_utf8(l, in_comment);
+        bad_utf8(l, in);
     l->at += length ? (uint32_t)length : 1;
 }
 
@@ -125,7 +130,7 @@ static bool push(lexer *l, csg_token_kind kind, uint32_t from)
 static void skip_block_comment(lexer *l)
 {
     uint32_t from = l->at;
-    for (l->at += 2; l->at < l->length; skip_character(l, true))
+    for (l->at += 2; l->at < l->length; skip_character(l, IN_COMMENT))
         if (peek(l, 0) == '*' && peek(l, 1) == '/') {
             l->at += 2;
             return;
@@ -134,15 +139,25 @@ static void skip_block_comment(lexer *l)
                       "close it with '*/'", "this comment never ends");
 }
 
+/* Bytes of white space. Text from web pages has no-break spaces, in UTF-8 or in Latin-1. */
+static uint32_t space_length(const lexer *l)
+{
+    char c = peek(l, 0);
+    if (c == '\xC2' && peek(l, 1) == '\xA0')
+        return 2;
+    return c == ' ' || (c >= '\t' && c <= '\r') || c == '\xA0' ? 1 : 0;
+}
+
 static void skip_space(lexer *l)
 {
     for (;;) {
         char c = peek(l, 0);
-        if (l->at < l->length && (c == ' ' || (c >= '\t' && c <= '\r'))) {
-            l->at++;
+        uint32_t space = space_length(l);
+        if (space) {
+            l->at += space;
         } else if (c == '/' && peek(l, 1) == '/') {
             while (l->at < l->length && l->text[l->at] != '\n')
-                skip_character(l, true);
+                skip_character(l, IN_COMMENT);
         } else if (c == '/' && peek(l, 1) == '*') {
             skip_block_comment(l);
         } else {
@@ -238,7 +253,7 @@ static bool lex_string(lexer *l)
         if (l->text[l->at] == '\\')
             lex_escape(l);
         else
-            skip_character(l, false);
+            skip_character(l, IN_STRING);
     }
     if (peek(l, 0) == '"') {
         l->at++;
@@ -251,7 +266,7 @@ static bool lex_string(lexer *l)
 
 char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size_t *out_length)
 {
-    char *out = csg_arena_alloc(arena, (size_t)length + 4);
+    char *out = csg_arena_alloc(arena, 2 * (size_t)length + 4); /* Latin-1 grows to two bytes */
     size_t written = 0;
     if (!out)
         return NULL;
@@ -266,7 +281,11 @@ char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size
         } else if (text[i] == '\\' || text[i] == '\n') { /* told about */
             i++;
         } else {
-            out[written++] = text[i++];
+            size_t step = csg_utf8_length(text + i, end - i);
+            if (step == 0)
+                written += csg_utf8_encode((unsigned char)text[i++], out + written);
+            for (size_t k = 0; k < step; k++)
+                out[written++] = text[i++];
         }
     }
     out[written] = '\0';
@@ -407,7 +426,7 @@ static bool lex_path(lexer *l)
     uint32_t open = l->at;
     if (peek(l, 0) == '<')
         while (l->at < l->length && l->text[l->at] != '>' && l->text[l->at] != '\n')
-            skip_character(l, false);
+            skip_character(l, IN_CODE);
     if (peek(l, 0) != '>') {
         l->at = from;
         return true;
@@ -452,7 +471,6 @@ static const char *hint_for_character(uint32_t character)
         {0x2264, 0x2264, "less or equal is '<='"},
         {0x2265, 0x2265, "greater or equal is '>='"},
         {0x2260, 0x2260, "not equal is '!='"},
-        {0xA0, 0xA0, "it is a no-break space, from a word processor or web page: type a space"},
         {0x2000, 0x200F, "it is an invisible character, from a word processor or web page"},
         {0xFEFF, 0xFEFF, "it is an invisible character, from a word processor or web page"},
         {0xFF01, 0xFF5E, "it is a wide character: type the plain one"},
@@ -482,7 +500,7 @@ static bool lex_strange(lexer *l)
         csg_source_report(l->sources, CSG_DIAG_BAD_CHARACTER, span(l, from, from + 1), NULL,
                           "control character 0x%02X", (unsigned)character);
     if (length == 0 || character == 0)
-        skip_character(l, false);
+        skip_character(l, IN_CODE);
     else
         l->at += length;
     return push(l, CSG_TOKEN_BAD, from);

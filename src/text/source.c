@@ -129,18 +129,22 @@ void csg_source_report(const csg_sources *sources, csg_diag_code code, csg_span 
 
 /* ---- reading --------------------------------------------------------------------------- */
 
-/* Text has hardly any control characters or broken UTF-8; other files have plenty. */
+/* Text has hardly any control characters, other files have plenty; broken UTF-8 counts a little, as
+ * there is text in other codes. */
 static bool is_binary(const char *text, size_t length)
 {
+    enum { CONTROL = 16, BROKEN = 1 };
     size_t sniffed = length < SNIFFED ? length : SNIFFED, strange = 0;
     for (size_t i = 0; i < sniffed;) {
         unsigned char c = (unsigned char)text[i];
         size_t step = csg_utf8_length(text + i, length - i);
-        if (step == 0 || (c < 0x20 && (c < '\t' || c > '\r')) || c == 0x7F)
-            strange++;
+        if ((c < 0x20 && (c < '\t' || c > '\r')) || c == 0x7F)
+            strange += CONTROL;
+        else if (step == 0)
+            strange += BROKEN;
         i += step ? step : 1;
     }
-    return strange >= 4 && strange * 12 > sniffed;
+    return strange >= 4 * CONTROL && strange * 12 > sniffed * CONTROL;
 }
 
 static csgm_status add(csg_sources *sources, csg_source source, uint32_t *out)

@@ -5,7 +5,7 @@ import json
 import cli
 
 NESTED = {"a.txt": "use <b.txt>\nouter(1);\n", "b.txt": "include <c.txt>\nmodule outer(x) inner(x);\n",
-          "c.txt": "module inner(x) { cube([x, -1, 1]); }\n"}
+          "c.txt": "module inner(x) { torus(-x); }\n"}
 
 
 class Text(cli.CliTest):
@@ -87,7 +87,7 @@ class Json(cli.CliTest):
                                    "hint": "did you mean 'sphere'?"})
 
     def test_notes_stand_inside(self):
-        self.write("a.txt", "a = 1;\na = 2;\nmodule m() sphere(-a);\nm();\nm();\nb = 1;\nb = 2;\n")
+        self.write("a.txt", "a = 1;\na = 2;\nmodule m() torus(-a);\nm();\nm();\nb = 1;\nb = 2;\n")
         found = self.findings("check", "a.txt", status=1)
         self.assertEqual([f["severity"] for f in found], ["warning", "warning", "error"])
         self.assertEqual([[n["message"] for n in f.get("notes", [])] for f in found],
@@ -125,7 +125,7 @@ class Json(cli.CliTest):
                             for f in found))
 
     def test_quiet(self):
-        self.write("a.txt", "a = 1;\na = 2;\nsphere(-a);\necho(1);\n")
+        self.write("a.txt", "a = 1;\na = 2;\ntorus(-a);\necho(1);\n")
         found = self.findings("check", "-q", "a.txt", status=1)
         self.assertEqual([f["code"] for f in found], ["E0302"])
 

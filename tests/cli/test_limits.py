@@ -46,7 +46,7 @@ SCENES = {
                        + "b" * 3000000 + '") < 0) sphere(1);', ("E0904", "E0902"), None),
     "many parameters": ("function f(" + ", ".join(f"p{i}" for i in range(900)) + ") = f(0); x = f(0);",
                         ("E0904", "E0902"), None),
-    "zero": ("cube(0);", "E0302", "E0302"),
+    "zero": ("torus(0);", "E0302", "E0302"),
     "no number": ("sphere(0 / 0);", "E0302", "E0302"),
     "infinite": ("cylinder(h = 1 / 0, r = 1);", "E0302", "E0302"),
     "below zero": ("torus(-1, 2);", "E0302", "E0302"),

@@ -474,7 +474,7 @@ static void what_cannot_be_is_told(void **state)
     check_code("rotate_extrude(angle = 0) translate([4, 0]) circle(3);", -325);
     check_code("minkowski() { torus(5, 1); cube(1); }", 331);
     check_code("hull() plane();", 331);
-    check_code("linear_extrude(0) circle(1);", 302);
+    check_code("linear_extrude(0) circle(1);", -325);
     check_code("scale([1, 0, 1]) cube(1);", 303);
     check_code("tube([[0, 0, 0]], 1);", 301);
     check_code("tube([[0, 0, 0], [1, 0, 0], [1, 1, 0]], 1, 3);", 327);
