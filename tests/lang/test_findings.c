@@ -315,8 +315,13 @@ static void strange_bytes_have_a_place(void **state)
     assert_non_null(strstr(b.text, "scene.txt:2:5: error E0102"));
     assert_int_equal(bench_compile(&b, "echo(\"\xE9\"); sphere(1);"), CSGM_OK);
     assert_non_null(strstr(b.text, "scene.txt:1:7: warning W0114"));
+    assert_string_equal(b.echo, "\"\xC3\xA9\"\n");
     assert_int_equal(bench_compile(&b, "sphere(\xE9);"), CSGM_ERR_SYNTAX);
     assert_non_null(strstr(b.text, "scene.txt:1:8: error E0103"));
+    assert_int_equal(bench_compile(&b, "sphere(\xC2\xA0 1 )\xA0;\xC2\xA0"), CSGM_OK);
+    assert_int_equal(b.code_count, 0);
+    /* Shift JIS: nearly every byte of it is broken UTF-8 */
+    assert_int_equal(bench_compile(&b, "// \x83v\x83\x8A\x83\x93\x83^\x81[\nsphere(1);"), CSGM_OK);
     assert_int_equal(bench_compile(&b, "// 5 mm\xB2\nsphere(1);"), CSGM_OK);
     assert_true(bench_has(&b, -114));
     assert_int_equal(bench_compile(&b, "\xEF\xBB\xBFsphere(1);"), CSGM_OK);
