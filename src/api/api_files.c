@@ -24,11 +24,6 @@ bool csgm_format_available(csgm_format format, bool for_reading)
     return csg_format_available(format, for_reading);
 }
 
-const char *csgm_build_features(void)
-{
-    return csg_build_features();
-}
-
 csgm_write_options csgm_write_options_default(void)
 {
     return csg_write_options_default();

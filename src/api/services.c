@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "field/field.h"
 #include "io/formats.h"
@@ -56,6 +57,20 @@ static csgm_status copy_mesh(csgm_context *context, const csgm_mesh *mesh, csg_t
     return ok ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
+/* A scene may wait for no other program and read from no endless device. What is not there at all
+ * is for the reader to tell. */
+static bool is_file(const char *path, char *problem, size_t problem_size)
+{
+    struct stat kind;
+    if (stat(path, &kind) != 0 || S_ISREG(kind.st_mode))
+        return true;
+    snprintf(problem, problem_size, "it is a %s, not a file",
+             S_ISDIR(kind.st_mode)    ? "folder"
+             : S_ISFIFO(kind.st_mode) ? "pipe"
+                                      : "device");
+    return false;
+}
+
 static csgm_status read_mesh(csgm_context *context, const char *path, csg_triangles *out,
                              char *problem, size_t problem_size)
 {
@@ -64,10 +79,12 @@ static csgm_status read_mesh(csgm_context *context, const char *path, csg_triang
     csgm_mesh *mesh;
     if (problem_size)
         problem[0] = '\0';
+    csg_triangles_init(out, &context->memory);
+    if (!is_file(path, problem, problem_size))
+        return CSGM_ERR_IO;
     context->diags = catching_sink(&caught);
     csgm_status status = csg_io_read(context, path, CSGM_FORMAT_AUTO, &mesh);
     context->diags = own;
-    csg_triangles_init(out, &context->memory);
     if (status != CSGM_OK)
         return status;
     status = copy_mesh(context, mesh, out);

@@ -12,7 +12,6 @@ csgm_format csg_format_from_path(const char *path); /* NULL gives AUTO */
 csgm_format csg_format_from_name(const char *name);
 const char *csg_format_name(csgm_format format);
 bool csg_format_available(csgm_format format, bool for_reading);
-const char *csg_build_features(void);
 
 csgm_write_options csg_write_options_default(void);
 

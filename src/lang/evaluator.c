@@ -139,7 +139,7 @@ bool csg_eval_check_time(csg_eval *e, csg_span where)
 
 bool csg_eval_check_stack(csg_eval *e, csg_span where)
 {
-    char here;
+    char here = 0;
     if (csg_stack_has_room(e->program->stack_end, &here))
         return true;
     csg_eval_limit(e, CSG_DIAG_TOO_DEEP, where, NULL,

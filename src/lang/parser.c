@@ -136,7 +136,7 @@ bool csg_parser_close(csg_parser *parser, csg_token_kind kind, csg_span open)
 
 bool csg_parser_enter(csg_parser *parser)
 {
-    char here; /* its address tells how much of the stack is used */
+    char here = 0; /* its address tells how much of the stack is used */
     if (parser->stop)
         return false;
     if (parser->depth < parser->program->context->limits.depth &&

@@ -10,7 +10,7 @@
 #include "lang/pieces.h"
 #include "shape/polygons.h"
 
-enum { POINT_STEPS = 100 }; /* a point costs its triangles, their mending and their tree */
+enum { POINT_STEPS = 400 }; /* a point costs its triangles, their mending and their tree */
 
 typedef struct sweeping {
     csg_outline outline; /* of the figure, clean */

@@ -67,6 +67,8 @@ csgm_status csg_bytes_read(csg_memory *memory, const char *path, csg_bytes *out,
 {
     struct stat kind;
     *out = (csg_bytes){.memory = memory};
+    if (stat(path, &kind) == 0 && S_ISFIFO(kind.st_mode)) /* opening it may wait for ever */
+        return csg_problem_set(problem, CSGM_ERR_IO, "it is a pipe, not a file");
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (file < 0)
         return csg_problem_set(problem, CSGM_ERR_IO, "it cannot be opened: %s", strerror(errno));
