@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Which outside libraries this build has; meson.build writes the lines.
  */
+#include "api/build_features.h"
 #include "csgmesh/csgmesh.h"
-#include "build_features.h"
 
 const char *csgm_build_features(void)
 {
