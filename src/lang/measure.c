@@ -138,6 +138,10 @@ csgm_status csg_solid_triangles(csg_module_call *call, csg_node_id node, csg_tri
     enum { CELLS = 160 };
     csg_eval *e = call->e;
     csgm_scene *scene = NULL;
+    csg_vec3 size = csg_box_size(csg_build_box(&e->builder, node));
+    csg_triangles_init(out, e->heap.memory);
+    if (!(fmin(size.x, fmin(size.y, size.z)) > 0))
+        return CSGM_OK; /* nothing but a face or an edge that two solids share */
     if (!e->program->services)
         return CSGM_ERR_UNSUPPORTED;
     csgm_status status = csg_build_snapshot(&e->builder, node, &scene);

@@ -42,6 +42,8 @@ csg_node_id csg_shape_failed(csg_module_call *call, csgm_status status, const ch
         csg_eval_no_memory(e);
     if (e->stop)
         return CSG_NODE_NONE;
+    if (call->failed) /* told already */
+        return csg_shape_empty(call);
     if (status == CSGM_ERR_LIMIT) {
         csg_eval_report(e, CSG_DIAG_BAD_SHAPE, call->statement->where,
                         "fewer points, or fewer parts on top of each other, are quicker",

@@ -40,7 +40,7 @@ static csg_node_id transformed(csg_module_call *call, const csg_affine *by)
     if (flat && !keep_plane(call, &map))
         return csg_shape_empty(call);
     if (!flat && csg_affine_determinant(map) == 0 && !csg_shape_is_empty(e, children)) {
-        csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "%s",
+        csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "%s, nothing is left",
                            call->name[0] == 's' ? "a factor of 0 flattens the solid"
                                                 : "this matrix flattens the solid");
         return csg_shape_empty(call);
@@ -124,8 +124,11 @@ csg_node_id csg_module_multmatrix(csg_module_call *call)
     if (csg_has_argument(call, 0) && !read_matrix(call->values[0], m))
         csg_argument_error(call, 0, CSG_DIAG_BAD_TYPE,
                            "m must be 3 or 4 rows of up to 4 finite numbers");
-    else if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || m[3][3] == 0)
+    else if (m[3][3] == 0)
         csg_argument_error(call, 0, CSG_DIAG_OUT_OF_RANGE, "the fourth row makes a perspective");
+    else if (fmax(fabs(m[3][0]), fmax(fabs(m[3][1]), fabs(m[3][2]))) > 1e-9)
+        csg_eval_report(call->e, CSG_DIAG_CONFLICT, call->spans[0], NULL,
+                        "multmatrix() makes no perspective: its fourth row is ignored");
     for (int i = 0; i < 3 && !call->failed; i++) {
         for (int j = 0; j < 3; j++)
             by.m[i][j] = m[i][j] / m[3][3];

@@ -169,6 +169,19 @@ static bool is_convex(const ring *r)
     return area > 0;
 }
 
+/* Which diagonal of a quad that is not flat: the circle rule, as OpenSCAD has it. The first one has
+ * the corners 1 and 3 opposite to it: their angles, together, are then at most 180 degrees. */
+static bool takes_second_diagonal(const flat_point *p)
+{
+    double sum[2][2]; /* of either corner's angle: cosine and sine, times the edges' lengths */
+    for (uint32_t i = 0; i < 2; i++) {
+        flat_point tip = p[1 + 2 * i], a = p[2 * i], b = p[2 - 2 * i];
+        sum[i][0] = (a.x - tip.x) * (b.x - tip.x) + (a.y - tip.y) * (b.y - tip.y);
+        sum[i][1] = turn(tip, b, a);
+    }
+    return sum[0][1] * sum[1][0] + sum[0][0] * sum[1][1] < 0;
+}
+
 static void add_fan(csg_triangles *triangles, const uint32_t *corners, size_t count)
 {
     for (size_t i = 1; i + 1 < count; i++)
@@ -195,7 +208,9 @@ bool csg_triangles_add_face(csg_triangles *triangles, const uint32_t *corners, s
         r.next[i] = i + 1 < count ? i + 1 : 0;
         r.previous[i] = i ? i - 1 : (uint32_t)count - 1;
     }
-    if (is_convex(&r))
+    if (is_convex(&r) && count == 4 && takes_second_diagonal(points))
+        add_fan(triangles, (const uint32_t[4]){corners[1], corners[2], corners[3], corners[0]}, 4);
+    else if (is_convex(&r))
         add_fan(triangles, corners, count);
     else
         clip_all(triangles, &r);

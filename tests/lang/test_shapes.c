@@ -475,9 +475,47 @@ static void what_cannot_be_is_told(void **state)
     check_code("minkowski() { torus(5, 1); cube(1); }", 331);
     check_code("hull() plane();", 331);
     check_code("linear_extrude(0) circle(1);", -325);
-    check_code("scale([1, 0, 1]) cube(1);", 303);
+    check_code("scale([1, 0, 1]) cube(1);", -303);
     check_code("tube([[0, 0, 0]], 1);", 301);
     check_code("tube([[0, 0, 0], [1, 0, 0], [1, 1, 0]], 1, 3);", 327);
+}
+
+/* What files do that were made for OpenSCAD: at most a warning, and the solid that it makes. */
+static void real_files_run(void **state)
+{
+    (void)state;
+    const struct {
+        const char *scene;
+        int code; /* of the warning, or 0 */
+        double volume;
+    } rows[] = {
+        {"cube(2); translate([5, 0, 0]) cube([1, 0, 1]);", -325, 8},
+        {"cube(2); cylinder(h = 0, r = 1); cylinder(h = 3, r1 = -1, r2 = 1); sphere(0);", -325, 8},
+        {"difference() { cube(2); cylinder(h = 5, r = 0); }", -325, 8},
+        {"cube(2); linear_extrude(-1) circle(4);", -325, 8},
+        {"cube(2); scale([1, 1, 0]) cube(5);", -303, 8},
+        {"color([255, 0, 0]) cube(2);", -306, 8},
+        {"color(\"no colour\", 2) cube(2);", -306, 8},
+        {"rotate(90, [0, 0, 0]) cube(2);", 0, 8},
+        {"multmatrix([[2, 0, 0], [0, 1, 0], [0, 0, 1], [1e-17, 0, 0, 1]]) cube(2);", 0, 16},
+        {"multmatrix([[2, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 0, 1]]) cube(2);", -307, 16},
+        {"cube(2); hull() intersection() { cube(1); translate([-1, 0, 0]) cube(1); }", 0, 8},
+        {"cube(2); linear_extrude(2, scale = [0.5, 1]) intersection() { square(1); "
+         "translate([9, 9]) square(1); }",
+         -325, 8},
+        {"cube(2); minkowski() { sphere(1); intersection() { cube(1); translate([5, 0, 0]) "
+         "cube(1); "
+         "} }",
+         -325, 8},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        compile(rows[i].scene, NULL);
+        if (rows[i].code ? !bench_has(&b, rows[i].code) : b.code_count != 0)
+            print_error("%s: expected %d\n%s", rows[i].scene, rows[i].code, b.text);
+        assert_true(rows[i].code ? bench_has(&b, rows[i].code) : b.code_count == 0);
+        check(&(solid){rows[i].scene, rows[i].volume, {{0, 0, 0}, {rows[i].volume / 4, 2, 2}}}, 40,
+              NULL);
+    }
 }
 
 static void flat_transforms_keep_the_plane(void **state)
@@ -583,6 +621,7 @@ int main(void)
         cmocka_unit_test(a_small_fn_makes_polygons),
         cmocka_unit_test(exact_facets_follow_fa_and_fs),
         cmocka_unit_test(what_cannot_be_is_told),
+        cmocka_unit_test(real_files_run),
         cmocka_unit_test(flat_transforms_keep_the_plane),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -71,6 +71,33 @@ static void test_faces(void **state)
     check_face(bridged, 10, 12);
 }
 
+/* Of two diagonals the one that OpenSCAD takes, whatever corner is the first. */
+static void test_quad_that_is_not_flat(void **state)
+{
+    (void)state;
+    const csg_vec3 quads[][4] = {{{0, 0, 0}, {3, 0, 1}, {5, 5, 0}, {0, 3, 1}},   /* 1 to 3 */
+                                 {{-2, -2, 1}, {3, 0, 0}, {4, 4, 1}, {0, 3, 0}}, /* 1 to 3 */
+                                 {{1, 1, 9}, {4, 0, 0}, {3, 3, 0}, {0, 4, 0}}};  /* 0 to 2 */
+    const uint32_t ends[] = {1, 1, 0};
+    for (size_t q = 0; q < sizeof quads / sizeof *quads; q++)
+        for (uint32_t turn = 0; turn < 4; turn++) {
+            csg_triangles t;
+            uint32_t corners[4], shared[4] = {0};
+            csg_triangles_init(&t, &memory);
+            for (uint32_t i = 0; i < 4; i++) {
+                assert_true(csg_triangles_add_point(&t, quads[q][i]));
+                corners[i] = (i + turn) % 4;
+            }
+            assert_true(csg_triangles_add_face(&t, corners, 4));
+            assert_int_equal(t.count, 2);
+            for (size_t i = 0; i < 6; i++)
+                shared[t.corners[i / 3][i % 3]]++;
+            assert_int_equal(shared[ends[q]], 2);
+            assert_int_equal(shared[ends[q] + 2], 2);
+            csg_triangles_release(&t);
+        }
+}
+
 static void test_random_stars(void **state)
 {
     csg_random random = {31};
@@ -152,11 +179,9 @@ static void test_every_allocation_fails(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_faces),
-        cmocka_unit_test(test_random_stars),
-        cmocka_unit_test(test_bad_faces),
-        cmocka_unit_test(test_large_face),
-        cmocka_unit_test(test_every_allocation_fails),
+        cmocka_unit_test(test_faces),        cmocka_unit_test(test_quad_that_is_not_flat),
+        cmocka_unit_test(test_random_stars), cmocka_unit_test(test_bad_faces),
+        cmocka_unit_test(test_large_face),   cmocka_unit_test(test_every_allocation_fails),
     };
     csg_memory_init(&memory, NULL, 0);
     return cmocka_run_group_tests(tests, NULL, NULL);
