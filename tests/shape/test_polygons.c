@@ -336,6 +336,87 @@ static void every_allocation_may_fail(void **state)
     }
 }
 
+/* ---- limits -------------------------------------------------------------------------------
+ */
+
+static void add_circle(csg_outline *outline, int corners, csg_vec2 center, double radius,
+                       double turn)
+{
+    for (int i = 0; i < corners; i++) {
+        double angle = turn + 2 * M_PI * i / corners;
+        assert_true(csg_outline_add(
+            outline, (csg_vec2){center.x + radius * cos(angle), center.y + radius * sin(angle)}));
+    }
+    assert_true(csg_outline_close(outline));
+}
+
+static void loops_drawn_twice_cancel_out(void **state)
+{
+    for (int k = 0; k < 64; k++) /* as often as a drawing's block is inserted at one place */
+        add_circle(&a, 2250, (csg_vec2){0, 0}, 100, 0);
+    assert_int_equal(csg_polygons_clean(&a, CSG_FILL_EVEN_ODD, &out), CSGM_OK);
+    assert_int_equal(out.loop_count, 0);
+    add_circle(&a, 2250, (csg_vec2){0, 0}, 100, 0);
+    assert_int_equal(csg_polygons_clean(&a, CSG_FILL_EVEN_ODD, &out), CSGM_OK);
+    assert_int_equal(out.loop_count, 1);
+    assert_true(area_of(&out) > 31000);
+}
+
+static void tangles_are_refused(void **state)
+{
+    for (int k = 0; k < 4001; k++) /* a star: each edge crosses nearly all others */
+        assert_true(csg_outline_add(
+            &a, (csg_vec2){cos(2 * M_PI * k * 2000 / 4001), sin(2 * M_PI * k * 2000 / 4001)}));
+    assert_true(csg_outline_close(&a));
+    assert_int_equal(csg_polygons_check(&a), CSGM_ERR_LIMIT);
+    assert_int_equal(csg_polygons_clean(&a, CSG_FILL_EVEN_ODD, &out), CSGM_ERR_LIMIT);
+    assert_int_equal(csg_polygons_clean(&a, CSG_FILL_NONZERO, &out), CSGM_ERR_LIMIT);
+    assert_int_equal(csg_polygons_offset(&a, 1, CSG_CORNER_ROUND, 0.01, &out), CSGM_ERR_LIMIT);
+}
+
+static void offsets_that_would_cross_too_often_are_refused(void **state)
+{
+    add_star(&a, &dice, (csg_vec2){0, 0}, 1, 1.5, 10000, false);
+    assert_int_equal(csg_polygons_offset(&a, 0.001, CSG_CORNER_MITER, 0, &out), CSGM_OK);
+    csg_outline_release(&out);
+    assert_int_equal(csg_polygons_offset(&a, 0.5, CSG_CORNER_ROUND, 1e-3, &out), CSGM_ERR_LIMIT);
+}
+
+/* 10000 teeth side by side, which a sweep along the other axis makes short work of: one in x,
+ * one in y; the result is where it belongs. */
+static void combs_are_cleaned(void **state)
+{
+    enum { TEETH = 10000 };
+    for (int way = 0; way < 2; way++) {
+        forget();
+        for (int k = 0; k < TEETH; k++) {
+            double low = 0.001 * (k % 331), high = 1000 + 0.001 * (k % 173);
+            csg_vec2 p = {k, low}, q = {k + 0.5, high};
+            assert_true(csg_outline_add(&a, way ? (csg_vec2){-p.y, p.x} : p));
+            assert_true(csg_outline_add(&a, way ? (csg_vec2){-q.y, q.x} : q));
+        }
+        csg_vec2 ends[2] = {{TEETH, -1}, {0, -1}};
+        for (int k = 0; k < 2; k++)
+            assert_true(csg_outline_add(&a, way ? (csg_vec2){-ends[k].y, ends[k].x} : ends[k]));
+        assert_true(csg_outline_close(&a));
+        assert_int_equal(csg_polygons_clean(&a, CSG_FILL_NONZERO, &out), CSGM_OK);
+        assert_int_equal(out.loop_count, 1);
+        assert_true(fabs(area_of(&out) - fabs(area_of(&a))) < 1);
+        csg_box box = csg_outline_box(&out), whole = csg_outline_box(&a);
+        assert_true(fabs(box.min.x - whole.min.x) < 1e-3 && fabs(box.max.x - whole.max.x) < 1e-3);
+        assert_true(fabs(box.min.y - whole.min.y) < 1e-3 && fabs(box.max.y - whole.max.y) < 1e-3);
+    }
+}
+
+/* Honest and large. */
+static void many_circles_are_united(void **state)
+{
+    for (int k = 0; k < 2000; k++)
+        add_circle(&a, 100, (csg_vec2){1.5 * (k % 45), 1.5 * (k / 45)}, 1, 0);
+    assert_int_equal(csg_polygons_clean(&a, CSG_FILL_NONZERO, &out), CSGM_OK);
+    assert_true(area_of(&out) > 4000);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
@@ -353,6 +434,11 @@ int main(void)
         TEST(bad_coordinates_are_refused),
         TEST(hostile_sizes_end),
         TEST(the_limit_holds_for_the_library_too),
+        TEST(loops_drawn_twice_cancel_out),
+        TEST(tangles_are_refused),
+        TEST(offsets_that_would_cross_too_often_are_refused),
+        TEST(combs_are_cleaned),
+        TEST(many_circles_are_united),
         TEST(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
