@@ -157,7 +157,10 @@ static csg_node_id hull_of_points(csg_module_call *call, const csg_cloud *cloud,
     csgm_status status = hull_triangles(cloud, &triangles);
     if (status != CSGM_OK) {
         csg_triangles_release(&triangles);
-        return csg_shape_failed(call, status, "make this hull: its points lie in a plane");
+        return csg_shape_failed(call, status,
+                                status == CSGM_ERR_SCENE
+                                    ? "make this hull: its points lie in a plane"
+                                    : "make this hull");
     }
     return grown(call, csg_shape_solid(call, &triangles, false), radius);
 }

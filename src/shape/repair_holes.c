@@ -97,6 +97,7 @@ static bool walk_from(csg_arena *scratch, csg_triangles *triangles, walk *w, uin
             w->on_path[w->path[i]] = 0;
         if (!close_loop(scratch, triangles, w, begin, effort, repairs))
             return false;
+        w->path[begin] = to; /* filling moves corners */
         w->length = begin + 1;
     }
     w->on_path[point] = 0;

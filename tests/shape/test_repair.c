@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "shape/repair.h"
+
 typedef struct broken {
     csg_memory memory;
     csg_triangles triangles;
@@ -492,6 +494,33 @@ static void test_soups(void **state)
     assert_true(made > 300);
 }
 
+/* Loops so long that their filling goes through its shortcuts, from any corner on. */
+static void test_large_soup(void **state)
+{
+    enum { COUNT = 3000 };
+    csg_random random = {15};
+    csg_triangles t;
+    csg_chain chain;
+    csg_repairs repairs;
+    csg_memory memory;
+    csg_arena scratch;
+    csg_memory_init(&memory, NULL, 0);
+    csg_arena_init(&scratch, &memory);
+    csg_triangles_init(&t, &memory);
+    for (uint32_t i = 0; i < COUNT; i++)
+        assert_true(csg_triangles_add_point(&t, solid_random_point(&random, 1)));
+    for (uint32_t i = 0; i < COUNT; i++) {
+        uint32_t p = csg_random_below(&random, COUNT), q = csg_random_below(&random, COUNT);
+        assert_true(csg_triangles_add(&t, p, q, csg_random_below(&random, COUNT)));
+    }
+    assert_int_equal(csg_repair(&memory, &scratch, &t, &chain, &repairs), CSGM_OK);
+    assert_true(repairs.holes > 10);
+    check_closed(&chain.triangles);
+    csg_triangles_release(&chain.triangles);
+    csg_triangles_release(&t);
+    csg_arena_reset(&scratch);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -504,6 +533,7 @@ int main(void)
         cmocka_unit_test(test_sheets),          cmocka_unit_test(test_loose_sheet),
         cmocka_unit_test(test_bow_tie),         cmocka_unit_test(test_nothing_left),
         cmocka_unit_test(test_mended_is_clean), cmocka_unit_test(test_soups),
+        cmocka_unit_test(test_large_soup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
