@@ -39,6 +39,12 @@ def formats_written():
     return message.split("formats:")[1].split()
 
 
+def has_library(name):
+    """Whether this build has the optional library, as its own version says."""
+    lines = run("--version").stdout.decode().splitlines()
+    return any(line.startswith("with ") and name in line for line in lines)
+
+
 class CliTest(unittest.TestCase):
     """Each test stands in an empty folder of its own."""
 

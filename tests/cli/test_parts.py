@@ -44,6 +44,8 @@ class PartsTest(cli.CliTest):
         return self.read(name)
 
     def check_closed(self, name):
+        if name.endswith(".glb") and not cli.has_library("tinygltf"):
+            self.skipTest("this build cannot read glTF")
         text = cli.run("info", name, cwd=self.folder).stdout.decode()
         self.assertIn("closed       yes", text)
         return text

@@ -22,6 +22,8 @@ class Outputs(cli.CliTest):
         self.assert_status(result, 0)
         self.assertEqual(result.stderr, "")
         self.assert_files("a.txt", *names)
+        if not cli.has_library("tinygltf"):  # which reads what we write without it
+            names = [name for name in names if not name.endswith((".gltf", ".glb"))]
         counts = {self.info(name)["mesh"]["triangles"] for name in names}
         self.assertEqual(len(counts), 1, "the formats disagree")
 
