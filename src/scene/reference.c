@@ -7,8 +7,7 @@
 typedef struct workspace {
     csg_vec3 *points; /* per node, in its own frame */
     csg_sample *samples;
-    csg_formula_dual *steps;   /* of the longest formula */
-    double *values, *partials; /* of one operator's children */
+    csg_reference_work node;
     void *heap;
     size_t heap_bytes;
 } workspace;
@@ -21,7 +20,7 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     for (size_t i = 0; i < scene->formula_count; i++)
         steps = scene->formulas[i].count > steps ? scene->formulas[i].count : steps;
     size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double)) +
-                   steps * sizeof *w->steps;
+                   steps * sizeof *w->node.steps;
     *w = (workspace){0};
     if (bytes > STACK_BYTES) {
         w->heap = stack = csg_memory_alloc(&scene->context->memory, bytes);
@@ -31,9 +30,9 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     }
     w->samples = stack;
     w->points = (csg_vec3 *)(w->samples + nodes);
-    w->values = (double *)(w->points + nodes); /* no operator has as many children as nodes */
-    w->partials = w->values + nodes;
-    w->steps = (csg_formula_dual *)(w->partials + nodes);
+    w->node.values = (double *)(w->points + nodes); /* no operator has as many children as nodes */
+    w->node.partials = w->node.values + nodes;
+    w->node.steps = (csg_formula_dual *)(w->node.partials + nodes);
     return true;
 }
 
@@ -42,16 +41,19 @@ static void workspace_end(workspace *w, const csgm_scene *scene)
     csg_memory_release(&scene->context->memory, w->heap, w->heap_bytes);
 }
 
+csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node, csg_vec3 p)
+{
+    if (node->kind == CSG_NODE_TRANSFORM)
+        return csg_affine_point(&scene->inverses[node->payload], p);
+    return node->kind == CSG_NODE_WARP ? csg_warp_at(&scene->warps[node->payload], p).at : p;
+}
+
 static void place_points(workspace *w, const csgm_scene *scene, csg_vec3 p)
 {
     w->points[scene->root] = p;
     for (size_t i = scene->node_count; i-- > 0;) {
         const csg_node *node = &scene->nodes[i];
-        csg_vec3 inner = w->points[i];
-        if (node->kind == CSG_NODE_TRANSFORM)
-            inner = csg_affine_point(&scene->inverses[node->payload], inner);
-        else if (node->kind == CSG_NODE_WARP)
-            inner = csg_warp_at(&scene->warps[node->payload], inner).at;
+        csg_vec3 inner = csg_reference_inner_point(scene, node, w->points[i]);
         for (uint32_t k = 0; k < node->child_count; k++)
             w->points[csg_scene_children(scene, node)[k]] = inner;
     }
@@ -64,12 +66,12 @@ static double operand_sign(csg_node_kind kind, uint32_t index)
     return kind == CSG_NODE_INTERSECTION || (kind == CSG_NODE_DIFFERENCE && index == 0) ? -1 : 1;
 }
 
-static csg_sample combine(workspace *w, const csgm_scene *scene, const csg_node *node)
+static csg_sample combine(const csg_reference_work *w, const csgm_scene *scene,
+                          const csg_node *node, const csg_sample *samples, const csg_node_id *at)
 {
-    const csg_node_id *children = csg_scene_children(scene, node);
     csg_node_kind kind = node->kind;
     for (uint32_t k = 0; k < node->child_count; k++)
-        w->values[k] = operand_sign(kind, k) * w->samples[children[k]].value;
+        w->values[k] = operand_sign(kind, k) * samples[at[k]].value;
     double outer = operand_sign(kind, 0);
     double value = outer * csg_reference_union(csg_scene_blend(scene, node), w->values,
                                                node->child_count, w->partials);
@@ -77,8 +79,7 @@ static csg_sample combine(workspace *w, const csgm_scene *scene, const csg_node 
     for (uint32_t k = 0; k < node->child_count; k++) {
         double weight = outer * operand_sign(kind, k) * w->partials[k];
         if (weight != 0)
-            gradient =
-                csg_vec3_add(gradient, csg_vec3_scale(w->samples[children[k]].gradient, weight));
+            gradient = csg_vec3_add(gradient, csg_vec3_scale(samples[at[k]].gradient, weight));
     }
     return (csg_sample){value, gradient};
 }
@@ -107,25 +108,26 @@ static csg_sample offset(const csgm_scene *scene, const csg_node *node, csg_samp
     return inner;
 }
 
-static csg_sample combine_by_formula(workspace *w, const csgm_scene *scene, const csg_node *node)
+static csg_sample combine_by_formula(const csg_reference_work *w, const csgm_scene *scene,
+                                     const csg_node *node, const csg_sample *samples,
+                                     const csg_node_id *at)
 {
     const csg_formula *formula = &scene->formulas[node->payload];
-    const csg_node_id *children = csg_scene_children(scene, node);
     double values[3] = {0};
     for (uint32_t k = 0; k < node->child_count; k++)
-        values[k] = w->samples[children[k]].value;
+        values[k] = samples[at[k]].value;
     csg_formula_dual dual = csg_formula_evaluate(
         scene->steps, formula, csg_vec3_make(values[0], values[1], values[2]), w->steps);
     const double partials[3] = {dual.gradient.x, dual.gradient.y, dual.gradient.z};
     csg_sample out = {dual.value / formula->lipschitz, {0, 0, 0}};
     for (uint32_t k = 0; k < node->child_count; k++)
-        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(w->samples[children[k]].gradient,
+        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[k]].gradient,
                                                                  partials[k] / formula->lipschitz));
     return out;
 }
 
-static csg_sample sample_leaf(workspace *w, const csgm_scene *scene, const csg_node *node,
-                              csg_vec3 p)
+static csg_sample sample_leaf(const csg_reference_work *w, const csgm_scene *scene,
+                              const csg_node *node, csg_vec3 p)
 {
     if (node->kind == CSG_NODE_SHAPE) {
         csg_sample sample;
@@ -139,26 +141,32 @@ static csg_sample sample_leaf(workspace *w, const csgm_scene *scene, const csg_n
     return (csg_sample){dual.value, dual.gradient};
 }
 
+csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg_vec3 p,
+                              const csg_sample *samples, const csg_node_id *at,
+                              const csg_reference_work *work)
+{
+    switch ((csg_node_kind)node->kind) {
+    case CSG_NODE_TRANSFORM:
+        return transform(scene, node, samples[at[0]]);
+    case CSG_NODE_COLOR:
+        return samples[at[0]];
+    case CSG_NODE_OFFSET:
+        return offset(scene, node, samples[at[0]]);
+    case CSG_NODE_WARP:
+        return warp(scene, node, p, samples[at[0]]);
+    case CSG_NODE_COMBINE:
+        return combine_by_formula(work, scene, node, samples, at);
+    default:
+        return csg_node_is_operator(node->kind) ? combine(work, scene, node, samples, at)
+                                                : sample_leaf(work, scene, node, p);
+    }
+}
+
 static void evaluate(workspace *w, const csgm_scene *scene)
 {
-    for (size_t i = 0; i < scene->node_count; i++) {
-        const csg_node *node = &scene->nodes[i];
-        const csg_node_id *children = csg_scene_children(scene, node);
-        if (node->kind == CSG_NODE_TRANSFORM)
-            w->samples[i] = transform(scene, node, w->samples[children[0]]);
-        else if (node->kind == CSG_NODE_COLOR)
-            w->samples[i] = w->samples[children[0]];
-        else if (node->kind == CSG_NODE_OFFSET)
-            w->samples[i] = offset(scene, node, w->samples[children[0]]);
-        else if (node->kind == CSG_NODE_WARP)
-            w->samples[i] = warp(scene, node, w->points[i], w->samples[children[0]]);
-        else if (node->kind == CSG_NODE_COMBINE)
-            w->samples[i] = combine_by_formula(w, scene, node);
-        else if (csg_node_is_operator(node->kind))
-            w->samples[i] = combine(w, scene, node);
-        else
-            w->samples[i] = sample_leaf(w, scene, node, w->points[i]);
-    }
+    for (size_t i = 0; i < scene->node_count; i++)
+        w->samples[i] = csg_reference_node(scene, &scene->nodes[i], w->points[i], w->samples,
+                                           csg_scene_children(scene, &scene->nodes[i]), &w->node);
 }
 
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
@@ -188,12 +196,12 @@ static void mark_active(workspace *w, const csgm_scene *scene, const csg_node *n
     double support = csg_blend_support(csg_scene_blend(scene, node));
     uint32_t top = 0;
     for (uint32_t k = 0; k < node->child_count; k++) {
-        w->values[k] = operand_sign(node->kind, k) * w->samples[children[k]].value;
-        if (w->values[k] >= w->values[top])
+        w->node.values[k] = operand_sign(node->kind, k) * w->samples[children[k]].value;
+        if (w->node.values[k] >= w->node.values[top])
             top = k;
     }
     for (uint32_t k = 0; k < node->child_count; k++)
-        if (k == top || w->values[top] - w->values[k] < support)
+        if (k == top || w->node.values[top] - w->node.values[k] < support)
             w->points[children[k]].x = 1;
 }
 

@@ -26,6 +26,21 @@ double csg_reference_union(csg_blend blend, const double *values, size_t count, 
  */
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
+/* Scratch for one node at a time. */
+typedef struct csg_reference_work {
+    csg_formula_dual *steps;   /* room for the longest formula */
+    double *values, *partials; /* room for the most operands */
+} csg_reference_work;
+
+/* Where a node at p asks its children. */
+csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node, csg_vec3 p);
+
+/* One node at p (in its own frame) from its children's samples there: samples[at[k]] is that of
+ * child k. An operand of a union that is known not to matter may be given as -INFINITY. */
+csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg_vec3 p,
+                              const csg_sample *samples, const csg_node_id *at,
+                              const csg_reference_work *work);
+
 /* Primitives whose value can change the root's there: those not dropped by an operator's support.
  */
 uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
