@@ -17,7 +17,8 @@ typedef struct csg_scene_builder {
     csgm_context *context;
     csgm_scene *scene; /* growing; arrays are from context->memory until csg_build_finish */
     size_t part_capacity, node_capacity, child_capacity, parameter_capacity, transform_capacity,
-        look_capacity, formula_capacity, step_capacity, shape_capacity, warp_capacity;
+        look_capacity, formula_capacity, step_capacity, shape_capacity, warp_capacity,
+        rule_capacity;
     csgm_status status; /* first failure, sticky */
     char problem[160];  /* one sentence about it, "" for memory */
 } csg_scene_builder;
@@ -56,6 +57,17 @@ csg_node_id csg_build_part(csg_scene_builder *builder, const char *name, csg_nod
  * or subtracted ones vanish; in an intersection or first of a difference they make it EMPTY. */
 csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                                const csg_node_id *children, size_t count, csg_span where);
+
+/* The blend of a rule, for csg_build_operator and many of them; the same rule gives the same blend.
+ * Checked: parameters in range, which the problem names. An ARC with points (in the frame of the
+ * operands): two on the operands' surfaces where the transition ends, the first on the first's, and
+ * more that the result's surface shall pass through; their angles are found when the operator is
+ * built, which then takes two operands. NULL values, *out.kind SHARP: a failure. */
+csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *rule);
+/* The child as a soft object. range 0: such that a ball, a tube or a torus becomes the classical
+ * P(distance from the skeleton / R), and a superellipsoid P of its gauge; others need a range. */
+csg_node_id csg_build_soft(csg_scene_builder *builder, csg_soft soft, csg_node_id child,
+                           csg_span where);
 
 /* ---- flat nodes, shapes and warps ------------------------------------------------------------
  * A flat node is a figure of the plane: its field does not depend on z and its box is infinite

@@ -14,10 +14,16 @@
  *   warp           scene/warp.h
  *   combine        F(children) / K: a formula whose x, y, z are the fields of up to three children,
  *                  K >= 1 a bound on the sum of its partial derivatives' sizes
+ *   soft           (F - 1/2) / lambda, F = P(d) in [0, 1] of its child's f (csg_soft): a soft node
  *   operator       scene/operators.def; difference is the intersection of the first child with
- *                  the negated others
+ *                  the negated others. One that takes fields (csg_rule, FIELDS) gives a soft node
+ *                  again, (G(F1, F2, ...) - 1/2) / lambda
  *   empty          -infinity
- * A flat node's field does not depend on z: a figure of the plane.
+ * A flat node's field does not depend on z: a figure of the plane. A soft node's f + 1/2 times its
+ * softness lambda is a field F in [0, 1] (before an operator's excess); transforms, colours and
+ * warps of soft nodes are soft, and sharp operators with soft operands only.
+ * Lipschitz constants: 1, but for formulas and for EXTERIOR and INTERIOR, whose K multiplies their
+ * operands' (csg_scene_slopes).
  */
 #ifndef CSG_SCENE_SCENE_H
 #define CSG_SCENE_SCENE_H
@@ -28,6 +34,7 @@
 #include "base/geometry.h"
 #include "base/span.h"
 #include "scene/formula.h"
+#include "scene/rule.h"
 #include "scene/warp.h"
 #include "shape/shape.h"
 
@@ -46,6 +53,7 @@ typedef enum csg_node_kind {
     CSG_NODE_OFFSET,
     CSG_NODE_WARP,
     CSG_NODE_COMBINE,
+    CSG_NODE_SOFT,
     CSG_NODE_UNION,
     CSG_NODE_INTERSECTION,
     CSG_NODE_DIFFERENCE
@@ -65,32 +73,17 @@ const char *csg_node_kind_name(csg_node_kind kind);
 /* Doubles in a primitive's payload; a field and a shape have none. */
 uint32_t csg_primitive_parameter_count(csg_node_kind kind);
 
-typedef enum csg_blend_kind {
-#define CSG_BLEND(NAME, name, raw, support, excess, fold, doc) CSG_BLEND_##NAME,
-#include "scene/operators.def"
-#undef CSG_BLEND
-    CSG_BLEND_COUNT,
-    /* Intersection of fields with gradients at right angles, as of an extrusion's outline and its
-     * ends: where both are negative -sqrt(a^2 + b^2), so that exact distances give an exact
-     * distance. Made by csg_build_extrude only, not in the language. */
-    CSG_BLEND_ORTHOGONAL = CSG_BLEND_COUNT
-} csg_blend_kind;
-
-/* A blend with its parameter n of operators.md section 2 (w of section 12 for ROUND). */
-typedef struct csg_blend {
-    csg_blend_kind kind;
-    double n; /* > 0; 0 for SHARP and ORTHOGONAL. HYPERBOLA and RECIPROCAL: area, else length */
-} csg_blend;
-
 const char *csg_blend_name(csg_blend_kind kind); /* as in the scene language */
 /* n for the language's width w (operators.md 13). */
 double csg_blend_raw(csg_blend_kind kind, double width);
-/* chi: operands that differ by this or more do not blend; INFINITY for some. */
+/* chi: operands that differ by this or more do not blend; INFINITY for some, and for rules
+ * (csg_scene_support). */
 double csg_blend_support(csg_blend blend);
-/* Largest value of G - max over `operands` operands. */
+/* Largest value of G - max over `operands` operands; INFINITY for rules (csg_scene_excess). */
 double csg_blend_excess(csg_blend blend, uint32_t operands);
 bool csg_blend_is_fold(csg_blend_kind kind);
-/* The blend as a solid scaled by `factor` needs it: areas grow with its square. */
+/* The blend as a solid scaled by `factor` needs it: areas grow with its square. Rules stay as they
+ * are (csg_rule_scale). */
 csg_blend csg_blend_scale(csg_blend blend, double factor);
 
 typedef struct csg_color {
@@ -106,7 +99,7 @@ typedef struct csg_look {
     uint32_t part; /* 1 + index into part_names; 0 = none (parts.h) */
 } csg_look;
 
-enum { CSG_FLAG_FLAT = 1 };
+enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
 
 typedef struct csg_node {
     uint8_t kind;         /* csg_node_kind */
@@ -118,7 +111,8 @@ typedef struct csg_node {
     uint32_t payload; /* primitives: into parameters; fields and combine: into formulas; shapes:
                          into shapes; transforms: into transforms; colours: into looks; offsets:
                          into parameters, where r is; warps: into warps; operators: into parameters,
-                         where n is */
+                         where n is, and behind it for a rule of FIELDS the range; soft: into
+                         parameters, where range and csg_falloff are */
     csg_span where;
 } csg_node;
 
@@ -136,8 +130,10 @@ struct csgm_scene {
     csg_formula_step *steps; /* of all formulas */
     csg_shape **shapes;      /* one reference each */
     csg_warp *warps;
+    csg_rule *rules;  /* csg_blend.n of a rule is an index into them */
+    double *softness; /* once sealed: lambda of each soft node, else 0; NULL where none is soft */
     size_t node_count, child_count, parameter_count, transform_count, look_count, formula_count,
-        step_count, shape_count, warp_count;
+        step_count, shape_count, warp_count, rule_count;
     const char **part_names; /* once sealed owned by arena */
     uint32_t part_count;
     csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
@@ -157,13 +153,34 @@ static inline const double *csg_scene_parameters(const csgm_scene *scene, const 
 }
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 
+/* The rule of an operator that has one, else NULL. */
+static inline const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)
+{
+    bool has = csg_node_is_operator((csg_node_kind)node->kind) && csg_blend_is_rule(node->blend);
+    return has ? &scene->rules[(size_t)scene->parameters[node->payload]] : NULL;
+}
+/* lambda of a soft node, in its own frame: F = 1/2 + lambda f. 0 where it is not soft. */
+static inline double csg_scene_softness(const csgm_scene *scene, csg_node_id id)
+{
+    return scene->softness ? scene->softness[id] : 0;
+}
+/* How operand number `index` of an operator that takes fields becomes one (csg_operand_field). */
+csg_operand csg_scene_operand(const csgm_scene *scene, const csg_node *node, uint32_t index);
+/* chi of an operator node, in its own frame; INFINITY for one that takes fields. */
+double csg_scene_support(const csgm_scene *scene, const csg_node *node);
+/* By how much a union can exceed its largest operand, and an intersection (INTERIOR) its smallest;
+ * INFINITY for one that takes fields. */
+double csg_scene_excess(const csgm_scene *scene, const csg_node *node);
+
 bool csg_scene_has_colors(const csgm_scene *scene);
 
 /* Gives back a sealed scene, the struct itself too. NULL is a no-op. */
 void csg_scene_destroy(csgm_scene *scene);
 
-/* Lipschitz constant of the scene's field: the largest of its leaves', since transforms keep it and
- * every operator's partial derivatives add up to 1. */
+/* Lipschitz constant of every node's field, in its own frame; out: room for node_count. A
+ * SCALE_SET with debulge has none: this is the one for a constant angle of the gradients. */
+void csg_scene_slopes(const csgm_scene *scene, double *out);
+/* That of the root: the largest of its leaves' where no rule has a K. */
 double csg_scene_lipschitz(const csgm_scene *scene);
 
 #endif
