@@ -282,7 +282,12 @@ CSGM_API void csgm_field_eval(const csgm_field *field, const float *x, const flo
 
 /* ---- watching and stopping long calls ---------------------------------------------- */
 
-typedef enum csgm_stage { CSGM_STAGE_OCTREE, CSGM_STAGE_MESH, CSGM_STAGE_WRITE } csgm_stage;
+typedef enum csgm_stage {
+    CSGM_STAGE_OCTREE,
+    CSGM_STAGE_MESH,
+    CSGM_STAGE_WRITE,
+    CSGM_STAGE_RENDER
+} csgm_stage;
 
 typedef struct csgm_monitor { /* all zero = nobody watches */
     /* On the calling thread, at most about 20 times a second; a stage's fraction never falls. */
@@ -421,10 +426,12 @@ typedef struct csgm_write_options {
     uint32_t draco_normal_bits;   /* 2..30, default 10 */
     uint32_t draco_color_bits;    /* 1..30, default 8 */
     uint32_t draco_level;         /* 0 (fast) .. 10 (small), default 7 */
-    bool y_up;      /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
-                       Other formats keep the scene's axes. */
-    bool sync;      /* the bytes are on the disk before the file gets its name, so that a power cut
-                       leaves      the old file or the new one; default true */
+    bool y_up; /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
+                  Other formats keep the scene's axes. */
+    bool sync; /* the bytes are on the disk before the file gets its name, so that a power cut
+                  leaves      the old file or the new one; default true */
+    bool only_if_changed; /* a file that holds these bytes already is left alone, with its time of
+                             change; default false */
     csgm_unit unit; /* what a scene unit is; NONE. glTF and GLB: one node scales it to metres; 3MF:
                        the file says it, millimetres where it is NONE */
 } csgm_write_options;
@@ -458,6 +465,127 @@ CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_fiel
  * STL corners with equal position bits become one vertex. */
 CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
                                     csgm_mesh **out);
+
+/* ---- pictures ---------------------------------------------------------------------- */
+
+/* Drawn by the processor alone: no display, no graphics card. The same bytes for any number of
+ * threads and any instruction set. */
+typedef struct csgm_image csgm_image;
+
+typedef struct csgm_image_view {
+    uint32_t width, height;
+    const uint8_t *pixels; /* 4 * width * height, rows from the top: sRGB, alpha (not multiplied) */
+} csgm_image_view;
+
+typedef enum csgm_image_format {
+    CSGM_IMAGE_AUTO, /* by the extension */
+    CSGM_IMAGE_PNG,
+    CSGM_IMAGE_PPM, /* binary (P6): no alpha, what is transparent is laid over white */
+    CSGM_IMAGE_FORMAT_COUNT
+} csgm_image_format;
+
+CSGM_API csgm_image_format csgm_image_format_from_path(const char *path);
+CSGM_API bool csgm_image_format_available(csgm_image_format format);
+/* The same pixels, copied. */
+CSGM_API csgm_status csgm_image_create(csgm_context *context, const csgm_image_view *view,
+                                       csgm_image **out);
+CSGM_API csgm_image_view csgm_image_get_view(const csgm_image *image);
+CSGM_API void csgm_image_destroy(csgm_image *image);
+/* As csgm_mesh_write: the file appears complete or not at all. */
+CSGM_API csgm_status csgm_image_write(csgm_context *context, const csgm_image *image,
+                                      const char *path, csgm_image_format format);
+CSGM_API csgm_status csgm_image_write_fd(csgm_context *context, const csgm_image *image, int fd,
+                                         const char *name, csgm_image_format format);
+
+typedef enum csgm_projection { CSGM_PERSPECTIVE, CSGM_ORTHOGRAPHIC } csgm_projection;
+
+typedef struct csgm_camera {
+    csgm_projection projection; /* default PERSPECTIVE */
+    double fov_deg;             /* perspective: vertical angle of view, 1 .. 150; default 30 */
+    /* Not placed (the default): looks at the middle of the bounds from there, from so far away that
+     * all of them are seen. azimuth: 0 from -y (the front), 90 from +x (the right). */
+    double azimuth_deg, elevation_deg; /* default 35 and 25; elevation -90 .. 90 */
+    bool placed;
+    csgm_vec3 eye, target, up; /* when placed; up default (0, 0, 1) */
+    double height; /* orthographic: scene units that the picture is high; default 0 = all of the
+                      bounds */
+    double zoom;   /* makes things so much larger; default 1 */
+} csgm_camera;
+
+typedef enum csgm_evaluator {
+    CSGM_EVALUATOR_FAST, /* float kernels over batches, tapes pruned for each cell of an octree */
+    CSGM_EVALUATOR_LAZY  /* double, point by point, lazy evaluation with S-bounds: for counting */
+} csgm_evaluator;
+
+typedef struct csgm_render_options {
+    uint32_t struct_size;   /* set by csgm_render_options_default; do not touch */
+    uint32_t width, height; /* pixels, 1 .. 16384 each; default 1280 x 960 */
+    uint32_t samples; /* n: n x n rays a pixel where neighbours differ, 1 .. 8; default 3; a mesh
+                         is drawn with n x n samples everywhere */
+    csgm_camera camera;
+    csgm_box frame;        /* what the camera is placed by; empty (the default) = what is drawn */
+    uint8_t background[4]; /* sRGB and alpha; default white, opaque */
+    bool occlusion;        /* ambient occlusion, from the field; scenes only; default true */
+    bool shadows;          /* soft shadows of the key light; scenes only; default true */
+    csgm_box bounds;       /* a scene is cut there; empty (the default) = the scene's own */
+
+    int slice_axis; /* -1 (the default): none; 0, 1, 2: the section x, y or z = slice_at is
+                       drawn, with iso-lines of f, instead of the solid */
+    double slice_at;
+    double iso_step; /* between iso-lines; default 0 = chosen, about twenty */
+
+    bool wireframe; /* a mesh: its edges too; default false */
+    bool flat;      /* a mesh: each triangle by its own normal; default false = vertex normals
+                       where the mesh has any */
+
+    csgm_evaluator evaluator; /* default FAST */
+    bool lazy, bounds_used;   /* LAZY: lazy operators and S-bounds; default true; for comparison */
+    csgm_monitor monitor;     /* stage CSGM_STAGE_RENDER */
+} csgm_render_options;
+
+CSGM_API csgm_render_options csgm_render_options_default(void);
+
+typedef struct csgm_render_stats {
+    double prepare_s, trace_s; /* wall time of the octree; of the picture */
+    uint64_t cells;            /* of the octree: those that the surface may touch */
+    uint64_t rays, shadow_rays, hits;
+    uint64_t point_evaluations, gradient_evaluations, interval_evaluations;
+    uint64_t primitive_evaluations; /* primitives times points or cells, in all three */
+    uint64_t top_level_evaluations; /* LAZY: of the whole field */
+    uint64_t total_evaluations;     /* LAZY: of nodes of the tree */
+    uint64_t memory_peak_bytes;
+} csgm_render_stats;
+
+/* The field's surface, by sphere tracing. options NULL = defaults; stats may be NULL. A scene
+ * without a surface gives the background and a warning. */
+CSGM_API csgm_status csgm_render_scene(csgm_context *context, const csgm_field *field,
+                                       const csgm_render_options *options, csgm_image **out,
+                                       csgm_render_stats *stats);
+/* Triangles, by a z-buffer; both sides are drawn. Options of scenes have no effect. */
+CSGM_API csgm_status csgm_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                                      const csgm_render_options *options, csgm_image **out,
+                                      csgm_render_stats *stats);
+
+/* ---- JSON: the reader that this library uses itself ----------------------------------- */
+
+typedef enum csgm_json_kind {
+    CSGM_JSON_OBJECT, /* '{' */
+    CSGM_JSON_ARRAY,  /* '[' */
+    CSGM_JSON_END,    /* of the innermost of both */
+    CSGM_JSON_KEY,
+    CSGM_JSON_STRING,
+    CSGM_JSON_NUMBER, /* as it is written */
+    CSGM_JSON_WORD    /* true, false, null */
+} csgm_json_kind;
+
+/* text: of KEY, STRING (unescaped), NUMBER and WORD; borrowed, may hold NULs, not terminated.
+ * false = stop, which is no failure. */
+typedef bool csgm_json_fn(void *user, csgm_json_kind kind, const char *text, size_t length);
+
+/* name: for diagnostics. CSGM_ERR_SYNTAX: not JSON, with the place; CSGM_ERR_UNSUPPORTED: a build
+ * without its library. What was read before an error has been told. */
+CSGM_API csgm_status csgm_json_read(csgm_context *context, const char *text, size_t text_length,
+                                    const char *name, csgm_json_fn *event, void *user);
 
 /* ---- looking inside (stable text, for tests and for people) -------------------------- */
 

@@ -184,8 +184,55 @@ static void forget(csg_file *file)
     file->fd = file->pending = -1;
 }
 
+static bool read_fully(int fd, char *buffer, size_t size, size_t *got)
+{
+    for (*got = 0; *got < size;) {
+        ssize_t count = read(fd, buffer + *got, size - *got);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            return count == 0;
+        *got += (size_t)count;
+    }
+    return true;
+}
+
+static bool same_bytes(int a, int b)
+{
+    enum { PIECE = 1 << 15 };
+    char left[PIECE], right[PIECE];
+    size_t left_count, right_count;
+    do {
+        if (!read_fully(a, left, PIECE, &left_count) ||
+            !read_fully(b, right, PIECE, &right_count) || left_count != right_count ||
+            memcmp(left, right, left_count) != 0)
+            return false;
+    } while (left_count == PIECE);
+    return true;
+}
+
+/* Does the target hold the temporary's bytes? Where that cannot be told, it does not. */
+static bool is_unchanged(const csg_file *file)
+{
+    struct stat old, new;
+    if (stat(file->target, &old) != 0 || fstat(file->fd, &new) != 0 || old.st_size != new.st_size)
+        return false;
+    int a = open(file->target, O_RDONLY | O_CLOEXEC);
+    int b = open(file->temporary, O_RDONLY | O_CLOEXEC);
+    bool same = a >= 0 && b >= 0 && same_bytes(a, b);
+    if (a >= 0)
+        close(a);
+    if (b >= 0)
+        close(b);
+    return same;
+}
+
 csgm_status csg_file_commit(csg_file *file)
 {
+    if (file->target && file->only_if_changed && is_unchanged(file)) {
+        csg_file_abandon(file);
+        return CSGM_OK;
+    }
     int error = file->target && file->sync && fsync(file->fd) != 0 ? errno : 0;
     if (close(file->fd) != 0 && !error)
         error = errno;

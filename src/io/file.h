@@ -14,8 +14,9 @@ typedef struct csg_file {
     const char *target;    /* links followed; NULL = written directly */
     const char *temporary; /* beside the target */
     int fd;
-    bool sync;   /* on the disk before it gets its name; true unless changed before the commit */
-    int pending; /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
+    bool sync; /* on the disk before it gets its name; true unless changed before the commit */
+    bool only_if_changed; /* a target with these bytes stays as it is; set before the commit */
+    int pending;          /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
 } csg_file;
 
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */

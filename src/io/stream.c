@@ -330,6 +330,7 @@ csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_form
                                  .opaque = true};
     csgm_status status = csg_file_create(&s->file, context, path);
     s->file.sync = options->sync;
+    s->file.only_if_changed = options->only_if_changed;
     if (status != CSGM_OK)
         release(s);
     else

@@ -171,6 +171,7 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
     if (status)
         return status;
     file.sync = options->sync;
+    file.only_if_changed = options->only_if_changed;
     status = fill(context, mesh, file.fd, path, row, options);
     if (!status)
         return csg_file_commit(&file);

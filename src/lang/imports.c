@@ -51,7 +51,7 @@ static const char *search(csg_module_call *call, const char *name, csg_span aski
     return found;
 }
 
-static void add_dependency(csg_eval *e, const char *path)
+void csg_import_depend(csg_eval *e, const char *path)
 {
     csg_program *program = e->program;
     for (uint32_t i = 0; i < program->dependency_count; i++)
@@ -76,7 +76,7 @@ const char *csg_import_find(csg_module_call *call, uint32_t index)
     }
     const char *found = search(call, name.as.string->text, call->statement->where);
     if (found) {
-        add_dependency(e, found);
+        csg_import_depend(e, found);
         return e->stop ? NULL : found;
     }
     if (!e->stop)

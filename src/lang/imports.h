@@ -9,6 +9,8 @@
 
 /* The path of the file that an argument names, in the program's arena; NULL after a report. */
 const char *csg_import_find(csg_module_call *call, uint32_t index);
+/* Counts a file among the scene's dependencies, once; `path` stays valid as long as the program. */
+void csg_import_depend(csg_eval *e, const char *path);
 /* Letters behind the last dot of a path, in small letters; "" when there is none. */
 void csg_import_extension(const char *path, char out[8]);
 /* The solid of a .vm tape; arguments as of field(). */

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lang/imports.h"
 #include "lang/shapes.h"
 #include "outline/text.h"
 
@@ -105,6 +106,20 @@ static void tell(csg_module_call *call, const csg_text_report *report)
                         report->lent, report->other);
 }
 
+/* Fonts are files that the scene reads, found by name or not. */
+static void depend_on_fonts(csg_module_call *call, const csg_fonts *fonts)
+{
+    csg_eval *e = call->e;
+    const char *path;
+    for (size_t i = 0; (path = csg_fonts_file(fonts, i)) && !e->stop; i++) {
+        const char *copy = csg_arena_strndup(&e->program->arena, path, strlen(path));
+        if (copy)
+            csg_import_depend(e, copy);
+        else
+            csg_eval_no_memory(e);
+    }
+}
+
 csg_node_id csg_module_text(csg_module_call *call)
 {
     csg_eval *e = call->e;
@@ -128,6 +143,7 @@ csg_node_id csg_module_text(csg_module_call *call)
         return csg_shape_empty(call);
     }
     tell(call, &report);
+    depend_on_fonts(call, fonts);
     if (outline.loop_count)
         return csg_shape_area(call, &outline, false);
     csg_outline_release(&outline);

@@ -19,8 +19,8 @@ typedef struct open_font {
 struct csg_fonts {
     csg_memory *memory;
     csg_font_finder *finder; /* made at the first name */
-    open_font *open;
-    csg_font *latest; /* that lent a character: text asks for many of one script */
+    open_font *open;         /* the latest first */
+    csg_font *latest;        /* that lent a character: text asks for many of one script */
     char latest_name[176];
 };
 
@@ -81,6 +81,17 @@ static csgm_status open_file(csg_fonts *fonts, const char *path, unsigned index,
     fonts->open = o;
     *out = o->font;
     return CSGM_OK;
+}
+
+const char *csg_fonts_file(const csg_fonts *fonts, size_t index)
+{
+    size_t count = 0;
+    for (const open_font *o = fonts->open; o; o = o->next)
+        count++;
+    const open_font *o = fonts->open;
+    for (size_t i = index + 1; o && i < count; i++)
+        o = o->next;
+    return index < count ? o->path : NULL;
 }
 
 static csgm_status need_finder(csg_fonts *fonts, csg_problem *problem)

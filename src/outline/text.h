@@ -18,6 +18,9 @@ void csg_fonts_destroy(csg_fonts *fonts); /* NULL is a no-op */
 /* A font file whose fonts can be named from now on (use <font.ttf>). */
 csgm_status csg_fonts_add_file(csg_fonts *fonts, const char *path, csg_problem *problem);
 
+/* Files opened so far, in the order of first use; NULL when index is past the end. */
+const char *csg_fonts_file(const csg_fonts *fonts, size_t index);
+
 typedef enum csg_halign { CSG_HALIGN_LEFT, CSG_HALIGN_CENTER, CSG_HALIGN_RIGHT } csg_halign;
 typedef enum csg_valign {
     CSG_VALIGN_BASELINE,
