@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: MIT
+ * Evaluates a lazy tree at a point: from the root down with an explicit stack, one frame for each
+ * node that is being evaluated. A frame asks for its operands one by one, the one with the largest
+ * bound first, leaves out those that cannot matter any more, and is then computed by the reference
+ * (operators.md 3.4; the algorithms of the paper are the case of two operands).
+ */
+#include "scene/lazy.h"
+
+#include "scene/lazy_private.h"
+
+typedef struct frame {
+    csg_vec3 at, inner; /* where it is asked, where it asks its children */
+    double bound;       /* no value of the node is larger */
+    double best;        /* of the operands so far, with the signs of csg_reference_node */
+    size_t slot;        /* of its first operand's sample */
+    csg_node_id node;
+    uint32_t first;     /* the operand that was asked first */
+    uint32_t asked;     /* the one that is being evaluated */
+    uint32_t next;      /* the one to look at now */
+    uint32_t evaluated; /* how many were */
+} frame;
+
+typedef struct evaluation {
+    const csg_lazy *lazy;
+    frame *frames;
+    csg_sample *samples;
+    csg_reference_work work;
+    size_t depth;
+} evaluation;
+
+csg_lazy_options csg_lazy_options_default(double band)
+{
+    return (csg_lazy_options){true, CSG_LAZY_EXACT, band};
+}
+
+/* ---- creation ------------------------------------------------------------------------------ */
+
+/* Operands can be left out of unions and after the first of differences. */
+static double support_of(const csgm_scene *tree, const csg_node *node)
+{
+    bool can = node->kind == CSG_NODE_UNION || node->kind == CSG_NODE_DIFFERENCE;
+    if (!can || !csg_lazy_is_known_blend(node->blend))
+        return NAN;
+    return csg_blend_support(csg_scene_blend(tree, node));
+}
+
+static csgm_status measure(csg_lazy *lazy)
+{
+    const csgm_scene *tree = &lazy->tree;
+    csg_arena scratch;
+    csg_arena_init(&scratch, &lazy->context->memory);
+    size_t *depths = csg_arena_calloc(&scratch, tree->node_count, sizeof *depths);
+    size_t *slots = csg_arena_calloc(&scratch, tree->node_count, sizeof *slots);
+    bool ok = depths && slots;
+    for (size_t i = 0; ok && i < tree->node_count; i++) {
+        const csg_node *node = &tree->nodes[i];
+        for (uint32_t k = 0; k < node->child_count; k++) {
+            csg_node_id child = csg_scene_children(tree, node)[k];
+            depths[i] = depths[child] > depths[i] ? depths[child] : depths[i];
+            slots[i] = slots[child] > slots[i] ? slots[child] : slots[i];
+        }
+        depths[i] += 1;
+        slots[i] += node->child_count;
+        lazy->operands = node->child_count > lazy->operands ? node->child_count : lazy->operands;
+        lazy->supports[i] = support_of(tree, node);
+    }
+    for (size_t i = 0; i < tree->formula_count; i++)
+        lazy->steps = tree->formulas[i].count > lazy->steps ? tree->formulas[i].count : lazy->steps;
+    lazy->depth = ok ? depths[tree->root] : 0;
+    lazy->slots = ok ? slots[tree->root] : 0;
+    csg_arena_reset(&scratch);
+    return ok ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+static csgm_status fill(csg_lazy *lazy, const csgm_scene *scene, const csg_lazy_options *options)
+{
+    csgm_status status = csg_lazy_grow_tree(lazy, scene);
+    if (status != CSGM_OK)
+        return status;
+    size_t nodes = lazy->tree.node_count;
+    lazy->bounds = csg_arena_calloc(&lazy->arena, nodes, sizeof *lazy->bounds);
+    lazy->supports = csg_arena_calloc(&lazy->arena, nodes, sizeof *lazy->supports);
+    if (!lazy->bounds || !lazy->supports)
+        return CSGM_ERR_MEMORY;
+    status = csg_lazy_find_bounds(lazy, options);
+    if (status == CSGM_OK)
+        status = measure(lazy);
+    if (status != CSGM_OK)
+        return status;
+    lazy->identity = csg_arena_calloc(&lazy->arena, lazy->operands, sizeof *lazy->identity);
+    if (!lazy->identity)
+        return CSGM_ERR_MEMORY;
+    for (size_t k = 0; k < lazy->operands; k++)
+        lazy->identity[k] = (csg_node_id)k;
+    return CSGM_OK;
+}
+
+csgm_status csg_lazy_create(const csgm_scene *scene, const csg_lazy_options *options,
+                            csg_lazy **out)
+{
+    csgm_context *context = scene->context;
+    csg_lazy *lazy = csg_memory_alloc(&context->memory, sizeof *lazy);
+    if (!lazy)
+        return csg_context_no_memory(context);
+    *lazy = (csg_lazy){.context = context, .lazy = options->lazy};
+    lazy->lipschitz = csg_scene_lipschitz(scene);
+    csg_arena_init(&lazy->arena, &context->memory);
+    csgm_status status = fill(lazy, scene, options);
+    if (status == CSGM_OK) {
+        *out = lazy;
+        return CSGM_OK;
+    }
+    csg_lazy_destroy(lazy);
+    return status == CSGM_ERR_MEMORY ? csg_context_no_memory(context) : status;
+}
+
+void csg_lazy_destroy(csg_lazy *lazy)
+{
+    if (!lazy)
+        return;
+    csg_memory *memory = &lazy->context->memory;
+    csg_arena_reset(&lazy->arena);
+    csg_memory_release(memory, lazy, sizeof *lazy);
+}
+
+/* ---- facts --------------------------------------------------------------------------------- */
+
+/* What a node counts when that many of its operands were evaluated. */
+static uint32_t weight(const csg_node *node, uint32_t evaluated)
+{
+    if (node->kind == CSG_NODE_COMBINE || csg_node_is_operator(node->kind))
+        return evaluated > 2 ? evaluated - 1 : 1;
+    return node->child_count == 0;
+}
+
+uint64_t csg_lazy_node_count(const csg_lazy *lazy)
+{
+    uint64_t count = 0;
+    for (size_t i = 0; i < lazy->tree.node_count; i++)
+        count += weight(&lazy->tree.nodes[i], lazy->tree.nodes[i].child_count);
+    return count;
+}
+
+csg_box csg_lazy_box(const csg_lazy *lazy)
+{
+    return lazy->bounds[lazy->tree.root].box;
+}
+
+double csg_lazy_lipschitz(const csg_lazy *lazy)
+{
+    return lazy->lipschitz;
+}
+
+size_t csg_lazy_scratch_bytes(const csg_lazy *lazy)
+{
+    return lazy->depth * sizeof(frame) + lazy->slots * sizeof(csg_sample) +
+           2 * lazy->operands * sizeof(double) + lazy->steps * sizeof(csg_formula_dual);
+}
+
+static evaluation begin(const csg_lazy *lazy, void *scratch)
+{
+    evaluation e = {.lazy = lazy, .frames = scratch};
+    e.samples = (csg_sample *)(e.frames + lazy->depth);
+    e.work.values = (double *)(e.samples + lazy->slots);
+    e.work.partials = e.work.values + lazy->operands;
+    e.work.steps = (csg_formula_dual *)(e.work.partials + lazy->operands);
+    return e;
+}
+
+/* ---- evaluation ---------------------------------------------------------------------------- */
+
+static double bound_at(const csg_lazy *lazy, csg_node_id node, csg_vec3 p)
+{
+    const csg_lazy_bound *bound = &lazy->bounds[node];
+    if (!bound->is_known)
+        return INFINITY;
+    return bound->lambda * csg_box_field(bound->box, p) - bound->below;
+}
+
+static double away(double x, double low, double high)
+{
+    return x < low ? low - x : x > high ? high - x : 0;
+}
+
+/* Of csg_box_field: towards the box outside, away from the nearest face inside. */
+static csg_vec3 box_gradient(csg_box box, csg_vec3 p)
+{
+    csg_vec3 out = {away(p.x, box.min.x, box.max.x), away(p.y, box.min.y, box.max.y),
+                    away(p.z, box.min.z, box.max.z)};
+    if (csg_box_is_empty(box))
+        return (csg_vec3){0, 0, 0};
+    if (out.x != 0 || out.y != 0 || out.z != 0)
+        return csg_vec3_normalize(out);
+    const double distances[6] = {p.x - box.min.x, box.max.x - p.x, p.y - box.min.y,
+                                 box.max.y - p.y, p.z - box.min.z, box.max.z - p.z};
+    int nearest = 0;
+    for (int i = 1; i < 6; i++)
+        nearest = distances[i] < distances[nearest] ? i : nearest;
+    double sign = nearest % 2 ? -1 : 1;
+    return (csg_vec3){nearest / 2 == 0 ? sign : 0, nearest / 2 == 1 ? sign : 0,
+                      nearest / 2 == 2 ? sign : 0};
+}
+
+static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, size_t slot)
+{
+    const csgm_scene *tree = &e->lazy->tree;
+    e->frames[e->depth++] = (frame){.at = p,
+                                    .inner = csg_reference_inner_point(tree, &tree->nodes[id], p),
+                                    .bound = bound,
+                                    .best = -INFINITY,
+                                    .slot = slot,
+                                    .node = id,
+                                    .first = UINT32_MAX,
+                                    .asked = UINT32_MAX};
+}
+
+/* The operand most likely to be the largest: the minuend, or the one with the largest bound. */
+static uint32_t choose_first(const evaluation *e, const frame *f, const csg_node *node)
+{
+    if (node->kind == CSG_NODE_DIFFERENCE)
+        return 0;
+    const csg_node_id *children = csg_scene_children(&e->lazy->tree, node);
+    uint32_t first = 0;
+    double largest = -INFINITY;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double bound = bound_at(e->lazy, children[k], f->inner);
+        if (bound > largest)
+            first = k;
+        largest = fmax(largest, bound);
+    }
+    return first;
+}
+
+/* Enters the next operand that can matter; false when there is none. The test is the one that the
+ * blends make on values, and subtraction rounds monotonely, so what is left out does not change a
+ * bit. */
+static bool ask_next(evaluation *e, frame *f)
+{
+    const csg_lazy *lazy = e->lazy;
+    const csg_node *node = &lazy->tree.nodes[f->node];
+    const csg_node_id *children = csg_scene_children(&lazy->tree, node);
+    bool choosy = lazy->lazy && !isnan(lazy->supports[f->node]);
+    if (choosy && f->first == UINT32_MAX) {
+        f->asked = f->first = choose_first(e, f, node);
+        csg_node_id child = children[f->first];
+        enter(e, child, f->inner, bound_at(lazy, child, f->inner), f->slot + node->child_count);
+        return true;
+    }
+    for (; f->next < node->child_count; f->next++) {
+        if (f->next == f->first)
+            continue;
+        double bound = bound_at(lazy, children[f->next], f->inner);
+        if (choosy && f->best - bound >= lazy->supports[f->node]) {
+            e->samples[f->slot + f->next] = (csg_sample){-INFINITY, {0, 0, 0}};
+            continue;
+        }
+        f->asked = f->next++;
+        enter(e, children[f->asked], f->inner, bound, f->slot + node->child_count);
+        return true;
+    }
+    return false;
+}
+
+static csg_sample finish(const evaluation *e, const frame *f)
+{
+    const csg_lazy *lazy = e->lazy;
+    csg_sample out = csg_reference_node(&lazy->tree, &lazy->tree.nodes[f->node], f->at,
+                                        e->samples + f->slot, lazy->identity, &e->work);
+    if (f->bound < out.value) {
+        const csg_lazy_bound *bound = &lazy->bounds[f->node];
+        out.value = f->bound;
+        out.gradient = csg_vec3_scale(box_gradient(bound->box, f->at), bound->lambda);
+    }
+    return out;
+}
+
+static void receive(evaluation *e, frame *f, csg_sample operand)
+{
+    const csg_node *node = &e->lazy->tree.nodes[f->node];
+    double value = operand.value;
+    if (node->kind == CSG_NODE_DIFFERENCE && f->asked == 0)
+        value = -value;
+    f->best = value > f->best ? value : f->best;
+    f->evaluated++;
+    e->samples[f->slot + f->asked] = operand;
+}
+
+csg_sample csg_lazy_eval(const csg_lazy *lazy, csg_vec3 p, void *scratch, csg_lazy_counts *counts)
+{
+    evaluation e = begin(lazy, scratch);
+    csg_node_id root = lazy->tree.root;
+    uint64_t total = 0;
+    csg_sample result = {NAN, {0, 0, 0}};
+    enter(&e, root, p, bound_at(lazy, root, p), 0);
+    while (e.depth) {
+        frame *f = &e.frames[e.depth - 1];
+        if (ask_next(&e, f))
+            continue;
+        total += weight(&lazy->tree.nodes[f->node], f->evaluated);
+        result = finish(&e, f);
+        if (--e.depth)
+            receive(&e, &e.frames[e.depth - 1], result);
+    }
+    if (counts) {
+        counts->top_level++;
+        counts->total += total;
+    }
+    return result;
+}
