@@ -20,8 +20,10 @@ cli_console cli_console_make(void)
 {
     const char *no_color = getenv("NO_COLOR");
     bool is_terminal = isatty(STDERR_FILENO);
-    return (cli_console){
-        .is_terminal = is_terminal, .color = is_terminal && !(no_color && *no_color), .stage = -1};
+    return (cli_console){.out = stderr,
+                         .is_terminal = is_terminal,
+                         .color = is_terminal && !(no_color && *no_color),
+                         .stage = -1};
 }
 
 void cli_console_configure(cli_console *console, const cli_options *options)
@@ -64,7 +66,7 @@ void cli_console_flush(cli_console *console)
     cli_json_end(&console->held_json, '}');
     fputc('\n', console->held);
     if (fclose(console->held) == 0)
-        fwrite(console->held_text, 1, console->held_length, stderr);
+        fwrite(console->held_text, 1, console->held_length, console->out);
     free(console->held_text);
     console->held = NULL;
     console->held_text = NULL;
@@ -103,10 +105,10 @@ static void print_json(cli_console *console, csgm_severity severity, const csgm_
     cli_console_flush(console);
     console->held = open_memstream(&console->held_text, &console->held_length);
     if (!console->held) { /* no memory: its notes become findings of their own */
-        cli_json direct = cli_json_make(stderr, false);
+        cli_json direct = cli_json_make(console->out, false);
         put_finding(&direct, severity, diag);
         cli_json_end(&direct, '}');
-        fputc('\n', stderr);
+        fputc('\n', console->out);
         return;
     }
     *json = cli_json_make(console->held, false);
@@ -114,7 +116,8 @@ static void print_json(cli_console *console, csgm_severity severity, const csgm_
 }
 
 /* The place bold, "error E0107:" in its colour, the caret line green. */
-static void print_colored(csgm_severity severity, const csgm_diag *diag, const char *text)
+static void print_colored(FILE *out, csgm_severity severity, const csgm_diag *diag,
+                          const char *text)
 {
     const char *line_end = strchr(text, '\n');
     const char *word = NULL;
@@ -123,10 +126,10 @@ static void print_colored(csgm_severity severity, const csgm_diag *diag, const c
         word = strstr(text + place, severity_names[severity]);
     const char *colon = word ? strchr(word, ':') : NULL;
     if (!word || !colon || !line_end || word > line_end) {
-        fputs(text, stderr);
+        fputs(text, out);
         return;
     }
-    fprintf(stderr, "%s%.*s%s%.*s%s%s%.*s%s\n", BOLD, (int)(word - text), text,
+    fprintf(out, "%s%.*s%s%.*s%s%s%.*s%s\n", BOLD, (int)(word - text), text,
             severity_colors[severity], (int)(colon + 1 - word), word, RESET, BOLD,
             (int)(line_end - colon - 1), colon + 1, RESET);
     const char *rest = line_end + 1;
@@ -134,12 +137,12 @@ static void print_colored(csgm_severity severity, const csgm_diag *diag, const c
         const char *source_end = memchr(rest, '\n', strlen(rest));
         const char *caret_end = source_end ? strchr(source_end + 1, '\n') : NULL;
         if (caret_end) {
-            fprintf(stderr, "%.*s%s%.*s%s\n", (int)(source_end + 1 - rest), rest, GREEN,
+            fprintf(out, "%.*s%s%.*s%s\n", (int)(source_end + 1 - rest), rest, GREEN,
                     (int)(caret_end - source_end - 1), source_end + 1, RESET);
             rest = caret_end + 1;
         }
     }
-    fputs(rest, stderr);
+    fputs(rest, out);
 }
 
 void cli_console_diag(void *user, const csgm_diag *diag)
@@ -155,26 +158,26 @@ void cli_console_diag(void *user, const csgm_diag *diag)
     size_t size = csgm_diag_format(diag, NULL, 0) + 1;
     char *text = malloc(size);
     if (!text) {
-        fprintf(stderr, "%s\n", diag->message);
+        fprintf(console->out, "%s\n", diag->message);
         return;
     }
     csgm_diag_format(diag, text, size);
     if (console->color)
-        print_colored(diag->severity, diag, text);
+        print_colored(console->out, diag->severity, diag, text);
     else
-        fwrite(text, 1, strlen(text) < size - 1 ? size - 1 : strlen(text), stderr);
+        fwrite(text, 1, strlen(text) < size - 1 ? size - 1 : strlen(text), console->out);
     free(text);
 }
 
 /* {"echo": "..."} of one line. */
-static void print_echo_json(const char *text, size_t length)
+static void print_echo_json(FILE *out, const char *text, size_t length)
 {
     char *line = strndup(text, length && text[length - 1] == '\n' ? length - 1 : length);
-    cli_json json = cli_json_make(stderr, false);
+    cli_json json = cli_json_make(out, false);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "echo", line ? line : "");
     cli_json_end(&json, '}');
-    fputc('\n', stderr);
+    fputc('\n', out);
     free(line);
 }
 
@@ -186,9 +189,9 @@ void cli_console_echo(void *user, const char *text, size_t length)
     cli_console_end_progress(console);
     cli_console_flush(console);
     if (console->json)
-        print_echo_json(text, length);
+        print_echo_json(console->out, text, length);
     else
-        fwrite(text, 1, length, stderr);
+        fwrite(text, 1, length, console->out);
 }
 
 void cli_console_say(cli_console *console, csgm_severity severity, const char *hint,
@@ -206,11 +209,11 @@ void cli_console_say(cli_console *console, csgm_severity severity, const char *h
         print_json(console, severity, &(csgm_diag){.message = message, .hint = hint});
         return;
     }
-    fprintf(stderr, "%scsgmesh: %s%s:%s %s\n", console->color ? BOLD : "",
+    fprintf(console->out, "%scsgmesh: %s%s:%s %s\n", console->color ? BOLD : "",
             console->color ? severity_colors[severity] : "", severity_names[severity],
             console->color ? RESET : "", message);
     if (hint)
-        fprintf(stderr, "hint: %s\n", hint);
+        fprintf(console->out, "hint: %s\n", hint);
 }
 
 /* ---- progress ------------------------------------------------------------------------ */
@@ -228,11 +231,11 @@ static void draw_bar(const cli_console *console, csgm_stage stage, double fracti
         bar[i] = i < filled ? '=' : i == filled ? '>' : ' ';
     bar[BAR_WIDTH] = '\0';
     double rate = elapsed_s > 0 ? fraction / elapsed_s : 0;
-    fprintf(stderr, "\r%s [%s] %3.0f %%", names[stage], bar, 100 * fraction);
+    fprintf(console->out, "\r%s [%s] %3.0f %%", names[stage], bar, 100 * fraction);
     if (rate > 0)
-        fprintf(stderr, "  %.3g %%/s  %.1f s left", 100 * rate, (1 - fraction) / rate);
-    fputs(console->is_terminal ? "\033[K" : "   ", stderr);
-    fflush(stderr);
+        fprintf(console->out, "  %.3g %%/s  %.1f s left", 100 * rate, (1 - fraction) / rate);
+    fputs(console->is_terminal ? "\033[K" : "   ", console->out);
+    fflush(console->out);
     cli_interrupt_progress_shown(true);
 }
 
@@ -254,8 +257,8 @@ void cli_console_progress(void *user, csgm_stage stage, double fraction)
 
 void cli_console_end_progress(cli_console *console)
 {
-    if (!cli_interrupt_progress_shown(false))
+    if (console->out != stderr || !cli_interrupt_progress_shown(false))
         return;
-    fputs(console->is_terminal ? "\r\033[K" : "\n", stderr);
-    fflush(stderr);
+    fputs(console->is_terminal ? "\r\033[K" : "\n", console->out);
+    fflush(console->out);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Everything that goes to standard error: findings of the library, the program's own messages, the
- * scene's echo lines and the progress bar, as text (with colour) or as JSON lines.
+ * Everything that goes to standard error (or, of a batch's job, into a text that is shown later):
+ * findings of the library, the program's own messages, the scene's echo lines and the progress bar,
+ * as text (with colour) or as JSON lines.
  */
 #ifndef CLI_CONSOLE_H
 #define CLI_CONSOLE_H
@@ -11,6 +12,7 @@
 #include "options.h"
 
 typedef struct cli_console {
+    FILE *out; /* standard error, but for one of many jobs */
     bool quiet, color, json, is_terminal;
     bool mute_notes; /* they belong to a warning that was not shown */
     uint32_t errors; /* said so far, warnings made errors by -Werror included */

@@ -31,63 +31,86 @@ static bool is_file(const char *path)
     return strcmp(path, "-") != 0;
 }
 
-/* Returns how many targets there are; writes them unless out is NULL. */
-static size_t put_targets(FILE *out, const cli_options *options)
+/* The files among the outputs and the statistics. NULL: no memory. */
+static const char **list_targets(const cli_options *options, size_t *count)
 {
-    size_t count = 0;
-    for (size_t i = 0; i <= options->outputs.count; i++) {
+    const char **targets = malloc((options->outputs.count + 1) * sizeof *targets);
+    *count = 0;
+    for (size_t i = 0; targets && i <= options->outputs.count; i++) {
         bool last = i == options->outputs.count;
         const char *path = last ? options->stats : options->outputs.items[i];
-        if (!path || !is_file(path))
-            continue;
-        if (out && count)
-            fputc(' ', out);
-        if (out)
-            put_name(out, path);
-        count++;
+        if (path && is_file(path))
+            targets[(*count)++] = path;
     }
-    return count;
+    return targets;
 }
 
 int cli_depfile_check(cli_app *app)
 {
-    if (app->options.depfile && !put_targets(NULL, &app->options))
+    size_t count = 1;
+    if (app->options.depfile)
+        free(list_targets(&app->options, &count));
+    if (!count)
         return cli_usage_error(app, "add -o FILE", "-M needs an output file to name in its rule");
     return CLI_DONE;
 }
 
-static void put_rules(FILE *out, const cli_options *options, const csgm_scene *scene)
+static void put_rules(FILE *out, const cli_list *targets, const cli_list *dependencies)
 {
-    const char *path;
-    put_targets(out, options);
+    for (size_t i = 0; i < targets->count; i++) {
+        if (i)
+            fputc(' ', out);
+        put_name(out, targets->items[i]);
+    }
     fputc(':', out);
-    for (size_t i = 0; (path = csgm_scene_dependency(scene, i)); i++) {
-        if (!is_file(path))
+    for (size_t i = 0; i < dependencies->count; i++) {
+        if (!is_file(dependencies->items[i]))
             continue;
         fputs(" \\\n  ", out);
-        put_name(out, path);
+        put_name(out, dependencies->items[i]);
     }
     fputc('\n', out);
-    for (size_t i = 1; (path = csgm_scene_dependency(scene, i)); i++) {
+    for (size_t i = 1; i < dependencies->count; i++) {
         fputc('\n', out);
-        put_name(out, path);
+        put_name(out, dependencies->items[i]);
         fputs(":\n", out);
     }
 }
 
-int cli_depfile_write(cli_app *app, const csgm_scene *scene)
+int cli_depfile_put(cli_app *app, const char *path, const cli_list *targets,
+                    const cli_list *dependencies)
 {
     char *text = NULL;
     size_t length = 0;
     FILE *out = open_memstream(&text, &length);
     if (out)
-        put_rules(out, &app->options, scene);
+        put_rules(out, targets, dependencies);
     if (!out || fclose(out) != 0) {
         free(text);
         cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
         return CLI_TROUBLE;
     }
-    int status = cli_write_text(app, app->options.depfile, text, length);
+    int status = cli_write_text(app, path, text, length);
     free(text);
+    return status;
+}
+
+int cli_depfile_write(cli_app *app, const csgm_scene *scene)
+{
+    cli_list targets = {0}, dependencies = {0};
+    while (csgm_scene_dependency(scene, dependencies.count))
+        dependencies.count++;
+    targets.items = list_targets(&app->options, &targets.count);
+    dependencies.items = malloc((dependencies.count + 1) * sizeof *dependencies.items);
+    int status = CLI_TROUBLE;
+    if (targets.items && dependencies.items) {
+        for (size_t i = 0; i < dependencies.count; i++)
+            dependencies.items[i] = csgm_scene_dependency(scene, i);
+        status = cli_depfile_put(app, app->options.depfile, &targets, &dependencies);
+    } else {
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    }
+    free(targets.items);
+    free(dependencies.items);
     return status;
 }

@@ -267,6 +267,7 @@ static bool set_option(parser *p, const row *option, const char *value)
 {
     void *slot = (char *)p->options + option->offset;
     p->options->given[option->id] = true;
+    p->options->texts[option->id] = value;
     switch (option->kind) {
     case FLAG:
         *(bool *)slot = true;

@@ -68,6 +68,7 @@ typedef struct cli_options {
     cli_command command;
     cli_list operands;
     bool given[CLI_OPTION_COUNT];
+    const char *texts[CLI_OPTION_COUNT]; /* values as they were given, the last; NULL of a FLAG */
 } cli_options;
 
 /* What was wrong with the command line, for one line on stderr. */

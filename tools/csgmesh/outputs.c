@@ -165,6 +165,7 @@ csgm_write_options cli_outputs_options(const cli_options *options)
     write.draco = options->draco;
     write.y_up = options->up == 0;
     write.sync = !options->no_sync;
+    write.only_if_changed = options->if_changed;
     write.unit = (csgm_unit)options->unit; /* the values of --unit stand in the enum's order */
     if (options->given[CLI_OPTION_draco_bits]) {
         write.draco_position_bits = options->draco_bits.position;

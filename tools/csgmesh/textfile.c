@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,22 +43,35 @@ static bool write_directly(const char *path, const char *text, size_t length)
     return good;
 }
 
+/* Created by our own open, not mkstemp, so that the kernel applies the umask. */
+static int open_beside(const char *target, char *temporary, size_t size)
+{
+    static atomic_uint counter;
+    for (int attempt = 0; attempt < 1000; attempt++) {
+        const char *slash = strrchr(target, '/');
+        int folder = slash ? (int)(slash + 1 - target) : 0;
+        int written = snprintf(temporary, size, "%.*s.csgmesh-%ld-t%u.tmp", folder, target,
+                               (long)getpid(), atomic_fetch_add(&counter, 1));
+        if (written < 0 || (size_t)written >= size) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || errno != EEXIST)
+            return fd;
+    }
+    return -1;
+}
+
 static bool write_renamed(const char *target, const char *text, size_t length)
 {
-    char temporary[PATH_MAX + 16];
-    int written = snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
-    if (written < 0 || (size_t)written >= sizeof temporary) {
-        errno = ENAMETOOLONG;
-        return false;
-    }
-    int fd = mkstemp(temporary);
+    char temporary[PATH_MAX + 64];
+    int fd = open_beside(target, temporary, sizeof temporary);
     if (fd < 0)
         return false;
     cli_interrupt_pending_file(temporary);
     errno = 0;
-    mode_t mask = umask(0);
-    umask(mask);
-    bool good = fchmod(fd, 0666 & ~mask) == 0 && write_all(fd, text, length) && fsync(fd) == 0;
+    bool good = write_all(fd, text, length) && fsync(fd) == 0;
     int reason = errno;
     good = close(fd) == 0 && good && rename(temporary, target) == 0;
     if (!good) {
