@@ -87,7 +87,8 @@ static void octant_of(const uint32_t parent[3], int octant, uint32_t at[3])
 /* Of the ball around a cube of 2 * half cells along an edge, rounded up. */
 static float ball_radius(const walk *w, uint32_t half)
 {
-    return (float)(half * w->lattice->cell_size * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
+    double reach = half * w->lattice->cell_size + w->options.margin;
+    return (float)(reach * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
 }
 
 /* Centres of the eight children; returns the radius of their balls. */
@@ -420,6 +421,13 @@ static csgm_status why_stopped(walk *w)
     return atomic_load(&w->out_of_memory) ? csg_context_no_memory(w->context) : CSGM_CANCELLED;
 }
 
+/* 32 ulp of the extent: see rounding_of in field/compile_leaf.c, which covers the leaves' own
+ * lengths. */
+float csg_octree_rounding(const csg_lattice *lattice)
+{
+    return (float)(32 * (double)FLT_EPSILON * csg_lattice_extent(lattice));
+}
+
 csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
                               const csg_lattice *lattice, const csg_octree_options *options,
                               csg_octree **out)
@@ -433,11 +441,9 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
                 .options = *options,
                 .kernel = csg_kernel_for(context->isa),
                 .worker_count = csg_pool_threads(context->pool)};
-    /* 32 ulp of the extent: see rounding_of in field/compile_leaf.c, which covers the leaves' own
-     * lengths. */
-    double rounding = 32 * (double)FLT_EPSILON * csg_lattice_extent(lattice);
-    w->tau = (float)((double)field->tape.lipschitz *
-                     (lattice->cell_size * (1 + 0x1p-10) + 2 * rounding));
+    double rounding = (double)csg_octree_rounding(lattice);
+    double band = lattice->cell_size * (options->margin > 0 ? 2 : 1);
+    w->tau = (float)((double)field->tape.lipschitz * (band * (1 + 0x1p-10) + 2 * rounding));
     bool done = create_workers(w, (float)rounding) && make_root(w);
     if (!done)
         atomic_store(&w->out_of_memory, true);
@@ -475,6 +481,16 @@ void csg_octree_destroy(csg_octree *w)
 size_t csg_octree_frontier_count(const csg_octree *octree)
 {
     return octree->cell_count;
+}
+
+csg_tape csg_octree_frontier_tape(const csg_octree *w, size_t index, uint32_t at[3])
+{
+    csg_tape tape = w->field->tape;
+    const cell *c = &w->cells[index];
+    memcpy(at, c->at, sizeof c->at);
+    tape.nodes = c->nodes;
+    tape.count = c->node_count;
+    return tape;
 }
 
 csgm_status csg_octree_sample(csg_octree *w, size_t first, size_t end)

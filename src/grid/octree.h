@@ -11,6 +11,9 @@
 
 typedef struct csg_octree_options {
     bool prune;
+    /* Tapes and states hold also for what is this far, in scene units, from a cube's faces; values
+     * in a band twice as wide. For certify.c, which looks around. 0: the cubes alone. */
+    double margin;
     /* Called on the calling thread; fraction of the walk done. May be NULL. */
     void (*progress)(void *user, double fraction);
     /* Any worker; true = stop. May be NULL. */
@@ -35,6 +38,10 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
 void csg_octree_destroy(csg_octree *octree); /* NULL is a no-op */
 
 size_t csg_octree_frontier_count(const csg_octree *octree);
+/* The tape of a frontier cube, and its place in cubes of 2^3 blocks. */
+csg_tape csg_octree_frontier_tape(const csg_octree *octree, size_t index, uint32_t at[3]);
+/* Slack of lengths for pruners of this walk's tapes. */
+float csg_octree_rounding(const csg_lattice *lattice);
 /* Samples the blocks of frontier cubes [first, end) and forgets those of the call before. */
 csgm_status csg_octree_sample(csg_octree *octree, size_t first, size_t end);
 /* The blocks, in Morton order, that the surface touches. */

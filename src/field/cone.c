@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ * A direction for all leaves of a tape; see cone.h. The best one points to the point of the convex
+ * hull of the leaves' gradients that is nearest to zero; Frank and Wolfe's steps come near to it,
+ * and what they find is then checked, so it need not be the best.
+ */
+#include "field/cone.h"
+
+#include <math.h>
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The ball that reaches least far along w, and how far. */
+static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double *reach)
+{
+    uint32_t worst = 0;
+    double norm = sqrt(dot(w, w));
+    *reach = INFINITY;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        double d = dot(w, balls->items[i].at) - norm * balls->items[i].spread;
+        if (d < *reach) {
+            *reach = d;
+            worst = i;
+        }
+    }
+    return worst;
+}
+
+/* w moves towards the vector of the ball that is nearest to the other side. */
+static void step_towards(double w[3], const csg_cone_ball *ball)
+{
+    double point[3], to[3], norm = sqrt(dot(w, w));
+    for (int k = 0; k < 3; k++) {
+        point[k] = ball->at[k] - (norm > 0 ? w[k] / norm : 0) * ball->spread;
+        to[k] = point[k] - w[k];
+    }
+    double square = dot(to, to), share = square > 0 ? -dot(w, to) / square : 0;
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    for (int k = 0; k < 3; k++)
+        w[k] += share * to[k];
+}
+
+static bool find_axis(const csg_cone_balls *balls, csg_cone *out)
+{
+    enum { STEPS = 12 };
+    double w[3] = {0, 0, 0}, best = 0;
+    for (uint32_t i = 0; i < balls->count; i++)
+        for (int k = 0; k < 3; k++)
+            w[k] += balls->items[i].at[k] / balls->count;
+    for (int step = 0; step < STEPS; step++) {
+        double reach, norm = sqrt(dot(w, w));
+        if (!(norm > 1e-6))
+            break;
+        uint32_t worst = worst_of(balls, w, &reach);
+        if (reach / norm > best) {
+            best = reach / norm;
+            for (int k = 0; k < 3; k++)
+                out->axis[k] = w[k] / norm;
+        }
+        if (balls->count == 1)
+            break;
+        step_towards(w, &balls->items[worst]);
+    }
+    out->least = best;
+    return best > 0;
+}
+
+/* Operators whose gradient is such a combination. */
+static bool operator_combines(const csg_tape_node *node)
+{
+    switch (node->op) {
+    case CSG_OP_UNION:
+    case CSG_OP_INTERSECTION:
+    case CSG_OP_ROUND_UNION:
+    case CSG_OP_ROUND_INTERSECTION:
+        return node->blend < CSG_BLEND_COUNT || node->blend == CSG_BLEND_ORTHOGONAL;
+    default:
+        return false;
+    }
+}
+
+static bool is_sharp(const csg_tape_node *node)
+{
+    return node->arity > 1 &&
+           (node->blend == CSG_BLEND_SHARP || node->blend == CSG_BLEND_ORTHOGONAL);
+}
+
+bool csg_cone_find(const csg_tape *tape, const float c[3], double radius, csg_cone *out)
+{
+    csg_cone_balls balls;
+    balls.count = 0;
+    balls.has_edges = false;
+    out->is_crease = false;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op)) {
+            if (!csg_cone_add_leaf(&balls, tape, node, c, radius))
+                return false;
+        } else if (!operator_combines(node)) {
+            return false;
+        } else {
+            out->is_crease |= is_sharp(node);
+        }
+    }
+    out->is_crease |= balls.has_edges;
+    return balls.count > 0 && find_axis(&balls, out);
+}

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT
+ * Dividing a block until every cube of it is settled. In the order tried:
+ *
+ *   empty      the field's interval over the cube does not hold 0
+ *   far cone   one direction climbs at m all over the cube and FAR cells around: what hides in the
+ *              cube is then the tip of a cone that holds a lattice point. Cubes down to a cell.
+ *   near cone  the same around a cube within a cell, and the points 3 radii up and down that
+ *              direction lie in balls that hold the cube's whole shift: one way from each of them
+ *              to the lattice (certify_reach.h) answers for all that hides in the cube
+ *   balls      two balls, of inside and of outside, leave of the cube a layer thinner than `size`
+ *   the rest is divided, down to `size`; there the sign of the centre is followed to the lattice.
+ */
+#include "grid/certify_block.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "field/cone.h"
+
+static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
+static const double FAR = 2.5; /* cells */
+static const double NEAR = 3;  /* radii of the cube */
+
+enum {
+    MOST_VISITS = 4096,       /* of cubes, a cell */
+    MOST_BLOCK_VISITS = 65536 /* a block */
+};
+
+/* ---- kinds ---------------------------------------------------------------------------------- */
+
+static void note(csg_certify_worker *w, uint32_t cell, csg_cell_kind kind)
+{
+    if (kind > w->kinds[cell])
+        w->kinds[cell] = (uint8_t)kind;
+}
+
+/* A cell's worst finding is kept: a gap or part that is missed before what cannot be told. */
+static bool find(csg_certify_worker *w, uint32_t cell, csg_cell_kind kind, int sign,
+                 const csg_reach_end *end)
+{
+    if (kind <= w->kinds[cell])
+        return true;
+    note(w, cell, kind);
+    size_t last = w->finding_count - 1;
+    uint32_t at[3];
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = w->block.at[axis] * CSG_BLOCK_EDGE + (cell >> (3 * axis) & 7);
+    bool again = w->finding_count && !memcmp(w->findings[last].cell, at, sizeof at);
+    if (!again) {
+        if (!csg_memory_reserve(&w->context->memory, (void **)&w->findings, &w->finding_capacity,
+                                w->finding_count + 1, sizeof *w->findings))
+            return false;
+        last = w->finding_count++;
+    }
+    csg_certify_finding *f = &w->findings[last];
+    *f = (csg_certify_finding){
+        .kind = (uint8_t)kind, .is_gap = sign < 0, .thickness = end->thickness};
+    memcpy(f->cell, at, sizeof at);
+    memcpy(f->at, end->at, sizeof f->at);
+    return true;
+}
+
+/* Cells of the block whose corners differ, in a cube of cells. */
+static void note_crossed(csg_certify_worker *w, const csg_certify_cube *cube, csg_cell_kind kind)
+{
+    int first[3], edge = (int)(2 * cube->half / w->lattice->cell_size + 0.5);
+    for (int axis = 0; axis < 3; axis++) {
+        double low =
+            cube->c[axis] - cube->half -
+            (double)csg_lattice_coordinate(w->lattice, axis, w->block.at[axis] * CSG_BLOCK_EDGE);
+        first[axis] = (int)floor(low / w->lattice->cell_size + 0.5);
+    }
+    for (int k = first[2]; k < first[2] + edge; k++)
+        for (int j = first[1]; j < first[1] + edge; j++)
+            for (int i = first[0]; i < first[0] + edge; i++) {
+                const uint16_t *low = w->block.inside[k] + j, *high = w->block.inside[k + 1] + j;
+                unsigned pairs = 0, any = 0;
+                for (int row = 0; row < 4; row++) {
+                    unsigned two = ((row & 2 ? high : low)[row & 1] >> i) & 3;
+                    any |= two != 0;
+                    pairs += (two & 1) + (two >> 1);
+                }
+                if (any && pairs < 8)
+                    note(w, (uint32_t)(i | j << 3 | k << 6), kind);
+            }
+}
+
+/* ---- one cube ------------------------------------------------------------------------------- */
+
+/* Follows one side of the surface in a cube to the lattice; *settled stays only if it gets there.
+ */
+static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], double value, int sign,
+                   bool *settled)
+{
+    csg_reach_end end;
+    csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &end);
+    if (state == CSG_REACH_SAMPLE)
+        return true;
+    *settled = false;
+    csg_cell_kind kind = state == CSG_REACH_NONE ? CSG_CELL_MISSED : CSG_CELL_UNRESOLVED;
+    return find(w, cell, kind, sign, &end);
+}
+
+/* What holds of both sides of a cube: they reach the lattice, or the cell says why not. */
+static bool follow_both(csg_certify_worker *w, const csg_certify_cube *cube, const double p[2][3],
+                        const double values[2], csg_cell_kind kind)
+{
+    bool settled = true;
+    if (!follow(w, cube->cell, p[0], values[0], 1, &settled) ||
+        !follow(w, cube->cell, p[1], values[1], -1, &settled))
+        return false;
+    if (settled)
+        note(w, cube->cell, kind);
+    return true;
+}
+
+static void along(const csg_certify_cube *cube, const double axis[3], double t, double p[2][3])
+{
+    for (int k = 0; k < 3; k++) {
+        p[0][k] = cube->c[k] + t * axis[k];
+        p[1][k] = cube->c[k] - t * axis[k];
+    }
+}
+
+static csg_tape tape_of(const csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_tape tape = *w->reach.tape;
+    tape.nodes = cube->nodes;
+    tape.count = cube->node_count;
+    return tape;
+}
+
+static bool cone_of(const csg_certify_worker *w, const csg_certify_cube *cube, double radius,
+                    csg_cone *cone)
+{
+    csg_tape tape = tape_of(w, cube);
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
+    return csg_cone_find(&tape, c, radius * (1 + 0x1p-20) + (double)w->wide.rounding, cone);
+}
+
+/* The far cone: settles all cells in the cube. */
+static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone)
+{
+    double h = w->lattice->cell_size;
+    /* at distance t up the cone it holds a ball of radius m t / lambda; half a cell's diagonal is
+     * enough */
+    return cone_of(w, cube, ROOT3 * cube->half + FAR * h, cone) &&
+           cone->least * (FAR - 0.05) > 0.5 * ROOT3 * w->reach.lipschitz * 1.01;
+}
+
+/* Near cone or balls; *settled tells whether the cube needs no division. */
+static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
+{
+    csg_cone cone;
+    double r = ROOT3 * cube->half, p[2][3], values[2], need = r * w->reach.lipschitz;
+    *settled = false;
+    if (cone_of(w, cube, (1 + NEAR) * r, &cone)) {
+        along(cube, cone.axis, NEAR * r, p);
+        csg_reach_values(&w->reach, (const double(*)[3])p, 2, values);
+        *settled = fmin(values[0], w->reach.band) > need && fmin(-values[1], w->reach.band) > need;
+        if (*settled)
+            return follow_both(w, cube, (const double(*)[3])p, values,
+                               cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+    }
+    float c[3][CSG_LANES] = {{0}}, g[3][CSG_LANES];
+    for (int axis = 0; axis < 3; axis++)
+        c[axis][0] = (float)cube->c[axis];
+    w->reach.kernel->gradients(w->reach.tape, c[0], c[1], c[2], 1, g[0], g[1], g[2],
+                               w->reach.scratch, w->reach.scratch_floats);
+    double axis[3] = {(double)g[0][0], (double)g[1][0], (double)g[2][0]};
+    double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    if (!(norm > 1e-3))
+        return true;
+    for (int k = 0; k < 3; k++)
+        axis[k] /= norm;
+    for (double t = 1; t > 0.1 && !*settled; t /= 2.5) {
+        double up = t * w->lattice->cell_size, radius[2], layer = 2 * up;
+        along(cube, axis, up, p);
+        csg_reach_values(&w->reach, (const double(*)[3])p, 2, values);
+        for (int side = 0; side < 2; side++) {
+            double value = side ? -values[1] : values[0];
+            radius[side] = fmin(value, w->reach.band) / w->reach.lipschitz * (1 - 0x1p-12);
+            layer -= radius[side] > r ? sqrt(radius[side] * radius[side] - r * r) : 0;
+        }
+        *settled = radius[0] > r && radius[1] > r && layer <= w->size;
+    }
+    if (!*settled)
+        return true;
+    w->reached_size = true;
+    return follow_both(w, cube, (const double(*)[3])p, values, CSG_CELL_REFINED);
+}
+
+/* A cube that is not divided any more. */
+static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    double value;
+    bool settled = true;
+    csg_reach_values(&w->reach, (const double(*)[3])cube->c, 1, &value);
+    w->reached_size = true;
+    if (!follow(w, cube->cell, cube->c, value, value >= 0 ? 1 : -1, &settled))
+        return false;
+    if (settled)
+        note(w, cube->cell, CSG_CELL_REFINED);
+    return true;
+}
+
+static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    w->cubes++;
+    w->block_visits++;
+    return ++w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
+}
+
+/* A cube of a cell or less that is not empty. */
+static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, bool *divide)
+{
+    csg_cone cone;
+    bool settled = false, is_cell = 2 * cube->half > 0.75 * w->lattice->cell_size;
+    *divide = false;
+    if (w->kinds[cube->cell] == CSG_CELL_MISSED)
+        return true;
+    if (!is_within_budget(w, cube)) {
+        csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
+        return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end);
+    }
+    if (is_cell && has_far_cone(w, cube, &cone)) {
+        note_crossed(w, cube, cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+        return true;
+    }
+    if (!settle(w, cube, &settled))
+        return false;
+    if (settled)
+        return true;
+    *divide = 2 * cube->half > w->size * (1 + 1e-9);
+    return *divide || end_cube(w, cube);
+}
+
+/* ---- the block ------------------------------------------------------------------------------ */
+
+static bool push(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    if (!csg_memory_reserve(&w->context->memory, (void **)&w->stack, &w->stack_capacity,
+                            w->stack_count + 1, sizeof *w->stack))
+        return false;
+    w->stack[w->stack_count++] = *cube;
+    return true;
+}
+
+/* The eighths of a cube that are not empty, with tapes for what their cones need. */
+static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_tape tape = tape_of(w, cube), shorter;
+    double h = w->lattice->cell_size, half = cube->half / 2, r = ROOT3 * half;
+    bool is_small = 2 * half < 1.5 * h;
+    double reach = half + (is_small ? fmax(NEAR * r, 2 * half > 0.75 * h ? FAR * h : 0) : FAR * h);
+    float c[3][CSG_OCTANTS];
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        for (int axis = 0; axis < 3; axis++)
+            c[axis][o] = (float)(cube->c[axis] + (o >> axis & 1 ? half : -half));
+    if (!csg_prune_octants(&w->plain, &tape, c[0], c[1], c[2], (float)(r * (1 + 0x1p-20))) ||
+        !csg_prune_octants(&w->wide, &tape, c[0], c[1], c[2],
+                           (float)(reach * ROOT3 * (1 + 0x1p-20))))
+        return false;
+    size_t first = w->stack_count;
+    for (int o = CSG_OCTANTS - 1; o >= 0; o--) {
+        if (csg_prune_state(&w->plain, o) != CSG_CELL_SURFACE)
+            continue;
+        if (!csg_prune_shorten(&w->wide, o, (float)(w->reach.lipschitz * h), &w->tapes, &shorter))
+            return false;
+        csg_certify_cube child = {
+            .half = half, .nodes = shorter.nodes, .node_count = shorter.count, .cell = cube->cell};
+        for (int axis = 0; axis < 3; axis++)
+            child.c[axis] = (double)c[axis][o];
+        if (is_small && cube->cell == CSG_CELLS_PER_BLOCK) {
+            child.cell = 0;
+            for (int axis = 0; axis < 3; axis++) {
+                double from = (double)csg_lattice_coordinate(w->lattice, axis,
+                                                             w->block.at[axis] * CSG_BLOCK_EDGE);
+                child.cell |= (uint32_t)floor((child.c[axis] - from) / h) << (3 * axis);
+            }
+        }
+        if (!push(w, &child))
+            return false;
+    }
+    for (size_t i = first; i < w->stack_count; i++)
+        w->stack[i].mark = csg_arena_get_mark(&w->tapes);
+    return true;
+}
+
+static bool look_at(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_cone cone;
+    bool goes_on = true;
+    if (cube->cell < CSG_CELLS_PER_BLOCK) {
+        if (!look_at_small(w, cube, &goes_on))
+            return false;
+    } else if (has_far_cone(w, cube, &cone) && !cone.is_crease) {
+        note_crossed(w, cube, CSG_CELL_CERTIFIED);
+        goes_on = false;
+    }
+    return !goes_on || divide(w, cube);
+}
+
+static void place_reach(csg_certify_worker *w, const csg_tape *tape)
+{
+    double h = w->lattice->cell_size;
+    w->reach.tape = tape;
+    for (int axis = 0; axis < 3; axis++) {
+        double from =
+            (double)csg_lattice_coordinate(w->lattice, axis, w->block.at[axis] * CSG_BLOCK_EDGE);
+        w->reach.low[axis] = from - (CSG_CERTIFY_MARGIN - 2) * h;
+        w->reach.high[axis] = from + (CSG_BLOCK_EDGE + CSG_CERTIFY_MARGIN - 2) * h;
+    }
+}
+
+bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_tape *tape)
+{
+    double h = w->lattice->cell_size;
+    memcpy(w->block.at, at, sizeof w->block.at);
+    w->block.parts = NULL;
+    csg_block_sample(&w->block, w->reach.kernel, tape, w->lattice, at, w->samples, w->reach.scratch,
+                     w->reach.scratch_floats);
+    memset(w->kinds, 0, sizeof w->kinds);
+    memset(w->visits, 0, sizeof w->visits);
+    w->block_visits = 0;
+    place_reach(w, tape);
+    csg_certify_cube root = {.half = CSG_BLOCK_EDGE * h / 2,
+                             .nodes = tape->nodes,
+                             .node_count = tape->count,
+                             .mark = csg_arena_get_mark(&w->tapes),
+                             .cell = CSG_CELLS_PER_BLOCK};
+    for (int axis = 0; axis < 3; axis++)
+        root.c[axis] = (double)csg_lattice_coordinate(
+            w->lattice, axis, at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
+    w->stack_count = 0;
+    bool done = push(w, &root);
+    while (done && w->stack_count) {
+        csg_certify_cube cube = w->stack[--w->stack_count];
+        csg_arena_release_to(&w->tapes, cube.mark); /* what its elder siblings' parts needed */
+        done = look_at(w, &cube);
+    }
+    csg_arena_release_to(&w->tapes, root.mark);
+    for (int i = 0; i < CSG_CELLS_PER_BLOCK; i++)
+        if (w->kinds[i])
+            w->cells[w->kinds[i]]++;
+    return done;
+}
