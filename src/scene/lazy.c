@@ -8,10 +8,18 @@
 
 #include "scene/lazy_private.h"
 
+/* A value at or below the floor may come out as any other such value, and one at or above the
+ * ceiling too: whoever asked cannot see a difference. */
+typedef struct demand {
+    double floor, ceiling;
+} demand;
+
 typedef struct frame {
     csg_vec3 at, inner; /* where it is asked, where it asks its children */
     double bound;       /* no value of the node is larger */
-    double best;        /* of the operands so far, with the signs of csg_reference_node */
+    demand seen;        /* of the value */
+    demand united;      /* the same of an operator's union (operand_sign) */
+    double best;        /* largest operand of that union so far */
     size_t slot;        /* of its first operand's sample */
     csg_node_id node;
     uint32_t first;     /* the operand that was asked first */
@@ -30,18 +38,17 @@ typedef struct evaluation {
 
 csg_lazy_options csg_lazy_options_default(double band)
 {
-    return (csg_lazy_options){true, CSG_LAZY_EXACT, band};
+    return (csg_lazy_options){true, CSG_LAZY_EXACT, band, true};
 }
 
 /* ---- creation ------------------------------------------------------------------------------ */
 
-/* Operands can be left out of unions and after the first of differences. */
+/* Blends that are at least the largest operand of their union, also after rounding. */
 static double support_of(const csgm_scene *tree, const csg_node *node)
 {
-    bool can = node->kind == CSG_NODE_UNION || node->kind == CSG_NODE_DIFFERENCE;
-    if (!can || !csg_lazy_is_known_blend(node->blend))
-        return NAN;
-    return csg_blend_support(csg_scene_blend(tree, node));
+    bool known = csg_node_is_operator(node->kind) && csg_lazy_is_known_blend(node->blend) &&
+                 node->blend != CSG_BLEND_ORTHOGONAL;
+    return known ? csg_blend_support(csg_scene_blend(tree, node)) : NAN;
 }
 
 static csgm_status measure(csg_lazy *lazy)
@@ -102,7 +109,8 @@ csgm_status csg_lazy_create(const csgm_scene *scene, const csg_lazy_options *opt
     csg_lazy *lazy = csg_memory_alloc(&context->memory, sizeof *lazy);
     if (!lazy)
         return csg_context_no_memory(context);
-    *lazy = (csg_lazy){.context = context, .lazy = options->lazy};
+    *lazy = (csg_lazy){
+        .context = context, .lazy = options->lazy, .demand = options->lazy && options->demand};
     lazy->lipschitz = csg_scene_lipschitz(scene);
     csg_arena_init(&lazy->arena, &context->memory);
     csgm_status status = fill(lazy, scene, options);
@@ -201,12 +209,65 @@ static csg_vec3 box_gradient(csg_box box, csg_vec3 p)
                       nearest / 2 == 2 ? sign : 0};
 }
 
-static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, size_t slot)
+/* An operator is the union of its operands with these signs, times the first sign (reference.c). */
+static double operand_sign(const csg_node *node, uint32_t index)
+{
+    return node->kind == CSG_NODE_INTERSECTION || (node->kind == CSG_NODE_DIFFERENCE && index == 0)
+               ? -1
+               : 1;
+}
+
+static demand times_sign(demand d, double sign)
+{
+    return sign > 0 ? d : (demand){-d.ceiling, -d.floor};
+}
+
+static double below(double x)
+{
+    return nextafter(nextafter(x, -INFINITY), -INFINITY);
+}
+
+/* Of a child whose value v becomes scale * v + shift: rounded so that it asks for more rather than
+ * less. */
+static demand inner_demand(demand d, double scale, double shift)
+{
+    return (demand){below((d.floor - shift) / scale), -below(-(d.ceiling - shift) / scale)};
+}
+
+/* What operand number `index` is asked for: in a sharp union nothing up to the best so far or the
+ * floor, in a blended one nothing that is outside the best's support, and nothing more once it is
+ * above the ceiling, since a union is at least as large as its operands. */
+static demand operand_demand(const csg_lazy *lazy, const frame *f, uint32_t index)
+{
+    const demand all = {-INFINITY, INFINITY};
+    const csg_node *node = &lazy->tree.nodes[f->node];
+    if (!lazy->demand)
+        return all;
+    if (node->kind == CSG_NODE_COLOR)
+        return f->seen;
+    if (node->kind == CSG_NODE_TRANSFORM)
+        return inner_demand(f->seen, lazy->tree.scales[node->payload], 0);
+    if (node->kind == CSG_NODE_WARP)
+        return inner_demand(f->seen, csg_warp_scale(&lazy->tree.warps[node->payload]), 0);
+    if (node->kind == CSG_NODE_OFFSET)
+        return inner_demand(f->seen, 1, csg_scene_parameters(&lazy->tree, node)[0]);
+    double support = lazy->supports[f->node];
+    if (isnan(support))
+        return all;
+    demand d = {support > 0 ? below(f->best - support) : fmax(f->best, f->united.floor),
+                f->united.ceiling};
+    return times_sign(d, operand_sign(node, index));
+}
+
+static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, demand seen, size_t slot)
 {
     const csgm_scene *tree = &e->lazy->tree;
+    const csg_node *node = &tree->nodes[id];
     e->frames[e->depth++] = (frame){.at = p,
-                                    .inner = csg_reference_inner_point(tree, &tree->nodes[id], p),
+                                    .inner = csg_reference_inner_point(tree, node, p),
                                     .bound = bound,
+                                    .seen = seen,
+                                    .united = times_sign(seen, operand_sign(node, 0)),
                                     .best = -INFINITY,
                                     .slot = slot,
                                     .node = id,
@@ -214,48 +275,73 @@ static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, size_
                                     .asked = UINT32_MAX};
 }
 
-/* The operand most likely to be the largest: the minuend, or the one with the largest bound. */
-static uint32_t choose_first(const evaluation *e, const frame *f, const csg_node *node)
+/* The operand most likely to decide: of a union the one with the largest bound, of an intersection
+ * the smallest, of a difference the minuend. */
+static uint32_t choose_first(const csg_lazy *lazy, const frame *f, const csg_node *node)
 {
     if (node->kind == CSG_NODE_DIFFERENCE)
         return 0;
-    const csg_node_id *children = csg_scene_children(&e->lazy->tree, node);
+    const csg_node_id *children = csg_scene_children(&lazy->tree, node);
+    double sign = operand_sign(node, 0), most = -INFINITY;
     uint32_t first = 0;
-    double largest = -INFINITY;
     for (uint32_t k = 0; k < node->child_count; k++) {
-        double bound = bound_at(e->lazy, children[k], f->inner);
-        if (bound > largest)
+        double bound = sign * bound_at(lazy, children[k], f->inner);
+        if (bound > most)
             first = k;
-        largest = fmax(largest, bound);
+        most = fmax(most, bound);
     }
     return first;
 }
 
-/* Enters the next operand that can matter; false when there is none. The test is the one that the
- * blends make on values, and subtraction rounds monotonely, so what is left out does not change a
- * bit. */
+/* Whether operand number `index` can be left out, its value being `bound` or less. The first test
+ * is the one that blends make on values: subtraction rounds monotonely, so no bit changes. */
+static bool is_left_out(const csg_lazy *lazy, frame *f, uint32_t index, double bound)
+{
+    const csg_node *node = &lazy->tree.nodes[f->node];
+    double support = lazy->supports[f->node];
+    if (f->best >= f->united.ceiling && f->best > -INFINITY)
+        return true;
+    if (operand_sign(node, index) > 0)
+        return f->best - bound >= support ||
+               (support == 0 && f->united.floor > -INFINITY && bound <= f->united.floor);
+    if (-bound >= f->united.ceiling) { /* it is above the ceiling: its bound will do for it */
+        f->best = fmax(f->best, -bound);
+        return true;
+    }
+    return false;
+}
+
+/* Stands for an operand that was left out: nothing of the union, or what is above its ceiling. */
+static csg_sample left_out(const frame *f, const csg_node *node, uint32_t index, double bound)
+{
+    double sign = operand_sign(node, index);
+    bool decides = sign < 0 && -bound >= f->united.ceiling;
+    return (csg_sample){decides ? bound : -sign * INFINITY, {0, 0, 0}};
+}
+
+/* Enters the next operand that can matter; false when there is none. */
 static bool ask_next(evaluation *e, frame *f)
 {
     const csg_lazy *lazy = e->lazy;
     const csg_node *node = &lazy->tree.nodes[f->node];
     const csg_node_id *children = csg_scene_children(&lazy->tree, node);
     bool choosy = lazy->lazy && !isnan(lazy->supports[f->node]);
-    if (choosy && f->first == UINT32_MAX) {
-        f->asked = f->first = choose_first(e, f, node);
-        csg_node_id child = children[f->first];
-        enter(e, child, f->inner, bound_at(lazy, child, f->inner), f->slot + node->child_count);
-        return true;
-    }
-    for (; f->next < node->child_count; f->next++) {
-        if (f->next == f->first)
+    bool begins = choosy && f->first == UINT32_MAX;
+    if (begins)
+        f->first = choose_first(lazy, f, node);
+    while (begins || f->next < node->child_count) {
+        uint32_t k = begins ? f->first : f->next++;
+        if (k == f->first && !begins)
             continue;
-        double bound = bound_at(lazy, children[f->next], f->inner);
-        if (choosy && f->best - bound >= lazy->supports[f->node]) {
-            e->samples[f->slot + f->next] = (csg_sample){-INFINITY, {0, 0, 0}};
+        begins = false;
+        double bound = bound_at(lazy, children[k], f->inner);
+        if (choosy && is_left_out(lazy, f, k, bound)) {
+            e->samples[f->slot + k] = left_out(f, node, k, bound);
             continue;
         }
-        f->asked = f->next++;
-        enter(e, children[f->asked], f->inner, bound, f->slot + node->child_count);
+        f->asked = k;
+        enter(e, children[k], f->inner, bound, operand_demand(lazy, f, k),
+              f->slot + node->child_count);
         return true;
     }
     return false;
@@ -276,10 +362,7 @@ static csg_sample finish(const evaluation *e, const frame *f)
 
 static void receive(evaluation *e, frame *f, csg_sample operand)
 {
-    const csg_node *node = &e->lazy->tree.nodes[f->node];
-    double value = operand.value;
-    if (node->kind == CSG_NODE_DIFFERENCE && f->asked == 0)
-        value = -value;
+    double value = operand_sign(&e->lazy->tree.nodes[f->node], f->asked) * operand.value;
     f->best = value > f->best ? value : f->best;
     f->evaluated++;
     e->samples[f->slot + f->asked] = operand;
@@ -291,7 +374,7 @@ csg_sample csg_lazy_eval(const csg_lazy *lazy, csg_vec3 p, void *scratch, csg_la
     csg_node_id root = lazy->tree.root;
     uint64_t total = 0;
     csg_sample result = {NAN, {0, 0, 0}};
-    enter(&e, root, p, bound_at(lazy, root, p), 0);
+    enter(&e, root, p, bound_at(lazy, root, p), (demand){-INFINITY, INFINITY}, 0);
     while (e.depth) {
         frame *f = &e.frames[e.depth - 1];
         if (ask_next(&e, f))

@@ -39,9 +39,13 @@ typedef struct csg_lazy_options {
     /* For CSG_LAZY_EXACT; >= 0. Sphere tracing needs a band above its hit tolerance, and so do
      * exact gradients at hits. */
     double band;
+    /* Also leaves out what the ancestors cannot see: below a union what is less than its best
+     * operand so far, below a difference what is deeper than its first operand, and so on. The
+     * paper has only the rules within one operator. Changes no bit either. */
+    bool demand;
 } csg_lazy_options;
 
-/* Lazy, exact, with this band. */
+/* Lazy, exact, with this band and with demand. */
 csg_lazy_options csg_lazy_options_default(double band);
 
 typedef struct csg_lazy_counts {

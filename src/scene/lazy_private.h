@@ -16,10 +16,11 @@ typedef struct csg_lazy_bound {
 struct csg_lazy {
     csgm_context *context;
     csg_arena arena;
-    bool lazy;
+    bool lazy, demand;
     csgm_scene tree; /* the scene with joins; only nodes and children are its own, in arena */
     csg_lazy_bound *bounds; /* per node */
-    double *supports;       /* per node: operands that far below the best are left out; or NAN */
+    double *
+        supports; /* per operator: operands that far below the best do not matter; NAN: not known */
     csg_node_id *identity;  /* 0, 1, 2, ... as many as a node has operands */
     size_t depth, slots;    /* most frames and samples at once */
     size_t operands, steps; /* most of a node, of a formula */
