@@ -5,6 +5,7 @@
  */
 #include "scene/bounds.h"
 
+#include "scene/field_levels.h"
 #include "scene/level_boxes.h"
 
 /* The root's own box is then the hull of the leaves' boxes, and no look from above makes it
@@ -43,17 +44,27 @@ csg_box csg_bounds_of_solid(const csgm_scene *scene)
     return scene->bounds[scene->root];
 }
 
+static bool takes_fields(const csg_node *node)
+{
+    return csg_node_is_operator(node->kind) && csg_blend_takes_fields(node->blend);
+}
+
 /* The band [-below, above] of child number `index`. */
 static void hand_down_levels(const csgm_scene *scene, const csg_node *node, uint32_t index,
                              const csg_node_bounds *parent, csg_node_bounds *child)
 {
     double support = 0, below = parent->below, above = parent->above;
     if (csg_node_is_operator(node->kind))
-        support = csg_blend_support(csg_scene_blend(scene, node));
-    if (node->kind == CSG_NODE_UNION)
+        support = csg_scene_support(scene, node);
+    bool interior = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_INTERIOR;
+    if (node->kind == CSG_NODE_UNION || interior)
         below += support;
-    else
-        above += support;                 /* intersection and difference */
+    if (node->kind != CSG_NODE_UNION || interior)
+        above += support; /* intersection and difference */
+    if (node->kind == CSG_NODE_SOFT || takes_fields(node)) {
+        csg_field_band(scene, node, index, &child->below, &child->above);
+        return;
+    }
     if (node->kind == CSG_NODE_COMBINE) { /* not monotone: any value of an operand may matter */
         child->below = child->above = INFINITY;
         return;
@@ -84,6 +95,8 @@ static void hand_down_regions(const csgm_scene *scene, const csg_node *node, csg
         region = csg_box_all();
     for (uint32_t k = 0; k < count; k++)
         out[children[k]].clamp_box = region;
+    if (takes_fields(node)) /* what one operand is can matter wherever another is */
+        return;
     if (node->kind == CSG_NODE_DIFFERENCE) {
         for (uint32_t k = 1; k < count; k++)
             out[children[k]].clamp_box = csg_box_intersect(region, out[children[0]].level_box);

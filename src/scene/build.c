@@ -47,6 +47,7 @@ void csg_build_abandon(csg_scene_builder *builder)
                        builder->formula_capacity * sizeof *scene->formulas);
     csg_memory_release(memory, scene->steps, builder->step_capacity * sizeof *scene->steps);
     csg_memory_release(memory, scene->warps, builder->warp_capacity * sizeof *scene->warps);
+    csg_memory_release(memory, scene->rules, builder->rule_capacity * sizeof *scene->rules);
     for (size_t i = 0; i < scene->shape_count; i++)
         csg_shape_release(scene->shapes[i]);
     csg_memory_release(memory, scene->shapes, builder->shape_capacity * sizeof *scene->shapes);
@@ -56,7 +57,7 @@ void csg_build_abandon(csg_scene_builder *builder)
                        builder->part_capacity * sizeof *scene->part_names);
     csg_memory_release(memory, scene, sizeof *scene);
     builder->scene = NULL;
-    builder->shape_capacity = builder->warp_capacity = 0;
+    builder->shape_capacity = builder->warp_capacity = builder->rule_capacity = 0;
     builder->node_capacity = builder->child_capacity = builder->parameter_capacity = 0;
     builder->transform_capacity = builder->look_capacity = builder->part_capacity = 0;
     builder->formula_capacity = builder->step_capacity = 0;
@@ -112,6 +113,16 @@ bool csg_build_reserve_parameters(csg_scene_builder *builder, size_t more)
     return true;
 }
 
+/* Soft operands stay soft below what keeps fields apart. */
+static bool makes_soft(const csg_node *node, bool all_soft)
+{
+    if (csg_node_is_operator(node->kind))
+        return node->blend == CSG_BLEND_SHARP ? all_soft : csg_blend_takes_fields(node->blend);
+    return node->kind == CSG_NODE_SOFT ||
+           (all_soft && (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
+                         node->kind == CSG_NODE_WARP));
+}
+
 /* Room was made by has_room_for_nodes, reserve_children and reserve_parameters. */
 csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const csg_node_id *children,
                              size_t count)
@@ -120,14 +131,19 @@ csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const cs
     node.first_child = (uint32_t)scene->child_count;
     node.child_count = (uint32_t)count;
     bool flat = count > 0;
-    for (size_t i = 0; i < count; i++)
+    bool soft = count > 0;
+    for (size_t i = 0; i < count; i++) {
         flat &= (scene->nodes[children[i]].flags & CSG_FLAG_FLAT) != 0;
+        soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
+    }
     for (size_t i = 0; i < count; i++)
         if (scene->nodes[children[i]].warps > node.warps)
             node.warps = scene->nodes[children[i]].warps;
     node.warps = (uint8_t)(node.warps + (node.kind == CSG_NODE_WARP));
     if (flat && node.kind != CSG_NODE_WARP)
         node.flags |= CSG_FLAG_FLAT;
+    if (makes_soft(&node, soft))
+        node.flags |= CSG_FLAG_SOFT;
     for (size_t i = 0; i < count; i++)
         scene->children[scene->child_count++] = children[i];
     scene->nodes[scene->node_count] = node;
@@ -414,19 +430,28 @@ csg_node_id csg_build_color(csg_scene_builder *builder, csg_color color, csg_nod
 
 /* ---- operators ------------------------------------------------------------------------ */
 
-static csg_node_id append_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
-                                   const csg_node_id *children, size_t count, csg_span where)
+csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind kind,
+                                      csg_blend blend, double range, const csg_node_id *children,
+                                      size_t count, csg_span where)
 {
     csgm_scene *scene = builder->scene;
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, count) ||
-        !csg_build_reserve_parameters(builder, 1))
+        !csg_build_reserve_parameters(builder, CSG_OPERATOR_FIELD_PARAMETERS))
         return CSG_NODE_NONE;
     csg_node node = {.kind = (uint8_t)kind,
                      .blend = (uint8_t)blend.kind,
                      .payload = (uint32_t)scene->parameter_count,
                      .where = where};
-    scene->parameters[scene->parameter_count++] = blend.n;
-    return csg_build_append(builder, node, children, count);
+    csg_node_id made = csg_build_append(builder, node, children, count);
+    double *parameters = scene->parameters + scene->parameter_count;
+    uint32_t own = csg_node_parameter_count(&scene->nodes[made]);
+    parameters[CSG_OPERATOR_RULE] = blend.n;
+    if (own > 1) {
+        parameters[CSG_OPERATOR_RANGE] = range;
+        parameters[CSG_OPERATOR_LAMBDA] = 0;
+    }
+    scene->parameter_count += own;
+    return made;
 }
 
 /* The operand that alone decides that the result is empty, or CSG_NODE_NONE. */
@@ -454,14 +479,18 @@ static size_t drop_empty(const csgm_scene *scene, const csg_node_id *children, s
 static csg_node_id join(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                         const csg_node_id *operands, size_t count, csg_span where)
 {
+    double range = 0;
     if (count == 1)
         return operands[0];
+    if (csg_blend_is_rule(blend.kind) &&
+        !csg_build_settle_rule(builder, kind, &blend, operands, count, &range))
+        return CSG_NODE_NONE;
     if (!csg_blend_is_fold(blend.kind))
-        return append_operator(builder, kind, blend, operands, count, where);
+        return csg_build_append_operator(builder, kind, blend, range, operands, count, where);
     csg_node_id joined = operands[0];
     for (size_t i = 1; i < count && joined != CSG_NODE_NONE; i++)
-        joined =
-            append_operator(builder, kind, blend, (csg_node_id[]){joined, operands[i]}, 2, where);
+        joined = csg_build_append_operator(builder, kind, blend, range,
+                                           (csg_node_id[]){joined, operands[i]}, 2, where);
     return joined;
 }
 

@@ -26,5 +26,12 @@ csg_node_id csg_build_append_look(csg_scene_builder *builder, const csg_look *lo
 /* A formula of its own, its steps with it. */
 bool csg_build_append_formula(csg_scene_builder *builder, const csg_formula_step *steps,
                               const csg_formula *formula);
+/* An operator as it stands, nothing simplified; `range` counts where the blend takes fields. */
+csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind kind,
+                                      csg_blend blend, double range, const csg_node_id *children,
+                                      size_t count, csg_span where);
+/* Range and angles of a rule for these operands; *blend may become another. */
+bool csg_build_settle_rule(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend,
+                           const csg_node_id *operands, size_t count, double *range);
 
 #endif

@@ -266,7 +266,7 @@ static csg_node_id copy_node(csg_scene_builder *builder, csg_node_id id, csg_nod
     csgm_scene *scene = builder->scene;
     csg_node node = scene->nodes[id];
     uint32_t count = node.child_count;
-    uint32_t own = csg_node_is_operator(node.kind) ? 1 : csg_primitive_parameter_count(node.kind);
+    uint32_t own = csg_node_parameter_count(&node);
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, count) ||
         !csg_build_reserve_parameters(builder, own))
         return CSG_NODE_NONE;

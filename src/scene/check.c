@@ -125,6 +125,22 @@ static bool check_plane(csg_scene_builder *builder, double *v)
     return true;
 }
 
+static bool check_superellipsoid(csg_scene_builder *builder, double *v)
+{
+    const double most = 64;
+    for (int i = 0; i < 3; i++)
+        if (!check_positive(builder, v[i], "the semi-axis"))
+            return false;
+    for (int i = 3; i < 5; i++)
+        if (!(v[i] >= 1 && v[i] <= most)) {
+            csg_check_fail(builder, CSGM_ERR_SCENE, "an exponent must be 1 to %g, not %g", most,
+                           v[i]);
+            return false;
+        }
+    v[5] = csg_gauge_slope(v);
+    return true;
+}
+
 bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
 {
     switch (kind) {
@@ -151,6 +167,8 @@ bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double 
         return check_rectangle(builder, v);
     case CSG_NODE_SLAB:
         return check_positive(builder, v[0], "the height");
+    case CSG_NODE_SUPERELLIPSOID:
+        return check_superellipsoid(builder, v);
     default:
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
         return false;
@@ -249,9 +267,17 @@ bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix)
 
 bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend)
 {
-    if (!csg_node_is_operator(kind) || (unsigned)blend->kind >= CSG_BLEND_COUNT) {
+    if (!csg_node_is_operator(kind) || (unsigned)blend->kind >= CSG_BLEND_END ||
+        blend->kind == CSG_BLEND_ORTHOGONAL) {
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such operator");
         return false;
+    }
+    if (csg_blend_is_rule(blend->kind)) {
+        const csgm_scene *scene = builder->scene;
+        if (!(blend->n >= 0 && blend->n < (double)scene->rule_count) ||
+            scene->rules[(size_t)blend->n].kind != blend->kind)
+            csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such rule");
+        return builder->status == CSGM_OK;
     }
     if (blend->kind == CSG_BLEND_SHARP || blend->n == 0) {
         *blend = (csg_blend){CSG_BLEND_SHARP, 0};

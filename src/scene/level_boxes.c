@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "scene/combine.h"
+#include "scene/field_levels.h"
 #include "scene/half_spaces.h"
 #include "scene/primitive_box.h"
 
@@ -103,15 +104,16 @@ static bool store_levels(table *t, csg_node_id node, level_list *list)
 static void union_levels(const csgm_scene *scene, const csg_node *node, double *excess,
                          double *support)
 {
-    csg_blend blend = csg_scene_blend(scene, node);
-    *excess = csg_blend_excess(blend, node->child_count);
-    *support = csg_blend_support(blend);
+    bool adds = node->blend != CSG_BLEND_INTERIOR;
+    *excess = adds ? csg_scene_excess(scene, node) : 0;
+    *support = adds ? csg_scene_support(scene, node) : 0;
 }
 
 /* One child, whose level is another. */
 static bool is_scaled(uint8_t kind)
 {
-    return kind == CSG_NODE_TRANSFORM || kind == CSG_NODE_OFFSET || kind == CSG_NODE_WARP;
+    return kind == CSG_NODE_TRANSFORM || kind == CSG_NODE_OFFSET || kind == CSG_NODE_WARP ||
+           kind == CSG_NODE_SOFT;
 }
 
 /* A solid that is shrunk lies within what it was. */
@@ -121,7 +123,21 @@ static double inner_level(const csgm_scene *scene, const csg_node *node, double 
         return level / scene->scales[node->payload];
     if (node->kind == CSG_NODE_WARP)
         return level / csg_warp_scale(&scene->warps[node->payload]);
+    if (node->kind == CSG_NODE_SOFT)
+        return csg_soft_level(scene, node, level);
     return fmax(level + csg_scene_parameters(scene, node)[0], 0);
+}
+
+static bool takes_fields(const csg_node *node)
+{
+    return csg_node_is_operator(node->kind) && csg_blend_takes_fields(node->blend);
+}
+
+/* How far below an intersection's or a difference's level its operands can be. */
+static double deficit(const csgm_scene *scene, const csg_node *node)
+{
+    bool interior = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_INTERIOR;
+    return interior ? csg_scene_excess(scene, node) : 0;
 }
 
 /* What a node at `level` asks of its child number `index`. */
@@ -134,6 +150,9 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
         csg_combine_begin(&combine, scene, node);
         add_level(list, csg_combine_inner_level(&combine, level));
         csg_combine_end(&combine);
+    } else if (takes_fields(node)) {
+        if (node->kind != CSG_NODE_DIFFERENCE || index == 0)
+            add_level(list, csg_field_level(scene, node, index, level));
     } else if (is_scaled(node->kind)) {
         add_level(list, inner_level(scene, node, level));
     } else if (node->kind == CSG_NODE_UNION) {
@@ -142,7 +161,7 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
         add_level(list, level + excess);
         add_level(list, level + support);
     } else if (node->kind != CSG_NODE_DIFFERENCE || index == 0) {
-        add_level(list, level);
+        add_level(list, level + deficit(scene, node));
     }
 }
 
@@ -316,6 +335,19 @@ static csg_box combined_box(const table *t, const csg_node *node, double level)
     return box;
 }
 
+/* A union's hull, an intersection's common part, the first of a difference, of boxes at the levels
+ * that its fields ask for. */
+static csg_box fields_box(const table *t, const csg_node *node, double level)
+{
+    const csg_node_id *children = csg_scene_children(t->scene, node);
+    csg_box box = box_at(t, children[0], csg_field_level(t->scene, node, 0, level));
+    for (uint32_t k = 1; k < node->child_count && node->kind != CSG_NODE_DIFFERENCE; k++) {
+        csg_box one = box_at(t, children[k], csg_field_level(t->scene, node, k, level));
+        box = node->kind == CSG_NODE_UNION ? csg_box_hull(box, one) : csg_box_intersect(box, one);
+    }
+    return box;
+}
+
 /* Nodes whose box is not better known in the root's frame than in their own: warps, which have no
  * affine way there, and extrusions, whose operands are infinite along axes that may be turned. */
 static bool is_opaque(const csg_node *node)
@@ -333,6 +365,7 @@ static csg_box cut_box(const table *t, size_t index, double level)
     size_t plane_count = 0;
     csg_affine frame = frame_of(t, index);
     csg_box box = csg_box_all();
+    level += deficit(t->scene, node);
     for (uint32_t k = 0; k < node->child_count; k++) {
         bool subtracted = node->kind == CSG_NODE_DIFFERENCE && k > 0;
         csg_half_space h;
@@ -361,6 +394,8 @@ static csg_box node_box(const table *t, size_t index, double level)
         return combined_box(t, node, level);
     if (!csg_node_is_operator(node->kind))
         return wrapped_box(t, node, level);
+    if (takes_fields(node))
+        return fields_box(t, node, level);
     return node->kind == CSG_NODE_UNION ? union_box(t, node, level) : cut_box(t, index, level);
 }
 

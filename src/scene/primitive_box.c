@@ -43,6 +43,15 @@ static double slab_support(const double *v, csg_vec3 n)
     return n.x == 0 && n.y == 0 ? v[0] * fabs(n.z) : INFINITY;
 }
 
+/* Largest x u + y w where |u|^p + |w|^p <= 1 (Hoelder). */
+static double dual_norm(double x, double y, double p)
+{
+    double most = fmax(fabs(x), fabs(y)), q = p / (p - 1);
+    if (p == 1 || most == 0)
+        return most;
+    return most * pow(pow(fabs(x) / most, q) + pow(fabs(y) / most, q), 1 / q);
+}
+
 double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
 {
     double length = csg_vec3_norm(n), across;
@@ -71,6 +80,9 @@ double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
         return slab_support(v, n);
     case CSG_NODE_FIELD: /* a formula may be inside anywhere */
         return INFINITY;
+    case CSG_NODE_SUPERELLIPSOID:
+        across = dual_norm(v[0] * n.x, v[1] * n.y, v[3]);
+        return dual_norm(across, v[2] * n.z, v[4]) * (1 + 16 * DBL_EPSILON);
     default:
         assert(kind == CSG_NODE_EMPTY);
         return -INFINITY;
@@ -101,6 +113,9 @@ csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const cs
         } else {
             up = csg_primitive_support(kind, parameters, n) + grow;
             down = csg_primitive_support(kind, parameters, csg_vec3_scale(n, -1)) + grow;
+            if (kind ==
+                CSG_NODE_SUPERELLIPSOID) /* no distance: {f >= -level} is the scaled solid */
+                up = down = (up - grow) * (1 + level * parameters[5]);
         }
         high[i] = map->t[i] + up + rounding_room(row, up, map->t[i]);
         low[i] = map->t[i] - down - rounding_room(row, down, map->t[i]);

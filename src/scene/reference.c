@@ -73,8 +73,11 @@ static csg_sample combine(const csg_reference_work *w, const csgm_scene *scene,
     for (uint32_t k = 0; k < node->child_count; k++)
         w->values[k] = operand_sign(kind, k) * samples[at[k]].value;
     double outer = operand_sign(kind, 0);
-    double value = outer * csg_reference_union(csg_scene_blend(scene, node), w->values,
-                                               node->child_count, w->partials);
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    double value =
+        outer * (rule ? csg_rule_apply(rule, true, w->values, node->child_count, 0, w->partials)
+                      : csg_reference_union(csg_scene_blend(scene, node), w->values,
+                                            node->child_count, w->partials));
     csg_vec3 gradient = {0, 0, 0};
     for (uint32_t k = 0; k < node->child_count; k++) {
         double weight = outer * operand_sign(kind, k) * w->partials[k];
@@ -82,6 +85,57 @@ static csg_sample combine(const csg_reference_work *w, const csgm_scene *scene,
             gradient = csg_vec3_add(gradient, csg_vec3_scale(samples[at[k]].gradient, weight));
     }
     return (csg_sample){value, gradient};
+}
+
+/* The cosine of the angle between two gradients; 0 where one is none. */
+static double cosine_of(csg_vec3 a, csg_vec3 b)
+{
+    double lengths = csg_vec3_norm(a) * csg_vec3_norm(b);
+    return lengths > 0 ? fmin(fmax(csg_vec3_dot(a, b) / lengths, -1), 1) : 0;
+}
+
+/* The operands' fields; each one's gradient is `slopes` times that of its sample. */
+static double field_cosine(const csg_reference_work *w, const csgm_scene *scene,
+                           const csg_node *node, const csg_sample *samples, const csg_node_id *at)
+{
+    csg_vec3 gradients[2] = {{0, 0, 0}, {0, 0, 0}};
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double slope, field = csg_operand_field(csg_scene_operand(scene, node, k),
+                                                samples[at[k]].value, &slope);
+        bool subtracted = node->kind == CSG_NODE_DIFFERENCE && k > 0;
+        w->values[k] = subtracted ? 1 - field : field;
+        if (k < 2)
+            gradients[k] = csg_vec3_scale(samples[at[k]].gradient, subtracted ? -slope : slope);
+    }
+    return cosine_of(gradients[0], gradients[1]);
+}
+
+static csg_sample combine_fields(const csg_reference_work *w, const csgm_scene *scene,
+                                 const csg_node *node, const csg_sample *samples,
+                                 const csg_node_id *at)
+{
+    double lambda = csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA];
+    double cosine = field_cosine(w, scene, node, samples, at);
+    double value = csg_rule_apply(csg_scene_rule(scene, node), node->kind == CSG_NODE_UNION,
+                                  w->values, node->child_count, cosine, w->partials);
+    csg_sample out = {(value - 0.5) / lambda, {0, 0, 0}};
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double slope;
+        csg_operand_field(csg_scene_operand(scene, node, k), samples[at[k]].value, &slope);
+        bool subtracted = node->kind == CSG_NODE_DIFFERENCE && k > 0;
+        double weight = w->partials[k] * (subtracted ? -slope : slope) / lambda;
+        if (weight != 0)
+            out.gradient =
+                csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[k]].gradient, weight));
+    }
+    return out;
+}
+
+static csg_sample soften(const csgm_scene *scene, const csg_node *node, csg_sample inner)
+{
+    double slope, field = csg_soft_at(csg_scene_soft(scene, node), inner.value, &slope);
+    double lambda = csg_scene_parameters(scene, node)[CSG_SOFT_LAMBDA];
+    return (csg_sample){(field - 0.5) / lambda, csg_vec3_scale(inner.gradient, slope / lambda)};
 }
 
 static csg_sample transform(const csgm_scene *scene, const csg_node *node, csg_sample inner)
@@ -156,9 +210,13 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
         return warp(scene, node, p, samples[at[0]]);
     case CSG_NODE_COMBINE:
         return combine_by_formula(work, scene, node, samples, at);
+    case CSG_NODE_SOFT:
+        return soften(scene, node, samples[at[0]]);
     default:
-        return csg_node_is_operator(node->kind) ? combine(work, scene, node, samples, at)
-                                                : sample_leaf(work, scene, node, p);
+        if (!csg_node_is_operator(node->kind))
+            return sample_leaf(work, scene, node, p);
+        return csg_blend_takes_fields(node->blend) ? combine_fields(work, scene, node, samples, at)
+                                                   : combine(work, scene, node, samples, at);
     }
 }
 
@@ -193,7 +251,7 @@ static void mark_active(workspace *w, const csgm_scene *scene, const csg_node *n
             w->points[children[k]].x = 1;
         return;
     }
-    double support = csg_blend_support(csg_scene_blend(scene, node));
+    double support = csg_scene_support(scene, node);
     uint32_t top = 0;
     for (uint32_t k = 0; k < node->child_count; k++) {
         w->node.values[k] = operand_sign(node->kind, k) * w->samples[children[k]].value;

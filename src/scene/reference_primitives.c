@@ -221,6 +221,43 @@ static csg_sample rectangle(const double *v, csg_vec3 p)
     return (csg_sample){v[2] - fmax(qx, qy), qx >= qy ? vec3(sx, 0, 0) : vec3(0, sy, 0)};
 }
 
+/* (|x|^p + |y|^p)^(1/p) for x, y >= 0 and its derivatives: the larger in front, so that no power
+ * overflows. */
+static double power_norm(double x, double y, double p, double *dx, double *dy)
+{
+    double most = fmax(x, y);
+    *dx = *dy = 0;
+    if (!(most > 0))
+        return 0;
+    double d = most * pow(pow(x / most, p) + pow(y / most, p), 1 / p);
+    *dx = pow(x / d, p - 1);
+    *dy = pow(y / d, p - 1);
+    return d;
+}
+
+/* Barr's gauge: q within x y, p with z. */
+static csg_sample superellipsoid(const double *v, csg_vec3 p)
+{
+    double dx, dy, dxy, dz;
+    double across = power_norm(fabs(p.x) / v[0], fabs(p.y) / v[1], v[3], &dx, &dy);
+    double d = power_norm(across, fabs(p.z) / v[2], v[4], &dxy, &dz);
+    csg_vec3 gradient = vec3(-sign(p.x) * dx * dxy / v[0] / v[5],
+                             -sign(p.y) * dy * dxy / v[1] / v[5], -sign(p.z) * dz / v[2] / v[5]);
+    return (csg_sample){(1 - d) / v[5], gradient};
+}
+
+/* Of the gauge of an ellipse-like figure with exponent p whose axes have constants a and b. */
+static double gauge_slope(double a, double b, double p)
+{
+    double most = fmax(a, b), s = 2 * p / (2 - p);
+    return p >= 2 ? most : most * pow(pow(a / most, s) + pow(b / most, s), 1 / s);
+}
+
+double csg_gauge_slope(const double *v)
+{
+    return gauge_slope(gauge_slope(1 / v[0], 1 / v[1], v[3]), 1 / v[2], v[4]);
+}
+
 csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p)
 {
     switch (kind) {
@@ -246,6 +283,8 @@ csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters,
         return rectangle(parameters, p);
     case CSG_NODE_SLAB:
         return (csg_sample){parameters[0] - fabs(p.z), vec3(0, 0, -sign(p.z))};
+    case CSG_NODE_SUPERELLIPSOID:
+        return superellipsoid(parameters, p);
     default:
         assert(kind == CSG_NODE_EMPTY);
         return (csg_sample){-INFINITY, vec3(0, 0, 0)};

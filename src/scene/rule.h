@@ -62,6 +62,10 @@ typedef struct csg_step {
 } csg_step;
 
 const char *csg_step_name(csg_step_kind kind);
+/* A sigmoid is 0 or 1 where alpha |t| is this or more; a part in 1e16 of it is lost. */
+#define CSG_SIGMOID_END 37.0
+/* mu is 0 below -reach and 1 above it. */
+double csg_step_reach(csg_step step);
 /* mu(t); *slope: mu'(t). */
 double csg_step_at(csg_step step, double t, double *slope);
 
@@ -105,14 +109,19 @@ typedef struct csg_rule {
     csg_step_facts facts; /* EXTERIOR, INTERIOR */
 } csg_rule;
 
-const char *csg_rule_space(csg_blend_kind kind); /* "LENGTHS", "FIELDS" */
-/* Number of parameters, and one of them. */
+const char *csg_rule_name(csg_blend_kind kind); /* as in the scene language */
+/* Binary, folded from the left; else all operands at once. */
+bool csg_rule_is_fold(csg_blend_kind kind);
+/* With the standard parameters. */
+csg_rule csg_rule_standard(csg_blend_kind kind);
+
 typedef struct csg_rule_parameter {
     const char *name, *unit, *meaning;
     double standard, least, most;
     bool open; /* least itself is not allowed */
 } csg_rule_parameter;
-uint32_t csg_rule_parameters(csg_blend_kind kind, const csg_rule_parameter **first);
+uint32_t csg_rule_parameter_count(csg_blend_kind kind);
+csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index);
 
 /* NULL, or one sentence about what is wrong, with its range; of a rule whose points were resolved
  * or that has none. */
@@ -123,6 +132,9 @@ void csg_rule_settle(csg_rule *rule);
 csg_rule csg_rule_scale(const csg_rule *rule, double factor);
 /* chi of a rule of LENGTHS; INFINITY for FIELDS. */
 double csg_rule_support(const csg_rule *rule);
+/* Of a rule of LENGTHS: how far a union exceeds its larger operand (EXTERIOR) or stays below it
+ * (INTERIOR); INFINITY for FIELDS. */
+double csg_rule_excess(const csg_rule *rule);
 /* Lipschitz constant of G for operands with these constants. */
 double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes, size_t count);
 
@@ -131,10 +143,13 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
 double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values, size_t count,
                       double cosine, double *partials);
 
+/* Lipschitz constant of a superellipsoid's gauge (SUPERELLIPSOID in primitives.def). */
+double csg_gauge_slope(const double *parameters);
+
 /* What G can be for operands in low..high (operators.md 7.2, 7.3, 5.5, 6.7; else the corners), as
- * csg_rule_apply; cosines: range of the cosine. Rounding is not widened. */
+ * csg_rule_apply; cosines: range of the cosine; partials: room. Rounding is not widened. */
 void csg_rule_enclose(const csg_rule *rule, bool is_union, const double *low, const double *high,
-                      size_t count, const double cosines[2], double out[2]);
+                      size_t count, const double cosines[2], double *partials, double out[2]);
 
 /* ARC: the spline's factor at an angle in radians, 1 outside of its knots. */
 double csg_spline_at(const csg_spline *spline, double angle, double *slope);

@@ -11,19 +11,15 @@ typedef struct kind_row {
 } kind_row;
 
 static const kind_row kinds[] = {
-    [CSG_NODE_EMPTY] = {"empty", 0},
-    [CSG_NODE_FIELD] = {"field", 0},
+    [CSG_NODE_EMPTY] = {"empty", 0},           [CSG_NODE_FIELD] = {"field", 0},
     [CSG_NODE_SHAPE] = {"shape", 0},
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
 #include "scene/primitives.def"
 #undef CSG_PRIMITIVE
-    [CSG_NODE_TRANSFORM] = {"transform", 0},
-    [CSG_NODE_COLOR] = {"color", 0},
-    [CSG_NODE_OFFSET] = {"offset", 1},
-    [CSG_NODE_WARP] = {"warp", 0},
-    [CSG_NODE_COMBINE] = {"combine", 0},
-    [CSG_NODE_UNION] = {"union", 0},
-    [CSG_NODE_INTERSECTION] = {"intersection", 0},
+    [CSG_NODE_TRANSFORM] = {"transform", 0},   [CSG_NODE_COLOR] = {"color", 0},
+    [CSG_NODE_OFFSET] = {"offset", 1},         [CSG_NODE_WARP] = {"warp", 0},
+    [CSG_NODE_COMBINE] = {"combine", 0},       [CSG_NODE_SOFT] = {"soft", CSG_SOFT_PARAMETERS},
+    [CSG_NODE_UNION] = {"union", 0},           [CSG_NODE_INTERSECTION] = {"intersection", 0},
     [CSG_NODE_DIFFERENCE] = {"difference", 0},
 };
 
@@ -59,7 +55,9 @@ static bool has_area(csg_blend_kind kind)
 
 const char *csg_blend_name(csg_blend_kind kind)
 {
-    assert(kind <= CSG_BLEND_ORTHOGONAL);
+    assert(kind < CSG_BLEND_END);
+    if (csg_blend_is_rule(kind))
+        return csg_rule_name(kind);
     return kind == CSG_BLEND_ORTHOGONAL ? "orthogonal" : blends[kind].name;
 }
 
@@ -73,6 +71,8 @@ double csg_blend_support(csg_blend blend)
 {
     if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL)
         return 0;
+    if (csg_blend_is_rule(blend.kind))
+        return INFINITY;
     return blends[blend.kind].support * blend.n;
 }
 
@@ -80,6 +80,8 @@ double csg_blend_excess(csg_blend blend, uint32_t operands)
 {
     if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL || operands < 2)
         return 0;
+    if (csg_blend_is_rule(blend.kind))
+        return INFINITY;
     if (blend.kind == CSG_BLEND_ROUND)
         return blend.n * (1 - 1 / sqrt((double)operands));
     double two = blends[blend.kind].excess * (has_area(blend.kind) ? sqrt(blend.n) : blend.n);
@@ -88,12 +90,13 @@ double csg_blend_excess(csg_blend blend, uint32_t operands)
 
 bool csg_blend_is_fold(csg_blend_kind kind)
 {
-    assert(kind < CSG_BLEND_COUNT);
-    return blends[kind].fold;
+    return csg_blend_is_rule(kind) ? csg_rule_is_fold(kind) : blends[kind].fold;
 }
 
 csg_blend csg_blend_scale(csg_blend blend, double factor)
 {
+    if (csg_blend_is_rule(blend.kind))
+        return blend;
     blend.n *= has_area(blend.kind) ? factor * factor : factor;
     return blend;
 }
@@ -103,6 +106,42 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
     return (csg_blend){(csg_blend_kind)node->blend, scene->parameters[node->payload]};
 }
 
+uint32_t csg_node_parameter_count(const csg_node *node)
+{
+    if (!csg_node_is_operator(node->kind))
+        return csg_primitive_parameter_count(node->kind);
+    bool fields = csg_blend_takes_fields(node->blend) ||
+                  (node->blend == CSG_BLEND_SHARP && (node->flags & CSG_FLAG_SOFT));
+    return fields ? CSG_OPERATOR_FIELD_PARAMETERS : 1;
+}
+
+csg_soft csg_scene_soft(const csgm_scene *scene, const csg_node *node)
+{
+    const double *v = csg_scene_parameters(scene, node);
+    return (csg_soft){(csg_falloff)v[CSG_SOFT_FALLOFF], v[CSG_SOFT_RANGE]};
+}
+
+csg_operand csg_scene_operand(const csgm_scene *scene, const csg_node *node, uint32_t index)
+{
+    double lambda = csg_scene_softness(scene, csg_scene_children(scene, node)[index]);
+    double range = csg_scene_parameters(scene, node)[CSG_OPERATOR_RANGE];
+    return lambda > 0 ? (csg_operand){lambda, true} : (csg_operand){1 / range, false};
+}
+
+double csg_scene_support(const csgm_scene *scene, const csg_node *node)
+{
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    return rule ? csg_rule_support(rule) : csg_blend_support(csg_scene_blend(scene, node));
+}
+
+double csg_scene_excess(const csgm_scene *scene, const csg_node *node)
+{
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    return rule ? csg_rule_excess(rule)
+                : csg_blend_excess(csg_scene_blend(scene, node), node->child_count);
+}
+
+/* Without rules the largest of the leaves': no operator changes it. */
 double csg_scene_lipschitz(const csgm_scene *scene)
 {
     double largest = 0;
@@ -113,6 +152,8 @@ double csg_scene_lipschitz(const csgm_scene *scene)
         else if (csg_node_is_primitive(node->kind))
             largest = fmax(largest, 1); /* exact distances */
     }
+    if (scene->slope > 0)
+        return scene->slope;
     return largest > 0 ? largest : 1;
 }
 

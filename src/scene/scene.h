@@ -101,6 +101,11 @@ typedef struct csg_look {
 
 enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
 
+/* Parameters of an operator that takes fields, and of a sharp one with soft operands only. */
+enum { CSG_OPERATOR_RULE, CSG_OPERATOR_RANGE, CSG_OPERATOR_LAMBDA, CSG_OPERATOR_FIELD_PARAMETERS };
+/* Of a soft node. */
+enum { CSG_SOFT_RANGE, CSG_SOFT_FALLOFF, CSG_SOFT_LAMBDA, CSG_SOFT_PARAMETERS };
+
 typedef struct csg_node {
     uint8_t kind;         /* csg_node_kind */
     uint8_t blend;        /* operators: csg_blend_kind */
@@ -111,8 +116,8 @@ typedef struct csg_node {
     uint32_t payload; /* primitives: into parameters; fields and combine: into formulas; shapes:
                          into shapes; transforms: into transforms; colours: into looks; offsets:
                          into parameters, where r is; warps: into warps; operators: into parameters,
-                         where n is, and behind it for a rule of FIELDS the range; soft: into
-                         parameters, where range and csg_falloff are */
+                         where n is, and what CSG_OPERATOR_ says behind it; soft: into
+                         parameters, CSG_SOFT_ */
     csg_span where;
 } csg_node;
 
@@ -136,8 +141,9 @@ struct csgm_scene {
         step_count, shape_count, warp_count, rule_count;
     const char **part_names; /* once sealed owned by arena */
     uint32_t part_count;
-    csg_node_id root;          /* never NONE: an empty scene has an EMPTY node */
-    csg_box *bounds;           /* per node, in its own frame: contains {f >= 0} (bounds.h) */
+    double slope;     /* once sealed: of the root, where a rule or a soft node is; else 0 */
+    csg_node_id root; /* never NONE: an empty scene has an EMPTY node */
+    csg_box *bounds;  /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
     size_t dependency_count;
     double parse_s, evaluate_s; /* wall time it took to get here; filled by lang/ */
@@ -164,6 +170,9 @@ static inline double csg_scene_softness(const csgm_scene *scene, csg_node_id id)
 {
     return scene->softness ? scene->softness[id] : 0;
 }
+csg_soft csg_scene_soft(const csgm_scene *scene, const csg_node *node);
+/* Doubles that a node has among the parameters. */
+uint32_t csg_node_parameter_count(const csg_node *node);
 /* How operand number `index` of an operator that takes fields becomes one (csg_operand_field). */
 csg_operand csg_scene_operand(const csgm_scene *scene, const csg_node *node, uint32_t index);
 /* chi of an operator node, in its own frame; INFINITY for one that takes fields. */

@@ -6,6 +6,7 @@
  */
 #include "scene/bounds.h"
 #include "scene/build.h"
+#include "scene/softness.h"
 
 #include <string.h>
 
@@ -107,12 +108,6 @@ static bool walk_from(walk *w, const csgm_scene *scene, csg_node_id root)
 
 /* ---- copying -------------------------------------------------------------------------- */
 
-/* Doubles that a node has among the parameters. */
-static uint32_t parameter_count(const csg_node *node)
-{
-    return csg_node_is_operator(node->kind) ? 1 : csg_primitive_parameter_count(node->kind);
-}
-
 static bool has_formula(const csg_node *node)
 {
     return node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE;
@@ -122,7 +117,7 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
 {
     for (uint32_t i = 0; i < w->count; i++) {
         const csg_node *node = &from->nodes[w->order[i].node];
-        out->parameter_count += parameter_count(node);
+        out->parameter_count += csg_node_parameter_count(node);
         out->shape_count += node->kind == CSG_NODE_SHAPE;
         out->warp_count += node->kind == CSG_NODE_WARP;
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
@@ -190,7 +185,7 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
         node->payload = (uint32_t)out->warp_count;
         out->warps[out->warp_count++] = from->warps[old];
     } else {
-        uint32_t count = parameter_count(node);
+        uint32_t count = csg_node_parameter_count(node);
         node->payload = (uint32_t)out->parameter_count;
         for (uint32_t i = 0; i < count; i++)
             out->parameters[out->parameter_count++] = from->parameters[old + i];
@@ -253,6 +248,43 @@ static bool copy_part_names(csgm_scene *out, const csgm_scene *from)
     return out->part_names;
 }
 
+static bool has_soft_nodes(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++)
+        if (scene->nodes[i].flags & CSG_FLAG_SOFT)
+            return true;
+    return false;
+}
+
+/* Those that are used, in the order of their first use, and FIELD_SHARP behind them. */
+static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scratch)
+{
+    if (!from->rule_count)
+        return true;
+    uint32_t *places = csg_arena_calloc(scratch, from->rule_count, sizeof *places);
+    if (!places)
+        return false;
+    for (size_t i = 0; i < out->node_count; i++) {
+        const csg_node *node = &out->nodes[i];
+        if (!csg_node_is_operator(node->kind) || !csg_blend_is_rule(node->blend))
+            continue;
+        double *index = &out->parameters[node->payload];
+        uint32_t *place = &places[(size_t)*index];
+        if (!*place)
+            *place = (uint32_t)++out->rule_count;
+        *index = *place - 1;
+    }
+    if (!out->rule_count)
+        return true;
+    out->rules = csg_arena_calloc(&out->arena, ++out->rule_count, sizeof *out->rules);
+    for (size_t i = 0; out->rules && i < from->rule_count; i++)
+        if (places[i])
+            out->rules[places[i] - 1] = from->rules[i];
+    if (out->rules)
+        out->rules[out->rule_count - 1] = csg_rule_standard(CSG_BLEND_FIELD_SHARP);
+    return out->rules;
+}
+
 static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
                         csgm_scene *out)
 {
@@ -267,7 +299,10 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
         return CSGM_ERR_MEMORY;
     }
     copy_nodes(out, builder->scene, &w);
-    return copy_part_names(out, builder->scene) ? CSGM_OK : CSGM_ERR_MEMORY;
+    bool done = copy_part_names(out, builder->scene) && copy_rules(out, builder->scene, scratch);
+    if (done && (out->rule_count || has_soft_nodes(out)))
+        done = csg_softness_settle(out, scratch);
+    return done ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
 /* A sealed copy of what stands below root, without bounds. */
