@@ -7,8 +7,8 @@
  * the blend's support cannot change the result, and is left out. What is left out never changes a
  * bit: with `lazy` off the same values come out of all nodes.
  *
- * Sharp unions of many operands become balanced binary trees, grouped by their boxes; so do the
- * subtracted operands of sharp differences. Everything else keeps its order.
+ * Sharp unions become binary trees grouped by their operands' boxes (lazy_tree.c), nested ones and
+ * coloured ones together; so does what is sharply subtracted. Everything else keeps its order.
  *
  * Counts, as in the paper: a leaf is one node, and so is each join of two operands: an operator of
  * k operands counts k - 1, or where operands were left out one less than were evaluated, but at

@@ -8,7 +8,6 @@
 #include "scene/lazy_private.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     MOST_SWEPT = 4096, /* operands; more are halved along the longest axis */
@@ -40,7 +39,11 @@ typedef struct grower {
     const csgm_scene *from;
     csgm_scene *to;
     csg_arena *scratch;
-    csg_node_id *places; /* per node of the scene: its place in the tree */
+    /* per node of the scene */
+    csg_node_id *places; /* in the tree */
+    uint8_t *in_union;   /* whether it is an operand of a sharp union, or becomes one */
+    uint32_t *widths;    /* operands that it is for such a union */
+    double *softness;    /* per node of the tree, where the scene has soft nodes */
 } grower;
 
 static int compare_operands(const void *a, const void *b)
@@ -138,7 +141,8 @@ static void place_operands(operand *operands, size_t count)
     }
 }
 
-static csg_node_id append(grower *g, csg_node node, const csg_node_id *children, size_t count)
+static csg_node_id append(grower *g, csg_node node, const csg_node_id *children, size_t count,
+                          double softness)
 {
     csgm_scene *to = g->to;
     node.first_child = (uint32_t)to->child_count;
@@ -146,6 +150,8 @@ static csg_node_id append(grower *g, csg_node node, const csg_node_id *children,
     for (size_t i = 0; i < count; i++)
         to->children[to->child_count++] = children[i];
     to->nodes[to->node_count] = node;
+    if (g->softness)
+        g->softness[to->node_count] = softness;
     return (csg_node_id)to->node_count++;
 }
 
@@ -169,26 +175,61 @@ static size_t split(operand *operands, size_t count, double *rest, range *waitin
     return join_count;
 }
 
-/* The sharp union of these nodes of the scene as joins. */
-static csg_node_id append_joins(grower *g, csg_node node, const csg_node_id *ids, size_t count)
+static bool is_sharp(const csg_node *node, csg_node_kind kind)
 {
-    if (count == 1)
-        return g->places[ids[0]];
+    return node->kind == kind && node->blend == CSG_BLEND_SHARP;
+}
+
+/* Whether the node vanishes into the sharp union above it. */
+static bool is_absorbed(const grower *g, csg_node_id id)
+{
+    return g->in_union[id] && is_sharp(&g->from->nodes[id], CSG_NODE_UNION);
+}
+
+/* The operands of a sharp union of these nodes; room for their widths and as much again for what
+ * waits. */
+static size_t gather(const grower *g, const csg_node_id *ids, size_t count, operand *out,
+                     csg_node_id *waiting)
+{
+    size_t waiting_count = 0, gathered = 0;
+    for (size_t i = count; i-- > 0;)
+        waiting[waiting_count++] = ids[i];
+    while (waiting_count) {
+        csg_node_id id = waiting[--waiting_count];
+        const csg_node *node = &g->from->nodes[id];
+        const csg_node_id *children = csg_scene_children(g->from, node);
+        if (node->kind != CSG_NODE_COLOR && !is_absorbed(g, id)) {
+            out[gathered++] = (operand){.box = g->from->bounds[id], .node = g->places[id]};
+            continue;
+        }
+        for (uint32_t k = node->child_count; k-- > 0;)
+            waiting[waiting_count++] = children[k];
+    }
+    return gathered;
+}
+
+/* The sharp union of these nodes of the scene as joins. */
+static csg_node_id append_joins(grower *g, csg_node node, const csg_node_id *ids, size_t count,
+                                double softness)
+{
     csg_arena_mark mark = csg_arena_get_mark(g->scratch);
-    operand *operands = csg_arena_calloc(g->scratch, count, sizeof *operands);
-    double *rest = csg_arena_calloc(g->scratch, count, sizeof *rest);
-    range *waiting = csg_arena_calloc(g->scratch, count + 1, sizeof *waiting);
-    join *joins = csg_arena_calloc(g->scratch, count, sizeof *joins);
-    if (!operands || !rest || !waiting || !joins)
-        return CSG_NODE_NONE;
+    size_t width = 0;
     for (size_t i = 0; i < count; i++)
-        operands[i] = (operand){.box = g->from->bounds[ids[i]], .node = g->places[ids[i]]};
-    place_operands(operands, count);
-    size_t join_count = split(operands, count, rest, waiting, joins);
-    csg_node_id made = CSG_NODE_NONE;
+        width += g->widths[ids[i]];
+    operand *operands = csg_arena_calloc(g->scratch, width, sizeof *operands);
+    csg_node_id *queue = csg_arena_calloc(g->scratch, width, sizeof *queue);
+    double *rest = csg_arena_calloc(g->scratch, width, sizeof *rest);
+    range *waiting = csg_arena_calloc(g->scratch, width + 1, sizeof *waiting);
+    join *joins = csg_arena_calloc(g->scratch, width, sizeof *joins);
+    if (!operands || !queue || !rest || !waiting || !joins)
+        return CSG_NODE_NONE;
+    gather(g, ids, count, operands, queue);
+    place_operands(operands, width);
+    size_t join_count = width > 1 ? split(operands, width, rest, waiting, joins) : 0;
+    csg_node_id made = operands[0].node; /* of one */
     node.kind = CSG_NODE_UNION;
     for (size_t i = join_count; i-- > 0;) {
-        made = append(g, node, joins[i].side, 2);
+        made = append(g, node, joins[i].side, 2, softness);
         if (i)
             joins[joins[i].parent].side[joins[i].is_right] = made;
     }
@@ -196,53 +237,97 @@ static csg_node_id append_joins(grower *g, csg_node node, const csg_node_id *ids
     return made;
 }
 
-static bool is_long(const csg_node *node)
+static csg_node_id append_copy(grower *g, const csg_node *node, double softness)
 {
-    return (node->kind == CSG_NODE_UNION || node->kind == CSG_NODE_DIFFERENCE) &&
-           node->blend == CSG_BLEND_SHARP && node->child_count > 2;
-}
-
-static csg_node_id append_copy(grower *g, const csg_node *node)
-{
-    csgm_scene *to = g->to;
-    csg_node copy = *node;
     const csg_node_id *children = csg_scene_children(g->from, node);
-    copy.first_child = (uint32_t)to->child_count;
+    csg_node_id made = append(g, *node, NULL, 0, softness);
+    csgm_scene *to = g->to;
     for (uint32_t k = 0; k < node->child_count; k++)
         to->children[to->child_count++] = g->places[children[k]];
-    to->nodes[to->node_count] = copy;
-    return (csg_node_id)to->node_count++;
+    to->nodes[made].child_count = node->child_count;
+    return made;
 }
 
-static csg_node_id append_node(grower *g, const csg_node *node)
+static csg_node_id append_node(grower *g, csg_node_id id)
 {
-    if (!is_long(node))
-        return append_copy(g, node);
+    const csg_node *node = &g->from->nodes[id];
     const csg_node_id *children = csg_scene_children(g->from, node);
-    if (node->kind == CSG_NODE_UNION)
-        return append_joins(g, *node, children, node->child_count);
+    double softness = csg_scene_softness(g->from, id);
+    if (node->kind == CSG_NODE_COLOR)
+        return g->places[children[0]];
+    if (is_sharp(node, CSG_NODE_UNION))
+        return is_absorbed(g, id) ? 0
+                                  : append_joins(g, *node, children, node->child_count, softness);
+    if (!is_sharp(node, CSG_NODE_DIFFERENCE) || node->child_count < 2)
+        return append_copy(g, node, softness);
     csg_node_id sides[2] = {g->places[children[0]],
-                            append_joins(g, *node, children + 1, node->child_count - 1)};
-    return sides[1] == CSG_NODE_NONE ? CSG_NODE_NONE : append(g, *node, sides, 2);
+                            append_joins(g, *node, children + 1, node->child_count - 1,
+                                         csg_scene_softness(g->from, children[1]))};
+    return sides[1] == CSG_NODE_NONE ? CSG_NODE_NONE : append(g, *node, sides, 2, softness);
+}
+
+/* From the root down who is in a union, from the leaves up how many operands that makes. */
+static void find_unions(grower *g)
+{
+    const csgm_scene *from = g->from;
+    for (size_t i = from->node_count; i-- > 0;) {
+        const csg_node *node = &from->nodes[i];
+        bool all =
+            is_sharp(node, CSG_NODE_UNION) || (node->kind == CSG_NODE_COLOR && g->in_union[i]);
+        for (uint32_t k = 0; k < node->child_count; k++)
+            g->in_union[csg_scene_children(from, node)[k]] =
+                all || (k > 0 && is_sharp(node, CSG_NODE_DIFFERENCE));
+    }
+    for (size_t i = 0; i < from->node_count; i++) {
+        const csg_node *node = &from->nodes[i];
+        g->widths[i] = 1;
+        if (node->kind != CSG_NODE_COLOR && !is_absorbed(g, (csg_node_id)i))
+            continue;
+        g->widths[i] = 0;
+        for (uint32_t k = 0; k < node->child_count; k++)
+            g->widths[i] += g->widths[csg_scene_children(from, node)[k]];
+    }
+}
+
+/* Joins are as many as operands but one, of all unions together. */
+static size_t most_nodes(const csgm_scene *scene)
+{
+    size_t most = scene->node_count;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        bool grows = is_sharp(node, CSG_NODE_UNION) || is_sharp(node, CSG_NODE_DIFFERENCE);
+        most += grows && node->child_count > 2 ? node->child_count - 2 : 0;
+    }
+    return most;
+}
+
+static bool grower_begin(grower *g, csg_arena *kept, size_t most)
+{
+    size_t nodes = g->from->node_count;
+    g->to->nodes = csg_arena_calloc(kept, most, sizeof *g->to->nodes);
+    g->to->children = csg_arena_calloc(kept, most, sizeof *g->to->children);
+    g->places = csg_arena_calloc(g->scratch, nodes, sizeof *g->places);
+    g->in_union = csg_arena_calloc(g->scratch, nodes, sizeof *g->in_union);
+    g->widths = csg_arena_calloc(g->scratch, nodes, sizeof *g->widths);
+    if (g->from->softness)
+        g->to->softness = g->softness = csg_arena_calloc(kept, most, sizeof *g->softness);
+    return g->to->nodes && g->to->children && g->places && g->in_union && g->widths &&
+           (g->softness || !g->from->softness);
 }
 
 csgm_status csg_lazy_grow_tree(csg_lazy *lazy, const csgm_scene *scene)
 {
     csgm_scene *to = &lazy->tree;
-    size_t most = scene->node_count; /* a join of two for each operand beyond the second */
-    for (size_t i = 0; i < scene->node_count; i++)
-        most += is_long(&scene->nodes[i]) ? scene->nodes[i].child_count - 2 : 0;
     *to = *scene;
     to->node_count = to->child_count = 0;
-    to->nodes = csg_arena_calloc(&lazy->arena, most, sizeof *to->nodes);
-    to->children = csg_arena_calloc(&lazy->arena, most, sizeof *to->children);
     csg_arena scratch;
     csg_arena_init(&scratch, &scene->context->memory);
-    grower g = {scene, to, &scratch, NULL};
-    g.places = csg_arena_calloc(&scratch, scene->node_count, sizeof *g.places);
-    bool ok = to->nodes && to->children && g.places;
+    grower g = {.from = scene, .to = to, .scratch = &scratch};
+    bool ok = grower_begin(&g, &lazy->arena, most_nodes(scene));
+    if (ok)
+        find_unions(&g);
     for (size_t i = 0; ok && i < scene->node_count; i++) {
-        g.places[i] = append_node(&g, &scene->nodes[i]);
+        g.places[i] = append_node(&g, (csg_node_id)i);
         ok = g.places[i] != CSG_NODE_NONE;
     }
     if (ok)

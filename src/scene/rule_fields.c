@@ -123,7 +123,7 @@ double csg_scale_top(double r1, double r2, double kappa)
 double csg_normalise_scale(double u, double m, double *slope)
 {
     double a = (1 - m) / ((m - 0.5) * (m - 0.5)), x = u - 0.5;
-    *slope = u < 0.5 ? 1 : u < m ? 1 + 2 * a * x : 0;
+    *slope = u < 0.5 ? 1 : u <= m ? 1 + 2 * a * x : 0;
     return u < 0.5 ? u : u < m ? u + a * x * x : 1;
 }
 
@@ -160,7 +160,7 @@ double csg_scale_set(const csg_rule *rule, bool is_union, double turn, double to
     double x[2] = {is_union ? 1 - values[0] : values[0], is_union ? 1 - values[1] : values[1]};
     double h = csg_scale_function(v[0] * turn, v[1] * turn, kappa, x, partials);
     double m = csg_scale_top(v[0] * top_turn, v[1] * top_turn, kappa);
-    double value = csg_normalise_scale(h, m, &slope);
+    double value = csg_normalise_scale(fmin(h, m), m, &slope); /* m is B(1, 1) */
     partials[0] *= slope;
     partials[1] *= slope;
     return is_union ? 1 - value : value;

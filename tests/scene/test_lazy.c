@@ -271,7 +271,7 @@ static bool is_same_number(double a, double b)
     return a == b || (isnan(a) && isnan(b));
 }
 
-enum { PAPER, DEMAND };
+enum { PAPER, DEMAND, CHECKED = 60 };
 
 /* Adds the nodes evaluated per node of a full evaluation, without and with demand. */
 static void check_laziness(const csgm_scene *scene, csg_random *random, csg_lazy_bounds bounds,
@@ -281,7 +281,7 @@ static void check_laziness(const csgm_scene *scene, csg_random *random, csg_lazy
     evaluator lazy[2], all = evaluator_of(scene, false, bounds, band);
     for (int way = PAPER; way <= DEMAND; way++)
         lazy[way] = evaluator_with(scene, (csg_lazy_options){true, bounds, band, way == DEMAND});
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < CHECKED; i++) {
         csg_vec3 p = test_point(random, i % 3 ? 1.2 : 4);
         double expected = sample(&all, p).value;
         for (int way = PAPER; way <= DEMAND; way++) {
@@ -291,7 +291,7 @@ static void check_laziness(const csgm_scene *scene, csg_random *random, csg_lazy
                          value, expected);
         }
     }
-    assert_int_equal(all.counts.total, 200 * csg_lazy_node_count(all.lazy));
+    assert_int_equal(all.counts.total, CHECKED * csg_lazy_node_count(all.lazy));
     assert_true(lazy[PAPER].counts.total <= all.counts.total);
     for (int way = PAPER; way <= DEMAND; way++) {
         parts[way] += (double)lazy[way].counts.total / (double)all.counts.total;
@@ -324,7 +324,7 @@ static double check_exactness(const csgm_scene *scene, csg_random *random, doubl
 {
     evaluator e = evaluator_with(scene, csg_lazy_options_default(band));
     double worst = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 100; i++) {
         csg_vec3 p = test_point(random, i % 3 ? 1.2 : 3);
         csg_sample plain = test_sample(scene, p), cut = sample(&e, p);
         if ((plain.value >= 0) != (cut.value >= 0) && fabs(plain.value) > 1e-15)
@@ -360,7 +360,7 @@ static void test_fields_keep_their_constants(void **state)
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         evaluator e = evaluator_of(scene, true, CSG_LAZY_OWN_BOXES, 0);
-        for (int i = 0; i < 200; i++) {
+        for (int i = 0; i < 60; i++) {
             csg_vec3 p = test_point(&random, 2), q = test_point(&random, 2);
             double distance = csg_vec3_norm(csg_vec3_sub(p, q));
             double change = fabs(sample(&e, p).value - sample(&e, q).value);
@@ -394,7 +394,7 @@ static void check_many(csg_node_kind kind, csg_blend blend, double most_per_poin
     evaluator e = evaluator_of(scene, true, CSG_LAZY_EXACT, 0.01);
     assert_int_equal(csg_lazy_node_count(e.lazy), 2 * BALLS - 1);
     assert_true(e.lazy->depth < 60 || blend.kind != CSG_BLEND_SHARP);
-    enum { POINTS = 300 };
+    enum { POINTS = 100 };
     for (int i = 0; i < POINTS; i++) {
         csg_vec3 p = test_point(&random, 22);
         double plain = test_sample(scene, p).value, value = sample(&e, p).value;
@@ -416,6 +416,32 @@ static void test_long_operators_are_grouped(void **state)
     check_many(CSG_NODE_UNION, sharp, 200);
     check_many(CSG_NODE_DIFFERENCE, sharp, 200);
     check_many(CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.1}, 200);
+}
+
+/* Colours do not stand between unions, and nested ones are grouped together. */
+static void test_coloured_unions_are_one(void **state)
+{
+    csg_node_id groups[8];
+    for (int g = 0; g < 8; g++) {
+        csg_node_id balls[8];
+        for (int i = 0; i < 8; i++)
+            balls[i] = sphere(i, 100 * (g % 2) + g, 0, 0.1);
+        groups[g] = csg_build_operator(&builder, CSG_NODE_UNION, sharp, balls, 8, NOWHERE);
+        groups[g] = csg_build_color(&builder, (csg_color){1, 0, 0, 1}, groups[g], NOWHERE);
+    }
+    csg_node_id all = csg_build_operator(&builder, CSG_NODE_UNION, sharp, groups, 8, NOWHERE);
+    csgm_scene *scene = test_seal(&builder, all);
+    evaluator e = evaluator_of(scene, true, CSG_LAZY_EXACT, 0.01);
+    assert_int_equal(csg_lazy_node_count(e.lazy), 127);
+    const csgm_scene *tree = &e.lazy->tree;
+    const csg_node_id *sides = csg_scene_children(tree, &tree->nodes[tree->root]);
+    csg_box a = e.lazy->bounds[sides[0]].box, b = e.lazy->bounds[sides[1]].box;
+    assert_true(fmin(a.max.y, b.max.y) < 10 && fmax(a.min.y, b.min.y) > 90);
+    csg_vec3 p = {3, 104.95, 0.2};
+    test_near(sample(&e, p).value, test_sample(scene, p).value, 0);
+    assert_true(e.counts.total < 25);
+    evaluator_end(&e);
+    csg_scene_destroy(scene);
 }
 
 static void test_small_scenes(void **state)
@@ -442,14 +468,14 @@ static void test_small_scenes(void **state)
 static void test_deep_trees(void **state)
 {
     csg_node_id chain = sphere(0, 0, 0, 0.6);
-    for (int i = 1; i < 20000; i++)
+    for (int i = 1; i < 5000; i++)
         chain =
             join(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.4}, chain, sphere(i, 0, 0, 0.6));
     csgm_scene *scene = test_seal(&builder, chain);
     evaluator e = evaluator_of(scene, true, CSG_LAZY_OWN_BOXES, 0);
-    csg_vec3 p = {19998.4, 0.5, 0};
+    csg_vec3 p = {4998.4, 0.5, 0};
     test_near(sample(&e, p).value, test_sample(scene, p).value, 1e-12);
-    assert_int_equal(csg_lazy_node_count(e.lazy), 2 * 20000 - 1);
+    assert_int_equal(csg_lazy_node_count(e.lazy), 2 * 5000 - 1);
     evaluator_end(&e);
     csg_scene_destroy(scene);
 }
@@ -507,6 +533,7 @@ int main(void)
         TEST(test_exact_scheme_is_exact),
         TEST(test_fields_keep_their_constants),
         TEST(test_long_operators_are_grouped),
+        TEST(test_coloured_unions_are_one),
         TEST(test_small_scenes),
         TEST(test_deep_trees),
         TEST(test_memory_runs_out),
