@@ -302,7 +302,7 @@ static void check_laziness(const csgm_scene *scene, csg_random *random, csg_lazy
 
 static void test_laziness_changes_no_bit(void **state)
 {
-    enum { TREES = 400 };
+    enum { TREES = 300 };
     double parts[4][2] = {{0}};
     for (uint64_t seed = 5000; seed < 5000 + TREES; seed++) {
         csg_random random;
@@ -342,7 +342,7 @@ static double check_exactness(const csgm_scene *scene, csg_random *random, doubl
 static void test_exact_scheme_is_exact(void **state)
 {
     double worst = 0;
-    for (uint64_t seed = 6000; seed < 6400; seed++) {
+    for (uint64_t seed = 6000; seed < 6300; seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         worst = fmax(worst, check_exactness(scene, &random, 0));
