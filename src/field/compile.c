@@ -6,6 +6,7 @@
 
 #include "field/compile_formula.h"
 #include "field/compile_leaf.h"
+#include "field/compile_rule.h"
 #include "field/dispatch.h"
 #include "field/field.h"
 #include "field/formulas.h"
@@ -19,6 +20,10 @@ typedef struct frame {
     uint32_t warp;    /* index + 1, 0 = none */
     double magnitude; /* of the lengths in the warps' arithmetic */
     bool negate;
+    csg_form form;     /* what the operator above takes */
+    bool is_raised;    /* an offset stands between, so it is no field that comes up */
+    csg_operand entry; /* how it becomes one then */
+    double entry_factor;
     bool colored, shaded;      /* by a colour, by a material from further out */
     csg_color paint, material; /* what `color` is the number of */
     uint32_t color;
@@ -36,6 +41,8 @@ typedef struct task {
     uint32_t parameters;
     bool is_union;
     bool combines; /* by a formula */
+    bool softens;
+    csg_tape_curve curve; /* where it softens */
     csg_blend blend;
 } task;
 
@@ -188,6 +195,22 @@ static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t 
     return true;
 }
 
+/* Values written since node `begin` become what the operator above takes. */
+static bool write_entry(compiler *c, const frame *f, uint32_t begin)
+{
+    float values[CSG_SOFTEN_PARAMETERS];
+    csg_tape_curve curve = csg_soften_pack_operand(f->entry, f->entry_factor, values);
+    csg_deliver_pack(f->form, false, 0, 0, values);
+    csg_tape_node *node = push_node(c);
+    if (!node || !push_parameters(c, values, CSG_SOFTEN_PARAMETERS, &node->parameters))
+        return false;
+    node->op = CSG_OP_SOFTEN;
+    node->blend = (uint8_t)curve;
+    node->arity = 1;
+    node->size = (uint32_t)c->node_count - begin;
+    return true;
+}
+
 static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
 {
     csg_leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
@@ -203,15 +226,16 @@ static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
     }
     l.magnitude += f->magnitude;
     l.raise = f->raise;
-    return write_leaf(c, &l, f->color, f->warp);
+    return write_leaf(c, &l, f->color, f->warp) &&
+           (f->form == CSG_FORM_VALUE || write_entry(c, f, (uint32_t)c->node_count - 1));
 }
 
 /* ---- operators ------------------------------------------------------------------------------ */
 
-/* Whether children join it: an operator, or fields combined by a formula. */
+/* Whether children join it: an operator, fields combined by a formula, a soft node. */
 static bool is_group(const compiler *c, const task *t)
 {
-    return t->combines || csg_node_is_operator(c->scene->nodes[t->node].kind);
+    return t->combines || t->softens || csg_node_is_operator(c->scene->nodes[t->node].kind);
 }
 
 /* The parameters of an expression field over the operands' values: they come times the factor of
@@ -228,39 +252,105 @@ static bool push_combination(compiler *c, const csg_node *node, const frame *f, 
     return push_parameters(c, values, csg_leaf_pack(&l, 0, values), at);
 }
 
+/* Whether the node gives a field to an operator that takes one, or takes values for one. */
+static bool delivers_field(const compiler *c, const csg_node *node)
+{
+    bool takes = csg_node_is_operator(node->kind) && csg_blend_takes_fields(node->blend);
+    return takes || node->kind == CSG_NODE_SOFT;
+}
+
+/* The form in which a node that has a field hands it up. */
+static csg_form form_of(const frame *f)
+{
+    return f->is_raised ? CSG_FORM_VALUE : f->form;
+}
+
+/* As a value: F - 1/2 over lambda, with the frame's factor and sign. */
+static void pack_delivery(const compiler *c, const task *t, bool flip, float *values)
+{
+    double scale = t->frame.factor / csg_scene_softness(c->scene, t->node);
+    csg_deliver_pack(form_of(&t->frame), flip, t->frame.negate ? -scale : scale, t->frame.raise,
+                     values);
+}
+
+static bool begin_soft(compiler *c, const csg_node *node, task *t)
+{
+    const double *p = csg_scene_parameters(c->scene, node);
+    float values[CSG_SOFTEN_PARAMETERS];
+    t->softens = true;
+    csg_soft soft = {.range = p[0], .falloff = (csg_falloff)p[1]};
+    t->curve = csg_soften_pack_soft(soft, t->frame.factor, values);
+    pack_delivery(c, t, false, values);
+    return push_parameters(c, values, CSG_SOFTEN_PARAMETERS, &t->parameters);
+}
+
+static bool begin_rule(compiler *c, const csg_node *node, const csg_rule *rule, task *t)
+{
+    float values[CSG_RULE_MOST_PARAMETERS] = {0};
+    double support = csg_scene_support(c->scene, node);
+    bool takes_fields = csg_blend_takes_fields(rule->kind);
+    if (takes_fields) /* its value is negated, not its operands */
+        t->is_union = node->kind == CSG_NODE_UNION;
+    size_t count =
+        csg_rule_pack(rule, t->is_union, t->frame.factor, support, &t->blend.kind, values);
+    c->field->tape.turns |= t->blend.kind == (csg_blend_kind)CSG_BLEND_TURNING;
+    if (takes_fields)
+        pack_delivery(c, t, csg_rule_works_on_complements(rule->kind, t->is_union),
+                      values + CSG_RULE_DELIVER);
+    return push_parameters(c, values, count, &t->parameters);
+}
+
+static bool begin_blend(compiler *c, task *t)
+{
+    float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
+                                                                              : (float)t->blend.n,
+                                             (float)csg_blend_support(t->blend)};
+    if (t->blend.kind == CSG_BLEND_ORTHOGONAL)
+        values[CSG_OPERATOR_N] = (float)t->frame.raise;
+    return push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
+}
+
+/* outer: the group that the operator stands in, or NULL. */
+static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, task *t)
+{
+    const csg_rule *rule = csg_scene_rule(c->scene, node);
+    t->is_union = (node->kind == CSG_NODE_UNION) != t->frame.negate;
+    t->blend = csg_blend_scale(csg_scene_blend(c->scene, node), t->frame.factor);
+    if (rule)
+        return begin_rule(c, node, rule, t);
+    const task *above = outer != UINT32_MAX ? &c->tasks[outer] : NULL;
+    bool is_nested = above && csg_node_is_operator(c->scene->nodes[above->node].kind) &&
+                     t->blend.kind == CSG_BLEND_SHARP && above->blend.kind == CSG_BLEND_SHARP &&
+                     above->is_union == t->is_union;
+    if (is_nested) {
+        t->group = outer; /* max of max, min of min: one operator */
+        return true;
+    }
+    return begin_blend(c, t);
+}
+
 static bool begin_task(compiler *c, csg_node_id id, const frame *f)
 {
     if (!csg_memory_reserve(&c->context->memory, (void **)&c->tasks, &c->task_capacity,
                             c->task_count + 1, sizeof(task)))
         return false;
     const csg_node *node = &c->scene->nodes[id];
-    uint32_t index = (uint32_t)c->task_count;
+    uint32_t index = (uint32_t)c->task_count,
+             outer = index ? c->tasks[index - 1].group : UINT32_MAX;
     task t = {.node = id, .frame = *f, .group = index, .begin = (uint32_t)c->node_count};
     if (csg_node_is_operator(node->kind)) {
-        t.is_union = (node->kind == CSG_NODE_UNION) != f->negate;
-        t.blend = csg_blend_scale(csg_scene_blend(c->scene, node), f->factor);
-        const task *outer = index ? &c->tasks[c->tasks[index - 1].group] : NULL;
-        bool outer_operates =
-            outer && !outer->combines && csg_node_is_operator(c->scene->nodes[outer->node].kind);
-        if (outer_operates && t.blend.kind == CSG_BLEND_SHARP &&
-            outer->blend.kind == CSG_BLEND_SHARP && outer->is_union == t.is_union) {
-            t.group = c->tasks[index - 1].group; /* max of max, min of min: one operator */
-        } else {
-            float values[CSG_OPERATOR_PARAMETERS] = {
-                t.blend.kind == CSG_BLEND_SHARP ? 1.0f : (float)t.blend.n,
-                (float)csg_blend_support(t.blend)};
-            if (t.blend.kind == CSG_BLEND_ORTHOGONAL)
-                values[CSG_OPERATOR_N] = (float)f->raise;
-            if (!push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t.parameters))
-                return false;
-        }
+        if (!begin_operator(c, node, outer, &t))
+            return false;
+    } else if (node->kind == CSG_NODE_SOFT) {
+        if (!begin_soft(c, node, &t))
+            return false;
     } else if (node->kind == CSG_NODE_COMBINE) {
         t.combines = true;
         if (!push_combination(c, node, f, &t.parameters))
             return false;
     } else {
         /* transforms, colours, offsets, warps: their child joins in their place */
-        t.group = index ? c->tasks[index - 1].group : index;
+        t.group = index ? outer : index;
     }
     c->tasks[c->task_count++] = t;
     return true;
@@ -280,6 +370,19 @@ static void join_child(compiler *c, task *group)
     group->written++;
 }
 
+static uint8_t op_of(const task *t)
+{
+    if (t->combines)
+        return CSG_OP_COMBINE;
+    if (t->softens)
+        return CSG_OP_SOFTEN;
+    if (t->blend.kind == CSG_BLEND_ROUND)
+        return t->is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION;
+    if (csg_blend_takes_fields(t->blend.kind))
+        return t->is_union ? CSG_OP_RULE_UNION : CSG_OP_RULE_INTERSECTION;
+    return t->is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION;
+}
+
 static bool end_task(compiler *c)
 {
     uint32_t index = (uint32_t)--c->task_count;
@@ -289,20 +392,32 @@ static bool end_task(compiler *c)
     csg_tape_node *node = push_node(c);
     if (!node)
         return false;
-    bool is_round = t.blend.kind == CSG_BLEND_ROUND;
-    node->op = (uint8_t)(is_round ? (t.is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION)
-                                  : (t.is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION));
-    if (t.combines) {
-        node->op = CSG_OP_COMBINE;
+    node->op = op_of(&t);
+    if (t.combines)
         node->frame = CSG_FRAME_AFFINE;
-    }
-    node->blend = (uint8_t)t.blend.kind;
+    node->blend = (uint8_t)(t.softens ? (int)t.curve : (int)t.blend.kind);
     node->parameters = t.parameters;
     node->arity = t.written;
     node->size = (uint32_t)c->node_count - t.begin;
+    bool is_field = delivers_field(c, &c->scene->nodes[t.node]) && !t.frame.is_raised;
+    if (t.frame.form != CSG_FORM_VALUE && !is_field && !write_entry(c, &t.frame, t.begin))
+        return false;
     if (index)
         join_child(c, &c->tasks[c->tasks[index - 1].group]);
     return true;
+}
+
+/* The frame of an operand of an operator that takes fields: signs and offsets end there. */
+static void operand_frame(const compiler *c, const task *t, const csg_node *node, frame *f)
+{
+    uint32_t index = t->next_child;
+    bool is_complement = csg_rule_works_on_complements((csg_blend_kind)node->blend, t->is_union) !=
+                         (node->kind == CSG_NODE_DIFFERENCE && index > 0);
+    f->negate = f->is_raised = false;
+    f->raise = 0;
+    f->form = is_complement ? CSG_FORM_COMPLEMENT : CSG_FORM_FIELD;
+    f->entry = csg_scene_operand(c->scene, node, index);
+    f->entry_factor = f->factor;
 }
 
 /* The frame below a warp. */
@@ -345,13 +460,19 @@ static bool child_frame(compiler *c, const task *t, frame *f)
         return take_look(c, f, &c->scene->looks[node->payload]);
     } else if (node->kind == CSG_NODE_OFFSET) {
         f->raise += (f->negate ? -f->factor : f->factor) * csg_scene_parameters(c->scene, node)[0];
-    } else if (node->kind == CSG_NODE_COMBINE) {
+        f->is_raised = true;
+    } else if (node->kind == CSG_NODE_COMBINE || node->kind == CSG_NODE_SOFT) {
         f->negate = false;
         f->raise = 0;
+        f->form = CSG_FORM_VALUE;
     } else if (node->kind == CSG_NODE_WARP) {
         return warp_frame(c, &c->scene->warps[node->payload], f);
-    } else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0) {
-        f->negate = !f->negate;
+    } else if (csg_node_is_operator(node->kind)) {
+        f->form = CSG_FORM_VALUE;
+        if (csg_blend_takes_fields(node->blend))
+            operand_frame(c, t, node, f);
+        else if (node->kind == CSG_NODE_DIFFERENCE && t->next_child > 0)
+            f->negate = !f->negate;
     }
     return true;
 }
@@ -399,23 +520,6 @@ static bool compile_tree(compiler *c)
 
 /* ---- the field --------------------------------------------------------------------------------
  */
-
-uint32_t csg_tape_depth(const csg_tape *tape)
-{
-    uint32_t top = 0, most = 1;
-    for (uint32_t i = 0; i < tape->count; i++) {
-        const csg_tape_node *node = &tape->nodes[i];
-        if (csg_op_is_leaf(node->op))
-            top++;
-        else if (csg_op_takes_all(node->op))
-            top -= node->arity - 1;
-        if (top > most)
-            most = top;
-        if (node->join)
-            top--;
-    }
-    return most;
-}
 
 static double finite_or_zero(double value)
 {
@@ -574,29 +678,4 @@ csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_b
                            csgm_field **out)
 {
     return compile(context, field->scene, &box, out);
-}
-
-void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
-                    float *out, size_t count)
-{
-    enum { POINTS = 64 };
-    const csg_kernel *kernel = csg_kernel_for(field->context->isa);
-    csg_memory *memory = &field->context->memory;
-    size_t scratch_floats = csg_kernel_scratch_floats(field->depth);
-    float *scratch = csg_memory_alloc(memory, scratch_floats * sizeof(float));
-    for (size_t i = 0; i < count; i += POINTS) {
-        size_t n = count - i < POINTS ? count - i : POINTS;
-        float px[POINTS] = {0}, py[POINTS] = {0}, pz[POINTS] = {0}, f[POINTS];
-        for (size_t j = 0; j < n; j++) {
-            px[j] = (float)((double)x[i + j] - field->center.x);
-            py[j] = (float)((double)y[i + j] - field->center.y);
-            pz[j] = (float)((double)z[i + j] - field->center.z);
-        }
-        if (scratch)
-            kernel->values(&field->tape, px, py, pz, n, f, scratch, scratch_floats);
-        for (size_t j = 0; j < n; j++)
-            out[i + j] = scratch ? f[j] : NAN;
-    }
-    if (scratch)
-        csg_memory_release(memory, scratch, scratch_floats * sizeof(float));
 }

@@ -86,6 +86,15 @@ static void own_of_rectangle(csg_leaf *l, const double *p, double k)
     l->magnitude = k * hypot(p[0], p[1]);
 }
 
+static void own_of_superellipsoid(csg_leaf *l, const double *p, double k)
+{
+    for (int i = 0; i < 5; i++)
+        l->own[i] = i < 3 ? p[i] * k : p[i];
+    l->own[5] = k / p[5];
+    l->own_count = OWN_SUPERELLIPSOID;
+    l->magnitude = fmax(p[0], fmax(p[1], p[2])) * k + l->own[5];
+}
+
 static void own_parameters(csg_leaf *l, csg_node_kind kind, const double *p, double k,
                            double factor)
 {
@@ -115,6 +124,9 @@ static void own_parameters(csg_leaf *l, csg_node_kind kind, const double *p, dou
         break;
     case CSG_NODE_ELLIPSOID:
         own_of_ellipsoid(l, p, k);
+        break;
+    case CSG_NODE_SUPERELLIPSOID:
+        own_of_superellipsoid(l, p, k);
         break;
     case CSG_NODE_RECTANGLE:
         own_of_rectangle(l, p, k);

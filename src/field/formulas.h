@@ -52,7 +52,8 @@ enum {
     OWN_PLANE = 4,
     OWN_CIRCLE = 1,
     OWN_RECTANGLE = 3,
-    OWN_SLAB = 1
+    OWN_SLAB = 1,
+    OWN_SUPERELLIPSOID = 6 /* soft_formulas.h */
 };
 
 /* own: r */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The kernels: a tape over batches of points. This file is built once per instruction set (see
  * meson.build); the loops over points are plain C that the compiler turns into vectors, the
- * formulas are in formulas.h, the leaves in leaf_kernel.c. CSG_KERNEL names the build.
+ * formulas are in formulas.h, the leaves in leaf_kernel.c, the joins in join_kernel.c. CSG_KERNEL
+ * names the build.
  *
  * Three walks over a tape, all on a stack of slots:
  *   values     a slot is one array
@@ -15,91 +16,12 @@
 
 #include "field/formula_kernel.h"
 #include "field/formulas.h"
+#include "field/join_kernel.h"
 #include "field/leaf_kernel.h"
+#include "field/rule_kernel.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
-
-/* ---- joins: two operands ----------------------------------------------------------------- */
-
-#define EACH_FOLD(X)                                                                               \
-    X(HYPERBOLA, hyperbola)                                                                        \
-    X(RECIPROCAL, reciprocal)                                                                      \
-    X(OVERBLEND, overblend) X(COSINE, cosine) X(PARABOLA, parabola) X(CHAMFER, chamfer)
-
-/* The intersection of a and b, raised by n, whose gradients are at right angles. Away from the edge
- * the smaller one, bit for bit. */
-static inline float orthogonal(float n, float a, float b)
-{
-    float u = a - n, v = b - n;
-    float edge = n - sqrtf(u * u + v * v);
-    return (u < 0) & (v < 0) ? edge : smaller(a, b);
-}
-
-/* a = a op b. */
-static void join_values(const csg_tape_node *node, const float *parameters, float *restrict a,
-                        const float *restrict b, size_t count)
-{
-    const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
-    const int is_union = node->join == CSG_JOIN_UNION;
-    switch (node->join_blend) {
-#define CASE(NAME, name)                                                                           \
-    case CSG_BLEND_##NAME:                                                                         \
-        if (is_union)                                                                              \
-            for (size_t i = 0; i < count; i++)                                                     \
-                a[i] = larger(a[i], b[i]) + blend_##name(n, chi, absolute(a[i] - b[i])).value;     \
-        else                                                                                       \
-            for (size_t i = 0; i < count; i++)                                                     \
-                a[i] = smaller(a[i], b[i]) - blend_##name(n, chi, absolute(a[i] - b[i])).value;    \
-        break;
-        EACH_FOLD(CASE)
-#undef CASE
-    case CSG_BLEND_ORTHOGONAL:
-        for (size_t i = 0; i < count; i++)
-            a[i] = is_union ? -orthogonal(-n, -a[i], -b[i]) : orthogonal(n, a[i], b[i]);
-        break;
-    default: /* SHARP */
-        if (is_union)
-            for (size_t i = 0; i < count; i++)
-                a[i] = larger(a[i], b[i]);
-        else
-            for (size_t i = 0; i < count; i++)
-                a[i] = smaller(a[i], b[i]);
-    }
-}
-
-/* share[i] of operand a in the derivative; b has the rest. Changes neither. Where the partial
- * derivatives do not add up to 1, at an orthogonal edge, gain[i] is their sum. */
-static void join_shares(const csg_tape_node *node, const float *parameters, const float *restrict a,
-                        const float *restrict b, float *restrict share, float *restrict gain,
-                        size_t count)
-{
-    const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
-    const float turn = node->join == CSG_JOIN_UNION ? 1.0f : -1.0f;
-    switch (node->join_blend) {
-#define CASE(NAME, name)                                                                           \
-    case CSG_BLEND_##NAME:                                                                         \
-        for (size_t i = 0; i < count; i++) {                                                       \
-            float slope = blend_##name(n, chi, absolute(a[i] - b[i])).slope;                       \
-            share[i] = turn * a[i] > turn * b[i] ? 1.0f + slope : -slope;                          \
-        }                                                                                          \
-        break;
-        EACH_FOLD(CASE)
-#undef CASE
-    case CSG_BLEND_ORTHOGONAL:
-        for (size_t i = 0; i < count; i++) {
-            float u = turn * (a[i] - n), v = turn * (b[i] - n); /* edge where both are positive */
-            int edge = (u > 0) & (v > 0);
-            float sum = u + v;
-            share[i] = edge ? u / sum : u > v ? 1.0f : 0.0f;
-            gain[i] = edge ? sum / sqrtf(u * u + v * v) : 1.0f;
-        }
-        break;
-    default:
-        for (size_t i = 0; i < count; i++)
-            share[i] = turn * a[i] > turn * b[i] ? 1.0f : 0.0f;
-    }
-}
 
 /* ---- the round operator: all operands at once -------------------------------------------- */
 
@@ -239,34 +161,36 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
             combine_values(tape, node, s, top++, p.count, work);
+        } else if (csg_op_delivers(node->op)) {
+            CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, top - 1), NULL, p.count);
         }
         if (node->join) {
             top--;
-            join_values(node, tape->parameters + node->join_parameters, slot(s, top - 1),
-                        slot(s, top), p.count);
+            CSG_THIS_JOIN_KERNEL.values(node, tape->parameters + node->join_parameters,
+                                        slot(s, top - 1), slot(s, top), p.count);
         }
     }
 }
 
+/* Gradients, colours, or one colour with the gradients that a turning join needs for it. */
+typedef struct plan {
+    int gradients, colors, first_color;
+} plan;
+
 enum { GRADIENT_CHANNELS = 3, COLOR_CHANNELS = 4, MOST_CHANNELS = 4 };
+
+static const plan gradients_only = {GRADIENT_CHANNELS, 0, 0};
+static const plan colors_only = {0, COLOR_CHANNELS, 0};
+
+static int channels_of(plan wanted)
+{
+    return wanted.gradients + wanted.colors;
+}
 
 /* Slots of a mixed walk: values first (depth of them), then the channels of each. */
 static float *channel(slots s, uint32_t depth, size_t index, int c)
 {
     return slot(s, depth + index * MOST_CHANNELS + (size_t)c);
-}
-
-static void mix(float *restrict a, const float *restrict b, const float *restrict share,
-                size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        a[i] = share[i] * a[i] + (1.0f - share[i]) * b[i];
-}
-
-static void stretch(float *restrict a, const float *restrict gain, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        a[i] *= gain[i];
 }
 
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
@@ -307,22 +231,22 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
 
 /* Gradients by the chain rule; colours in the proportions of the partial derivatives' sizes. */
 static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
-                          size_t first, int channels, size_t count, float *work)
+                          size_t first, plan wanted, size_t count, float *work)
 {
     const float raise = combine_raise(tape, node);
     float *partial[3] = {work + s.stride, work + 2 * s.stride, work + 3 * s.stride};
     const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
     CSG_THIS_FORMULA_KERNEL.gradients(tape, node, a, b, operand(s, first, node->arity, 2), count,
                                       work, partial[0], partial[1], partial[2]);
-    if (channels == COLOR_CHANNELS)
-        for (size_t i = 0; i < count; i++) {
-            float sum = 0;
-            for (uint32_t k = 0; k < node->arity; k++)
-                sum += absolute(partial[k][i]);
-            for (uint32_t k = 0; k < node->arity; k++)
-                partial[k][i] = sum > 0 ? absolute(partial[k][i]) / sum : k == 0;
-        }
-    for (int c = 0; c < channels; c++) {
+    for (int c = 0; c < channels_of(wanted); c++) {
+        if (c == wanted.gradients)
+            for (size_t i = 0; i < count; i++) {
+                float sum = 0;
+                for (uint32_t k = 0; k < node->arity; k++)
+                    sum += absolute(partial[k][i]);
+                for (uint32_t k = 0; k < node->arity; k++)
+                    partial[k][i] = sum > 0 ? absolute(partial[k][i]) / sum : k == 0;
+            }
         float *out = channel(s, depth, first, c);
         for (size_t i = 0; i < count; i++)
             out[i] = partial[0][i] * out[i];
@@ -338,51 +262,78 @@ static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots
 }
 
 static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
-                       uint32_t depth, size_t index, int channels)
+                       uint32_t depth, size_t index, plan wanted)
 {
-    if (channels == GRADIENT_CHANNELS) {
+    if (wanted.gradients)
         CSG_THIS_LEAF_KERNEL.gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
                                        channel(s, depth, index, 1), channel(s, depth, index, 2));
+    else
+        CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index));
+    if (!wanted.colors)
         return;
-    }
-    CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index));
     csg_color color = tape->colors[(uint32_t)tape->parameters[node->parameters + CSG_LEAF_COLOR]];
     const float rgba[COLOR_CHANNELS] = {color.r, color.g, color.b, color.a};
-    for (int c = 0; c < COLOR_CHANNELS; c++) {
-        float *out = channel(s, depth, index, c);
+    for (int c = 0; c < wanted.colors; c++) {
+        float *out = channel(s, depth, index, wanted.gradients + c);
         for (size_t i = 0; i < p.count; i++)
-            out[i] = rgba[c];
+            out[i] = rgba[wanted.first_color + c];
     }
 }
 
-static void walk_mixed(const csg_tape *tape, csg_points p, slots s, uint32_t depth, int channels)
+static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
+                          size_t index, plan wanted, size_t count, float *work)
+{
+    CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, index), work, count);
+    for (int c = 0; c < wanted.gradients; c++) {
+        float *restrict out = channel(s, depth, index, c);
+        for (size_t i = 0; i < count; i++)
+            out[i] *= work[i];
+    }
+}
+
+static void join_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
+                       size_t index, plan wanted, size_t count, float *work)
+{
+    csg_channels channels = {.count = channels_of(wanted), .colors = wanted.colors};
+    for (int c = 0; c < channels.count; c++) {
+        channels.a[c] = channel(s, depth, index, c);
+        channels.b[c] = channel(s, depth, index + 1, c);
+    }
+    CSG_THIS_JOIN_KERNEL.mixed(node, tape->parameters + node->join_parameters, slot(s, index),
+                               slot(s, index + 1), &channels, count, work, s.stride);
+}
+
+static void walk_mixed(const csg_tape *tape, csg_points p, slots s, uint32_t depth, plan wanted)
 {
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            leaf_mixed(tape, node, p, s, depth, top++, channels);
+            leaf_mixed(tape, node, p, s, depth, top++, wanted);
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
-            combine_round_mixed(tape, node, s, depth, top++, channels, p.count, work);
+            combine_round_mixed(tape, node, s, depth, top++, channels_of(wanted), p.count, work);
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
-            combine_mixed(tape, node, s, depth, top++, channels, p.count, work);
+            combine_mixed(tape, node, s, depth, top++, wanted, p.count, work);
+        } else if (csg_op_delivers(node->op)) {
+            deliver_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
         if (node->join) {
             top--;
-            const float *parameters = tape->parameters + node->join_parameters;
-            float *gain = work + s.stride;
-            join_shares(node, parameters, slot(s, top - 1), slot(s, top), work, gain, p.count);
-            for (int c = 0; c < channels; c++)
-                mix(channel(s, depth, top - 1, c), channel(s, depth, top, c), work, p.count);
-            if (node->join_blend == CSG_BLEND_ORTHOGONAL && channels == GRADIENT_CHANNELS)
-                for (int c = 0; c < channels; c++)
-                    stretch(channel(s, depth, top - 1, c), gain, p.count);
-            join_values(node, parameters, slot(s, top - 1), slot(s, top), p.count);
+            join_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
     }
+}
+
+/* Whether a join's value depends on its operands' gradients. */
+static int turns(const csg_tape *tape)
+{
+    for (uint32_t n = 0; n < tape->count; n++)
+        if (tape->nodes[n].join_blend == CSG_BLEND_TURNING && tape->nodes[n].join)
+            return 1;
+    return 0;
 }
 
 /* ---- batches -------------------------------------------------------------------------------- */
@@ -413,25 +364,33 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
     uint32_t depth = csg_tape_depth(tape);
     size_t batch = batch_size(depth, scratch_floats);
     slots s = {scratch, batch};
+    int turning = tape->turns && turns(tape);
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
-        walk_values(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth);
+        csg_points p = {x + i, y + i, z + i, padded(n)};
+        if (turning)
+            walk_mixed(tape, p, s, depth, gradients_only);
+        else
+            walk_values(tape, p, s, depth);
         memcpy(out + i, slot(s, 0), n * sizeof(float));
     }
 }
 
+/* out: for each channel of the plan that is wanted, the first `gradients` of them left out where
+ * they are only means. */
 static void mixed(const csg_tape *tape, const float *x, const float *y, const float *z,
-                  size_t count, float *const *out, int channels, float *scratch,
+                  size_t count, float *const *out, plan wanted, float *scratch,
                   size_t scratch_floats)
 {
     uint32_t depth = csg_tape_depth(tape);
     size_t batch = batch_size(depth, scratch_floats);
     slots s = {scratch, batch};
+    int first = wanted.colors ? wanted.gradients : 0;
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
-        walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, channels);
-        for (int c = 0; c < channels; c++)
-            memcpy(out[c] + i, channel(s, depth, 0, c), n * sizeof(float));
+        walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, wanted);
+        for (int c = first; c < channels_of(wanted); c++)
+            memcpy(out[c - first] + i, channel(s, depth, 0, c), n * sizeof(float));
     }
 }
 
@@ -440,13 +399,19 @@ static void gradients(const csg_tape *tape, const float *x, const float *y, cons
                       size_t scratch_floats)
 {
     float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
-    mixed(tape, x, y, z, count, out, GRADIENT_CHANNELS, scratch, scratch_floats);
+    mixed(tape, x, y, z, count, out, gradients_only, scratch, scratch_floats);
 }
 
 static void colors(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
 {
-    mixed(tape, x, y, z, count, rgba, COLOR_CHANNELS, scratch, scratch_floats);
+    if (!tape->turns || !turns(tape)) {
+        mixed(tape, x, y, z, count, rgba, colors_only, scratch, scratch_floats);
+        return;
+    }
+    for (int c = 0; c < COLOR_CHANNELS; c++)
+        mixed(tape, x, y, z, count, &rgba[c], (plan){GRADIENT_CHANNELS, 1, c}, scratch,
+              scratch_floats);
 }
 
 /* ---- intervals ------------------------------------------------------------------------------- */
@@ -468,7 +433,6 @@ static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, s
     }
 }
 
-/* Operators but these are monotone: its value at the operands' ends (operators.md 0). */
 static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch)
@@ -492,14 +456,17 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
             combine_intervals(tape, node, lows, highs, top++);
+        } else if (csg_op_delivers(node->op)) {
+            CSG_THIS_RULE_KERNEL.deliver_intervals(tape, node, slot(lows, top - 1),
+                                                   slot(highs, top - 1));
         }
         memcpy(low + (size_t)n * CSG_OCTANTS, slot(lows, top - 1), CSG_OCTANTS * sizeof(float));
         memcpy(high + (size_t)n * CSG_OCTANTS, slot(highs, top - 1), CSG_OCTANTS * sizeof(float));
         if (node->join) {
             top--;
-            const float *parameters = tape->parameters + node->join_parameters;
-            join_values(node, parameters, slot(lows, top - 1), slot(lows, top), CSG_OCTANTS);
-            join_values(node, parameters, slot(highs, top - 1), slot(highs, top), CSG_OCTANTS);
+            CSG_THIS_JOIN_KERNEL.intervals(node, tape->parameters + node->join_parameters,
+                                           slot(lows, top - 1), slot(highs, top - 1),
+                                           slot(lows, top), slot(highs, top));
         }
     }
 }

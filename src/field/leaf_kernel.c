@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "field/formula_kernel.h"
-#include "field/formulas.h"
+#include "field/soft_formulas.h"
 #include "field/warp_kernel.h"
 
 /* ---- leaves ---------------------------------------------------------------------------- */
@@ -37,7 +37,9 @@ static inline point affine_back(const float *m, point g)
     X(FRUSTUM, frustum)                                                                            \
     X(CAPSULE, capsule)                                                                            \
     X(TORUS, torus)                                                                                \
-    X(ELLIPSOID, ellipsoid) X(PLANE, plane) X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab)
+    X(ELLIPSOID, ellipsoid)                                                                        \
+    X(PLANE, plane) X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab)                        \
+        X(SUPERELLIPSOID, superellipsoid)
 
 /* Local copies of the parameters: the compiler then knows that no store changes them. */
 #define VALUE_LOOPS(NAME, name)                                                                    \
@@ -274,6 +276,7 @@ static int falls_outwards(const csg_tape_node *node, const float *own)
         return 0;
     return node->op == CSG_OP_SPHERE || node->op == CSG_OP_BOX || node->op == CSG_OP_ELLIPSOID ||
            node->op == CSG_OP_CIRCLE || node->op == CSG_OP_RECTANGLE || node->op == CSG_OP_SLAB ||
+           node->op == CSG_OP_SUPERELLIPSOID ||
            (node->op == CSG_OP_FRUSTUM && own[7] == 0); /* a cylinder */
 }
 

@@ -17,7 +17,18 @@ static const char *const op_names[CSG_OP_COUNT] = {
     [CSG_OP_ROUND_UNION] = "round_union",
     [CSG_OP_ROUND_INTERSECTION] = "round_intersection",
     [CSG_OP_COMBINE] = "combine",
+    [CSG_OP_SOFTEN] = "soften",
+    [CSG_OP_RULE_UNION] = "rule_union",
+    [CSG_OP_RULE_INTERSECTION] = "rule_intersection",
     [CSG_OP_EMPTY] = "empty",
+};
+
+static const char *const curve_names[] = {
+#define CSG_FALLOFF(NAME, name, iso, steepest, doc) [CSG_CURVE_##NAME] = #name,
+#include "scene/falloffs.def"
+#undef CSG_FALLOFF
+    [CSG_CURVE_STEP] = "step",
+    [CSG_CURVE_CLAMP] = "clamp",
 };
 
 typedef struct printer {
@@ -53,6 +64,29 @@ static void print_leaf(printer *out, const csg_tape *tape, const csg_tape_node *
         print(out, " in %s", csg_warp_name((csg_warp_kind)tape->warps[w - 1].kind));
 }
 
+static const char *blend_name(uint8_t blend)
+{
+    return blend == CSG_BLEND_TURNING ? "turning scale_set" : csg_blend_name((csg_blend_kind)blend);
+}
+
+static void print_operator(printer *out, const csg_tape *tape, const csg_tape_node *node)
+{
+    const float *p = tape->parameters + node->parameters;
+    print(out, " of %u", node->arity);
+    if (node->op == CSG_OP_COMBINE)
+        return;
+    const float *delivery = node->op == CSG_OP_SOFTEN ? p : p + CSG_RULE_DELIVER;
+    if (node->op == CSG_OP_SOFTEN)
+        print(out, ", %s rate %.9g", curve_names[node->blend], (double)p[CSG_SOFTEN_RATE]);
+    else
+        print(out, ", blend %s n %.9g support %.9g", blend_name(node->blend),
+              (double)p[CSG_OPERATOR_N], (double)p[CSG_OPERATOR_SUPPORT]);
+    if (csg_op_delivers(node->op))
+        print(out, ", gives %.9g (F - %.9g) + %.9g%s", (double)delivery[CSG_DELIVER_SCALE],
+              (double)delivery[CSG_DELIVER_LEVEL], (double)delivery[CSG_DELIVER_SHIFT],
+              delivery[CSG_DELIVER_LOW] == 0 ? " in 0..1" : "");
+}
+
 csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, void *user)
 {
     printer out = {sink, user};
@@ -63,16 +97,11 @@ csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, vo
         print(&out, "%u %s", i, op_names[node->op]);
         if (csg_op_is_leaf(node->op))
             print_leaf(&out, &field->tape, node);
-        else if (node->op == CSG_OP_COMBINE)
-            print(&out, " of %u", node->arity);
         else
-            print(&out, " of %u, blend %s n %.9g support %.9g", node->arity,
-                  csg_blend_name(node->blend),
-                  (double)field->tape.parameters[node->parameters + CSG_OPERATOR_N],
-                  (double)field->tape.parameters[node->parameters + CSG_OPERATOR_SUPPORT]);
+            print_operator(&out, &field->tape, node);
         if (node->join)
             print(&out, ", joins by %s %s", node->join == CSG_JOIN_UNION ? "union" : "intersection",
-                  csg_blend_name(node->join_blend));
+                  blend_name(node->join_blend));
         print(&out, "\n");
     }
     return CSGM_OK;

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/prune_fields.h"
+
 void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
                      float rounding)
 {
@@ -145,6 +147,24 @@ static void demand_all(csg_pruner *pruner, uint32_t node)
     }
 }
 
+/* The operands of an operator on fields give what it takes, or soften what does. */
+static void demand_fields(csg_pruner *pruner, uint32_t node)
+{
+    const csg_tape_node *op = &pruner->tape->nodes[node];
+    if (op->op != CSG_OP_SOFTEN) {
+        csg_prune_fields(pruner, node);
+        return;
+    }
+    uint32_t child = node - 1;
+    float low, high;
+    csg_soften_demand(pruner->tape, op, &low, &high);
+    pruner->dropped[child] = pruner->dropped[node];
+    for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(pruner->tape->nodes[child].op); o++) {
+        lanes(pruner->low, child)[o] = low;
+        lanes(pruner->high, child)[o] = high;
+    }
+}
+
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
  * below the largest sibling, by the blend's support. Intersections are the mirror image. The
  * demand on an operand takes the place of its interval, which nobody needs any more. */
@@ -156,7 +176,13 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
         demand_all(pruner, node);
         return;
     }
+    if (csg_op_delivers(op->op)) {
+        demand_fields(pruner, node);
+        return;
+    }
     bool is_union = csg_op_is_union(op->op);
+    /* INTERIOR is not above its larger operand. */
+    bool is_smooth = op->blend == CSG_BLEND_EXTERIOR || op->blend == CSG_BLEND_INTERIOR;
     float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
     float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
     float edge = turn * pruner->tape->parameters[op->parameters + CSG_OPERATOR_N] - pruner->slack;
@@ -178,8 +204,8 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
         if (csg_op_is_leaf(nodes[child].op))
             continue;
         for (int o = 0; o < CSG_OCTANTS; o++) {
-            lanes(pruner->low, child)[o] = demand_low[o] - (is_union ? chi : 0);
-            lanes(pruner->high, child)[o] = demand_high[o] + (is_union ? 0 : chi);
+            lanes(pruner->low, child)[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
+            lanes(pruner->high, child)[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
         }
     }
 }
@@ -192,9 +218,9 @@ static void decide(csg_pruner *pruner, float tau)
     float low[CSG_OCTANTS], high[CSG_OCTANTS];
     pruner->decided = true;
     pruner->dropped_any = pruner->dropped[root] = 0;
-    for (int o = 0; o < CSG_OCTANTS; o++) {
-        low[o] = -tau;
-        high[o] = tau;
+    for (int o = 0; o < CSG_OCTANTS; o++) { /* where a field turns there is no Lipschitz constant */
+        low[o] = tape->turns ? -INFINITY : -tau;
+        high[o] = tape->turns ? INFINITY : tau;
     }
     for (uint32_t i = tape->count; i > 0;) {
         uint32_t node = i - 1, size = tape->nodes[node].size;
@@ -218,7 +244,7 @@ static void decide(csg_pruner *pruner, float tau)
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {
-    if (kept == 1 && op->op != CSG_OP_COMBINE)
+    if (kept == 1 && op->op != CSG_OP_COMBINE && !csg_op_delivers(op->op))
         return; /* the operand stands for its operator */
     csg_tape_node *nodes = pruner->nodes;
     csg_emitted *first = &stack[*top - kept];

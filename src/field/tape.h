@@ -25,8 +25,11 @@ typedef enum csg_op {
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
     CSG_OP_ROUND_INTERSECTION,
-    CSG_OP_COMBINE, /* takes `arity` values from the stack, x, y, z of a formula */
-    CSG_OP_EMPTY,   /* -infinity (or +infinity, negated): only ever the whole tape */
+    CSG_OP_COMBINE,    /* takes `arity` values from the stack, x, y, z of a formula */
+    CSG_OP_SOFTEN,     /* one child: its value becomes a field in [0, 1] */
+    CSG_OP_RULE_UNION, /* of fields: its children's joins did the work, what is left it delivers */
+    CSG_OP_RULE_INTERSECTION,
+    CSG_OP_EMPTY, /* -infinity (or +infinity, negated): only ever the whole tape */
     CSG_OP_COUNT
 } csg_op;
 
@@ -36,7 +39,12 @@ static inline bool csg_op_is_leaf(uint8_t op)
 }
 static inline bool csg_op_is_union(uint8_t op)
 {
-    return op == CSG_OP_UNION || op == CSG_OP_ROUND_UNION;
+    return op == CSG_OP_UNION || op == CSG_OP_ROUND_UNION || op == CSG_OP_RULE_UNION;
+}
+/* Works on fields in [0, 1] instead of values. */
+static inline bool csg_op_takes_fields(uint8_t op)
+{
+    return op == CSG_OP_RULE_UNION || op == CSG_OP_RULE_INTERSECTION;
 }
 static inline bool csg_op_is_round(uint8_t op)
 {
@@ -49,6 +57,12 @@ static inline bool csg_op_takes_all(uint8_t op)
     return csg_op_is_round(op) || op == CSG_OP_COMBINE;
 }
 
+/* Turns the one value below it into what it delivers. */
+static inline bool csg_op_delivers(uint8_t op)
+{
+    return op == CSG_OP_SOFTEN || csg_op_takes_fields(op);
+}
+
 /* How a node's value merges with the value of its elder siblings. */
 typedef enum csg_join { CSG_JOIN_NONE, CSG_JOIN_UNION, CSG_JOIN_INTERSECTION } csg_join;
 
@@ -58,7 +72,8 @@ typedef enum csg_frame { CSG_FRAME_OFFSET, CSG_FRAME_AFFINE } csg_frame;
 typedef struct csg_tape_node {
     uint8_t op;    /* csg_op */
     uint8_t join;  /* csg_join */
-    uint8_t blend; /* operators: csg_blend_kind of the operator; copied to children's joins */
+    uint8_t blend; /* operators: csg_blend_kind of the operator; copied to children's joins. SOFTEN:
+                      csg_tape_curve */
     uint8_t join_blend;
     uint8_t frame;            /* leaves: csg_frame */
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
@@ -85,6 +100,85 @@ enum {
 /* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero; for orthogonal
  * ones it is what offsets above have added to the operands. */
 enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
+
+/* A SCALE_SET that turns with the gradients' angle: the blend of such operators and their joins. A
+ * tape that has one is evaluated with its gradients. */
+enum { CSG_BLEND_TURNING = CSG_BLEND_END };
+
+/* Which field function a SOFTEN node is: P of soft(), the step H_3, or 1/2 + rate v kept in [0, 1].
+ */
+typedef enum csg_tape_curve {
+#define CSG_FALLOFF(NAME, name, iso, steepest, doc) CSG_CURVE_##NAME,
+#include "scene/falloffs.def"
+#undef CSG_FALLOFF
+    CSG_CURVE_STEP,
+    CSG_CURVE_CLAMP
+} csg_tape_curve;
+
+/* A SOFTEN node and an operator on fields deliver scale (F - level) + shift kept in low..high:
+ *   as a value       scale +-1 / lambda, level 1/2, shift what offsets above add
+ *   as a field       1, 0, 0 in 0..1
+ *   as a complement  -1, 1, 0 in 0..1 */
+enum {
+    CSG_DELIVER_SCALE,
+    CSG_DELIVER_LEVEL,
+    CSG_DELIVER_SHIFT,
+    CSG_DELIVER_LOW,
+    CSG_DELIVER_HIGH,
+    CSG_DELIVER_PARAMETERS
+};
+/* Parameters of a SOFTEN node: the delivery's, then P(iso - rate v), H_3(rate v) or the clamp of
+ * 1/2 + rate v. */
+enum { CSG_SOFTEN_RATE = CSG_DELIVER_PARAMETERS, CSG_SOFTEN_ISO, CSG_SOFTEN_PARAMETERS };
+/* Parameters of an operator on fields: as of any operator, the delivery's, then its own. The joins
+ * of SOFT_SUM and SOFT_SET are the sum, of SCALE_SET the scale function B: of the operands or of
+ * their complements (csg_rule_works_on_complements). */
+enum {
+    CSG_RULE_DELIVER = CSG_OPERATOR_PARAMETERS,
+    CSG_RULE_OWN = CSG_RULE_DELIVER + CSG_DELIVER_PARAMETERS,
+    CSG_RICCI_EXPONENT = CSG_RULE_OWN,
+    CSG_SCALE_R1 = CSG_RULE_OWN,
+    CSG_SCALE_R2,
+    CSG_SCALE_KAPPA,
+    CSG_SCALE_TOP, /* of N_S: from there on it is 1 */
+    CSG_SCALE_BEND,
+    CSG_SCALE_LIFT,  /* h of normalise_turned (soft_formulas.h) */
+    CSG_SCALE_OMEGA, /* 0: does not turn */
+    CSG_ARC_A = CSG_RULE_OWN,
+    CSG_ARC_B,
+    CSG_ARC_MONOTONE, /* with its profile */
+    CSG_ARC_KNOTS,    /* of the profile, 0 = none; then angle, 1 / width, factor, step to the next
+                         factor, slope and next slope times the width, of each stretch */
+    CSG_ARC_STRETCHES
+};
+enum {
+    CSG_STRETCH_ANGLE,
+    CSG_STRETCH_INVERSE,
+    CSG_STRETCH_FACTOR,
+    CSG_STRETCH_RISE,
+    CSG_STRETCH_SLOPE,
+    CSG_STRETCH_NEXT_SLOPE,
+    CSG_STRETCH_PARAMETERS,
+    CSG_ARC_MOST_PARAMETERS = CSG_ARC_STRETCHES + CSG_RULE_KNOTS * CSG_STRETCH_PARAMETERS
+};
+/* By how much of m the top of N_S is lowered. */
+#define CSG_SCALE_HAIR 1.5e-6
+/* Parameters of EXTERIOR and INTERIOR: as of any operator, then the step and its facts
+ * (csg_step_facts; scene/rule.h). */
+enum {
+    CSG_SMOOTH_STEP = CSG_OPERATOR_PARAMETERS,
+    CSG_SMOOTH_DEGREE, /* or alpha */
+    CSG_SMOOTH_DELTA,
+    CSG_SMOOTH_EPS,
+    CSG_SMOOTH_REACH, /* mu is 0 and 1 from there on */
+    CSG_SMOOTH_EVEN,
+    CSG_SMOOTH_K,
+    CSG_SMOOTH_DENT,                          /* two */
+    CSG_SMOOTH_DENT_AT = CSG_SMOOTH_DENT + 2, /* two */
+    CSG_SMOOTH_BUMP = CSG_SMOOTH_DENT_AT + 2, /* two */
+    CSG_SMOOTH_BUMP_AT = CSG_SMOOTH_BUMP + 2, /* two */
+    CSG_SMOOTH_PARAMETERS = CSG_SMOOTH_BUMP_AT + 2
+};
 
 /* One operation of an expression field over slots of floats, angles in radians. `out` is neither
  * `a` nor `b`; slots 0 to 2 are the point. */
@@ -127,6 +221,7 @@ typedef struct csg_tape {
     csg_shape *const *shapes; /* a CSG_OP_SHAPE's own parameter is an index of these */
     float lipschitz;          /* of the whole field */
     uint32_t count;
+    bool turns; /* some TURNING operator stands in the whole tape */
 } csg_tape;
 
 struct csgm_field {

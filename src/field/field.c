@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * Values of whole tapes; see field.h.
+ */
+#include "field/field.h"
+
+#include <math.h>
+
+#include "field/dispatch.h"
+
+uint32_t csg_tape_depth(const csg_tape *tape)
+{
+    uint32_t top = 0, most = 1;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op))
+            top++;
+        else if (csg_op_takes_all(node->op))
+            top -= node->arity - 1;
+        if (top > most)
+            most = top;
+        if (node->join)
+            top--;
+    }
+    return most;
+}
+
+void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
+                    float *out, size_t count)
+{
+    enum { POINTS = 64 };
+    const csg_kernel *kernel = csg_kernel_for(field->context->isa);
+    csg_memory *memory = &field->context->memory;
+    size_t scratch_floats = csg_kernel_scratch_floats(field->depth);
+    float *scratch = csg_memory_alloc(memory, scratch_floats * sizeof(float));
+    for (size_t i = 0; i < count; i += POINTS) {
+        size_t n = count - i < POINTS ? count - i : POINTS;
+        float px[POINTS] = {0}, py[POINTS] = {0}, pz[POINTS] = {0}, f[POINTS];
+        for (size_t j = 0; j < n; j++) {
+            px[j] = (float)((double)x[i + j] - field->center.x);
+            py[j] = (float)((double)y[i + j] - field->center.y);
+            pz[j] = (float)((double)z[i + j] - field->center.z);
+        }
+        if (scratch)
+            kernel->values(&field->tape, px, py, pz, n, f, scratch, scratch_floats);
+        for (size_t j = 0; j < n; j++)
+            out[i + j] = scratch ? f[j] : NAN;
+    }
+    if (scratch)
+        csg_memory_release(memory, scratch, scratch_floats * sizeof(float));
+}
