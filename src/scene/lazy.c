@@ -43,12 +43,13 @@ csg_lazy_options csg_lazy_options_default(double band)
 
 /* ---- creation ------------------------------------------------------------------------------ */
 
-/* Blends that are at least the largest operand of their union, also after rounding. */
+/* Rules of lengths leave their results as they are outside their support, too. */
 static double support_of(const csgm_scene *tree, const csg_node *node)
 {
-    bool known = csg_node_is_operator(node->kind) && csg_lazy_is_known_blend(node->blend) &&
-                 node->blend != CSG_BLEND_ORTHOGONAL;
-    return known ? csg_blend_support(csg_scene_blend(tree, node)) : NAN;
+    bool operates = csg_node_is_operator(node->kind);
+    bool ends =
+        operates && (node->blend == CSG_BLEND_EXTERIOR || node->blend == CSG_BLEND_INTERIOR);
+    return ends || csg_lazy_is_plain(node) ? csg_scene_support(tree, node) : NAN;
 }
 
 static csgm_status measure(csg_lazy *lazy)
@@ -236,7 +237,7 @@ static demand inner_demand(demand d, double scale, double shift)
 
 /* What operand number `index` is asked for: in a sharp union nothing up to the best so far or the
  * floor, in a blended one nothing that is outside the best's support, and nothing more once it is
- * above the ceiling, since a union is at least as large as its operands. */
+ * above the ceiling, since a plain union is at least as large as its operands. */
 static demand operand_demand(const csg_lazy *lazy, const frame *f, uint32_t index)
 {
     const demand all = {-INFINITY, INFINITY};
@@ -263,16 +264,18 @@ static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, deman
 {
     const csgm_scene *tree = &e->lazy->tree;
     const csg_node *node = &tree->nodes[id];
-    e->frames[e->depth++] = (frame){.at = p,
-                                    .inner = csg_reference_inner_point(tree, node, p),
-                                    .bound = bound,
-                                    .seen = seen,
-                                    .united = times_sign(seen, operand_sign(node, 0)),
-                                    .best = -INFINITY,
-                                    .slot = slot,
-                                    .node = id,
-                                    .first = UINT32_MAX,
-                                    .asked = UINT32_MAX};
+    const demand all = {-INFINITY, INFINITY};
+    e->frames[e->depth++] =
+        (frame){.at = p,
+                .inner = csg_reference_inner_point(tree, node, p),
+                .bound = bound,
+                .seen = seen,
+                .united = csg_lazy_is_plain(node) ? times_sign(seen, operand_sign(node, 0)) : all,
+                .best = -INFINITY,
+                .slot = slot,
+                .node = id,
+                .first = UINT32_MAX,
+                .asked = UINT32_MAX};
 }
 
 /* The operand most likely to decide: of a union the one with the largest bound, of an intersection

@@ -9,29 +9,18 @@
 
 enum { MOST_PASSES = 32 };
 
-bool csg_lazy_is_known_blend(uint8_t blend)
+bool csg_lazy_is_plain(const csg_node *node)
 {
-    switch ((csg_blend_kind)blend) {
-    case CSG_BLEND_SHARP:
-    case CSG_BLEND_ROUND:
-    case CSG_BLEND_HYPERBOLA:
-    case CSG_BLEND_RECIPROCAL:
-    case CSG_BLEND_OVERBLEND:
-    case CSG_BLEND_COSINE:
-    case CSG_BLEND_PARABOLA:
-    case CSG_BLEND_CHAMFER:
-    case CSG_BLEND_ORTHOGONAL:
-        return true;
-    default:
-        return false;
-    }
+    return csg_node_is_operator(node->kind) && !csg_blend_is_rule(node->blend) &&
+           node->blend != CSG_BLEND_ORTHOGONAL;
 }
 
 /* ---- boxes of the paper -------------------------------------------------------------------- */
 
 static bool is_known_operator(const csg_node *node)
 {
-    return csg_node_is_operator(node->kind) && csg_lazy_is_known_blend(node->blend);
+    return csg_lazy_is_plain(node) ||
+           (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
 }
 
 /* Nodes below which a value that is cut by its own box still gives the same solid. */
@@ -127,7 +116,14 @@ static csgm_status find_paper_boxes(csg_lazy *lazy, csg_arena *scratch, bool sha
 
 /* ---- the exact scheme ---------------------------------------------------------------------- */
 
-/* Blends that are not known to rise with their operands have theirs in full. */
+/* Its value depends on its operands' gradients, which bounds change: they are left alone. It has no
+ * Lipschitz constant either. */
+static bool eliminates_bulges(const csgm_scene *tree, const csg_node *node)
+{
+    const csg_rule *rule = csg_scene_rule(tree, node);
+    return rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0;
+}
+
 static csgm_status find_exact_bounds(csg_lazy *lazy, csg_arena *scratch, double band)
 {
     const csgm_scene *tree = &lazy->tree;
@@ -141,8 +137,7 @@ static csgm_status find_exact_bounds(csg_lazy *lazy, csg_arena *scratch, double 
     for (size_t i = tree->node_count; i-- > 0;) {
         const csg_node *node = &tree->nodes[i];
         csg_lazy_bound *bound = &lazy->bounds[i];
-        bool strange = csg_node_is_operator(node->kind) && !csg_lazy_is_known_blend(node->blend);
-        bool inner = bound->is_known && !strange;
+        bool inner = bound->is_known && !eliminates_bulges(tree, node);
         bound->box = bounds[i].clamp_box;
         bound->below = bounds[i].below;
         for (uint32_t k = 0; k < node->child_count; k++)
@@ -154,18 +149,22 @@ static csgm_status find_exact_bounds(csg_lazy *lazy, csg_arena *scratch, double 
 
 /* ---- all ----------------------------------------------------------------------------------- */
 
-static void find_lipschitz(csg_lazy *lazy)
+static bool find_lipschitz(csg_lazy *lazy, csg_arena *scratch)
 {
     const csgm_scene *tree = &lazy->tree;
+    double *slopes = csg_arena_calloc(scratch, tree->node_count, sizeof *slopes);
+    if (!slopes)
+        return false;
+    csg_scene_slopes(tree, slopes);
     for (size_t i = 0; i < tree->node_count; i++) {
         const csg_node *node = &tree->nodes[i];
-        double lambda = 1;
-        if (node->kind == CSG_NODE_FIELD)
-            lambda = fmax(lambda, tree->formulas[node->payload].lipschitz);
+        double lambda = eliminates_bulges(tree, node) ? INFINITY : fmax(slopes[i], 1);
         for (uint32_t k = 0; k < node->child_count; k++)
-            lambda = fmax(lambda, lazy->bounds[csg_scene_children(tree, node)[k]].lambda);
+            if (lazy->bounds[csg_scene_children(tree, node)[k]].lambda == INFINITY)
+                lambda = INFINITY;
         lazy->bounds[i].lambda = lambda;
     }
+    return true;
 }
 
 static bool is_all_of_space(csg_box box)
@@ -178,8 +177,9 @@ csgm_status csg_lazy_find_bounds(csg_lazy *lazy, const csg_lazy_options *options
     csg_arena scratch;
     csg_arena_init(&scratch, &lazy->context->memory);
     csgm_status status = CSGM_OK;
-    find_lipschitz(lazy);
-    if (options->bounds == CSG_LAZY_EXACT)
+    if (!find_lipschitz(lazy, &scratch))
+        status = CSGM_ERR_MEMORY;
+    else if (options->bounds == CSG_LAZY_EXACT)
         status = find_exact_bounds(lazy, &scratch, options->band);
     else if (options->bounds != CSG_LAZY_NO_BOUNDS)
         status = find_paper_boxes(lazy, &scratch, options->bounds == CSG_LAZY_SHARED_BOXES);

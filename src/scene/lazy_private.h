@@ -27,9 +27,10 @@ struct csg_lazy {
     double lipschitz;
 };
 
-/* A blend of which it is known that operands outside its support leave the others' result as it
- * is, and that rises with each operand. */
-bool csg_lazy_is_known_blend(uint8_t blend);
+/* Whether it is an operator that rises with each operand and is at least the largest of its union
+ * (reference.c), also after rounding, and that leaves a result as it is where an operand is outside
+ * the support. */
+bool csg_lazy_is_plain(const csg_node *node);
 
 /* Fills lazy->tree from the scene: joins of two instead of long sharp unions. */
 csgm_status csg_lazy_grow_tree(csg_lazy *lazy, const csgm_scene *scene);

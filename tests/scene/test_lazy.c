@@ -354,6 +354,56 @@ static void test_exact_scheme_is_exact(void **state)
     assert_true(worst <= 1e-15); /* some rounding of coordinates up to 4 */
 }
 
+/* Rules of all kinds with their standard parameters over balls and sharp unions, soft ones among
+ * them. */
+static csg_node_id rule_tree(csg_random *random, unsigned depth)
+{
+    csg_vec3 c = test_point(random, 1);
+    csg_node_id ball = sphere(c.x, c.y, c.z, csg_random_uniform(random, 0.2, 0.7));
+    if (csg_random_below(random, 3) == 0)
+        ball = csg_build_soft(&builder, (csg_soft){CSG_FALLOFF_CUBIC, 0.5}, ball, NOWHERE);
+    if (!depth)
+        return ball;
+    csg_node_kind kind = CSG_NODE_UNION + csg_random_below(random, 3);
+    csg_blend blend = sharp;
+    uint32_t pick = csg_random_below(random, CSG_BLEND_END + 4);
+    csg_rule rule = {0};
+    if (pick > CSG_BLEND_ORTHOGONAL && pick < CSG_BLEND_FIELD_SHARP) {
+        rule = csg_rule_standard(pick);
+        rule.range = csg_blend_takes_fields(pick) ? 0.3 : 0;
+        for (int i = 0; i < 2 && !csg_blend_takes_fields(pick); i++)
+            rule.parameters[i] *= 0.4;
+        if (pick == CSG_BLEND_SCALE_SET && depth % 2)
+            rule.parameters[3] = 0.3; /* debulge */
+        blend = csg_build_rule(&builder, &rule);
+    } else if (pick < CSG_BLEND_COUNT) {
+        blend = test_random_blend(random, pick);
+    }
+    csg_node_id first = rule_tree(random, depth - 1);
+    return join(kind, blend, first, rule_tree(random, depth - 1));
+}
+
+static void test_rules_are_exact_too(void **state)
+{
+    enum { RULED = 200 };
+    double parts[2] = {0}, worst = 0;
+    for (uint64_t seed = 9000; seed < 9000 + RULED; seed++) {
+        csg_random random = {seed};
+        csg_build_abandon(&builder);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+        csgm_scene *scene = test_seal(&builder, rule_tree(&random, 1 + (unsigned)seed % 5));
+        check_laziness(scene, &random, CSG_LAZY_EXACT, parts);
+        check_laziness(scene, &random, CSG_LAZY_OWN_BOXES, parts);
+        worst = fmax(worst, check_exactness(scene, &random, 0));
+        worst = fmax(worst, check_exactness(scene, &random, 0.02));
+        worst = fmax(worst, check_exactness(scene, &random, 0.3));
+        csg_scene_destroy(scene);
+    }
+    print_message("worst in the band: %g; %.2f, with demand %.2f of all nodes\n", worst,
+                  parts[PAPER] / (2 * RULED), parts[DEMAND] / (2 * RULED));
+    assert_true(worst <= 1e-15);
+}
+
 static void test_fields_keep_their_constants(void **state)
 {
     for (uint64_t seed = 7000; seed < 7100; seed++) {
@@ -531,6 +581,7 @@ int main(void)
         TEST(test_shared_boxes_shut_holes),
         TEST(test_laziness_changes_no_bit),
         TEST(test_exact_scheme_is_exact),
+        TEST(test_rules_are_exact_too),
         TEST(test_fields_keep_their_constants),
         TEST(test_long_operators_are_grouped),
         TEST(test_coloured_unions_are_one),
