@@ -17,6 +17,7 @@
 #include "lang/evaluator.h"
 #include "lang/loader.h"
 #include "lang/overrides.h"
+#include "scene/texts.h"
 
 enum { MAILBOX = 16384 };
 
@@ -100,6 +101,22 @@ static void warn_empty(csg_eval *e, const csgm_scene *scene)
                        "the scene is an empty solid");
 }
 
+/* For findings of meshing. */
+static bool keep_texts(const csg_program *program, csgm_scene *scene)
+{
+    csg_memory *memory = &program->context->memory;
+    const csg_sources *sources = &program->sources;
+    size_t bytes = (sources->count + 1) * sizeof(csg_scene_text);
+    csg_scene_text *texts = csg_memory_alloc(memory, bytes);
+    for (size_t i = 0; texts && i < sources->count; i++) {
+        const csg_source *source = &sources->items[i];
+        texts[i] = (csg_scene_text){source->name, source->text, source->length};
+    }
+    bool kept = texts && csg_scene_keep_texts(scene, texts, sources->count);
+    csg_memory_release(memory, texts, bytes);
+    return kept;
+}
+
 static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **out)
 {
     csg_eval e;
@@ -118,6 +135,10 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
                                   program->dependency_count, &scene);
         if (status == CSGM_ERR_MEMORY)
             csg_context_no_memory(program->context);
+    }
+    if (status == CSGM_OK && !keep_texts(program, scene)) {
+        csg_scene_destroy(scene);
+        status = csg_context_no_memory(program->context);
     }
     if (status == CSGM_OK) {
         warn_empty(&e, scene);

@@ -266,6 +266,10 @@ csgm_status csg_parts_scene(const csg_parts *parts, size_t index, csgm_scene **o
         status = b.status;
         csg_build_abandon(&b);
     }
+    if (status == CSGM_OK) {
+        (*out)->texts = parts->scene->texts;
+        (*out)->text_count = parts->scene->text_count;
+    }
     csg_memory_release(&context->memory, nodes, bytes);
     return status;
 }

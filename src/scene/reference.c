@@ -286,3 +286,39 @@ uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, cs
     workspace_end(&w, scene);
     return active;
 }
+
+static uint32_t deciding_child(const workspace *w, const csgm_scene *scene, const csg_node *node)
+{
+    const csg_node_id *children = csg_scene_children(scene, node);
+    uint32_t best = 0;
+    double most = -INFINITY;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double value = w->samples[children[k]].value;
+        value = csg_node_is_operator((csg_node_kind)node->kind)
+                    ? operand_sign((csg_node_kind)node->kind, k) * value
+                    : -fabs(value);
+        if (value > most) {
+            most = value;
+            best = k;
+        }
+    }
+    return best;
+}
+
+csg_node_id csg_reference_deciding_leaf(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+{
+    double stack[STACK_BYTES / sizeof(double)];
+    workspace w;
+    if (!workspace_begin(&w, scene, stack)) {
+        *status = CSGM_ERR_MEMORY;
+        return CSG_NODE_NONE;
+    }
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
+    csg_node_id id = scene->root;
+    while (scene->nodes[id].child_count)
+        id = csg_scene_children(scene,
+                                &scene->nodes[id])[deciding_child(&w, scene, &scene->nodes[id])];
+    workspace_end(&w, scene);
+    return id;
+}

@@ -45,4 +45,8 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
  */
 uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
+/* The leaf that decides the value there: of operators the operand that counts most, of combinations
+ * the one nearest to its surface. CSG_NODE_NONE: no room, with *status. */
+csg_node_id csg_reference_deciding_leaf(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
+
 #endif

@@ -121,6 +121,12 @@ typedef struct csg_node {
     csg_span where;
 } csg_node;
 
+/* A source text that spans point into, kept so that later findings can show the line. */
+typedef struct csg_scene_text {
+    const char *name, *text;
+    uint32_t length;
+} csg_scene_text;
+
 struct csgm_scene {
     csgm_context *context;
     csg_arena arena; /* holds all arrays, once sealed */
@@ -146,6 +152,8 @@ struct csgm_scene {
     csg_box *bounds;  /* per node, in its own frame: contains {f >= 0} (bounds.h) */
     const char **dependencies; /* files read, owned by arena */
     size_t dependency_count;
+    const csg_scene_text *texts; /* a span's source is an index; copied into arena, or borrowed */
+    size_t text_count;
     double parse_s, evaluate_s; /* wall time it took to get here; filled by lang/ */
 };
 
