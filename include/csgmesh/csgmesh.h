@@ -274,6 +274,9 @@ typedef struct csgm_field csgm_field;
 CSGM_API csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene,
                                         csgm_field **out);
 CSGM_API void csgm_field_destroy(csgm_field *field);
+/* The parts that its mesh has, in order, as far as they have a surface; false when index is past the
+ * end. *name: until the field is destroyed, NULL = without a name (a scene without parts is one). */
+CSGM_API bool csgm_field_part(const csgm_field *field, size_t index, const char **name);
 
 /* Field values in float at count points (scene units) given as three arrays; out must not
  * overlap them. Bit-equal on every ISA. */

@@ -27,6 +27,15 @@ void csgm_field_destroy(csgm_field *field)
     csg_field_destroy(field);
 }
 
+bool csgm_field_part(const csgm_field *field, size_t index, const char **name)
+{
+    bool is_whole = field->part_count == 0;
+    if (index >= field->part_count + is_whole)
+        return false;
+    *name = is_whole ? NULL : field->parts[index].name;
+    return true;
+}
+
 void csgm_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
                      float *out, size_t count)
 {

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "batch_hash.h"
 #include "cli.h"
 #include "interrupt.h"
 
@@ -50,8 +51,8 @@ static int print_version(cli_app *app)
 {
     int status = cli_app_open(app);
     if (status == CLI_DONE)
-        printf("csgmesh %s (%s)\n%s\n", csgm_version(), csgm_context_isa(app->context),
-               csgm_build_features());
+        printf("csgmesh %s (%s)\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
+               csgm_build_features(), batch_hash_feature());
     return cli_finish_stdout(app, status);
 }
 
