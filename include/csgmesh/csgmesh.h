@@ -526,7 +526,9 @@ typedef struct csgm_render_options {
     uint32_t samples; /* n: n x n rays a pixel where neighbours differ, 1 .. 8; default 3; a mesh
                          is drawn with n x n samples everywhere */
     csgm_camera camera;
-    csgm_box frame;        /* what the camera is placed by; empty (the default) = what is drawn */
+    csgm_box frame; /* what the camera is placed by; empty (the default) = what is drawn */
+    bool turns; /* the camera stands so far away that what it frames fits from any azimuth; default
+                   false */
     uint8_t background[4]; /* sRGB and alpha; default white, opaque */
     bool occlusion;        /* ambient occlusion, from the field; scenes only; default true */
     bool shadows;          /* soft shadows of the key light; scenes only; default true */

@@ -224,7 +224,7 @@ static const double PATIENCE_S = 0.5; /* shorter work shows no bar */
 static void draw_bar(const cli_console *console, csgm_stage stage, double fraction,
                      double elapsed_s)
 {
-    static const char *const names[] = {"sampling", "meshing ", "writing "};
+    static const char *const names[] = {"sampling", "meshing ", "writing ", "drawing "};
     char bar[BAR_WIDTH + 1];
     int filled = (int)(fraction * BAR_WIDTH);
     for (int i = 0; i < BAR_WIDTH; i++)

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes on their way into tiles; see draw.h.
+ */
+#include "render/draw.h"
+
+#include <string.h>
+
+#include "base/clock.h"
+
+enum { VERTICES_PER_ITEM = 1 << 14 };
+
+csg_vec3 csg_draw_position(const csg_draw *draw, uint32_t vertex)
+{
+    const float *p = draw->mesh->positions + 3 * (size_t)vertex;
+    return csg_vec3_add(draw->mesh->origin,
+                        csg_vec3_make((double)p[0], (double)p[1], (double)p[2]));
+}
+
+static int32_t snap(const csg_draw *draw, double pixels)
+{
+    double at = floor(pixels * draw->samples * CSG_DRAW_SUBSTEPS + 0.5);
+    at = at < CSG_DRAW_LARGEST ? at : CSG_DRAW_LARGEST;
+    return (int32_t)(at > -CSG_DRAW_LARGEST ? at : -CSG_DRAW_LARGEST);
+}
+
+csg_draw_vertex csg_draw_project(const csg_draw *draw, csg_vec3 position)
+{
+    const csg_view *view = &draw->picture->view;
+    csg_vec3 at = csg_view_project(view, position);
+    if (!isfinite(at.x + at.y + at.z) || at.z < draw->nearest)
+        return (csg_draw_vertex){.is_visible = false};
+    double nearness = view->orthographic ? draw->nearest - at.z : draw->nearest / at.z;
+    return (csg_draw_vertex){snap(draw, at.x), snap(draw, at.y), (float)nearness, true};
+}
+
+/* ---- the nearest plane ----------------------------------------------------------------------- */
+
+static csg_vec3 cut(const csg_draw *draw, csg_vec3 a, csg_vec3 b, double depth_a, double depth_b)
+{
+    double share = (draw->nearest - depth_a) / (depth_b - depth_a);
+    return csg_vec3_add(a, csg_vec3_scale(csg_vec3_sub(b, a), share));
+}
+
+/* Sutherland and Hodgman's clipping by one plane: three or four corners, or none. */
+static int clip(const csg_draw *draw, const csg_vec3 corners[3], csg_draw_vertex out[4])
+{
+    const csg_view *view = &draw->picture->view;
+    double depth[3];
+    int count = 0;
+    for (int i = 0; i < 3; i++)
+        depth[i] = csg_vec3_dot(csg_vec3_sub(corners[i], view->eye), view->forward);
+    for (int i = 0; i < 3; i++) {
+        int next = (i + 1) % 3;
+        bool here = depth[i] >= draw->nearest, there = depth[next] >= draw->nearest;
+        if (here)
+            out[count++] = csg_draw_project(draw, corners[i]);
+        if (here == there)
+            continue;
+        csg_vec3 at = cut(draw, corners[i], corners[next], depth[i], depth[next]);
+        /* rounding may leave it a little before the plane */
+        at = csg_vec3_add(at, csg_vec3_scale(view->forward, 1e-9 * draw->nearest));
+        out[count++] = csg_draw_project(draw, at);
+    }
+    for (int i = 0; i < count; i++)
+        if (!out[i].is_visible)
+            return 0;
+    return count;
+}
+
+int csg_draw_corners(const csg_draw *draw, uint64_t triangle, csg_draw_vertex out[2][3])
+{
+    const uint32_t *index = draw->mesh->indices + 3 * triangle;
+    int visible = 0;
+    for (int i = 0; i < 3; i++) {
+        if (index[i] >= draw->mesh->vertex_count)
+            return 0;
+        out[0][i] = draw->vertices[index[i]];
+        visible += out[0][i].is_visible;
+    }
+    if (visible == 3)
+        return 1;
+    if (visible == 0)
+        return 0;
+    csg_vec3 corners[3];
+    for (int i = 0; i < 3; i++) {
+        corners[i] = csg_draw_position(draw, index[i]);
+        if (!isfinite(corners[i].x + corners[i].y + corners[i].z))
+            return 0;
+    }
+    csg_draw_vertex polygon[4];
+    int count = clip(draw, corners, polygon);
+    for (int part = 0; part + 2 < count; part++) {
+        out[part][0] = polygon[0];
+        out[part][1] = polygon[part + 1];
+        out[part][2] = polygon[part + 2];
+    }
+    return count >= 3 ? count - 2 : 0;
+}
+
+/* ---- tiles ----------------------------------------------------------------------------------- */
+
+static int64_t least_of(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+static int64_t most_of(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+/* Tiles that the box around the triangle touches: x0, y0, x1, y1, the last ones included. */
+static bool tiles_of(const csg_draw *draw, uint64_t triangle, uint32_t tiles[4])
+{
+    csg_draw_vertex corners[2][3];
+    int count = csg_draw_corners(draw, triangle, corners);
+    int64_t low[2] = {INT64_MAX, INT64_MAX}, high[2] = {INT64_MIN, INT64_MIN};
+    for (int part = 0; part < count; part++)
+        for (int i = 0; i < 3; i++) {
+            low[0] = least_of(low[0], corners[part][i].x);
+            low[1] = least_of(low[1], corners[part][i].y);
+            high[0] = most_of(high[0], corners[part][i].x);
+            high[1] = most_of(high[1], corners[part][i].y);
+        }
+    int64_t size = (int64_t)CSG_DRAW_TILE * draw->samples * CSG_DRAW_SUBSTEPS;
+    const int64_t ends[2] = {draw->columns, draw->rows};
+    for (int axis = 0; axis < 2; axis++) {
+        if (!count || high[axis] < 0 || low[axis] >= ends[axis] * size)
+            return false;
+        tiles[axis] = (uint32_t)(most_of(low[axis], 0) / size);
+        tiles[2 + axis] = (uint32_t)least_of(high[axis] / size, ends[axis] - 1);
+    }
+    return true;
+}
+
+/* Counts the triangles of each tile, or (fill) writes them there, in their order. */
+static bool each_triangle(csg_draw *draw, bool fill)
+{
+    enum { BETWEEN_LOOKS = 1 << 16 };
+    for (uint64_t t = 0; t < draw->mesh->triangle_count; t++) {
+        uint32_t tiles[4];
+        if (t % BETWEEN_LOOKS == 0 && csg_picture_should_stop(draw->picture))
+            return false;
+        if (!tiles_of(draw, t, tiles))
+            continue;
+        for (uint32_t y = tiles[1]; y <= tiles[3]; y++)
+            for (uint32_t x = tiles[0]; x <= tiles[2]; x++) {
+                uint64_t *at = &draw->tile_first[(size_t)y * draw->columns + x];
+                if (fill)
+                    draw->tile_triangles[*at] = (uint32_t)t;
+                (*at)++;
+            }
+    }
+    return true;
+}
+
+static csgm_status sort_triangles(csg_draw *draw, uint64_t *total)
+{
+    csgm_context *context = draw->picture->context;
+    size_t tiles = (size_t)draw->columns * draw->rows;
+    draw->tile_first = csg_memory_alloc(&context->memory, (tiles + 1) * sizeof(uint64_t));
+    if (!draw->tile_first)
+        return csg_context_no_memory(context);
+    memset(draw->tile_first, 0, (tiles + 1) * sizeof(uint64_t));
+    if (!each_triangle(draw, false))
+        return csg_picture_why_stopped(draw->picture);
+    *total = 0;
+    for (size_t i = 0; i < tiles; i++) {
+        uint64_t count = draw->tile_first[i];
+        draw->tile_first[i] = *total;
+        *total += count;
+    }
+    if (*total) {
+        draw->tile_triangles = csg_memory_alloc(&context->memory, *total * sizeof(uint32_t));
+        if (!draw->tile_triangles)
+            return csg_context_no_memory(context);
+    }
+    if (!each_triangle(draw, true))
+        return csg_picture_why_stopped(draw->picture);
+    /* filling has moved each tile's first to the next one's */
+    memmove(draw->tile_first + 1, draw->tile_first, tiles * sizeof(uint64_t));
+    draw->tile_first[0] = 0;
+    return CSGM_OK;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static bool project_item(void *user, uint32_t worker, size_t item)
+{
+    csg_draw *draw = user;
+    (void)worker;
+    uint64_t first = (uint64_t)item * VERTICES_PER_ITEM, end = first + VERTICES_PER_ITEM;
+    if (csg_picture_should_stop(draw->picture))
+        return false;
+    for (uint64_t v = first; v < end && v < draw->mesh->vertex_count; v++)
+        draw->vertices[v] = csg_draw_project(draw, csg_draw_position(draw, (uint32_t)v));
+    return true;
+}
+
+static csgm_status project(csg_draw *draw)
+{
+    csgm_context *context = draw->picture->context;
+    size_t count = draw->mesh->vertex_count;
+    if (!count)
+        return CSGM_OK;
+    draw->vertices = csg_memory_alloc(&context->memory, count * sizeof *draw->vertices);
+    if (!draw->vertices)
+        return csg_context_no_memory(context);
+    size_t items = (count + VERTICES_PER_ITEM - 1) / VERTICES_PER_ITEM;
+    if (csg_pool_run(context->pool, items, project_item, NULL, draw))
+        return CSGM_OK;
+    return csg_picture_why_stopped(draw->picture);
+}
+
+static bool tile_item(void *user, uint32_t worker, size_t index)
+{
+    csg_draw *draw = user;
+    if (csg_picture_should_stop(draw->picture))
+        return false;
+    csg_draw_tile(draw, draw->rooms[worker], (uint32_t)(index % draw->columns),
+                  (uint32_t)(index / draw->columns));
+    return true;
+}
+
+static size_t room_samples(const csg_draw *draw)
+{
+    size_t side = (size_t)CSG_DRAW_TILE * draw->samples;
+    return side * side;
+}
+
+static bool create_rooms(csg_draw *draw)
+{
+    csg_memory *memory = &draw->picture->context->memory;
+    draw->room_count = csg_pool_threads(draw->picture->context->pool);
+    draw->rooms = csg_memory_alloc(memory, draw->room_count * sizeof *draw->rooms);
+    if (!draw->rooms)
+        return false;
+    memset(draw->rooms, 0, draw->room_count * sizeof *draw->rooms);
+    bool done = true;
+    for (uint32_t i = 0; i < draw->room_count && done; i++) {
+        csg_draw_room *room = draw->rooms[i] = csg_memory_alloc(memory, sizeof *room);
+        if (!room)
+            return false;
+        room->nearness = csg_memory_alloc(memory, room_samples(draw) * sizeof(float));
+        room->triangle = csg_memory_alloc(memory, room_samples(draw) * sizeof(uint32_t));
+        done = room->nearness && room->triangle;
+    }
+    return done;
+}
+
+static void release(csg_draw *draw, uint64_t total)
+{
+    csg_memory *memory = &draw->picture->context->memory;
+    for (uint32_t i = 0; draw->rooms && i < draw->room_count && draw->rooms[i]; i++) {
+        csg_memory_release(memory, draw->rooms[i]->nearness, room_samples(draw) * sizeof(float));
+        csg_memory_release(memory, draw->rooms[i]->triangle, room_samples(draw) * sizeof(uint32_t));
+        csg_memory_release(memory, draw->rooms[i], sizeof *draw->rooms[i]);
+    }
+    csg_memory_release(memory, draw->rooms, draw->room_count * sizeof *draw->rooms);
+    csg_memory_release(memory, draw->tile_triangles, total * sizeof(uint32_t));
+    csg_memory_release(memory, draw->tile_first,
+                       ((size_t)draw->columns * draw->rows + 1) * sizeof(uint64_t));
+    csg_memory_release(memory, draw->vertices, draw->mesh->vertex_count * sizeof *draw->vertices);
+}
+
+static csgm_status draw_all(csg_draw *draw, csgm_render_stats *stats)
+{
+    csg_picture *picture = draw->picture;
+    uint64_t total = 0;
+    csgm_status status = project(draw);
+    if (status == CSGM_OK)
+        status = sort_triangles(draw, &total);
+    if (status == CSGM_OK && !create_rooms(draw))
+        status = csg_context_no_memory(picture->context);
+    stats->prepare_s = csg_clock_now_s() - picture->started_s;
+    if (status == CSGM_OK &&
+        !csg_pool_run(picture->context->pool, (size_t)draw->columns * draw->rows, tile_item,
+                      csg_picture_poll, draw))
+        status = csg_picture_why_stopped(picture);
+    release(draw, total);
+    return status;
+}
+
+static csg_box bounds_of(const csgm_mesh_view *mesh)
+{
+    csg_box box = csg_box_empty();
+    const csg_draw draw = {.mesh = mesh};
+    for (uint64_t v = 0; v < mesh->vertex_count; v++) {
+        csg_vec3 p = csg_draw_position(&draw, (uint32_t)v);
+        if (isfinite(p.x + p.y + p.z))
+            box = csg_box_hull(box, (csg_box){p, p});
+    }
+    return box;
+}
+
+csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                            const csgm_render_options *options, csgm_image **out,
+                            csgm_render_stats *stats)
+{
+    csg_picture picture;
+    csgm_render_options own = *options;
+    own.slice_axis = -1; /* of scenes */
+    *stats = (csgm_render_stats){0};
+    csgm_status status = csg_picture_begin(&picture, context, &own, bounds_of(mesh));
+    if (status == CSGM_OK) {
+        const csg_view *view = &picture.view;
+        csg_draw draw = {.picture = &picture,
+                         .mesh = mesh,
+                         .samples = options->samples,
+                         .nearest = view->nearest,
+                         .columns = (options->width + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE,
+                         .rows = (options->height + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE};
+        if (!view->orthographic && draw.nearest < view->least)
+            draw.nearest = view->least;
+        status = draw_all(&draw, stats);
+    }
+    stats->trace_s = csg_clock_now_s() - picture.started_s - stats->prepare_s;
+    stats->memory_peak_bytes = atomic_load(&context->memory.peak_bytes);
+    return csg_picture_end(&picture, status, out);
+}

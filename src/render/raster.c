@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT
+ * A tile of a mesh's picture; see draw.h.
+ */
+#include <string.h>
+
+#include "render/draw.h"
+
+/* Where the tile is, in samples. */
+typedef struct area {
+    int64_t x0, y0, width, height;
+} area;
+
+/* ---- which triangle a sample sees ------------------------------------------------------------ */
+
+/* Twice the signed area of a, b, p is a * x + b * y + c over snapped coordinates; with the rule
+ * that a sample on an edge belongs to the triangle to the right of it or below. */
+typedef struct edge {
+    int64_t a, b, c;
+} edge;
+
+static edge edge_between(const csg_draw_vertex *from, const csg_draw_vertex *to)
+{
+    int64_t dx = (int64_t)to->x - from->x, dy = (int64_t)to->y - from->y;
+    edge e = {-dy, dx, dy * from->x - dx * from->y};
+    bool is_top_or_left = dy < 0 || (dy == 0 && dx > 0);
+    e.c -= !is_top_or_left;
+    return e;
+}
+
+static int64_t floor_divide(int64_t a, int64_t b)
+{
+    return a / b - (a % b < 0);
+}
+
+/* Samples whose centres lie in the box around the corners, within the area. */
+static bool sample_range(const csg_draw_vertex v[3], const area *in, int64_t range[4])
+{
+    const int64_t half = CSG_DRAW_SUBSTEPS / 2;
+    int64_t low_x = v[0].x, high_x = v[0].x, low_y = v[0].y, high_y = v[0].y;
+    for (int i = 1; i < 3; i++) {
+        low_x = v[i].x < low_x ? v[i].x : low_x;
+        high_x = v[i].x > high_x ? v[i].x : high_x;
+        low_y = v[i].y < low_y ? v[i].y : low_y;
+        high_y = v[i].y > high_y ? v[i].y : high_y;
+    }
+    range[0] = floor_divide(low_x - half, CSG_DRAW_SUBSTEPS);
+    range[1] = floor_divide(low_y - half, CSG_DRAW_SUBSTEPS);
+    range[2] = floor_divide(high_x - half, CSG_DRAW_SUBSTEPS) + 1;
+    range[3] = floor_divide(high_y - half, CSG_DRAW_SUBSTEPS) + 1;
+    range[0] = range[0] > in->x0 ? range[0] : in->x0;
+    range[1] = range[1] > in->y0 ? range[1] : in->y0;
+    range[2] = range[2] < in->x0 + in->width ? range[2] : in->x0 + in->width;
+    range[3] = range[3] < in->y0 + in->height ? range[3] : in->y0 + in->height;
+    return range[0] < range[2] && range[1] < range[3];
+}
+
+/* Corners in the order that makes its area positive. */
+static void fill(csg_draw_room *room, const area *in, const csg_draw_vertex v[3], uint32_t id)
+{
+    int64_t range[4];
+    if (!sample_range(v, in, range))
+        return;
+    edge e[3];
+    for (int i = 0; i < 3; i++)
+        e[i] = edge_between(&v[(i + 1) % 3], &v[(i + 2) % 3]);
+    int64_t area2 = e[0].a * v[0].x + e[0].b * v[0].y + e[0].c;
+    double scale = area2 > 0 ? 1 / (double)area2 : 0;
+    for (int64_t y = range[1]; y < range[3]; y++) {
+        int64_t at_x = range[0] * CSG_DRAW_SUBSTEPS + CSG_DRAW_SUBSTEPS / 2;
+        int64_t at_y = y * CSG_DRAW_SUBSTEPS + CSG_DRAW_SUBSTEPS / 2;
+        int64_t w[3];
+        for (int i = 0; i < 3; i++)
+            w[i] = e[i].a * at_x + e[i].b * at_y + e[i].c;
+        size_t sample = (size_t)((y - in->y0) * in->width + range[0] - in->x0);
+        for (int64_t x = range[0]; x < range[2]; x++, sample++) {
+            if ((w[0] | w[1] | w[2]) >= 0) {
+                float nearness = (float)(((double)w[0] * (double)v[0].nearness +
+                                          (double)w[1] * (double)v[1].nearness +
+                                          (double)w[2] * (double)v[2].nearness) *
+                                         scale);
+                if (nearness > room->nearness[sample]) {
+                    room->nearness[sample] = nearness;
+                    room->triangle[sample] = id;
+                }
+            }
+            for (int i = 0; i < 3; i++)
+                w[i] += e[i].a * CSG_DRAW_SUBSTEPS;
+        }
+    }
+}
+
+static void fill_triangle(const csg_draw *draw, csg_draw_room *room, const area *in,
+                          uint32_t triangle)
+{
+    csg_draw_vertex v[2][3];
+    int count = csg_draw_corners(draw, triangle, v);
+    for (int part = 0; part < count; part++) {
+        csg_draw_vertex *c = v[part];
+        int64_t turn = ((int64_t)c[1].x - c[0].x) * ((int64_t)c[2].y - c[0].y) -
+                       ((int64_t)c[1].y - c[0].y) * ((int64_t)c[2].x - c[0].x);
+        if (turn < 0) {
+            csg_draw_vertex other = c[1];
+            c[1] = c[2];
+            c[2] = other;
+        }
+        if (turn != 0)
+            fill(room, in, c, triangle + 1);
+    }
+}
+
+/* ---- its light ------------------------------------------------------------------------------- */
+
+/* Where a ray meets the triangle's plane: shares of the corners, held to the triangle. */
+static void shares_of(const csg_vec3 corner[3], csg_vec3 origin, csg_vec3 direction,
+                      double share[3])
+{
+    csg_vec3 u = csg_vec3_sub(corner[1], corner[0]), v = csg_vec3_sub(corner[2], corner[0]);
+    csg_vec3 p = csg_vec3_cross(direction, v), s = csg_vec3_sub(origin, corner[0]);
+    csg_vec3 q = csg_vec3_cross(s, u);
+    double determinant = csg_vec3_dot(u, p);
+    share[1] = csg_vec3_dot(s, p) / determinant;
+    share[2] = csg_vec3_dot(direction, q) / determinant;
+    if (!isfinite(share[1] + share[2]))
+        share[1] = share[2] = 1.0 / 3;
+    share[1] = fmin(fmax(share[1], 0), 1);
+    share[2] = fmin(fmax(share[2], 0), 1 - share[1]);
+    share[0] = 1 - share[1] - share[2];
+}
+
+static csg_vec3 normal_of(const csg_draw *draw, const uint32_t index[3], const csg_vec3 corner[3],
+                          const double share[3])
+{
+    const float *normals = draw->mesh->normals;
+    csg_vec3 flat = csg_vec3_normalize(
+        csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0])));
+    if (!normals || draw->picture->options->flat)
+        return flat;
+    csg_vec3 sum = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        const float *n = normals + 3 * (size_t)index[i];
+        sum = csg_vec3_add(
+            sum, csg_vec3_scale(csg_vec3_make((double)n[0], (double)n[1], (double)n[2]), share[i]));
+    }
+    sum = csg_vec3_normalize(sum);
+    return csg_vec3_norm(sum) > 0.5 && csg_vec3_dot(sum, flat) > 0 ? sum : flat;
+}
+
+static void color_of(const csg_draw *draw, const uint32_t index[3], const double share[3],
+                     csg_surface *surface)
+{
+    const uint8_t *colors = draw->mesh->colors;
+    const uint16_t *materials = draw->mesh->materials;
+    float weights[3] = {(float)share[0], (float)share[1], (float)share[2]};
+    for (int c = 0; c < 3; c++) {
+        surface->color[c] = colors ? 0 : c < 2 ? 0.76f : 0.74f;
+        for (int i = 0; colors && i < 3; i++)
+            surface->color[c] +=
+                weights[i] * (float)colors[4 * (size_t)index[i] + (size_t)c] / 255.0f;
+    }
+    surface->metallic = materials ? 0 : 0.0f;
+    surface->roughness = materials ? 0 : 0.6f;
+    for (int i = 0; materials && i < 3; i++) {
+        surface->metallic += weights[i] * (float)materials[2 * (size_t)index[i]] / 10000.0f;
+        surface->roughness += weights[i] * (float)materials[2 * (size_t)index[i] + 1] / 10000.0f;
+    }
+}
+
+/* How much of the sample an edge's line covers; lines fade where triangles are smaller than they.
+ */
+static float wire_at(const csg_draw *draw, const csg_vec3 corner[3], const double share[3])
+{
+    csg_vec3 at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = csg_view_project(&draw->picture->view, corner[i]);
+    double area2 =
+        fabs((at[1].x - at[0].x) * (at[2].y - at[0].y) - (at[1].y - at[0].y) * (at[2].x - at[0].x));
+    double nearest = INFINITY, smallest = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        const csg_vec3 *a = &at[(i + 1) % 3], *b = &at[(i + 2) % 3];
+        double dx = b->x - a->x, dy = b->y - a->y;
+        double height = area2 / (sqrt(dx * dx + dy * dy) + 1e-9);
+        nearest = fmin(nearest, share[i] * height);
+        smallest = fmin(smallest, height);
+    }
+    double cover = fmin(fmax(1.0 - nearest, 0), 1), fade = fmin(smallest / 5, 1);
+    return (float)(cover * fade);
+}
+
+/* Light of a triangle through a point of the picture. */
+static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, double y,
+                           float light[3])
+{
+    const csg_picture *picture = draw->picture;
+    const uint32_t *index = draw->mesh->indices + 3 * (size_t)triangle;
+    csg_vec3 corner[3], origin, direction;
+    double share[3];
+    for (int i = 0; i < 3; i++)
+        corner[i] = csg_draw_position(draw, index[i]);
+    csg_view_ray(&picture->view, x, y, &origin, &direction);
+    shares_of(corner, origin, direction, share);
+    csg_vec3 normal = normal_of(draw, index, corner, share);
+    csg_surface surface = {.open = 1, .lit = 1};
+    color_of(draw, index, share, &surface);
+    csg_vec3 flat =
+        csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0]));
+    if (csg_vec3_dot(flat, direction) > 0) { /* the inner side, reddish: a hole, or turned about */
+        normal = csg_vec3_scale(normal, -1);
+        const float inner[3] = {0.62f, 0.18f, 0.14f};
+        for (int c = 0; c < 3; c++)
+            surface.color[c] = 0.35f * surface.color[c] + 0.65f * inner[c];
+    }
+    const double n[3] = {normal.x, normal.y, normal.z};
+    const double d[3] = {direction.x, direction.y, direction.z};
+    for (int axis = 0; axis < 3; axis++) {
+        surface.normal[axis] = (float)n[axis];
+        surface.to_eye[axis] = (float)-d[axis];
+    }
+    csg_shade(&picture->lights, picture->curve, &surface, light);
+    float wire = picture->options->wireframe ? 0.85f * wire_at(draw, corner, share) : 0;
+    for (int c = 0; c < 3; c++)
+        light[c] *= 1 - wire;
+}
+
+/* ---- the tile -------------------------------------------------------------------------------- */
+
+/* Light of a pixel: each triangle once, at the middle of its samples there. */
+static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const area *in, uint32_t x,
+                       uint32_t y)
+{
+    enum { MOST = 64 };
+    uint32_t n = draw->samples, ids[MOST], known = 0, covered = 0;
+    uint32_t counts[MOST], sum_x[MOST], sum_y[MOST];
+    float total[3] = {0, 0, 0};
+    for (uint32_t s = 0; s < n * n; s++) {
+        size_t at = (size_t)((y * n + s / n - in->y0) * in->width + x * n + s % n - in->x0);
+        uint32_t id = room->triangle[at], k = 0;
+        if (!id)
+            continue;
+        covered++;
+        while (k < known && ids[k] != id)
+            k++;
+        if (k == known) {
+            ids[known++] = id;
+            counts[k] = sum_x[k] = sum_y[k] = 0;
+        }
+        counts[k]++;
+        sum_x[k] += s % n;
+        sum_y[k] += s / n;
+    }
+    for (uint32_t k = 0; k < known; k++) {
+        float light[3];
+        double count = counts[k];
+        shade_triangle(draw, ids[k] - 1, x + (sum_x[k] / count + 0.5) / n,
+                       y + (sum_y[k] / count + 0.5) / n, light);
+        for (int c = 0; c < 3; c++)
+            total[c] += light[c] * (float)count;
+    }
+    csg_shade_pixel(draw->picture->curve, total, covered, n * n, draw->picture->options->background,
+                    csg_picture_pixel(draw->picture, x, y));
+}
+
+void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
+{
+    const csgm_image *image = draw->picture->image;
+    int64_t side = (int64_t)CSG_DRAW_TILE * draw->samples;
+    area in = {column * side, row * side, side, side};
+    for (int64_t i = 0; i < side * side; i++) {
+        room->nearness[i] = -INFINITY;
+        room->triangle[i] = 0;
+    }
+    size_t tile = (size_t)row * draw->columns + column;
+    for (uint64_t i = draw->tile_first[tile]; i < draw->tile_first[tile + 1]; i++)
+        fill_triangle(draw, room, &in, draw->tile_triangles[i]);
+    uint32_t x0 = column * CSG_DRAW_TILE, y0 = row * CSG_DRAW_TILE;
+    for (uint32_t y = y0; y < y0 + CSG_DRAW_TILE && y < image->height; y++)
+        for (uint32_t x = x0; x < x0 + CSG_DRAW_TILE && x < image->width; x++)
+            draw_pixel(draw, room, &in, x, y);
+}

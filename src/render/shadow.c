@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ * Soft shadows: from each point that was hit a ray goes to the key light through the cells of wide
+ * tapes. How near the solid comes to it, against the width that the light has there, is the share
+ * that arrives (Quilez 2010). Wide tapes know the field up to their reach, so that is the largest
+ * width.
+ */
+#include "render/tracer.h"
+
+enum { STACK_MOST = 8 * 24, MOST_STEPS = 128 };
+
+static const float LIGHT_SLOPE = 0.22f; /* the light's width over its distance */
+
+typedef struct bounds {
+    float min[3], max[3]; /* across the light, across the light, towards it */
+} bounds;
+
+static float along(const float axis[3], float x, float y, float z)
+{
+    return axis[0] * x + axis[1] * y + axis[2] * z;
+}
+
+static const float *axis_of(const csg_tracer *tracer, int axis)
+{
+    return axis < 2 ? tracer->light_across[axis] : tracer->light;
+}
+
+/* Rays towards the light take the place of the march's `begin`...: x, y, z are their origins. */
+static void begin_rays(const csg_tracer *tracer, csg_trace_room *room, csg_march *m, bounds *all)
+{
+    csg_rays *rays = &room->rays;
+    const float *light = tracer->light;
+    *all = (bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    m->count = 0;
+    for (uint32_t i = 0; i < rays->count; i++) {
+        if (!(rays->t[i] < INFINITY))
+            continue;
+        rays->lit[i] = 0;
+        if (!(along(light, rays->nx[i], rays->ny[i], rays->nz[i]) > 0))
+            continue;
+        rays->lit[i] = 1;
+        float lift = 2 * (tracer->near_tolerance + tracer->tolerance_slope * rays->t[i]) +
+                     0.01f * tracer->cells->reach;
+        uint32_t k = m->count++;
+        m->ray[k] = (uint16_t)i;
+        m->channel[0][k] = rays->ox[i] + rays->t[i] * rays->dx[i] + lift * rays->nx[i];
+        m->channel[1][k] = rays->oy[i] + rays->t[i] * rays->dy[i] + lift * rays->ny[i];
+        m->channel[2][k] = rays->oz[i] + rays->t[i] * rays->dz[i] + lift * rays->nz[i];
+        for (int axis = 0; axis < 3; axis++) {
+            float at =
+                along(axis_of(tracer, axis), m->channel[0][k], m->channel[1][k], m->channel[2][k]);
+            all->min[axis] = fminf(all->min[axis], at);
+            all->max[axis] = fmaxf(all->max[axis], at);
+        }
+    }
+    room->counts.shadow_rays += m->count;
+}
+
+/* Whether any ray of the batch may come to the cell. */
+static bool may_meet(const csg_tracer *tracer, const csg_ray_cell *cell, const bounds *all)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const float *a = axis_of(tracer, axis);
+        float middle = along(a, cell->center[0], cell->center[1], cell->center[2]);
+        float reach = 1.001f * cell->half * (fabsf(a[0]) + fabsf(a[1]) + fabsf(a[2]));
+        if (middle + reach < all->min[axis] || (axis < 2 && middle - reach > all->max[axis]))
+            return false;
+    }
+    return true;
+}
+
+/* One packed ray in a cell. */
+typedef struct lane {
+    uint16_t from; /* in the origins */
+    float t, end;
+} lane;
+
+static uint32_t enter(const csg_tracer *tracer, const csg_ray_cell *cell, const csg_rays *rays,
+                      const csg_march *m, lane *lanes)
+{
+    uint32_t count = 0;
+    float inverse[3];
+    for (int axis = 0; axis < 3; axis++) {
+        float d = tracer->light[axis];
+        inverse[axis] = fabsf(d) < 1e-18f ? 1e18f : 1 / d;
+    }
+    for (uint32_t k = 0; k < m->count; k++) {
+        const float o[3] = {m->channel[0][k], m->channel[1][k], m->channel[2][k]};
+        lane *l = &lanes[count];
+        if (rays->lit[m->ray[k]] > 0 &&
+            csg_ray_in_cube(o, inverse, cell->center, cell->half, &l->t, &l->end)) {
+            l->from = (uint16_t)k;
+            count++;
+        }
+    }
+    return count;
+}
+
+static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room,
+                  csg_march *m, lane *lanes, uint32_t count)
+{
+    const float *light = tracer->light, reach = tracer->cells->reach;
+    float *lit = room->rays.lit;
+    uint64_t points = 0, primitives = 0;
+    for (uint32_t i = 0; i < tape->count; i++)
+        primitives += csg_op_is_leaf(tape->nodes[i].op);
+    for (int step = 0; count && step < MOST_STEPS; step++) {
+        for (uint32_t k = 0; k < count; k++) {
+            uint32_t o = lanes[k].from;
+            m->x[k] = m->channel[0][o] + lanes[k].t * light[0];
+            m->y[k] = m->channel[1][o] + lanes[k].t * light[1];
+            m->z[k] = m->channel[2][o] + lanes[k].t * light[2];
+        }
+        for (uint32_t k = count; k % CSG_LANES; k++)
+            m->x[k] = m->y[k] = m->z[k] = 0;
+        tracer->kernel->values(tape, m->x, m->y, m->z, count, m->f, room->scratch,
+                               room->scratch_floats);
+        points += count;
+        uint32_t kept = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            float height = -m->f[k] * tracer->inverse_lipschitz, t = lanes[k].t;
+            float width = LIGHT_SLOPE * t + 0.01f * reach;
+            float share = height / (width < reach ? width : reach);
+            float *here = &lit[m->ray[lanes[k].from]];
+            *here = share < *here ? (share > 0 ? share : 0) : *here;
+            /* half a sphere: whole ones would miss where the ratio is least, in streaks */
+            lanes[k].t = t + (height > 0.08f * reach ? 0.5f * height : 0.04f * reach);
+            if (*here > 0 && lanes[k].t < lanes[k].end)
+                lanes[kept++] = lanes[k];
+        }
+        count = kept;
+    }
+    room->counts.point_evaluations += points;
+    room->counts.primitive_evaluations += points * primitives;
+}
+
+void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room)
+{
+    const csg_ray_cells *cells = tracer->cells;
+    csg_march *m = &room->march;
+    lane lanes[CSG_RAYS_MOST];
+    bounds all;
+    uint32_t stack[STACK_MOST], top = 0;
+    begin_rays(tracer, room, m, &all);
+    if (m->count)
+        stack[top++] = 0;
+    while (top) {
+        const csg_ray_cell *cell = &cells->cells[stack[--top]];
+        if (!may_meet(tracer, cell, &all))
+            continue;
+        if (cell == &cells->cells[cell->wide] && cell->wide) {
+            uint32_t count = enter(tracer, cell, &room->rays, m, lanes);
+            csg_tape tape = tracer->field->tape;
+            tape.nodes = cell->wide_nodes;
+            tape.count = cell->wide_count;
+            if (count)
+                march(tracer, &tape, room, m, lanes, count);
+            continue;
+        }
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            if (cell->child[o])
+                stack[top++] = cell->child[o];
+    }
+    for (uint32_t k = 0; k < m->count; k++) {
+        float *lit = &room->rays.lit[m->ray[k]];
+        *lit = *lit * *lit * (3 - 2 * *lit);
+    }
+}

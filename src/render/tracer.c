@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT
+ * Primary rays; see tracer.h. Over-relaxed sphere tracing (Keinert et al. 2014): steps are 1.6
+ * times as long as the unbounding sphere allows, and taken back where the spheres of two steps do
+ * not touch. A step never leaves the cell, whose tape is of no use outside.
+ */
+#include "render/tracer.h"
+
+enum {
+    MOST_STEPS = 512, /* in one cell; each is at least the tolerance, so that few come near it */
+    STACK_MOST = 8 * 24,
+    OCCLUSION_SAMPLES = 5
+};
+
+static const float RELAXATION = 1.6f;
+
+/* Directions parallel to a face: far away but finite, so that nothing becomes NaN. */
+static float inverse_of(float d)
+{
+    return fabsf(d) < 1e-18f ? (d < 0 ? -1e18f : 1e18f) : 1 / d;
+}
+
+void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y)
+{
+    csg_vec3 origin, direction;
+    csg_view_ray(&tracer->view, x, y, &origin, &direction);
+    rays->px[ray] = (float)x;
+    rays->py[ray] = (float)y;
+    rays->ox[ray] = (float)origin.x;
+    rays->oy[ray] = (float)origin.y;
+    rays->oz[ray] = (float)origin.z;
+    rays->dx[ray] = (float)direction.x;
+    rays->dy[ray] = (float)direction.y;
+    rays->dz[ray] = (float)direction.z;
+    rays->ix[ray] = inverse_of(rays->dx[ray]);
+    rays->iy[ray] = inverse_of(rays->dy[ray]);
+    rays->iz[ray] = inverse_of(rays->dz[ray]);
+}
+
+/* ---- cells in the picture ------------------------------------------------------------------- */
+
+static csg_pixel_rectangle rectangle_of(const csg_view *view, const csg_ray_cell *cell)
+{
+    csg_pixel_rectangle r = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const float margin = 0.25f; /* of a pixel: rounding, and the overlap of cells */
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] = (double)cell->center[axis] +
+                      (corner >> axis & 1 ? 1.001 : -1.001) * (double)cell->half;
+        csg_vec3 at = csg_view_project(view, csg_vec3_make(p[0], p[1], p[2]));
+        if (!view->orthographic && at.z <= 1e-3 * (double)cell->half)
+            return (csg_pixel_rectangle){-INFINITY, -INFINITY, INFINITY, INFINITY};
+        r.min_x = fminf(r.min_x, (float)at.x - margin);
+        r.min_y = fminf(r.min_y, (float)at.y - margin);
+        r.max_x = fmaxf(r.max_x, (float)at.x + margin);
+        r.max_y = fmaxf(r.max_y, (float)at.y + margin);
+    }
+    return r;
+}
+
+void csg_tracer_find_rectangles(const csg_tracer *tracer, csg_pixel_rectangle *out)
+{
+    for (size_t i = 0; i < tracer->cells->count; i++)
+        out[i] = rectangle_of(&tracer->view, &tracer->cells->cells[i]);
+}
+
+static csg_pixel_rectangle rectangle_of_rays(const csg_rays *rays)
+{
+    csg_pixel_rectangle r = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < rays->count; i++) {
+        r.min_x = fminf(r.min_x, rays->px[i]);
+        r.min_y = fminf(r.min_y, rays->py[i]);
+        r.max_x = fmaxf(r.max_x, rays->px[i]);
+        r.max_y = fmaxf(r.max_y, rays->py[i]);
+    }
+    return r;
+}
+
+static bool overlap(const csg_pixel_rectangle *a, const csg_pixel_rectangle *b)
+{
+    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y &&
+           b->min_y <= a->max_y;
+}
+
+/* ---- one cell -------------------------------------------------------------------------------- */
+
+static csg_tape tape_of(const csg_tracer *tracer, const csg_tape_node *nodes, uint32_t count)
+{
+    csg_tape tape = tracer->field->tape;
+    tape.nodes = nodes;
+    tape.count = count;
+    return tape;
+}
+
+static uint32_t primitives_in(const csg_tape *tape)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tape->count; i++)
+        count += csg_op_is_leaf(tape->nodes[i].op);
+    return count;
+}
+
+static void enter(const csg_ray_cell *cell, const csg_pixel_rectangle *in, csg_trace_room *room)
+{
+    const csg_rays *rays = &room->rays;
+    csg_march *m = &room->march;
+    csg_march_clear(m);
+    for (uint32_t i = 0; i < rays->count; i++) {
+        if (rays->t[i] < INFINITY || rays->px[i] < in->min_x || rays->px[i] > in->max_x ||
+            rays->py[i] < in->min_y || rays->py[i] > in->max_y)
+            continue;
+        const float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]};
+        const float inverse[3] = {rays->ix[i], rays->iy[i], rays->iz[i]};
+        uint32_t k = m->count;
+        if (!csg_ray_in_cube(o, inverse, cell->center, cell->half, &m->begin[k], &m->end[k]))
+            continue;
+        m->ray[k] = (uint16_t)i;
+        m->t[k] = m->begin[k];
+        m->radius[k] = m->step[k] = 0;
+        m->count++;
+    }
+}
+
+static void place_points(const csg_rays *rays, csg_march *m)
+{
+    for (uint32_t k = 0; k < m->count; k++) {
+        uint32_t i = m->ray[k];
+        m->x[k] = rays->ox[i] + m->t[k] * rays->dx[i];
+        m->y[k] = rays->oy[i] + m->t[k] * rays->dy[i];
+        m->z[k] = rays->oz[i] + m->t[k] * rays->dz[i];
+    }
+    for (uint32_t k = m->count; k % CSG_LANES; k++)
+        m->x[k] = m->y[k] = m->z[k] = 0;
+}
+
+/* Takes ray k one step further. False: it is through, or has hit (then *hit). */
+static bool advance(const csg_tracer *tracer, csg_march *m, uint32_t k, bool *hit)
+{
+    float t = m->t[k], radius = fabsf(m->f[k]) * tracer->inverse_lipschitz;
+    float tolerance = tracer->near_tolerance + tracer->tolerance_slope * t;
+    *hit = false;
+    if (m->step[k] > m->radius[k] && radius + m->radius[k] < m->step[k]) {
+        m->t[k] = t - (m->step[k] - m->radius[k]);
+        m->step[k] = m->radius[k] = 0; /* and no relaxed step before the next sphere is known */
+        return true;
+    }
+    if (m->f[k] >= 0 || radius < tolerance) {
+        float at = m->f[k] >= 0 ? t - radius : t + radius;
+        m->t[k] = at > m->begin[k] ? at : m->begin[k];
+        *hit = true;
+        return false;
+    }
+    if (t + radius >= m->end[k])
+        return false;
+    float next = t + RELAXATION * radius;
+    next = next < m->end[k] ? next : m->end[k];
+    m->step[k] = next - t;
+    m->radius[k] = radius;
+    m->t[k] = next;
+    return true;
+}
+
+static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
+{
+    csg_march *m = &room->march;
+    csg_rays *rays = &room->rays;
+    uint64_t points = 0;
+    for (int step = 0; m->count && step < MOST_STEPS; step++) {
+        place_points(rays, m);
+        tracer->kernel->values(tape, m->x, m->y, m->z, m->count, m->f, room->scratch,
+                               room->scratch_floats);
+        points += m->count;
+        uint32_t kept = 0;
+        for (uint32_t k = 0; k < m->count; k++) {
+            bool hit;
+            if (!advance(tracer, m, k, &hit)) {
+                if (!hit)
+                    continue;
+                rays->t[m->ray[k]] = m->t[k];
+                m->hit[m->hit_count++] = m->ray[k];
+                continue;
+            }
+            m->ray[kept] = m->ray[k];
+            m->t[kept] = m->t[k];
+            m->begin[kept] = m->begin[k];
+            m->end[kept] = m->end[k];
+            m->radius[kept] = m->radius[k];
+            m->step[kept] = m->step[k];
+            kept++;
+        }
+        m->count = kept;
+    }
+    room->counts.point_evaluations += points;
+    room->counts.primitive_evaluations += points * primitives_in(tape);
+}
+
+/* ---- what is there --------------------------------------------------------------------------- */
+
+/* The march's points become those that were hit in the cell. */
+static void place_hits(const csg_rays *rays, csg_march *m)
+{
+    m->count = m->hit_count;
+    for (uint32_t k = 0; k < m->count; k++) {
+        m->ray[k] = m->hit[k];
+        m->t[k] = rays->t[m->hit[k]];
+    }
+    place_points(rays, m);
+}
+
+static void find_normals(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
+{
+    csg_march *m = &room->march;
+    csg_rays *rays = &room->rays;
+    tracer->kernel->gradients(tape, m->x, m->y, m->z, m->count, m->channel[0], m->channel[1],
+                              m->channel[2], room->scratch, room->scratch_floats);
+    for (uint32_t k = 0; k < m->count; k++) {
+        uint32_t i = m->ray[k];
+        float x = m->channel[0][k], y = m->channel[1][k], z = m->channel[2][k];
+        float length = sqrtf(x * x + y * y + z * z);
+        bool is_known = length > 0 && length < INFINITY; /* else: as if it faced the eye */
+        rays->nx[i] = is_known ? -x / length : -rays->dx[i];
+        rays->ny[i] = is_known ? -y / length : -rays->dy[i];
+        rays->nz[i] = is_known ? -z / length : -rays->dz[i];
+        m->radius[k] = is_known ? length : 1; /* the field's slope, for occlusion */
+    }
+}
+
+static void find_colors(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
+{
+    csg_march *m = &room->march;
+    csg_rays *rays = &room->rays;
+    float *const out[4] = {m->channel[0], m->channel[1], m->channel[2], m->channel[3]};
+    csg_tape shaded = *tape;
+    shaded.colors = tracer->field->materials;
+    if (tracer->colors)
+        tracer->kernel->colors(tape, m->x, m->y, m->z, m->count, out, room->scratch,
+                               room->scratch_floats);
+    for (uint32_t k = 0; k < m->count; k++) {
+        uint32_t i = m->ray[k];
+        rays->r[i] = tracer->colors ? out[0][k] : 0.76f;
+        rays->g[i] = tracer->colors ? out[1][k] : 0.76f;
+        rays->b[i] = tracer->colors ? out[2][k] : 0.74f;
+    }
+    if (shaded.colors)
+        tracer->kernel->colors(&shaded, m->x, m->y, m->z, m->count, out, room->scratch,
+                               room->scratch_floats);
+    for (uint32_t k = 0; k < m->count; k++) {
+        uint32_t i = m->ray[k];
+        rays->metallic[i] = shaded.colors ? out[0][k] : csg_default_material.r;
+        rays->roughness[i] = shaded.colors ? out[1][k] : csg_default_material.g;
+    }
+}
+
+/* Along the normal the field falls as on a plane unless something is near: how much less it has
+ * fallen, at a few distances up to the reach of wide tapes. */
+static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
+{
+    static const float places[OCCLUSION_SAMPLES] = {0.1f, 0.25f, 0.45f, 0.7f, 0.98f};
+    static const float weights[OCCLUSION_SAMPLES] = {0.35f, 0.3f, 0.25f, 0.2f, 0.15f};
+    csg_march *m = &room->march;
+    csg_rays *rays = &room->rays;
+    for (uint32_t k = 0; k < m->count; k++)
+        m->step[k] = 0;
+    for (int s = 0; s < OCCLUSION_SAMPLES; s++) {
+        float height = places[s] * tracer->cells->reach;
+        for (uint32_t k = 0; k < m->count; k++) {
+            uint32_t i = m->ray[k];
+            m->channel[0][k] = m->x[k] + height * rays->nx[i];
+            m->channel[1][k] = m->y[k] + height * rays->ny[i];
+            m->channel[2][k] = m->z[k] + height * rays->nz[i];
+        }
+        for (uint32_t k = m->count; k % CSG_LANES; k++)
+            m->channel[0][k] = m->channel[1][k] = m->channel[2][k] = 0;
+        tracer->kernel->values(tape, m->channel[0], m->channel[1], m->channel[2], m->count, m->f,
+                               room->scratch, room->scratch_floats);
+        for (uint32_t k = 0; k < m->count; k++) {
+            float missing = 1 + m->f[k] / (m->radius[k] * height);
+            missing = missing > 0 ? missing : 0;
+            m->step[k] += weights[s] * (missing < 1 ? missing : 1);
+        }
+    }
+    for (uint32_t k = 0; k < m->count; k++)
+        rays->open[m->ray[k]] = m->step[k] < 1 ? 1 - m->step[k] : 0;
+    room->counts.point_evaluations += (uint64_t)m->count * OCCLUSION_SAMPLES;
+    room->counts.primitive_evaluations +=
+        (uint64_t)m->count * OCCLUSION_SAMPLES * primitives_in(tape);
+}
+
+static void look_at_hits(const csg_tracer *tracer, const csg_ray_cell *cell, const csg_tape *tape,
+                         csg_trace_room *room)
+{
+    csg_march *m = &room->march;
+    place_hits(&room->rays, m);
+    find_normals(tracer, tape, room);
+    if (tracer->occlusion) {
+        const csg_ray_cell *wide = &tracer->cells->cells[cell->wide];
+        csg_tape wide_tape = tape_of(tracer, wide->wide_nodes, wide->wide_count);
+        find_occlusion(tracer, &wide_tape, room);
+    }
+    find_colors(tracer, tape, room);
+    uint64_t looks = 1u + tracer->colors + (tracer->field->materials != NULL);
+    room->counts.hits += m->count;
+    room->counts.gradient_evaluations += m->count;
+    room->counts.primitive_evaluations += looks * m->count * primitives_in(tape);
+}
+
+static void trace_cell(const csg_tracer *tracer, uint32_t index, csg_trace_room *room)
+{
+    const csg_ray_cell *cell = &tracer->cells->cells[index];
+    enter(cell, &tracer->rectangles[index], room);
+    if (!room->march.count)
+        return;
+    csg_tape tape = tape_of(tracer, cell->near_nodes, cell->near_count);
+    march(tracer, &tape, room);
+    if (room->march.hit_count)
+        look_at_hits(tracer, cell, &tape, room);
+}
+
+/* ---- all cells, from the front to the back --------------------------------------------------- */
+
+/* The octant that rays meet first. */
+static unsigned nearest_octant(const csg_view *view, const csg_ray_cell *cell)
+{
+    const double eye[3] = {view->eye.x, view->eye.y, view->eye.z};
+    const double forward[3] = {view->forward.x, view->forward.y, view->forward.z};
+    unsigned octant = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        bool upper =
+            view->orthographic ? forward[axis] < 0 : eye[axis] > (double)cell->center[axis];
+        octant |= (unsigned)upper << axis;
+    }
+    return octant;
+}
+
+void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room)
+{
+    csg_rays *rays = &room->rays;
+    const csg_ray_cell *cells = tracer->cells->cells;
+    csg_pixel_rectangle all = rectangle_of_rays(rays);
+    uint32_t stack[STACK_MOST], top = 0;
+    uint64_t hits = room->counts.hits;
+    for (uint32_t i = 0; i < rays->count; i++) {
+        rays->t[i] = INFINITY;
+        rays->open[i] = rays->lit[i] = 1;
+    }
+    room->counts.rays += rays->count;
+    stack[top++] = 0;
+    while (top && room->counts.hits - hits < rays->count) {
+        uint32_t index = stack[--top];
+        const csg_ray_cell *cell = &cells[index];
+        if (!cell->has_surface || !overlap(&tracer->rectangles[index], &all))
+            continue;
+        if (cell->is_leaf) {
+            trace_cell(tracer, index, room);
+            continue;
+        }
+        /* numbers of octants with their bits turned so that 0 is the nearest: any octant that
+         * hides another has the smaller one */
+        unsigned nearest = nearest_octant(&tracer->view, cell);
+        for (unsigned k = CSG_OCTANTS; k-- > 0;)
+            if (cell->child[k ^ nearest])
+                stack[top++] = cell->child[k ^ nearest];
+    }
+    if (tracer->shadows)
+        csg_tracer_shade_light(tracer, room);
+}

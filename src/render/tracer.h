@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ * Sphere tracing of a batch of rays through the octree of cells.h, cell by cell: all rays of the
+ * batch that enter a cell march through it together, so that the kernels run its short tape over
+ * hundreds of points at once. What a ray finds depends on itself and the cells alone, not on the
+ * batch. Positions are floats relative to the field's centre.
+ */
+#ifndef CSG_RENDER_TRACER_H
+#define CSG_RENDER_TRACER_H
+
+#include "render/camera.h"
+#include "render/cells.h"
+
+enum { CSG_RAYS_MOST = 1296 /* a multiple of CSG_LANES; 36^2 */ };
+
+/* Rays and what they found. t: along the unit direction; INFINITY = nothing. The rest is set where
+ * something was hit. */
+typedef struct csg_rays {
+    uint32_t count;
+    float px[CSG_RAYS_MOST], py[CSG_RAYS_MOST]; /* pixel coordinates */
+    float ox[CSG_RAYS_MOST], oy[CSG_RAYS_MOST], oz[CSG_RAYS_MOST];
+    float dx[CSG_RAYS_MOST], dy[CSG_RAYS_MOST], dz[CSG_RAYS_MOST];
+    float ix[CSG_RAYS_MOST], iy[CSG_RAYS_MOST], iz[CSG_RAYS_MOST]; /* 1 / d */
+    float t[CSG_RAYS_MOST];
+    float nx[CSG_RAYS_MOST], ny[CSG_RAYS_MOST], nz[CSG_RAYS_MOST]; /* unit, outward */
+    float r[CSG_RAYS_MOST], g[CSG_RAYS_MOST], b[CSG_RAYS_MOST];    /* sRGB 0..1, of the scene */
+    float metallic[CSG_RAYS_MOST], roughness[CSG_RAYS_MOST];
+    float open[CSG_RAYS_MOST]; /* 1 - ambient occlusion */
+    float lit[CSG_RAYS_MOST];  /* share of the key light that arrives */
+} csg_rays;
+
+/* Those of a batch that are in one cell, packed. */
+typedef struct csg_march {
+    uint32_t count;
+    uint16_t ray[CSG_RAYS_MOST];
+    float x[CSG_RAYS_MOST], y[CSG_RAYS_MOST], z[CSG_RAYS_MOST], f[CSG_RAYS_MOST];
+    float t[CSG_RAYS_MOST], begin[CSG_RAYS_MOST], end[CSG_RAYS_MOST];
+    float radius[CSG_RAYS_MOST], step[CSG_RAYS_MOST]; /* of the last step */
+    float channel[4][CSG_RAYS_MOST];
+    uint32_t hit_count;
+    uint16_t hit[CSG_RAYS_MOST];
+} csg_march;
+
+typedef struct csg_trace_counts {
+    uint64_t rays, shadow_rays, hits;
+    uint64_t point_evaluations, gradient_evaluations, primitive_evaluations;
+} csg_trace_counts;
+
+/* One thread's room. */
+typedef struct csg_trace_room {
+    csg_rays rays;
+    csg_march march;
+    float *scratch;
+    size_t scratch_floats;
+    csg_trace_counts counts;
+} csg_trace_room;
+
+typedef struct csg_pixel_rectangle {
+    float min_x, min_y, max_x, max_y;
+} csg_pixel_rectangle;
+
+typedef struct csg_tracer {
+    const csg_kernel *kernel;
+    const csgm_field *field;
+    const csg_ray_cells *cells;
+    csg_view view;                         /* relative to the field's centre */
+    const csg_pixel_rectangle *rectangles; /* where each cell is in the picture */
+    float light[3];                        /* unit, towards the key light */
+    float light_across[2][3];              /* at right angles to it and each other */
+    float near_tolerance, tolerance_slope; /* |f| / lambda of a hit: near + slope * t */
+    float inverse_lipschitz;
+    bool occlusion, shadows, colors;
+} csg_tracer;
+
+/* Where each of the tracer's cells is in the picture; cells->count of them. */
+void csg_tracer_find_rectangles(const csg_tracer *tracer, csg_pixel_rectangle *out);
+
+/* Fills px, py, o, d and i of a ray of the view. */
+void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y);
+
+/* room->rays, aimed: fills the rest. */
+void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room);
+
+/* shadow.c: fills `lit` of what was hit. */
+void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room);
+
+/* The cell's rays, by where they enter and leave its cube: fills march from all rays of the batch
+ * that may come there. */
+static inline void csg_march_clear(csg_march *march)
+{
+    march->count = march->hit_count = 0;
+}
+
+/* [*begin, *end] of the ray in the cube; false: it misses. */
+static inline bool csg_ray_in_cube(const float o[3], const float inverse[3], const float center[3],
+                                   float half, float *begin, float *end)
+{
+    float first = 0, last = INFINITY;
+    half *= 1 + CSG_RAY_CELL_OVERLAP;
+    for (int axis = 0; axis < 3; axis++) {
+        float middle = (center[axis] - o[axis]) * inverse[axis];
+        float reach = half * (inverse[axis] < 0 ? -inverse[axis] : inverse[axis]);
+        first = first > middle - reach ? first : middle - reach;
+        last = last < middle + reach ? last : middle + reach;
+    }
+    *begin = first;
+    *end = last;
+    return first <= last;
+}
+
+#endif
