@@ -304,13 +304,29 @@ typedef struct csgm_monitor { /* all zero = nobody watches */
 
 typedef struct csgm_mesh csgm_mesh;
 
+typedef enum csgm_normals {
+    CSGM_NORMALS_NONE,
+    CSGM_NORMALS_VERTEX, /* one a vertex: the field's gradient, the mean of the sheets at a crease
+                          */
+    CSGM_NORMALS_CREASE  /* at creases and corners a vertex for each sheet of the surface, one after
+                            the other with bit-equal positions: welded by position the mesh is closed
+                          */
+} csgm_normals;
+
+typedef enum csgm_features {
+    CSGM_FEATURES_SHARP, /* creases, corners and tips of the solid are edges and vertices of the
+                            mesh (extended marching cubes, Kobbelt et al. 2001) */
+    CSGM_FEATURES_SMOOTH /* plain marching cubes: they are cut by up to a cell */
+} csgm_features;
+
 typedef struct csgm_mesh_options {
     uint32_t struct_size; /* set by csgm_mesh_options_default; do not touch */
     csgm_box bounds;      /* what to mesh, the solid is cut and capped there; empty (the default) =
                              the scene's own bounds */
     double cell_size;     /* edge of a marching-cubes cell; 0 = derive from resolution */
     uint32_t resolution;  /* cells along the longest side when cell_size is 0; default 128 */
-    bool normals;         /* vertex normals from the field's gradient; default true */
+    csgm_normals normals; /* default VERTEX */
+    csgm_features features; /* default SHARP */
     bool colors;          /* vertex colours where the scene has any; default true */
     bool prune;           /* default true; false gives the same mesh, slower (for checking) */
     csgm_monitor monitor;
@@ -330,6 +346,9 @@ typedef struct csgm_mesh_stats {
     uint64_t primitive_evaluations; /* primitives times points or cells, in all three */
     double mean_tape_length;        /* primitives and operators a sampled block evaluates */
     uint64_t memory_peak_bytes;
+    uint64_t feature_vertices; /* places on creases, corners and tips that are vertices */
+    uint64_t smooth_features;  /* polygons that a crease runs through without such a vertex: there
+                                  it is cut as by plain marching cubes */
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a
@@ -358,6 +377,8 @@ typedef struct csgm_mesh_view {
     const csgm_mesh_part *parts; /* part_count, all triangles in order; NULL = one without a name */
     uint64_t part_count;
     const uint16_t *materials; /* 2 * vertex_count: metallic and roughness times 10000, or NULL */
+    bool split; /* built with CSGM_NORMALS_CREASE. Formats other than OBJ, glTF and GLB join the
+                   vertices of one place again, with the mean of their normals */
 } csgm_mesh_view;
 
 CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);

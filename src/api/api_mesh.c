@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "io/format_table.h"
 #include "io/parts.h"
 #include "io/stream.h"
 #include "mesh/build.h"
@@ -20,7 +21,8 @@ csgm_mesh_options csgm_mesh_options_default(void)
     return (csgm_mesh_options){.struct_size = sizeof(csgm_mesh_options),
                                .bounds = csg_box_empty(),
                                .resolution = 128,
-                               .normals = true,
+                               .normals = CSGM_NORMALS_VERTEX,
+                               .features = CSGM_FEATURES_SHARP,
                                .colors = true,
                                .prune = true};
 }
@@ -94,6 +96,11 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats ignored;
     csg_mesh_counts made = {0};
+    csgm_mesh_options joined = *options;
+    if (options->normals == CSGM_NORMALS_CREASE &&
+        !csg_format_keeps_creases(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format))
+        joined.normals = CSGM_NORMALS_VERTEX;
+    options = &joined;
     bool streams =
         csg_mesh_can_stream(field, options) && csg_stream_is_possible(path, format, write_options);
     csgm_status status = (streams ? stream_file : build_and_write)(

@@ -20,6 +20,12 @@ typedef struct csg_format_row {
 /* NULL for AUTO and for what is no format. */
 const csg_format_row *csg_format_find(csgm_format format);
 
+/* Whether a crease may have a vertex for each of its sheets there (csgm_mesh_view.split). */
+static inline bool csg_format_keeps_creases(csgm_format format)
+{
+    return format == CSGM_FORMAT_OBJ || format == CSGM_FORMAT_GLB || format == CSGM_FORMAT_GLTF;
+}
+
 /* Reports that the build lacks `library`; returns CSGM_ERR_UNSUPPORTED. */
 csgm_status csg_format_no_library(csgm_context *context, const char *file, const char *library,
                                   const char *what);

@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/format_table.h"
 #include "io/parts.h"
+#include "mesh/weld.h"
 
 csgm_write_options csg_write_options_default(void)
 {
@@ -147,6 +148,23 @@ static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int f
     return status;
 }
 
+/* OBJ and glTF keep a vertex for each sheet at a crease, others join them. */
+static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                               const char *name, const csg_format_row *row,
+                               const csgm_write_options *options)
+{
+    if (!mesh->split || csg_format_keeps_creases(row->id))
+        return fill(context, mesh, fd, name, row, options);
+    csgm_mesh *joined;
+    csgm_status status = csg_weld_runs(context, mesh, &joined);
+    if (status)
+        return status;
+    csgm_mesh_view view = csg_mesh_view(joined);
+    status = fill(context, &view, fd, name, row, options);
+    csg_mesh_destroy(joined);
+    return status;
+}
+
 csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                             const char *name, csgm_format format, const csgm_write_options *options)
 {
@@ -154,7 +172,7 @@ csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, i
     const csg_format_row *row;
     options = options ? options : &defaults;
     csgm_status status = prepare(context, mesh, name, format, options, &row);
-    return status ? status : fill(context, mesh, fd, name, row, options);
+    return status ? status : fill_joined(context, mesh, fd, name, row, options);
 }
 
 csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
@@ -172,7 +190,7 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
         return status;
     file.sync = options->sync;
     file.only_if_changed = options->only_if_changed;
-    status = fill(context, mesh, file.fd, path, row, options);
+    status = fill_joined(context, mesh, file.fd, path, row, options);
     if (!status)
         return csg_file_commit(&file);
     csg_file_abandon(&file);

@@ -151,6 +151,8 @@ static void fill_stats(const csg_mesh_work *w, csgm_mesh_stats *stats)
         .interval_evaluations = octree.interval_evaluations,
         .primitive_evaluations = octree.primitive_evaluations,
         .memory_peak_bytes = atomic_load(&w->context->memory.peak_bytes),
+        .feature_vertices = w->features.count,
+        .smooth_features = w->features.smooth,
     };
     if (octree.sampled_blocks)
         stats->mean_tape_length = (double)octree.tape_nodes_sampled / (double)octree.sampled_blocks;
@@ -168,7 +170,11 @@ static csgm_status make_mesh(csg_mesh_work *w)
 {
     csg_cell_tables_make(&w->tables);
     csg_marching_places_make(&w->places, &w->tables);
-    csgm_status status = w->octree ? csg_mesh_count_slabs(w) : CSGM_OK;
+    csgm_status status = w->octree ? csg_mesh_create_workers(w) : CSGM_OK;
+    if (status == CSGM_OK && w->octree)
+        status = csg_mesh_count_slabs(w);
+    if (status == CSGM_OK)
+        status = csg_mesh_link_features(w);
     w->sampled_s = csg_clock_now_s();
     if (status == CSGM_OK)
         status = csg_mesh_begin_output(w);
@@ -193,6 +199,7 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
     if (status == CSGM_OK && stats)
         fill_stats(w, stats);
     csg_mesh_release_output(w);
+    csg_feature_store_release(&w->features);
     csg_mesh_release_slabs(w);
     csg_octree_destroy(w->octree);
     csg_field_destroy(w->clipped);

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/geometry.h"
+#include "mesh/weld.h"
 
 enum { INSERTION_SORT_MOST = 24 };
 
@@ -307,8 +308,8 @@ static void release_arrays(csg_memory *memory, inspection *in)
     csg_memory_release(memory, in->fans, in->mesh->vertex_count * sizeof *in->fans);
 }
 
-csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
-                             csgm_mesh_check *out)
+static csgm_status inspect_indexed(csgm_context *context, const csgm_mesh_view *mesh,
+                                   csgm_mesh_check *out)
 {
     if (mesh->triangle_count > UINT32_MAX / 3) {
         csg_diag_plain(&context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, NULL,
@@ -331,4 +332,46 @@ csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
     release_arrays(&context->memory, &in);
     *out = check;
     return CSGM_OK;
+}
+
+/* The same triangles with the first vertex of each place. */
+static csgm_status inspect_welded(csgm_context *context, const csgm_mesh_view *mesh,
+                                  csgm_mesh_check *out)
+{
+    csg_memory *memory = &context->memory;
+    uint32_t *to = NULL, *indices = NULL;
+    bool failed = true;
+    if (take(memory, &to, mesh->vertex_count, sizeof *to) &&
+        take(memory, &indices, 3 * mesh->triangle_count, sizeof *indices))
+        csg_weld_map(memory, mesh, mesh->split ? CSG_WELD_RUNS : CSG_WELD_ALL, to, &failed);
+    csgm_status status = failed ? csg_context_no_memory(context) : CSGM_OK;
+    if (status == CSGM_OK) {
+        csgm_mesh_view welded = *mesh;
+        for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
+            indices[i] =
+                mesh->indices[i] < mesh->vertex_count ? to[mesh->indices[i]] : mesh->indices[i];
+        welded.indices = indices;
+        status = inspect_indexed(context, &welded, out);
+    }
+    csg_memory_release(memory, to, (size_t)mesh->vertex_count * sizeof *to);
+    csg_memory_release(memory, indices, 3 * (size_t)mesh->triangle_count * sizeof *indices);
+    return status;
+}
+
+/* Files with a vertex for each normal are open along every crease until they are welded. */
+csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
+                             csgm_mesh_check *out)
+{
+    csgm_mesh_check check, welded;
+    csgm_status status = inspect_indexed(context, mesh, &check);
+    if (status == CSGM_OK && check.boundary_edges) {
+        status = inspect_welded(context, mesh, &welded);
+        if (status == CSGM_OK && welded.boundary_edges < check.boundary_edges) {
+            welded.unused_vertices = check.unused_vertices;
+            check = welded;
+        }
+    }
+    if (status == CSGM_OK)
+        *out = check;
+    return status;
 }

@@ -58,39 +58,16 @@ const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *c
     return NULL;
 }
 
-/* ---- cells -------------------------------------------------------------------------------------
- */
-
-/* The four rows of signs around a row of cells. */
-typedef struct rows {
-    unsigned r[4];  /* y + 2 z */
-    unsigned mixed; /* bit x: the corners of cell x do not all agree */
-} rows;
-
-static rows rows_of(const csg_block *block, int j, int k)
-{
-    rows s = {{block->inside[k][j], block->inside[k][j + 1], block->inside[k + 1][j],
-               block->inside[k + 1][j + 1]},
-              0};
-    unsigned any = s.r[0] | s.r[1] | s.r[2] | s.r[3], all = s.r[0] & s.r[1] & s.r[2] & s.r[3];
-    s.mixed = (any | any >> 1) & ~(all & all >> 1) & 0xFF;
-    return s;
-}
-
-static unsigned pattern_of(const rows *s, int i)
-{
-    return (s->r[0] >> i & 3) | (s->r[1] >> i & 3) << 2 | (s->r[2] >> i & 3) << 4 |
-           (s->r[3] >> i & 3) << 6;
-}
+/* ---- cells ----------------------------------------------------------------------------------- */
 
 uint32_t csg_marching_count(const csg_block *block, const csg_cell_tables *tables)
 {
     uint32_t count = 0;
     for (int k = 0; k < E; k++)
         for (int j = 0; j < E; j++) {
-            rows s = rows_of(block, j, k);
+            csg_cell_rows s = csg_cell_rows_of(block, j, k);
             for (unsigned rest = s.mixed; rest; rest &= rest - 1)
-                count += tables->count[pattern_of(&s, __builtin_ctz(rest))];
+                count += tables->count[csg_cell_pattern(&s, __builtin_ctz(rest))];
         }
     return count;
 }
@@ -162,10 +139,8 @@ static void collect_edges(const csg_block *block, const block_lines *lines, part
 static void write_positions(const csg_marching *m, const csg_edges *e, float *out)
 {
     for (uint32_t i = 0; i < e->count; i++) {
-        float *p = out + 3 * e->rank[i];
-        p[0] = (float)(m->shift.x + (double)e->x[i]);
-        p[1] = (float)(m->shift.y + (double)e->y[i]);
-        p[2] = (float)(m->shift.z + (double)e->z[i]);
+        const float at[3] = {e->x[i], e->y[i], e->z[i]};
+        csg_marching_shift(m, at, out + 3 * e->rank[i]);
     }
 }
 
@@ -208,13 +183,20 @@ static void write_materials(const csg_edges *e, float *const pair[2], uint16_t *
         }
 }
 
+void csg_marching_colors(const csg_marching *m, const csg_tape *tape, const csg_edges *e,
+                         float *const channels[4], uint8_t *out, float *scratch,
+                         size_t scratch_floats)
+{
+    m->kernel->colors(tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
+    write_colors(e, channels, out);
+}
+
 /* Metallic and roughness are mixed as colours are: as two channels of a tape's other paint box. A
  * field without any, beside others in one mesh, has the default. */
-static void make_materials(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
-                           uint16_t *out, float *const channels[4], float *scratch,
-                           size_t scratch_floats)
+void csg_marching_materials(const csg_marching *m, const csg_tape *tape, const csg_edges *e,
+                            float *const channels[4], uint16_t *out, float *scratch,
+                            size_t scratch_floats)
 {
-    const csg_edges *e = &room->edges;
     csg_tape shaded = *tape;
     shaded.colors = m->field->materials;
     if (shaded.colors) {
@@ -244,12 +226,10 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_m
                              channels[2], scratch, scratch_floats);
         write_normals(e, channels, out->normals);
     }
-    if (out->colors) {
-        m->kernel->colors(tape, e->x, e->y, e->z, e->count, channels, scratch, scratch_floats);
-        write_colors(e, channels, out->colors);
-    }
+    if (out->colors)
+        csg_marching_colors(m, tape, e, channels, out->colors, scratch, scratch_floats);
     if (out->materials)
-        make_materials(m, tape, room, out->materials, channels, scratch, scratch_floats);
+        csg_marching_materials(m, tape, e, channels, out->materials, scratch, scratch_floats);
     return evaluations;
 }
 
@@ -346,9 +326,9 @@ static unsigned needed_neighbours(const csg_block *block)
     return needed;
 }
 
-static void number_all_edges(const csg_marching *m, const csg_block *block,
-                             uint32_t vertex[3][CSG_BLOCK_POINTS])
+void csg_marching_number(const csg_marching *m, const csg_block *block, csg_marching_room *room)
 {
+    uint32_t(*vertex)[CSG_BLOCK_POINTS] = room->vertex;
     number_own_edges(block, vertex);
     unsigned needed = needed_neighbours(block);
     for (unsigned octant = 1; octant < 8; octant++) {
@@ -394,13 +374,13 @@ void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_m
 {
     const uint32_t *vertex = room->vertex[0];
     uint32_t *end = room->indices;
-    number_all_edges(m, block, room->vertex);
+    csg_marching_number(m, block, room);
     for (int k = 0; k < E; k++)
         for (int j = 0; j < E; j++) {
-            rows s = rows_of(block, j, k);
+            csg_cell_rows s = csg_cell_rows_of(block, j, k);
             for (unsigned rest = s.mixed; rest; rest &= rest - 1) {
                 int i = __builtin_ctz(rest);
-                unsigned pattern = pattern_of(&s, i);
+                unsigned pattern = csg_cell_pattern(&s, i);
                 end = put_cell(end, vertex + (k * N + j) * N + i, m->places->place[pattern],
                                3 * m->tables->count[pattern]);
             }
@@ -450,22 +430,39 @@ static void collect_all_edges(const csg_block *block, const block_lines *lines, 
     e->count = n;
 }
 
-static uint64_t find_corners(const csg_marching *m, const csg_block *block, csg_marching_room *room,
-                             float *scratch, size_t scratch_floats)
+uint64_t csg_marching_roots(const csg_marching *m, const csg_block *block, csg_edges *edges,
+                            csg_slots *slots, float *scratch, size_t scratch_floats)
 {
     csg_tape tape = m->field->tape;
     block_lines lines = lines_of(m->lattice, block);
     uint64_t evaluations = 0;
+    slots->count = 0;
     for (unsigned octant = 0; octant < (block->parts ? CSG_OCTANTS : 1u); octant++) {
         const csg_block_part *part = block->parts ? &block->parts[octant] : NULL;
         if (part && part->state != CSG_CELL_SURFACE)
             continue;
         tape.nodes = part ? part->nodes : block->nodes;
         tape.count = part ? part->node_count : block->node_count;
-        collect_all_edges(block, &lines, part != NULL, octant, &room->edges);
-        evaluations += m->kernel->roots(&tape, &room->edges, m->noise, scratch, scratch_floats);
-        write_positions(m, &room->edges, room->corner[0]);
+        collect_all_edges(block, &lines, part != NULL, octant, edges);
+        if (edges->count)
+            evaluations += m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
+        for (uint32_t i = 0; i < edges->count; i++) {
+            float *p = slots->at[edges->rank[i]];
+            p[0] = edges->x[i], p[1] = edges->y[i], p[2] = edges->z[i];
+            slots->slot[slots->count++] = edges->rank[i];
+        }
     }
+    return evaluations;
+}
+
+uint64_t csg_marching_shifted_roots(const csg_marching *m, const csg_block *block,
+                                    csg_marching_room *room, float *scratch, size_t scratch_floats)
+{
+    csg_slots *slots = &room->slots;
+    uint64_t evaluations =
+        csg_marching_roots(m, block, &room->edges, slots, scratch, scratch_floats);
+    for (uint32_t i = 0; i < slots->count; i++)
+        csg_marching_shift(m, slots->at[slots->slot[i]], slots->at[slots->slot[i]]);
     return evaluations;
 }
 
@@ -473,15 +470,15 @@ uint64_t csg_marching_corners(const csg_marching *m, const csg_block *block,
                               csg_marching_room *room, float *corners, float *scratch,
                               size_t scratch_floats)
 {
-    uint64_t evaluations = find_corners(m, block, room, scratch, scratch_floats);
+    uint64_t evaluations = csg_marching_shifted_roots(m, block, room, scratch, scratch_floats);
     for (int k = 0; k < E; k++)
         for (int j = 0; j < E; j++) {
-            rows s = rows_of(block, j, k);
+            csg_cell_rows s = csg_cell_rows_of(block, j, k);
             for (unsigned rest = s.mixed; rest; rest &= rest - 1) {
                 int i = __builtin_ctz(rest), cell = (k * N + j) * N + i;
-                unsigned pattern = pattern_of(&s, i);
+                unsigned pattern = csg_cell_pattern(&s, i);
                 for (int c = 0; c < 3 * m->tables->count[pattern]; c++, corners += 3)
-                    memcpy(corners, room->corner[cell + m->places->place[pattern][c]],
+                    memcpy(corners, room->slots.at[cell + m->places->place[pattern][c]],
                            3 * sizeof(float));
             }
         }

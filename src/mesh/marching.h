@@ -44,13 +44,43 @@ typedef struct csg_marching_output {
 
 enum { CSG_BLOCK_MOST_INDICES = 8 * 8 * 8 * CSG_CELL_MOST_INDICES };
 
+/* The four rows of signs around a row of cells. */
+typedef struct csg_cell_rows {
+    unsigned r[4];  /* y + 2 z */
+    unsigned mixed; /* bit x: the corners of cell x do not all agree */
+} csg_cell_rows;
+
+static inline csg_cell_rows csg_cell_rows_of(const csg_block *block, int j, int k)
+{
+    csg_cell_rows s = {{block->inside[k][j], block->inside[k][j + 1], block->inside[k + 1][j],
+                        block->inside[k + 1][j + 1]},
+                       0};
+    unsigned any = s.r[0] | s.r[1] | s.r[2] | s.r[3], all = s.r[0] & s.r[1] & s.r[2] & s.r[3];
+    s.mixed = (any | any >> 1) & ~(all & all >> 1) & 0xFF;
+    return s;
+}
+
+static inline unsigned csg_cell_pattern(const csg_cell_rows *s, int i)
+{
+    return (s->r[0] >> i & 3) | (s->r[1] >> i & 3) << 2 | (s->r[2] >> i & 3) << 4 |
+           (s->r[3] >> i & 3) << 6;
+}
+
+/* Vertices of a block by the slots of their edges, axis * CSG_BLOCK_POINTS + lower point, those of
+ * the upper rim included. */
+typedef struct csg_slots {
+    uint32_t count;
+    uint16_t slot[CSG_BLOCK_MOST_EDGES]; /* that are crossed, in no order */
+    float at[3 * CSG_BLOCK_POINTS][3];
+} csg_slots;
+
 /* One thread's room. */
 typedef struct csg_marching_room {
     csg_edges edges;
     float channels[4][CSG_BLOCK_MOST_EDGES];
     uint32_t vertex[3][CSG_BLOCK_POINTS]; /* of crossed edges only */
     uint32_t indices[CSG_BLOCK_MOST_INDICES + CSG_CELL_MOST_INDICES];
-    float corner[3 * CSG_BLOCK_POINTS][3]; /* positions of crossed edges, upper rim included */
+    csg_slots slots;
 } csg_marching_room;
 
 typedef struct csg_marching {
@@ -65,6 +95,35 @@ typedef struct csg_marching {
     float noise;    /* of the field's values: rounding */
 } csg_marching;
 
+static inline void csg_marching_shift(const csg_marching *m, const float at[3], float out[3])
+{
+    out[0] = (float)(m->shift.x + (double)at[0]);
+    out[1] = (float)(m->shift.y + (double)at[1]);
+    out[2] = (float)(m->shift.z + (double)at[2]);
+}
+
+/* All vertices of the block's cells, in the field's frame: those on the rim that belongs to upper
+ * neighbours too, with the same bits, since every tape that covers an edge gives the same values on
+ * it. Returns point evaluations made. */
+uint64_t csg_marching_roots(const csg_marching *marching, const csg_block *block, csg_edges *edges,
+                            csg_slots *slots, float *scratch, size_t scratch_floats);
+
+/* The same by the mesh's frame, in room->slots. */
+uint64_t csg_marching_shifted_roots(const csg_marching *marching, const csg_block *block,
+                                    csg_marching_room *room, float *scratch, size_t scratch_floats);
+
+/* Colours and materials at the points x, y, z of edges, to their ranks. */
+void csg_marching_colors(const csg_marching *marching, const csg_tape *tape, const csg_edges *edges,
+                         float *const channels[4], uint8_t *out, float *scratch,
+                         size_t scratch_floats);
+void csg_marching_materials(const csg_marching *marching, const csg_tape *tape,
+                            const csg_edges *edges, float *const channels[4], uint16_t *out,
+                            float *scratch, size_t scratch_floats);
+
+/* Numbers of all vertices that the block's cells use, in room->vertex. */
+void csg_marching_number(const csg_marching *marching, const csg_block *block,
+                         csg_marching_room *room);
+
 /* Vertices of one block. Returns point evaluations made. */
 uint64_t csg_marching_vertices(const csg_marching *marching, const csg_block *block,
                                csg_marching_room *room, const csg_marching_output *out,
@@ -72,9 +131,8 @@ uint64_t csg_marching_vertices(const csg_marching *marching, const csg_block *bl
 void csg_marching_triangles(const csg_marching *marching, const csg_block *block,
                             csg_marching_room *room, const csg_marching_output *out);
 
-/* The block's triangles as 9 floats each, without any neighbour: roots on the rim that belongs to
- * upper neighbours are found here too, with the same bits, since every tape that covers an edge
- * gives the same values on it. Returns point evaluations made. */
+/* The block's triangles as 9 floats each, without any neighbour's vertices. Returns point
+ * evaluations made. */
 uint64_t csg_marching_corners(const csg_marching *marching, const csg_block *block,
                               csg_marching_room *room, float *corners, float *scratch,
                               size_t scratch_floats);

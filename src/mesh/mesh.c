@@ -84,5 +84,6 @@ csgm_mesh_view csg_mesh_view(const csgm_mesh *mesh)
                             .triangle_count = mesh->triangle_count,
                             .parts = mesh->parts,
                             .part_count = mesh->part_count,
-                            .materials = mesh->materials};
+                            .materials = mesh->materials,
+                            .split = mesh->split};
 }

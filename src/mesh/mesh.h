@@ -18,6 +18,7 @@ struct csgm_mesh {
     csgm_mesh_part *parts;
     size_t part_count, part_room;
     csg_arena names; /* of parts */
+    bool split;      /* csgm_mesh_view.split */
 };
 
 /* Arrays of these sizes from context->memory, not filled. vertex_count < 2^32; counts may be 0.

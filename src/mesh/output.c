@@ -8,6 +8,7 @@
 
 #include "base/pool.h"
 #include "field/dispatch.h"
+#include "mesh/feature_emit.h"
 #include "mesh/work.h"
 
 /* ---- blocks -------------------------------------------------------------------------------- */
@@ -24,9 +25,17 @@ static csg_box box_of(const float *positions, uint64_t count, csg_box box)
 static void make_block(csg_mesh_work *w, csg_mesh_worker *self, const csg_block *block,
                        const csg_marching_output *out)
 {
+    const csg_feature_store *store = &w->features;
+    const csg_feature_block *features = csg_feature_store_find(store, block->at);
     uint64_t points = csg_marching_vertices(&w->marching, block, self->room, out, self->scratch,
                                             w->scratch_floats);
-    csg_marching_triangles(&w->marching, block, self->room, out);
+    if (features) {
+        csg_feature_vertices(&w->marching, block, store, features, w->split, self->room, out,
+                             self->scratch, w->scratch_floats);
+        csg_feature_triangles(&w->marching, block, store, features, w->split, self->room, out);
+    } else {
+        csg_marching_triangles(&w->marching, block, self->room, out);
+    }
     if (w->clipped)
         self->bounds = box_of(out->positions, block->vertex_count, self->bounds);
     uint64_t gradients = out->normals ? block->vertex_count : 0;
@@ -97,6 +106,17 @@ static bool fill_indexed(csg_mesh_work *w, csg_mesh_worker *self, size_t first, 
     return true;
 }
 
+static uint64_t corners_of_block(csg_mesh_work *w, csg_mesh_worker *self, const csg_block *block,
+                                 float *at)
+{
+    const csg_feature_block *features = csg_feature_store_find(&w->features, block->at);
+    if (features)
+        return csg_feature_corners(&w->marching, block, &w->features, features, self->room, at,
+                                   self->scratch, w->scratch_floats);
+    return csg_marching_corners(&w->marching, block, self->room, at, self->scratch,
+                                w->scratch_floats);
+}
+
 /* Loose triangles of blocks [first, end) in the worker's buffer. */
 static bool fill_corners(csg_mesh_work *w, csg_mesh_worker *self, size_t first, size_t end,
                          csg_mesh_run *run)
@@ -110,8 +130,7 @@ static bool fill_corners(csg_mesh_work *w, csg_mesh_worker *self, size_t first, 
     float *at = buffer->corners;
     for (size_t i = first; i < end; i++) {
         const csg_block *block = w->blocks[i];
-        uint64_t points = csg_marching_corners(&w->marching, block, self->room, at, self->scratch,
-                                               w->scratch_floats);
+        uint64_t points = corners_of_block(w, self, block, at);
         if (w->clipped)
             self->bounds = box_of(at, 3 * (uint64_t)block->triangle_count, self->bounds);
         self->point_evaluations += points;
@@ -193,7 +212,6 @@ static void prepare_marching(csg_mesh_work *w)
         .tables = &w->tables,
         .places = &w->places,
         .index = &w->index,
-        .shift = csg_vec3_sub(w->field->center, w->counts.origin),
         /* what a unit in the last place of a coordinate changes */
         .noise = (float)((double)FLT_EPSILON * csg_lattice_extent(&w->lattice) * slope),
     };
@@ -203,7 +221,7 @@ static void prepare_marching(csg_mesh_work *w)
 static csgm_status begin_arrays(csg_mesh_work *w)
 {
     csg_mesh_counts *counts = &w->counts;
-    counts->normals = w->options->normals;
+    counts->normals = w->options->normals != CSGM_NORMALS_NONE;
     const csg_mesh_share *share = w->share;
     bool materials = w->options->colors && (share ? share->materials : w->field->has_materials);
     counts->colors = w->options->colors && (share ? share->colors : csg_mesh_is_colored(w->field));
@@ -212,15 +230,19 @@ static csgm_status begin_arrays(csg_mesh_work *w)
         return w->receiver->begin(w->receiver->user, counts);
     csgm_status status = csg_mesh_create(w->context, counts->vertex_count, counts->triangle_count,
                                          counts->normals, counts->colors, &w->mesh);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK) {
         w->mesh->origin = counts->origin;
+        w->mesh->split = w->split;
+    }
     if (status == CSGM_OK && materials)
         status = csg_mesh_add_materials(w->mesh);
     return status;
 }
 
-static csgm_status create_workers(csg_mesh_work *w)
+csgm_status csg_mesh_create_workers(csg_mesh_work *w)
 {
+    prepare_marching(w);
+    w->split = w->options->normals == CSGM_NORMALS_CREASE;
     csg_memory *memory = &w->context->memory;
     w->worker_count = csg_pool_threads(w->context->pool);
     w->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
@@ -235,6 +257,12 @@ static csgm_status create_workers(csg_mesh_work *w)
         if (!w->workers[i].room || !w->workers[i].scratch)
             return csg_context_no_memory(w->context);
         memset(w->workers[i].room, 0, sizeof(csg_marching_room));
+        if (w->options->features == CSGM_FEATURES_SHARP) {
+            w->workers[i].features = csg_memory_alloc(memory, sizeof(csg_feature_room));
+            if (!w->workers[i].features)
+                return csg_context_no_memory(w->context);
+            memset(w->workers[i].features, 0, sizeof(csg_feature_room));
+        }
     }
     return CSGM_OK;
 }
@@ -242,10 +270,8 @@ static csgm_status create_workers(csg_mesh_work *w)
 csgm_status csg_mesh_begin_output(csg_mesh_work *w)
 {
     csgm_status status = begin_arrays(w);
-    if (status != CSGM_OK || !w->counts.vertex_count)
-        return status;
-    prepare_marching(w);
-    return create_workers(w);
+    w->marching.shift = csg_vec3_sub(w->field->center, w->counts.origin);
+    return status;
 }
 
 csgm_status csg_mesh_make_blocks(csg_mesh_work *w)
@@ -260,6 +286,9 @@ void csg_mesh_release_output(csg_mesh_work *w)
     for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
         release_run(memory, &w->workers[i].run);
         csg_memory_release(memory, w->workers[i].room, sizeof(csg_marching_room));
+        if (w->workers[i].features)
+            csg_feature_room_release(w->workers[i].features, memory);
+        csg_memory_release(memory, w->workers[i].features, sizeof(csg_feature_room));
         csg_memory_release(memory, w->workers[i].scratch, w->scratch_floats * sizeof(float));
     }
     csg_memory_release(memory, w->workers, w->worker_count * sizeof(csg_mesh_worker));

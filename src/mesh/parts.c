@@ -60,6 +60,8 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->interval_evaluations += part->interval_evaluations;
     sum->primitive_evaluations += part->primitive_evaluations;
     sum->memory_peak_bytes = part->memory_peak_bytes;
+    sum->feature_vertices += part->feature_vertices;
+    sum->smooth_features += part->smooth_features;
     if (sum->leaf_blocks)
         sum->mean_tape_length = nodes / (double)sum->leaf_blocks;
 }
@@ -127,11 +129,13 @@ static csgm_status assemble(assembly *a, csgm_mesh **out)
                        (unsigned long long)vertices);
         return CSGM_ERR_LIMIT;
     }
-    csgm_status status = csg_mesh_create(a->context, vertices, triangles, a->options.normals,
-                                         a->share.colors && a->options.colors, &mesh);
+    csgm_status status =
+        csg_mesh_create(a->context, vertices, triangles, a->options.normals != CSGM_NORMALS_NONE,
+                        a->share.colors && a->options.colors, &mesh);
     if (status != CSGM_OK)
         return status;
     mesh->origin = a->share.origin;
+    mesh->split = a->options.normals == CSGM_NORMALS_CREASE;
     if (a->share.materials && a->options.colors)
         status = csg_mesh_add_materials(mesh);
     if (status == CSGM_OK)

@@ -62,6 +62,9 @@ static csgm_status sample_slab(csg_mesh_work *w, const csg_slab *slab, uint64_t 
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(w) : status;
     w->blocks = csg_octree_blocks(w->octree, &w->block_count);
     csg_pool_run(w->context->pool, csg_mesh_item_count(w), count_item, NULL, w);
+    status = csg_mesh_find_features(w);
+    if (status != CSGM_OK)
+        return status;
     for (size_t i = 0; i < w->block_count; i++) {
         csg_block *block = w->blocks[i];
         block->first_vertex = (uint32_t)*vertices;
@@ -69,6 +72,7 @@ static csgm_status sample_slab(csg_mesh_work *w, const csg_slab *slab, uint64_t 
         *vertices += block->vertex_count;
         *triangles += block->triangle_count;
     }
+    csg_mesh_number_features(w);
     return CSGM_OK;
 }
 

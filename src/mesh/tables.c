@@ -101,6 +101,14 @@ static bool cut(const uint8_t *loop, const unsigned *faces, int first, int last,
     return false;
 }
 
+static void keep_loop(csg_cell_tables *tables, unsigned pattern, const uint8_t *loop, int length)
+{
+    uint8_t index = tables->loop_count[pattern]++;
+    tables->loop_sides[pattern][index] = (uint8_t)length;
+    for (int i = 0; i < length; i++) /* as the triangles turn: against the links */
+        tables->loop_edge[pattern][index][i] = loop[i ? length - i : 0];
+}
+
 static void make_pattern(csg_cell_tables *tables, unsigned pattern)
 {
     uint8_t next[CSG_CELL_EDGES];
@@ -118,6 +126,8 @@ static void make_pattern(csg_cell_tables *tables, unsigned pattern)
             edge = following;
         }
         cut(loop, faces, 0, length - 1, length, tables->edge[pattern], &count);
+        if (length)
+            keep_loop(tables, pattern, loop, length);
     }
     tables->count[pattern] = (uint8_t)count;
 }
@@ -132,5 +142,6 @@ void csg_cell_tables_make(csg_cell_tables *tables)
         unsigned first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
         tables->offset[edge][first] = (uint8_t)u;
         tables->offset[edge][second] = (uint8_t)v;
+        tables->faces[edge] = (uint8_t)faces_of_edge((uint8_t)edge);
     }
 }

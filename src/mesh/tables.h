@@ -12,6 +12,7 @@
 
 enum {
     CSG_CELL_EDGES = 12,
+    CSG_CELL_MOST_LOOPS = 4,
     CSG_CELL_MOST_TRIANGLES = 5,
     CSG_CELL_MOST_INDICES = 3 * CSG_CELL_MOST_TRIANGLES
 };
@@ -21,6 +22,12 @@ typedef struct csg_cell_tables {
     uint8_t edge[256][CSG_CELL_MOST_INDICES]; /* three edges a triangle, counter-clockwise
                                                        from outside */
     uint8_t offset[CSG_CELL_EDGES][3];        /* lower point of each edge, relative to the cell */
+    /* The polygons that the triangles are cut from: those of a loop follow one another, two fewer
+     * than it has sides. A loop starts with its lowest edge; counter-clockwise from outside. */
+    uint8_t loop_count[256];
+    uint8_t loop_sides[256][CSG_CELL_MOST_LOOPS];
+    uint8_t loop_edge[256][CSG_CELL_MOST_LOOPS][CSG_CELL_EDGES];
+    uint8_t faces[CSG_CELL_EDGES]; /* bit 2 axis + side: the edge lies in that face of the cell */
 } csg_cell_tables;
 
 void csg_cell_tables_make(csg_cell_tables *tables);

@@ -7,7 +7,7 @@
 #define CSG_MESH_WORK_H
 
 #include "mesh/build.h"
-#include "mesh/marching.h"
+#include "mesh/feature.h"
 
 /* A stretch of the octree's frontier, with what comes before it in the numbering. */
 typedef struct csg_slab {
@@ -34,6 +34,7 @@ typedef struct csg_run_buffer {
 /* One thread's part. */
 typedef struct csg_mesh_worker {
     csg_marching_room *room;
+    csg_feature_room *features; /* NULL: plain marching cubes */
     float *scratch;
     csg_run_buffer run;
     csg_box bounds; /* of the vertices made, where the solid is clipped */
@@ -67,6 +68,10 @@ typedef struct csg_mesh_work {
     csg_block **reachable; /* the slab's blocks and the halo's, where there are several slabs */
     size_t reachable_capacity;
     csg_block_index index;
+
+    csg_feature_store features;
+    struct csg_found_item *found; /* of the slab at hand */
+    bool split; /* a vertex for each sheet at a crease */
 
     csg_cell_tables tables;
     csg_marching_places places;
@@ -110,6 +115,17 @@ csgm_status csg_mesh_count_slabs(csg_mesh_work *work);
 csgm_status csg_mesh_each_slab(csg_mesh_work *work, csgm_status (*make)(csg_mesh_work *work));
 void csg_mesh_release_slabs(csg_mesh_work *work);
 
+/* ---- creases.c --------------------------------------------------------------------------------
+ */
+
+/* Finds the features of the blocks at hand, or, where they are known, looks them up; adds what they
+ * are to the blocks' counts. */
+csgm_status csg_mesh_find_features(csg_mesh_work *work);
+/* After the blocks at hand have their numbers, the first time. */
+void csg_mesh_number_features(csg_mesh_work *work);
+/* Once all are found. */
+csgm_status csg_mesh_link_features(csg_mesh_work *work);
+
 /* ---- parts.c ----------------------------------------------------------------------------------
  */
 
@@ -130,7 +146,9 @@ static inline bool csg_mesh_is_colored(const csgm_field *field)
 /* ---- output.c ---------------------------------------------------------------------------------
  */
 
-/* Tells the counts to the receiver, or makes the mesh's arrays; and the workers' room. */
+/* The workers' room, before anything is counted. */
+csgm_status csg_mesh_create_workers(csg_mesh_work *work);
+/* Tells the counts to the receiver, or makes the mesh's arrays. */
 csgm_status csg_mesh_begin_output(csg_mesh_work *work);
 /* Vertices and triangles of the blocks at hand. */
 csgm_status csg_mesh_make_blocks(csg_mesh_work *work);

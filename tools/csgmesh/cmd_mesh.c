@@ -52,6 +52,10 @@ static void put_work(cli_json *json, const cli_work *work)
     cli_json_count(json, "pruned_inside", stats->pruned_inside);
     cli_json_count(json, "leaf_blocks", stats->leaf_blocks);
     cli_json_end(json, '}');
+    cli_json_open(json, "features", '{');
+    cli_json_count(json, "vertices", stats->feature_vertices);
+    cli_json_count(json, "left_smooth", stats->smooth_features);
+    cli_json_end(json, '}');
 }
 
 static void put_results(cli_json *json, const cli_work *work, const run_report *report)

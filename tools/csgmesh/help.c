@@ -31,12 +31,10 @@ static const option_help option_rows[] = {
 #define OPTION(field, letter_, name_, kind_, argument_, commands_, help_)                          \
     {NULL, name_, #kind_, argument_, help_, letter_, commands_},
 #define LATER(letter, name)
-#define LATER_VALUE(name, value)
 #include "options.def"
 #undef SECTION
 #undef OPTION
 #undef LATER
-#undef LATER_VALUE
 };
 
 enum { OPTION_ROWS = sizeof option_rows / sizeof *option_rows, TEXT_COLUMN = 28, LINE_WIDTH = 92 };

@@ -43,24 +43,9 @@ static const row rows[] = {
 #define OPTION(field, letter, name, kind, argument, commands, help)                                \
     {kind, CLI_OPTION_##field, offsetof(cli_options, field), letter, name, argument, commands},
 #define LATER(letter, name) {UNAVAILABLE, CLI_OPTION_COUNT, 0, letter, name, NULL, ANY},
-#define LATER_VALUE(name, value)
 #include "options.def"
 #undef OPTION
 #undef LATER
-#undef LATER_VALUE
-};
-
-static const struct {
-    const char *name, *value;
-} later_values[] = {
-#define OPTION(field, letter, name, kind, argument, commands, help)
-#define LATER(letter, name)
-#define LATER_VALUE(name, value) {name, value},
-#include "options.def"
-#undef OPTION
-#undef LATER
-#undef LATER_VALUE
-#undef SECTION
 };
 
 static const char *const command_names[] = {
@@ -206,10 +191,6 @@ static bool set_choice(parser *p, const row *option, const char *text, int *slot
         }
         value = value[end] ? value + end + 1 : NULL;
     }
-    for (size_t i = 0; option->name && i < sizeof later_values / sizeof *later_values; i++)
-        if (strcmp(later_values[i].name, option->name) == 0 &&
-            strcmp(later_values[i].value, text) == 0)
-            return refuse(p, NULL, "--%s %s is not available in this version", option->name, text);
     return refuse_value(p, option, text, option->argument);
 }
 

@@ -52,7 +52,6 @@ typedef enum cli_option_id {
 #define SECTION(title)
 #define OPTION(field, letter, name, kind, argument, commands, help) CLI_OPTION_##field,
 #define LATER(letter, name)
-#define LATER_VALUE(name, value)
 #include "options.def"
 #undef OPTION
     CLI_OPTION_COUNT
@@ -64,7 +63,6 @@ typedef struct cli_options {
 #undef OPTION
 #undef SECTION
 #undef LATER
-#undef LATER_VALUE
     cli_command command;
     cli_list operands;
     bool given[CLI_OPTION_COUNT];

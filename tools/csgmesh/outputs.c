@@ -110,10 +110,11 @@ static int check_collisions(cli_app *app)
 static void warn_without_effect(cli_app *app)
 {
     const cli_options *options = &app->options;
-    bool gltf = false, draco = false, text = false, unit = false;
+    bool gltf = false, draco = false, text = false, unit = false, crease = false;
     for (size_t i = 0; i < options->outputs.count; i++) {
         csgm_format format = cli_outputs_format(options, i);
         gltf = gltf || is_gltf(format);
+        crease = crease || is_gltf(format) || format == CSGM_FORMAT_OBJ;
         unit = unit || is_gltf(format) || format == CSGM_FORMAT_3MF;
         draco = draco || format == CSGM_FORMAT_DRC || (options->draco && is_gltf(format));
         text = text || format == CSGM_FORMAT_PLY || format == CSGM_FORMAT_STL;
@@ -130,6 +131,9 @@ static void warn_without_effect(cli_app *app)
         {CLI_OPTION_draco_bits, draco, "draco-bits", "Draco (.drc, or --draco with .glb)"},
         {CLI_OPTION_draco_level, draco, "draco-level", "Draco (.drc, or --draco with .glb)"},
     };
+    if (options->normals == 2 && !crease) /* crease */
+        cli_console_say(&app->console, CSGM_WARNING, NULL,
+                        "--normals crease has no effect: no output is OBJ, glTF or GLB");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (options->given[rows[i].id] && !rows[i].has_effect)
             cli_console_say(&app->console, CSGM_WARNING, NULL,
@@ -156,6 +160,21 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
     if (status == CLI_DONE)
         warn_without_effect(app);
     return status;
+}
+
+csgm_normals cli_outputs_normals(const cli_options *options)
+{
+    enum { AUTO, VERTEX, CREASE, NONE };
+    if (options->normals != AUTO)
+        return options->normals == VERTEX   ? CSGM_NORMALS_VERTEX
+               : options->normals == CREASE ? CSGM_NORMALS_CREASE
+                                            : CSGM_NORMALS_NONE;
+    for (size_t i = 0; i < options->outputs.count; i++) {
+        csgm_format format = cli_outputs_format(options, i);
+        if (format == CSGM_FORMAT_OBJ || is_gltf(format))
+            return CSGM_NORMALS_CREASE;
+    }
+    return CSGM_NORMALS_VERTEX;
 }
 
 csgm_write_options cli_outputs_options(const cli_options *options)

@@ -3,6 +3,8 @@
  */
 #include "work.h"
 
+#include "outputs.h"
+
 int cli_work_check(cli_app *app)
 {
     if (app->options.given[CLI_OPTION_resolution] && app->options.given[CLI_OPTION_cell_size])
@@ -27,7 +29,8 @@ static csgm_mesh_options mesh_options(cli_app *app)
     if (options->given[CLI_OPTION_resolution])
         mesh.resolution = (uint32_t)options->resolution;
     mesh.cell_size = options->cell_size;
-    mesh.normals = options->normals == 0;
+    mesh.normals = cli_outputs_normals(options);
+    mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
     mesh.colors = options->colors == 0;
     mesh.prune = !options->no_prune;
     mesh.monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};

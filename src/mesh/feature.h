@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ * Sharp features: the apex of a polygon of marching cubes that a crease, a corner or a tip of the
+ * surface runs through. The polygon is fanned around its apex as in extended marching cubes
+ * (Kobbelt, Botsch, Schwanecke, Seidel 2001), and where a crease passes from one polygon to the
+ * next, the segment between them is flipped: two apexes become joined by an edge of the mesh.
+ *
+ * A crease is found by what the gradient does, not by what made it: where it jumps along a segment
+ * however short the rest of it. An apex is the point where the tangent planes meet of the sheets
+ * around it, taken ever nearer to it, so it answers to the field itself: edges of primitives, of
+ * operators, of polyhedra and of expressions alike (find.c, solve.c).
+ *
+ * Whether a polygon has an apex depends on its block alone; flips on two neighbours, so features
+ * are kept for the whole mesh, in memory of the length of its creases (store.c). A polygon with
+ * an apex has two triangles more than without, flips change no number: blocks can be counted and
+ * filled in any order.
+ */
+#ifndef CSG_MESH_FEATURE_H
+#define CSG_MESH_FEATURE_H
+
+#include "mesh/marching.h"
+
+enum {
+    CSG_FEATURE_MOST_SIDES = 12,
+    CSG_FEATURE_MOST_SHEETS = 8,
+    CSG_FEATURE_NO_EDGE = 0xFF,
+    CSG_FEATURE_SEGMENTS = 8192 /* candidates of one block at most */
+};
+
+#define CSG_FEATURE_NONE UINT32_MAX
+
+typedef struct csg_feature {
+    float at[3];                              /* the apex, field frame */
+    float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
+    float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
+    uint32_t across[CSG_FEATURE_MOST_SIDES];  /* flipped sides: the feature beyond, or NONE */
+    uint8_t across_side[CSG_FEATURE_MOST_SIDES];
+    uint8_t edge[CSG_FEATURE_MOST_SIDES];  /* the cell's crossed edges, counter-clockwise from
+                                              outside; side s leads from edge s to edge s + 1 */
+    uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
+    uint8_t side_count, sheet_count;
+    uint8_t loop;     /* of the cell's pattern */
+    uint16_t cell;    /* (8 z + y) 8 + x */
+    uint16_t creased; /* bit s: a crease crosses side s */
+    uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
+} csg_feature;
+
+/* The features of one block, in the order of its cells. */
+typedef struct csg_feature_block {
+    uint32_t at[3];
+    uint32_t first, count;
+    uint32_t vertices; /* apexes, or sheets of all apexes where normals are split */
+} csg_feature_block;
+
+typedef struct csg_feature_store {
+    csg_memory *memory;
+    csg_feature *features;
+    csg_feature_block *blocks;
+    size_t count, capacity, block_count, block_capacity;
+    uint32_t *slots; /* block + 1, 0 = free */
+    size_t slot_count;
+    size_t numbered; /* blocks whose features have vertex numbers */
+    uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
+} csg_feature_store;
+
+/* ---- finding ------------------------------------------------------------------------------- */
+
+/* A segment of a polygon along which the gradient jumps. */
+typedef struct csg_segment {
+    uint16_t from, to; /* slots of the vertices */
+    uint16_t loop;     /* of the block's loops at hand */
+    uint8_t side;
+    uint8_t active;
+    float low, high; /* bracket of the jump, along the segment */
+    float low_gradient[3], high_gradient[3];
+    float jump;  /* 1 - cos of the angle that is left */
+    float at[3]; /* the crease near it */
+} csg_segment;
+
+typedef struct csg_found_loop {
+    uint16_t cell;
+    uint8_t loop, side_count;
+    uint8_t edge[CSG_FEATURE_MOST_SIDES];
+    uint16_t slot[CSG_FEATURE_MOST_SIDES];
+    int16_t crease[CSG_FEATURE_MOST_SIDES]; /* segment, or -1 */
+    bool wide;                              /* its corners' normals lie far apart */
+} csg_found_loop;
+
+/* One thread's room. */
+typedef struct csg_feature_room {
+    csg_edges edges;
+    csg_slots slots;
+    float gradient[3 * CSG_BLOCK_POINTS][3]; /* by slot */
+    csg_segment segments[CSG_FEATURE_SEGMENTS];
+    uint32_t segment_count;
+    csg_found_loop loops[CSG_FEATURE_SEGMENTS / 4];
+    uint32_t loop_count;
+    float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
+    float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
+    uint32_t which[CSG_FEATURE_SEGMENTS];
+    csg_feature *features; /* found since the last reset */
+    csg_feature_block *blocks;
+    size_t count, capacity, block_count, block_capacity;
+    uint64_t smooth, evaluations;
+} csg_feature_room;
+
+void csg_feature_room_release(csg_feature_room *room, csg_memory *memory);
+/* Adds the block's features to the room's. False: out of memory. */
+bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,
+                      csg_memory *memory, float *scratch, size_t scratch_floats);
+
+/* ---- the store ------------------------------------------------------------------------------- */
+
+bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
+                           size_t count);
+/* Once all blocks are there: who lies across each side, and which of these are flipped. */
+bool csg_feature_store_index(csg_feature_store *store);
+void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables,
+                      size_t block); /* any thread; writes this block alone */
+const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
+                                                const uint32_t at[3]);
+void csg_feature_store_release(csg_feature_store *store);
+
+/* ---- their vertices and triangles --------------------------------------------------------------
+ */
+
+/* One corner of a triangle: a crossed edge of the cell (edge), or an apex. */
+typedef struct csg_fan_corner {
+    const csg_feature *apex; /* NULL: an edge */
+    uint8_t edge, sheet;
+} csg_fan_corner;
+
+/* Triangle `side` of a feature's fan. */
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *feature, int side,
+                          csg_fan_corner corners[3]);
+
+#endif

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT
+ * Where the gradient of the field jumps along the polygons of a block's cells: creases. Blocks
+ * without anything that could make one are passed over, the rest is asked in batches: gradients at
+ * the vertices, then at the middles of those segments whose ends differ, again and again: the half
+ * that keeps the difference is the one with the jump.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/feature_solve.h"
+
+enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 8 };
+
+/* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 1 degree,
+ * the least that makes a crease. */
+static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.5e-4f;
+/* On a smooth surface each half of a segment has half of the angle, a quarter of 1 - cos. */
+static const float KEPT_BY_A_JUMP = 0.6f;
+/* Corners of a polygon around a tip look apart by 25 degrees and more. */
+static const float WIDE = 0.9f;
+
+/* ---- blocks that cannot have any ----------------------------------------------------------- */
+
+typedef struct ball {
+    float at[3], radius;
+} ball;
+
+static void to_own(const csg_tape_node *node, const float *frame, const float at[3], float q[3])
+{
+    for (int i = 0; i < 3; i++)
+        q[i] = node->frame == CSG_FRAME_OFFSET ? at[i] - frame[i]
+                                               : frame[3 * i] * at[0] + frame[3 * i + 1] * at[1] +
+                                                     frame[3 * i + 2] * at[2] + frame[9 + i];
+}
+
+/* Distance from the nearest edge of a box with half sizes own[0..]: of two coordinates at once. */
+static float to_box_edges(const float *own, const float q[3], int axes)
+{
+    float d[3] = {0, 0, 0}, best = INFINITY;
+    for (int i = 0; i < axes; i++)
+        d[i] = fabsf(fabsf(q[i]) - own[i]);
+    for (int i = 0; i < axes; i++)
+        for (int j = i + 1; j < axes; j++)
+            best = fminf(best, sqrtf(d[i] * d[i] + d[j] * d[j]));
+    return best;
+}
+
+/* The rims, and the tips of cones. own: see frustum_at in field/formulas.h */
+static float to_frustum_rims(const float *own, const float q[3])
+{
+    float rho = sqrtf(q[0] * q[0] + q[1] * q[1]), best = INFINITY;
+    for (int side = -1; side <= 1; side += 2) {
+        float over = rho - (own[1] + (float)side * own[7]), along = q[2] - (float)side * own[2];
+        best = fminf(best, sqrtf(over * over + along * along));
+    }
+    return best;
+}
+
+/* A lower bound on the distance, in the leaf's own frame, from what a leaf has of edges. Frames
+ * stretch lengths by at most 1 / sigma. */
+static bool may_have_edges(const csg_tape *tape, const csg_tape_node *node, ball b)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    bool offset = node->frame == CSG_FRAME_OFFSET;
+    const float *own = parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+    float q[3], stretch = offset ? 1.0f : 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
+    float reach = 1.01f * b.radius * fmaxf(stretch, 1.0f);
+    to_own(node, parameters + CSG_LEAF_FRAME, b.at, q);
+    switch (node->op) {
+    case CSG_OP_SPHERE:
+    case CSG_OP_TORUS:
+    case CSG_OP_CAPSULE:
+    case CSG_OP_ELLIPSOID:
+    case CSG_OP_PLANE:
+    case CSG_OP_CIRCLE:
+    case CSG_OP_SLAB:
+        return node->warp != 0;
+    case CSG_OP_BOX:
+        return node->warp || to_box_edges(own, q, 3) <= reach;
+    case CSG_OP_RECTANGLE:
+        return node->warp || to_box_edges(own, q, 2) <= reach;
+    case CSG_OP_FRUSTUM:
+        return node->warp || to_frustum_rims(own, q) <= reach;
+    default:
+        return true;
+    }
+}
+
+/* Joins that are smooth wherever their operands are. */
+static bool is_smooth_blend(uint8_t blend)
+{
+    return blend == CSG_BLEND_HYPERBOLA || blend == CSG_BLEND_RECIPROCAL ||
+           blend == CSG_BLEND_OVERBLEND || blend == CSG_BLEND_COSINE || blend == CSG_BLEND_PARABOLA;
+}
+
+static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
+                            ball b)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_tape_node *node = &nodes[i];
+        bool leaf = csg_op_is_leaf(node->op);
+        if ((node->join && !is_smooth_blend(node->join_blend)) || node->op == CSG_OP_COMBINE ||
+            (leaf && may_have_edges(tape, node, b)) || (!leaf && node->op > CSG_OP_COMBINE))
+            return true;
+    }
+    return false;
+}
+
+static bool may_crease(const csg_marching *m, const csg_block *block, const csg_probe *probe)
+{
+    const csg_tape *tape = &m->field->tape;
+    ball b = {.radius = 0.8661f * (float)(E * m->lattice->cell_size)}; /* sqrt(3) / 2 */
+    for (int axis = 0; axis < 3; axis++)
+        b.at[axis] = probe->line[axis][E / 2];
+    if (!block->parts)
+        return tape_may_crease(tape, block->nodes, block->node_count, b);
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        const csg_block_part *part = &block->parts[octant];
+        if (part->state == CSG_CELL_SURFACE &&
+            tape_may_crease(tape, part->nodes, part->node_count, b))
+            return true;
+    }
+    return false;
+}
+
+/* ---- vertices -------------------------------------------------------------------------------- */
+
+/* Gradients at the vertices in room->gradient, by slot. */
+static void take_gradients(csg_feature_room *room, csg_probe *probe)
+{
+    const csg_slots *slots = &room->slots;
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const float *p = slots->at[slots->slot[i]];
+        room->x[i] = p[0], room->y[i] = p[1], room->z[i] = p[2];
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_probe_points(probe, room->x, room->y, room->z, slots->count, NULL, g);
+    for (uint32_t i = 0; i < slots->count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            room->gradient[slots->slot[i]][axis] = room->g[axis][i];
+}
+
+static float cosine(const float *a, const float *b)
+{
+    float ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    float aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    float bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+    float length = sqrtf(aa * bb);
+    return length > 1e-12f ? ab / length : 1.0f; /* a critical point says nothing */
+}
+
+/* ---- segments -------------------------------------------------------------------------------- */
+
+static bool add_segment(csg_feature_room *room, const csg_found_loop *loop, int side)
+{
+    uint16_t from = loop->slot[side], to = loop->slot[(side + 1) % loop->side_count];
+    float difference = 1.0f - cosine(room->gradient[from], room->gradient[to]);
+    if (!(difference > LEAST_DIFFERENCE) || room->segment_count == CSG_FEATURE_SEGMENTS)
+        return false;
+    csg_segment *s = &room->segments[room->segment_count++];
+    *s = (csg_segment){.from = from,
+                       .to = to,
+                       .loop = (uint16_t)room->loop_count,
+                       .side = (uint8_t)side,
+                       .active = 1,
+                       .high = 1,
+                       .jump = difference};
+    memcpy(s->low_gradient, room->gradient[from], sizeof s->low_gradient);
+    memcpy(s->high_gradient, room->gradient[to], sizeof s->high_gradient);
+    return true;
+}
+
+/* The smallest cosine between normals of its corners. */
+static float widest_of(const csg_feature_room *room, const csg_found_loop *loop)
+{
+    float widest = 1;
+    for (int a = 0; a < loop->side_count; a++)
+        for (int b = a + 1; b < loop->side_count; b++)
+            widest =
+                fminf(widest, cosine(room->gradient[loop->slot[a]], room->gradient[loop->slot[b]]));
+    return widest;
+}
+
+/* Loops with a segment to look at, or around what may be a tip. */
+static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, unsigned pattern,
+                     int index)
+{
+    const csg_cell_tables *tables = m->tables;
+    if (room->loop_count == CSG_FEATURE_SEGMENTS / 4)
+        return;
+    csg_found_loop *loop = &room->loops[room->loop_count];
+    *loop = (csg_found_loop){.cell = (uint16_t)cell,
+                             .loop = (uint8_t)index,
+                             .side_count = tables->loop_sides[pattern][index]};
+    int i = cell & 7, j = cell >> 3 & 7, k = cell >> 6;
+    for (int s = 0; s < loop->side_count; s++) {
+        uint8_t edge = tables->loop_edge[pattern][index][s];
+        const uint8_t *o = tables->offset[edge];
+        loop->edge[s] = edge;
+        loop->slot[s] =
+            (uint16_t)(edge / 4 * CSG_BLOCK_POINTS + ((k + o[2]) * N + j + o[1]) * N + i + o[0]);
+        loop->crease[s] = -1;
+    }
+    float widest = widest_of(room, loop);
+    if (1.0f - widest <= LEAST_DIFFERENCE)
+        return;
+    bool any = loop->wide = widest < WIDE;
+    for (int s = 0; s < loop->side_count; s++)
+        any |= add_segment(room, loop, s);
+    room->loop_count += any;
+}
+
+static void collect_loops(const csg_marching *m, const csg_block *block, csg_feature_room *room)
+{
+    room->segment_count = room->loop_count = 0;
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            csg_cell_rows rows = csg_cell_rows_of(block, j, k);
+            for (unsigned rest = rows.mixed; rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest);
+                unsigned pattern = csg_cell_pattern(&rows, i);
+                for (int l = 0; l < m->tables->loop_count[pattern]; l++)
+                    add_loop(m, room, (k * E + j) * E + i, pattern, l);
+            }
+        }
+}
+
+static void point_along(const csg_feature_room *room, const csg_segment *s, float t, float p[3])
+{
+    const float *a = room->slots.at[s->from], *b = room->slots.at[s->to];
+    for (int axis = 0; axis < 3; axis++)
+        p[axis] = a[axis] + t * (b[axis] - a[axis]);
+}
+
+/* One halving of all active segments. */
+static void halve(csg_feature_room *room, csg_probe *probe)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        csg_segment *s = &room->segments[i];
+        if (!s->active)
+            continue;
+        float p[3];
+        point_along(room, s, 0.5f * (s->low + s->high), p);
+        room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+        room->which[count++] = i;
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_probe_points(probe, room->x, room->y, room->z, count, NULL, g);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_segment *s = &room->segments[room->which[i]];
+        const float middle[3] = {g[0][i], g[1][i], g[2][i]};
+        float low = 1.0f - cosine(s->low_gradient, middle);
+        float high = 1.0f - cosine(middle, s->high_gradient);
+        float t = 0.5f * (s->low + s->high), kept = fmaxf(low, high);
+        s->active = kept > KEPT_BY_A_JUMP * s->jump && kept > LEAST_JUMP;
+        s->jump = kept;
+        memcpy(low >= high ? s->high_gradient : s->low_gradient, middle, sizeof middle);
+        *(low >= high ? &s->high : &s->low) = t;
+    }
+}
+
+/* Where the tangent planes on both sides of the jump meet, near it: for all that have one. */
+static void locate_creases(csg_feature_room *room, csg_probe *probe)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        const csg_segment *s = &room->segments[i];
+        if (!s->active)
+            continue;
+        for (int end = 0; end < 2; end++) {
+            float p[3];
+            point_along(room, s, end ? s->high : s->low, p);
+            room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+            room->which[count++] = i;
+            if (count == CSG_FEATURE_SEGMENTS)
+                return;
+        }
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
+    for (uint32_t i = 0; i + 1 < count; i += 2) {
+        csg_segment *s = &room->segments[room->which[i]];
+        csg_plane planes[2];
+        for (uint32_t end = 0; end < 2; end++)
+            planes[end] =
+                csg_plane_at(room->x[i + end], room->y[i + end], room->z[i + end], room->f[i + end],
+                             g[0][i + end], g[1][i + end], g[2][i + end]);
+        double x[3] = {(double)room->x[i], (double)room->y[i], (double)room->z[i]};
+        s->active = csg_planes_meet(planes, 2, x);
+        for (int axis = 0; axis < 3; axis++)
+            s->at[axis] = (float)x[axis];
+        if (s->active)
+            room->loops[s->loop].crease[s->side] = (int16_t)room->which[i];
+    }
+}
+
+static void find_creases(csg_feature_room *room, csg_probe *probe)
+{
+    for (int step = 0; step < HALVINGS; step++)
+        halve(room, probe);
+    locate_creases(room, probe);
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_block *block,
+                      size_t before)
+{
+    if (room->count == before)
+        return true;
+    if (!csg_memory_reserve(memory, (void **)&room->blocks, &room->block_capacity,
+                            room->block_count + 1, sizeof(csg_feature_block)))
+        return false;
+    csg_feature_block *entry = &room->blocks[room->block_count++];
+    *entry =
+        (csg_feature_block){.first = (uint32_t)before, .count = (uint32_t)(room->count - before)};
+    memcpy(entry->at, block->at, sizeof entry->at);
+    return true;
+}
+
+bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                      csg_memory *memory, float *scratch, size_t scratch_floats)
+{
+    csg_probe probe = csg_probe_of(m, block, scratch, scratch_floats);
+    if (!may_crease(m, block, &probe))
+        return true;
+    room->evaluations +=
+        csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
+    take_gradients(room, &probe);
+    collect_loops(m, block, room);
+    if (!room->loop_count)
+        return true;
+    find_creases(room, &probe);
+    size_t before = room->count;
+    for (uint32_t i = 0; i < room->loop_count; i++)
+        if (!csg_feature_solve(room, &room->loops[i], &probe, memory))
+            return false;
+    room->evaluations += probe.evaluations;
+    return end_block(room, memory, block, before);
+}
+
+void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
+{
+    csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
+    csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
+    room->features = NULL;
+    room->blocks = NULL;
+}

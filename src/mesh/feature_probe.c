@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * Sorting points by the tape that knows them; see feature_probe.h. Inside the band every tape that
+ * covers a point gives the same bits, so neither the block at hand nor pruning changes an answer.
+ */
+#include "mesh/feature_probe.h"
+
+#include <math.h>
+
+enum { WHOLE_BLOCK = CSG_OCTANTS, WHOLE_FIELD, UNKNOWN, DOMAINS };
+
+csg_probe csg_probe_of(const csg_marching *m, const csg_block *block, float *scratch,
+                       size_t scratch_floats)
+{
+    csg_probe probe = {
+        .marching = m, .block = block, .scratch = scratch, .scratch_floats = scratch_floats};
+    for (int axis = 0; axis < 3; axis++)
+        for (uint32_t i = 0; i < CSG_BLOCK_SAMPLES; i++)
+            probe.line[axis][i] =
+                csg_lattice_coordinate(m->lattice, axis, block->at[axis] * CSG_BLOCK_EDGE + i);
+    return probe;
+}
+
+static int domain_of(const csg_probe *p, float x, float y, float z)
+{
+    const float at[3] = {x, y, z};
+    unsigned octant = 0;
+    bool inside = true;
+    for (int axis = 0; axis < 3; axis++) {
+        const float *line = p->line[axis];
+        inside = inside && at[axis] >= line[0] && at[axis] <= line[CSG_BLOCK_EDGE];
+        octant |= (unsigned)(at[axis] > line[CSG_PART_EDGE]) << axis;
+    }
+    int far = p->marching->field->tape.count <= CSG_PROBE_MOST_NODES ? WHOLE_FIELD : UNKNOWN;
+    if (!inside)
+        return far;
+    if (!p->block->parts)
+        return WHOLE_BLOCK;
+    return p->block->parts[octant].state == CSG_CELL_SURFACE ? (int)octant : far;
+}
+
+static csg_tape tape_of(const csg_probe *p, int domain)
+{
+    csg_tape tape = p->marching->field->tape;
+    if (domain == WHOLE_BLOCK) {
+        tape.nodes = p->block->nodes;
+        tape.count = p->block->node_count;
+    } else if (domain < CSG_OCTANTS) {
+        tape.nodes = p->block->parts[domain].nodes;
+        tape.count = p->block->parts[domain].node_count;
+    }
+    return tape;
+}
+
+typedef struct gathered {
+    float x[CSG_BATCH], y[CSG_BATCH], z[CSG_BATCH], f[CSG_BATCH], g[3][CSG_BATCH];
+    uint32_t from[CSG_BATCH];
+} gathered;
+
+static void ask(csg_probe *p, int domain, gathered *at, size_t count, float *f, float *const g[3])
+{
+    csg_tape tape = tape_of(p, domain);
+    const csg_kernel *kernel = p->marching->kernel;
+    for (size_t i = count; i % CSG_LANES; i++)
+        at->x[i] = at->x[0], at->y[i] = at->y[0], at->z[i] = at->z[0];
+    if (f)
+        kernel->values(&tape, at->x, at->y, at->z, count, at->f, p->scratch, p->scratch_floats);
+    kernel->gradients(&tape, at->x, at->y, at->z, count, at->g[0], at->g[1], at->g[2], p->scratch,
+                      p->scratch_floats);
+    p->evaluations += count;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t to = at->from[i];
+        if (f)
+            f[to] = at->f[i];
+        for (int axis = 0; axis < 3; axis++)
+            g[axis][to] = at->g[axis][i];
+    }
+}
+
+static void unknown(const gathered *at, size_t count, float *f, float *const g[3])
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t to = at->from[i];
+        if (f)
+            f[to] = NAN;
+        g[0][to] = g[1][to] = g[2][to] = 0;
+    }
+}
+
+/* Points [first, end) of one domain, at most a batch. */
+static void probe_batch(csg_probe *p, const float *x, const float *y, const float *z, size_t first,
+                        size_t end, float *f, float *const g[3])
+{
+    uint8_t domain[CSG_BATCH];
+    unsigned met = 0;
+    for (size_t i = first; i < end; i++) {
+        int d = domain_of(p, x[i], y[i], z[i]);
+        domain[i - first] = (uint8_t)d;
+        met |= 1u << d;
+    }
+    for (int d = 0; d < DOMAINS; d++) {
+        if (!(met >> d & 1))
+            continue;
+        gathered at;
+        size_t count = 0;
+        for (size_t i = first; i < end; i++)
+            if (domain[i - first] == d) {
+                at.x[count] = x[i], at.y[count] = y[i], at.z[count] = z[i];
+                at.from[count++] = (uint32_t)i;
+            }
+        if (d == UNKNOWN)
+            unknown(&at, count, f, g);
+        else
+            ask(p, d, &at, count, f, g);
+    }
+}
+
+void csg_probe_points(csg_probe *p, const float *x, const float *y, const float *z, size_t count,
+                      float *f, float *const g[3])
+{
+    for (size_t i = 0; i < count; i += CSG_BATCH)
+        probe_batch(p, x, y, z, i, i + CSG_BATCH < count ? i + CSG_BATCH : count, f, g);
+}

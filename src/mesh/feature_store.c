@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT
+ * All features of a mesh, block by block in Morton order, and how they hang together: which side of
+ * a polygon leads to which other one, and whether the segment between them is flipped.
+ */
+#include <string.h>
+
+#include "mesh/feature.h"
+
+enum { E = CSG_BLOCK_EDGE };
+
+bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
+                           size_t count)
+{
+    if (!count)
+        return true;
+    const csg_feature_block *blocks = room->blocks + first;
+    size_t from = blocks[0].first;
+    size_t features = blocks[count - 1].first + blocks[count - 1].count - from;
+    if (!csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
+                            store->block_count + count, sizeof(csg_feature_block)) ||
+        !csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
+                            store->count + features, sizeof(csg_feature)))
+        return false;
+    memcpy(store->features + store->count, room->features + from, features * sizeof(csg_feature));
+    for (size_t i = 0; i < count; i++) {
+        csg_feature_block entry = blocks[i];
+        entry.first = (uint32_t)(store->count + entry.first - from);
+        store->blocks[store->block_count++] = entry;
+    }
+    store->count += features;
+    return true;
+}
+
+static size_t home_slot(const csg_feature_store *store, const uint32_t at[3])
+{
+    uint64_t key = (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42;
+    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing, as in marching.c */
+    return (size_t)(key >> 20) & (store->slot_count - 1);
+}
+
+bool csg_feature_store_index(csg_feature_store *store)
+{
+    size_t count = 16;
+    while (count < 2 * store->block_count)
+        count *= 2;
+    store->slots = csg_memory_alloc(store->memory, count * sizeof(uint32_t));
+    if (!store->slots)
+        return false;
+    store->slot_count = count;
+    memset(store->slots, 0, count * sizeof(uint32_t));
+    for (size_t i = 0; i < store->block_count; i++) {
+        size_t slot = home_slot(store, store->blocks[i].at);
+        while (store->slots[slot])
+            slot = (slot + 1) & (count - 1);
+        store->slots[slot] = (uint32_t)i + 1;
+    }
+    return true;
+}
+
+const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
+                                                const uint32_t at[3])
+{
+    if (!store->block_count)
+        return NULL;
+    for (size_t slot = home_slot(store, at); store->slots[slot];
+         slot = (slot + 1) & (store->slot_count - 1)) {
+        const csg_feature_block *block = &store->blocks[store->slots[slot] - 1];
+        if (!memcmp(block->at, at, sizeof block->at))
+            return block;
+    }
+    return NULL;
+}
+
+void csg_feature_store_release(csg_feature_store *store)
+{
+    if (!store->memory)
+        return;
+    csg_memory_release(store->memory, store->features, store->capacity * sizeof(csg_feature));
+    csg_memory_release(store->memory, store->blocks,
+                       store->block_capacity * sizeof(csg_feature_block));
+    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
+    *store = (csg_feature_store){0};
+}
+
+/* ---- neighbours --------------------------------------------------------------------------------
+ */
+
+/* The one face of the cell that both edges lie in, or -1: a diagonal through the cell. */
+static int face_between(const csg_cell_tables *tables, uint8_t a, uint8_t b)
+{
+    unsigned common = tables->faces[a] & tables->faces[b];
+    return common ? __builtin_ctz(common) : -1;
+}
+
+/* The same lattice edge as the cell beyond a face names it. */
+static uint8_t edge_beyond(const csg_cell_tables *tables, uint8_t edge, int axis)
+{
+    const uint8_t *o = tables->offset[edge];
+    unsigned at[3] = {o[0], o[1], o[2]};
+    at[axis] ^= 1;
+    unsigned along = edge / 4, first = along == 0 ? 1 : 0, second = along == 2 ? 1 : 2;
+    return (uint8_t)(4 * along + at[first] + 2 * at[second]);
+}
+
+/* The cell beyond a face: moves `at` to its block. False: beyond the lattice. */
+static bool step(uint32_t at[3], uint16_t *cell, int axis, bool up)
+{
+    int c[3] = {*cell & 7, *cell >> 3 & 7, *cell >> 6};
+    c[axis] += up ? 1 : -1;
+    if (c[axis] < 0 && at[axis] == 0)
+        return false;
+    at[axis] += c[axis] < 0 ? UINT32_MAX : c[axis] == E;
+    c[axis] = (c[axis] + E) % E;
+    *cell = (uint16_t)((c[2] * E + c[1]) * E + c[0]);
+    return true;
+}
+
+/* The feature with a side from edge `from` to edge `to` in that cell. */
+static uint32_t feature_with(const csg_feature_store *store, const csg_feature_block *block,
+                             uint16_t cell, uint8_t from, uint8_t to, uint8_t *side)
+{
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        const csg_feature *f = &store->features[i];
+        for (uint8_t s = 0; f->cell == cell && s < f->side_count; s++)
+            if (f->edge[s] == from && f->edge[(s + 1) % f->side_count] == to) {
+                *side = s;
+                return i;
+            }
+    }
+    return CSG_FEATURE_NONE;
+}
+
+/* Whether triangle (a, b, c) looks out of the sheet with normal n. */
+static bool looks_along(const float *a, const float *b, const float *c, const float *n)
+{
+    double u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - (double)a[i];
+        v[i] = (double)c[i] - (double)a[i];
+    }
+    return (u[1] * v[2] - u[2] * v[1]) * (double)n[0] + (u[2] * v[0] - u[0] * v[2]) * (double)n[1] +
+               (u[0] * v[1] - u[1] * v[0]) * (double)n[2] >
+           0;
+}
+
+/* Both halves of a flipped segment must look the way their sheets do. */
+static bool may_flip(const csg_feature *f, int s, const csg_feature *g, int t)
+{
+    int s1 = (s + 1) % f->side_count;
+    return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
+           looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
+}
+
+static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
+                      const csg_feature_block *block, csg_feature *f, int s)
+{
+    uint8_t from = f->edge[s], to = f->edge[(s + 1) % f->side_count], side = 0;
+    int face = face_between(tables, from, to);
+    uint32_t at[3] = {block->at[0], block->at[1], block->at[2]};
+    uint16_t cell = f->cell;
+    if (face < 0 || !step(at, &cell, face / 2, face % 2))
+        return;
+    const csg_feature_block *beyond = csg_feature_store_find(store, at);
+    if (!beyond)
+        return;
+    uint32_t other = feature_with(store, beyond, cell, edge_beyond(tables, to, face / 2),
+                                  edge_beyond(tables, from, face / 2), &side);
+    if (other == CSG_FEATURE_NONE)
+        return;
+    const csg_feature *g = &store->features[other];
+    if (!(g->creased >> side & 1) ||
+        !(face % 2 ? may_flip(f, s, g, side) : may_flip(g, side, f, s)))
+        return;
+    f->across[s] = other;
+    f->across_side[s] = side;
+}
+
+void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
+{
+    const csg_feature_block *block = &store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        csg_feature *f = &store->features[i];
+        for (int s = 0; s < f->side_count; s++)
+            if (f->creased >> s & 1)
+                link_side(store, tables, block, f, s);
+    }
+}
+
+/* ---- triangles ---------------------------------------------------------------------------------
+ */
+
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int s,
+                          csg_fan_corner corners[3])
+{
+    int s1 = (s + 1) % f->side_count;
+    corners[0] = (csg_fan_corner){.apex = f, .sheet = f->sheet[s]};
+    corners[1] = (csg_fan_corner){.edge = f->edge[s]};
+    if (f->across[s] == CSG_FEATURE_NONE) {
+        corners[2] = (csg_fan_corner){.edge = f->edge[s1]};
+        return;
+    }
+    const csg_feature *g = &store->features[f->across[s]];
+    uint8_t sheet = g->sheet[(f->across_side[s] + 1) % g->side_count];
+    corners[2] = (csg_fan_corner){.apex = g, .sheet = sheet};
+}
