@@ -17,6 +17,7 @@ typedef struct demand {
 typedef struct frame {
     csg_vec3 at, inner; /* where it is asked, where it asks its children */
     double bound;       /* no value of the node is larger */
+    double bounds[2];   /* the same of its first two operands; NAN: not looked at yet */
     demand seen;        /* of the value */
     demand united;      /* the same of an operator's union (operand_sign) */
     double best;        /* largest operand of that union so far */
@@ -269,6 +270,7 @@ static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, deman
         (frame){.at = p,
                 .inner = csg_reference_inner_point(tree, node, p),
                 .bound = bound,
+                .bounds = {NAN, NAN},
                 .seen = seen,
                 .united = csg_lazy_is_plain(node) ? times_sign(seen, operand_sign(node, 0)) : all,
                 .best = -INFINITY,
@@ -278,17 +280,26 @@ static void enter(evaluation *e, csg_node_id id, csg_vec3 p, double bound, deman
                 .asked = UINT32_MAX};
 }
 
+static double operand_bound(const csg_lazy *lazy, frame *f, uint32_t index)
+{
+    const csg_node_id *children = csg_scene_children(&lazy->tree, &lazy->tree.nodes[f->node]);
+    if (index >= 2)
+        return bound_at(lazy, children[index], f->inner);
+    if (isnan(f->bounds[index]))
+        f->bounds[index] = bound_at(lazy, children[index], f->inner);
+    return f->bounds[index];
+}
+
 /* The operand most likely to decide: of a union the one with the largest bound, of an intersection
  * the smallest, of a difference the minuend. */
-static uint32_t choose_first(const csg_lazy *lazy, const frame *f, const csg_node *node)
+static uint32_t choose_first(const csg_lazy *lazy, frame *f, const csg_node *node)
 {
     if (node->kind == CSG_NODE_DIFFERENCE)
         return 0;
-    const csg_node_id *children = csg_scene_children(&lazy->tree, node);
     double sign = operand_sign(node, 0), most = -INFINITY;
     uint32_t first = 0;
     for (uint32_t k = 0; k < node->child_count; k++) {
-        double bound = sign * bound_at(lazy, children[k], f->inner);
+        double bound = sign * operand_bound(lazy, f, k);
         if (bound > most)
             first = k;
         most = fmax(most, bound);
@@ -337,7 +348,7 @@ static bool ask_next(evaluation *e, frame *f)
         if (k == f->first && !begins)
             continue;
         begins = false;
-        double bound = bound_at(lazy, children[k], f->inner);
+        double bound = operand_bound(lazy, f, k);
         if (choosy && is_left_out(lazy, f, k, bound)) {
             e->samples[f->slot + k] = left_out(f, node, k, bound);
             continue;

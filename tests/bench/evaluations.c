@@ -5,15 +5,15 @@
  *     evaluations [--views N] [--size N] SCENE...
  *
  * One line a scene and method, separated by tabs: scene, method, nodes in the tree, rays, hits,
- * evaluations of the field, of nodes, pixels that differ from the plain field's picture, seconds.
- * The tracer is the basic one: start outside, step |f| / lambda until f >= -tolerance or the ray
- * has left the ball around the scene. tools/evaluations makes the table of it.
+ * evaluations of the field, of nodes, pixels that differ from the plain field's picture, seconds of
+ * processor. The tracer is the basic one: start outside, step |f| / lambda until f >= -tolerance or
+ * the ray has left the ball around the scene. tools/evaluations makes the table of it.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-#include "base/clock.h"
 #include "scene/bounds.h"
 #include "scene/lazy.h"
 
@@ -115,7 +115,7 @@ static bool measure(const csgm_scene *scene, const char *name, unsigned views, u
         t.lazy = lazy;
         t.scratch = ok ? malloc(csg_lazy_scratch_bytes(lazy)) : NULL;
         ok = t.scratch;
-        double start = csg_clock_now_s();
+        clock_t start = clock();
         if (ok)
             trace_views(&t, views, size, m ? hits : plain);
         for (size_t i = differ = 0; m && i < rays; i++)
@@ -124,7 +124,7 @@ static bool measure(const csgm_scene *scene, const char *name, unsigned views, u
             printf("%s\t%s\t%llu\t%zu\t%llu\t%llu\t%llu\t%zu\t%.3f\n", name, methods[m].name,
                    (unsigned long long)csg_lazy_node_count(lazy), rays, (unsigned long long)t.hits,
                    (unsigned long long)t.counts.top_level, (unsigned long long)t.counts.total,
-                   differ, csg_clock_now_s() - start);
+                   differ, (double)(clock() - start) / CLOCKS_PER_SEC);
         free(t.scratch);
         csg_lazy_destroy(lazy);
     }
