@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: MIT
+ * The proof; see check_distance.h. Pieces of a few cells' size are made on one thread and settled
+ * on all, eight at a time, since tapes are pruned to eight cubes at a time.
+ */
+#include "mesh/check_distance.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "field/cone.h"
+#include "field/dispatch.h"
+#include "grid/octree.h"
+
+enum { PIECES = 1 << 14, STACK = 64 };
+
+/* Looked at before the proof is given up: all in all, and of one piece that was cut. */
+static const uint64_t MOST_PIECES = 40000000, MOST_OF_ONE = 1000000;
+
+typedef struct piece {
+    csg_vec3 at[3], normal;
+    uint32_t triangle;
+    bool open;
+} piece;
+
+typedef struct settler {
+    csg_pruner pruner;
+    csg_arena arena;
+    csg_tape tape; /* of the piece at hand */
+    float *scratch;
+    uint64_t pieces, by_cone;
+} settler;
+
+typedef struct proof {
+    const csg_remesh *remesh;
+    double error;
+    settler *settlers;
+    size_t settler_count;
+    size_t scratch_floats;
+    piece *pieces;
+    size_t count;
+    uint64_t looked_at; /* before these pieces */
+    atomic_bool out_of_memory;
+} proof;
+
+/* ---- one piece --------------------------------------------------------------------------------
+ */
+
+typedef struct disc {
+    csg_vec3 center;
+    double radius;
+} disc;
+
+static disc disc_of(const csg_vec3 v[3])
+{
+    csg_vec3 c = csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3);
+    double r = 0;
+    for (int k = 0; k < 3; k++)
+        r = fmax(r, csg_vec3_norm(csg_vec3_sub(v[k], c)));
+    return (disc){c, r};
+}
+
+static double value_at(const proof *p, settler *s, csg_vec3 at)
+{
+    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
+    for (int i = 0; i < CSG_LANES; i++) {
+        x[i] = (float)at.x;
+        y[i] = (float)at.y;
+        z[i] = (float)at.z;
+    }
+    p->remesh->probe.marching->kernel->values(&s->tape, x, y, z, 1, f, s->scratch,
+                                              p->scratch_floats);
+    return (double)f[0];
+}
+
+/* Least climb of f against the normal, and most along the triangle, within a ball. */
+typedef struct slopes {
+    double climb, along;
+} slopes;
+
+static bool find_slopes(const csg_tape *tape, csg_vec3 c, double radius, csg_vec3 normal,
+                        slopes *out)
+{
+    csg_cone_balls balls;
+    balls.count = 0;
+    balls.has_edges = false;
+    const float at[3] = {(float)c.x, (float)c.y, (float)c.z};
+    bool stretched = false; /* weights of gradients may add up to more than 1 */
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op) ? !csg_cone_add_leaf(&balls, tape, node, at, radius)
+                                     : csg_op_takes_all(node->op) && !csg_op_is_round(node->op))
+            return false;
+        stretched |=
+            node->blend == CSG_BLEND_ORTHOGONAL || node->join_blend == CSG_BLEND_ORTHOGONAL;
+    }
+    *out = (slopes){INFINITY, 0};
+    for (uint32_t i = 0; i < balls.count; i++) {
+        csg_vec3 g = {balls.items[i].at[0], balls.items[i].at[1], balls.items[i].at[2]};
+        double up = -csg_vec3_dot(g, normal);
+        csg_vec3 flat = csg_vec3_add(g, csg_vec3_scale(normal, up));
+        out->climb = fmin(out->climb, up - balls.items[i].spread);
+        out->along = fmax(out->along, csg_vec3_norm(flat) + balls.items[i].spread);
+    }
+    if (stretched || balls.has_edges) /* sqrt(2) at an orthogonal edge, sqrt(3) at a box's corner */
+        out->along *= 2.5;
+    out->along = fmin(out->along, (double)tape->lipschitz);
+    return balls.count > 0 && out->climb > 0;
+}
+
+/* Rounding of places and values is kept clear of, twice over. */
+static double slack_of(const proof *p)
+{
+    return 4 * (double)p->remesh->probe.noise;
+}
+
+static bool settles_by_cone(const proof *p, settler *s, disc d, csg_vec3 normal)
+{
+    slopes slope;
+    if (!find_slopes(&s->tape, d.center, d.radius + p->error, normal, &slope))
+        return false;
+    double f = fabs(value_at(p, s, d.center)) + slack_of(p);
+    return f + slope.along * d.radius <= slope.climb * p->error;
+}
+
+static bool settles_by_signs(const proof *p, settler *s, disc d, csg_vec3 normal)
+{
+    double least = (double)s->tape.lipschitz * d.radius + slack_of(p);
+    csg_vec3 step = csg_vec3_scale(normal, p->error);
+    return value_at(p, s, csg_vec3_add(d.center, step)) < -least &&
+           value_at(p, s, csg_vec3_sub(d.center, step)) > least;
+}
+
+/* Thin walls, sharp tips: a change of sign in any direction will do. */
+static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, csg_vec3 side)
+{
+    csg_vec3 other = csg_vec3_cross(normal, side);
+    bool inside = false, outside = false;
+    double reach = p->error - d.radius;
+    for (int ring = 0; ring < 4 && !(inside && outside); ring++, reach /= 4)
+        for (int i = 0; i < 10 && !(inside && outside); i++) {
+            static const double way[10][3] = {
+                {0, 0, 1},  {0, 0, -1},    {1, 0, 0},      {-1, 0, 0},     {0, 1, 0},
+                {0, -1, 0}, {0.7, 0.7, 0}, {-0.7, 0.7, 0}, {0.7, -0.7, 0}, {-0.7, -0.7, 0}};
+            csg_vec3 off = csg_vec3_add(
+                csg_vec3_scale(normal, way[i][2]),
+                csg_vec3_add(csg_vec3_scale(side, way[i][0]), csg_vec3_scale(other, way[i][1])));
+            double f = value_at(p, s, csg_vec3_add(d.center, csg_vec3_scale(off, reach)));
+            inside |= f > slack_of(p);
+            outside |= f < -slack_of(p);
+        }
+    return inside && outside;
+}
+
+static bool settles(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal)
+{
+    disc d = disc_of(v);
+    s->pieces++;
+    if (settles_by_cone(p, s, d, normal)) {
+        s->by_cone++;
+        return true;
+    }
+    if (d.radius <= 1.5 * p->error && settles_by_signs(p, s, d, normal))
+        return true;
+    csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
+    return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side);
+}
+
+/* The two halves by the middle of the longest side; false: small enough to give up. */
+static bool bisect(const csg_vec3 v[3], double least, csg_vec3 (*halves)[3])
+{
+    int longest = 0;
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        double length = csg_vec3_norm(csg_vec3_sub(v[(k + 1) % 3], v[k]));
+        if (length > most) {
+            most = length;
+            longest = k;
+        }
+    }
+    if (!(most > least))
+        return false;
+    csg_vec3 a = v[longest], b = v[(longest + 1) % 3], c = v[(longest + 2) % 3];
+    csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5);
+    const csg_vec3 first[3] = {a, middle, c}, second[3] = {middle, b, c};
+    memcpy(halves[0], first, sizeof first);
+    memcpy(halves[1], second, sizeof second);
+    return true;
+}
+
+/* Depth first: the stack holds one half for each time the piece was cut. */
+static bool settle_piece(const proof *p, settler *s, const piece *whole)
+{
+    csg_vec3 stack[STACK][3];
+    size_t top = 1;
+    uint64_t most = s->pieces + MOST_OF_ONE;
+    memcpy(stack[0], whole->at, sizeof whole->at);
+    while (top) {
+        csg_vec3 v[3];
+        memcpy(v, stack[--top], sizeof v);
+        if (settles(p, s, v, whole->normal))
+            continue;
+        if (top + 2 > STACK || s->pieces > most || !bisect(v, p->error / 16, &stack[top]))
+            return false;
+        top += 2;
+    }
+    return true;
+}
+
+/* ---- eight at a time ---------------------------------------------------------------------------
+ */
+
+/* The tape for one of eight cubes that were handed to the pruner; false: no surface in it. */
+static bool take_tape(proof *p, settler *s, int lane)
+{
+    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
+    float tau = (float)(2.5 * (double)whole->lipschitz * p->error);
+    s->tape = *whole;
+    if (csg_prune_state(&s->pruner, lane) != CSG_CELL_SURFACE)
+        return false;
+    if (csg_prune_shorten(&s->pruner, lane, tau, &s->arena, &s->tape))
+        return true;
+    atomic_store(&p->out_of_memory, true);
+    return false;
+}
+
+static bool settle_group(void *user, uint32_t worker, size_t group)
+{
+    proof *p = user;
+    settler *s = &p->settlers[worker];
+    float c[3][CSG_OCTANTS];
+    double most = 0;
+    size_t first = group * CSG_OCTANTS;
+    for (size_t i = 0; i < CSG_OCTANTS; i++) {
+        size_t at = first + i < p->count ? first + i : p->count - 1;
+        disc d = disc_of(p->pieces[at].at);
+        c[0][i] = (float)d.center.x;
+        c[1][i] = (float)d.center.y;
+        c[2][i] = (float)d.center.z;
+        most = fmax(most, d.radius);
+    }
+    /* a cube is told by the ball around it, and holds the ball that is needed */
+    float radius = (float)(1.733 * (most + 2.1 * p->error));
+    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
+    if (!csg_prune_octants(&s->pruner, whole, c[0], c[1], c[2], radius)) {
+        atomic_store(&p->out_of_memory, true);
+        return false;
+    }
+    for (size_t i = 0; i < CSG_OCTANTS && first + i < p->count; i++) {
+        csg_arena_mark mark = csg_arena_get_mark(&s->arena);
+        piece *one = &p->pieces[first + i];
+        one->open = !take_tape(p, s, (int)i) || !settle_piece(p, s, one);
+        csg_arena_release_to(&s->arena, mark);
+    }
+    return !atomic_load(&p->out_of_memory) && !csg_mesh_should_stop(p->remesh->work);
+}
+
+/* ---- all of them -------------------------------------------------------------------------------
+ */
+
+static csgm_status settle_pieces(proof *p, uint8_t *unsettled, csg_distance_proof *out)
+{
+    csg_mesh_work *w = p->remesh->work;
+    size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
+    bool done = csg_pool_run(w->context->pool, groups, settle_group, NULL, p);
+    if (atomic_load(&p->out_of_memory))
+        return csg_context_no_memory(w->context);
+    if (!done)
+        return csg_mesh_why_stopped(w);
+    for (size_t i = 0; i < p->count; i++) {
+        if (!p->pieces[i].open)
+            continue;
+        if (!out->open++)
+            out->place = disc_of(p->pieces[i].at).center;
+        if (unsettled)
+            unsettled[p->pieces[i].triangle] = 1;
+    }
+    p->count = 0;
+    p->looked_at = 0;
+    for (size_t i = 0; i < p->settler_count; i++)
+        p->looked_at += p->settlers[i].pieces;
+    out->stopped = p->looked_at > MOST_PIECES;
+    return CSGM_OK;
+}
+
+/* Cuts a triangle into pieces of a few cells and settles them whenever there are enough. */
+static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *unsettled,
+                                  csg_distance_proof *out)
+{
+    const csg_remesh *r = p->remesh;
+    csg_vec3 stack[STACK][3];
+    size_t top = 1;
+    for (uint32_t k = 0; k < 3; k++)
+        stack[0][k] = csg_remesh_corner(r, 3 * triangle + k);
+    csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(stack[0][0], stack[0][1], stack[0][2]));
+    while (top && !out->stopped) {
+        csg_vec3 v[3];
+        memcpy(v, stack[--top], sizeof v);
+        if (top + 2 <= STACK && bisect(v, 4 * r->cell, &stack[top])) {
+            top += 2;
+            continue;
+        }
+        if (p->count == PIECES) {
+            csgm_status status = settle_pieces(p, unsettled, out);
+            if (status != CSGM_OK)
+                return status;
+        }
+        piece *one = &p->pieces[p->count++];
+        memcpy(one->at, v, sizeof v);
+        one->normal = normal;
+        one->triangle = triangle;
+    }
+    return CSGM_OK;
+}
+
+static bool begin(proof *p)
+{
+    const csg_mesh_work *w = p->remesh->work;
+    csg_memory *memory = p->remesh->memory;
+    p->settler_count = csg_pool_threads(w->context->pool);
+    p->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
+    p->pieces = csg_memory_alloc(memory, PIECES * sizeof *p->pieces);
+    p->settlers = csg_memory_alloc(memory, p->settler_count * sizeof *p->settlers);
+    if (!p->pieces || !p->settlers)
+        return false;
+    bool done = true;
+    for (size_t i = 0; i < p->settler_count; i++) {
+        settler *s = &p->settlers[i];
+        *s = (settler){0};
+        csg_pruner_init(&s->pruner, memory, w->marching.kernel, csg_octree_rounding(&w->lattice));
+        csg_arena_init(&s->arena, memory);
+        s->scratch = csg_memory_alloc(memory, p->scratch_floats * sizeof(float));
+        done = done && s->scratch;
+    }
+    return done;
+}
+
+static void end(proof *p)
+{
+    csg_memory *memory = p->remesh->memory;
+    for (size_t i = 0; p->settlers && i < p->settler_count; i++) {
+        csg_pruner_release(&p->settlers[i].pruner);
+        csg_arena_reset(&p->settlers[i].arena);
+        csg_memory_release(memory, p->settlers[i].scratch, p->scratch_floats * sizeof(float));
+    }
+    csg_memory_release(memory, p->pieces, PIECES * sizeof *p->pieces);
+    csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
+}
+
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *unsettled,
+                               csg_distance_proof *out)
+{
+    proof p = {.remesh = remesh, .error = error};
+    *out = (csg_distance_proof){0};
+    csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->work->context);
+    const csg_corners *m = &remesh->corners;
+    for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
+        if (csg_corners_is_live(m, t))
+            status = prove_triangle(&p, t, unsettled, out);
+    if (status == CSGM_OK && p.count && !out->stopped)
+        status = settle_pieces(&p, unsettled, out);
+    for (size_t i = 0; p.settlers && i < p.settler_count; i++) {
+        out->pieces += p.settlers[i].pieces;
+        out->by_cone += p.settlers[i].by_cone;
+    }
+    end(&p);
+    return status;
+}

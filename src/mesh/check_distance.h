@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * A proof that no point of a mesh is farther than E from the surface, of the field and not of
+ * samples of it. Triangles are bisected until each piece, of centroid c and radius r, is settled by
+ * one of these, with the tape pruned to the piece's neighbourhood:
+ *
+ *   cone     gradients of the leaves there (field/cone.h): against the normal f climbs by at least
+ *            m, along the triangle by at most s: |f(c)| + s r <= m E. Of the order of sqrt(E /
+ *            curvature), so that smooth parts are settled by large pieces.
+ *   signs    f(c + E n) <= -lambda r and f(c - E n) >= lambda r: the signs hold for all of the
+ * piece nearby   f changes its sign within E - r of c
+ *
+ * Every piece that is settled has the surface within E on the line through each of its points; and
+ * where a cone settled it, just once: the surface near it is one sheet, so it is within E of the
+ * mesh too.
+ */
+#ifndef CSG_MESH_CHECK_DISTANCE_H
+#define CSG_MESH_CHECK_DISTANCE_H
+
+#include "mesh/remesh.h"
+
+typedef struct csg_distance_proof {
+    uint64_t pieces;  /* looked at */
+    uint64_t by_cone; /* settled so */
+    uint64_t open;    /* could not be settled */
+    csg_vec3 place;   /* of the first of these, field frame */
+    bool stopped;     /* it would have taken too long: nothing is known */
+} csg_distance_proof;
+
+/* unsettled (may be NULL): per triangle, set where a piece stayed open, else left alone. CSGM_OK or
+ * why it was stopped. */
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *unsettled,
+                               csg_distance_proof *out);
+
+#endif

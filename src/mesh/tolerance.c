@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ * Resolution, tries, and what is said at the end; see tolerance.h.
+ */
+#include "mesh/tolerance.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "mesh/check_distance.h"
+#include "mesh/decimate.h"
+#include "mesh/improve.h"
+
+/* ---- which resolution -------------------------------------------------------------------------
+ */
+
+static int compare(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* How far the triangles of equal cells stray from the surface, but for a thousandth of them, and
+ * for those that cut off a crease: these do not get better with the square of the cell. */
+static bool find_deviation(csg_remesh *r, double *out)
+{
+    static const double CUT = 0.1; /* of the longest side */
+    size_t count = r->corners.triangle_count, n = 0;
+    float *values = csg_memory_alloc(r->memory, count * sizeof *values);
+    if (!values)
+        return false;
+    csg_remesh_values_at_centroids(r, values);
+    for (uint32_t t = 0; t < count; t++) {
+        csg_vec3 a = csg_remesh_corner(r, 3 * t), b = csg_remesh_corner(r, 3 * t + 1);
+        double side = csg_vec3_norm(csg_vec3_sub(a, b)), f = fabs((double)values[t]);
+        if (f < CUT * fmax(side, 0.5 * r->cell))
+            values[n++] = (float)f;
+    }
+    qsort(values, n, sizeof *values, compare);
+    *out =
+        n ? (double)values[n - 1 - n / 1000] / (double)r->probe.marching->field->tape.lipschitz : 0;
+    csg_memory_release(r->memory, values, count * sizeof *values);
+    return true;
+}
+
+/* Cells whose triangles stray by less than a third of the error: theirs grows with their square. */
+static csgm_status choose_cells(csg_remesh *r, csg_mesh_goal *goal)
+{
+    static const double ROOM = 0.3, CLOSE_ENOUGH = 0.8, LEAST_STEP = 0.2;
+    double deviation;
+    if (!find_deviation(r, &deviation))
+        return csg_context_no_memory(r->work->context);
+    double factor = sqrt(ROOM * goal->error / fmax(deviation, 1e-30));
+    if (factor < CLOSE_ENOUGH && !goal->is_last)
+        goal->cell_size = r->cell * fmax(factor, LEAST_STEP);
+    return CSGM_OK;
+}
+
+/* ---- one try ----------------------------------------------------------------------------------
+ */
+
+/* With errors that double until few enough triangles are left. */
+static csgm_status reach_share(csg_decimation *d, csg_mesh_goal *goal)
+{
+    csg_remesh *r = d->remesh;
+    uint32_t least = (uint32_t)ceil(goal->share * (double)goal->begun);
+    double most = 0.25 * csg_lattice_extent(&r->work->lattice);
+    csgm_status status = CSGM_OK;
+    r->error = r->cell / 64;
+    for (;;) {
+        status = csg_decimate(d, least);
+        if (status != CSGM_OK || r->corners.live <= least + 1 || r->error * 2 > most)
+            break;
+        r->error *= 2;
+    }
+    goal->tight = r->corners.live > least + 1;
+    return status;
+}
+
+static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal)
+{
+    csg_decimation d;
+    r->error = goal->care * goal->error;
+    csgm_status status = csg_decimation_begin(&d, r);
+    if (status != CSGM_OK)
+        return status;
+    status = goal->share > 0 ? reach_share(&d, goal) : csg_decimate(&d, 4);
+    goal->measured = csg_decimation_largest_distance(&d);
+    csg_decimation_end(&d);
+    return status;
+}
+
+/* The bound that is proven: of what is allowed if nothing was asked for. */
+static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
+{
+    csg_distance_proof proof;
+    goal->allowed = goal->error > 0 ? goal->error : r->error / goal->care;
+    csgm_status status = csg_check_distance(r, goal->allowed, NULL, &proof);
+    if (status != CSGM_OK)
+        return status;
+    goal->open = proof.stopped && !proof.open ? 1 : proof.open;
+    goal->bound = goal->open || proof.stopped ? INFINITY : goal->allowed;
+    goal->place = csg_vec3_add(proof.place, r->work->field->center);
+    return CSGM_OK;
+}
+
+/* Improving alone may stray from the surface as far as the triangles do already. */
+static csgm_status improve(csg_remesh *r, csg_mesh_goal *goal)
+{
+    if (!(goal->error > 0) && !(goal->share > 0))
+        r->error = 0.1 * r->cell;
+    return csg_improve(r);
+}
+
+static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
+{
+    goal->begun = r->corners.live;
+    csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
+    if (status != CSGM_OK || goal->cell_size > 0)
+        return status;
+    bool thins = goal->error > 0 || goal->share > 0;
+    if (thins)
+        status = thin_out(r, goal);
+    if (status == CSGM_OK && goal->improve)
+        status = improve(r, goal);
+    if (status == CSGM_OK && thins)
+        status = prove(r, goal);
+    if (status == CSGM_OK && goal->open && !goal->is_last)
+        goal->cell_size = goal->chooses ? 0.6 * r->cell : r->cell;
+    if (status == CSGM_OK && !(goal->cell_size > 0))
+        status = csg_remesh_write_back(r, goal->normals != CSGM_NORMALS_NONE,
+                                       goal->normals == CSGM_NORMALS_CREASE);
+    return status;
+}
+
+csgm_status csg_mesh_reshape(csg_mesh_work *work)
+{
+    csg_remesh remesh;
+    double begin_s = csg_clock_now_s();
+    csgm_status status = csg_remesh_begin(&remesh, work);
+    if (status == CSGM_OK) {
+        status = reshape(&remesh, work->goal);
+        csg_remesh_end(&remesh);
+    }
+    work->goal->reshape_s += csg_clock_now_s() - begin_s;
+    return status;
+}
+
+/* ---- all tries ---------------------------------------------------------------------------------
+ */
+
+static void tell(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
+{
+    if (goal->open)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
+                       chooses ? "raise the tolerance"
+                               : "raise -r, or give -e alone: it chooses the resolution",
+                       "at %llu places the mesh could not be shown to be within %g of the surface, "
+                       "first at %g,%g,%g",
+                       (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
+                       goal->place.z);
+    if (goal->tight)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, NULL,
+                       "fewer triangles were asked for than the shape allows");
+}
+
+static void fill_stats(csgm_mesh_stats *stats, const csg_mesh_goal *goal)
+{
+    stats->reshape_s = goal->reshape_s;
+    stats->triangles_before = goal->begun;
+    if (!(goal->error > 0) && !(goal->share > 0))
+        return;
+    stats->is_measured = true;
+    stats->max_distance_bound = goal->bound;
+    stats->max_distance_measured = goal->measured;
+    stats->distance_allowed = goal->allowed;
+    stats->open_places = goal->open;
+}
+
+static double longest_side(const csgm_field *field, const csgm_mesh_options *options)
+{
+    csg_box box = csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
+    csg_vec3 size = csg_box_size(box);
+    return fmax(size.x, fmax(size.y, size.z));
+}
+
+csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *field,
+                                    const csgm_mesh_options *options, const csg_mesh_share *share,
+                                    csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    enum { MOST_TRIES = 7, FIRST_CELLS = 96, MOST_CELLS = 1500 };
+    csgm_mesh_options base = *options;
+    csg_mesh_goal goal = {
+        .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,
+        .share = options->simplify_share,
+        .improve = options->improve,
+        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0),
+        .normals = options->normals,
+        .care = 0.85,
+        .started_s = csg_clock_now_s()};
+    base.normals = CSGM_NORMALS_NONE;
+    if (goal.chooses)
+        base.resolution = FIRST_CELLS;
+    double least = longest_side(field, options) / MOST_CELLS;
+    csgm_status status;
+    for (;; goal.tries++) {
+        goal.is_last = goal.tries + 1 >= MOST_TRIES ||
+                       (goal.chooses && base.cell_size > 0 && base.cell_size <= least) ||
+                       (!goal.chooses && goal.tries + 1 >= 2);
+        goal.cell_size = 0;
+        status = csg_mesh_build_with(context, field, &base, share, &goal, out, stats);
+        if (status != CSGM_OK || !(goal.cell_size > 0))
+            break;
+        csg_mesh_destroy(*out);
+        if (goal.open)
+            goal.care *= 0.8;
+        goal.open = 0;
+        base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
+    }
+    if (status != CSGM_OK)
+        return status;
+    tell(context, &goal, goal.chooses);
+    if (stats)
+        fill_stats(stats, &goal);
+    return CSGM_OK;
+}
