@@ -129,6 +129,7 @@ class Statistics(cli.CliTest):
             "grid": ["cell_size", "cells"],
             "evaluations": ["interval", "points", "gradient", "primitive", "mean_tape_length"],
             "octree": ["visited", "pruned_outside", "pruned_inside", "leaf_blocks"],
+            "features": ["vertices", "left_smooth"],
             "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
                      "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
                      "volume", "bounds"],

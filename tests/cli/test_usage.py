@@ -74,13 +74,6 @@ class Mistakes(cli.CliTest):
         self.refused("check", "a.txt", "-o", "a.glb", words=["does not apply"])
         self.refused("a.txt", "--at", "1,2,3", "-o", "a.glb", words=["does not apply"])
 
-    def test_later_versions(self):
-        for option in (["-e", "1"], ["--tolerance=1"], ["--simplify", "5%"], ["--certify"],
-                       ["--features", "sharp"], ["--normals", "crease"]):
-            self.refused("a.txt", "-o", "a.glb", *option, words=["not available in this version"])
-        for command in ("diff", "render", "batch"):
-            self.refused(command, "a.txt", words=["not available in this version"])
-
     def test_values(self):
         for option in (["-r", "0"], ["-r", "12x"], ["-r", "-5"], ["-r", "99999999999"], ["-s", "0"],
                        ["-s", "nan"], ["-s", "inf"], ["--bounds", "0,0,0,1,1"],
