@@ -45,6 +45,8 @@ static void sample_points(csg_block_samples *samples, const csg_kernel *kernel,
     fill_coordinates(samples, lattice, first, n);
     kernel->values(tape, samples->x, samples->y, samples->z, n * n * n, samples->f, scratch,
                    scratch_floats);
+    if (samples->scan)
+        csg_scan_values(samples->scan, samples->f, n, first);
 }
 
 /* The whole block with one tape. */

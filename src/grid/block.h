@@ -11,6 +11,7 @@
 
 #include "field/prune.h"
 #include "grid/lattice.h"
+#include "grid/scan.h"
 
 /* An eighth of a block, 4^3 cells, with its own tape: used where the block's tape is long. */
 typedef struct csg_block_part {
@@ -43,6 +44,7 @@ typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];
     float f[CSG_BLOCK_POINTS_PADDED];
     uint8_t inside[CSG_BLOCK_POINTS_PADDED];
+    csg_scan *scan; /* looks at the values before they are forgotten; NULL = nobody does */
 } csg_block_samples;
 
 /* Fills everything but the triangle and first_* members; block->parts is set already. False: no

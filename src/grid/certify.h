@@ -52,4 +52,11 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
                             const csg_lattice *lattice, const csg_certify_options *options,
                             csg_certify_report *report);
 
+/* Without certifying: follows some of the octree's doubts (octree.h) to the lattice. False: none of
+ * them is a part missed; else *place is the thickest of those found, cells is the number of blocks
+ * with doubts. *status: CSGM_OK or CSGM_ERR_MEMORY (reported). */
+bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const csg_lattice *lattice,
+                        csg_octree *octree, csg_certify_place *place, uint64_t *edges,
+                        csgm_status *status);
+
 #endif

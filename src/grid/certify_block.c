@@ -20,6 +20,7 @@
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
 static const double FAR = 2.5; /* cells */
 static const double NEAR = 3;  /* radii of the cube */
+static const double LOCAL = 1.3;
 
 enum {
     MOST_VISITS = 4096,       /* of cubes, a cell */
@@ -101,14 +102,14 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
     return find(w, cell, kind, sign, &end);
 }
 
-/* What holds of both sides of a cube: they reach the lattice, or the cell says why not. */
-static bool follow_both(csg_certify_worker *w, const csg_certify_cube *cube, const double p[2][3],
+/* What holds of both ends of a cube: they reach the lattice, or the cell says why not. */
+static bool follow_ends(csg_certify_worker *w, const csg_certify_cube *cube, const double p[2][3],
                         const double values[2], csg_cell_kind kind)
 {
     bool settled = true;
-    if (!follow(w, cube->cell, p[0], values[0], 1, &settled) ||
-        !follow(w, cube->cell, p[1], values[1], -1, &settled))
-        return false;
+    for (int side = 0; side < 2; side++)
+        if (!follow(w, cube->cell, p[side], values[side], values[side] >= 0 ? 1 : -1, &settled))
+            return false;
     if (settled)
         note(w, cube->cell, kind);
     return true;
@@ -148,6 +149,21 @@ static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, cs
            cone->least * (FAR - 0.05) > 0.5 * ROOT3 * w->reach.lipschitz * 1.01;
 }
 
+/* Whether the balls around two points, `apart` along a line through the cube's centre, leave a
+ * layer of the cube's ball thinner than the size. */
+static bool balls_cover(const csg_certify_worker *w, double r, double apart, const double values[2])
+{
+    double layer = apart;
+    for (int side = 0; side < 2; side++) {
+        double value = fmin(fabs(values[side]), w->local.band);
+        double radius = value / w->local.lipschitz * (1 - 0x1p-12);
+        if (!(radius > r))
+            return false;
+        layer -= sqrt(radius * radius - r * r);
+    }
+    return layer <= w->size;
+}
+
 /* Near cone or balls; *settled tells whether the cube needs no division. */
 static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
 {
@@ -156,16 +172,16 @@ static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *se
     *settled = false;
     if (cone_of(w, cube, (1 + NEAR) * r, &cone)) {
         along(cube, cone.axis, NEAR * r, p);
-        csg_reach_values(&w->reach, (const double(*)[3])p, 2, values);
+        csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
         *settled = fmin(values[0], w->reach.band) > need && fmin(-values[1], w->reach.band) > need;
         if (*settled)
-            return follow_both(w, cube, (const double(*)[3])p, values,
+            return follow_ends(w, cube, (const double(*)[3])p, values,
                                cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
     }
     float c[3][CSG_LANES] = {{0}}, g[3][CSG_LANES];
     for (int axis = 0; axis < 3; axis++)
         c[axis][0] = (float)cube->c[axis];
-    w->reach.kernel->gradients(w->reach.tape, c[0], c[1], c[2], 1, g[0], g[1], g[2],
+    w->reach.kernel->gradients(w->local.tape, c[0], c[1], c[2], 1, g[0], g[1], g[2],
                                w->reach.scratch, w->reach.scratch_floats);
     double axis[3] = {(double)g[0][0], (double)g[1][0], (double)g[2][0]};
     double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -173,21 +189,15 @@ static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *se
         return true;
     for (int k = 0; k < 3; k++)
         axis[k] /= norm;
-    for (double t = 1; t > 0.1 && !*settled; t /= 2.5) {
-        double up = t * w->lattice->cell_size, radius[2], layer = 2 * up;
-        along(cube, axis, up, p);
-        csg_reach_values(&w->reach, (const double(*)[3])p, 2, values);
-        for (int side = 0; side < 2; side++) {
-            double value = side ? -values[1] : values[0];
-            radius[side] = fmin(value, w->reach.band) / w->reach.lipschitz * (1 - 0x1p-12);
-            layer -= radius[side] > r ? sqrt(radius[side] * radius[side] - r * r) : 0;
-        }
-        *settled = radius[0] > r && radius[1] > r && layer <= w->size;
+    for (double t = 1; t > 0.1; t /= 2.5) {
+        along(cube, axis, t * w->lattice->cell_size, p);
+        csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
+        if (!balls_cover(w, r, 2 * t * w->lattice->cell_size, values))
+            continue;
+        *settled = w->reached_size = true;
+        return follow_ends(w, cube, (const double(*)[3])p, values, CSG_CELL_REFINED);
     }
-    if (!*settled)
-        return true;
-    w->reached_size = true;
-    return follow_both(w, cube, (const double(*)[3])p, values, CSG_CELL_REFINED);
+    return true;
 }
 
 /* A cube that is not divided any more. */
@@ -195,7 +205,7 @@ static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     double value;
     bool settled = true;
-    csg_reach_values(&w->reach, (const double(*)[3])cube->c, 1, &value);
+    csg_reach_values(&w->local, (const double(*)[3])cube->c, 1, &value);
     w->reached_size = true;
     if (!follow(w, cube->cell, cube->c, value, value >= 0 ? 1 : -1, &settled))
         return false;
@@ -217,6 +227,8 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
     csg_cone cone;
     bool settled = false, is_cell = 2 * cube->half > 0.75 * w->lattice->cell_size;
     *divide = false;
+    if (is_cell)
+        w->local = w->reach;
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;
     if (!is_within_budget(w, cube)) {
@@ -246,9 +258,28 @@ static bool push(csg_certify_worker *w, const csg_certify_cube *cube)
     return true;
 }
 
+/* The tape for all that is looked at within a cell, up to LOCAL cells away from it; ways to the
+ * lattice lead further. */
+static bool localize(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    float c[3][CSG_OCTANTS];
+    double h = w->lattice->cell_size, reach = cube->half + LOCAL * h;
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        for (int axis = 0; axis < 3; axis++)
+            c[axis][o] = (float)cube->c[axis];
+    w->local = w->reach;
+    w->local.tape = &w->local_tape;
+    return csg_prune_octants(&w->plain, w->reach.tape, c[0], c[1], c[2],
+                             (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
+           csg_prune_shorten(&w->plain, 0, (float)w->reach.band, &w->tapes, &w->local_tape);
+}
+
 /* The eighths of a cube that are not empty, with tapes for what their cones need. */
 static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
 {
+    if (2 * cube->half < 1.5 * w->lattice->cell_size &&
+        2 * cube->half > 0.75 * w->lattice->cell_size && !localize(w, cube))
+        return false;
     csg_tape tape = tape_of(w, cube), shorter;
     double h = w->lattice->cell_size, half = cube->half / 2, r = ROOT3 * half;
     bool is_small = 2 * half < 1.5 * h;
@@ -305,6 +336,7 @@ static void place_reach(csg_certify_worker *w, const csg_tape *tape)
 {
     double h = w->lattice->cell_size;
     w->reach.tape = tape;
+    w->local = w->reach;
     for (int axis = 0; axis < 3; axis++) {
         double from =
             (double)csg_lattice_coordinate(w->lattice, axis, w->block.at[axis] * CSG_BLOCK_EDGE);
@@ -318,6 +350,7 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
     double h = w->lattice->cell_size;
     memcpy(w->block.at, at, sizeof w->block.at);
     w->block.parts = NULL;
+    w->samples->scan = NULL;
     csg_block_sample(&w->block, w->reach.kernel, tape, w->lattice, at, w->samples, w->reach.scratch,
                      w->reach.scratch_floats);
     memset(w->kinds, 0, sizeof w->kinds);

@@ -37,7 +37,8 @@ typedef struct csg_certify_worker {
     double size; /* where dividing ends */
     csg_pruner plain, wide;
     csg_arena tapes;
-    csg_reach reach;
+    csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
+    csg_tape local_tape;
     csg_block block;
     csg_block_samples *samples;
     csg_certify_cube *stack;

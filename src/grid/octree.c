@@ -5,9 +5,11 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/pool.h"
+#include "field/cone.h"
 #include "field/dispatch.h"
 #include "field/prune.h"
 
@@ -42,6 +44,8 @@ typedef struct worker {
     float *scratch;
     size_t scratch_floats;
     csg_octree_stats stats;
+    csg_scan *doubts;
+    size_t doubt_count, doubt_capacity;
 } worker;
 
 struct csg_octree {
@@ -52,8 +56,12 @@ struct csg_octree {
     const csg_kernel *kernel;
     worker *workers;
     uint32_t worker_count;
-    float tau;   /* the band: by how much f can change along a lattice edge */
-    cell *cells; /* the level being split; at the end the frontier */
+    csg_scan *doubts; /* of all workers, once asked for */
+    size_t doubt_count;
+    size_t scanned; /* frontier cells whose samples were looked at */
+    bool scans;     /* in the sampling at hand */
+    float tau;      /* the band: by how much f can change along a lattice edge */
+    cell *cells;    /* the level being split; at the end the frontier */
     size_t cell_count;
     size_t first_cell, end_cell; /* of them, those being split */
     size_t cells_per_item;
@@ -175,6 +183,29 @@ static void count_samples(worker *self, const csg_tape *tape)
     stats->tape_nodes_sampled += nodes / CSG_OCTANTS;
 }
 
+/* Only where the field may not climb in one direction all over the block can it hide anything. */
+static bool begin_scan(const walk *w, csg_scan *scan, const uint32_t at[3], const csg_tape *tape)
+{
+    csg_cone cone;
+    float c[3];
+    for (int axis = 0; axis < 3; axis++)
+        c[axis] = csg_lattice_coordinate(w->lattice, axis,
+                                         at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
+    *scan = (csg_scan){.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
+    return !csg_cone_find(tape, c, (double)ball_radius(w, CSG_BLOCK_EDGE / 2), &cone);
+}
+
+static bool keep_doubt(walk *w, worker *self, const csg_scan *scan)
+{
+    if (!(scan->doubt > 0))
+        return true;
+    if (!csg_memory_reserve(&w->context->memory, (void **)&self->doubts, &self->doubt_capacity,
+                            self->doubt_count + 1, sizeof *scan))
+        return false;
+    self->doubts[self->doubt_count++] = *scan;
+    return true;
+}
+
 static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
 {
     csg_arena_mark mark = csg_arena_get_mark(&self->tapes[0]);
@@ -182,8 +213,13 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
     if (w->options.prune && tape->count > LONG_TAPE && !split_block(w, self, at, tape))
         return false;
     count_samples(self, tape);
-    if (!csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, self->samples,
-                          self->scratch, self->scratch_floats)) {
+    csg_scan scan = {0};
+    self->samples->scan = w->scans && begin_scan(w, &scan, at, tape) ? &scan : NULL;
+    bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at,
+                                    self->samples, self->scratch, self->scratch_floats);
+    if (!keep_doubt(w, self, &scan))
+        return false;
+    if (!crossed) {
         csg_arena_release_to(&self->tapes[0], mark);
         return true;
     }
@@ -393,6 +429,7 @@ static void release_workers(walk *w)
         csg_arena_reset(&self->tapes[1]);
         csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));
         csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block *));
+        csg_memory_release(memory, self->doubts, self->doubt_capacity * sizeof *self->doubts);
         csg_memory_release(memory, self->samples, sizeof *self->samples);
         csg_memory_release(memory, self->scratch, self->scratch_floats * sizeof(float));
     }
@@ -474,6 +511,7 @@ void csg_octree_destroy(csg_octree *w)
     csg_memory *memory = &w->context->memory;
     forget_blocks(w);
     release_workers(w);
+    csg_memory_release(memory, w->doubts, w->doubt_count * sizeof *w->doubts);
     csg_memory_release(memory, w->cells, w->cell_count * sizeof(cell));
     csg_memory_release(memory, w, sizeof *w);
 }
@@ -500,6 +538,8 @@ csgm_status csg_octree_sample(csg_octree *w, size_t first, size_t end)
     w->level = 0;
     w->first_cell = first;
     w->end_cell = end;
+    w->scans = w->options.scan && first >= w->scanned; /* a slab is sampled twice */
+    w->scanned = end > w->scanned ? end : w->scanned;
     if (!run_level(w, sizeof(csg_block *), &blocks, &w->block_count)) {
         w->block_count = 0;
         return why_stopped(w);
@@ -540,6 +580,36 @@ bool csg_octree_is_before_sampled(const csg_octree *w, const uint32_t at[3])
 {
     uint32_t cube[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
     return is_before(cube, w->cells[w->first_cell].at);
+}
+
+static int compare_doubts(const void *a, const void *b)
+{
+    const csg_scan *one = a, *other = b;
+    for (int axis = 2; axis >= 0; axis--)
+        if (one->point[axis] != other->point[axis])
+            return one->point[axis] < other->point[axis] ? -1 : 1;
+    return one->axis < other->axis ? -1 : one->axis > other->axis;
+}
+
+const csg_scan *csg_octree_doubts(csg_octree *w, size_t *count, uint64_t *edges)
+{
+    *edges = 0;
+    *count = 0;
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        *count += w->workers[i].doubt_count;
+    csg_memory_release(&w->context->memory, w->doubts, w->doubt_count * sizeof *w->doubts);
+    w->doubt_count = 0;
+    w->doubts = *count ? csg_memory_alloc(&w->context->memory, *count * sizeof *w->doubts) : NULL;
+    for (uint32_t i = 0; w->doubts && i < w->worker_count; i++) {
+        const worker *from = &w->workers[i];
+        for (size_t k = 0; k < from->doubt_count; k++) {
+            *edges += from->doubts[k].count;
+            w->doubts[w->doubt_count++] = from->doubts[k];
+        }
+    }
+    if (w->doubts) /* workers share them out as it happens */
+        qsort(w->doubts, w->doubt_count, sizeof *w->doubts, compare_doubts);
+    return w->doubts;
 }
 
 csg_octree_stats csg_octree_get_stats(const csg_octree *w)

@@ -14,6 +14,7 @@ typedef struct csg_octree_options {
     /* Tapes and states hold also for what is this far, in scene units, from a cube's faces; values
      * in a band twice as wide. For certify.c, which looks around. 0: the cubes alone. */
     double margin;
+    bool scan; /* look at the samples for thin parts: csg_octree_doubts */
     /* Called on the calling thread; fraction of the walk done. May be NULL. */
     void (*progress)(void *user, double fraction);
     /* Any worker; true = stop. May be NULL. */
@@ -48,6 +49,9 @@ csgm_status csg_octree_sample(csg_octree *octree, size_t first, size_t end);
 csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count);
 /* Whether a block at this place comes, in Morton order, before all of the range sampled last. */
 bool csg_octree_is_before_sampled(const csg_octree *octree, const uint32_t at[3]);
+/* The most doubtful edge of each doubtful block sampled so far, in an order of their own; *edges:
+ * of how many doubtful edges. NULL and *count > 0: out of memory. */
+const csg_scan *csg_octree_doubts(csg_octree *octree, size_t *count, uint64_t *edges);
 /* Work done so far. */
 csg_octree_stats csg_octree_get_stats(const csg_octree *octree);
 
