@@ -59,11 +59,12 @@ static csg_value call_function(csg_module_call *call, const csg_function *functi
 }
 
 /* The steps of the formula, from the heap's memory; NULL after a report. */
-static csg_formula_step *make_steps(csg_module_call *call, uint32_t index, uint32_t operands,
+static csg_formula_step *make_steps(csg_module_call *call, uint32_t index,
+                                    const csg_function *function, uint32_t operands,
                                     csg_formula_builder *builder, uint32_t *count)
 {
     csg_eval *e = call->e;
-    csg_value value = call_function(call, call->values[index].as.function, operands);
+    csg_value value = call_function(call, function, operands);
     csg_formula_id result = CSG_FORMULA_NONE;
     if (value.kind == CSG_VALUE_TERM)
         result = value.as.term;
@@ -93,12 +94,20 @@ bool csg_argument_is_function(const csg_module_call *call, uint32_t index, uint3
 csg_formula_step *csg_formula_of_function(csg_module_call *call, uint32_t index, uint32_t operands,
                                           uint32_t *count, size_t *bytes)
 {
+    return csg_formula_of_literal(call, index, call->values[index].as.function, operands, count,
+                                  bytes);
+}
+
+csg_formula_step *csg_formula_of_literal(csg_module_call *call, uint32_t index,
+                                         const csg_function *function, uint32_t operands,
+                                         uint32_t *count, size_t *bytes)
+{
     csg_eval *e = call->e;
     csg_formula_builder builder;
     csg_formula_begin(&builder, e->heap.memory);
     e->formula = &builder;
     e->refused = false;
-    csg_formula_step *steps = make_steps(call, index, operands, &builder, count);
+    csg_formula_step *steps = make_steps(call, index, function, operands, &builder, count);
     e->formula = NULL;
     *bytes = builder.count * sizeof *steps;
     csg_formula_end(&builder);

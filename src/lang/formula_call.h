@@ -13,6 +13,10 @@ bool csg_argument_is_function(const csg_module_call *call, uint32_t index, uint3
  */
 csg_formula_step *csg_formula_of_function(csg_module_call *call, uint32_t index, uint32_t operands,
                                           uint32_t *count, size_t *bytes);
+/* The same for a function that is not itself the argument. */
+csg_formula_step *csg_formula_of_literal(csg_module_call *call, uint32_t index,
+                                         const csg_function *function, uint32_t operands,
+                                         uint32_t *count, size_t *bytes);
 /* [[x, y, z], [x, y, z]], or all of space when it was not given. */
 csg_box csg_argument_box(csg_module_call *call, uint32_t index);
 

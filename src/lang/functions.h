@@ -13,6 +13,7 @@ csg_function_handler csg_function_trigonometry, csg_function_atan2, csg_function
     csg_function_dot, csg_function_len, csg_function_concat, csg_function_lookup,
     csg_function_search, csg_function_str, csg_function_chr, csg_function_ord, csg_function_is,
     csg_function_rands, csg_function_version, csg_function_parent_module, csg_function_round,
-    csg_function_blend;
+    csg_function_blend, csg_function_rule, csg_function_arc, csg_function_step,
+    csg_function_profile;
 
 #endif

@@ -103,6 +103,8 @@ csg_value csg_function_is(const csg_function_call *call)
     size_t i = 0;
     while (strcmp(table[i].name, call->name) != 0)
         i++;
+    if (value.kind == CSG_VALUE_RULE)
+        return csg_value_boolean(table[i].kind == CSG_VALUE_BLEND);
     return csg_value_boolean(value.kind == table[i].kind &&
                              !(value.kind == CSG_VALUE_NUMBER && isnan(value.as.number)));
 }

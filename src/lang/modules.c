@@ -330,6 +330,8 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
     csg_value value = call->values[index];
     if (value.kind == CSG_VALUE_BLEND)
         return (csg_blend){(csg_blend_kind)value.blend, value.as.number};
+    if (value.kind == CSG_VALUE_RULE)
+        return csg_rule_blend(call, index);
     if (value.kind != CSG_VALUE_UNDEF && value.kind != CSG_VALUE_NUMBER) {
         csg_argument_error(call, index, CSG_DIAG_BAD_BLEND,
                            "blend must be a radius or a blend value such as "

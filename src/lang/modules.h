@@ -43,7 +43,7 @@ csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_
     csg_module_spline, csg_module_periodic, csg_module_hull, csg_module_minkowski,
     csg_module_resize, csg_module_part, csg_module_material, csg_module_offset3d, csg_module_shell,
     csg_module_repeat, csg_module_twist, csg_module_bend, csg_module_combine, csg_module_slab,
-    csg_module_extrude, csg_module_warp;
+    csg_module_extrude, csg_module_warp, csg_module_soft, csg_module_superellipsoid;
 
 void csg_modules_intern(csg_symbols *symbols, bool *ok);
 /* Runs the built-in module of this row: leaves one part. Not for control flow. */
@@ -71,6 +71,8 @@ bool csg_argument_boolean(const csg_module_call *call, uint32_t index);
 csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 otherwise,
                              bool spread);
 csg_blend csg_argument_blend(csg_module_call *call, uint32_t index);
+/* The same for a value of kind RULE. */
+csg_blend csg_rule_blend(csg_module_call *call, uint32_t index);
 /* Reports that an argument is out of its range or of the wrong kind. */
 void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));

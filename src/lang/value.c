@@ -84,6 +84,10 @@ void csg_object_release(csg_heap *heap, csg_object *object)
             drop_values(heap, vector->items, vector->count, &dying);
         } else if (object->kind == CSG_VALUE_FUNCTION) {
             drop(heap, &((csg_function *)object)->frame->object, &dying);
+        } else if (object->kind == CSG_VALUE_RULE) {
+            csg_function *function = ((csg_rule_value *)object)->function;
+            if (function)
+                drop(heap, &function->object, &dying);
         } else if (object->kind == CSG_VALUE_FRAME) {
             drop_frame(heap, (const csg_frame *)object, &dying);
         }
@@ -129,6 +133,18 @@ csg_value csg_range_create(csg_heap *heap, double begin, double step, double end
     made->step = step;
     made->end = end;
     return csg_value_object(made, CSG_VALUE_RANGE);
+}
+
+csg_value csg_rule_value_create(csg_heap *heap, const csg_rule *rule, csg_function *function)
+{
+    csg_rule_value *made = create(heap, CSG_VALUE_RULE, sizeof *made);
+    if (!made)
+        return csg_value_undef();
+    made->rule = *rule;
+    made->function = function;
+    if (function)
+        function->object.references++;
+    return csg_value_object(made, CSG_VALUE_RULE);
 }
 
 csg_value csg_function_create(csg_heap *heap, const csg_expression *literal, csg_frame *frame)
@@ -184,8 +200,9 @@ bool csg_value_is_true(csg_value value)
 
 const char *csg_value_kind_name(csg_value value)
 {
-    static const char *const names[] = {"undef",  "number", "bool",  "blend",    "formula", "undef",
-                                        "string", "vector", "range", "function", "undef"};
+    static const char *const names[] = {"undef",    "number", "bool",   "blend",  "formula",
+                                        "step",     "undef",  "string", "vector", "range",
+                                        "function", "blend",  "undef"};
     return names[value.kind];
 }
 

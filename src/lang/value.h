@@ -18,11 +18,13 @@ typedef enum csg_value_kind {
     CSG_VALUE_BOOLEAN,
     CSG_VALUE_BLEND,
     CSG_VALUE_TERM,   /* a number that depends on field()'s point */
+    CSG_VALUE_STEP,   /* a smooth unit step; number is its parameter, blend its csg_step_kind */
     CSG_VALUE_UNSET,  /* a variable of a scope before its assignment */
     CSG_VALUE_STRING, /* from here on: objects */
     CSG_VALUE_VECTOR,
     CSG_VALUE_RANGE,
     CSG_VALUE_FUNCTION,
+    CSG_VALUE_RULE, /* a blend of more than one parameter */
     CSG_VALUE_FRAME /* never seen by a scene */
 } csg_value_kind;
 
@@ -37,6 +39,7 @@ typedef struct csg_string csg_string;
 typedef struct csg_vector csg_vector;
 typedef struct csg_range csg_range;
 typedef struct csg_function csg_function;
+typedef struct csg_rule_value csg_rule_value;
 typedef struct csg_frame csg_frame;
 
 typedef struct csg_value {
@@ -51,6 +54,7 @@ typedef struct csg_value {
         csg_vector *vector;
         csg_range *range;
         csg_function *function;
+        csg_rule_value *rule;
         csg_frame *frame;
     } as;
 } csg_value;
@@ -78,6 +82,12 @@ struct csg_function {
     csg_object object;
     const csg_expression *literal;
     csg_frame *frame; /* where it was made */
+};
+
+struct csg_rule_value {
+    csg_object object;
+    csg_rule rule;          /* checked, not settled */
+    csg_function *function; /* of profile(), else NULL */
 };
 
 /* Variables of one scope, call or let; names are searched outwards along `parent`. */
@@ -146,6 +156,8 @@ static inline void csg_value_release(csg_heap *heap, csg_value value)
 csg_string *csg_string_create(csg_heap *heap, const char *text, size_t length);
 csg_vector *csg_vector_create(csg_heap *heap, size_t count); /* elements UNDEF */
 csg_value csg_range_create(csg_heap *heap, double begin, double step, double end);
+/* Retains the function. UNDEF: no memory. */
+csg_value csg_rule_value_create(csg_heap *heap, const csg_rule *rule, csg_function *function);
 csg_value csg_function_create(csg_heap *heap, const csg_expression *literal, csg_frame *frame);
 csg_frame *csg_frame_create(csg_heap *heap, csg_frame *parent, uint32_t count); /* values UNSET */
 static inline csg_frame *csg_frame_retain(csg_frame *frame)

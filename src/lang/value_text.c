@@ -150,6 +150,30 @@ static void put_blend(csg_text *text, csg_value value)
     csg_text_put(text, ")", 1);
 }
 
+static void put_step(csg_text *text, csg_step step)
+{
+    csg_text_put_string(text, csg_step_name(step.kind));
+    csg_text_put(text, "(", 1);
+    csg_text_put_number(text, step.parameter);
+    csg_text_put(text, ")", 1);
+}
+
+static void put_sink(void *user, const char *bytes, size_t length)
+{
+    csg_text_put(user, bytes, length);
+}
+
+static void put_rule(csg_text *text, const csg_rule_value *value, const csg_symbols *symbols)
+{
+    if (!value->function) {
+        csg_rule_print(&value->rule, value->rule.range, put_sink, text);
+        return;
+    }
+    csg_text_put_string(text, "profile(");
+    csg_text_put_expression(text, value->function->literal, symbols);
+    csg_text_put(text, ")", 1);
+}
+
 void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_symbols *symbols)
 {
     switch (value.kind) {
@@ -177,6 +201,12 @@ void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_
         break;
     case CSG_VALUE_BLEND:
         put_blend(text, value);
+        break;
+    case CSG_VALUE_STEP:
+        put_step(text, (csg_step){(csg_step_kind)value.blend, value.as.number});
+        break;
+    case CSG_VALUE_RULE:
+        put_rule(text, value.as.rule, symbols);
         break;
     case CSG_VALUE_TERM:
         csg_text_put_string(text, "formula");

@@ -488,6 +488,10 @@ static csg_node_id join(csg_scene_builder *builder, csg_node_kind kind, csg_blen
     if (!csg_blend_is_fold(blend.kind))
         return csg_build_append_operator(builder, kind, blend, range, operands, count, where);
     csg_node_id joined = operands[0];
+    for (size_t i = 1; i < count && joined != CSG_NODE_NONE && blend.kind == CSG_BLEND_PROFILE; i++)
+        joined = csg_build_profiled(builder, kind, blend, joined, operands[i], where);
+    if (blend.kind == CSG_BLEND_PROFILE)
+        return joined;
     for (size_t i = 1; i < count && joined != CSG_NODE_NONE; i++)
         joined = csg_build_append_operator(builder, kind, blend, range,
                                            (csg_node_id[]){joined, operands[i]}, 2, where);

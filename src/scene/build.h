@@ -64,6 +64,9 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
  * more that the result's surface shall pass through; their angles are found when the operator is
  * built, which then takes two operands. NULL values, *out.kind SHARP: a failure. */
 csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *rule);
+/* The blend max(f1, f2) + g(|f1 - f2|) for a formula g of x; *out: what is known of g. */
+csg_blend csg_build_profile(csg_scene_builder *builder, const csg_formula_step *steps,
+                            uint32_t count, csg_profile *out);
 /* The child as a soft object. range 0: such that a ball, a tube or a torus becomes the classical
  * P(distance from the skeleton / R), and a superellipsoid P of its gauge; others need a range. */
 csg_node_id csg_build_soft(csg_scene_builder *builder, csg_soft soft, csg_node_id child,

@@ -33,5 +33,8 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
 /* Range and angles of a rule for these operands; *blend may become another. */
 bool csg_build_settle_rule(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend,
                            const csg_node_id *operands, size_t count, double *range);
+/* Two nodes joined by a profile: a combine node. */
+csg_node_id csg_build_profiled(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
+                               csg_node_id a, csg_node_id b, csg_span where);
 
 #endif

@@ -12,11 +12,11 @@
 
 enum { SEARCHED = 256 /* of the latest rules, for an equal one */ };
 
-static bool is_same_rule(const csg_rule *a, const csg_rule *b)
+bool csg_rule_is_same(const csg_rule *a, const csg_rule *b)
 {
     bool same = a->kind == b->kind && a->range == b->range && a->step.kind == b->step.kind &&
                 a->step.parameter == b->step.parameter && a->spline.count == b->spline.count &&
-                a->point_count == b->point_count;
+                a->point_count == b->point_count && a->profile == b->profile;
     for (uint32_t i = 0; same && i < csg_rule_parameter_count(a->kind); i++)
         same = a->parameters[i] == b->parameters[i];
     size_t knots = a->spline.count * sizeof *a->spline.angle;
@@ -42,7 +42,7 @@ csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
         csg_rule_settle(&rule);
     size_t oldest = scene->rule_count > SEARCHED ? scene->rule_count - SEARCHED : 0;
     for (size_t i = scene->rule_count; i-- > oldest;)
-        if (is_same_rule(&scene->rules[i], &rule))
+        if (csg_rule_is_same(&scene->rules[i], &rule))
             return (csg_blend){rule.kind, (double)i};
     void *rules = scene->rules;
     if (!csg_memory_reserve(&builder->context->memory, &rules, &builder->rule_capacity,

@@ -35,11 +35,19 @@ typedef struct csg_formula_step {
     double constant; /* of CONSTANT, else 0 */
 } csg_formula_step;
 
+/* What bounds by intervals say of a function g of x >= 0. */
+typedef struct csg_profile {
+    double slope[2], value[2]; /* least and largest; where nothing is known infinite */
+    double support;            /* g is 0 from there on; INFINITY: not seen to be */
+} csg_profile;
+
 /* A formula of a scene. */
 typedef struct csg_formula {
     uint32_t first, count; /* into the scene's steps */
     double lipschitz;
-    csg_box bounds; /* finite, or all of space */
+    csg_box bounds;      /* finite, or all of space */
+    csg_profile profile; /* of a combine node with the blend PROFILE */
+    uint8_t joins;       /* csg_node_kind of the operator that such a node stands for */
 } csg_formula;
 
 /* Values are kept within +- this; it also stands for NaN, with a minus: squares of it are floats.
@@ -101,6 +109,10 @@ double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, 
 /* An upper bound of the sum of the partial derivatives' sizes anywhere; INFINITY where interval
  * arithmetic finds none. NAN: out of memory. */
 double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count);
+/* Bounds of the value and of the derivative by x for x in low..high, y = z = 0; infinite where
+ * nothing is known. False: out of memory. */
+bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        double low, double high, double value[2], double slope[2]);
 /* +1, -1 or 0 for each of x, y, z: the formula never falls, never rises, or neither is known (also
  * without memory). */
 void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,

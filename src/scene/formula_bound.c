@@ -474,8 +474,12 @@ typedef struct part {
     double length;
 } part;
 
-static double bound_on_box(const csg_formula_step *steps, uint32_t count, csg_box box,
-                           bound *bounds)
+/* Derivatives along three directions instead of along x, y and z, which makes lengths mean nothing.
+ */
+typedef double directions[3][3];
+
+static double bound_along(const csg_formula_step *steps, uint32_t count, csg_box box,
+                          const directions along, bound *bounds)
 {
     const range axes[3] = {{box.min.x, box.max.x}, {box.min.y, box.max.y}, {box.min.z, box.max.z}};
     uint32_t squares[MOST_SQUARES];
@@ -487,7 +491,8 @@ static double bound_on_box(const csg_formula_step *steps, uint32_t count, csg_bo
         } else if (step->op <= CSG_FORMULA_Z) {
             int axis = step->op - CSG_FORMULA_X;
             bounds[i] = (bound){.value = axes[axis], .length = 1};
-            bounds[i].gradient[axis] = (range){1, 1};
+            for (int k = 0; k < 3; k++)
+                bounds[i].gradient[k] = exactly(along[k][axis]);
         } else if (square_count) {
             bounds[i] = root_of_squares(bounds, bounds[step->a].value, squares, square_count);
         } else if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX) {
@@ -499,6 +504,13 @@ static double bound_on_box(const csg_formula_step *steps, uint32_t count, csg_bo
     }
     double length = is_known(bounds[count - 1].value) ? bounds[count - 1].length : INFINITY;
     return isnan(length) ? INFINITY : length;
+}
+
+static double bound_on_box(const csg_formula_step *steps, uint32_t count, csg_box box,
+                           bound *bounds)
+{
+    static const directions axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    return bound_along(steps, count, box, axes, bounds);
 }
 
 /* Halves of a box across its longest side. */
@@ -575,17 +587,40 @@ static bool bound_of_result(csg_memory *memory, const csg_formula_step *steps, u
     return true;
 }
 
+/* The sum of the sizes is the largest derivative along (1, +-1, +-1), and along a direction what is
+ * the same for all operands, as of max(a, b), is seen to cancel. */
 double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count)
 {
-    bound result;
-    if (!bound_of_result(memory, steps, count, csg_box_all(), &result))
+    static const directions signs[2] = {{{1, 1, 1}, {1, 1, -1}, {1, -1, 1}},
+                                        {{1, -1, -1}, {0, 0, 0}, {0, 0, 0}}};
+    bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
+    double most = 0;
+    if (!bounds)
         return NAN;
-    double total = 0;
-    for (int i = 0; i < 3; i++)
-        total += largest(result.gradient[i]);
-    double by_length = result.length * 1.7320508075688774; /* Cauchy and Schwarz, three operands */
-    double least = fmin(total, by_length) * (1 + 8 * DBL_EPSILON);
-    return isnan(least) ? INFINITY : least;
+    for (int pass = 0; pass < 2; pass++) {
+        bound_along(steps, count, csg_box_all(), signs[pass], bounds);
+        for (int i = 0; i < 3; i++)
+            most = fmax(most, largest(bounds[count - 1].gradient[i]));
+        if (!is_known(bounds[count - 1].value))
+            most = INFINITY;
+    }
+    csg_memory_release(memory, bounds, count * sizeof *bounds);
+    return isnan(most) ? INFINITY : most * (1 + 8 * DBL_EPSILON);
+}
+
+bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        double low, double high, double value[2], double slope[2])
+{
+    bound result;
+    const csg_box box = {{low, 0, 0}, {high, 0, 0}};
+    if (!bound_of_result(memory, steps, count, box, &result))
+        return false;
+    bool known = is_known(result.value), smooth = known && is_known(result.gradient[0]);
+    value[0] = known ? result.value.low : -INFINITY;
+    value[1] = known ? result.value.high : INFINITY;
+    slope[0] = smooth ? result.gradient[0].low : -INFINITY;
+    slope[1] = smooth ? result.gradient[0].high : INFINITY;
+    return true;
 }
 
 void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,

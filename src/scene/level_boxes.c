@@ -104,9 +104,33 @@ static bool store_levels(table *t, csg_node_id node, level_list *list)
 static void union_levels(const csgm_scene *scene, const csg_node *node, double *excess,
                          double *support)
 {
+    if (node->kind == CSG_NODE_COMBINE) { /* by a profile */
+        const csg_profile *p = &scene->formulas[node->payload].profile;
+        *excess = fmax(p->value[1], 0);
+        *support = p->support + *excess;
+        return;
+    }
     bool adds = node->blend != CSG_BLEND_INTERIOR;
     *excess = adds ? csg_scene_excess(scene, node) : 0;
     *support = adds ? csg_scene_support(scene, node) : 0;
+}
+
+static bool is_profiled(const csg_node *node)
+{
+    return node->kind == CSG_NODE_COMBINE && node->blend == CSG_BLEND_PROFILE;
+}
+
+/* The operator that it is or stands for. */
+static csg_node_kind acts_as(const csgm_scene *scene, const csg_node *node)
+{
+    return is_profiled(node) ? (csg_node_kind)scene->formulas[node->payload].joins
+                             : (csg_node_kind)node->kind;
+}
+
+/* A profiled node's value is divided by its constant. */
+static double own_level(const csgm_scene *scene, const csg_node *node, double level)
+{
+    return is_profiled(node) ? level * scene->formulas[node->payload].lipschitz : level;
 }
 
 /* One child, whose level is another. */
@@ -137,6 +161,8 @@ static bool takes_fields(const csg_node *node)
 static double deficit(const csgm_scene *scene, const csg_node *node)
 {
     bool interior = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_INTERIOR;
+    if (is_profiled(node))
+        return fmax(-scene->formulas[node->payload].profile.value[0], 0);
     return interior ? csg_scene_excess(scene, node) : 0;
 }
 
@@ -145,22 +171,24 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
                 level_list *list)
 {
     double excess, support;
-    if (node->kind == CSG_NODE_COMBINE) {
+    level = own_level(scene, node, level);
+    bool first_only = acts_as(scene, node) == CSG_NODE_DIFFERENCE;
+    if (node->kind == CSG_NODE_COMBINE && !is_profiled(node)) {
         csg_combine combine;
         csg_combine_begin(&combine, scene, node);
         add_level(list, csg_combine_inner_level(&combine, level));
         csg_combine_end(&combine);
     } else if (takes_fields(node)) {
-        if (node->kind != CSG_NODE_DIFFERENCE || index == 0)
+        if (!first_only || index == 0)
             add_level(list, csg_field_level(scene, node, index, level));
     } else if (is_scaled(node->kind)) {
         add_level(list, inner_level(scene, node, level));
-    } else if (node->kind == CSG_NODE_UNION) {
+    } else if (acts_as(scene, node) == CSG_NODE_UNION) {
         union_levels(scene, node, &excess, &support);
         add_level(list, level);
         add_level(list, level + excess);
         add_level(list, level + support);
-    } else if (node->kind != CSG_NODE_DIFFERENCE || index == 0) {
+    } else if (!first_only || index == 0) {
         add_level(list, level + deficit(scene, node));
     }
 }
@@ -367,7 +395,7 @@ static csg_box cut_box(const table *t, size_t index, double level)
     csg_box box = csg_box_all();
     level += deficit(t->scene, node);
     for (uint32_t k = 0; k < node->child_count; k++) {
-        bool subtracted = node->kind == CSG_NODE_DIFFERENCE && k > 0;
+        bool subtracted = acts_as(t->scene, node) == CSG_NODE_DIFFERENCE && k > 0;
         csg_half_space h;
         if (!subtracted)
             box = csg_box_intersect(box, box_at(t, children[k], level));
@@ -390,6 +418,10 @@ static csg_box node_box(const table *t, size_t index, double level)
         csg_affine frame = frame_of(t, index);
         return csg_affine_box(&frame, box_at(t->own, (csg_node_id)index, level));
     }
+    if (is_profiled(node))
+        return acts_as(t->scene, node) == CSG_NODE_UNION
+                   ? union_box(t, node, own_level(t->scene, node, level))
+                   : cut_box(t, index, own_level(t->scene, node, level));
     if (node->kind == CSG_NODE_COMBINE)
         return combined_box(t, node, level);
     if (!csg_node_is_operator(node->kind))

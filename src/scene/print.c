@@ -153,10 +153,18 @@ static void put_operator(const csg_printer *out, const csg_node *node)
     const char *separator = "";
     csg_put(out, csg_node_kind_name(node->kind));
     csg_put(out, "(");
-    if (blend.kind == CSG_BLEND_ROUND) { /* round() itself is also a function of numbers */
+    const csg_rule *rule = csg_scene_rule(out->scene, node);
+    if (rule && rule->kind != CSG_BLEND_FIELD_SHARP) {
+        bool fields = csg_blend_takes_fields(rule->kind);
+        csg_put(out, "blend = ");
+        csg_rule_print(rule,
+                       fields ? csg_scene_parameters(out->scene, node)[CSG_OPERATOR_RANGE] : 0,
+                       out->sink, out->user);
+        separator = ", ";
+    } else if (blend.kind == CSG_BLEND_ROUND) { /* round() itself is also a function of numbers */
         csg_put_argument(out, "", "blend", blend.n);
         separator = ", ";
-    } else if (blend.kind != CSG_BLEND_SHARP) {
+    } else if (!rule && blend.kind != CSG_BLEND_SHARP) {
         csg_put(out, "blend = ");
         csg_put(out, csg_blend_name(blend.kind));
         csg_put_argument(out, "(", "n", blend.n);
@@ -235,6 +243,9 @@ static bool put_node(const csg_printer *out, const csg_node *node)
         return true;
     case CSG_NODE_WARP:
         put_warp(out, &scene->warps[node->payload]);
+        return true;
+    case CSG_NODE_SOFT:
+        csg_put_soft(out, node);
         return true;
     case CSG_NODE_COMBINE:
         return put_combine(out, node);

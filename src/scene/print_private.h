@@ -20,6 +20,8 @@ void csg_put_list(const csg_printer *out, const double *values, int count);
 /* `separator` name = value */
 void csg_put_argument(const csg_printer *out, const char *separator, const char *name,
                       double value);
+/* The line of a SOFT node. */
+void csg_put_soft(const csg_printer *out, const csg_node *node);
 /* A node without children, up to the end of its line. False: out of memory. */
 bool csg_put_leaf(const csg_printer *out, const csg_node *node);
 

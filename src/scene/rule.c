@@ -214,9 +214,11 @@ static void find_slopes(csg_spline *s)
 static void settle_profile(csg_rule *rule)
 {
     csg_spline *s = &rule->spline;
-    if (!s->count)
+    if (!s->count || s->settled)
         return;
+    s->settled = true;
     for (uint32_t i = s->count; i-- > 0;) {
+        s->degrees[i] = s->angle[i];
         s->angle[i + 1] = s->angle[i] * DEGREE;
         s->factor[i + 1] = s->factor[i];
     }

@@ -43,7 +43,7 @@ static inline bool csg_blend_is_rule(csg_blend_kind kind)
 /* Whether it acts on fields in [0, 1] and gives a soft node. */
 static inline bool csg_blend_takes_fields(csg_blend_kind kind)
 {
-    return csg_blend_is_rule(kind) && kind != CSG_BLEND_EXTERIOR && kind != CSG_BLEND_INTERIOR;
+    return kind > CSG_BLEND_PROFILE;
 }
 
 /* ---- smooth unit steps ------------------------------------------------------------------------
@@ -90,7 +90,9 @@ enum {
 /* Factors by angle (radians, ascending): a cubic spline, level at its ends (operators.md 5.5). */
 typedef struct csg_spline {
     uint32_t count; /* of knots; 0: the factor 1 everywhere */
+    bool settled;
     double angle[CSG_RULE_KNOTS], factor[CSG_RULE_KNOTS], slope[CSG_RULE_KNOTS];
+    double degrees[CSG_RULE_KNOTS]; /* once settled: the angles as given */
 } csg_spline;
 
 /* Filled in: kind, parameters, step, range, points or profile. csg_rule_settle finds the rest. */
@@ -101,6 +103,7 @@ typedef struct csg_rule {
     double range;                           /* for distances; 0: by the size of the operands */
     csg_spline spline;                      /* ARC; before it is settled: angles in degrees, and
                                              * the profile alone without the ends */
+    uint32_t profile;                       /* PROFILE: among the builder's formulas */
     uint32_t point_count; /* ARC: 2 and more points of space, see csg_build_rule */
     double points[CSG_RULE_KNOTS][3];
     /* settled; [0] of the union, [1] of the intersection */
@@ -123,11 +126,16 @@ typedef struct csg_rule_parameter {
 uint32_t csg_rule_parameter_count(csg_blend_kind kind);
 csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index);
 
+/* Before or after both are settled. */
+bool csg_rule_is_same(const csg_rule *a, const csg_rule *b);
 /* NULL, or one sentence about what is wrong, with its range; of a rule whose points were resolved
  * or that has none. */
 const char *csg_rule_problem(const csg_rule *rule, char *text, size_t size);
 /* After csg_rule_problem found none. */
 void csg_rule_settle(csg_rule *rule);
+/* As a call of the scene language; range 0: not said. Not for PROFILE. */
+void csg_rule_print(const csg_rule *rule, double range,
+                    void (*sink)(void *user, const char *text, size_t length), void *user);
 /* The rule as a solid scaled by `factor` needs it. */
 csg_rule csg_rule_scale(const csg_rule *rule, double factor);
 /* chi of a rule of LENGTHS; INFINITY for FIELDS. */

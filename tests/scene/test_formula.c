@@ -11,7 +11,7 @@ static csg_formula_dual evaluate(const csg_formula_step *steps, uint32_t count, 
                                  csg_vec3 p)
 {
     static csg_formula_dual work[TEST_MOST_STEPS];
-    csg_formula formula = {0, count, 1, box};
+    csg_formula formula = {.count = count, .lipschitz = 1, .bounds = box};
     return csg_formula_evaluate(steps, &formula, p, work);
 }
 
