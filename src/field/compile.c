@@ -195,6 +195,14 @@ static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t 
     return true;
 }
 
+/* Of a node that delivers: its first leaf's colour. */
+static void take_color(compiler *c, const csg_tape_node *node, uint32_t begin)
+{
+    uint32_t delivery = node->parameters + (node->op == CSG_OP_SOFTEN ? 0 : CSG_RULE_DELIVER);
+    c->parameters[delivery + CSG_DELIVER_COLOR] =
+        c->parameters[c->nodes[begin].parameters + CSG_LEAF_COLOR];
+}
+
 /* Values written since node `begin` become what the operator above takes. */
 static bool write_entry(compiler *c, const frame *f, uint32_t begin)
 {
@@ -208,6 +216,7 @@ static bool write_entry(compiler *c, const frame *f, uint32_t begin)
     node->blend = (uint8_t)curve;
     node->arity = 1;
     node->size = (uint32_t)c->node_count - begin;
+    take_color(c, node, begin);
     return true;
 }
 
@@ -399,6 +408,8 @@ static bool end_task(compiler *c)
     node->parameters = t.parameters;
     node->arity = t.written;
     node->size = (uint32_t)c->node_count - t.begin;
+    if (csg_op_delivers(node->op))
+        take_color(c, node, t.begin);
     bool is_field = delivers_field(c, &c->scene->nodes[t.node]) && !t.frame.is_raised;
     if (t.frame.form != CSG_FORM_VALUE && !is_field && !write_entry(c, &t.frame, t.begin))
         return false;

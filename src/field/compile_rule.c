@@ -24,6 +24,7 @@ void csg_deliver_pack(csg_form form, bool flip, double scale, double shift,
     values[CSG_DELIVER_SHIFT] = is_value ? (float)shift : 0.0f;
     values[CSG_DELIVER_LOW] = is_value ? -INFINITY : 0.0f;
     values[CSG_DELIVER_HIGH] = is_value ? INFINITY : 1.0f;
+    values[CSG_DELIVER_COLOR] = 0; /* known when the operands are written */
 }
 
 csg_tape_curve csg_soften_pack_soft(csg_soft soft, double factor,

@@ -113,7 +113,7 @@ static int is_smooth(uint8_t blend)
 
 static int is_of_fields(uint8_t blend)
 {
-    return blend > CSG_BLEND_ORTHOGONAL && !is_smooth(blend);
+    return csg_blend_takes_fields((csg_blend_kind)blend);
 }
 
 static void values(const csg_tape_node *node, const float *parameters, float *a, const float *b,

@@ -162,7 +162,7 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
             top -= node->arity;
             combine_values(tape, node, s, top++, p.count, work);
         } else if (csg_op_delivers(node->op)) {
-            CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, top - 1), NULL, p.count);
+            CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, top - 1), NULL, NULL, p.count);
         }
         if (node->join) {
             top--;
@@ -283,11 +283,22 @@ static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_poin
 static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
                           size_t index, plan wanted, size_t count, float *work)
 {
-    CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, index), work, count);
+    float *slope = work, *flat = work + s.stride;
+    CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, index), slope, flat, count);
     for (int c = 0; c < wanted.gradients; c++) {
         float *restrict out = channel(s, depth, index, c);
         for (size_t i = 0; i < count; i++)
-            out[i] *= work[i];
+            out[i] *= slope[i];
+    }
+    const float *p = tape->parameters + node->parameters;
+    p += node->op == CSG_OP_SOFTEN ? 0 : CSG_RULE_DELIVER;
+    csg_color color = tape->colors[(uint32_t)p[CSG_DELIVER_COLOR]];
+    const float rgba[COLOR_CHANNELS] = {color.r, color.g, color.b, color.a};
+    for (int c = 0; c < wanted.colors; c++) {
+        float *restrict out = channel(s, depth, index, wanted.gradients + c);
+        const float end = rgba[wanted.first_color + c];
+        for (size_t i = 0; i < count; i++)
+            out[i] = flat[i] > 0 ? end : out[i];
     }
 }
 

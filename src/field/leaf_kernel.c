@@ -38,8 +38,8 @@ static inline point affine_back(const float *m, point g)
     X(CAPSULE, capsule)                                                                            \
     X(TORUS, torus)                                                                                \
     X(ELLIPSOID, ellipsoid)                                                                        \
-    X(PLANE, plane) X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab)                        \
-        X(SUPERELLIPSOID, superellipsoid)
+    X(PLANE, plane)                                                                                \
+    X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab) X(SUPERELLIPSOID, superellipsoid)
 
 /* Local copies of the parameters: the compiler then knows that no store changes them. */
 #define VALUE_LOOPS(NAME, name)                                                                    \

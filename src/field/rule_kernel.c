@@ -119,7 +119,7 @@ static void hand_over(const float *delivery, float *restrict values, size_t coun
 }
 
 static void deliver(const csg_tape *tape, const csg_tape_node *node, float *values, float *slope,
-                    size_t count)
+                    float *flat, size_t count)
 {
     float unused[CSG_BATCH], *restrict by = slope ? slope : unused;
     const float *delivery = delivery_of(tape, node);
@@ -129,6 +129,7 @@ static void deliver(const csg_tape *tape, const csg_tape_node *node, float *valu
     if (slope)
         for (size_t i = 0; i < count; i++) {
             float v = values[i]; /* beyond 1 a union is cut off */
+            flat[i] = (v <= 0) | (v >= 1.0f) ? 1.0f : 0.0f;
             by[i] *= is_field & (v >= 1.0f) ? 0.0f : scale;
         }
     hand_over(delivery, values, count);
@@ -158,6 +159,13 @@ static void deliver_intervals(const csg_tape *tape, const csg_tape_node *node, f
     const float *delivery = delivery_of(tape, node);
     hand_over(delivery, low, CSG_OCTANTS);
     hand_over(delivery, high, CSG_OCTANTS);
+    const float shift = delivery[CSG_DELIVER_SHIFT];
+    if (delivery[CSG_DELIVER_LOW] != 0) /* a value: the rounding of its scale and its shift */
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            float sign = delivery[CSG_DELIVER_SCALE] < 0 ? -1.0f : 1.0f;
+            low[o] -= sign * ROUNDING * (absolute(low[o]) + absolute(shift));
+            high[o] += sign * ROUNDING * (absolute(high[o]) + absolute(shift));
+        }
     for (int o = 0; o < CSG_OCTANTS && delivery[CSG_DELIVER_SCALE] < 0; o++) {
         float turned = low[o];
         low[o] = high[o];
@@ -357,8 +365,9 @@ static void shares(const csg_tape_node *node, const float *restrict a, const flo
         int flat_a = (a[i] <= 0) | (a[i] >= 1.0f), flat_b = (b[i] <= 0) | (b[i] >= 1.0f);
         first *= united ? a[i] : met ? 1.0f - a[i] : flat_a ? 0 : 1.0f;
         second *= united ? b[i] : met ? 1.0f - b[i] : flat_b ? 0 : 1.0f;
-        float both = first + second;
-        by_a[i] = both > 0 ? first / both : 1.0f;
+        float all = absolute(by_a[i]) + absolute(by_b[i]), both = first + second;
+        float share = all > 0 ? absolute(by_a[i]) / all : 1.0f;
+        by_a[i] = both > 0 ? first / both : share;
     }
 }
 

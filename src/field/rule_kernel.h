@@ -10,9 +10,9 @@
 
 typedef struct csg_rule_kernel {
     /* In place, of a SOFTEN node or of an operator on fields (its children joined): what it
-     * delivers. slope: its derivative, or NULL. */
+     * delivers. slope: its derivative, flat: 1 where F has reached 0 or 1, else 0; both or NULL. */
     void (*deliver)(const csg_tape *tape, const csg_tape_node *node, float *values, float *slope,
-                    size_t count);
+                    float *flat, size_t count);
     /* The same for eight intervals, rounding included. */
     void (*deliver_intervals)(const csg_tape *tape, const csg_tape_node *node, float *low,
                               float *high);

@@ -125,6 +125,8 @@ enum {
     CSG_DELIVER_SHIFT,
     CSG_DELIVER_LOW,
     CSG_DELIVER_HIGH,
+    CSG_DELIVER_COLOR, /* index; where F has reached 0 or 1, since pruning may have changed then
+                          what it is made of */
     CSG_DELIVER_PARAMETERS
 };
 /* Parameters of a SOFTEN node: the delivery's, then P(iso - rate v), H_3(rate v) or the clamp of
