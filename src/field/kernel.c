@@ -284,14 +284,15 @@ static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots
                           size_t index, plan wanted, size_t count, float *work)
 {
     float *slope = work, *flat = work + s.stride;
+    const float *p = tape->parameters + node->parameters;
+    p += node->op == CSG_OP_SOFTEN ? 0 : CSG_RULE_DELIVER;
+    const float scale = p[CSG_DELIVER_SCALE];
     CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, index), slope, flat, count);
     for (int c = 0; c < wanted.gradients; c++) {
         float *restrict out = channel(s, depth, index, c);
         for (size_t i = 0; i < count; i++)
-            out[i] *= slope[i];
+            out[i] = (out[i] * slope[i]) * scale;
     }
-    const float *p = tape->parameters + node->parameters;
-    p += node->op == CSG_OP_SOFTEN ? 0 : CSG_RULE_DELIVER;
     csg_color color = tape->colors[(uint32_t)p[CSG_DELIVER_COLOR]];
     const float rgba[COLOR_CHANNELS] = {color.r, color.g, color.b, color.a};
     for (int c = 0; c < wanted.colors; c++) {

@@ -123,14 +123,13 @@ static void deliver(const csg_tape *tape, const csg_tape_node *node, float *valu
 {
     float unused[CSG_BATCH], *restrict by = slope ? slope : unused;
     const float *delivery = delivery_of(tape, node);
-    const float scale = delivery[CSG_DELIVER_SCALE];
     const int is_field = delivery[CSG_DELIVER_LOW] == 0;
     fields(tape, node, values, by, count);
     if (slope)
         for (size_t i = 0; i < count; i++) {
             float v = values[i]; /* beyond 1 a union is cut off */
             flat[i] = (v <= 0) | (v >= 1.0f) ? 1.0f : 0.0f;
-            by[i] *= is_field & (v >= 1.0f) ? 0.0f : scale;
+            by[i] = is_field & (v >= 1.0f) ? 0.0f : by[i];
         }
     hand_over(delivery, values, count);
 }

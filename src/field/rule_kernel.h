@@ -10,7 +10,8 @@
 
 typedef struct csg_rule_kernel {
     /* In place, of a SOFTEN node or of an operator on fields (its children joined): what it
-     * delivers. slope: its derivative, flat: 1 where F has reached 0 or 1, else 0; both or NULL. */
+     * delivers. slope: its derivative, but for the delivery's scale, flat: 1 where F has reached 0
+     * or 1, else 0; both or NULL. */
     void (*deliver)(const csg_tape *tape, const csg_tape_node *node, float *values, float *slope,
                     float *flat, size_t count);
     /* The same for eight intervals, rounding included. */
