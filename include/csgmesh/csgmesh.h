@@ -327,12 +327,56 @@ typedef struct csgm_mesh_options {
     uint32_t resolution;  /* cells along the longest side when cell_size is 0; default 128 */
     csgm_normals normals; /* default VERTEX */
     csgm_features features; /* default SHARP */
-    bool colors;          /* vertex colours where the scene has any; default true */
-    bool prune;           /* default true; false gives the same mesh, slower (for checking) */
+    bool colors;            /* vertex colours where the scene has any; default true */
+    bool prune;             /* default true; false gives the same mesh, slower (for checking) */
+    /* The next three thin the mesh out; at most one of them may be given. Every collapse of an edge,
+     * and the result, is checked against the field; creases, colours, materials and parts stay, and
+     * a mesh in memory is needed where it would have been streamed. */
+    double tolerance;      /* > 0: no point of the mesh is farther than this from the surface, nor,
+                              as measured on the lattice, the surface from the mesh; with resolution
+                              and cell_size 0 the cells are chosen for it; default 0 */
+    double simplify_error; /* > 0: the same for the mesh of the resolution given; default 0 */
+    double simplify_share; /* > 0, < 1: so many of the triangles may stay; default 0 */
+    bool improve; /* vertices move along the surface and edges flip, for better triangles; default
+                     false */
+    /* Look for what lies between the lattice's points: csgm_mesh_stats.certify says what is proven,
+     * and what is missed is a warning each (W0406, W0407); default false. Without it a scan of the
+     * samples warns once of the thin parts that it happens to see. The mesh is the same. */
+    bool certify;
+    double certify_size; /* cubes that are not settled are divided down to this; 0 = cell / 64 */
     csgm_monitor monitor;
 } csgm_mesh_options;
 
 CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
+
+/* A part of the solid, or a gap in it, that no point of the lattice stands for. */
+typedef struct csgm_certify_place {
+    bool is_missed; /* false: it could not be told */
+    bool is_gap;    /* a crack or bubble; false: a sheet, needle or drop */
+    csgm_vec3 at;
+    double thickness;        /* of the largest ball found in it; 0 where not missed */
+    double cell_size;        /* of a mesh that has it; 0 where not missed */
+    uint64_t cells;          /* neighbouring cells that are alike */
+    const char *source_name; /* of the text of the solid there; of the scene; NULL = not known */
+    uint32_t line, column;   /* 1-based; 0 = not known */
+} csgm_certify_place;
+
+enum { CSGM_CERTIFY_PLACES_MOST = 16 };
+
+/* docs/certify.md has the promise and its proof. Counts are of cells that the surface touches. */
+typedef struct csgm_certify {
+    bool is_done;
+    uint64_t certified;  /* one smooth sheet: all gradients in it within a cone */
+    uint64_t crease;     /* the same, with an edge or corner of the solid */
+    uint64_t refined;    /* divided until nothing thicker than `thickness` could hide */
+    uint64_t unresolved; /* it could not be told */
+    uint64_t missed;     /* a part of it is not in the mesh */
+    double thickness;    /* every part of the solid and of the space around it that is thicker is in
+                            the mesh, but for the missed and unresolved; 0 = every part */
+    uint32_t place_count;
+    uint64_t places_more; /* beyond those listed */
+    csgm_certify_place places[CSGM_CERTIFY_PLACES_MOST]; /* the missed ones first */
+} csgm_certify;
 
 typedef struct csgm_mesh_stats {
     /* Wall time of octree, sampling and counting; of roots, normals and triangles. */
@@ -349,6 +393,16 @@ typedef struct csgm_mesh_stats {
     uint64_t feature_vertices; /* places on creases, corners and tips that are vertices */
     uint64_t smooth_features;  /* polygons that a crease runs through without such a vertex: there
                                   it is cut as by plain marching cubes */
+    double reshape_s;          /* wall time of thinning out and improving */
+    uint64_t triangles_before; /* that; 0: it was not asked for */
+    bool is_measured;          /* the rest is known */
+    double distance_allowed;   /* as asked for, or what simplify_share came to */
+    double max_distance_bound; /* proven of every point of the mesh: its distance from the surface is
+                                  below this; infinite where open_places is not 0 */
+    double max_distance_measured; /* largest distance of a sample of the surface from the mesh */
+    uint64_t open_places;         /* pieces of triangles of which nothing could be proven */
+    uint64_t unresolved_cells; /* that the scan of samples doubts, or --certify could not tell */
+    csgm_certify certify;      /* where csgm_mesh_options.certify asked for it */
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a
@@ -399,6 +453,8 @@ typedef struct csgm_mesh_check {
     int64_t genus;       /* components - euler / 2; meaningful for closed manifolds */
     double area, volume; /* volume by the divergence theorem; meaningful for closed meshes */
     double min_angle_deg;
+    double max_aspect; /* longest side over smallest altitude: 1.15 at best; 0 = no triangles,
+                          infinite where one has no area */
     csgm_box bounds; /* of used vertices */
 } csgm_mesh_check;
 
@@ -458,6 +514,8 @@ typedef struct csgm_write_options {
                              change; default false */
     csgm_unit unit; /* what a scene unit is; NONE. glTF and GLB: one node scales it to metres; 3MF:
                        the file says it, millimetres where it is NONE */
+    const char *comment; /* one line of up to 255 bytes for PLY's header and the extras of glTF's
+                            asset; other formats leave it out; NULL (default) = none */
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);
@@ -621,6 +679,153 @@ typedef enum csgm_dump { CSGM_DUMP_SCENE, CSGM_DUMP_TAPE, CSGM_DUMP_VM } csgm_du
  * read it, negative inside; CSGM_ERR_UNSUPPORTED: no formula is known for one of its solids. */
 CSGM_API csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm_dump what,
                                      csgm_text_fn *sink, void *user);
+
+/* ---- diff: how far two meshes are apart ------------------------------------------------ */
+
+/* A is what was (the golden), B what is. Corners at one place are one vertex, whatever the files
+ * say. Everything below is the same for any number of threads. */
+typedef enum csgm_diff_level {
+    CSGM_DIFF_NOT_EQUAL,        /* more than the tolerance apart, or nothing else settled it */
+    CSGM_DIFF_WITHIN_TOLERANCE, /* proven */
+    CSGM_DIFF_SAME_TRIANGLES,   /* the same triangles of the same points; their order aside */
+    CSGM_DIFF_SAME_BYTES /* set by callers that compared files; csgm_diff_meshes never does */
+} csgm_diff_level;
+
+/* Why two meshes count as different. */
+typedef enum csgm_diff_reason {
+    CSGM_DIFF_REASON_DISTANCE = 1,
+    CSGM_DIFF_REASON_VOLUME = 2,   /* over tolerance_volume, or it could not be measured */
+    CSGM_DIFF_REASON_TOPOLOGY = 4, /* components, genus, open or closed */
+    CSGM_DIFF_REASON_NORMALS = 8,  /* looked at where the triangles are the same */
+    CSGM_DIFF_REASON_COLORS = 16,  /* and materials */
+    CSGM_DIFF_REASON_NAMES = 32,   /* of parts */
+    CSGM_DIFF_REASON_EMPTY = 64    /* one has no triangles, the other has */
+} csgm_diff_reason;
+
+typedef enum csgm_diff_ignored {
+    CSGM_DIFF_IGNORE_ORDER = 1, /* of parts; that of vertices and triangles is never looked at */
+    CSGM_DIFF_IGNORE_NORMALS = 2,
+    CSGM_DIFF_IGNORE_COLORS = 4,
+    CSGM_DIFF_IGNORE_NAMES = 8,
+    CSGM_DIFF_IGNORE_UP = 16, /* B is also tried with Y up turned to Z up, and the reverse */
+    CSGM_DIFF_IGNORE_TOPOLOGY = 32
+} csgm_diff_ignored;
+
+typedef enum csgm_diff_material {
+    CSGM_DIFF_ANY_MATERIAL,
+    CSGM_DIFF_ADDED,  /* only what B has and A has not counts */
+    CSGM_DIFF_REMOVED /* only what A has and B has not */
+} csgm_diff_material;
+
+typedef struct csgm_diff_options {
+    uint32_t struct_size; /* set by csgm_diff_options_default; do not touch */
+    /* The larger of both counts; relative to the diagonal of A's bounds. 0: the same up to the
+     * rounding of coordinates to single precision. Infinite: distance does not matter. */
+    double tolerance, tolerance_relative;
+    double tolerance_volume;     /* (only in A + only in B) / union; infinite (default): any */
+    csgm_diff_material material; /* counts; both meshes must be closed, else everything counts */
+    uint32_t ignored;            /* csgm_diff_ignored, or'ed; default 0 */
+    uint64_t samples;            /* on each surface, and rays for volumes; default 262144 */
+    bool verdict_only;           /* stop when level and reasons are settled: what was not measured
+                                    by then says so; default false */
+    const csgm_scene *scene_a, *scene_b; /* whose mesh the side is: the other side is measured
+                                            against its field too; NULL (default) = not */
+    csgm_monitor monitor;                /* progress is not called */
+} csgm_diff_options;
+
+CSGM_API csgm_diff_options csgm_diff_options_default(void);
+
+typedef struct csgm_diff_figures {
+    uint64_t vertices, triangles; /* as in the view */
+    csgm_mesh_check check;        /* with corners at one place made one vertex */
+    bool is_closed;               /* every edge as often in one direction as in the other */
+    bool has_normals, has_colors;
+    uint64_t parts;
+} csgm_diff_figures;
+
+typedef struct csgm_diff_place {
+    csgm_vec3 at, nearest; /* on this surface, on the other */
+    double distance;
+} csgm_diff_place;
+
+enum { CSGM_DIFF_WORST_MOST = 8 };
+
+/* From every point of one surface to the nearest of the other. */
+typedef struct csgm_diff_distance {
+    bool is_measured;
+    double lower, upper; /* proven: the maximum lies between; upper is within 1 % of lower unless
+                            it is within the tolerance or is_refined is false */
+    bool is_refined;     /* false: stopped before, by verdict_only or the limit of work */
+    csgm_diff_place worst[CSGM_DIFF_WORST_MOST]; /* the first is where lower was found; the others
+                              are apart from each other by 5 % of the bounds' diagonal or more */
+    uint32_t worst_count;
+    bool is_sampled; /* the rest, by points evenly spread over the area */
+    double mean, rms, percentile_95, percentile_99;
+} csgm_diff_distance;
+
+typedef struct csgm_diff_volume {
+    bool is_measured; /* both are closed */
+    double only_a, only_b, both;
+    double ratio;    /* (only_a + only_b) / (only_a + only_b + both); 0 when all are 0 */
+    double accuracy; /* of only_a and only_b: two standard errors of the rays; an estimate */
+} csgm_diff_volume;
+
+/* A mesh against the field f of a scene, f = 0 on the scene's surface, lambda its Lipschitz
+ * constant: |f(p)| / lambda <= distance of p, and where f changes sign between p and q, distance
+ * <= |p - q|. */
+typedef struct csgm_diff_field {
+    bool is_measured;
+    double lipschitz, max_abs_field, mean_abs_field;
+    double lower, upper; /* proven, of the largest distance of a point of the mesh from the scene's
+                            surface; upper is infinite where no change of sign was found */
+    csgm_vec3 at;        /* where max_abs_field is */
+    uint64_t evaluations;
+} csgm_diff_field;
+
+typedef struct csgm_diff_attribute {
+    bool is_compared;
+    double largest; /* normals: degrees; colours: channels 0..255; names: how many differ */
+    double share;   /* of the corners (of the area, where triangles differ) that differ: normals by
+                       more than 1 degree, colours by more than 1 (16) of 255 */
+} csgm_diff_attribute;
+
+typedef struct csgm_diff_report {
+    csgm_diff_level level;
+    bool is_different;
+    uint32_t reasons; /* csgm_diff_reason, or'ed; 0 when not different */
+    double tolerance; /* that was applied to the distance, with `precision` */
+    double precision; /* 2^-23 of the largest coordinate: what single precision may hide */
+    csgm_diff_figures figures[2];            /* 0: A, 1: B; also below */
+    csgm_diff_distance distance[2];          /* 0: from A to B */
+    double hausdorff_lower, hausdorff_upper; /* the larger of both directions */
+    csgm_diff_distance counted; /* material ADDED or REMOVED: what decided; only lower, upper,
+                                   is_refined and worst[0] are filled */
+    csgm_diff_volume volume;
+    csgm_diff_field field[2]; /* 0: A's mesh against scene_b */
+    csgm_diff_attribute normals, colors, names;
+    bool is_turned; /* IGNORE_UP: B was turned to fit; its places are given as turned */
+} csgm_diff_report;
+
+typedef struct csgm_diff csgm_diff;
+
+/* The views must stay until the diff is destroyed. Positions must be finite and indices in range:
+ * CSGM_ERR_ARGUMENT, reported. options NULL = defaults. */
+CSGM_API csgm_status csgm_diff_meshes(csgm_context *context, const csgm_mesh_view *a,
+                                      const csgm_mesh_view *b, const csgm_diff_options *options,
+                                      csgm_diff **out);
+CSGM_API void csgm_diff_destroy(csgm_diff *diff);
+CSGM_API const csgm_diff_report *csgm_diff_get_report(const csgm_diff *diff);
+/* Distance of each vertex of one side's view from the other surface, vertex_count floats; side 0 is
+ * A. NULL when they were not measured: verdict_only, or a side without triangles. */
+CSGM_API const float *csgm_diff_vertex_distances(const csgm_diff *diff, int side);
+/* The colour of a distance in heat maps, sRGB: grey where it is 0, then yellow and red to the dark
+ * red of `most`. */
+CSGM_API void csgm_diff_color(double distance, double most, uint8_t rgb[3]);
+/* Writes one side with its distances as vertex colours, PLY, OBJ, OFF or glTF; the scale goes to
+ * the comment of PLY and the extras of glTF's asset. CSGM_ERR_ARGUMENT: no distances. */
+CSGM_API csgm_status csgm_diff_write_heatmap(csgm_context *context, const csgm_diff *diff, int side,
+                                             const char *path, csgm_format format,
+                                             const csgm_write_options *options);
 
 #ifdef __cplusplus
 }

@@ -51,13 +51,12 @@ static void put_numbers(json *j, const char *key, const double *values, int coun
     put(j, "]");
 }
 
-static void put_name(json *j, const char *name)
+/* In quotes; `most` bytes of it. */
+static void put_string(json *j, const char *text, size_t most)
 {
-    if (!name || !*name)
-        return;
-    put(j, ",\"name\":\"");
-    for (; *name && room(j, 8); name++) {
-        unsigned char c = (unsigned char)*name;
+    put(j, "\"");
+    for (; *text && most-- && room(j, 8); text++) {
+        unsigned char c = (unsigned char)*text;
         if (c < ' ') {
             put(j, "\\u%04x", c);
             continue;
@@ -67,6 +66,25 @@ static void put_name(json *j, const char *name)
         j->text[j->length++] = (char)c;
     }
     put(j, "\"");
+}
+
+static void put_name(json *j, const char *name)
+{
+    if (!name || !*name)
+        return;
+    put(j, ",\"name\":");
+    put_string(j, name, SIZE_MAX);
+}
+
+static void put_asset(json *j, const char *comment)
+{
+    put(j, "{\"asset\":{\"generator\":\"" CSG_WRITTEN_BY "\",\"version\":\"2.0\"");
+    if (comment) {
+        put(j, ",\"extras\":{\"comment\":");
+        put_string(j, comment, 255);
+        put(j, "}");
+    }
+    put(j, "},");
 }
 
 static bool is_identity(const double *matrix)
@@ -302,7 +320,7 @@ const char csg_gltf_json_tail[] = "\"}]}";
 
 void csg_gltf_json(const csg_gltf_layout *layout, bool embedded, csg_gltf_text *j)
 {
-    put(j, "{\"asset\":{\"generator\":\"" CSG_WRITTEN_BY "\",\"version\":\"2.0\"},");
+    put_asset(j, layout->comment);
     if (!layout->index_count) {
         put(j, "\"scene\":0,\"scenes\":[{}]}");
         return;

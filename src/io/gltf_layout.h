@@ -41,7 +41,8 @@ typedef struct csg_gltf_layout {
     const csg_gltf_part *parts; /* part_count of them; NULL = `only` */
     uint64_t part_count;
     csg_gltf_part only;
-    double matrix[16]; /* column-major; identity is not written */
+    double matrix[16];   /* column-major; identity is not written */
+    const char *comment; /* or NULL */
     /* in this order in the buffer; the texture's coordinates stand behind the colours */
     uint64_t position_bytes, normal_bytes, color_bytes, coordinate_bytes, index_bytes, image_bytes;
     uint64_t buffer_bytes; /* the sum, with index_bytes padded to four */

@@ -34,6 +34,7 @@ void csg_gltf_place(csg_gltf_layout *layout, const csgm_vec3 *origin,
                     const csgm_write_options *options)
 {
     double s = metres(options->unit), *m = layout->matrix;
+    layout->comment = options->comment;
     memset(m, 0, sizeof layout->matrix);
     m[0] = s;
     m[12] = s * origin->x;

@@ -5,12 +5,26 @@
  */
 #include "io/writers.h"
 
-void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii)
+/* A comment ends where its line does. */
+static void put_comment(csg_sink *sink, const char *comment)
+{
+    char line[256];
+    size_t length = 0;
+    for (; comment[length] && length + 1 < sizeof line; length++)
+        line[length] = (unsigned char)comment[length] < ' ' ? ' ' : comment[length];
+    line[length] = 0;
+    csg_sink_format(sink, "comment %s\n", line);
+}
+
+void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh,
+                        const csgm_write_options *options)
 {
     const char *real = csg_view_is_offset(mesh) ? "double" : "float";
-    csg_sink_format(sink, "ply\nformat %s 1.0\ncomment %s\nelement vertex %llu\n",
-                    ascii ? "ascii" : "binary_little_endian", CSG_WRITTEN_BY,
-                    (unsigned long long)mesh->vertex_count);
+    csg_sink_format(sink, "ply\nformat %s 1.0\ncomment %s\n",
+                    options->ascii ? "ascii" : "binary_little_endian", CSG_WRITTEN_BY);
+    if (options->comment)
+        put_comment(sink, options->comment);
+    csg_sink_format(sink, "element vertex %llu\n", (unsigned long long)mesh->vertex_count);
     csg_sink_format(sink, "property %s x\nproperty %s y\nproperty %s z\n", real, real, real);
     if (mesh->normals)
         csg_sink_text(sink, "property float nx\nproperty float ny\nproperty float nz\n");
@@ -88,7 +102,7 @@ csgm_status csg_ply_write(csg_sink *sink, const csgm_mesh_view *mesh,
     csgm_status status = csg_ply_check(sink->context, sink->name, mesh);
     if (status != CSGM_OK)
         return status;
-    csg_ply_put_header(sink, mesh, options->ascii);
+    csg_ply_put_header(sink, mesh, options);
     if (options->ascii) {
         csg_put_text_mesh(sink, mesh);
     } else {

@@ -104,7 +104,7 @@ static csgm_status begin_ply(csg_stream *s)
         status = csg_sink_open(&sink, s->context, s->file.fd, s->file.path);
     if (status != CSGM_OK)
         return status;
-    csg_ply_put_header(&sink, &s->view, false);
+    csg_ply_put_header(&sink, &s->view, &s->options);
     s->vertices_at = sink.length; /* far shorter than the sink's buffer */
     s->faces_at = s->vertices_at + s->view.vertex_count * csg_ply_vertex_bytes(&s->view);
     return csg_sink_close(&sink);

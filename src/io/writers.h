@@ -27,7 +27,8 @@ void csg_put_text_mesh(csg_sink *sink, const csgm_mesh_view *mesh);
 /* Binary PLY in pieces. The header looks at counts, the origin and which arrays there are. */
 enum { CSG_PLY_FACE_BYTES = 1 + 3 * 4 };
 csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh);
-void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh, bool ascii);
+void csg_ply_put_header(csg_sink *sink, const csgm_mesh_view *mesh,
+                        const csgm_write_options *options);
 size_t csg_ply_vertex_bytes(const csgm_mesh_view *mesh);
 void csg_ply_pack_vertices(uint8_t *at, const csgm_mesh_view *mesh, uint64_t first, uint64_t count);
 void csg_ply_pack_faces(uint8_t *at, const uint32_t *indices, uint64_t count);

@@ -69,5 +69,10 @@ typedef struct csg_tree_filter {
 int csg_tree_winding(const csg_tree *tree, csg_vec3 p, const csg_tree_filter *filter);
 /* Winding at p less winding at q, which differ in x only. */
 int csg_tree_winding_step(const csg_tree *tree, csg_vec3 p, csg_vec3 q);
+/* Of the line through (y, z) along x: where it crosses the chain, in any order, with the sign by
+ * which the winding number falls there in the direction of x. Points on the lattice. */
+typedef void csg_tree_crossing_fn(void *user, double x, int sign);
+void csg_tree_line_crossings(const csg_tree *tree, double y, double z, csg_tree_crossing_fn *take,
+                             void *user);
 
 #endif

@@ -155,3 +155,45 @@ int csg_tree_winding_step(const csg_tree *tree, csg_vec3 p, csg_vec3 q)
     int sum = count_crossings(tree, &r);
     return forward ? sum : -sum;
 }
+
+/* ---- whole lines ------------------------------------------------------------------------------
+ */
+
+/* 0: not crossed. */
+static int line_crossing(const csg_tree_triangle *t, csg_vec3 p, double *x)
+{
+    csg_vec3 a = csg_vec3_sub(t->a, p), b = csg_vec3_add(a, t->ab), c = csg_vec3_add(a, t->ac);
+    side ab = side_of(a, b), bc = side_of(b, c), ca = side_of(c, a);
+    if (ab.sign == 0 || bc.sign != ab.sign || ca.sign != ab.sign)
+        return 0;
+    double low = fmin(a.x, fmin(b.x, c.x)), high = fmax(a.x, fmax(b.x, c.x));
+    double sum = ab.value + bc.value + ca.value;
+    double at = sum != 0 ? (a.x * bc.value + b.x * ca.value + c.x * ab.value) / sum : low;
+    *x = p.x + fmin(fmax(at, low), high);
+    return ab.sign;
+}
+
+void csg_tree_line_crossings(const csg_tree *tree, double y, double z, csg_tree_crossing_fn *take,
+                             void *user)
+{
+    ray r = make_ray(csg_vec3_make(0, y, z), 0, NULL);
+    uint32_t stack[STACK];
+    size_t depth = 0;
+    r.low = -INFINITY;
+    r.high = INFINITY;
+    stack[depth++] = 0;
+    while (depth) {
+        uint32_t child = stack[--depth];
+        if (!(child & CSG_TREE_LEAF)) {
+            depth = push_met(&tree->nodes[child], &r, stack, depth);
+            continue;
+        }
+        const csg_tree_leaf *leaf = &tree->leaves[child & ~CSG_TREE_LEAF];
+        for (uint32_t place = leaf->first; place < leaf->first + leaf->count; place++) {
+            double x;
+            int sign = line_crossing(&tree->triangles[place], r.p, &x);
+            if (sign)
+                take(user, x, sign);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT
+ * Convex polygons and their cuts by planes; see piece.h. Cuts are rounded: parts may leave gaps of
+ * some 2^-50 of the frame, which the slack of a side covers.
+ */
+#include "diff/piece.h"
+
+csg_vec3 csg_piece_center(const csg_piece *piece)
+{
+    csg_vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < piece->count; i++)
+        sum = csg_vec3_add(sum, piece->corners[i]);
+    return csg_vec3_scale(sum, 1.0 / piece->count);
+}
+
+double csg_piece_radius(const csg_piece *piece, csg_vec3 center)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < piece->count; i++) {
+        csg_vec3 away = csg_vec3_sub(piece->corners[i], center);
+        most = fmax(most, csg_vec3_dot(away, away));
+    }
+    return sqrt(most);
+}
+
+double csg_triangle_distance(const csg_tree_triangle *triangle, csg_vec3 p)
+{
+    bool in_face;
+    csg_vec3 away = csg_vec3_sub(p, csg_triangle_foot(triangle, p, &in_face));
+    return csg_vec3_norm(away);
+}
+
+double csg_piece_bound(const csg_piece *piece, const csg_tree_triangle *triangle, uint32_t *corner)
+{
+    double most = -1;
+    for (uint32_t i = 0; i < piece->count; i++) {
+        double d = csg_triangle_distance(triangle, piece->corners[i]);
+        if (d > most) {
+            most = d;
+            *corner = i;
+        }
+    }
+    return most;
+}
+
+static void add_corner(csg_piece *piece, csg_vec3 p)
+{
+    piece->corners[piece->count++] = p;
+}
+
+/* Twice the area, of the fan from the first corner: right for convex polygons. */
+static double area_of(const csg_piece *piece)
+{
+    csg_vec3 sum = {0, 0, 0};
+    for (uint32_t i = 1; i + 1 < piece->count; i++)
+        sum = csg_vec3_add(sum,
+                           csg_vec3_cross(csg_vec3_sub(piece->corners[i], piece->corners[0]),
+                                          csg_vec3_sub(piece->corners[i + 1], piece->corners[0])));
+    return csg_vec3_norm(sum);
+}
+
+/* Both sides of the plane normal . (p - on) = 0; `above` where it is positive. An empty side has
+ * fewer than three corners. Corners very near to the plane count as on it: no splinters. A convex
+ * polygon grows by one corner a side at most. */
+static void split(const csg_piece *piece, csg_vec3 on, csg_vec3 normal, csg_piece *above,
+                  csg_piece *below)
+{
+    double height[CSG_PIECE_CORNERS];
+    above->count = below->count = 0;
+    above->hint = below->hint = piece->hint;
+    double on_plane = 0x1p-42 * csg_vec3_norm(normal);
+    for (uint32_t i = 0; i < piece->count; i++) {
+        height[i] = csg_vec3_dot(csg_vec3_sub(piece->corners[i], on), normal);
+        height[i] = fabs(height[i]) > on_plane ? height[i] : 0;
+    }
+    for (uint32_t i = 0; i < piece->count; i++) {
+        uint32_t j = i + 1 < piece->count ? i + 1 : 0;
+        csg_vec3 p = piece->corners[i], q = piece->corners[j];
+        if (height[i] >= 0)
+            add_corner(above, p);
+        if (height[i] <= 0)
+            add_corner(below, p);
+        if ((height[i] > 0 && height[j] < 0) || (height[i] < 0 && height[j] > 0)) {
+            double t = height[i] / (height[i] - height[j]);
+            csg_vec3 cut = csg_vec3_add(p, csg_vec3_scale(csg_vec3_sub(q, p), t));
+            add_corner(above, cut);
+            add_corner(below, cut);
+        }
+    }
+}
+
+/* Most corners of a piece that is cut by one plane; one that is cut by three may have one more. */
+enum { HALVED_MOST = 8 };
+
+/* Along a chord between corners: no new ones. */
+static uint32_t halve_by_chord(const csg_piece *piece, csg_piece *parts)
+{
+    uint32_t half = piece->count / 2;
+    parts[0] = parts[1] = *piece;
+    parts[0].count = half + 1;
+    parts[1].count = 0;
+    for (uint32_t i = half; i <= piece->count; i++)
+        add_corner(&parts[1], piece->corners[i % piece->count]);
+    return 2;
+}
+
+uint32_t csg_piece_halve(const csg_piece *piece, csg_piece *parts)
+{
+    if (piece->count > HALVED_MOST)
+        return halve_by_chord(piece, parts);
+    uint32_t from = 0, to = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < piece->count; i++)
+        for (uint32_t j = 0; j < i; j++) {
+            csg_vec3 away = csg_vec3_sub(piece->corners[i], piece->corners[j]);
+            double d = csg_vec3_dot(away, away);
+            if (d > most) {
+                most = d;
+                from = j;
+                to = i;
+            }
+        }
+    csg_vec3 along = csg_vec3_sub(piece->corners[to], piece->corners[from]);
+    csg_vec3 middle = csg_vec3_add(piece->corners[from], csg_vec3_scale(along, 0.5));
+    split(piece, middle, along, &parts[0], &parts[1]);
+    if (parts[0].count < 3 || parts[1].count < 3) {
+        parts[0] = *piece; /* too small to be cut */
+        return 1;
+    }
+    return 2;
+}
+
+/* A cut that leaves more than this of the area in one part is none. */
+static const double PART_MOST = 0.8;
+
+uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle, csg_piece *parts)
+{
+    csg_vec3 normal = csg_vec3_cross(triangle->ab, triangle->ac);
+    csg_vec3 b = csg_vec3_add(triangle->a, triangle->ab),
+             c = csg_vec3_add(triangle->a, triangle->ac);
+    const csg_vec3 starts[3] = {triangle->a, b, c};
+    const csg_vec3 edges[3] = {triangle->ab, csg_vec3_sub(triangle->ac, triangle->ab),
+                               csg_vec3_scale(triangle->ac, -1)};
+    uint32_t count = 0;
+    double most = 0, whole = area_of(piece);
+    csg_piece rest = *piece, *inside = &rest;
+    if (piece->count + 3 > CSG_PIECE_CORNERS)
+        return 0;
+    for (int k = 0; k < 3 && inside->count >= 3; k++) {
+        csg_piece before = *inside;
+        split(&before, starts[k], csg_vec3_cross(normal, edges[k]), inside, &parts[count]);
+        if (parts[count].count >= 3)
+            most = fmax(most, area_of(&parts[count++]));
+    }
+    if (inside->count >= 3) {
+        parts[count++] = *inside;
+        most = fmax(most, area_of(inside));
+    }
+    return most <= PART_MOST * whole ? count : 0;
+}

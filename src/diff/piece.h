@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * Convex pieces of a triangle, for the search of the largest distance: how far a piece can be from
+ * a triangle of the other mesh, and how it is cut so that this is better known.
+ */
+#ifndef CSG_DIFF_PIECE_H
+#define CSG_DIFF_PIECE_H
+
+#include "shape/tree.h"
+
+enum { CSG_PIECE_CORNERS = 12, CSG_PIECE_PARTS = 4 };
+
+typedef struct csg_piece {
+    csg_vec3 corners[CSG_PIECE_CORNERS];
+    uint32_t count; /* at least 3 */
+    uint32_t hint;  /* a triangle of the other mesh, by its place */
+    double bound;   /* no point of the piece is farther from the other mesh */
+} csg_piece;
+
+csg_vec3 csg_piece_center(const csg_piece *piece);
+/* Of the ball around the centre that holds it. */
+double csg_piece_radius(const csg_piece *piece, csg_vec3 center);
+/* The distance to a triangle is a convex function of the point, so its maximum over the piece is at
+ * a corner: an upper bound of the distance to the whole mesh. */
+double csg_piece_bound(const csg_piece *piece, const csg_tree_triangle *triangle, uint32_t *corner);
+double csg_triangle_distance(const csg_tree_triangle *triangle, csg_vec3 p);
+
+/* Parts that together are the piece, their bound not set: at most CSG_PIECE_PARTS. Across its
+ * longest extent; 1: too small to be cut. */
+uint32_t csg_piece_halve(const csg_piece *piece, csg_piece *parts);
+/* By the planes on the edges of `triangle` and at right angles to it; the part that projects into
+ * the triangle is the last. 0: it would not get much smaller. */
+uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle, csg_piece *parts);
+
+#endif
