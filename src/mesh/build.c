@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "mesh/tolerance.h"
 #include "mesh/work.h"
 
 /* ---- bounds and lattice ------------------------------------------------------------------------
@@ -190,11 +191,16 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
     w->stage_share = 1;
     if (w->context->limits.timeout_s > 0)
         w->deadline_s =
-            (w->share ? w->share->started_s : w->started_s) + w->context->limits.timeout_s;
+            (w->share  ? w->share->started_s
+             : w->goal ? w->goal->started_s
+                       : w->started_s) +
+            w->context->limits.timeout_s;
     csgm_status status = prepare(w);
     if (status == CSGM_OK)
         status = make_mesh(w);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && w->goal && w->counts.triangle_count)
+        status = csg_mesh_reshape(w);
+    if (status == CSGM_OK && !(w->goal && w->goal->cell_size > 0))
         warn(w);
     if (status == CSGM_OK && stats)
         fill_stats(w, stats);
@@ -218,7 +224,20 @@ csgm_status csg_mesh_build_one(csgm_context *context, const csgm_field *field,
                                const csgm_mesh_options *options, const csg_mesh_share *share,
                                csgm_mesh **out, csgm_mesh_stats *stats)
 {
-    csg_mesh_work work = {.context = context, .options = options, .field = field, .share = share};
+    return csg_mesh_is_reshaped(options)
+               ? csg_mesh_build_reshaped(context, field, options, share, out, stats)
+               : csg_mesh_build_with(context, field, options, share, NULL, out, stats);
+}
+
+csgm_status csg_mesh_build_with(csgm_context *context, const csgm_field *field,
+                                const csgm_mesh_options *options, const csg_mesh_share *share,
+                                csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    csg_mesh_work work = {.context = context,
+                          .options = options,
+                          .field = field,
+                          .share = share,
+                          .goal = goal};
     csgm_status status = run(&work, stats);
     if (status == CSGM_OK)
         *out = work.mesh;

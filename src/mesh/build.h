@@ -18,7 +18,9 @@ csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
  * build. */
 static inline bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *options)
 {
-    return !field->part_count && !(field->has_materials && options->colors);
+    return !field->part_count && !(field->has_materials && options->colors) &&
+           !(options->tolerance > 0) && !(options->simplify_error > 0) &&
+           !(options->simplify_share > 0) && !options->improve;
 }
 csgm_status csg_mesh_stream(csgm_context *context, const csgm_field *field,
                             const csgm_mesh_options *options, const csg_mesh_receiver *receiver,

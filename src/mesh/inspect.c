@@ -250,13 +250,22 @@ static double largest_cotangent(const csg_vec3 *edge, double cross)
     return largest;
 }
 
+/* Longest side over smallest altitude. */
+static double aspect_of(const csg_vec3 edge[3], double cross)
+{
+    double longest = 0;
+    for (int k = 0; k < 3; k++)
+        longest = fmax(longest, csg_vec3_dot(edge[k], edge[k]));
+    return longest / cross;
+}
+
 /* Volume is summed over tetrahedra with the apex in the box's centre: small terms, small errors. */
 static void measure(inspection *in)
 {
     csgm_mesh_check *check = in->check;
     csg_box box = used_box(in);
     csg_vec3 apex = in->sound_count ? csg_box_center(box) : csg_vec3_make(0, 0, 0);
-    double cotangent = -INFINITY;
+    double cotangent = -INFINITY, aspect = 0;
     for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
         const uint32_t *v = triangle_at(in, t);
         if (!is_sound(in, v))
@@ -269,13 +278,16 @@ static void measure(inspection *in)
         double cross = csg_vec3_norm(normal);
         check->volume += csg_vec3_dot(a, normal) / 6;
         check->area += cross / 2;
-        if (cross > 0)
+        if (cross > 0) {
             cotangent = fmax(cotangent, largest_cotangent(edge, cross));
-        else
+            aspect = fmax(aspect, aspect_of(edge, cross));
+        } else {
             check->zero_area_triangles++;
+        }
     }
     bool flat = check->zero_area_triangles > 0 || in->sound_count == 0;
     check->min_angle_deg = flat ? 0 : atan2(1, cotangent) * 180 / acos(-1);
+    check->max_aspect = check->zero_area_triangles ? INFINITY : aspect;
     check->bounds = box;
     if (in->sound_count)
         check->bounds = (csg_box){csg_vec3_add(box.min, in->mesh->origin),

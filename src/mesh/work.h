@@ -53,6 +53,7 @@ typedef struct csg_mesh_share {
 typedef struct csg_mesh_work {
     csgm_context *context;
     const csg_mesh_share *share; /* NULL = the mesh has one part */
+    struct csg_mesh_goal *goal;  /* NULL = the mesh stays as marching cubes make it */
     const csgm_mesh_options *options;
     const csgm_field *field;
     csgm_field *clipped; /* owned, NULL when the bounds cut nothing */
@@ -133,6 +134,12 @@ csgm_status csg_mesh_link_features(csg_mesh_work *work);
 csgm_status csg_mesh_build_one(csgm_context *context, const csgm_field *field,
                                const csgm_mesh_options *options, const csg_mesh_share *share,
                                csgm_mesh **out, csgm_mesh_stats *stats);
+/* The same whatever the options ask of the finished mesh; goal (may be NULL) says it
+ * (tolerance.h). */
+csgm_status csg_mesh_build_with(csgm_context *context, const csgm_field *field,
+                                const csgm_mesh_options *options, const csg_mesh_share *share,
+                                struct csg_mesh_goal *goal, csgm_mesh **out,
+                                csgm_mesh_stats *stats);
 csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
                                  const csgm_mesh_options *options, csgm_mesh **out,
                                  csgm_mesh_stats *stats);

@@ -58,16 +58,30 @@ static void put_work(cli_json *json, const cli_work *work)
     cli_json_end(json, '}');
 }
 
+static void put_distance(cli_json *json, const csgm_mesh_stats *stats)
+{
+    cli_json_number(json, "distance_allowed", stats->distance_allowed);
+    if (!stats->open_places)
+        cli_json_number(json, "max_distance_bound", stats->max_distance_bound);
+    cli_json_number(json, "max_distance_measured", stats->max_distance_measured);
+    cli_json_count(json, "open_places", stats->open_places);
+}
+
 static void put_results(cli_json *json, const cli_work *work, const run_report *report)
 {
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
     cli_json_open(json, "mesh", '{');
     cli_facts_mesh_json(json, &view, &report->check);
+    if (work->stats.triangles_before)
+        cli_json_count(json, "triangles_before", work->stats.triangles_before);
     cli_json_end(json, '}');
     cli_json_open(json, "quality", '{');
     cli_json_number(json, "max_abs_field", report->max_abs_field);
     cli_json_count(json, "vertices_measured", report->vertices_measured);
+    if (work->stats.is_measured)
+        put_distance(json, &work->stats);
     cli_json_number(json, "min_angle_deg", report->check.min_angle_deg);
+    cli_json_number(json, "max_aspect", report->check.max_aspect);
     cli_json_count(json, "degenerate",
                    report->check.degenerate_triangles + report->check.zero_area_triangles);
     cli_json_end(json, '}');
@@ -77,6 +91,8 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
     cli_json_number(json, "compile", work->compile_s);
     cli_json_number(json, "octree", work->stats.octree_s);
     cli_json_number(json, "mesh", work->stats.mesh_s);
+    if (work->stats.triangles_before)
+        cli_json_number(json, "reshape", work->stats.reshape_s);
     cli_json_number(json, "write", report->write_s);
     cli_json_number(json, "total", report->total_s);
     cli_json_end(json, '}');

@@ -19,6 +19,7 @@ typedef enum kind {
     LIST,
     COUNT,
     NUMBER,
+    AMOUNT,
     BYTES,
     CHOICE,
     BOX,
@@ -162,6 +163,25 @@ static bool set_number(parser *p, const row *option, const char *text, double *s
     return true;
 }
 
+static bool set_amount(parser *p, const row *option, const char *text, cli_amount *slot)
+{
+    char number[64];
+    const char *digits = text;
+    size_t length = strlen(text);
+    bool share = length && length < sizeof number && text[length - 1] == '%';
+    double value = 0;
+    if (share) {
+        memcpy(number, text, length - 1);
+        number[length - 1] = '\0';
+        digits = number;
+    }
+    if (!read_numbers(digits, &value, 1) || value <= 0 || (share && value >= 100))
+        return refuse_value(p, option, text,
+                            "a length above 0, or a percentage between 0% and 100%");
+    *slot = (cli_amount){share ? value / 100 : value, share};
+    return true;
+}
+
 static bool set_bytes(parser *p, const row *option, const char *text, uint64_t *slot)
 {
     static const char suffixes[] = "KMGT";
@@ -263,6 +283,8 @@ static bool set_option(parser *p, const row *option, const char *value)
         return set_count(p, option, value, slot);
     case NUMBER:
         return set_number(p, option, value, slot);
+    case AMOUNT:
+        return set_amount(p, option, value, slot);
     case BYTES:
         return set_bytes(p, option, value, slot);
     case CHOICE:

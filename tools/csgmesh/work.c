@@ -9,6 +9,9 @@ int cli_work_check(cli_app *app)
 {
     if (app->options.given[CLI_OPTION_resolution] && app->options.given[CLI_OPTION_cell_size])
         return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
+    if (app->options.given[CLI_OPTION_tolerance] && app->options.given[CLI_OPTION_simplify])
+        return cli_usage_error(app, NULL,
+                               "-e and --simplify both say what may be taken away: give one");
     return CLI_DONE;
 }
 
@@ -28,7 +31,15 @@ static csgm_mesh_options mesh_options(cli_app *app)
         mesh.bounds = options->bounds;
     if (options->given[CLI_OPTION_resolution])
         mesh.resolution = (uint32_t)options->resolution;
+    else if (options->given[CLI_OPTION_tolerance])
+        mesh.resolution = 0;
     mesh.cell_size = options->cell_size;
+    mesh.tolerance = options->tolerance;
+    if (options->simplify.is_share)
+        mesh.simplify_share = options->simplify.value;
+    else
+        mesh.simplify_error = options->simplify.value;
+    mesh.improve = options->improve;
     mesh.normals = cli_outputs_normals(options);
     mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
     mesh.colors = options->colors == 0;
