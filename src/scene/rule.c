@@ -13,6 +13,8 @@
 enum { ANGLES = 4096 /* scanned for K */ };
 /* What the scan may have missed between its angles. */
 #define SCAN_ROOM 1.001
+/* A sigmoid's tails beyond delta (operators.md 7.2). */
+#define SIGMOID_ROOM (1 + 1e-6)
 
 typedef struct rule_row {
     const char *name, *space;
@@ -303,6 +305,8 @@ void csg_rule_settle(csg_rule *rule)
         rule->facts = csg_step_find_facts(rule->step);
         rule->k[0] = rule->kind == CSG_BLEND_INTERIOR ? rule->facts.interior
                                                       : 1 + v[1] / v[0] * rule->facts.exterior;
+        if (rule->step.kind == CSG_STEP_SIGMOID)
+            rule->k[0] *= SIGMOID_ROOM;
         rule->k[1] = rule->k[0];
     } else if (rule->kind == CSG_BLEND_ARC) {
         settle_arc(rule);
