@@ -120,6 +120,39 @@ static void add_to_place(const walk *w, csg_certify_place *place, const csg_cert
     place->at = csg_vec3_add(w->field->center, csg_vec3_make(f->at[0], f->at[1], f->at[2]));
 }
 
+/* Places whose boxes have come to touch are one. */
+static void merge_places(const walk *w, csg_certify_report *report, uint32_t grown)
+{
+    csg_certify_place *to = &report->places[grown];
+    csg_box near = csg_box_grow(to->box, 2 * w->lattice->cell_size);
+    for (uint32_t i = 0; i < report->place_count; i++) {
+        const csg_certify_place from = report->places[i];
+        if (i == grown || from.kind != to->kind ||
+            csg_box_is_empty(csg_box_intersect(near, from.box)))
+            continue;
+        if (from.thickness > to->thickness) {
+            to->thickness = from.thickness;
+            to->is_gap = from.is_gap;
+            to->at = from.at;
+        }
+        to->box = csg_box_hull(to->box, from.box);
+        to->cells += from.cells;
+        if (i < grown) { /* it keeps the earlier one's number */
+            report->places[i] = *to;
+            report->places[grown] = from;
+            to = &report->places[i];
+            uint32_t swap = grown;
+            grown = i;
+            i = swap;
+        }
+        report->place_count--;
+        memmove(&report->places[i], &report->places[i + 1],
+                (report->place_count - i) * sizeof from);
+        i = UINT32_MAX; /* from the first again: the box has grown */
+        near = csg_box_grow(to->box, 2 * w->lattice->cell_size);
+    }
+}
+
 /* Into the place of this kind whose box is within two cells, else into a new one. */
 static void add_finding(const walk *w, csg_certify_report *report, const csg_certify_finding *f)
 {
@@ -129,6 +162,7 @@ static void add_finding(const walk *w, csg_certify_report *report, const csg_cer
         csg_box both = csg_box_intersect(near, place->box);
         if (place->kind == (csg_cell_kind)f->kind && !csg_box_is_empty(both)) {
             add_to_place(w, place, f);
+            merge_places(w, report, i);
             return;
         }
     }

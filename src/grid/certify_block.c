@@ -221,6 +221,26 @@ static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube
     return ++w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
 }
 
+/* The quick way to what hides in a cell: up and down from its centre. What is found in another cell
+ * is that one's. */
+static bool look_for_missed(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    double value;
+    csg_reach_end end;
+    csg_reach_values(&w->reach, (const double(*)[3])cube->c, 1, &value);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        if (csg_reach_from(&w->reach, cube->c, sign * value, sign, &end) != CSG_REACH_NONE ||
+            !(end.thickness > 8 * (double)w->wide.rounding))
+            continue;
+        bool here = true;
+        for (int axis = 0; axis < 3; axis++)
+            here = here && fabs(end.at[axis] - cube->c[axis]) <= 1.5 * cube->half;
+        if (here && !find(w, cube->cell, CSG_CELL_MISSED, sign, &end))
+            return false;
+    }
+    return true;
+}
+
 /* A cube of a cell or less that is not empty. */
 static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, bool *divide)
 {
@@ -243,6 +263,8 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return false;
     if (settled)
         return true;
+    if (is_cell && (!look_for_missed(w, cube) || w->kinds[cube->cell] == CSG_CELL_MISSED))
+        return w->kinds[cube->cell] == CSG_CELL_MISSED;
     *divide = 2 * cube->half > w->size * (1 + 1e-9);
     return *divide || end_cube(w, cube);
 }

@@ -86,17 +86,35 @@ static bool is_within(const csg_reach *reach, const double p[3])
     return true;
 }
 
-/* Moves to the best of the points around, where it is better by a part of the step. */
-static bool climb(const csg_reach *reach, double p[3], double *value, int sign, double step)
+/* The points around p, and two more up the slope that they show: in a wedge that points between the
+ * ways of the lattice only these lead on. */
+enum { WAYS = 26, CANDIDATES = WAYS + 2 };
+
+static void look_up(const csg_reach *reach, const double p[3], double value, int sign, double step,
+                    double (*points)[3], double *values)
 {
-    enum { WAYS = 26 };
-    const double least = 0.05; /* of what the Lipschitz constant allows */
-    double points[WAYS][3], values[WAYS];
-    int best = -1;
-    double most = *value + least * step * reach->lipschitz;
+    double slope[3] = {0, 0, 0};
     around(p, step, points);
     csg_reach_values(reach, (const double(*)[3])points, WAYS, values);
     for (int i = 0; i < WAYS; i++)
+        for (int axis = 0; axis < 3; axis++)
+            slope[axis] += (sign * values[i] - value) * (points[i][axis] - p[axis]);
+    double norm = sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
+    for (int k = 0; k < 2; k++)
+        for (int axis = 0; axis < 3; axis++)
+            points[WAYS + k][axis] = p[axis] + (norm > 0 ? (k + 1) * step * slope[axis] / norm : 0);
+    csg_reach_values(reach, (const double(*)[3])points + WAYS, 2, values + WAYS);
+}
+
+/* Moves to the best of the points around, where it is better by a part of the step. */
+static bool climb(const csg_reach *reach, double p[3], double *value, int sign, double step)
+{
+    const double least = 0.05; /* of what the Lipschitz constant allows */
+    double points[CANDIDATES][3], values[CANDIDATES];
+    int best = -1;
+    double most = *value + least * step * reach->lipschitz;
+    look_up(reach, p, *value, sign, step, points, values);
+    for (int i = 0; i < CANDIDATES; i++)
         if (sign * values[i] > most) {
             most = sign * values[i];
             best = i;
@@ -108,58 +126,59 @@ static bool climb(const csg_reach *reach, double p[3], double *value, int sign, 
     return true;
 }
 
-/* ---- straight ways -------------------------------------------------------------------------- */
+/* ---- where no ball holds a lattice point ----------------------------------------------------- */
 
-/* From p to a lattice point: -1 a change of sign, 0 none seen, 1 balls of this sign cover it. */
-static int way_to(const csg_reach *reach, const double p[3], const double to[3], int sign)
+/* Whether no point of the straight way shows the other sign. */
+static bool is_clear(const csg_reach *reach, const double p[3], const double to[3], int sign)
 {
     enum { STEPS = 32 };
-    double points[STEPS + 1][3], values[STEPS + 1], step = distance(p, to) / STEPS;
+    double points[STEPS + 1][3], values[STEPS + 1];
     for (int i = 0; i <= STEPS; i++)
         for (int axis = 0; axis < 3; axis++)
             points[i][axis] = p[axis] + (to[axis] - p[axis]) * i / STEPS;
     csg_reach_values(reach, (const double(*)[3])points, STEPS + 1, values);
-    bool covered = true;
-    for (int i = 0; i <= STEPS; i++) {
-        if (sign * values[i] < 0)
-            return -1;
-        covered = covered && (i == 0 || fmin(sign * values[i], reach->band) +
-                                                fmin(sign * values[i - 1], reach->band) >=
-                                            step * reach->lipschitz * (1 + 0x1p-10));
-    }
-    return covered;
+    for (int i = 0; i <= STEPS; i++)
+        if (sign > 0 ? values[i] < 0 : values[i] >= 0)
+            return false;
+    return true;
 }
 
-/* Straight ways to the 4^3 lattice points around p. */
-static csg_reach_state look_around(const csg_reach *reach, const double p[3], int sign)
+/* A straight way to a lattice point no further than the middle of a cell is from its corners: in a
+ * wall of a cell's thickness every point of its middle has one. */
+static bool has_way(const csg_reach *reach, const double p[3], int sign)
 {
     enum { POINTS = 64 };
-    double points[POINTS][3], values[POINTS];
-    int64_t index[POINTS][3], base[3];
+    int64_t base[3];
+    double h = reach->lattice->cell_size;
     const double origin[3] = {reach->lattice->origin.x, reach->lattice->origin.y,
                               reach->lattice->origin.z};
     for (int axis = 0; axis < 3; axis++)
-        base[axis] = (int64_t)floor((p[axis] - origin[axis]) / reach->lattice->cell_size) - 1;
+        base[axis] = (int64_t)floor((p[axis] - origin[axis]) / h) - 1;
     for (int i = 0; i < POINTS; i++) {
         const int64_t at[3] = {base[0] + i % 4, base[1] + i / 4 % 4, base[2] + i / 16};
-        memcpy(index[i], at, sizeof at);
-        lattice_point(reach->lattice, at, points[i]);
-    }
-    csg_reach_values(reach, (const double(*)[3])points, POINTS, values);
-    csg_reach_state state = CSG_REACH_NONE;
-    for (int i = 0; i < POINTS; i++) {
         int64_t same[3];
-        bool inner = nearest_point(reach->lattice, points[i], same);
-        bool is_same = inner ? (sign > 0) == (values[i] >= 0) : sign < 0;
-        if (!is_same)
-            continue;
-        int way = way_to(reach, p, points[i], sign);
-        if (way > 0)
-            return CSG_REACH_SAMPLE;
-        if (way == 0)
-            state = CSG_REACH_UNPROVEN;
+        double to[3];
+        lattice_point(reach->lattice, at, to);
+        if (distance(p, to) <= 0.88 * h && nearest_point(reach->lattice, to, same) &&
+            is_clear(reach, p, to, sign))
+            return true;
     }
-    return state;
+    return false;
+}
+
+/* Distance at which the other sign is seen in one of 26 directions, up to a cell's half diagonal;
+ * 0: it is not. */
+static double distance_to_other(const csg_reach *reach, const double p[3], int sign)
+{
+    double h = reach->lattice->cell_size, points[WAYS][3], values[WAYS];
+    for (double t = h / 128; t < 0.88 * h; t *= 1.2) {
+        around(p, t, points);
+        csg_reach_values(reach, (const double(*)[3])points, WAYS, values);
+        for (int i = 0; i < WAYS; i++)
+            if (sign > 0 ? values[i] < 0 : values[i] >= 0)
+                return t;
+    }
+    return 0;
 }
 
 csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], double value, int sign,
@@ -177,5 +196,9 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
     }
     memcpy(end->at, p, sizeof p);
     end->thickness = 2 * value / reach->lipschitz;
-    return found ? CSG_REACH_SAMPLE : look_around(reach, p, sign);
+    if (found || (value >= 0 && has_way(reach, p, sign)))
+        return CSG_REACH_SAMPLE;
+    double other = distance_to_other(reach, p, sign);
+    end->thickness = fmax(end->thickness, value >= 0 ? 1.8 * other : 0);
+    return other > 0 ? CSG_REACH_NONE : CSG_REACH_UNPROVEN;
 }
