@@ -12,7 +12,7 @@
 
 enum {
     FIRST_WIDE_LEVEL = 4,
-    LAST_WIDE_LEVEL = 7,
+    LAST_WIDE_LEVEL = 6,
     LONG_WIDE_TAPE = 48, /* mean length above which the reach is halved */
     LONG_NEAR_TAPE = 5,  /* leaves with longer tapes are split; measured: docs/render.md */
     PARENTS_PER_ITEM = 4

@@ -29,10 +29,10 @@ csgm_status csg_picture_place(csg_picture *picture, csg_box bounds);
 /* Hands the image out when status is CSGM_OK. */
 csgm_status csg_picture_end(csg_picture *picture, csgm_status status, csgm_image **out);
 
-bool csg_picture_should_stop(void *picture);                     /* any worker */
+bool csg_picture_should_stop(void *picture); /* any worker */
 /* A csg_pool_poll; job: any struct whose first member is the csg_picture pointer. */
 void csg_picture_poll(void *job, size_t done, size_t count);
-csgm_status csg_picture_why_stopped(csg_picture *picture);       /* reported where need be */
+csgm_status csg_picture_why_stopped(csg_picture *picture); /* reported where need be */
 
 /* Rows of pixels, one after the other, as work for the pool. */
 static inline uint8_t *csg_picture_pixel(const csg_picture *picture, uint32_t x, uint32_t y)

@@ -124,7 +124,7 @@ static void release_rooms(lazy_job *job)
 static void measure(lazy_job *job, csg_box bounds)
 {
     const csg_view *view = &job->picture->view;
-    double farthest = -INFINITY, share = 0.15 * view->pixel;
+    double farthest = -INFINITY, share = 0.04 * view->pixel;
     for (int corner = 0; corner < 8; corner++) {
         csg_vec3 p = csg_vec3_make(corner & 1 ? bounds.max.x : bounds.min.x,
                                    corner & 2 ? bounds.max.y : bounds.min.y,

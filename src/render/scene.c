@@ -88,10 +88,10 @@ static void shade_rays(const scene_job *job, tile_room *room)
 static void trace_tile(const scene_job *job, tile_room *room, const tile *t)
 {
     csg_rays *rays = &room->trace.rays;
-    rays->count = 0;
+    csg_tracer_begin(rays, t->outer_y0);
     for (uint32_t y = t->outer_y0; y < t->outer_y1; y++)
         for (uint32_t x = t->outer_x0; x < t->outer_x1; x++)
-            csg_tracer_aim(&job->tracer, rays, rays->count++, x + 0.5, y + 0.5);
+            csg_tracer_aim(&job->tracer, rays, x + 0.5, y + 0.5);
     csg_tracer_trace(&job->tracer, &room->trace);
     shade_rays(job, room);
 }
@@ -148,10 +148,10 @@ static void refine_edges(const scene_job *job, tile_room *room, const tile *t)
     csg_rays *rays = &room->trace.rays;
     for (uint32_t first = 0; first < room->edge_count; first += at_once) {
         uint32_t end = first + at_once < room->edge_count ? first + at_once : room->edge_count;
-        rays->count = 0;
+        csg_tracer_begin(rays, t->y0);
         for (uint32_t e = first; e < end; e++)
             for (uint32_t s = 0; s < samples; s++)
-                csg_tracer_aim(&job->tracer, rays, rays->count++,
+                csg_tracer_aim(&job->tracer, rays,
                                t->x0 + room->edges[e] % TILE + (s % n + 0.5) / n,
                                t->y0 + room->edges[e] / TILE + (s / n + 0.5) / n);
         csg_tracer_trace(&job->tracer, &room->trace);
@@ -224,7 +224,7 @@ static double set_tolerance(scene_job *job)
     csg_tracer *tracer = &job->tracer;
     const csg_view *view = &tracer->view;
     csg_box box = moved_box(job->bounds, job->field->center);
-    double diagonal = csg_vec3_norm(csg_box_size(box)), share = 0.15 * view->pixel;
+    double diagonal = csg_vec3_norm(csg_box_size(box)), share = 0.04 * view->pixel;
     double far = csg_vec3_norm(csg_vec3_sub(csg_box_center(box), view->eye)) + diagonal;
     double near = view->orthographic ? share : share * view->nearest;
     tracer->near_tolerance = (float)fmax(near, 64 * (double)FLT_EPSILON * (diagonal + 1e-30));

@@ -74,22 +74,41 @@ typedef struct lane {
     float t, end;
 } lane;
 
-static uint32_t enter(const csg_tracer *tracer, const csg_ray_cell *cell, const csg_rays *rays,
-                      const csg_march *m, lane *lanes)
+/* A cell to visit with the rays that enter its parent: list[first] .. list[first + count]. */
+typedef struct visit {
+    uint32_t cell, first, count;
+} visit;
+
+enum { LISTS = 12 * CSG_RAYS_MOST }; /* one a level of wide cells, and the first */
+
+typedef struct shadow_room {
+    lane lanes[CSG_RAYS_MOST];
+    visit stack[STACK_MOST];
+    uint16_t list[LISTS];
+} shadow_room;
+
+/* Those of the visit's rays that enter the cell and are not dark yet: lanes, and a list behind the
+ * visit's own, which nobody needs who is visited later. */
+static uint32_t enter(const csg_tracer *tracer, const visit *v, const csg_rays *rays,
+                      const csg_march *m, shadow_room *room)
 {
+    const csg_ray_cell *cell = &tracer->cells->cells[v->cell];
+    const uint16_t *from = room->list + v->first;
+    uint16_t *to = room->list + v->first + v->count;
     uint32_t count = 0;
     float inverse[3];
     for (int axis = 0; axis < 3; axis++) {
         float d = tracer->light[axis];
         inverse[axis] = fabsf(d) < 1e-18f ? 1e18f : 1 / d;
     }
-    for (uint32_t k = 0; k < m->count; k++) {
+    for (uint32_t i = 0; i < v->count; i++) {
+        uint16_t k = from[i];
         const float o[3] = {m->channel[0][k], m->channel[1][k], m->channel[2][k]};
-        lane *l = &lanes[count];
+        lane *l = &room->lanes[count];
         if (rays->lit[m->ray[k]] > 0 &&
             csg_ray_in_cube(o, inverse, cell->center, cell->half, &l->t, &l->end)) {
-            l->from = (uint16_t)k;
-            count++;
+            l->from = k;
+            to[count++] = k;
         }
     }
     return count;
@@ -133,33 +152,44 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
     room->counts.primitive_evaluations += points * primitives;
 }
 
-void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room)
+/* All cells of wide tapes that rays of the march enter. */
+static void visit_cells(const csg_tracer *tracer, csg_trace_room *room, shadow_room *own,
+                        const bounds *all)
 {
-    const csg_ray_cells *cells = tracer->cells;
     csg_march *m = &room->march;
-    lane lanes[CSG_RAYS_MOST];
-    bounds all;
-    uint32_t stack[STACK_MOST], top = 0;
-    begin_rays(tracer, room, m, &all);
-    if (m->count)
-        stack[top++] = 0;
+    uint32_t top = 0;
+    for (uint32_t k = 0; k < m->count; k++)
+        own->list[k] = (uint16_t)k;
+    own->stack[top++] = (visit){0, 0, m->count};
     while (top) {
-        const csg_ray_cell *cell = &cells->cells[stack[--top]];
-        if (!may_meet(tracer, cell, &all))
+        visit v = own->stack[--top];
+        const csg_ray_cell *cell = &tracer->cells->cells[v.cell];
+        if (!may_meet(tracer, cell, all))
             continue;
-        if (cell == &cells->cells[cell->wide] && cell->wide) {
-            uint32_t count = enter(tracer, cell, &room->rays, m, lanes);
+        uint32_t count = enter(tracer, &v, &room->rays, m, own);
+        if (!count)
+            continue;
+        if (cell->wide == v.cell && v.cell) {
             csg_tape tape = tracer->field->tape;
             tape.nodes = cell->wide_nodes;
             tape.count = cell->wide_count;
-            if (count)
-                march(tracer, &tape, room, m, lanes, count);
+            march(tracer, &tape, room, m, own->lanes, count);
             continue;
         }
         for (int o = 0; o < CSG_OCTANTS; o++)
             if (cell->child[o])
-                stack[top++] = cell->child[o];
+                own->stack[top++] = (visit){cell->child[o], v.first + v.count, count};
     }
+}
+
+void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room)
+{
+    csg_march *m = &room->march;
+    shadow_room own;
+    bounds all;
+    begin_rays(tracer, room, m, &all);
+    if (m->count)
+        visit_cells(tracer, room, &own, &all);
     for (uint32_t k = 0; k < m->count; k++) {
         float *lit = &room->rays.lit[m->ray[k]];
         *lit = *lit * *lit * (3 - 2 * *lit);

@@ -19,9 +19,20 @@ static float inverse_of(float d)
     return fabsf(d) < 1e-18f ? (d < 0 ? -1e18f : 1e18f) : 1 / d;
 }
 
-void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y)
+void csg_tracer_begin(csg_rays *rays, uint32_t first_row)
+{
+    rays->count = rays->row_count = 0;
+    rays->first_row = first_row;
+    rays->row[0] = 0;
+}
+
+void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y)
 {
     csg_vec3 origin, direction;
+    uint32_t ray = rays->count++, row = (uint32_t)y - rays->first_row;
+    while (rays->row_count <= row)
+        rays->row[++rays->row_count] = (uint16_t)ray;
+    rays->row[rays->row_count] = (uint16_t)rays->count;
     csg_view_ray(&tracer->view, x, y, &origin, &direction);
     rays->px[ray] = (float)x;
     rays->py[ray] = (float)y;
@@ -100,14 +111,29 @@ static uint32_t primitives_in(const csg_tape *tape)
     return count;
 }
 
+/* Rays of the rows that the cell's rectangle touches: [*first, *end). */
+static void rays_of(const csg_rays *rays, const csg_pixel_rectangle *in, uint32_t *first,
+                    uint32_t *end)
+{
+    float low = floorf(in->min_y) - (float)rays->first_row;
+    float high = floorf(in->max_y) - (float)rays->first_row + 1;
+    uint32_t row = low > 0 ? (uint32_t)fminf(low, CSG_RAYS_ROWS) : 0;
+    uint32_t last = high > 0 ? (uint32_t)fminf(high, CSG_RAYS_ROWS) : 0;
+    row = row < rays->row_count ? row : rays->row_count;
+    last = last < rays->row_count ? last : rays->row_count;
+    *first = rays->row[row];
+    *end = rays->row[last];
+}
+
 static void enter(const csg_ray_cell *cell, const csg_pixel_rectangle *in, csg_trace_room *room)
 {
     const csg_rays *rays = &room->rays;
     csg_march *m = &room->march;
-    csg_march_clear(m);
-    for (uint32_t i = 0; i < rays->count; i++) {
-        if (rays->t[i] < INFINITY || rays->px[i] < in->min_x || rays->px[i] > in->max_x ||
-            rays->py[i] < in->min_y || rays->py[i] > in->max_y)
+    uint32_t first, end;
+    m->count = m->hit_count = 0;
+    rays_of(rays, in, &first, &end);
+    for (uint32_t i = first; i < end; i++) {
+        if (rays->t[i] < INFINITY || rays->px[i] < in->min_x || rays->px[i] > in->max_x)
             continue;
         const float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]};
         const float inverse[3] = {rays->ix[i], rays->iy[i], rays->iz[i]};

@@ -10,12 +10,19 @@
 #include "render/camera.h"
 #include "render/cells.h"
 
-enum { CSG_RAYS_MOST = 1296 /* a multiple of CSG_LANES; 36^2 */ };
+enum {
+    CSG_RAYS_MOST = 1296, /* a multiple of CSG_LANES; 36^2 */
+    CSG_RAYS_ROWS = 40    /* rows of pixels that a batch may span */
+};
 
 /* Rays and what they found. t: along the unit direction; INFINITY = nothing. The rest is set where
  * something was hit. */
 typedef struct csg_rays {
     uint32_t count;
+    /* Rays stand in the order of rows of pixels: those of row first_row + i are row[i] .. row[i +
+     * 1], so that a small cell need not look at all of them. Set by csg_tracer_aim. */
+    uint32_t first_row, row_count;
+    uint16_t row[CSG_RAYS_ROWS + 1];
     float px[CSG_RAYS_MOST], py[CSG_RAYS_MOST]; /* pixel coordinates */
     float ox[CSG_RAYS_MOST], oy[CSG_RAYS_MOST], oz[CSG_RAYS_MOST];
     float dx[CSG_RAYS_MOST], dy[CSG_RAYS_MOST], dz[CSG_RAYS_MOST];
@@ -74,21 +81,16 @@ typedef struct csg_tracer {
 /* Where each of the tracer's cells is in the picture; cells->count of them. */
 void csg_tracer_find_rectangles(const csg_tracer *tracer, csg_pixel_rectangle *out);
 
-/* Fills px, py, o, d and i of a ray of the view. */
-void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y);
+/* Forgets all rays; those that are aimed next lie in rows of pixels from first_row on. */
+void csg_tracer_begin(csg_rays *rays, uint32_t first_row);
+/* Appends a ray of the view; y may not fall below an earlier one's row of pixels. */
+void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y);
 
 /* room->rays, aimed: fills the rest. */
 void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room);
 
 /* shadow.c: fills `lit` of what was hit. */
 void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room);
-
-/* The cell's rays, by where they enter and leave its cube: fills march from all rays of the batch
- * that may come there. */
-static inline void csg_march_clear(csg_march *march)
-{
-    march->count = march->hit_count = 0;
-}
 
 /* [*begin, *end] of the ray in the cube; false: it misses. */
 static inline bool csg_ray_in_cube(const float o[3], const float inverse[3], const float center[3],

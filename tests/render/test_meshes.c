@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * Pictures of triangles: what covers what, no gaps along shared edges, clipping at the eye, edges,
+ * and the same bytes for any number of threads.
+ */
+#include "render_support.h"
+
+/* Two squares that face -y: a small red one at y = -1, a large blue one at y = 1. */
+static const float squares[] = {-1, -1, -1, 1, -1, -1, 1, -1, 1, -1, -1, 1,
+                                -2, 1,  -2, 2, 1,  -2, 2, 1,  2, -2, 1,  2};
+static const uint32_t square_indices[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+static const uint8_t square_colors[] = {255, 0,   0, 255, 255, 0,   0, 255, 255, 0,  0,
+                                        255, 255, 0, 0,   255, 0,   0, 255, 255, 0,  0,
+                                        255, 255, 0, 0,   255, 255, 0, 0,   255, 255};
+
+static csgm_mesh_view squares_view(void)
+{
+    return (csgm_mesh_view){.positions = squares,
+                            .colors = square_colors,
+                            .indices = square_indices,
+                            .vertex_count = 8,
+                            .triangle_count = 4};
+}
+
+static void test_front_hides_back(void **state)
+{
+    render_case c;
+    csgm_mesh_view mesh = squares_view();
+    render_begin(&c, 2, CSGM_ISA_AUTO, NULL);
+    csgm_render_options options = front_options(120, 6);
+    render_mesh(&c, &mesh, &options);
+    assert_true(pixel_at(&c, 60, 60)[0] > 150 && pixel_at(&c, 60, 60)[2] < 60);
+    assert_true(pixel_at(&c, 60, 30)[2] > 150 && pixel_at(&c, 60, 30)[0] < 60);
+    assert_int_equal(pixel_at(&c, 60, 5)[3], 0);
+    assert_true(fabs(covered(&c) - 80 * 80) < 1);
+    options.camera.projection = CSGM_PERSPECTIVE;
+    render_mesh(&c, &mesh, &options);
+    assert_true(pixel_at(&c, 60, 60)[0] > 150 && pixel_at(&c, 60, 60)[2] < 60);
+    /* from behind one sees the inner side of the blue one: reddish, to be noticed */
+    options.camera.azimuth_deg = 180;
+    render_mesh(&c, &mesh, &options);
+    assert_true(pixel_at(&c, 60, 60)[0] > 60);
+    render_end(&c);
+}
+
+/* Each sample of a square cut into slivers belongs to exactly one of them. */
+static void test_no_gaps(void **state)
+{
+    enum { FAN = 37 };
+    float positions[3 * (FAN + 2)];
+    uint32_t indices[3 * FAN];
+    render_case c;
+    positions[0] = -2;
+    positions[1] = 0;
+    positions[2] = -2;
+    for (int i = 0; i <= FAN; i++) {
+        float share = (float)i / FAN;
+        positions[3 * i + 3] = share < 0.5f ? 2 : 2 - 8 * (share - 0.5f);
+        positions[3 * i + 4] = 0;
+        positions[3 * i + 5] = share < 0.5f ? -2 + 8 * share : 2;
+    }
+    for (uint32_t i = 0; i < FAN; i++) {
+        indices[3 * i] = 0;
+        indices[3 * i + 1] = i + 1;
+        indices[3 * i + 2] = i + 2;
+    }
+    csgm_mesh_view mesh = {
+        .positions = positions, .indices = indices, .vertex_count = FAN + 2, .triangle_count = FAN};
+    render_begin(&c, 1, CSGM_ISA_AUTO, NULL);
+    csgm_render_options options = front_options(150, 6);
+    for (uint32_t samples = 1; samples <= 8; samples++) {
+        options.samples = samples;
+        render_mesh(&c, &mesh, &options);
+        for (uint32_t y = 27; y < 123; y++)
+            for (uint32_t x = 27; x < 123; x++)
+                if (x > 32 && y > 32 && x + y > 60 && pixel_at(&c, x, y)[3] != 255)
+                    fail_msg("a gap at %u, %u with %u samples", x, y, samples);
+    }
+    render_end(&c);
+}
+
+static void test_a_scenes_mesh(void **state)
+{
+    render_case c;
+    csgm_mesh *mesh;
+    render_begin(&c, 2, CSGM_ISA_AUTO,
+                 "difference() { sphere(r = 1); translate([0.6, -0.6, 0.6]) "
+                 "color(\"red\") sphere(r = 0.6); }");
+    assert_int_equal(csgm_mesh_build(c.context, c.field, NULL, &mesh, NULL), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(mesh);
+    csgm_render_options options = front_options(200, 2.4);
+    render_scene(&c, &options);
+    csgm_image *traced = c.image;
+    c.image = NULL;
+    render_mesh(&c, &view, &options);
+    csgm_image_view a = csgm_image_get_view(traced), b = csgm_image_get_view(c.image);
+    double difference = 0;
+    for (size_t i = 0; i < (size_t)4 * 200 * 200; i++)
+        difference += abs(a.pixels[i] - b.pixels[i]);
+    assert_true(difference / (4.0 * 200 * 200) < 0.6); /* of 255, on average */
+    csgm_image_destroy(traced);
+
+    csgm_image *first = c.image;
+    c.image = NULL;
+    render_case three;
+    render_begin(&three, 3, CSGM_ISA_SCALAR, NULL);
+    render_mesh(&three, &view, &options);
+    assert_same_image(first, three.image, "three threads");
+    options.wireframe = true;
+    render_mesh(&three, &view, &options);
+    uint64_t darker = 0;
+    a = csgm_image_get_view(first);
+    b = csgm_image_get_view(three.image);
+    for (size_t i = 0; i < (size_t)200 * 200; i++)
+        darker += b.pixels[4 * i + 1] < a.pixels[4 * i + 1];
+    assert_true(darker > 5000);
+    render_end(&three);
+    csgm_image_destroy(first);
+    csgm_mesh_destroy(mesh);
+    render_end(&c);
+}
+
+/* From inside a box one sees its walls everywhere, though most corners lie behind the eye. */
+static void test_inside(void **state)
+{
+    render_case c;
+    csgm_mesh *mesh;
+    render_begin(&c, 1, CSGM_ISA_AUTO, "cube(2, center = true);");
+    csgm_mesh_options coarse = csgm_mesh_options_default();
+    coarse.resolution = 3;
+    assert_int_equal(csgm_mesh_build(c.context, c.field, &coarse, &mesh, NULL), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(mesh);
+    csgm_render_options options = front_options(64, 4);
+    options.camera.projection = CSGM_PERSPECTIVE;
+    options.camera.fov_deg = 100;
+    options.camera.placed = true;
+    options.camera.eye = (csgm_vec3){0.3, -0.2, 0.1};
+    options.camera.target = (csgm_vec3){1, 1, 1};
+    options.frame = (csgm_box){{-1, -1, -1}, {1, 1, 1}};
+    render_mesh(&c, &view, &options);
+    assert_true(covered(&c) == 64 * 64);
+    csgm_mesh_destroy(mesh);
+    render_end(&c);
+}
+
+/* What is no number, and indices past the end, are left out. */
+static void test_hostile_mesh(void **state)
+{
+    static const float positions[] = {0,   0, 0, 1,        0, 0, 0,     0, 1,
+                                      NAN, 0, 0, INFINITY, 1, 1, 1e30f, 0, 1e30f};
+    static const uint32_t indices[] = {0, 1, 2, 0, 1, 3, 0, 4, 2, 0, 1, 99, 1, 1, 1, 0, 5, 2};
+    csgm_mesh_view mesh = {
+        .positions = positions, .indices = indices, .vertex_count = 6, .triangle_count = 6};
+    render_case c;
+    render_begin(&c, 1, CSGM_ISA_AUTO, NULL);
+    csgm_render_options options = front_options(64, 4);
+    render_mesh(&c, &mesh, &options);
+    assert_true(covered(&c) > 100);
+    options.camera.projection = CSGM_PERSPECTIVE;
+    render_mesh(&c, &mesh, &options);
+    mesh.vertex_count = mesh.triangle_count = 0;
+    render_mesh(&c, &mesh, &options);
+    assert_true(covered(&c) == 0);
+    render_end(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_front_hides_back), cmocka_unit_test(test_no_gaps),
+        cmocka_unit_test(test_a_scenes_mesh),    cmocka_unit_test(test_inside),
+        cmocka_unit_test(test_hostile_mesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
