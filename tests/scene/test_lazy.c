@@ -354,21 +354,26 @@ static void test_exact_scheme_is_exact(void **state)
     assert_true(worst <= 1e-15); /* some rounding of coordinates up to 4 */
 }
 
-/* Rules of all kinds with their standard parameters over balls and sharp unions, soft ones among
- * them. */
-static csg_node_id rule_tree(csg_random *random, unsigned depth)
+static csg_node_id random_ball(csg_random *random)
 {
     csg_vec3 c = test_point(random, 1);
     csg_node_id ball = sphere(c.x, c.y, c.z, csg_random_uniform(random, 0.2, 0.7));
     if (csg_random_below(random, 3) == 0)
         ball = csg_build_soft(&builder, (csg_soft){CSG_FALLOFF_CUBIC, 0.5}, ball, NOWHERE);
+    return ball;
+}
+
+/* Rules of all kinds with their standard parameters over balls and sharp unions, soft ones among
+ * them. */
+static csg_node_id rule_tree(csg_random *random, unsigned depth)
+{
     if (!depth)
-        return ball;
+        return random_ball(random);
     csg_node_kind kind = CSG_NODE_UNION + csg_random_below(random, 3);
     csg_blend blend = sharp;
     uint32_t pick = csg_random_below(random, CSG_BLEND_END + 4);
     csg_rule rule = {0};
-    if (pick > CSG_BLEND_ORTHOGONAL && pick < CSG_BLEND_FIELD_SHARP) {
+    if (pick > CSG_BLEND_ORTHOGONAL && pick < CSG_BLEND_FIELD_SHARP && pick != CSG_BLEND_PROFILE) {
         rule = csg_rule_standard(pick);
         rule.range = csg_blend_takes_fields(pick) ? 0.3 : 0;
         for (int i = 0; i < 2 && !csg_blend_takes_fields(pick); i++)
