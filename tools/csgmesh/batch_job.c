@@ -255,8 +255,19 @@ static FILE *open_console(maker *m, char **text, size_t *length)
     return console->out;
 }
 
+/* As after -o: what is made of a scene may depend on the formats. */
+static void set_outputs(maker *m)
+{
+    batch_arena *arena = &m->result->arena;
+    cli_list names = {0};
+    for (size_t i = 0; i < m->job->formats.count; i++)
+        batch_add(arena, &names, batch_printf(arena, "mesh.%s", m->job->formats.items[i]));
+    m->app.options.outputs = names;
+}
+
 static int make(maker *m, bool may_defer, bool *is_large)
 {
+    set_outputs(m);
     int status = cli_work_check(&m->app);
     if (status == CLI_DONE)
         status = cli_app_open(&m->app);

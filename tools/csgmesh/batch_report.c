@@ -25,7 +25,7 @@ const char *batch_outcome_name(batch_outcome outcome)
 
 static void put_headline(const cli_console *console, const batch_job *job, bool failed)
 {
-    bool from_manifest = strcmp(job->place, job->scene) != 0;
+    bool from_manifest = strstr(job->place, ": jobs[") != NULL;
     fprintf(stderr, "%s%s%s: %s",
             !console->color ? ""
             : failed        ? "\033[1;31m"

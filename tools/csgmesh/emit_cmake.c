@@ -90,6 +90,12 @@ static void put_rule(const emit_rules *rules, const emit_rule *rule)
 
 int emit_cmake(const emit_rules *rules)
 {
+    for (size_t i = 0; i < rules->count; i++)
+        for (size_t j = 0; j < rules->items[i].outputs.count; j++)
+            if (strchr(rules->items[i].outputs.items[j], '$')) /* it would remake these always */
+                return cli_usage_error(rules->plan->app, "give it another --name",
+                                       "CMake takes no '$' in what depends on files: '%s'",
+                                       rules->items[i].outputs.items[j]);
     fputs("# Made by csgmesh batch --emit cmake; CMake 3.21 or later.\n"
           "find_program(CSGMESH csgmesh REQUIRED)\n",
           stdout);
