@@ -23,8 +23,9 @@ static const double NEAR = 3;  /* radii of the cube */
 static const double LOCAL = 1.3;
 
 enum {
-    MOST_VISITS = 4096,       /* of cubes, a cell */
-    MOST_BLOCK_VISITS = 65536 /* a block */
+    MOST_VISITS = 20000,        /* of cubes, a cell */
+    MOST_BLOCK_VISITS = 300000, /* a block */
+    SLOW_VISIT = 100            /* what one counts where a shape, formula or warp is evaluated */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
@@ -216,9 +217,16 @@ static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
 
 static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
 {
+    uint32_t cost = 1;
+    for (uint32_t i = 0; i < cube->node_count && cost == 1; i++) {
+        const csg_tape_node *node = &cube->nodes[i];
+        bool is_slow = node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD || node->warp;
+        cost = csg_op_is_leaf(node->op) && is_slow ? SLOW_VISIT : 1;
+    }
     w->cubes++;
-    w->block_visits++;
-    return ++w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
+    w->block_visits += cost;
+    w->visits[cube->cell] += cost;
+    return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
 }
 
 /* The quick way to what hides in a cell: up and down from its centre. What is found in another cell

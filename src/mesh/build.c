@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "mesh/certify.h"
 #include "mesh/tolerance.h"
 #include "mesh/work.h"
 
@@ -76,6 +77,7 @@ static csgm_status clip(csg_mesh_work *w)
 static csgm_status walk_octree(csg_mesh_work *w)
 {
     csg_octree_options options = {.prune = w->options->prune,
+                                  .scan = !w->options->certify,
                                   .progress = csg_mesh_report_progress,
                                   .cancelled = csg_mesh_should_stop,
                                   .user = w};
@@ -151,6 +153,8 @@ static void fill_stats(const csg_mesh_work *w, csgm_mesh_stats *stats)
         .point_evaluations = octree.point_evaluations,
         .interval_evaluations = octree.interval_evaluations,
         .primitive_evaluations = octree.primitive_evaluations,
+        .unresolved_cells = w->unresolved_cells,
+        .certify = w->certify,
         .memory_peak_bytes = atomic_load(&w->context->memory.peak_bytes),
         .feature_vertices = w->features.count,
         .smooth_features = w->features.smooth,
@@ -200,8 +204,10 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
         status = make_mesh(w);
     if (status == CSGM_OK && w->goal && w->counts.triangle_count)
         status = csg_mesh_reshape(w);
-    if (status == CSGM_OK && !(w->goal && w->goal->cell_size > 0))
+    if (status == CSGM_OK && !(w->goal && w->goal->cell_size > 0)) {
         warn(w);
+        status = csg_mesh_look_for_missed(w);
+    }
     if (status == CSGM_OK && stats)
         fill_stats(w, stats);
     csg_mesh_release_output(w);

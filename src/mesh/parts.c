@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "mesh/certify.h"
 #include "mesh/work.h"
 
 typedef struct assembly {
@@ -60,6 +61,8 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->interval_evaluations += part->interval_evaluations;
     sum->primitive_evaluations += part->primitive_evaluations;
     sum->memory_peak_bytes = part->memory_peak_bytes;
+    sum->unresolved_cells += part->unresolved_cells;
+    csg_mesh_add_certify(&sum->certify, &part->certify);
     sum->feature_vertices += part->feature_vertices;
     sum->smooth_features += part->smooth_features;
     if (sum->leaf_blocks)

@@ -84,6 +84,9 @@ typedef struct csg_mesh_work {
     uint32_t worker_count;
     size_t scratch_floats;
 
+    csgm_certify certify;
+    uint64_t unresolved_cells;
+
     csgm_stage stage;
     double started_s, sampled_s, deadline_s, last_report_s;
     double stage_share, stage_done; /* of the stage: the part at hand, and what is behind */

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "certify.h"
 #include "depfile.h"
 #include "facts.h"
 #include "outputs.h"
@@ -51,7 +52,9 @@ static void put_work(cli_json *json, const cli_work *work)
     cli_json_count(json, "pruned_outside", stats->pruned_outside);
     cli_json_count(json, "pruned_inside", stats->pruned_inside);
     cli_json_count(json, "leaf_blocks", stats->leaf_blocks);
+    cli_json_count(json, "unresolved_cells", stats->unresolved_cells);
     cli_json_end(json, '}');
+    cli_certify_json(json, &stats->certify);
     cli_json_open(json, "features", '{');
     cli_json_count(json, "vertices", stats->feature_vertices);
     cli_json_count(json, "left_smooth", stats->smooth_features);
@@ -167,6 +170,8 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
     report->peak_rss_bytes = peak_rss_bytes();
     if (status == CLI_DONE)
         tell_result(app, view.triangle_count, report);
+    if (status == CLI_DONE)
+        cli_certify_tell(app, &work->stats.certify);
     if (status == CLI_DONE && app->options.stats)
         status = write_statistics(app, work, report);
     return status;
@@ -192,6 +197,8 @@ static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
     report->total_s = cli_now_s() - app->start_s;
     if (status == CLI_DONE)
         tell_result(app, triangle_count, report);
+    if (status == CLI_DONE)
+        cli_certify_tell(app, &work->stats.certify);
     return status;
 }
 

@@ -44,6 +44,8 @@ static csgm_mesh_options mesh_options(cli_app *app)
     mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
     mesh.colors = options->colors == 0;
     mesh.prune = !options->no_prune;
+    mesh.certify = options->certify || options->certify_size > 0;
+    mesh.certify_size = options->certify_size;
     mesh.monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};
     return mesh;
 }

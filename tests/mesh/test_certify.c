@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT
+ * What hides between lattice points is found, what does not hide is not; cones hold.
+ * Arguments: poses of each planted part, 8 by default.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "field/cone.h"
+#include "grid/certify.h"
+#include "mesh/mesh_support.h"
+
+static uint32_t pose_count = 8;
+
+/* ---- cones ---------------------------------------------------------------------------------- */
+
+/* A cone's promise, tried at random points of its ball. Returns whether there was a cone. */
+static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_random *random,
+                     csg_vec3 at, double radius)
+{
+    csg_cone cone;
+    const float c[3] = {(float)(at.x - field->center.x), (float)(at.y - field->center.y),
+                        (float)(at.z - field->center.z)};
+    if (!csg_cone_find(&field->tape, c, radius, &cone))
+        return false;
+    assert_true(cone.least > 0);
+    for (int i = 0; i < 60; i++) {
+        csg_vec3 d =
+            csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
+        csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
+        double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
+        if (!(climb >= cone.least - 1e-3 || csg_vec3_norm(g) < 1e-9))
+            fail_msg("the field climbs by %g, not %g, near (%g, %g, %g) within %g", climb,
+                     cone.least, at.x, at.y, at.z, radius);
+    }
+    return true;
+}
+
+static csg_node_id primitive(mesh_case *c, int kind, csg_random *random)
+{
+    double a = csg_random_uniform(random, 0.3, 1), b = csg_random_uniform(random, 0.3, 1);
+    double e = csg_random_uniform(random, 0.3, 1);
+    double r = kind % 2 ? 0 : 0.2 * fmin(a, fmin(b, e));
+    csg_scene_builder *build = &c->builder;
+    switch (kind % 9) {
+    case 0:
+        return csg_build_primitive(build, CSG_NODE_SPHERE, (double[]){a}, NOWHERE);
+    case 1:
+    case 2:
+        return csg_build_primitive(build, CSG_NODE_BOX, (double[]){a, b, e, r}, NOWHERE);
+    case 3:
+    case 4:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, b, e, r}, NOWHERE);
+    case 5:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, 0, e, 0}, NOWHERE);
+    case 6:
+        return csg_build_primitive(build, CSG_NODE_CAPSULE, (double[]){1.5, a * 0.5, b * 0.5},
+                                   NOWHERE);
+    case 7:
+        return csg_build_primitive(build, CSG_NODE_TORUS, (double[]){a + 0.3, 0.25, 180}, NOWHERE);
+    default:
+        return csg_build_primitive(build, CSG_NODE_ELLIPSOID, (double[]){a, b, e}, NOWHERE);
+    }
+}
+
+static csg_node_id posed(mesh_case *c, csg_node_id node, csg_random *random)
+{
+    node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
+    return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
+                 csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
+}
+
+static csg_blend any_blend(csg_random *random)
+{
+    const csg_blend blends[] = {SHARP,
+                                ROUND(0.2),
+                                {CSG_BLEND_PARABOLA, 0.4},
+                                {CSG_BLEND_CHAMFER, 0.1},
+                                {CSG_BLEND_HYPERBOLA, 0.02}};
+    return blends[(int)csg_random_uniform(random, 0, 4.999)];
+}
+
+static void cones_hold(void **state)
+{
+    (void)state;
+    csg_random random = {.state = 81};
+    uint32_t found = 0;
+    for (int kind = 0; kind < 36; kind++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id root = posed(&c, primitive(&c, kind, &random), &random);
+        if (kind >= 9) {
+            csg_node_id other = posed(&c, primitive(&c, kind / 2, &random), &random);
+            csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
+                                         CSG_NODE_INTERSECTION};
+            root = joined(&c, operators[kind % 3], any_blend(&random), root, other);
+        }
+        if (kind % 4 == 3) {
+            csg_affine stretch = csg_affine_scale(csg_vec3_make(1.5, 0.8, 1));
+            root = csg_build_transform(&c.builder, &stretch, root, NOWHERE);
+        }
+        mesh_case_compile(&c, root);
+        for (int i = 0; i < 250; i++)
+            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.6),
+                              exp(csg_random_uniform(&random, -5, -0.5)));
+        mesh_case_end(&c);
+    }
+    assert_true(found > 3000);
+}
+
+/* ---- what hides ----------------------------------------------------------------------------- */
+
+typedef struct lattice_case {
+    mesh_case base;
+    csg_lattice lattice;
+    csg_certify_report report;
+} lattice_case;
+
+static void certify(lattice_case *c, csg_node_id root, double cell_size)
+{
+    mesh_case_compile(&c->base, root);
+    assert_true(
+        csg_lattice_make(c->base.field->bounds, c->base.field->center, cell_size, 0, &c->lattice));
+    csg_certify_options options = {.size = cell_size / 64};
+    assert_int_equal(
+        csg_certify_run(&c->base.context, c->base.field, &c->lattice, &options, &c->report),
+        CSGM_OK);
+}
+
+static bool is_doubted(lattice_case *c)
+{
+    csg_octree_options options = {.prune = true, .scan = true};
+    csg_octree *octree;
+    csg_certify_place place;
+    uint64_t edges;
+    csgm_status status;
+    assert_int_equal(
+        csg_octree_create(&c->base.context, c->base.field, &c->lattice, &options, &octree),
+        CSGM_OK);
+    assert_int_equal(csg_octree_sample(octree, 0, csg_octree_frontier_count(octree)), CSGM_OK);
+    bool found = csg_certify_doubts(&c->base.context, c->base.field, &c->lattice, octree, &place,
+                                    &edges, &status);
+    assert_int_equal(status, CSGM_OK);
+    csg_octree_destroy(octree);
+    return found;
+}
+
+/* Planted parts, in cells of 1 / 8: a sheet of a tenth of a cell, a ball of radius 0.3, a needle of
+ * radius 0.04; a crack of 0.05 in the body. */
+enum { SHEET, BALL, NEEDLE, CRACK, PLANTS };
+
+static csg_node_id plant(mesh_case *c, int what, csg_random *random, csg_vec3 *middle)
+{
+    const double h = 0.125;
+    csg_node_id body = make_box(c, 0.8, 0.8, 0.8), part;
+    if (what == SHEET)
+        part = make_box(c, 0.3, 0.3, 0.05 * h);
+    else if (what == BALL)
+        part = make_sphere(c, 0.3 * h);
+    else if (what == NEEDLE)
+        part = make_cylinder(c, 0.04 * h, 0.3);
+    else
+        part = make_box(c, 0.3, 0.3, 0.025 * h);
+    part = turned(c, part, csg_random_uniform(random, 0, 360), test_direction(random));
+    double far = what == CRACK ? 0 : 2;
+    *middle = csg_vec3_add(csg_vec3_make(far, 0, 0), test_point(random, h));
+    part = moved(c, part, middle->x, middle->y, middle->z);
+    return joined(c, what == CRACK ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION, SHARP, body, part);
+}
+
+/* Whether a lattice point lies in the ball at `at`. */
+static bool holds_point(const lattice_case *c, csg_vec3 at, double radius)
+{
+    csg_vec3 p = csg_vec3_sub(csg_vec3_sub(at, c->base.field->center), c->lattice.origin);
+    double h = c->lattice.cell_size;
+    csg_vec3 near = {h * floor(p.x / h + 0.5), h * floor(p.y / h + 0.5), h * floor(p.z / h + 0.5)};
+    return csg_vec3_norm(csg_vec3_sub(p, near)) < radius;
+}
+
+static void planted_parts_are_found(void **state)
+{
+    (void)state;
+    uint32_t doubted = 0, hidden = 0;
+    for (uint32_t i = 0; i < pose_count * PLANTS; i++) {
+        int what = (int)(i % PLANTS);
+        lattice_case c;
+        csg_vec3 middle;
+        csg_random random = {.state = 1000 + i};
+        mesh_case_begin(&c.base, 2);
+        certify(&c, plant(&c.base, what, &random, &middle), 0.125);
+        const csg_certify_place *place = &c.report.places[0];
+        bool is_found = c.report.cells[CSG_CELL_MISSED] > 0;
+        if (is_found) {
+            csg_vec3 off = csg_vec3_sub(place->at, middle);
+            hidden++;
+            doubted += is_doubted(&c);
+            assert_int_equal(place->kind, CSG_CELL_MISSED);
+            assert_int_equal(place->is_gap, what == CRACK);
+            assert_true(csg_vec3_norm(off) < 0.45);
+            assert_true(place->thickness > 0.02 * 0.125 && place->thickness < 0.8 * 0.125);
+        } else if (what != BALL || !holds_point(&c, middle, 0.3 * 0.125)) {
+            fail_msg("plant %d, pose %u was not found", what, i / PLANTS);
+        }
+        mesh_case_end(&c.base);
+    }
+    assert_true(hidden > 3 * pose_count);
+    assert_true(doubted * 10 >= hidden * 8); /* the scan is a scan */
+}
+
+/* ---- what does not --------------------------------------------------------------------------- */
+
+static csg_node_id clean_solid(mesh_case *c, int which, csg_random *random)
+{
+    csg_node_id box = make_box(c, 0.9, 0.7, 0.5), ball = make_sphere(c, 0.7);
+    csg_node_id rod = make_cylinder(c, 0.3, 2),
+                other = turned(c, make_cylinder(c, 0.3, 2), 90, csg_vec3_make(1, 0, 0));
+    switch (which) {
+    case 9:
+        return joined(c, CSG_NODE_DIFFERENCE, SHARP, box, rod);
+    case 10:
+        return joined(c, CSG_NODE_UNION, SHARP, rod, other);
+    case 11:
+        return joined(c, CSG_NODE_INTERSECTION, SHARP, box, ball);
+    case 12:
+        return joined(c, CSG_NODE_UNION, ROUND(0.2), box, moved(c, ball, 0.8, 0, 0));
+    case 13:
+        return joined(c, CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.8}, ball,
+                      moved(c, make_sphere(c, 0.5), 0.8, 0, 0));
+    case 14:
+        return joined(c, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_CHAMFER, 0.1}, box, rod);
+    default:
+        return primitive(c, which % 9, random);
+    }
+}
+
+static void clean_scenes_are_clean(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        lattice_case c;
+        csg_random random = {.state = 500 + (uint64_t)i};
+        mesh_case_begin(&c.base, 2);
+        certify(&c, posed(&c.base, clean_solid(&c.base, i, &random), &random), 0.06);
+        if (c.report.cells[CSG_CELL_MISSED] || c.report.cells[CSG_CELL_UNRESOLVED])
+            fail_msg("scene %d: %llu missed, %llu unresolved", i,
+                     (unsigned long long)c.report.cells[CSG_CELL_MISSED],
+                     (unsigned long long)c.report.cells[CSG_CELL_UNRESOLVED]);
+        assert_true(c.report.cells[CSG_CELL_CERTIFIED] > 0);
+        assert_int_equal(c.report.place_count, 0);
+        assert_true(c.report.promise < 0.03 * 0.06);
+        assert_false(is_doubted(&c));
+        mesh_case_end(&c.base);
+    }
+}
+
+/* ---- the report ------------------------------------------------------------------------------ */
+
+static void reports_do_not_depend_on_threads(void **state)
+{
+    (void)state;
+    csg_certify_report first;
+    const csgm_isa isas[] = {CSGM_ISA_SCALAR, CSGM_ISA_AUTO, CSGM_ISA_AUTO};
+    for (uint32_t i = 0; i < 3; i++) {
+        lattice_case c;
+        csg_vec3 middle;
+        csg_random random = {.state = 77};
+        mesh_case_begin(&c.base, i == 2 ? 3 : 1);
+        if (isas[i] == CSGM_ISA_SCALAR)
+            c.base.context.isa = CSGM_ISA_SCALAR;
+        certify(&c, plant(&c.base, SHEET, &random, &middle), 0.125);
+        if (i == 0)
+            first = c.report;
+        assert_memory_equal(first.cells, c.report.cells, sizeof first.cells);
+        assert_int_equal(first.place_count, c.report.place_count);
+        for (uint32_t k = 0; k < first.place_count; k++) {
+            assert_true(first.places[k].at.x == c.report.places[k].at.x);
+            assert_true(first.places[k].thickness == c.report.places[k].thickness);
+        }
+        mesh_case_end(&c.base);
+    }
+}
+
+static bool stop(void *user)
+{
+    return ++*(int *)user > 0;
+}
+
+static void runs_out_and_stops(void **state)
+{
+    (void)state;
+    int refused = 0, stopped = 0;
+    for (uint64_t room = 10000; room < 20000000; room *= 2) {
+        lattice_case c;
+        csg_vec3 middle;
+        csg_random random = {.state = 5};
+        mesh_case_begin(&c.base, 1);
+        mesh_case_compile(&c.base, plant(&c.base, SHEET, &random, &middle));
+        assert_true(
+            csg_lattice_make(c.base.field->bounds, c.base.field->center, 0.125, 0, &c.lattice));
+        csg_memory *memory = &c.base.context.memory;
+        int calls = 0;
+        csg_certify_options options = {.size = 0.002, .user = &calls};
+        options.cancelled = room > 1000000 ? stop : NULL;
+        memory->limit_bytes = atomic_load(&memory->used_bytes) + room;
+        csgm_status status =
+            csg_certify_run(&c.base.context, c.base.field, &c.lattice, &options, &c.report);
+        refused += status == CSGM_ERR_MEMORY;
+        stopped += status == CSGM_CANCELLED;
+        mesh_case_end(&c.base);
+    }
+    assert_true(refused > 0 && stopped > 0);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cones_hold),
+        cmocka_unit_test(planted_parts_are_found),
+        cmocka_unit_test(clean_scenes_are_clean),
+        cmocka_unit_test(reports_do_not_depend_on_threads),
+        cmocka_unit_test(runs_out_and_stops),
+    };
+    if (argc > 1)
+        pose_count = (uint32_t)strtoul(argv[1], NULL, 10);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
