@@ -26,7 +26,7 @@ static const char *const later_commands[] = {
 #include "commands.def"
 #undef COMMAND
 #undef LATER_COMMAND
-};
+    NULL};
 
 static bool find_command(const char *name, cli_command *command)
 {
@@ -41,7 +41,7 @@ static bool find_command(const char *name, cli_command *command)
 
 static bool is_later_command(const char *name)
 {
-    for (size_t i = 0; i < sizeof later_commands / sizeof *later_commands; i++)
+    for (size_t i = 0; later_commands[i]; i++)
         if (strcmp(name, later_commands[i]) == 0)
             return true;
     return false;

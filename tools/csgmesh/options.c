@@ -19,6 +19,7 @@ typedef enum kind {
     LIST,
     COUNT,
     NUMBER,
+    MEASURE,
     AMOUNT,
     BYTES,
     CHOICE,
@@ -166,19 +167,31 @@ static bool set_number(parser *p, const row *option, const char *text, double *s
 static bool set_amount(parser *p, const row *option, const char *text, cli_amount *slot)
 {
     char number[64];
-    const char *digits = text;
     size_t length = strlen(text);
     bool share = length && length < sizeof number && text[length - 1] == '%';
     double value = 0;
     if (share) {
         memcpy(number, text, length - 1);
         number[length - 1] = '\0';
-        digits = number;
+        text = number;
     }
-    if (!read_numbers(digits, &value, 1) || value <= 0 || (share && value >= 100))
+    if (!read_numbers(text, &value, 1) || value <= 0 || (share && value >= 100))
         return refuse_value(p, option, text,
                             "a length above 0, or a percentage between 0% and 100%");
     *slot = (cli_amount){share ? value / 100 : value, share};
+    return true;
+}
+
+static bool set_measure(parser *p, const row *option, const char *text, double *slot)
+{
+    char number[64];
+    size_t length = strlen(text);
+    bool percent = length > 1 && length < sizeof number && text[length - 1] == '%';
+    double value;
+    snprintf(number, sizeof number, "%.*s", percent ? (int)length - 1 : 63, text);
+    if (!read_numbers(percent ? number : text, &value, 1) || value < 0)
+        return refuse_value(p, option, text, "a number, 0 or above, or a percentage");
+    *slot = percent ? value / 100 : value;
     return true;
 }
 
@@ -283,6 +296,8 @@ static bool set_option(parser *p, const row *option, const char *value)
         return set_count(p, option, value, slot);
     case NUMBER:
         return set_number(p, option, value, slot);
+    case MEASURE:
+        return set_measure(p, option, value, slot);
     case AMOUNT:
         return set_amount(p, option, value, slot);
     case BYTES:
@@ -379,13 +394,19 @@ static const char *next_argument(parser *p)
     return p->next < p->argc ? p->argv[p->next++] : NULL;
 }
 
-static const row *find_long(const char *name, size_t length)
+/* Of rows with one name that for one of these commands, else the first. */
+static const row *find_long(const char *name, size_t length, int commands)
 {
-    for (size_t i = 0; i < ROW_COUNT; i++)
-        if (rows[i].name && strlen(rows[i].name) == length &&
-            strncmp(rows[i].name, name, length) == 0)
+    const row *first = NULL;
+    for (size_t i = 0; i < ROW_COUNT; i++) {
+        if (!rows[i].name || strlen(rows[i].name) != length ||
+            strncmp(rows[i].name, name, length) != 0)
+            continue;
+        if (rows[i].commands & commands)
             return &rows[i];
-    return NULL;
+        first = first ? first : &rows[i];
+    }
+    return first;
 }
 
 static const row *find_short(char letter)
@@ -400,7 +421,7 @@ static bool parse_long(parser *p, const char *name)
 {
     size_t length = strcspn(name, "=");
     const char *value = name[length] ? name + length + 1 : NULL;
-    const row *option = find_long(name, length);
+    const row *option = find_long(name, length, 1 << p->options->command);
     if (!option)
         return refuse_unknown(p, name, length);
     if (!check_row(p, option))
@@ -467,7 +488,7 @@ static bool takes_next(const char *option)
     const row *found;
     if (option[1] == '-') {
         size_t length = strcspn(option + 2, "=");
-        found = find_long(option + 2, length);
+        found = find_long(option + 2, length, 0);
         return found && !option[2 + length] && found->kind != FLAG && found->kind != REPORT;
     }
     for (const char *letter = option + 1; *letter; letter++) {
@@ -495,6 +516,7 @@ void cli_options_release(cli_options *options)
     free(options->outputs.items);
     free(options->defines.items);
     free(options->include_dirs.items);
+    free(options->diff_ignore.items);
     free(options->points.items);
     free(options->operands.items);
 }

@@ -31,14 +31,15 @@ typedef const char *cli_kind_TEXT;
 typedef cli_list cli_kind_LIST;
 typedef uint64_t cli_kind_COUNT; /* 1 .. 2^32 - 1 */
 typedef double cli_kind_NUMBER;  /* > 0, finite */
+typedef double cli_kind_MEASURE; /* >= 0, finite; P% is P / 100 */
 typedef struct cli_amount {
     double value; /* > 0, finite; a share is below 1 */
     bool is_share;
 } cli_amount;
 typedef cli_amount cli_kind_AMOUNT; /* a length, or P% */
-typedef uint64_t cli_kind_BYTES; /* K, M, G, T are powers of 1024 */
-typedef int cli_kind_CHOICE;     /* index into the values */
-typedef csgm_box cli_kind_BOX;   /* finite, min < max */
+typedef uint64_t cli_kind_BYTES;    /* K, M, G, T are powers of 1024 */
+typedef int cli_kind_CHOICE;        /* index into the values */
+typedef csgm_box cli_kind_BOX;      /* finite, min < max */
 typedef cli_points cli_kind_POINTS;
 typedef const char *cli_kind_REPORT; /* optional "=FILE"; "-" without */
 typedef cli_bits cli_kind_BITS;
