@@ -214,6 +214,7 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
                               .lattice = w->lattice,
                               .lipschitz = (double)w->field->tape.lipschitz,
                               .scratch_floats = csg_kernel_scratch_floats(w->field->depth)};
+    self->reach.noise = 4 * self->reach.lipschitz * (double)rounding;
     self->reach.band = 2 * self->reach.lipschitz * w->lattice->cell_size;
     self->reach.scratch = csg_memory_alloc(memory, self->reach.scratch_floats * sizeof(float));
     return self->samples && self->reach.scratch;

@@ -238,7 +238,7 @@ static bool look_for_missed(csg_certify_worker *w, const csg_certify_cube *cube)
     csg_reach_values(&w->reach, (const double(*)[3])cube->c, 1, &value);
     for (int sign = -1; sign <= 1; sign += 2) {
         if (csg_reach_from(&w->reach, cube->c, sign * value, sign, &end) != CSG_REACH_NONE ||
-            !(end.thickness > 8 * (double)w->wide.rounding))
+            !(end.thickness > 0))
             continue;
         bool here = true;
         for (int axis = 0; axis < 3; axis++)

@@ -166,12 +166,12 @@ static bool has_way(const csg_reach *reach, const double p[3], int sign)
     return false;
 }
 
-/* Distance at which the other sign is seen in one of 26 directions, up to a cell's half diagonal;
- * 0: it is not. */
-static double distance_to_other(const csg_reach *reach, const double p[3], int sign)
+/* Distance at which the other sign is seen in one of 26 directions, from the radius of the ball
+ * that is free of it up to a cell's half diagonal; 0: it is not. */
+static double distance_to_other(const csg_reach *reach, const double p[3], double free, int sign)
 {
     double h = reach->lattice->cell_size, points[WAYS][3], values[WAYS];
-    for (double t = h / 128; t < 0.88 * h; t *= 1.2) {
+    for (double t = fmax(free, h / 1024); t < 0.88 * h; t *= 1.2) {
         around(p, t, points);
         csg_reach_values(reach, (const double(*)[3])points, WAYS, values);
         for (int i = 0; i < WAYS; i++)
@@ -196,9 +196,9 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
     }
     memcpy(end->at, p, sizeof p);
     end->thickness = 2 * value / reach->lipschitz;
-    if (found || (value >= 0 && has_way(reach, p, sign)))
+    if (found || fabs(value) <= reach->noise || (value >= 0 && has_way(reach, p, sign)))
         return CSG_REACH_SAMPLE;
-    double other = distance_to_other(reach, p, sign);
+    double other = distance_to_other(reach, p, value / reach->lipschitz, sign);
     end->thickness = fmax(end->thickness, value >= 0 ? 1.8 * other : 0);
     return other > 0 ? CSG_REACH_NONE : CSG_REACH_UNPROVEN;
 }

@@ -16,11 +16,12 @@ typedef struct csg_reach {
     float *scratch;
     size_t scratch_floats;
     double lipschitz, band;
+    double noise; /* values this near to zero have no sign: what is thinner is not there */
     double low[3], high[3]; /* where the tape is valid, less two cells */
 } csg_reach;
 
 typedef enum csg_reach_state {
-    CSG_REACH_SAMPLE,   /* proven: a lattice point of this sign is connected with the point */
+    CSG_REACH_SAMPLE,   /* a lattice point of this sign is connected with the point */
     CSG_REACH_UNPROVEN, /* no change of sign was seen on a way, but the balls do not cover it */
     CSG_REACH_NONE      /* the part is thinner than the lattice's cells as far as was looked */
 } csg_reach_state;

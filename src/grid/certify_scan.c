@@ -54,7 +54,7 @@ static bool follow(scan_room *room, const csgm_field *field, const csg_lattice *
     int sign = doubt->is_inside ? -1 : 1;
     csg_reach_state state = csg_reach_from(&room->reach, middle[0], sign * value, sign, &end);
     csg_arena_release_to(&room->tapes, mark);
-    *missed = state == CSG_REACH_NONE && end.thickness > 8 * (double)room->pruner.rounding;
+    *missed = state == CSG_REACH_NONE && end.thickness > 0;
     if (*missed && end.thickness > place->thickness) {
         place->thickness = end.thickness;
         place->is_gap = sign < 0;
@@ -90,6 +90,7 @@ bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const cs
                                 .lattice = lattice,
                                 .lipschitz = (double)field->tape.lipschitz,
                                 .scratch_floats = csg_kernel_scratch_floats(field->depth)}};
+    room.reach.noise = 4 * room.reach.lipschitz * (double)csg_octree_rounding(lattice);
     room.reach.band = 2 * room.reach.lipschitz * lattice->cell_size;
     csg_pruner_init(&room.pruner, &context->memory, room.reach.kernel,
                     csg_octree_rounding(lattice));
