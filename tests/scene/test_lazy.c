@@ -316,7 +316,7 @@ static void test_laziness_changes_no_bit(void **state)
                       (int)bounds, parts[bounds][PAPER] / TREES, parts[bounds][DEMAND] / TREES);
     assert_true(parts[CSG_LAZY_OWN_BOXES][PAPER] < 0.6 * TREES);
     assert_true(parts[CSG_LAZY_EXACT][PAPER] < 0.7 * TREES);
-    assert_true(parts[CSG_LAZY_EXACT][DEMAND] < 0.9 * parts[CSG_LAZY_EXACT][PAPER]);
+    assert_true(parts[CSG_LAZY_EXACT][DEMAND] < 0.95 * parts[CSG_LAZY_EXACT][PAPER]);
 }
 
 /* Returns the largest difference inside the band. */
@@ -407,6 +407,36 @@ static void test_rules_are_exact_too(void **state)
     print_message("worst in the band: %g; %.2f, with demand %.2f of all nodes\n", worst,
                   parts[PAPER] / (2 * RULED), parts[DEMAND] / (2 * RULED));
     assert_true(worst <= 1e-15);
+}
+
+/* A steep formula, 3 (0.5 - z), cut by balls and cutting them. */
+static csg_node_id steep_field(void)
+{
+    const csg_formula_step steps[] = {{CSG_FORMULA_CONSTANT, 0, 0, 0.5},
+                                      {CSG_FORMULA_Z, 0, 0, 0},
+                                      {CSG_FORMULA_SUB, 0, 1, 0},
+                                      {CSG_FORMULA_CONSTANT, 0, 0, 3},
+                                      {CSG_FORMULA_MUL, 2, 3, 0}};
+    return csg_build_field(&builder, steps, 5, csg_box_all(), false, 3, NOWHERE);
+}
+
+static void test_steep_fields(void **state)
+{
+    csg_blend soft = {CSG_BLEND_PARABOLA, 0.8};
+    csg_node_id cut = join(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 1), steep_field());
+    csg_node_id bitten = join(CSG_NODE_DIFFERENCE, sharp, sphere(1.5, 0, 0.4, 0.9), steep_field());
+    csgm_scene *scene = test_seal(&builder, join(CSG_NODE_UNION, soft, cut, bitten));
+    csg_random random = {12};
+    double parts[2] = {0};
+    for (int i = 0; i < 10; i++) {
+        check_laziness(scene, &random, CSG_LAZY_EXACT, parts);
+        assert_true(check_exactness(scene, &random, i * 0.03) <= 1e-15);
+    }
+    evaluator e = evaluator_of(scene, true, CSG_LAZY_EXACT, 0);
+    test_near(csg_lazy_lipschitz(e.lazy), 3, 0);
+    assert_true(parts[PAPER] < 10);
+    evaluator_end(&e);
+    csg_scene_destroy(scene);
 }
 
 static void test_fields_keep_their_constants(void **state)
@@ -587,6 +617,7 @@ int main(void)
         TEST(test_laziness_changes_no_bit),
         TEST(test_exact_scheme_is_exact),
         TEST(test_rules_are_exact_too),
+        TEST(test_steep_fields),
         TEST(test_fields_keep_their_constants),
         TEST(test_long_operators_are_grouped),
         TEST(test_coloured_unions_are_one),
