@@ -16,6 +16,9 @@ SKIPPED = {"node_modules", "__pycache__"}
 CODE = (".c", ".h", ".cc")
 MARKED = CODE + (".def", ".py", ".sh", ".js", ".mjs", "meson.build")
 
+# file: why it may be longer.
+LONG_FILES = {os.path.join("include", "csgmesh", "csgmesh.h"): "the whole public interface, in one place"}
+
 # (file, function): why it may be longer.
 LONG_FUNCTIONS = {}
 
@@ -55,7 +58,7 @@ def check_file(root, path):
         lines = file.read().split("\n")
     if not any("SPDX-License-Identifier: MIT" in line for line in lines[:3]):
         yield 1, "no SPDX line at its head"
-    if len(lines) - 1 > FILE_LINES:
+    if len(lines) - 1 > FILE_LINES and path not in LONG_FILES:
         yield FILE_LINES, f"{len(lines) - 1} lines; {FILE_LINES} is the most: split it by meaning"
     if path.endswith(CODE):
         for name, first, length in functions(lines):
