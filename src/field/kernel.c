@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The kernels: a tape over batches of points. This file is built once per instruction set (see
  * meson.build); the loops over points are plain C that the compiler turns into vectors, the
- * formulas are in formulas.h, the leaves in leaf_kernel.c, the joins in join_kernel.c. CSG_KERNEL
- * names the build.
+ * formulas are in formulas.h, the leaves in leaf_kernel.c, the joins in joins.h and rule_kernel.c.
+ * CSG_KERNEL names the build.
  *
  * Three walks over a tape, all on a stack of slots:
  *   values     a slot is one array
@@ -16,9 +16,10 @@
 
 #include "field/formula_kernel.h"
 #include "field/formulas.h"
-#include "field/join_kernel.h"
+#include "field/joins.h"
 #include "field/leaf_kernel.h"
 #include "field/rule_kernel.h"
+#include "field/smooth_kernel.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
@@ -146,6 +147,18 @@ static void combine_values(const csg_tape *tape, const csg_tape_node *node, slot
         out[i] = work[i] + raise;
 }
 
+/* a = a op b */
+static inline void join(const csg_tape_node *node, const float *parameters, float *a,
+                        const float *b, size_t count)
+{
+    if (is_of_fields(node->join_blend))
+        CSG_THIS_RULE_KERNEL.join(node, parameters, a, b, count);
+    else if (is_smooth(node->join_blend))
+        CSG_THIS_SMOOTH_KERNEL.values(node, parameters, a, b, count);
+    else
+        join_values(node, parameters, a, b, count);
+}
+
 /* Leaves the result in slot 0; `depth` slots, then the round operator's work. */
 static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t depth)
 {
@@ -166,8 +179,8 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
         }
         if (node->join) {
             top--;
-            CSG_THIS_JOIN_KERNEL.values(node, tape->parameters + node->join_parameters,
-                                        slot(s, top - 1), slot(s, top), p.count);
+            join(node, tape->parameters + node->join_parameters, slot(s, top - 1), slot(s, top),
+                 p.count);
         }
     }
 }
@@ -179,8 +192,8 @@ typedef struct plan {
 
 enum { GRADIENT_CHANNELS = 3, COLOR_CHANNELS = 4, MOST_CHANNELS = 4 };
 
-static const plan gradients_only = {GRADIENT_CHANNELS, 0, 0};
-static const plan colors_only = {0, COLOR_CHANNELS, 0};
+#define GRADIENTS_ONLY ((plan){GRADIENT_CHANNELS, 0, 0})
+#define COLORS_ONLY ((plan){0, COLOR_CHANNELS, 0})
 
 static int channels_of(plan wanted)
 {
@@ -303,19 +316,61 @@ static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots
     }
 }
 
-static void join_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
-                       size_t index, plan wanted, size_t count, float *work)
+/* Of fields: gradients by the partial derivatives, colours by the operands' parts. */
+static void join_fields_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+                              uint32_t depth, size_t index, plan wanted, size_t count, float *work)
 {
-    csg_channels channels = {.count = channels_of(wanted), .colors = wanted.colors};
-    for (int c = 0; c < channels.count; c++) {
-        channels.a[c] = channel(s, depth, index, c);
-        channels.b[c] = channel(s, depth, index + 1, c);
+    const float *parameters = tape->parameters + node->join_parameters, *b = slot(s, index + 1);
+    float *a = slot(s, index), *by_a = work, *by_b = work + s.stride, *before = work + 2 * s.stride;
+    float *ga[MOST_CHANNELS], *gb[MOST_CHANNELS];
+    for (int c = 0; c < channels_of(wanted); c++) {
+        ga[c] = channel(s, depth, index, c);
+        gb[c] = channel(s, depth, index + 1, c);
     }
-    CSG_THIS_JOIN_KERNEL.mixed(node, tape->parameters + node->join_parameters, slot(s, index),
-                               slot(s, index + 1), &channels, count, work, s.stride);
+    memcpy(before, a, count * sizeof *before);
+    if (node->join_blend == CSG_BLEND_TURNING) {
+        CSG_THIS_RULE_KERNEL.turn(parameters, a, b, ga, gb, by_a, by_b, count);
+    } else {
+        CSG_THIS_RULE_KERNEL.partials(node, parameters, a, b, by_a, by_b, count);
+        CSG_THIS_RULE_KERNEL.join(node, parameters, a, b, count);
+    }
+    for (int c = 0; c < wanted.gradients; c++)
+        combine(ga[c], gb[c], by_a, by_b, count);
+    if (wanted.colors)
+        CSG_THIS_RULE_KERNEL.shares(node, before, b, by_a, by_b, count);
+    for (int c = wanted.gradients; c < channels_of(wanted); c++)
+        mix(ga[c], gb[c], by_a, count);
 }
 
-static void walk_mixed(const csg_tape *tape, csg_points p, slots s, uint32_t depth, plan wanted)
+static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+                              uint32_t depth, size_t index, plan wanted, size_t count, float *work)
+{
+    if (is_of_fields(node->join_blend)) {
+        join_fields_mixed(tape, node, s, depth, index, wanted, count, work);
+        return;
+    }
+    const float *parameters = tape->parameters + node->join_parameters, *b = slot(s, index + 1);
+    float *a = slot(s, index), *share = work, *gain = work + s.stride;
+    const int smooth = is_smooth(node->join_blend);
+    if (smooth)
+        CSG_THIS_SMOOTH_KERNEL.shares(node, parameters, a, b, share, count);
+    else
+        join_shares(node, parameters, a, b, share, gain, count);
+    for (int c = 0; c < wanted.gradients; c++)
+        mix(channel(s, depth, index, c), channel(s, depth, index + 1, c), share, count);
+    if (wanted.colors && smooth)
+        in_proportion(share, count);
+    for (int c = wanted.gradients; c < channels_of(wanted); c++)
+        mix(channel(s, depth, index, c), channel(s, depth, index + 1, c), share, count);
+    if (node->join_blend == CSG_BLEND_ORTHOGONAL)
+        for (int c = 0; c < wanted.gradients; c++)
+            stretch(channel(s, depth, index, c), gain, count);
+    join(node, parameters, a, b, count);
+}
+
+/* Inlined for each plan: with few points the loops over channels are what takes time. */
+__attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tape, csg_points p,
+                                                             slots s, uint32_t depth, plan wanted)
 {
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
@@ -381,7 +436,7 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
         size_t n = least(batch, count - i);
         csg_points p = {x + i, y + i, z + i, padded(n)};
         if (turning)
-            walk_mixed(tape, p, s, depth, gradients_only);
+            walk_mixed(tape, p, s, depth, GRADIENTS_ONLY);
         else
             walk_values(tape, p, s, depth);
         memcpy(out + i, slot(s, 0), n * sizeof(float));
@@ -390,9 +445,9 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
 
 /* out: for each channel of the plan that is wanted, the first `gradients` of them left out where
  * they are only means. */
-static void mixed(const csg_tape *tape, const float *x, const float *y, const float *z,
-                  size_t count, float *const *out, plan wanted, float *scratch,
-                  size_t scratch_floats)
+__attribute__((always_inline)) static inline void
+mixed(const csg_tape *tape, const float *x, const float *y, const float *z, size_t count,
+      float *const *out, plan wanted, float *scratch, size_t scratch_floats)
 {
     uint32_t depth = csg_tape_depth(tape);
     size_t batch = batch_size(depth, scratch_floats);
@@ -411,14 +466,14 @@ static void gradients(const csg_tape *tape, const float *x, const float *y, cons
                       size_t scratch_floats)
 {
     float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
-    mixed(tape, x, y, z, count, out, gradients_only, scratch, scratch_floats);
+    mixed(tape, x, y, z, count, out, GRADIENTS_ONLY, scratch, scratch_floats);
 }
 
 static void colors(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
 {
     if (!tape->turns || !turns(tape)) {
-        mixed(tape, x, y, z, count, rgba, colors_only, scratch, scratch_floats);
+        mixed(tape, x, y, z, count, rgba, COLORS_ONLY, scratch, scratch_floats);
         return;
     }
     for (int c = 0; c < COLOR_CHANNELS; c++)
@@ -442,6 +497,20 @@ static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, s
     for (int i = 0; i < CSG_OCTANTS; i++) {
         out_low[i] += raise;
         out_high[i] += raise;
+    }
+}
+
+/* Joins but those of rules are monotone: their values at the operands' ends (operators.md 0). */
+static inline void join_intervals(const csg_tape_node *node, const float *parameters, float *a_low,
+                                  float *a_high, const float *b_low, const float *b_high)
+{
+    if (is_of_fields(node->join_blend)) {
+        CSG_THIS_RULE_KERNEL.join_intervals(node, parameters, a_low, a_high, b_low, b_high);
+    } else if (is_smooth(node->join_blend)) {
+        CSG_THIS_SMOOTH_KERNEL.intervals(node, parameters, a_low, a_high, b_low, b_high);
+    } else {
+        join_values(node, parameters, a_low, b_low, CSG_OCTANTS);
+        join_values(node, parameters, a_high, b_high, CSG_OCTANTS);
     }
 }
 
@@ -476,9 +545,8 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
         memcpy(high + (size_t)n * CSG_OCTANTS, slot(highs, top - 1), CSG_OCTANTS * sizeof(float));
         if (node->join) {
             top--;
-            CSG_THIS_JOIN_KERNEL.intervals(node, tape->parameters + node->join_parameters,
-                                           slot(lows, top - 1), slot(highs, top - 1),
-                                           slot(lows, top), slot(highs, top));
+            join_intervals(node, tape->parameters + node->join_parameters, slot(lows, top - 1),
+                           slot(highs, top - 1), slot(lows, top), slot(highs, top));
         }
     }
 }

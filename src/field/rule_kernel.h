@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Soft nodes and operators on fields over batches of points: what a build of rule_kernel.c for one
- * instruction set offers to kernel.c and join_kernel.c. Counts are multiples of CSG_OCTANTS and at
+ * instruction set offers to kernel.c. Counts are multiples of CSG_OCTANTS and at
  * most CSG_BATCH.
  */
 #ifndef CSG_FIELD_RULE_KERNEL_H

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * Joins by smooth unit steps (EXTERIOR, INTERIOR; operators.md 7) over batches of points: what a
- * build of smooth_kernel.c for one instruction set offers to join_kernel.c.
+ * build of smooth_kernel.c for one instruction set offers to kernel.c.
  */
 #ifndef CSG_FIELD_SMOOTH_KERNEL_H
 #define CSG_FIELD_SMOOTH_KERNEL_H
 
 #include "field/kernel.h"
 
-/* As csg_join_kernel; count <= CSG_BATCH. A share may lie outside of 0..1. */
+/* As the functions of joins.h; count <= CSG_BATCH. A share may lie outside of 0..1. */
 typedef struct csg_smooth_kernel {
     void (*values)(const csg_tape_node *node, const float *parameters, float *a, const float *b,
                    size_t count);

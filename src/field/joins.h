@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * Joins: a child's value merges with that of its elder siblings. Sharp ones and the blends of one
- * length are here, by formulas.h; rule_kernel.c and smooth_kernel.c have the others. Built once per
- * instruction set, as kernel.c is.
+ * length, and how channels mix; rule_kernel.c and smooth_kernel.c have the other kinds. Part of
+ * kernel.c, in a file of its own.
  */
-#include "field/join_kernel.h"
+#ifndef CSG_FIELD_JOINS_H
+#define CSG_FIELD_JOINS_H
 
 #include <string.h>
 
 #include "field/formulas.h"
-#include "field/rule_kernel.h"
-#include "field/smooth_kernel.h"
+#include "field/kernel.h"
 
 #define EACH_FOLD(X)                                                                               \
     X(HYPERBOLA, hyperbola)                                                                        \
@@ -116,44 +116,12 @@ static int is_of_fields(uint8_t blend)
     return csg_blend_takes_fields((csg_blend_kind)blend);
 }
 
-static void values(const csg_tape_node *node, const float *parameters, float *a, const float *b,
-                   size_t count)
-{
-    if (is_of_fields(node->join_blend))
-        CSG_THIS_RULE_KERNEL.join(node, parameters, a, b, count);
-    else if (is_smooth(node->join_blend))
-        CSG_THIS_SMOOTH_KERNEL.values(node, parameters, a, b, count);
-    else
-        join_values(node, parameters, a, b, count);
-}
-
 /* a = by_a a + by_b b */
 static void combine(float *restrict a, const float *restrict b, const float *restrict by_a,
                     const float *restrict by_b, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         a[i] = by_a[i] * a[i] + by_b[i] * b[i];
-}
-
-static void mixed_fields(const csg_tape_node *node, const float *parameters, float *a,
-                         const float *b, const csg_channels *channels, size_t count, float *work,
-                         size_t stride)
-{
-    float *by_a = work, *by_b = work + stride, *before = work + 2 * stride;
-    int gradients = channels->count - channels->colors;
-    memcpy(before, a, count * sizeof *before);
-    if (node->join_blend == CSG_BLEND_TURNING) {
-        CSG_THIS_RULE_KERNEL.turn(parameters, a, b, channels->a, channels->b, by_a, by_b, count);
-    } else {
-        CSG_THIS_RULE_KERNEL.partials(node, parameters, a, b, by_a, by_b, count);
-        CSG_THIS_RULE_KERNEL.join(node, parameters, a, b, count);
-    }
-    for (int c = 0; c < gradients; c++)
-        combine(channels->a[c], channels->b[c], by_a, by_b, count);
-    if (channels->colors)
-        CSG_THIS_RULE_KERNEL.shares(node, before, b, by_a, by_b, count);
-    for (int c = gradients; c < channels->count; c++)
-        mix(channels->a[c], channels->b[c], by_a, count);
 }
 
 /* As colours need shares: in the proportions of their sizes, where one lies outside of 0..1. */
@@ -165,46 +133,4 @@ static void in_proportion(float *share, size_t count)
     }
 }
 
-static void mixed(const csg_tape_node *node, const float *parameters, float *a, const float *b,
-                  const csg_channels *channels, size_t count, float *work, size_t stride)
-{
-    if (is_of_fields(node->join_blend)) {
-        mixed_fields(node, parameters, a, b, channels, count, work, stride);
-        return;
-    }
-    float *share = work, *gain = work + stride;
-    int gradients = channels->count - channels->colors;
-    if (is_smooth(node->join_blend))
-        CSG_THIS_SMOOTH_KERNEL.shares(node, parameters, a, b, share, count);
-    else
-        join_shares(node, parameters, a, b, share, gain, count);
-    for (int c = 0; c < gradients; c++)
-        mix(channels->a[c], channels->b[c], share, count);
-    if (is_smooth(node->join_blend) && channels->colors)
-        in_proportion(share, count);
-    for (int c = gradients; c < channels->count; c++)
-        mix(channels->a[c], channels->b[c], share, count);
-    for (int c = 0; c < gradients && node->join_blend == CSG_BLEND_ORTHOGONAL; c++)
-        stretch(channels->a[c], gain, count);
-    values(node, parameters, a, b, count);
-}
-
-/* Joins but these are monotone: their values at the operands' ends (operators.md 0). */
-static void intervals(const csg_tape_node *node, const float *parameters, float *a_low,
-                      float *a_high, const float *b_low, const float *b_high)
-{
-    if (is_of_fields(node->join_blend)) {
-        CSG_THIS_RULE_KERNEL.join_intervals(node, parameters, a_low, a_high, b_low, b_high);
-    } else if (is_smooth(node->join_blend)) {
-        CSG_THIS_SMOOTH_KERNEL.intervals(node, parameters, a_low, a_high, b_low, b_high);
-    } else {
-        join_values(node, parameters, a_low, b_low, CSG_OCTANTS);
-        join_values(node, parameters, a_high, b_high, CSG_OCTANTS);
-    }
-}
-
-const csg_join_kernel CSG_THIS_JOIN_KERNEL = {
-    .values = values,
-    .mixed = mixed,
-    .intervals = intervals,
-};
+#endif
