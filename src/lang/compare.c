@@ -36,6 +36,7 @@ bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span wher
         return left.as.boolean == right.as.boolean;
     case CSG_VALUE_RULE:
         return left.as.rule->function == right.as.rule->function &&
+               left.as.rule->rule.range == right.as.rule->rule.range &&
                csg_rule_is_same(&left.as.rule->rule, &right.as.rule->rule);
     case CSG_VALUE_STEP:
     case CSG_VALUE_BLEND:

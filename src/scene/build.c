@@ -446,8 +446,11 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
     double *parameters = scene->parameters + scene->parameter_count;
     uint32_t own = csg_node_parameter_count(&scene->nodes[made]);
     parameters[CSG_OPERATOR_RULE] = blend.n;
+    bool all_soft = true;
+    for (size_t i = 0; i < count; i++)
+        all_soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
     if (own > 1) {
-        parameters[CSG_OPERATOR_RANGE] = range;
+        parameters[CSG_OPERATOR_RANGE] = all_soft ? 1 : range; /* nothing is converted */
         parameters[CSG_OPERATOR_LAMBDA] = 0;
     }
     scene->parameter_count += own;

@@ -14,7 +14,7 @@ enum { SEARCHED = 256 /* of the latest rules, for an equal one */ };
 
 bool csg_rule_is_same(const csg_rule *a, const csg_rule *b)
 {
-    bool same = a->kind == b->kind && a->range == b->range && a->step.kind == b->step.kind &&
+    bool same = a->kind == b->kind && a->step.kind == b->step.kind &&
                 a->step.parameter == b->step.parameter && a->spline.count == b->spline.count &&
                 a->point_count == b->point_count && a->profile == b->profile;
     for (uint32_t i = 0; same && i < csg_rule_parameter_count(a->kind); i++)
@@ -42,7 +42,7 @@ csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
         csg_rule_settle(&rule);
     size_t oldest = scene->rule_count > SEARCHED ? scene->rule_count - SEARCHED : 0;
     for (size_t i = scene->rule_count; i-- > oldest;)
-        if (csg_rule_is_same(&scene->rules[i], &rule))
+        if (scene->rules[i].range == rule.range && csg_rule_is_same(&scene->rules[i], &rule))
             return (csg_blend){rule.kind, (double)i};
     void *rules = scene->rules;
     if (!csg_memory_reserve(&builder->context->memory, &rules, &builder->rule_capacity,
@@ -58,10 +58,12 @@ csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
 /* ---- the range of distances -------------------------------------------------------------------
  */
 
-/* Half the longest finite side; 0 where there is none. */
+/* Half the longest finite side; 0 where there is none, 1 for nothing at all. */
 static double radius_of(csg_scene_builder *builder, csg_node_id node)
 {
     csg_box box = csg_build_box(builder, node);
+    if (csg_box_is_empty(box))
+        return 1;
     const double sides[3] = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
     double most = 0;
     for (int i = 0; i < 3; i++)

@@ -25,7 +25,10 @@ double csg_soft_level(const csgm_scene *scene, const csg_node *node, double leve
 {
     csg_soft soft = csg_scene_soft(scene, node);
     double iso = csg_falloff_iso(soft.falloff);
-    double field = 0.5 - level * csg_scene_parameters(scene, node)[CSG_SOFT_LAMBDA] - ROOM;
+    double field = 0.5 - level * csg_scene_parameters(scene, node)[CSG_SOFT_LAMBDA];
+    if (field >= 0.5) /* the surface is the child's */
+        return 0;
+    field -= ROOM;
     if (!(field > 0))
         return INFINITY;
     return (inverse_falloff(soft.falloff, field) - iso) * soft.range / (1 - iso);
@@ -90,11 +93,14 @@ double csg_field_level(const csgm_scene *scene, const csg_node *node, uint32_t i
 {
     const csg_rule *rule = csg_scene_rule(scene, node);
     csg_operand operand = csg_scene_operand(scene, node, index);
-    double field = 0.5 - level * csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA] - ROOM;
+    double field = 0.5 - level * csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA];
+    field -= level > 0 ? ROOM : 0;
     field = node->kind == CSG_NODE_UNION ? union_floor(rule, node->child_count, field)
                                          : intersection_floor(rule, field);
     if (!(field > ROOM))
         return INFINITY;
+    if (field >= 0.5)
+        return 0;
     return operand.soft ? fmax(0.5 - field, 0) / operand.slope
                         : inverse_step(fmin(field, 0.5)) / operand.slope;
 }

@@ -47,7 +47,8 @@ typedef struct csg_formula {
     double lipschitz;
     csg_box bounds;      /* finite, or all of space */
     csg_profile profile; /* of a combine node with the blend PROFILE */
-    uint8_t joins;       /* csg_node_kind of the operator that such a node stands for */
+    /* the profile itself is the next formula */
+    uint8_t joins; /* csg_node_kind of the operator that such a node stands for */
 } csg_formula;
 
 /* Values are kept within +- this; it also stands for NaN, with a minus: squares of it are floats.

@@ -202,6 +202,19 @@ static void put_warp(const csg_printer *out, const csg_warp *warp)
     csg_put(out, ")\n");
 }
 
+static bool put_profiled(const csg_printer *out, const csg_node *node)
+{
+    static const csg_formula_words words = {"x", {"x", "", ""}};
+    const csgm_scene *scene = out->scene;
+    const csg_formula *profile = &scene->formulas[node->payload + 1];
+    csg_put(out, csg_node_kind_name((csg_node_kind)scene->formulas[node->payload].joins));
+    csg_put(out, "(blend = profile(");
+    bool done = csg_formula_print(&scene->context->memory, scene->steps + profile->first,
+                                  profile->count, &words, out->sink, out->user);
+    csg_put(out, is_mixed(scene, node) ? "), mixed = true) {\n" : ")) {\n");
+    return done;
+}
+
 static bool put_combine(const csg_printer *out, const csg_node *node)
 {
     static const char *const parameters[] = {"", "a", "a, b", "a, b, c"};
@@ -248,7 +261,7 @@ static bool put_node(const csg_printer *out, const csg_node *node)
         csg_put_soft(out, node);
         return true;
     case CSG_NODE_COMBINE:
-        return put_combine(out, node);
+        return node->blend == CSG_BLEND_PROFILE ? put_profiled(out, node) : put_combine(out, node);
     case CSG_NODE_UNION:
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:

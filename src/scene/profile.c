@@ -6,9 +6,13 @@
 #include "scene/check.h"
 #include "scene/terms.h"
 
+#include <string.h>
+
 enum { PARTS = 512, HALVINGS = 48 };
 /* Differences of fields beyond this are not looked at. */
 #define FARTHEST 1e15
+/* Intervals are widened even where they are 0. */
+#define NOTHING 1e-290
 
 typedef struct analysis {
     csg_memory *memory;
@@ -24,7 +28,7 @@ static bool is_zero_beyond(analysis *a, double x)
         a->failed = true;
         return false;
     }
-    return value[0] == 0 && value[1] == 0;
+    return fabs(value[0]) <= NOTHING && fabs(value[1]) <= NOTHING;
 }
 
 /* The smallest x from which on g is seen to be 0. */
@@ -57,8 +61,8 @@ static void look(analysis *a, double low, double high, uint32_t parts, csg_profi
                                 i + 1 == parts ? high : low + width * (i + 1), value, slope);
         p->value[0] = fmin(p->value[0], value[0]);
         p->value[1] = fmax(p->value[1], value[1]);
-        p->slope[0] = fmin(p->slope[0], slope[0]);
-        p->slope[1] = fmax(p->slope[1], slope[1]);
+        p->slope[0] = fmin(p->slope[0], fabs(slope[0]) > NOTHING ? slope[0] : 0);
+        p->slope[1] = fmax(p->slope[1], fabs(slope[1]) > NOTHING ? slope[1] : 0);
     }
 }
 
@@ -144,6 +148,22 @@ static csg_term joint(csg_terms *terms, csg_node_kind kind, const csg_formula_st
                                   : csg_term_sub(terms, csg_term_min(terms, x, y), g);
 }
 
+/* Behind the node's own formula: what print.c writes. */
+static bool append_profile(csg_scene_builder *builder, csg_formula profile)
+{
+    csg_memory *memory = &builder->context->memory;
+    size_t bytes = profile.count * sizeof(csg_formula_step);
+    csg_formula_step *steps = csg_memory_alloc(memory, bytes); /* the scene's may move */
+    if (!steps) {
+        csg_build_no_memory(builder);
+        return false;
+    }
+    memcpy(steps, builder->scene->steps + profile.first, bytes);
+    bool done = csg_build_append_formula(builder, steps, &profile);
+    csg_memory_release(memory, steps, bytes);
+    return done;
+}
+
 static csg_node_id combined(csg_scene_builder *builder, csg_node_kind kind, csg_terms *terms,
                             csg_term result, csg_formula profile, const csg_node_id *operands,
                             csg_span where)
@@ -162,7 +182,7 @@ static csg_node_id combined(csg_scene_builder *builder, csg_node_kind kind, csg_
     scene->nodes[node].blend = CSG_BLEND_PROFILE;
     made->profile = profile.profile;
     made->joins = (uint8_t)kind;
-    return node;
+    return append_profile(builder, profile) ? node : CSG_NODE_NONE;
 }
 
 csg_node_id csg_build_profiled(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,

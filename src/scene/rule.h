@@ -126,7 +126,7 @@ typedef struct csg_rule_parameter {
 uint32_t csg_rule_parameter_count(csg_blend_kind kind);
 csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index);
 
-/* Before or after both are settled. */
+/* But for the range; before or after both are settled. */
 bool csg_rule_is_same(const csg_rule *a, const csg_rule *b);
 /* NULL, or one sentence about what is wrong, with its range; of a rule whose points were resolved
  * or that has none. */

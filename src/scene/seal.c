@@ -113,6 +113,12 @@ static bool has_formula(const csg_node *node)
     return node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE;
 }
 
+/* A profile stands behind the formula that is made of it. */
+static uint32_t formula_count(const csg_node *node)
+{
+    return node->kind == CSG_NODE_COMBINE && node->blend == CSG_BLEND_PROFILE ? 2 : 1;
+}
+
 static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *w)
 {
     for (uint32_t i = 0; i < w->count; i++) {
@@ -123,8 +129,9 @@ static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *
         out->transform_count += node->kind == CSG_NODE_TRANSFORM;
         out->look_count += node->kind == CSG_NODE_COLOR;
         if (has_formula(node)) {
-            out->formula_count++;
-            out->step_count += from->formulas[node->payload].count;
+            out->formula_count += formula_count(node);
+            for (uint32_t k = 0; k < formula_count(node); k++)
+                out->step_count += from->formulas[node->payload + k].count;
         }
     }
     out->node_count = w->count;
@@ -176,7 +183,8 @@ static void copy_payload(csgm_scene *out, const csgm_scene *from, csg_node *node
         out->looks[out->look_count++] = from->looks[old];
     } else if (has_formula(node)) {
         node->payload = (uint32_t)out->formula_count;
-        copy_formula(out, from, from->formulas[old]);
+        for (uint32_t k = 0; k < formula_count(node); k++)
+            copy_formula(out, from, from->formulas[old + k]);
     } else if (node->kind == CSG_NODE_SHAPE) {
         node->payload = (uint32_t)out->shape_count;
         csg_shape_retain(from->shapes[old]);
@@ -256,13 +264,24 @@ static bool has_soft_nodes(const csgm_scene *scene)
     return false;
 }
 
+/* The place of one like it among the latest of those used; `count` where there is none. */
+static uint32_t equal_rule(const csg_rule *rules, const uint32_t *used, size_t count, size_t wanted)
+{
+    const size_t searched = 64;
+    for (size_t i = count; i-- > (count > searched ? count - searched : 0);)
+        if (csg_rule_is_same(&rules[used[i]], &rules[wanted]))
+            return (uint32_t)i;
+    return (uint32_t)count;
+}
+
 /* Those that are used, in the order of their first use, and FIELD_SHARP behind them. */
 static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scratch)
 {
     if (!from->rule_count)
         return true;
     uint32_t *places = csg_arena_calloc(scratch, from->rule_count, sizeof *places);
-    if (!places)
+    uint32_t *used = csg_arena_calloc(scratch, from->rule_count, sizeof *used);
+    if (!places || !used)
         return false;
     for (size_t i = 0; i < out->node_count; i++) {
         const csg_node *node = &out->nodes[i];
@@ -271,15 +290,18 @@ static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scrat
         double *index = &out->parameters[node->payload];
         uint32_t *place = &places[(size_t)*index];
         if (!*place)
-            *place = (uint32_t)++out->rule_count;
+            *place = equal_rule(from->rules, used, out->rule_count, (size_t)*index) + 1;
+        if (*place > out->rule_count)
+            used[out->rule_count++] = (uint32_t)*index;
         *index = *place - 1;
     }
     if (!out->rule_count)
         return true;
     out->rules = csg_arena_calloc(&out->arena, ++out->rule_count, sizeof *out->rules);
-    for (size_t i = 0; out->rules && i < from->rule_count; i++)
-        if (places[i])
-            out->rules[places[i] - 1] = from->rules[i];
+    for (size_t i = 0; out->rules && i + 1 < out->rule_count; i++) {
+        out->rules[i] = from->rules[used[i]];
+        out->rules[i].range = 0; /* among the parameters of each node */
+    }
     if (out->rules)
         out->rules[out->rule_count - 1] = csg_rule_standard(CSG_BLEND_FIELD_SHARP);
     return out->rules;

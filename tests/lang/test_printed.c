@@ -57,6 +57,10 @@ static void check_arrays(const csgm_scene *a, const csgm_scene *c)
 #define CHECK(array, count)                                                                        \
     assert_int_equal(a->count, c->count);                                                          \
     check_bits(a->array, c->array, a->count * sizeof *a->array, #array)
+    for (size_t i = 0; i < a->parameter_count && i < c->parameter_count; i++)
+        if (memcmp(&a->parameters[i], &c->parameters[i], 8) != 0)
+            print_error("parameter %zu of %zu: %.17g, %.17g\n", i, a->parameter_count,
+                        a->parameters[i], c->parameters[i]);
     CHECK(parameters, parameter_count);
     CHECK(transforms, transform_count);
     CHECK(children, child_count);
@@ -177,6 +181,18 @@ static void scenes_of_every_module_parse_back(void **state)
         "plane(); }",
         "part(\"a \\\"lid\\\"\") material(0.3, 0.1) color(\"teal\", 0.3) sphere(1); "
         "material(roughness = 1) cube(1); part(\"b\") sphere(3);",
+        "union(blend = exterior(1/3, 0.1, step = rising(3))) { sphere(2); cube(2); }",
+        "difference(blend = interior(eps = 1/3, step = sigmoid(1/0.07))) { sphere(2); cube(2); }",
+        "union(blend = ricci(3)) { soft() sphere(1/3); soft(0.3, \"cubic\") cube(1); }",
+        "intersection(blend = scale_set(1/3, 0.4, -0.1, debulge = 0.01)) { sphere(1); cube(1); }",
+        "union(blend = soft_set()) { union() { soft() sphere(1); soft() sphere(1/3); } cube(1); }",
+        "union(blend = arc([0.2, -0.97, 0.1], [1, 1, 0.2], through = [[1, 0.3, 0]])) { sphere(1); "
+        "translate([0.5, 0.5, 0]) cube(1, center = true); }",
+        "difference(blend = arc(angles = [100/7, 80], profile = [[100/3, 0.97], [50, 1.05]])) { "
+        "sphere(1); cube(1); }",
+        "union(blend = profile(function (x) max(0, 1/3 - x) ^ 2 / 4 * 3)) { sphere(1); cube(1); "
+        "sphere(2); }",
+        "soft(0.1) superellipsoid([1, 2, 1/3], 3.3); superellipsoid(1, e1 = 0.3, e2 = 1.1);",
         "gyroid(3); minkowski() { cube(1); cylinder(1, 1, 1); }",
     };
     (void)state;
@@ -209,6 +225,7 @@ static void random_scenes_parse_back(void **state)
     for (uint64_t seed = 0; seed < 400; seed++) {
         csg_random random = {seed};
         csg_scene_builder builder;
+        test_random_rules = seed % 2;
         assert_int_equal(csg_build_begin(&builder, &b.context), CSGM_OK);
         csg_node_id root = test_random_scene(&builder, &random, 1 + (unsigned)seed % 20);
         csgm_scene *scene = sealed(&builder, root);
@@ -219,7 +236,7 @@ static void random_scenes_parse_back(void **state)
         else
             check_parses_back(scene);
     }
-    test_random_shapes = false;
+    test_random_shapes = test_random_rules = false;
 }
 
 /* A few boxes and tetrahedra with corners that are no short numbers, some faces turned over, left

@@ -56,6 +56,11 @@ void test_random_parameters(csg_random *random, csg_node_kind kind, double *v)
     for (int i = 0; i < 4; i++)
         v[i] = uniform(random, 0.15, 0.7);
     switch (kind) {
+    case CSG_NODE_SUPERELLIPSOID:
+        v[3] = uniform(random, 1, 6);
+        v[4] = chance(random, 0.5) ? v[3] : uniform(random, 1, 6);
+        v[5] = 0;
+        break;
     case CSG_NODE_BOX:
         v[3] = chance(random, 0.5) ? 0 : uniform(random, 0, fmin(v[0], fmin(v[1], v[2])));
         break;
@@ -82,9 +87,9 @@ void test_random_parameters(csg_random *random, csg_node_kind kind, double *v)
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
                                   csg_node_kind kind, double *parameters)
 {
-    double v[4];
+    double v[6] = {0};
     test_random_parameters(random, kind, v);
-    for (int i = 0; parameters && i < 4; i++)
+    for (int i = 0; parameters && i < (kind == CSG_NODE_SUPERELLIPSOID ? 6 : 4); i++)
         parameters[i] = v[i];
     return csg_build_primitive(builder, kind, v, nowhere);
 }
@@ -98,9 +103,71 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
     return (csg_blend){kind, csg_blend_raw(kind, uniform(random, 0.03, 0.35))};
 }
 
-static csg_blend any_blend(csg_random *random)
+bool test_random_rules = false;
+
+static csg_step random_step(csg_random *random)
+{
+    csg_step step = {(csg_step_kind)csg_random_below(random, CSG_STEP_COUNT), 0};
+    step.parameter = step.kind == CSG_STEP_SIGMOID   ? uniform(random, 12, 40)
+                     : step.kind <= CSG_STEP_BSPLINE ? 1 + csg_random_below(random, 6)
+                                                     : 1 + csg_random_below(random, 4);
+    return step;
+}
+
+static void random_profile(csg_random *random, csg_rule *rule)
+{
+    double at = rule->parameters[0], step = (rule->parameters[1] - at) / 5;
+    rule->spline.count = csg_random_below(random, 4);
+    for (uint32_t i = 0; i < rule->spline.count; i++) {
+        at += step * uniform(random, 0.4, 1.2);
+        rule->spline.angle[i] = at;
+        rule->spline.factor[i] = uniform(random, 0.85, 1.1);
+    }
+}
+
+csg_rule test_random_rule(csg_random *random, csg_blend_kind kind)
+{
+    csg_rule rule = csg_rule_standard(kind);
+    double *v = rule.parameters;
+    if (csg_blend_takes_fields(kind)) /* what is soft may have no size that is known */
+        rule.range = uniform(random, 0.1, 0.6);
+    if (!csg_blend_takes_fields(kind))
+        rule.step = random_step(random);
+    if (kind == CSG_BLEND_EXTERIOR) {
+        v[0] = uniform(random, 0.02, 0.2);
+        v[1] = v[0] * uniform(random, 0.1, 1);
+    } else if (kind == CSG_BLEND_INTERIOR) {
+        v[0] = uniform(random, 0.03, 0.35);
+    } else if (kind == CSG_BLEND_RICCI) {
+        v[0] = uniform(random, 1, 6);
+    } else if (kind == CSG_BLEND_SCALE_SET) {
+        v[3] = chance(random, 0.7) ? 0 : uniform(random, 0.05, 0.5);
+        v[0] = uniform(random, 0.1, 0.5);
+        v[1] = uniform(random, 0.1, 0.5);
+        v[2] = v[0] * v[1] * uniform(random, -2, 0.9);
+    } else if (kind == CSG_BLEND_ARC) {
+        v[0] = uniform(random, 2, 40);
+        v[1] = uniform(random, 50, 88);
+        random_profile(random, &rule);
+    }
+    return rule;
+}
+
+/* Of every kind that the language has, a profile not among them. */
+static csg_blend any_rule(csg_scene_builder *builder, csg_random *random)
+{
+    csg_blend_kind kind = CSG_BLEND_PROFILE;
+    while (kind == CSG_BLEND_PROFILE || kind == CSG_BLEND_FIELD_SHARP)
+        kind = CSG_BLEND_EXTERIOR + csg_random_below(random, CSG_BLEND_END - CSG_BLEND_EXTERIOR);
+    csg_rule rule = test_random_rule(random, kind);
+    return csg_build_rule(builder, &rule);
+}
+
+static csg_blend any_blend(csg_scene_builder *builder, csg_random *random)
 {
     csg_blend_kind kind = CSG_BLEND_SHARP;
+    if (test_random_rules && chance(random, 0.35))
+        return any_rule(builder, random);
     if (chance(random, 0.75))
         kind = (csg_blend_kind)csg_random_below(random, CSG_BLEND_COUNT);
     return test_random_blend(random, kind);
@@ -128,12 +195,19 @@ static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
 {
     csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
     bool shaped = test_random_shapes && chance(random, 0.25);
+    if (test_random_rules && chance(random, 0.1))
+        kind = CSG_NODE_SUPERELLIPSOID;
     csg_node_id node = shaped ? test_random_shaped(builder, random)
                               : test_random_primitive(builder, random, kind, NULL);
+    if (test_random_rules && chance(random, 0.35)) {
+        csg_soft soft = {(csg_falloff)csg_random_below(random, CSG_FALLOFF_COUNT),
+                         uniform(random, 0.15, 0.6)};
+        node = csg_build_soft(builder, soft, node, nowhere);
+    }
     if (chance(random, 0.125)) {
         csg_node_id cut[2] = {node, test_random_primitive(builder, random, CSG_NODE_PLANE, NULL)};
         csg_node_kind how = chance(random, 0.5) ? CSG_NODE_INTERSECTION : CSG_NODE_DIFFERENCE;
-        node = csg_build_operator(builder, how, any_blend(random), cut, 2, nowhere);
+        node = csg_build_operator(builder, how, any_blend(builder, random), cut, 2, nowhere);
     }
     bool equal = chance(random, 0.5);
     double factor = uniform(random, 0.7, 1.3);
@@ -159,7 +233,7 @@ csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, un
         }
         csg_node_kind kind = count ? any_operator(random) : CSG_NODE_UNION;
         csg_node_id joined =
-            csg_build_operator(builder, kind, any_blend(random), group, size, nowhere);
+            csg_build_operator(builder, kind, any_blend(builder, random), group, size, nowhere);
         if (chance(random, 0.3)) {
             csg_affine place = test_random_affine(random, 0.75, 1.05, 0.15);
             joined = csg_build_transform(builder, &place, joined, nowhere);

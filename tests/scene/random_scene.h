@@ -16,11 +16,18 @@ csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, un
  * and slices. Off at first: the numbers drawn are then the same as without them. */
 extern bool test_random_shapes;
 
+/* Whether a third of the blends are rules of every kind, a third of the leaves soft, and some
+ * leaves superellipsoids. Off at first, too. */
+extern bool test_random_rules;
+
+/* A rule of this kind with random parameters, not settled. */
+csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
+
 /* One such solid, finite, not placed. */
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
 
 /* A primitive of this kind with random parameters (sizes 0.1 to 0.8), not placed; its parameters
- * are also copied to `parameters` (room for 4) unless that is NULL. */
+ * are also copied to `parameters` (room for 6) unless that is NULL. */
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
                                   csg_node_kind kind, double *parameters);
 void test_random_parameters(csg_random *random, csg_node_kind kind, double *parameters);
