@@ -141,9 +141,9 @@ static void measure(lazy_job *job, csg_box bounds)
 static csgm_status create_lazy(lazy_job *job, const csgm_field *field)
 {
     const csgm_render_options *options = job->picture->options;
-    const csgm_scene_info info = csgm_scene_get_info(field->scene);
     double deepest = job->tolerance + 2 * job->tolerance_slope * job->farthest;
-    csg_lazy_options lazy = csg_lazy_options_default(2 * deepest * fmax(info.lipschitz, 1));
+    csg_lazy_options lazy =
+        csg_lazy_options_default(2 * deepest * fmax((double)field->tape.lipschitz, 1));
     lazy.lazy = options->lazy;
     if (!options->bounds_used)
         lazy.bounds = CSG_LAZY_NO_BOUNDS;
