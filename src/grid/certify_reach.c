@@ -199,6 +199,6 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
     if (found || fabs(value) <= reach->noise || (value >= 0 && has_way(reach, p, sign)))
         return CSG_REACH_SAMPLE;
     double other = distance_to_other(reach, p, value / reach->lipschitz, sign);
-    end->thickness = fmax(end->thickness, value >= 0 ? 1.8 * other : 0);
+    end->thickness = fmax(end->thickness, value >= 0 ? 2 / 1.2 * other : 0);
     return other > 0 ? CSG_REACH_NONE : CSG_REACH_UNPROVEN;
 }
