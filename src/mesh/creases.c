@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "mesh/feature_solve.h"
 #include "mesh/work.h"
 
 /* What one item of the parallel loop has found, in the room of one worker. */
@@ -141,12 +142,44 @@ void csg_mesh_number_features(csg_mesh_work *w)
     }
 }
 
+/* ---- once all are found ------------------------------------------------------------------------
+ */
+
 static bool link_item(void *user, uint32_t worker, size_t item)
 {
     csg_mesh_work *w = user;
     (void)worker;
     csg_feature_link(&w->features, &w->tables, item);
     return true;
+}
+
+static bool flip_item(void *user, uint32_t worker, size_t item)
+{
+    csg_mesh_work *w = user;
+    (void)worker;
+    csg_feature_flip(&w->features, item);
+    return true;
+}
+
+/* Apexes out of order between their neighbours, in the order of the features, so that the outcome
+ * does not depend on threads: there are few. Each sees where those before it have gone. */
+static void order_features(csg_mesh_work *w)
+{
+    enum { ROUNDS = 3 };
+    csg_feature_store *store = &w->features;
+    csg_probe probe = csg_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
+    size_t moved = 1;
+    for (int round = 0; round < ROUNDS && moved; round++) {
+        moved = 0;
+        for (uint32_t i = 0; i < store->count; i++) {
+            csg_feature fresh;
+            if (!csg_feature_move(store, i, &probe, &fresh))
+                continue;
+            store->features[i] = fresh;
+            moved++;
+        }
+    }
+    w->workers[0].point_evaluations += probe.evaluations;
 }
 
 csgm_status csg_mesh_link_features(csg_mesh_work *w)
@@ -156,5 +189,7 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
     if (!csg_feature_store_index(&w->features))
         return csg_context_no_memory(w->context);
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
+    order_features(w);
+    csg_pool_run(w->context->pool, w->features.block_count, flip_item, NULL, w);
     return CSGM_OK;
 }

@@ -22,7 +22,7 @@
 enum {
     CSG_FEATURE_MOST_SIDES = 12,
     CSG_FEATURE_MOST_SHEETS = 8,
-    CSG_FEATURE_NO_EDGE = 0xFF,
+    CSG_FEATURE_APEX = 0xFF,
     CSG_FEATURE_SEGMENTS = 8192 /* candidates of one block at most */
 };
 
@@ -32,11 +32,16 @@ typedef struct csg_feature {
     float at[3];                              /* the apex, field frame */
     float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
     float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
-    uint32_t across[CSG_FEATURE_MOST_SIDES];  /* flipped sides: the feature beyond, or NONE */
-    uint8_t across_side[CSG_FEATURE_MOST_SIDES];
+    uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* creased sides: the feature beyond, or NONE */
+    uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
+    uint16_t flipped;                      /* bit s: side s */
     uint8_t edge[CSG_FEATURE_MOST_SIDES];  /* the cell's crossed edges, counter-clockwise from
                                               outside; side s leads from edge s to edge s + 1 */
     uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
+    /* Triangles that lie in one sheet: corners of the polygon, or CSG_FEATURE_APEX. A side that a
+     * crease crosses has one more, of the apex and itself, until it is flipped. */
+    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
+    uint8_t triangle_count;
     uint8_t side_count, sheet_count;
     uint8_t loop;     /* of the cell's pattern */
     uint16_t cell;    /* (8 z + y) 8 + x */
@@ -112,10 +117,12 @@ bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_
 
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count);
-/* Once all blocks are there: who lies across each side, and which of these are flipped. */
+/* Once all blocks are there. */
 bool csg_feature_store_index(csg_feature_store *store);
-void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables,
-                      size_t block); /* any thread; writes this block alone */
+/* Who lies beyond each side that a crease crosses. Any thread; writes one block alone. */
+void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
+/* Which sides are flipped, once all are linked and in their places. As csg_feature_link. */
+void csg_feature_flip(csg_feature_store *store, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
                                                 const uint32_t at[3]);
 void csg_feature_store_release(csg_feature_store *store);
@@ -129,8 +136,8 @@ typedef struct csg_fan_corner {
     uint8_t edge, sheet;
 } csg_fan_corner;
 
-/* Triangle `side` of a feature's fan. */
-void csg_feature_triangle(const csg_feature_store *store, const csg_feature *feature, int side,
+/* Triangle `index` of a feature, of as many as its polygon has sides. */
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *feature, int index,
                           csg_fan_corner corners[3]);
 
 #endif

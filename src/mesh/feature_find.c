@@ -14,8 +14,9 @@ enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 8 };
 /* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 1 degree,
  * the least that makes a crease. */
 static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.5e-4f;
-/* On a smooth surface each half of a segment has half of the angle, a quarter of 1 - cos. */
-static const float KEPT_BY_A_JUMP = 0.6f;
+/* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
+ * 10 % and below that of 12 degrees. */
+static const float ALIKE = 1.1f, LITTLE = 0.02f;
 /* Corners of a polygon around a tip look apart by 25 degrees and more. */
 static const float WIDE = 0.9f;
 
@@ -253,7 +254,7 @@ static void halve(csg_feature_room *room, csg_probe *probe)
         float low = 1.0f - cosine(s->low_gradient, middle);
         float high = 1.0f - cosine(middle, s->high_gradient);
         float t = 0.5f * (s->low + s->high), kept = fmaxf(low, high);
-        s->active = kept > KEPT_BY_A_JUMP * s->jump && kept > LEAST_JUMP;
+        s->active = (kept > ALIKE * fminf(low, high) || kept > LITTLE) && kept > LEAST_JUMP;
         s->jump = kept;
         memcpy(low >= high ? s->high_gradient : s->low_gradient, middle, sizeof middle);
         *(low >= high ? &s->high : &s->low) = t;

@@ -13,7 +13,7 @@ csg_probe csg_probe_of(const csg_marching *m, const csg_block *block, float *scr
 {
     csg_probe probe = {
         .marching = m, .block = block, .scratch = scratch, .scratch_floats = scratch_floats};
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3 && block; axis++)
         for (uint32_t i = 0; i < CSG_BLOCK_SAMPLES; i++)
             probe.line[axis][i] =
                 csg_lattice_coordinate(m->lattice, axis, block->at[axis] * CSG_BLOCK_EDGE + i);
@@ -24,8 +24,8 @@ static int domain_of(const csg_probe *p, float x, float y, float z)
 {
     const float at[3] = {x, y, z};
     unsigned octant = 0;
-    bool inside = true;
-    for (int axis = 0; axis < 3; axis++) {
+    bool inside = p->block != NULL;
+    for (int axis = 0; axis < 3 && inside; axis++) {
         const float *line = p->line[axis];
         inside = inside && at[axis] >= line[0] && at[axis] <= line[CSG_BLOCK_EDGE];
         octant |= (unsigned)(at[axis] > line[CSG_PART_EDGE]) << axis;

@@ -20,6 +20,7 @@ typedef struct csg_probe {
     uint64_t evaluations;
 } csg_probe;
 
+/* block NULL: by the whole tape alone. */
 csg_probe csg_probe_of(const csg_marching *marching, const csg_block *block, float *scratch,
                        size_t scratch_floats);
 

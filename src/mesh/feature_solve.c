@@ -14,7 +14,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS, MOST_SIDES = CSG_FEATURE_MOST_SIDES, STEPS = 6 };
+enum {
+    MOST_SHEETS = CSG_FEATURE_MOST_SHEETS,
+    MOST_SIDES = CSG_FEATURE_MOST_SIDES,
+    STEPS = 6,
+    MOST_STARTS = 4
+};
 
 /* Cells: how far from the polygon's middle an apex may lie, and what |f| may be there. */
 static const double REACH = 3, ZERO = 1e-3;
@@ -93,11 +98,11 @@ bool csg_planes_meet(const csg_plane *planes, int count, double x[3])
 /* A polygon, whole or a piece of one, and its sheets. */
 typedef struct polygon {
     int sides, sheets;
-    uint16_t slot[MOST_SIDES];
+    double corner[MOST_SIDES][3];
     uint8_t edge[MOST_SIDES], sheet[MOST_SIDES];
     uint16_t creased;
     double middle[3], toward[MOST_SHEETS][3]; /* toward: the mean of a sheet's corners */
-    double start[3][3];                       /* where to look for the apex, best first */
+    double start[MOST_STARTS][3];             /* where to look for the apex, best first */
     int start_count;
 } polygon;
 
@@ -123,13 +128,32 @@ static void sheet_point(const polygon *p, const apex *a, int sheet, double off, 
         out[i] = a->at[i] + k * way[i];
 }
 
+/* Whether a gradient is that of its sheet and not of another one: a point too near to the crease
+ * may lie beyond it, then the plane before stays. */
+static bool is_still(const polygon *p, const apex *a, int sheet, const double *g)
+{
+    double length = sqrt(dot(g, g)), own = 0, other = -2;
+    if (!(length > 1e-3))
+        return false;
+    for (int k = 0; k < p->sheets; k++) {
+        const double *h = a->planes[k].g;
+        double cosine = dot(g, h) / (length * sqrt(dot(h, h)));
+        if (k == sheet)
+            own = cosine;
+        else
+            other = fmax(other, cosine);
+    }
+    return own >= other;
+}
+
 /* Asks for all sheets of all starts at once. */
 static void sample_sheets(const polygon *p, apex *apexes, double off, csg_probe *probe)
 {
-    enum { MOST = 3 * MOST_SHEETS };
-    float x[MOST], y[MOST], z[MOST], f[MOST], gx[MOST], gy[MOST], gz[MOST];
+    enum { MOST = MOST_STARTS * MOST_SHEETS };
+    float x[MOST] = {0}, y[MOST] = {0}, z[MOST] = {0}, f[MOST], gx[MOST], gy[MOST], gz[MOST];
     float *const g[3] = {gx, gy, gz};
     apex *owner[MOST];
+    csg_plane fresh[MOST];
     int sheet[MOST];
     size_t n = 0;
     for (int k = 0; k < p->start_count; k++)
@@ -143,9 +167,55 @@ static void sample_sheets(const polygon *p, apex *apexes, double off, csg_probe 
     csg_probe_points(probe, x, y, z, n, f, g);
     for (size_t i = 0; i < n; i++) {
         csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
-        owner[i]->lost |= !(dot(plane.g, plane.g) > 1e-6) || f[i] != f[i];
-        owner[i]->planes[sheet[i]] = plane;
+        owner[i]->lost |= f[i] != f[i];
+        if (is_still(p, owner[i], sheet[i], plane.g))
+            fresh[i] = plane;
+        else
+            fresh[i] = owner[i]->planes[sheet[i]];
     }
+    for (size_t i = 0; i < n; i++)
+        owner[i]->planes[sheet[i]] = fresh[i];
+}
+
+/* Twice the area, seen from outside the sheet, of the triangle from x to side s of the polygon. */
+static double area_from(const polygon *p, const double *g, int s, const double x[3])
+{
+    const double *u = p->corner[s], *v = p->corner[(s + 1) % p->sides];
+    double e[3], d[3];
+    for (int i = 0; i < 3; i++) {
+        e[i] = u[i] - x[i];
+        d[i] = v[i] - x[i];
+    }
+    const double cross[3] = {e[1] * d[2] - e[2] * d[1], e[2] * d[0] - e[0] * d[2],
+                             e[0] * d[1] - e[1] * d[0]};
+    return -dot(cross, g) / sqrt(dot(g, g)); /* g looks inwards */
+}
+
+/* Along a straight crease the triangles of the fan all look outwards in an interval: moves the apex
+ * to the nearest place in it, a tenth of its length (and not more than of a cell) from its ends. */
+static void slide(const polygon *p, apex *a, double cell)
+{
+    const double *g = a->planes[0].g, *h = a->planes[1].g;
+    double d[3] = {g[1] * h[2] - g[2] * h[1], g[2] * h[0] - g[0] * h[2], g[0] * h[1] - g[1] * h[0]};
+    double length = sqrt(dot(d, d)), low = -REACH * cell, high = REACH * cell, x[3];
+    for (int i = 0; i < 3; i++)
+        x[i] = a->at[i] + d[i] / length;
+    for (int s = 0; s < p->sides; s++) {
+        if (p->creased >> s & 1)
+            continue;
+        double here = area_from(p, a->planes[p->sheet[s]].g, s, a->at);
+        double slope = area_from(p, a->planes[p->sheet[s]].g, s, x) - here;
+        if (slope > 0)
+            low = fmax(low, -here / slope);
+        else if (slope < 0)
+            high = fmin(high, -here / slope);
+    }
+    double margin = 0.1 * fmin(high - low, cell);
+    double t = fmin(fmax(0, low + margin), high - margin);
+    if (!(low < high) || t == 0)
+        return;
+    for (int i = 0; i < 3; i++)
+        a->at[i] += t * d[i] / length;
 }
 
 static bool near_polygon(const polygon *p, const apex *a, double cell)
@@ -159,10 +229,13 @@ static void improve(const polygon *p, apex *apexes, double cell, csg_probe *prob
     static const double off[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
     for (int step = 0; step < STEPS; step++) {
         sample_sheets(p, apexes, off[step] * cell, probe);
-        for (int k = 0; k < p->start_count; k++)
+        for (int k = 0; k < p->start_count; k++) {
             apexes[k].lost = apexes[k].lost ||
                              !csg_planes_meet(apexes[k].planes, p->sheets, apexes[k].at) ||
                              !near_polygon(p, &apexes[k], cell);
+            if (!apexes[k].lost && p->start_count > 1 && k == 0 && p->sheets == 2 && step < 2)
+                slide(p, &apexes[k], cell);
+        }
     }
 }
 
@@ -183,32 +256,103 @@ static bool sheets_differ(const polygon *p, const apex *a)
     return p->creased || widest > 0.03; /* a tip: 14 degrees between corners */
 }
 
-/* Triangles of the fan that stay as they are look out of the solid. */
-static bool looks_out(const csg_feature_room *room, const polygon *p, const apex *a)
+/* ---- triangles -------------------------------------------------------------------------------
+ */
+
+/* A piece of a sheet: the apex and the sheet's corners in their order. */
+typedef struct piece {
+    const polygon *p;
+    const apex *a;
+    const csg_cell_tables *tables;
+    int count; /* of corners; [0] is the apex */
+    int corner[MOST_SIDES + 1];
+    double g[3];
+} piece;
+
+static void position_of(const piece *q, int i, double out[3])
 {
-    for (int s = 0; s < p->sides; s++) {
-        if (p->creased >> s & 1)
+    memcpy(out, i ? q->p->corner[q->corner[i]] : q->a->at, 3 * sizeof *out);
+}
+
+static bool looks_out(const piece *q, int i, int j, int k)
+{
+    double x[3], y[3], z[3], e[3], d[3];
+    position_of(q, i, x);
+    position_of(q, j, y);
+    position_of(q, k, z);
+    for (int c = 0; c < 3; c++) {
+        e[c] = y[c] - x[c];
+        d[c] = z[c] - x[c];
+    }
+    const double cross[3] = {e[1] * d[2] - e[2] * d[1], e[2] * d[0] - e[0] * d[2],
+                             e[0] * d[1] - e[1] * d[0]};
+    return dot(cross, q->g) < 0; /* g looks inwards */
+}
+
+/* A diagonal in a face of the cell could be the neighbour's too: see tables.c. */
+static bool is_in_face(const piece *q, int i, int j)
+{
+    const polygon *p = q->p;
+    return i && j &&
+           (q->tables->faces[p->edge[q->corner[i]]] & q->tables->faces[p->edge[q->corner[j]]]) != 0;
+}
+
+/* Cuts the polygon first..last of the piece into triangles that all look out, those at the apex
+ * preferred. The side first-last is there already. */
+static bool cut(const piece *q, int first, int last, csg_feature *out)
+{
+    if (last - first < 2)
+        return true;
+    uint8_t before = out->triangle_count;
+    for (int middle = last - 1; middle > first; middle--) {
+        if ((middle - first > 1 && is_in_face(q, first, middle)) ||
+            (last - middle > 1 && is_in_face(q, middle, last)) ||
+            !looks_out(q, first, middle, last))
             continue;
-        const float *u = room->slots.at[p->slot[s]],
-                    *v = room->slots.at[p->slot[(s + 1) % p->sides]];
-        double e[3], d[3];
-        for (int i = 0; i < 3; i++) {
-            e[i] = (double)u[i] - a->at[i];
-            d[i] = (double)v[i] - a->at[i];
+        uint8_t *t = out->triangle[out->triangle_count++];
+        const int corner[3] = {first, middle, last};
+        for (int c = 0; c < 3; c++)
+            t[c] = corner[c] ? (uint8_t)q->corner[corner[c]] : CSG_FEATURE_APEX;
+        if (cut(q, first, middle, out) && cut(q, middle, last, out))
+            return true;
+        out->triangle_count = before;
+    }
+    return false;
+}
+
+/* The triangles of all sheets; false where one of them would fold over. */
+static bool cut_sheets(const polygon *p, const apex *a, const csg_cell_tables *tables,
+                       csg_feature *out)
+{
+    out->triangle_count = 0;
+    if (!p->creased) { /* round a tip: each side with the apex */
+        for (int s = 0; s < p->sides; s++) {
+            const uint8_t fan[3] = {CSG_FEATURE_APEX, (uint8_t)s, (uint8_t)((s + 1) % p->sides)};
+            memcpy(out->triangle[out->triangle_count++], fan, 3);
+            if (!(area_from(p, a->planes[s].g, s, a->at) > 0))
+                return false;
         }
-        const double cross[3] = {e[1] * d[2] - e[2] * d[1], e[2] * d[0] - e[0] * d[2],
-                                 e[0] * d[1] - e[1] * d[0]};
-        if (!(dot(cross, a->planes[p->sheet[s]].g) < 0)) /* g looks inwards */
+        return true;
+    }
+    for (int s = 0; s < p->sides; s++) {
+        if (!(p->creased >> s & 1))
+            continue;
+        piece q = {.p = p, .a = a, .tables = tables, .count = 1};
+        int k = (s + 1) % p->sides; /* the run that begins behind this crease */
+        memcpy(q.g, a->planes[p->sheet[k]].g, sizeof q.g);
+        for (q.corner[q.count++] = k; !(p->creased >> k & 1); q.corner[q.count++] = k)
+            k = (k + 1) % p->sides;
+        if (!cut(&q, 0, q.count - 1, out))
             return false;
     }
     return true;
 }
 
 /* The first start whose apex holds good; NULL: none. */
-static const apex *choose(const csg_feature_room *room, const polygon *p, const apex *apexes,
-                          double cell, csg_probe *probe)
+static const apex *choose(const polygon *p, const apex *apexes, double cell, csg_probe *probe,
+                          csg_feature *out)
 {
-    float x[3], y[3], z[3], f[3], g[3][3];
+    float x[MOST_STARTS], y[MOST_STARTS], z[MOST_STARTS], f[MOST_STARTS], g[3][MOST_STARTS];
     float *const gradient[3] = {g[0], g[1], g[2]};
     for (int k = 0; k < p->start_count; k++) {
         const double *at = apexes[k].lost ? p->middle : apexes[k].at;
@@ -218,7 +362,7 @@ static const apex *choose(const csg_feature_room *room, const polygon *p, const 
     double zero = ZERO * cell + 4 * (double)probe->marching->noise;
     for (int k = 0; k < p->start_count; k++)
         if (!apexes[k].lost && fabs((double)f[k]) <= zero && sheets_differ(p, &apexes[k]) &&
-            looks_out(room, p, &apexes[k]))
+            cut_sheets(p, &apexes[k], probe->marching->tables, out))
             return &apexes[k];
     return NULL;
 }
@@ -227,7 +371,7 @@ static const apex *choose(const csg_feature_room *room, const polygon *p, const 
  */
 
 /* Sheets are runs of corners between creases; without creases, round a tip, each corner. */
-static bool mark_sheets(const csg_found_loop *loop, polygon *p)
+static bool mark_sheets(const csg_feature_room *room, const csg_found_loop *loop, polygon *p)
 {
     *p = (polygon){.sides = loop->side_count};
     int creases = 0, first = 0;
@@ -241,7 +385,8 @@ static bool mark_sheets(const csg_found_loop *loop, polygon *p)
     int sheet = 0;
     for (int k = 0; k < p->sides; k++) {
         int s = (first + k) % p->sides;
-        p->slot[s] = loop->slot[s];
+        for (int i = 0; i < 3; i++)
+            p->corner[s][i] = (double)room->slots.at[loop->slot[s]][i];
         p->edge[s] = loop->edge[s];
         p->sheet[s] = (uint8_t)sheet;
         sheet += !creases || (p->creased >> s & 1);
@@ -250,7 +395,7 @@ static bool mark_sheets(const csg_found_loop *loop, polygon *p)
     return p->sheets <= MOST_SHEETS;
 }
 
-static void find_middles(const csg_feature_room *room, polygon *p)
+static void find_middles(polygon *p)
 {
     double count[MOST_SHEETS] = {0};
     memset(p->toward, 0, sizeof p->toward);
@@ -258,9 +403,8 @@ static void find_middles(const csg_feature_room *room, polygon *p)
     for (int s = 0; s < p->sides; s++) {
         count[p->sheet[s]]++;
         for (int i = 0; i < 3; i++) {
-            double c = (double)room->slots.at[p->slot[s]][i];
-            p->middle[i] += c / p->sides;
-            p->toward[p->sheet[s]][i] += c;
+            p->middle[i] += p->corner[s][i] / p->sides;
+            p->toward[p->sheet[s]][i] += p->corner[s][i];
         }
     }
     for (int k = 0; k < p->sheets; k++)
@@ -274,8 +418,7 @@ static void add_start(polygon *p, const double at[3])
 }
 
 /* On a crease: between the places where it passes into the neighbours, or at one of these. */
-static void choose_starts(const csg_feature_room *room, const csg_found_loop *loop,
-                          const uint8_t *side_of, polygon *p)
+static void choose_starts(const csg_feature_room *room, const csg_found_loop *loop, polygon *p)
 {
     p->start_count = 0;
     if (p->sheets != 2) {
@@ -287,7 +430,7 @@ static void choose_starts(const csg_feature_room *room, const csg_found_loop *lo
     for (int s = 0; s < p->sides; s++) {
         if (!(p->creased >> s & 1))
             continue;
-        const csg_segment *segment = &room->segments[loop->crease[side_of[s]]];
+        const csg_segment *segment = &room->segments[loop->crease[s]];
         for (int i = 0; i < 3; i++) {
             at[n][i] = (double)segment->at[i];
             at[0][i] += at[n][i] / 2;
@@ -296,10 +439,12 @@ static void choose_starts(const csg_feature_room *room, const csg_found_loop *lo
     }
     for (int k = 0; k < 3; k++)
         add_start(p, at[k]);
+    add_start(p, at[0]); /* the first one slides */
 }
 
 /* The tangent planes at the corners in the middle of each run, to begin with. */
-static void first_planes(const csg_feature_room *room, const polygon *p, apex *a)
+static void first_planes(const csg_feature_room *room, const csg_found_loop *loop, const polygon *p,
+                         apex *a)
 {
     int seen[MOST_SHEETS] = {0}, length[MOST_SHEETS] = {0};
     for (int s = 0; s < p->sides; s++)
@@ -308,27 +453,15 @@ static void first_planes(const csg_feature_room *room, const polygon *p, apex *a
         int k = p->sheet[s];
         if (seen[k]++ > length[k] / 2)
             continue;
-        const float *at = room->slots.at[p->slot[s]], *g = room->gradient[p->slot[s]];
+        const float *at = room->slots.at[loop->slot[s]], *g = room->gradient[loop->slot[s]];
         a->planes[k] = csg_plane_at(at[0], at[1], at[2], 0, g[0], g[1], g[2]);
     }
 }
 
-static void record(const csg_feature_room *room, const csg_found_loop *loop, const polygon *p,
-                   const apex *a, csg_feature *out)
+static void place(const polygon *p, const apex *a, csg_feature *out)
 {
-    *out = (csg_feature){.cell = loop->cell,
-                         .loop = loop->loop,
-                         .side_count = (uint8_t)p->sides,
-                         .sheet_count = (uint8_t)p->sheets,
-                         .creased = p->creased};
     for (int i = 0; i < 3; i++)
         out->at[i] = (float)a->at[i];
-    for (int s = 0; s < p->sides; s++) {
-        memcpy(out->corner[s], room->slots.at[p->slot[s]], sizeof out->corner[s]);
-        out->edge[s] = p->edge[s];
-        out->sheet[s] = p->sheet[s];
-        out->across[s] = CSG_FEATURE_NONE;
-    }
     for (int k = 0; k < p->sheets; k++) {
         double length = sqrt(dot(a->planes[k].g, a->planes[k].g));
         for (int i = 0; i < 3; i++)
@@ -336,42 +469,119 @@ static void record(const csg_feature_room *room, const csg_found_loop *loop, con
     }
 }
 
+static void record(const csg_found_loop *loop, const polygon *p, const apex *a, csg_feature *out)
+{
+    out->cell = loop->cell;
+    out->loop = loop->loop;
+    out->side_count = (uint8_t)p->sides;
+    out->sheet_count = (uint8_t)p->sheets;
+    out->creased = p->creased;
+    out->flipped = 0;
+    out->vertex = 0;
+    for (int s = 0; s < p->sides; s++) {
+        for (int i = 0; i < 3; i++)
+            out->corner[s][i] = (float)p->corner[s][i];
+        out->edge[s] = p->edge[s];
+        out->sheet[s] = p->sheet[s];
+        out->beyond[s] = CSG_FEATURE_NONE;
+    }
+    place(p, a, out);
+}
+
 /* False where the polygon has no apex. */
-static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *loop,
-                          const uint8_t *side_of, polygon *p, csg_probe *probe, csg_feature *out)
+static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *loop, polygon *p,
+                          csg_probe *probe, csg_feature *out)
 {
     double cell = probe->marching->lattice->cell_size;
-    apex apexes[3];
+    apex apexes[MOST_STARTS];
     memset(apexes, 0, sizeof apexes);
-    find_middles(room, p);
-    choose_starts(room, loop, side_of, p);
+    find_middles(p);
+    choose_starts(room, loop, p);
     for (int k = 0; k < p->start_count; k++) {
         memcpy(apexes[k].at, p->start[k], sizeof apexes[k].at);
-        first_planes(room, p, &apexes[k]);
+        first_planes(room, loop, p, &apexes[k]);
         apexes[k].lost = !csg_planes_meet(apexes[k].planes, p->sheets, apexes[k].at) ||
                          !near_polygon(p, &apexes[k], cell);
     }
     improve(p, apexes, cell, probe);
-    const apex *best = choose(room, p, apexes, cell, probe);
+    const apex *best = choose(p, apexes, cell, probe, out);
     if (best)
-        record(room, loop, p, best, out);
+        record(loop, p, best, out);
     return best != NULL;
 }
 
 bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_probe *probe,
                        csg_memory *memory)
 {
-    static const uint8_t same[MOST_SIDES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     polygon p;
     if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 2,
                             sizeof(csg_feature)))
         return false;
-    bool good = mark_sheets(loop, &p);
+    bool good = mark_sheets(room, loop, &p);
     if (!p.creased && (!good || !loop->wide))
         return true;
-    if (good && solve_polygon(room, loop, same, &p, probe, &room->features[room->count]))
+    if (good && solve_polygon(room, loop, &p, probe, &room->features[room->count]))
         room->count++;
     else
         room->smooth += p.creased != 0;
+    return true;
+}
+
+/* ---- order along a crease ----------------------------------------------------------------------
+ */
+
+/* The features before and after one on a crease; false for others. */
+static bool neighbours_of(const csg_feature_store *store, const csg_feature *f,
+                          const csg_feature *beside[2])
+{
+    int count = 0;
+    for (int s = 0; s < f->side_count; s++)
+        if (f->creased >> s & 1) {
+            if (f->beyond[s] == CSG_FEATURE_NONE || count == 2)
+                return false;
+            beside[count++] = &store->features[f->beyond[s]];
+        }
+    return count == 2 && f->sheet_count == 2;
+}
+
+static void restore(const csg_feature *f, polygon *p, apex *a)
+{
+    *p = (polygon){.sides = f->side_count, .sheets = f->sheet_count, .creased = f->creased};
+    for (int s = 0; s < p->sides; s++) {
+        p->edge[s] = f->edge[s];
+        p->sheet[s] = f->sheet[s];
+        for (int i = 0; i < 3; i++)
+            p->corner[s][i] = (double)f->corner[s][i];
+    }
+    find_middles(p);
+    for (int k = 0; k < p->sheets; k++)
+        a->planes[k] = csg_plane_at(f->at[0], f->at[1], f->at[2], 0, -f->normal[k][0],
+                                    -f->normal[k][1], -f->normal[k][2]);
+}
+
+bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_probe *probe,
+                      csg_feature *out)
+{
+    const csg_feature *f = &store->features[index], *beside[2];
+    if (!neighbours_of(store, f, beside))
+        return false;
+    double before[3], after[3], cell = probe->marching->lattice->cell_size;
+    polygon p;
+    apex a = {0};
+    restore(f, &p, &a);
+    for (int i = 0; i < 3; i++) {
+        before[i] = (double)f->at[i] - (double)beside[0]->at[i];
+        after[i] = (double)beside[1]->at[i] - (double)f->at[i];
+        a.at[i] = ((double)beside[0]->at[i] + (double)beside[1]->at[i]) / 2;
+    }
+    if (dot(before, after) > 0)
+        return false;
+    p.start_count = 1;
+    a.lost = !csg_planes_meet(a.planes, 2, a.at) || !near_polygon(&p, &a, cell);
+    improve(&p, &a, cell, probe);
+    *out = *f;
+    if (!choose(&p, &a, cell, probe, out))
+        return false;
+    place(&p, &a, out);
     return true;
 }

@@ -21,4 +21,9 @@ bool csg_planes_meet(const csg_plane *planes, int count, double x[3]);
 bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_probe *probe,
                        csg_memory *memory);
 
+/* Where feature `index` lies on a crease and not between its neighbours: *out is the same between
+ * them. False: it stays. Writes nothing of the store. */
+bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_probe *probe,
+                      csg_feature *out);
+
 #endif

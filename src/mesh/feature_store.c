@@ -167,12 +167,10 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
                                   edge_beyond(tables, from, face / 2), &side);
     if (other == CSG_FEATURE_NONE)
         return;
-    const csg_feature *g = &store->features[other];
-    if (!(g->creased >> side & 1) ||
-        !(face % 2 ? may_flip(f, s, g, side) : may_flip(g, side, f, s)))
+    if (!(store->features[other].creased >> side & 1))
         return;
-    f->across[s] = other;
-    f->across_side[s] = side;
+    f->beyond[s] = other;
+    f->beyond_side[s] = side;
 }
 
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
@@ -186,20 +184,57 @@ void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, s
     }
 }
 
+/* Both ask the same question, in the order of the features. */
+void csg_feature_flip(csg_feature_store *store, size_t index)
+{
+    const csg_feature_block *block = &store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        csg_feature *f = &store->features[i];
+        for (int s = 0; s < f->side_count; s++) {
+            uint32_t other = f->beyond[s];
+            if (other == CSG_FEATURE_NONE)
+                continue;
+            const csg_feature *g = &store->features[other];
+            int t = f->beyond_side[s];
+            bool flips = i < other ? may_flip(f, s, g, t) : may_flip(g, t, f, s);
+            f->flipped |= (uint16_t)(flips << s);
+        }
+    }
+}
+
 /* ---- triangles ---------------------------------------------------------------------------------
  */
 
-void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int s,
+/* A side that a crease crosses: with the apex, or flipped to join it to the apex beyond. */
+static void side_triangle(const csg_feature_store *store, const csg_feature *f, int s,
                           csg_fan_corner corners[3])
 {
     int s1 = (s + 1) % f->side_count;
     corners[0] = (csg_fan_corner){.apex = f, .sheet = f->sheet[s]};
     corners[1] = (csg_fan_corner){.edge = f->edge[s]};
-    if (f->across[s] == CSG_FEATURE_NONE) {
+    if (!(f->flipped >> s & 1)) {
         corners[2] = (csg_fan_corner){.edge = f->edge[s1]};
         return;
     }
-    const csg_feature *g = &store->features[f->across[s]];
-    uint8_t sheet = g->sheet[(f->across_side[s] + 1) % g->side_count];
+    const csg_feature *g = &store->features[f->beyond[s]];
+    uint8_t sheet = g->sheet[(f->beyond_side[s] + 1) % g->side_count];
     corners[2] = (csg_fan_corner){.apex = g, .sheet = sheet};
+}
+
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int index,
+                          csg_fan_corner corners[3])
+{
+    if (index >= f->triangle_count) {
+        int side = -1;
+        for (int left = index - f->triangle_count; left >= 0; left--)
+            for (side++; !(f->creased >> side & 1);)
+                side++;
+        side_triangle(store, f, side, corners);
+        return;
+    }
+    const uint8_t *t = f->triangle[index];
+    uint8_t sheet = f->sheet[t[0] != CSG_FEATURE_APEX ? t[0] : t[1]];
+    for (int c = 0; c < 3; c++)
+        corners[c] = t[c] == CSG_FEATURE_APEX ? (csg_fan_corner){.apex = f, .sheet = sheet}
+                                              : (csg_fan_corner){.edge = f->edge[t[c]]};
 }
