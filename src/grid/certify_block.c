@@ -25,7 +25,7 @@ static const double LOCAL = 1.3;
 enum {
     MOST_VISITS = 20000,        /* of cubes, a cell */
     MOST_BLOCK_VISITS = 300000, /* a block */
-    SLOW_VISIT = 100            /* what one counts where a shape, formula or warp is evaluated */
+    SLOW_VISIT = 3000           /* what one counts where a shape, formula or warp is evaluated */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
@@ -229,6 +229,12 @@ static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube
     return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
 }
 
+static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
+    return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end);
+}
+
 /* The quick way to what hides in a cell: up and down from its centre. What is found in another cell
  * is that one's. */
 static bool look_for_missed(csg_certify_worker *w, const csg_certify_cube *cube)
@@ -259,10 +265,8 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         w->local = w->reach;
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;
-    if (!is_within_budget(w, cube)) {
-        csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
-        return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end);
-    }
+    if (!is_cell && !is_within_budget(w, cube))
+        return give_up(w, cube);
     if (is_cell && has_far_cone(w, cube, &cone)) {
         note_crossed(w, cube, cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
         return true;
@@ -273,6 +277,8 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return true;
     if (is_cell && (!look_for_missed(w, cube) || w->kinds[cube->cell] == CSG_CELL_MISSED))
         return w->kinds[cube->cell] == CSG_CELL_MISSED;
+    if (is_cell && !is_within_budget(w, cube))
+        return give_up(w, cube);
     *divide = 2 * cube->half > w->size * (1 + 1e-9);
     return *divide || end_cube(w, cube);
 }
