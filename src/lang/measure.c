@@ -40,7 +40,8 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
         (node->kind == CSG_NODE_INTERSECTION || node->kind == CSG_NODE_DIFFERENCE) && !at.outside;
     if (node->kind == CSG_NODE_SHAPE || node->kind == CSG_NODE_EMPTY)
         return true;
-    if (node->kind == CSG_NODE_FIELD)
+    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_SUPERELLIPSOID ||
+        node->kind == CSG_NODE_SOFT || node->kind == CSG_NODE_COMBINE)
         return false;
     if (node->kind == CSG_NODE_TRANSFORM &&
         !csg_affine_is_similarity(&scene->transforms[node->payload]))

@@ -154,6 +154,8 @@ static bool make_value(work *w, csg_node_id id)
     const csg_term *p = w->points[id].at;
     if (node->child_count)
         inner = w->values[csg_scene_children(scene, node)[0]];
+    if (node->kind == CSG_NODE_SOFT || csg_scene_rule(scene, node))
+        return false;
     if (node->kind == CSG_NODE_TRANSFORM)
         *value = csg_term_mul_number(w->t, inner, scene->scales[node->payload]);
     else if (node->kind == CSG_NODE_COLOR)

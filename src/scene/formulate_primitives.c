@@ -128,6 +128,14 @@ static csg_term ellipsoid(csg_terms *t, const double *e, const csg_term p[3])
     return csg_term_mul(t, csg_term_less(t, 1, u), csg_term_sqrt(t, square));
 }
 
+/* (|x|^n + |y|^n)^(1/n) */
+static csg_term gauge(csg_terms *t, csg_term x, csg_term y, double n)
+{
+    csg_term sum = csg_term_add(t, csg_term_pow_number(t, csg_term_abs(t, x), n),
+                                csg_term_pow_number(t, csg_term_abs(t, y), n));
+    return csg_term_pow_number(t, sum, 1 / n);
+}
+
 csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double *v,
                                  const csg_term p[3])
 {
@@ -156,6 +164,12 @@ csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double 
         return box(t, v, v[2], p, 2);
     case CSG_NODE_SLAB:
         return csg_term_less(t, v[0], csg_term_abs(t, p[2]));
+    case CSG_NODE_SUPERELLIPSOID: {
+        csg_term across = gauge(t, csg_term_mul_number(t, p[0], 1 / v[0]),
+                                csg_term_mul_number(t, p[1], 1 / v[1]), v[3]);
+        csg_term whole = gauge(t, across, csg_term_mul_number(t, p[2], 1 / v[2]), v[4]);
+        return csg_term_mul_number(t, csg_term_less(t, 1, whole), 1 / v[5]);
+    }
     default: /* EMPTY */
         return csg_term_number(t, -CSG_FORMULA_FAR);
     }

@@ -128,7 +128,10 @@ static csgm_status report(const csgm_scene *scene, csgm_status status, csg_node_
     if (status == CSGM_ERR_LIMIT)
         csg_diag_plain(diags, CSG_DIAG_NO_TAPE, NULL, NULL,
                        "the scene's tape would have more than %zu lines", most);
-    if (status == CSGM_ERR_UNSUPPORTED)
+    if (status == CSGM_ERR_UNSUPPORTED && scene->nodes[obstacle].kind != CSG_NODE_SHAPE)
+        csg_diag_plain(diags, CSG_DIAG_NO_TAPE, NULL, NULL,
+                       "no tape can hold soft solids, nor blends by fields or smooth steps");
+    else if (status == CSGM_ERR_UNSUPPORTED)
         csg_diag_plain(
             diags, CSG_DIAG_NO_TAPE, NULL,
             "polyhedra, imported meshes, heights and hulls can be written where they "
