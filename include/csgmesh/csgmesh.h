@@ -274,8 +274,9 @@ typedef struct csgm_field csgm_field;
 CSGM_API csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene,
                                         csgm_field **out);
 CSGM_API void csgm_field_destroy(csgm_field *field);
-/* The parts that its mesh has, in order, as far as they have a surface; false when index is past the
- * end. *name: until the field is destroyed, NULL = without a name (a scene without parts is one). */
+/* The parts that its mesh has, in order, as far as they have a surface; false when index is past
+ * the end. *name: until the field is destroyed, NULL = without a name (a scene without parts is
+ * one). */
 CSGM_API bool csgm_field_part(const csgm_field *field, size_t index, const char **name);
 
 /* Field values in float at count points (scene units) given as three arrays; out must not
@@ -329,9 +330,9 @@ typedef struct csgm_mesh_options {
     csgm_features features; /* default SHARP */
     bool colors;            /* vertex colours where the scene has any; default true */
     bool prune;             /* default true; false gives the same mesh, slower (for checking) */
-    /* The next three thin the mesh out; at most one of them may be given. Every collapse of an edge,
-     * and the result, is checked against the field; creases, colours, materials and parts stay, and
-     * a mesh in memory is needed where it would have been streamed. */
+    /* The next three thin the mesh out; at most one of them may be given. Every collapse of an
+     * edge, and the result, is checked against the field; creases, colours, materials and parts
+     * stay, and a mesh in memory is needed where it would have been streamed. */
     double tolerance;      /* > 0: no point of the mesh is farther than this from the surface, nor,
                               as measured on the lattice, the surface from the mesh; with resolution
                               and cell_size 0 the cells are chosen for it; default 0 */
@@ -374,7 +375,7 @@ typedef struct csgm_certify {
     double thickness;    /* every part of the solid and of the space around it that is thicker is in
                             the mesh, but for the missed and unresolved; 0 = every part */
     uint32_t place_count;
-    uint64_t places_more; /* beyond those listed */
+    uint64_t places_more;                                /* beyond those listed */
     csgm_certify_place places[CSGM_CERTIFY_PLACES_MOST]; /* the missed ones first */
 } csgm_certify;
 
@@ -397,12 +398,12 @@ typedef struct csgm_mesh_stats {
     uint64_t triangles_before; /* that; 0: it was not asked for */
     bool is_measured;          /* the rest is known */
     double distance_allowed;   /* as asked for, or what simplify_share came to */
-    double max_distance_bound; /* proven of every point of the mesh: its distance from the surface is
-                                  below this; infinite where open_places is not 0 */
+    double max_distance_bound; /* proven of every point of the mesh: its distance from the surface
+                                  is below this; infinite where open_places is not 0 */
     double max_distance_measured; /* largest distance of a sample of the surface from the mesh */
     uint64_t open_places;         /* pieces of triangles of which nothing could be proven */
-    uint64_t unresolved_cells; /* that the scan of samples doubts, or --certify could not tell */
-    csgm_certify certify;      /* where csgm_mesh_options.certify asked for it */
+    uint64_t unresolved_cells;    /* that the scan of samples doubts, or --certify could not tell */
+    csgm_certify certify;         /* where csgm_mesh_options.certify asked for it */
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a
@@ -455,7 +456,7 @@ typedef struct csgm_mesh_check {
     double min_angle_deg;
     double max_aspect; /* longest side over smallest altitude: 1.15 at best; 0 = no triangles,
                           infinite where one has no area */
-    csgm_box bounds; /* of used vertices */
+    csgm_box bounds;   /* of used vertices */
 } csgm_mesh_check;
 
 CSGM_API csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
@@ -713,7 +714,7 @@ typedef enum csgm_diff_ignored {
 
 typedef enum csgm_diff_material {
     CSGM_DIFF_ANY_MATERIAL,
-    CSGM_DIFF_ADDED,  /* only what B has and A has not counts */
+    CSGM_DIFF_ADDED, /* only what B has and A has not counts, from 1/1000 of the largest distance */
     CSGM_DIFF_REMOVED /* only what A has and B has not */
 } csgm_diff_material;
 

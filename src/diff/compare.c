@@ -128,17 +128,23 @@ static csgm_status measure_direction(comparison *c, int from)
     return CSGM_OK;
 }
 
+/* Where the surfaces meet, ever smaller pieces would be needed to tell the sides: what is below
+ * this part of the largest distance is not told from nothing. */
+static const double COUNTED_FLOOR = 1e-3;
+
 /* Added material is bounded by what of B lies outside A and by what of A lies inside B. */
 static csgm_status measure_counted(comparison *c)
 {
     csgm_diff_distance *out = &c->report->counted;
     bool added = c->options->material == CSGM_DIFF_ADDED;
+    double most = fmax(c->report->distance[0].upper, c->report->distance[1].upper);
     *out = (csgm_diff_distance){.is_measured = true, .is_refined = true};
     for (int from = 0; from < 2; from++) {
         csg_diff_maximum search = {.from = from,
                                    .wanted = (from == 1) == added ? CSG_DIFF_POINTS_OUTSIDE
                                                                   : CSG_DIFF_POINTS_INSIDE,
                                    .tolerance = indifferent(c),
+                                   .floor = COUNTED_FLOOR * c->pair.frame.scale * most,
                                    .verdict_only = c->options->verdict_only};
         csgm_status status = csg_diff_find_maximum(&c->pair, &search);
         if (status != CSGM_OK)
@@ -286,10 +292,10 @@ static void judge(comparison *c)
         r->hausdorff_lower = fmax(r->hausdorff_lower, r->distance[i].lower);
         r->hausdorff_upper = fmax(r->hausdorff_upper, r->distance[i].upper);
     }
-    double upper = c->counts_all || c->same ? r->hausdorff_upper : r->counted.upper;
+    bool is_within = c->counts_all ? r->hausdorff_upper <= limit : r->counted.lower <= limit;
     if (c->same)
         r->level = CSGM_DIFF_SAME_TRIANGLES;
-    else if (upper <= limit)
+    else if (is_within && !c->is_empty[0] && !c->is_empty[1])
         r->level = CSGM_DIFF_WITHIN_TOLERANCE;
     r->reasons = reasons_of(c);
     r->is_different = r->reasons != 0;

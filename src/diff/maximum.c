@@ -55,7 +55,7 @@ typedef struct engine {
 static double target_of(const engine *e, double lower)
 {
     double target = fmax(lower * (1 + WIDTH), lower + 0.5 * e->pair->precision);
-    return fmax(target, e->search->tolerance);
+    return fmax(target, fmax(e->search->tolerance, e->search->floor));
 }
 
 /* ---- bounds of whole triangles -------------------------------------------------------------- */

@@ -18,6 +18,7 @@ typedef struct csg_diff_maximum {
     int from; /* the side whose points are looked at */
     csg_diff_wanted wanted;
     double tolerance;  /* frame units: below it nothing needs to be known better */
+    double floor;      /* the same, whatever the tolerance */
     bool verdict_only; /* stop when the maximum is known to be above the tolerance */
     /* Results in frame units, without slack. lower may begin above 0 with its place: a distance
      * that is known. */

@@ -129,8 +129,9 @@ uint32_t csg_piece_halve(const csg_piece *piece, csg_piece *parts)
     return 2;
 }
 
-/* A cut that leaves more than this of the area in one part is none. */
-static const double PART_MOST = 0.8;
+/* A cut that leaves more than this of the area in one part outside is none: that part would have to
+ * be cut again. Splinters beside a large part inside are fine, the large one is settled. */
+static const double PART_MOST = 0.9;
 
 uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle, csg_piece *parts)
 {
@@ -151,9 +152,7 @@ uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle
         if (parts[count].count >= 3)
             most = fmax(most, area_of(&parts[count++]));
     }
-    if (inside->count >= 3) {
+    if (inside->count >= 3)
         parts[count++] = *inside;
-        most = fmax(most, area_of(inside));
-    }
     return most <= PART_MOST * whole ? count : 0;
 }
