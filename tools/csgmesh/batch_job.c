@@ -10,6 +10,7 @@
 
 #include "batch_names.h"
 #include "batch_run.h"
+#include "certify.h"
 #include "outputs.h"
 #include "work.h"
 
@@ -278,6 +279,8 @@ static int make(maker *m, bool may_defer, bool *is_large)
         return CLI_DONE;
     if (status == CLI_DONE)
         status = mesh_and_write(m);
+    if (status == CLI_DONE)
+        cli_certify_tell(&m->app, &m->work.stats.certify);
     return status == CLI_DONE ? take_record(m) : status;
 }
 
