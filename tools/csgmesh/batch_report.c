@@ -51,14 +51,6 @@ void batch_report_job(batch_run *run, size_t index)
         fputs(text, stderr);
 }
 
-static size_t count_of(const batch_run *run, batch_outcome outcome)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < run->plan->count; i++)
-        count += run->results[i].outcome == outcome;
-    return count;
-}
-
 static const double PATIENCE_S = 0.5; /* shorter work shows no bar */
 
 void batch_report_progress(batch_run *run)
@@ -71,9 +63,9 @@ void batch_report_progress(batch_run *run)
     if (!wanted || console->quiet || console->json)
         return;
     char bar[WIDTH + 1];
-    size_t total = run->plan->count, failed = count_of(run, BATCH_FAILED);
+    size_t total = run->plan->count, failed = run->ended[BATCH_FAILED];
     size_t filled = total ? run->finished * WIDTH / total : 0;
-    size_t skipped = count_of(run, BATCH_UP_TO_DATE);
+    size_t skipped = run->ended[BATCH_UP_TO_DATE];
     double rate = elapsed_s > 0 ? (double)(run->finished - skipped) / elapsed_s : 0;
     for (size_t i = 0; i < WIDTH; i++)
         bar[i] = i < filled ? '=' : i == filled ? '>' : ' ';
@@ -126,6 +118,14 @@ static void put_job(const batch_job *job, const batch_result *result)
         cli_json_string(&json, "messages", result->messages);
     cli_json_end(&json, '}');
     putchar('\n');
+}
+
+static size_t count_of(const batch_run *run, batch_outcome outcome)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < run->plan->count; i++)
+        count += run->results[i].outcome == outcome;
+    return count;
 }
 
 static void put_summary_json(const batch_run *run, double seconds)

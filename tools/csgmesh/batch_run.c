@@ -20,6 +20,7 @@ static void finish_job(batch_run *run, size_t index)
 {
     pthread_mutex_lock(&run->mutex);
     run->finished++;
+    run->ended[run->results[index].outcome]++;
     if (run->results[index].outcome == BATCH_FAILED && run->app->options.fail_fast)
         run->stopped = true;
     batch_report_job(run, index);

@@ -38,11 +38,11 @@ typedef struct batch_run {
     uint32_t threads;
     pthread_mutex_t mutex; /* of what follows, and of standard error */
     pthread_cond_t changed;
-    size_t finished;
-    bool stopped;                     /* --fail-fast has seen a failure */
-    size_t *queue, queue_count, next; /* jobs of this phase */
-    size_t *large, large_count;       /* put off: for all threads together */
-    size_t *locked, locked_count;     /* put off: another process is at it */
+    size_t finished, ended[BATCH_OUTCOMES]; /* jobs, in all and by what became of them */
+    bool stopped;                           /* --fail-fast has seen a failure */
+    size_t *queue, queue_count, next;       /* jobs of this phase */
+    size_t *large, large_count;             /* put off: for all threads together */
+    size_t *locked, locked_count;           /* put off: another process is at it */
     uint32_t threads_each;
     bool may_defer_large, may_defer_locked;
 } batch_run;
