@@ -15,7 +15,7 @@
 enum { PIECES = 1 << 14, STACK = 64 };
 
 /* Looked at before the proof is given up: all in all, and of one piece that was cut. */
-static const uint64_t MOST_PIECES = 40000000, MOST_OF_ONE = 1000000;
+static const uint64_t MOST_PIECES = 12000000, MOST_OF_ONE = 1000000;
 
 typedef struct piece {
     csg_vec3 at[3], normal;
@@ -138,13 +138,16 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
     bool inside = false, outside = false;
     double reach = p->error - d.radius;
     for (int ring = 0; ring < 4 && !(inside && outside); ring++, reach /= 4)
-        for (int i = 0; i < 10 && !(inside && outside); i++) {
-            static const double way[10][3] = {
-                {0, 0, 1},  {0, 0, -1},    {1, 0, 0},      {-1, 0, 0},     {0, 1, 0},
-                {0, -1, 0}, {0.7, 0.7, 0}, {-0.7, 0.7, 0}, {0.7, -0.7, 0}, {-0.7, -0.7, 0}};
-            csg_vec3 off = csg_vec3_add(
-                csg_vec3_scale(normal, way[i][2]),
-                csg_vec3_add(csg_vec3_scale(side, way[i][0]), csg_vec3_scale(other, way[i][1])));
+        for (int i = 0; i < 26 && !(inside && outside); i++) {
+            /* around in the plane, and leaning to both sides: the plane may be the surface itself
+             */
+            static const double around[8][2] = {{0.9, 0},   {0, 0.9},    {-0.9, 0},   {0, -0.9},
+                                                {0.6, 0.6}, {-0.6, 0.6}, {0.6, -0.6}, {-0.6, -0.6}};
+            double up = i >= 24 ? 49 - 2.0 * i : 0.4 * (i % 3 - 1);
+            double x = i >= 24 ? 0 : around[i / 3][0], y = i >= 24 ? 0 : around[i / 3][1];
+            csg_vec3 off =
+                csg_vec3_add(csg_vec3_scale(normal, up),
+                             csg_vec3_add(csg_vec3_scale(side, x), csg_vec3_scale(other, y)));
             double f = value_at(p, s, csg_vec3_add(d.center, csg_vec3_scale(off, reach)));
             inside |= f > slack_of(p);
             outside |= f < -slack_of(p);
@@ -210,55 +213,95 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
 /* ---- eight at a time ---------------------------------------------------------------------------
  */
 
-/* The tape for one of eight cubes that were handed to the pruner; false: no surface in it. */
-static bool take_tape(proof *p, settler *s, int lane)
+enum { DEEPEST = 8 };
+
+/* Eight parts of a piece, by three bisections. */
+static void cut_in_eight(const piece *whole, piece parts[CSG_OCTANTS])
 {
-    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
-    float tau = (float)(2.5 * (double)whole->lipschitz * p->error);
-    s->tape = *whole;
-    if (csg_prune_state(&s->pruner, lane) != CSG_CELL_SURFACE)
-        return false;
-    if (csg_prune_shorten(&s->pruner, lane, tau, &s->arena, &s->tape))
-        return true;
-    atomic_store(&p->out_of_memory, true);
-    return false;
+    for (int i = 0; i < CSG_OCTANTS; i++)
+        parts[i] = *whole;
+    for (int half = CSG_OCTANTS / 2; half; half /= 2)
+        for (int i = 0; i < CSG_OCTANTS; i += 2 * half) {
+            csg_vec3 halves[2][3];
+            if (!bisect(parts[i].at, 0, halves))
+                continue;
+            memcpy(parts[i].at, halves[0], sizeof halves[0]);
+            memcpy(parts[i + half].at, halves[1], sizeof halves[1]);
+        }
 }
 
-static bool settle_group(void *user, uint32_t worker, size_t group)
+/* Tapes for the pieces' neighbourhoods, from one that holds around all of them. A tape without
+ * nodes: no surface is there. */
+static bool prune_eight(proof *p, settler *s, const csg_tape *from, const piece *pieces,
+                        size_t count, csg_tape tapes[CSG_OCTANTS])
 {
-    proof *p = user;
-    settler *s = &p->settlers[worker];
-    float c[3][CSG_OCTANTS];
+    float c[3][CSG_OCTANTS], tau = (float)(2.5 * (double)from->lipschitz * p->error);
     double most = 0;
-    size_t first = group * CSG_OCTANTS;
     for (size_t i = 0; i < CSG_OCTANTS; i++) {
-        size_t at = first + i < p->count ? first + i : p->count - 1;
-        disc d = disc_of(p->pieces[at].at);
+        disc d = disc_of(pieces[i < count ? i : count - 1].at);
         c[0][i] = (float)d.center.x;
         c[1][i] = (float)d.center.y;
         c[2][i] = (float)d.center.z;
         most = fmax(most, d.radius);
     }
     /* a cube is told by the ball around it, and holds the ball that is needed */
-    float radius = (float)(1.733 * (most + 2.1 * p->error));
-    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
-    if (!csg_prune_octants(&s->pruner, whole, c[0], c[1], c[2], radius)) {
-        atomic_store(&p->out_of_memory, true);
+    float radius = (float)(1.733 * (most + 1.05 * p->error));
+    if (!csg_prune_octants(&s->pruner, from, c[0], c[1], c[2], radius))
         return false;
+    for (size_t i = 0; i < count; i++) {
+        tapes[i] = *from;
+        tapes[i].count = 0;
+        if (csg_prune_state(&s->pruner, (int)i) == CSG_CELL_SURFACE &&
+            !csg_prune_shorten(&s->pruner, (int)i, tau, &s->arena, &tapes[i]))
+            return false;
     }
-    for (size_t i = 0; i < CSG_OCTANTS && first + i < p->count; i++) {
-        csg_arena_mark mark = csg_arena_get_mark(&s->arena);
-        piece *one = &p->pieces[first + i];
-        one->open = !take_tape(p, s, (int)i) || !settle_piece(p, s, one);
-        csg_arena_release_to(&s->arena, mark);
+    return true;
+}
+
+/* Settles pieces one by one; what is large and of several leaves is cut in eight, whose tapes are
+ * shorter. False: out of memory. */
+static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *pieces, size_t count,
+                         int depth)
+{
+    csg_tape tapes[CSG_OCTANTS];
+    csg_arena_mark mark = csg_arena_get_mark(&s->arena);
+    bool done = prune_eight(p, s, from, pieces, count, tapes);
+    for (size_t i = 0; done && i < count; i++) {
+        piece parts[CSG_OCTANTS];
+        s->tape = tapes[i];
+        pieces[i].open = !tapes[i].count;
+        if (pieces[i].open || settles(p, s, pieces[i].at, pieces[i].normal))
+            continue;
+        if (tapes[i].count == 1 || depth == DEEPEST ||
+            disc_of(pieces[i].at).radius < 2 * p->error) {
+            pieces[i].open = !settle_piece(p, s, &pieces[i]);
+            continue;
+        }
+        cut_in_eight(&pieces[i], parts);
+        done = settle_eight(p, s, &tapes[i], parts, CSG_OCTANTS, depth + 1);
+        for (int k = 0; done && k < CSG_OCTANTS; k++)
+            pieces[i].open |= parts[k].open;
     }
-    return !atomic_load(&p->out_of_memory) && !csg_mesh_should_stop(p->remesh->work);
+    csg_arena_release_to(&s->arena, mark);
+    return done;
+}
+
+static bool settle_group(void *user, uint32_t worker, size_t group)
+{
+    proof *p = user;
+    size_t first = group * CSG_OCTANTS, count = p->count - first;
+    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
+    if (settle_eight(p, &p->settlers[worker], whole, p->pieces + first,
+                     count < CSG_OCTANTS ? count : CSG_OCTANTS, 0))
+        return !csg_mesh_should_stop(p->remesh->work);
+    atomic_store(&p->out_of_memory, true);
+    return false;
 }
 
 /* ---- all of them -------------------------------------------------------------------------------
  */
 
-static csgm_status settle_pieces(proof *p, uint8_t *unsettled, csg_distance_proof *out)
+static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof *out)
 {
     csg_mesh_work *w = p->remesh->work;
     size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
@@ -272,8 +315,7 @@ static csgm_status settle_pieces(proof *p, uint8_t *unsettled, csg_distance_proo
             continue;
         if (!out->open++)
             out->place = disc_of(p->pieces[i].at).center;
-        if (unsettled)
-            unsettled[p->pieces[i].triangle] = 1;
+        pending[p->pieces[i].triangle] = 1;
     }
     p->count = 0;
     p->looked_at = 0;
@@ -284,10 +326,12 @@ static csgm_status settle_pieces(proof *p, uint8_t *unsettled, csg_distance_proo
 }
 
 /* Cuts a triangle into pieces of a few cells and settles them whenever there are enough. */
-static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *unsettled,
+static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *pending,
                                   csg_distance_proof *out)
 {
+    /* near enough to its neighbourhood that the far side of a thin wall is pruned away */
     const csg_remesh *r = p->remesh;
+    double side = fmax(0.8 * r->cell, 2 * p->error);
     csg_vec3 stack[STACK][3];
     size_t top = 1;
     for (uint32_t k = 0; k < 3; k++)
@@ -296,12 +340,12 @@ static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *unsettle
     while (top && !out->stopped) {
         csg_vec3 v[3];
         memcpy(v, stack[--top], sizeof v);
-        if (top + 2 <= STACK && bisect(v, 4 * r->cell, &stack[top])) {
+        if (top + 2 <= STACK && bisect(v, side, &stack[top])) {
             top += 2;
             continue;
         }
         if (p->count == PIECES) {
-            csgm_status status = settle_pieces(p, unsettled, out);
+            csgm_status status = settle_pieces(p, pending, out);
             if (status != CSGM_OK)
                 return status;
         }
@@ -347,7 +391,7 @@ static void end(proof *p)
     csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
 }
 
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *unsettled,
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
                                csg_distance_proof *out)
 {
     proof p = {.remesh = remesh, .error = error};
@@ -355,10 +399,12 @@ csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *
     csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->work->context);
     const csg_corners *m = &remesh->corners;
     for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
-        if (csg_corners_is_live(m, t))
-            status = prove_triangle(&p, t, unsettled, out);
+        if (csg_corners_is_live(m, t) && pending[t]) {
+            pending[t] = 0;
+            status = prove_triangle(&p, t, pending, out);
+        }
     if (status == CSGM_OK && p.count && !out->stopped)
-        status = settle_pieces(&p, unsettled, out);
+        status = settle_pieces(&p, pending, out);
     for (size_t i = 0; p.settlers && i < p.settler_count; i++) {
         out->pieces += p.settlers[i].pieces;
         out->by_cone += p.settlers[i].by_cone;

@@ -26,9 +26,9 @@ typedef struct csg_distance_proof {
     bool stopped;     /* it would have taken too long: nothing is known */
 } csg_distance_proof;
 
-/* unsettled (may be NULL): per triangle, set where a piece stayed open, else left alone. CSGM_OK or
- * why it was stopped. */
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *unsettled,
+/* pending, a byte a triangle: in, whether it is to be looked at; out, whether a piece of it stayed
+ * open. CSGM_OK or why it was stopped. */
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
                                csg_distance_proof *out);
 
 #endif

@@ -282,3 +282,36 @@ void csg_corners_flip(csg_corners *m, uint32_t corner)
     m->corner[m->vertex[c]] = c;
     m->corner[m->vertex[d]] = d;
 }
+
+static void set_triangle(csg_corners *m, uint32_t triangle, uint32_t a, uint32_t b, uint32_t c)
+{
+    m->vertex[3 * triangle] = a;
+    m->vertex[3 * triangle + 1] = b;
+    m->vertex[3 * triangle + 2] = c;
+    m->live++;
+}
+
+/* Triangles (c, a, b) and (d, b, a) become (c, a, n) and (d, b, n), and there are (c, n, b) and
+ * (d, n, a) too. */
+void csg_corners_split(csg_corners *m, uint32_t corner, uint32_t vertex,
+                       const uint32_t triangles[2])
+{
+    uint32_t c = csg_corner_previous(corner), d = m->across[c];
+    uint32_t c1 = csg_corner_next(c), c2 = csg_corner_previous(c);
+    uint32_t d1 = csg_corner_next(d), d2 = csg_corner_previous(d);
+    uint32_t a = m->vertex[c1], b = m->vertex[c2], t = 3 * triangles[0], u = 3 * triangles[1];
+    uint32_t beyond_bc = m->across[c1], beyond_ad = m->across[d1];
+    set_triangle(m, triangles[0], m->vertex[c], vertex, b);
+    set_triangle(m, triangles[1], m->vertex[d], vertex, a);
+    m->vertex[c2] = vertex;
+    m->vertex[d2] = vertex;
+    face(m, c, u);             /* edge a n */
+    face(m, d, t);             /* edge b n */
+    face(m, c1, t + 2);        /* edge n c */
+    face(m, d1, u + 2);        /* edge n d */
+    face(m, t + 1, beyond_bc); /* edge b c */
+    face(m, u + 1, beyond_ad); /* edge a d */
+    m->corner[vertex] = c2;
+    m->corner[a] = c1;
+    m->corner[b] = d1;
+}

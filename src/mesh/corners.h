@@ -67,4 +67,9 @@ void csg_corners_collapse(csg_corners *corners, uint32_t corner);
 bool csg_corners_can_flip(const csg_corners *corners, uint32_t corner);
 void csg_corners_flip(csg_corners *corners, uint32_t corner);
 
+/* Puts a vertex on the edge that starts at this corner; each of its triangles is cut in two. The
+ * vertex and the two triangles are ones that are gone. */
+void csg_corners_split(csg_corners *corners, uint32_t corner, uint32_t vertex,
+                       const uint32_t triangles[2]);
+
 #endif

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "mesh/check_distance.h"
 #include "mesh/decimate.h"
 #include "mesh/improve.h"
+#include "mesh/refine.h"
 
 /* ---- which resolution -------------------------------------------------------------------------
  */
@@ -20,7 +20,7 @@ static int compare(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* How far the triangles of equal cells stray from the surface, but for a thousandth of them, and
+/* How far the triangles of equal cells stray from the surface, but for a fiftieth of them, and
  * for those that cut off a crease: these do not get better with the square of the cell. */
 static bool find_deviation(csg_remesh *r, double *out)
 {
@@ -38,15 +38,15 @@ static bool find_deviation(csg_remesh *r, double *out)
     }
     qsort(values, n, sizeof *values, compare);
     *out =
-        n ? (double)values[n - 1 - n / 1000] / (double)r->probe.marching->field->tape.lipschitz : 0;
+        n ? (double)values[n - 1 - n / 50] / (double)r->probe.marching->field->tape.lipschitz : 0;
     csg_memory_release(r->memory, values, count * sizeof *values);
     return true;
 }
 
-/* Cells whose triangles stray by less than a third of the error: theirs grows with their square. */
+/* Cells whose triangles stray by six tenths of the error: theirs grows with their square. */
 static csgm_status choose_cells(csg_remesh *r, csg_mesh_goal *goal)
 {
-    static const double ROOM = 0.3, CLOSE_ENOUGH = 0.8, LEAST_STEP = 0.2;
+    static const double ROOM = 1, CLOSE_ENOUGH = 0.8, LEAST_STEP = 0.25;
     double deviation;
     if (!find_deviation(r, &deviation))
         return csg_context_no_memory(r->work->context);
@@ -95,7 +95,7 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 {
     csg_distance_proof proof;
     goal->allowed = goal->error > 0 ? goal->error : r->error / goal->care;
-    csgm_status status = csg_check_distance(r, goal->allowed, NULL, &proof);
+    csgm_status status = csg_refine_until_near(r, goal->allowed, &proof);
     if (status != CSGM_OK)
         return status;
     goal->open = proof.stopped && !proof.open ? 1 : proof.open;
@@ -188,7 +188,7 @@ csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *fie
                                     const csgm_mesh_options *options, const csg_mesh_share *share,
                                     csgm_mesh **out, csgm_mesh_stats *stats)
 {
-    enum { MOST_TRIES = 7, FIRST_CELLS = 96, MOST_CELLS = 1500 };
+    enum { MOST_TRIES = 5, FIRST_CELLS = 64, MOST_CELLS = 768 };
     csgm_mesh_options base = *options;
     csg_mesh_goal goal = {
         .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,

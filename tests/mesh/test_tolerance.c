@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes within a tolerance: their distance from the true surface both ways, measured without what
+ * made them; few triangles where the surface is flat; closed, without self-intersection, the same
+ * for any number of threads; colours, parts and creases stay; whatever fails fails cleanly.
+ *
+ * test_tolerance [SCENES]: so many random scenes.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/mesh_support.h"
+
+static unsigned scene_count = 4;
+
+static csgm_mesh_options within(double tolerance)
+{
+    csgm_mesh_options options = mesh_options(0);
+    options.tolerance = tolerance;
+    return options;
+}
+
+static csg_vec3 corner(const mesh_case *c, uint64_t triangle, int k)
+{
+    return mesh_vertex(c, c->mesh->indices[3 * triangle + (uint64_t)k]);
+}
+
+/* ---- distances ---------------------------------------------------------------------------------
+ */
+
+static double clamped(double t)
+{
+    return fmin(1, fmax(0, t));
+}
+
+/* By alternating projections on sides and plane: slow and plain. */
+static double distance_to_triangle(csg_vec3 p, const csg_vec3 v[3])
+{
+    double least = INFINITY;
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+    bool within_all = true;
+    for (int k = 0; k < 3; k++) {
+        csg_vec3 a = v[k], e = csg_vec3_sub(v[(k + 1) % 3], a), d = csg_vec3_sub(p, a);
+        double square = csg_vec3_dot(e, e),
+               t = clamped(square > 0 ? csg_vec3_dot(d, e) / square : 0);
+        least = fmin(least, csg_vec3_norm(csg_vec3_sub(d, csg_vec3_scale(e, t))));
+        within_all = within_all && csg_vec3_dot(csg_vec3_cross(e, d), n) >= 0;
+    }
+    double norm = csg_vec3_norm(n);
+    if (within_all && norm > 0)
+        least = fabs(csg_vec3_dot(csg_vec3_sub(p, v[0]), n)) / norm;
+    return least;
+}
+
+static double distance_to_mesh(const mesh_case *c, csg_vec3 p)
+{
+    double least = INFINITY;
+    for (uint64_t t = 0; t < c->mesh->triangle_count; t++) {
+        const csg_vec3 v[3] = {corner(c, t, 0), corner(c, t, 1), corner(c, t, 2)};
+        least = fmin(least, distance_to_triangle(p, v));
+    }
+    return least;
+}
+
+/* Whether the field changes its sign within `error` of p, by the reference in double. */
+static bool is_near_surface(const mesh_case *c, csg_vec3 p, double error)
+{
+    csg_sample here = test_sample(c->scene, p);
+    double norm = csg_vec3_norm(here.gradient);
+    bool inside = here.value >= 0;
+    for (int i = 0; i < 60; i++) {
+        csg_random random = {(uint64_t)i};
+        csg_vec3 way = i < 2 && norm > 0 ? csg_vec3_scale(here.gradient, (i ? 1 : -1) / norm)
+                                         : csg_vec3_normalize(test_point(&random, 1));
+        csg_vec3 q = csg_vec3_add(p, csg_vec3_scale(way, error * (i % 3 == 2 ? 0.3 : 1)));
+        if ((test_sample(c->scene, q).value >= 0) != inside)
+            return true;
+    }
+    return false;
+}
+
+static void assert_near_surface(const mesh_case *c, double error, const char *what)
+{
+    csg_random random = {7};
+    uint64_t count = c->mesh->triangle_count;
+    uint64_t samples = 20000;
+    for (uint64_t i = 0; i < samples; i++) {
+        uint64_t t = i < count ? i : csg_random_below(&random, (uint32_t)count);
+        double u = csg_random_uniform(&random, 0, 1), w = csg_random_uniform(&random, 0, 1);
+        if (u + w > 1)
+            u = 1 - u, w = 1 - w;
+        csg_vec3 a = corner(c, t, 0), b = corner(c, t, 1), d = corner(c, t, 2);
+        csg_vec3 p = csg_vec3_add(a, csg_vec3_add(csg_vec3_scale(csg_vec3_sub(b, a), u),
+                                                  csg_vec3_scale(csg_vec3_sub(d, a), w)));
+        if (!is_near_surface(c, p, 1.0001 * error))
+            fail_msg("%s: %.9g %.9g %.9g of the mesh is not within %g of the surface", what, p.x,
+                     p.y, p.z, error);
+    }
+}
+
+/* Vertices of a mesh of many more cells lie on the surface: all within the error of the mesh. */
+static void assert_surface_near(mesh_case *c, uint32_t resolution, double error, const char *what)
+{
+    csgm_mesh_options options = mesh_options(resolution);
+    csgm_mesh *fine;
+    options.normals = CSGM_NORMALS_NONE;
+    assert_int_equal(csg_mesh_build(&c->context, c->field, &options, &fine, NULL), CSGM_OK);
+    uint64_t step = fine->vertex_count / 3000 + 1;
+    for (uint64_t i = 0; i < fine->vertex_count; i += step) {
+        const float *f = fine->positions + 3 * i;
+        csg_vec3 p =
+            csg_vec3_add(fine->origin, csg_vec3_make((double)f[0], (double)f[1], (double)f[2]));
+        double distance = distance_to_mesh(c, p);
+        if (!(distance <= 1.0001 * error))
+            fail_msg("%s: %.9g %.9g %.9g of the surface is %g from the mesh, not within %g", what,
+                     p.x, p.y, p.z, distance, error);
+    }
+    csg_mesh_destroy(fine);
+}
+
+/* ---- crossings ---------------------------------------------------------------------------------
+ */
+
+/* A segment that passes through a triangle's inside, by signs of volumes that are clear of
+ * rounding. */
+static bool pierces(csg_vec3 p, csg_vec3 q, const csg_vec3 v[3], double scale)
+{
+    double clear = 1e-9 * scale * scale * scale;
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+    double a = csg_vec3_dot(n, csg_vec3_sub(p, v[0])), b = csg_vec3_dot(n, csg_vec3_sub(q, v[0]));
+    if (!((a > clear && b < -clear) || (a < -clear && b > clear)))
+        return false;
+    csg_vec3 way = csg_vec3_sub(q, p);
+    int positive = 0, negative = 0;
+    for (int k = 0; k < 3; k++) {
+        csg_vec3 s = csg_vec3_sub(v[k], p), e = csg_vec3_sub(v[(k + 1) % 3], p);
+        double volume = csg_vec3_dot(way, csg_vec3_cross(s, e));
+        positive += volume > clear;
+        negative += volume < -clear;
+    }
+    return positive == 3 || negative == 3;
+}
+
+static void assert_no_crossings(const mesh_case *c, const char *what)
+{
+    uint64_t count = c->mesh->triangle_count;
+    double scale = csg_vec3_norm(csg_box_size(c->check.bounds));
+    for (uint64_t t = 0; t < count; t++) {
+        const csg_vec3 v[3] = {corner(c, t, 0), corner(c, t, 1), corner(c, t, 2)};
+        csg_box box = csg_box_empty();
+        for (int k = 0; k < 3; k++)
+            box = csg_box_hull(box, (csg_box){v[k], v[k]});
+        for (uint64_t s = 0; s < count; s++)
+            for (int k = 0; k < 3; k++) {
+                csg_vec3 p = corner(c, s, k), q = corner(c, s, (k + 1) % 3);
+                if ((p.x < box.min.x && q.x < box.min.x) || (p.x > box.max.x && q.x > box.max.x) ||
+                    (p.y < box.min.y && q.y < box.min.y) || (p.y > box.max.y && q.y > box.max.y) ||
+                    (p.z < box.min.z && q.z < box.min.z) || (p.z > box.max.z && q.z > box.max.z))
+                    continue;
+                if (pierces(p, q, v, scale))
+                    fail_msg("%s: an edge of triangle %llu goes through triangle %llu", what,
+                             (unsigned long long)s, (unsigned long long)t);
+            }
+    }
+}
+
+/* ---- plain solids ------------------------------------------------------------------------------
+ */
+
+static void test_box(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, turned(&c, make_box(&c, 1, 0.7, 0.4), 33, csg_vec3_make(0.6, 0, 0.8)));
+    csgm_mesh_options options = within(0.01);
+    mesh_build_closed(&c, &options, "box");
+    assert_int_equal(c.mesh->triangle_count, 12);
+    assert_true(fabs(c.check.volume - 8 * 0.28) < 1e-4);
+    assert_int_equal(c.findings, 0);
+    assert_true(c.stats.max_distance_bound == 0.01);
+    mesh_case_end(&c);
+}
+
+static void test_ball(void **state)
+{
+    uint64_t before = 0;
+    const double errors[] = {0.03, 0.01, 0.003};
+    for (int i = 0; i < 3; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, make_sphere(&c, 1));
+        csgm_mesh_options options = within(errors[i]);
+        mesh_build_closed(&c, &options, "ball");
+        assert_int_equal(c.findings, 0);
+        assert_int_equal(c.check.genus, 0);
+        assert_near_surface(&c, errors[i], "ball");
+        assert_surface_near(&c, 150, errors[i], "ball");
+        /* an equilateral triangle with corners on the ball strays by a^2 / 6: its least area */
+        double least = 4 * 3.14159 / (6 * errors[i] * 0.433);
+        assert_true((double)c.mesh->triangle_count < 3 * least + 20);
+        assert_true(c.mesh->triangle_count > before);
+        before = c.mesh->triangle_count;
+        mesh_case_end(&c);
+    }
+}
+
+/* A drilled and rounded plate with two colours. */
+static csg_node_id plate(mesh_case *c)
+{
+    csg_node_id red =
+        csg_build_color(&c->builder, (csg_color){1, 0, 0, 1}, make_box(c, 1, 0.6, 0.15), NOWHERE);
+    csg_node_id boss = moved(c, make_cylinder(c, 0.3, 0.3), 0.4, 0, 0.2);
+    csg_node_id both = joined(c, CSG_NODE_UNION, ROUND(0.1), red, boss);
+    return joined(c, CSG_NODE_DIFFERENCE, SHARP, both,
+                  moved(c, make_cylinder(c, 0.15, 1), 0.4, 0, 0));
+}
+
+static void test_colors(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, plate(&c));
+    csgm_mesh_options options = within(0.005);
+    mesh_build_closed(&c, &options, "plate");
+    assert_int_equal(c.check.genus, 1);
+    assert_int_equal(c.findings, 0);
+    assert_near_surface(&c, 0.005, "plate");
+    assert_surface_near(&c, 200, 0.005, "plate");
+    assert_no_crossings(&c, "plate");
+    assert_non_null(c.mesh->colors);
+    bool red = false, other = false;
+    for (uint64_t i = 0; i < c.mesh->vertex_count; i++) {
+        const uint8_t *rgba = c.mesh->colors + 4 * i;
+        red |= rgba[0] > 250 && rgba[1] < 5;
+        other |= rgba[1] > 100;
+        csg_vec3 at = mesh_vertex(&c, i);
+        if (at.x < -0.5)
+            assert_true(rgba[0] > 250 && rgba[1] < 5);
+    }
+    assert_true(red && other);
+    mesh_case_end(&c);
+}
+
+static void test_same_for_all_threads(void **state)
+{
+    mesh_case a;
+    mesh_case_begin(&a, 1);
+    mesh_case_compile(&a, plate(&a));
+    csgm_mesh_options options = within(0.01);
+    options.improve = true;
+    mesh_build_closed(&a, &options, "one thread");
+    for (uint32_t threads = 2; threads <= 5; threads += 3) {
+        mesh_case b;
+        mesh_case_begin(&b, threads);
+        b.context.isa = threads == 5 ? csg_cpu_best_isa(CSGM_ISA_SCALAR) : b.context.isa;
+        mesh_case_compile(&b, plate(&b));
+        mesh_build_closed(&b, &options, "threads");
+        mesh_assert_same(a.mesh, b.mesh, "threads");
+        mesh_case_end(&b);
+    }
+    mesh_case_end(&a);
+}
+
+/* ---- simplifying and improving -----------------------------------------------------------------
+ */
+
+static void test_simplify(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, plate(&c));
+    csgm_mesh_options options = mesh_options(64);
+    mesh_build_closed(&c, &options, "before");
+    uint64_t before = c.mesh->triangle_count;
+    options.simplify_share = 0.2;
+    mesh_build_closed(&c, &options, "a fifth");
+    assert_int_equal(c.stats.triangles_before, before);
+    assert_true(c.mesh->triangle_count <= before / 5 + 2);
+    assert_true(c.mesh->triangle_count >= before / 5 - 2);
+    assert_near_surface(&c, c.stats.distance_allowed, "a fifth");
+    options.simplify_share = 0;
+    options.simplify_error = 0.01;
+    mesh_build_closed(&c, &options, "by error");
+    assert_true(c.mesh->triangle_count < before / 8);
+    assert_near_surface(&c, 0.01, "by error");
+    mesh_case_end(&c);
+}
+
+static void test_improve(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, plate(&c));
+    csgm_mesh_options options = mesh_options(40);
+    mesh_build_closed(&c, &options, "as it comes");
+    csgm_mesh_check before = c.check;
+    uint64_t triangles = c.mesh->triangle_count;
+    options.improve = true;
+    mesh_build_closed(&c, &options, "improved");
+    assert_int_equal(c.mesh->triangle_count, triangles);
+    assert_true(c.check.max_aspect < before.max_aspect);
+    assert_true(c.check.min_angle_deg > before.min_angle_deg);
+    assert_true(fabs(c.check.volume - before.volume) < 0.01 * before.volume);
+    assert_true(mesh_largest_error(&c) < 1e-4);
+    assert_no_crossings(&c, "improved");
+    mesh_case_end(&c);
+}
+
+/* ---- what cannot be
+ * ------------------------------------------------------------------------------
+ */
+
+static void test_cells_too_large(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    mesh_case_compile(&c, make_sphere(&c, 1));
+    csgm_mesh_options options = mesh_options(5);
+    options.tolerance = 1e-4;
+    assert_int_equal(mesh_build(&c, &options), CSGM_OK);
+    assert_int_equal(c.last_code, CSG_DIAG_NOT_WITHIN);
+    assert_true(c.stats.open_places > 0);
+    assert_true(isinf(c.stats.max_distance_bound));
+    mesh_case_end(&c);
+}
+
+static void test_out_of_memory(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    mesh_case_compile(&c, plate(&c));
+    csgm_mesh_options options = within(0.02);
+    mesh_build_closed(&c, &options, "with memory");
+    csg_mesh_destroy(c.mesh);
+    c.mesh = NULL;
+    uint64_t used = atomic_load(&c.context.memory.used_bytes);
+    uint64_t peak = atomic_load(&c.context.memory.peak_bytes);
+    for (uint64_t part = 1; part < 16; part++) {
+        c.context.memory.limit_bytes = used + (peak - used) * part / 16;
+        csgm_status status = mesh_build(&c, &options);
+        assert_true(status == CSGM_ERR_MEMORY || status == CSGM_OK);
+        assert_int_equal(c.last_code, status == CSGM_OK ? 0 : CSG_DIAG_OUT_OF_MEMORY);
+        csg_mesh_destroy(c.mesh);
+        c.mesh = NULL;
+        assert_int_equal(atomic_load(&c.context.memory.used_bytes), used);
+    }
+    c.context.memory.limit_bytes = 0;
+    mesh_case_end(&c);
+}
+
+/* ---- random scenes
+ * -------------------------------------------------------------------------------
+ */
+
+static void test_random_scenes(void **state)
+{
+    unsigned proven = 0, with_surface = 0;
+    for (unsigned seed = 0; seed < scene_count; seed++) {
+        mesh_case c;
+        char what[32];
+        csg_random random = {1000 + seed};
+        snprintf(what, sizeof what, "scene %u", seed);
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, test_random_scene(&c.builder, &random, 1 + seed % 9));
+        if (!csg_box_is_finite(c.field->bounds)) {
+            mesh_case_end(&c);
+            continue;
+        }
+        csgm_mesh_options options = within(0.02);
+        mesh_build_closed(&c, &options, what);
+        if (c.mesh->triangle_count) {
+            with_surface++;
+            assert_no_crossings(&c, what);
+            bool good = c.stats.open_places == 0;
+            proven += good;
+            assert_int_equal(c.findings > 0, !good);
+            if (good) {
+                assert_near_surface(&c, 0.02, what);
+                assert_surface_near(&c, 3 * c.stats.cells[0] + 50, 0.02, what);
+            }
+        }
+        mesh_case_end(&c);
+    }
+    print_message("%u of %u meshes proven\n", proven, with_surface);
+    assert_true(proven * 10 >= with_surface * 9);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1)
+        scene_count = (unsigned)atoi(argv[1]);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_colors),
+        cmocka_unit_test(test_same_for_all_threads),
+        cmocka_unit_test(test_simplify),
+        cmocka_unit_test(test_improve),
+        cmocka_unit_test(test_cells_too_large),
+        cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_random_scenes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
