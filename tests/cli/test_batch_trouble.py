@@ -93,8 +93,7 @@ class TwoAtOnce(TroubleTest):
         self.many(40, text=SLOW)
         self.batch("s/*.txt", "-d", "clean", "-r", "20")
         wanted = digest(self.outputs("clean"))
-        both = [self.start("s/*.txt", "-d", "out", "-r", "20", "--json", "--cache", "cache")
-                for _ in range(2)]
+        both = [self.start("s/*.txt", "-d", "out", "-r", "20", "--json") for _ in range(2)]
         made = 0
         for process in both:
             out, err = process.communicate()
@@ -110,8 +109,8 @@ class TwoAtOnce(TroubleTest):
         both = [self.start("s/*.txt", "-d", f"out{i}", "-r", "12", "--cache", "cache")
                 for i in range(2)] if cli.has_library("libb2") else []
         for process in both:
-            self.assertEqual(process.wait(), 0, process.stderr.read())
-            process.communicate()
+            _, errors = process.communicate()
+            self.assertEqual(process.returncode, 0, errors)
         self.assertEqual(self.outputs("out0"), self.outputs("out1"))
 
 
