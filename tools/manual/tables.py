@@ -54,7 +54,7 @@ SHAPING = {"linear_extrude", "rotate_extrude", "offset", "projection", "hull", "
 def module_group(name, handler, children):
     if handler == "control":
         return "control"
-    if handler in ("operator", "blend", "group", "combine"):
+    if handler in ("operator", "blend", "group", "combine", "soft"):
         return "operators"
     if children == "1":
         return "shaping" if name in SHAPING else "transforms"
@@ -87,6 +87,48 @@ def functions():
     return table(["function", "gives"], rows)
 
 
+def number_range(least, is_open, most):
+    if float(most) >= 1e15:
+        return f"> {least}" if is_open == "1" else f">= {least}"
+    return f"> {least}, <= {most}" if is_open == "1" else f"{least} .. {most}"
+
+
+# What an interval rule means, by its name in operators.def.
+INTERVALS = {"CORNERS": "yes", "ANGLES": "without a profile", "TURNS": "without debulge",
+             "EXTERIOR": "no", "INTERIOR": "no"}
+
+
+def rules(space):
+    parameters, rows = {}, []
+    for macro, fields in calls("src/scene/operators.def"):
+        if macro == "CSG_RULE_PARAMETER":
+            parameters.setdefault(fields[0], []).append(fields[1:])
+    for macro, fields in calls("src/scene/operators.def"):
+        if macro != "CSG_RULE" or fields[2] != space or fields[1] == "field_sharp":
+            continue
+        constant, name, _, fold, interval, _, slope, equal, doc = fields
+        joins = "from the left" if fold == "1" else "all at once"
+        rows.append([f"**{code(name)}**", doc, f"joins {joins}; monotone: {INTERVALS[interval]}; K: {slope}",
+                     equal])
+        for parameter, default, least, is_open, most, unit, meaning in parameters.get(constant, []):
+            rows.append([code(parameter), f"{meaning} (default {default})",
+                         f"{unit}, {number_range(least, is_open, most)}", ""])
+    return table(["blend, parameters", "what it is", "facts and ranges", "is an operand itself where"], rows)
+
+
+def steps():
+    rows = [[code(f"{name}({least} .. {most})"), standard, "yes" if even == "1" else "no", doc]
+            for _, (_, name, standard, least, most, _, even, doc) in calls("src/scene/steps.def")]
+    return table(["step", "default", "order of the operands does not matter", "what it is"], rows)
+
+
+def falloffs():
+    rows = [[code(f'"{name}"'), doc.replace("^2", "²").replace("^4", "⁴").replace("^6", "⁶").replace("^3", "³"),
+             f"{float(iso):.6f}", f"{float(steepest):.6f}"]
+            for _, (_, name, iso, steepest, doc) in calls("src/scene/falloffs.def")]
+    return table(["falloff", "P(d)", "1/2 at d =", "steepest"], rows)
+
+
 def unsupported():
     rows = []
     for path in ("src/lang/unsupported.def", "src/lang/unsupported_functions.def"):
@@ -108,6 +150,10 @@ TABLES = {
     "solids": lambda: modules("solids"),
     "shaping": lambda: modules("shaping"),
     "transforms": lambda: modules("transforms"),
+    "rules of lengths": lambda: rules("LENGTHS"),
+    "rules of fields": lambda: rules("FIELDS"),
+    "steps": steps,
+    "falloffs": falloffs,
     "operators": lambda: modules("operators"),
     "control": lambda: modules("control"),
     "functions": functions,
