@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh diff: verdicts and exit statuses, reports, folders, --update, heat maps, git difftool.
+
+With --thorough: sampled distances of scipy (where it is there) are never above the proven bounds.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+import xml.dom.minidom
+
+import cli
+
+BALL = "sphere(10);\n"
+KNOB = "sphere(10); translate([10, 0, 0]) sphere(2);\n"
+
+
+class DiffTest(cli.CliTest):
+    def mesh(self, text, name, *options):
+        self.write("scene.txt", text)
+        self.assert_status(self.run_in("scene.txt", "-o", name, "-r", 32, "-q", *options), 0)
+        os.unlink(self.path("scene.txt"))
+
+    def diff(self, status, *arguments):
+        result = self.run_in("diff", *arguments)
+        self.assert_clean(result)
+        self.assert_status(result, status)
+        return result
+
+    def report(self, status, *arguments):
+        return json.loads(self.diff(status, *arguments, "--json", "-").stdout)
+
+    def test_levels(self):
+        self.mesh(BALL, "a.ply")
+        shutil.copy(self.path("a.ply"), self.path("b.ply"))
+        self.assertIn(b"the same bytes", self.diff(0, "a.ply", "b.ply").stdout)
+        self.mesh(BALL, "a.stl")
+        self.assertIn(b"the same triangles", self.diff(0, "a.ply", "a.stl").stdout)
+        self.mesh("sphere(10.05);", "c.ply")
+        self.assertEqual(self.report(0, "a.ply", "c.ply", "--tol", "0.1")["level"],
+                         "within tolerance")
+        result = self.diff(1, "a.ply", "c.ply", "--tol", "0.01")
+        self.assertEqual(len(result.stdout.splitlines()), 5)
+        self.diff(0, "a.ply", "c.ply", "--tol-rel", "1%")
+        self.diff(0, "a.ply", "c.ply", "--tol-volume", "2%")
+        self.diff(1, "a.ply", "c.ply", "--tol-volume", "1%")
+        self.assertEqual(self.diff(1, "-q", "a.ply", "c.ply").stdout, b"")
+
+    def test_scene_against_mesh(self):
+        self.mesh(BALL, "golden.ply")
+        self.write("ball.txt", BALL)
+        self.diff(0, "golden.ply", "ball.txt", "-r", 32)
+        report = self.report(0, "golden.ply", "ball.txt", "--tol", "0.1", "--field")
+        field = report["a_to_field_of_b"]
+        self.assertEqual(field["lambda"], 1)
+        # facets of an inscribed polyhedron: their middles are off, the sagitta of a cell at most
+        self.assertGreater(field["distance_lower"], 0.003)
+        self.assertLess(field["distance_upper"], 0.1)
+        self.assertLessEqual(field["distance_lower"], field["distance_upper"])
+        self.write("knob.txt", KNOB)
+        self.assertIn(b"apart", self.diff(1, "golden.ply", "knob.txt", "--tol", "0.1").stdout)
+        self.diff(0, "golden.ply", "ball.txt", "-D", "unused=1", "-r", 32)
+        self.assert_refused(self.run_in("diff", "golden.ply", "golden.ply", "--field"), 2, "--field")
+
+    def test_one_sided(self):
+        self.mesh(BALL, "a.ply")
+        self.mesh(KNOB, "b.ply")
+        self.diff(1, "a.ply", "b.ply", "--tol", "0.2", "--one-sided", "added")
+        self.diff(0, "a.ply", "b.ply", "--tol", "0.2", "--one-sided", "removed")
+        self.diff(1, "b.ply", "a.ply", "--tol", "0.2", "--one-sided", "removed")
+
+    def test_reports(self):
+        self.mesh(BALL, "a.ply")
+        self.mesh(KNOB, "b.ply")
+        outputs = {}
+        for threads in (1, 3):
+            self.diff(1, "a.ply", "b.ply", "-j", threads, "--json", "o.json", "--junit", "o.xml",
+                      "--heatmap", "h.ply", "--samples", 5000)
+            outputs[threads] = [self.read(n) for n in ("o.json", "o.xml", "h.ply")]
+        self.assertEqual(outputs[1], outputs[3])
+        report = json.loads(outputs[1][0])
+        self.assertEqual((report["verdict"], report["reasons"]), ("different", ["distance"]))
+        lower, upper = report["hausdorff"]
+        self.assertTrue(1.9 < lower <= upper <= 1.01 * lower, report["hausdorff"])
+        self.assertAlmostEqual(report["b_to_a"]["worst"][0]["at"][0], 12, delta=0.1)
+        case = xml.dom.minidom.parseString(outputs[1][1]).getElementsByTagName("failure")
+        self.assertEqual(len(case), 1)
+        self.assertIn(b"comment distance from the other mesh", outputs[1][2][:400])
+        self.assertIn("with colours", self.run_in("info", "h.ply").stdout.decode())
+        self.diff(1, "a.ply", "b.ply", "--heatmap", "h.glb")
+        self.assertIn(b'"extras":{"comment":"distance', self.read("h.glb")[:4096])
+
+    def test_attributes(self):
+        self.mesh('color("red") sphere(10);', "a.ply")
+        self.mesh('color("blue") sphere(10);', "b.ply")
+        self.assertIn(b"colours differ", self.diff(1, "a.ply", "b.ply").stdout)
+        self.diff(0, "a.ply", "b.ply", "--ignore", "order,colors")
+        self.mesh('part("lid") sphere(10);', "a.obj")
+        self.mesh('part("cap") sphere(10);', "b.obj")
+        self.assertIn(b"names", self.diff(1, "a.obj", "b.obj").stdout)
+        self.diff(0, "a.obj", "b.obj", "--ignore", "names")
+        self.diff(0, "a.obj", "a.ply", "--ignore", "colors")
+
+    def test_topology_and_open_meshes(self):
+        self.mesh("difference() { cube(10); translate([4, 4, -1]) cube([2, 2, 12]); }", "a.ply")
+        self.mesh("difference() { cube(10); translate([4, 4, 2]) cube([2, 2, 12]); }", "b.ply")
+        self.assertIn(b"genus 1 became 0", self.diff(1, "a.ply", "b.ply", "--tol", 20).stdout)
+        self.diff(0, "a.ply", "b.ply", "--tol", 20, "--ignore-topology")
+        self.write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        result = self.diff(1, "a.ply", "open.off")
+        self.assertIn(b"open: 3 boundary edges", result.stdout)
+        self.assertIn(b"not compared", result.stdout)
+        self.write("empty.off", "OFF\n0 0 0\n")
+        self.assertIn(b"empty", self.diff(1, "a.ply", "empty.off").stdout)
+        self.diff(0, "empty.off", "empty.off")
+        self.assertIn(b"A is empty", self.diff(1, "/dev/null", "a.ply").stdout)
+
+    def test_folders_and_update(self):
+        for folder in ("a", "b", "b/deep"):
+            os.mkdir(self.path(folder))
+        self.mesh(BALL, "a/same.ply")
+        shutil.copy(self.path("a/same.ply"), self.path("b/same.ply"))
+        self.mesh(BALL, "a/part.ply")
+        self.write("b/part.txt", KNOB)
+        self.mesh(BALL, "a/old.stl")
+        self.mesh(BALL, "b/deep/new.stl")
+        self.write("a/README.txt", "not a scene")
+        report = self.report(1, "a", "b", "--tol", "0.1")
+        self.assertEqual({(p.get("file_a"), p["verdict"]) for p in report["pairs"]},
+                         {("a/same.ply", "same"), ("a/part.ply", "different"),
+                          ("a/old.stl", "only in A"), (None, "only in B")})
+        self.diff(1, "a", "b", "--tol", "0.1", "--update")  # old.stl stays
+        self.assertEqual(self.read("a/deep/new.stl"), self.read("b/deep/new.stl"))
+        os.unlink(self.path("a/old.stl"))
+        self.diff(0, "a", "b", "--tol", "0.1")
+        self.assert_refused(self.run_in("diff", "a", "a/same.ply"), 2, "is a folder")
+
+    def test_update_of_files(self):
+        self.mesh(BALL, "b.ply")
+        self.diff(0, "new.ply", "b.ply", "--update")
+        self.assertEqual(self.read("new.ply"), self.read("b.ply"))
+        self.mesh(KNOB, "c.ply")
+        self.assertIn(b"A is now B", self.diff(0, "new.ply", "c.ply", "--update").stdout)
+        self.assertEqual(self.read("new.ply"), self.read("c.ply"))
+
+    def test_trouble(self):
+        self.mesh(BALL, "a.ply")
+        self.write("broken.stl", b"\0" * 83)
+        for arguments, words in (((), "two"), (("a.ply",), "two"),
+                                 (("a.ply", "none.ply"), "none.ply"),
+                                 (("a.ply", "broken.stl"), "broken.stl"),
+                                 (("a.ply", "a.ply", "--ignore", "paint"), "paint"),
+                                 (("a.ply", "a.ply", "--tol", "-1"), "--tol"),
+                                 (("a.ply", "a.ply", "--heatmap", "h.stl"), "heat map")):
+            result = self.run_in("diff", *arguments)
+            self.assert_clean(result)
+            self.assert_status(result, 2)
+            self.assertIn(words, result.stderr)
+        self.assert_files("a.ply", "broken.stl")
+
+    def git(self, *arguments, status=0):
+        result = subprocess.run(["git", *arguments], cwd=self.folder, check=False, timeout=60,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                env={**os.environ, "HOME": self.folder, "GIT_CONFIG_NOSYSTEM": "1"})
+        self.assertEqual(result.returncode, status, result.stdout)
+        return result.stdout
+
+    def test_git(self):
+        """The recipes of docs/diff.md."""
+        if not shutil.which("git"):
+            self.skipTest("git is not there")
+        self.git("init", "-q")
+        self.git("config", "user.email", "a@b")
+        self.git("config", "user.name", "a")
+        self.mesh(BALL, "ball.stl")
+        self.git("add", "ball.stl")
+        self.git("commit", "-q", "-m", "a ball")
+        self.mesh(KNOB, "ball.stl")
+        self.git("config", "diff.tool", "csgmesh")
+        self.git("config", "difftool.csgmesh.cmd",
+                 f'"{cli.PROGRAM}" diff "$LOCAL" "$REMOTE" --tol 0.01')
+        out = self.git("difftool", "--no-prompt", "HEAD")
+        self.assertIn(b"apart, more than 0.01", out)
+        self.write(".gitattributes", "*.stl diff=csgmesh\n")
+        self.git("config", "diff.csgmesh.command",
+                 f"sh -c '\"{cli.PROGRAM}\" diff \"$2\" \"$5\" --tol 0.01 || test $? = 1' --")
+        self.assertIn(b"apart, more than 0.01", self.git("diff", "HEAD"))
+
+
+class AgainstScipy(DiffTest):
+    """Samples of another program lie below our upper bounds, and its vertices not above."""
+
+    def test_sampled(self):
+        try:
+            import numpy
+            from scipy.spatial import cKDTree
+        except ImportError:
+            self.skipTest("no scipy")
+        self.mesh(BALL, "a.off", "--normals", "none")
+        self.mesh("translate([0.5, 0, 0]) cube(15, center = true);", "b.off", "--normals", "none")
+
+        def load(name):
+            lines = self.read(name).decode().split("\n")
+            count, faces, _ = map(int, lines[1].split())
+            points = numpy.array([[float(x) for x in line.split()[:3]]
+                                  for line in lines[2:2 + count]])
+            corners = numpy.array([[int(x) for x in line.split()[1:4]]
+                                   for line in lines[2 + count:2 + count + faces]])
+            return points, corners
+
+        def spread(points, corners, n):
+            weights = numpy.random.default_rng(1).dirichlet((1, 1, 1), (len(corners), n))
+            return numpy.einsum("fnk,fkd->fnd", weights, points[corners]).reshape(-1, 3)
+
+        report = self.report(1, "a.off", "b.off")
+        meshes = [load("a.off"), load("b.off")]
+        for i, key in enumerate(("a_to_b", "b_to_a")):
+            own, other = meshes[i], meshes[1 - i]
+            dense = spread(*other, 60)
+            # to a cloud on the surface: at least the distance to it; the gap of the cloud is small
+            away, _ = cKDTree(dense).query(own[0])
+            upper = report[key]["max_upper"]
+            self.assertGreaterEqual(away.max() * (1 + 1e-9), report[key]["max_lower"] * 0.98)
+            self.assertLessEqual(away.max(), upper + 0.15)
+            self.assertLess(report[key]["mean"], away.max())
+
+
+if __name__ == "__main__":
+    if "--thorough" in sys.argv:
+        sys.argv.remove("--thorough")
+    else:
+        AgainstScipy = None
+    cli.main()
