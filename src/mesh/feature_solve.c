@@ -133,8 +133,8 @@ static void sheet_point(const polygon *p, const apex *a, int sheet, double off, 
 static bool is_still(const polygon *p, const apex *a, int sheet, const double *g)
 {
     double length = sqrt(dot(g, g)), own = 0, other = -2;
-    if (!(length > 1e-3))
-        return false;
+    if (!(length > 1e-3) || !p->creased) /* round a tip all sheets are one */
+        return length > 1e-3;
     for (int k = 0; k < p->sheets; k++) {
         const double *h = a->planes[k].g;
         double cosine = dot(g, h) / (length * sqrt(dot(h, h)));
@@ -165,10 +165,12 @@ static void sample_sheets(const polygon *p, apex *apexes, double off, csg_probe 
             sheet[n] = s;
         }
     csg_probe_points(probe, x, y, z, n, f, g);
+    /* beyond a cell's edge from the surface a pruned tape knows the sign alone */
+    const double band = 0.9 * probe->marching->lattice->cell_size;
     for (size_t i = 0; i < n; i++) {
         csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
         owner[i]->lost |= f[i] != f[i];
-        if (is_still(p, owner[i], sheet[i], plane.g))
+        if (fabs((double)f[i]) <= band && is_still(p, owner[i], sheet[i], plane.g))
             fresh[i] = plane;
         else
             fresh[i] = owner[i]->planes[sheet[i]];
