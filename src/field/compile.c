@@ -640,6 +640,16 @@ static bool write_clip(compiler *c, csg_box box)
     return true;
 }
 
+/* Primitives are distances; formulas may be steeper. */
+static double steepest_leaf(const csgm_scene *scene)
+{
+    double most = 1;
+    for (size_t i = 0; i < scene->node_count; i++)
+        if (scene->nodes[i].kind == CSG_NODE_FIELD)
+            most = fmax(most, scene->formulas[scene->nodes[i].payload].lipschitz);
+    return most;
+}
+
 static bool compile_field(compiler *c, const csg_box *clip)
 {
     csgm_field *field = c->field;
@@ -653,6 +663,7 @@ static bool compile_field(compiler *c, const csg_box *clip)
     field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
     if (clip)
         field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
+    field->tape.steepest = (float)steepest_leaf(scene);
     return compile_tree(c) && (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
            keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
                      c->color_count);

@@ -66,7 +66,7 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
         return false;
     pruner->tape = tape;
     pruner->decided = false;
-    pruner->slack = pruner->rounding * tape->lipschitz;
+    pruner->slack = pruner->rounding * tape->steepest;
     pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding, pruner->low,
                               pruner->high, pruner->scratch);
     return true;
@@ -244,7 +244,7 @@ static void decide(csg_pruner *pruner, float tau)
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {
-    if (kept == 1 && op->op != CSG_OP_COMBINE && !csg_op_delivers(op->op))
+    if (kept == 1 && csg_prune_is_identity(pruner->tape, op))
         return; /* the operand stands for its operator */
     csg_tape_node *nodes = pruner->nodes;
     csg_emitted *first = &stack[*top - kept];

@@ -27,7 +27,8 @@ typedef struct csg_pruner {
     csg_memory *memory;
     const csg_kernel *kernel;
     float rounding;    /* slack of lengths: rounding error of any distance in the lattice */
-    float slack;       /* of comparisons: the same of values */
+    float slack;       /* of comparisons: the same of leaves' values; operators' own rounding is in
+                          their intervals */
     float *low, *high; /* of every node, eight lanes; later the demands on operators */
     uint8_t *dropped;  /* a bit for each octant */
     uint8_t dropped_any;

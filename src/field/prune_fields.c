@@ -164,3 +164,14 @@ void csg_soften_demand(const csg_tape *tape, const csg_tape_node *node, float *l
     *low = (zero - room) / rate;
     *high = (full + room) / rate;
 }
+
+bool csg_prune_is_identity(const csg_tape *tape, const csg_tape_node *op)
+{
+    const float *delivery = tape->parameters + op->parameters + CSG_RULE_DELIVER;
+    if (!csg_op_takes_fields(op->op))
+        return op->op != CSG_OP_COMBINE && op->op != CSG_OP_SOFTEN;
+    bool normalises = op->blend == CSG_BLEND_SOFT_SET || op->blend == CSG_BLEND_SCALE_SET ||
+                      op->blend == CSG_BLEND_TURNING;
+    /* A field that is handed on as a field. */
+    return !normalises && delivery[CSG_DELIVER_LOW] == 0 && delivery[CSG_DELIVER_SCALE] > 0;
+}

@@ -11,6 +11,8 @@
 
 #include "field/prune.h"
 
+/* Whether the operator gives a lone operand back as it is, bit for bit. */
+bool csg_prune_is_identity(const csg_tape *tape, const csg_tape_node *op);
 /* Marks operands of node, which takes fields, as dropped; sets pruner->dropped_any. */
 void csg_prune_fields(csg_pruner *pruner, uint32_t node);
 /* The values of its child that a SOFTEN node tells apart. */

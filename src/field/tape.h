@@ -222,6 +222,7 @@ typedef struct csg_tape {
     const csg_tape_warp *warps;
     csg_shape *const *shapes; /* a CSG_OP_SHAPE's own parameter is an index of these */
     float lipschitz;          /* of the whole field */
+    float steepest;           /* of its leaves */
     uint32_t count;
     bool turns; /* some TURNING operator stands in the whole tape */
 } csg_tape;

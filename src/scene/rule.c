@@ -350,7 +350,7 @@ double csg_rule_excess(const csg_rule *rule)
 
 double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes, size_t count)
 {
-    double most = 0, sum = 0, n = rule->parameters[0], power = 0;
+    double most = 0, sum = 0, n = rule->parameters[0], power = 0, partials[2];
     for (size_t i = 0; i < count; i++) {
         most = fmax(most, slopes[i]);
         sum += slopes[i];
@@ -365,6 +365,12 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
         return sum * 4 / 3;
     case CSG_BLEND_RICCI: /* Hoelder's inequality on its partial derivatives */
         return is_union ? most * pow(power, 1 / n) : most;
+    case CSG_BLEND_ARC: /* convex and homogeneous: grad G(P) . Q <= G(Q) (operators.md 0) */
+        if (is_union && count == 2 && !rule->spline.count)
+            return csg_rule_apply(rule, true, slopes, 2, 0, partials);
+        return most * rule->k[!is_union];
+    case CSG_BLEND_ARC_SHARP: /* a point of the unit circle, divided by more than 1 (5.6) */
+        return fmin(most * rule->k[!is_union], count == 2 ? hypot(slopes[0], slopes[1]) : INFINITY);
     default:
         return most * rule->k[!is_union];
     }
