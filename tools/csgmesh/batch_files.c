@@ -16,6 +16,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "interrupt.h"
+
 bool batch_make_folders(const char *path, bool whole)
 {
     char folder[PATH_MAX];
@@ -43,23 +45,33 @@ bool batch_make_folders(const char *path, bool whole)
 
 /* ---- writing -------------------------------------------------------------------------- */
 
-static int open_temporary(const char *target, char *temporary, size_t size)
+/* A file being written under a name of its own, which an interrupt removes. */
+typedef struct temporary {
+    int fd, slot;
+    char name[PATH_MAX];
+} temporary;
+
+static bool open_temporary(temporary *t, const char *target)
 {
     static atomic_uint counter;
     const char *slash = strrchr(target, '/');
     int folder = slash ? (int)(slash + 1 - target) : 0;
     for (int attempt = 0; attempt < 1000; attempt++) {
-        int length = snprintf(temporary, size, "%.*s.csgmesh-%ld-b%u.tmp", folder, target,
+        int length = snprintf(t->name, sizeof t->name, "%.*s.csgmesh-%ld-b%u.tmp", folder, target,
                               (long)getpid(), atomic_fetch_add(&counter, 1));
-        if (length < 0 || (size_t)length >= size) {
+        if (length < 0 || (size_t)length >= sizeof t->name) {
             errno = ENAMETOOLONG;
-            return -1;
+            return false;
         }
-        int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST)
-            return fd;
+        t->slot = cli_interrupt_guard(t->name);
+        t->fd = open(t->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (t->fd >= 0)
+            return true;
+        cli_interrupt_release(t->slot);
+        if (errno != EEXIST)
+            return false;
     }
-    return -1;
+    return false;
 }
 
 static bool write_fully(int fd, const char *bytes, size_t count)
@@ -77,26 +89,28 @@ static bool write_fully(int fd, const char *bytes, size_t count)
 }
 
 /* Closes, and gives the file its name if all went well; errno is that of the first failure. */
-static bool finish(int fd, bool good, const char *temporary, const char *target)
+static bool finish(temporary *t, bool good, const char *target)
 {
     int reason = errno;
-    if (close(fd) != 0 && good) {
+    if (close(t->fd) != 0 && good) {
         good = false;
         reason = errno;
     }
-    if (good && rename(temporary, target) == 0)
-        return true;
-    reason = good ? errno : reason;
-    unlink(temporary);
+    if (good && rename(t->name, target) != 0) {
+        good = false;
+        reason = errno;
+    }
+    if (!good)
+        unlink(t->name);
+    cli_interrupt_release(t->slot);
     errno = reason;
-    return false;
+    return good;
 }
 
 bool batch_write_small(const char *path, const char *text, size_t length)
 {
-    char temporary[PATH_MAX];
-    int fd = open_temporary(path, temporary, sizeof temporary);
-    return fd >= 0 && finish(fd, write_fully(fd, text, length), temporary, path);
+    temporary t;
+    return open_temporary(&t, path) && finish(&t, write_fully(t.fd, text, length), path);
 }
 
 char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
@@ -146,29 +160,24 @@ static bool pour(int from, int to, batch_digest *digest)
 bool batch_copy(const char *from, const char *to, const batch_digest *digest, bool if_changed,
                 bool sync)
 {
-    char temporary[PATH_MAX];
+    temporary t;
     batch_digest found;
     if (if_changed && batch_hash_path(to, &found) && batch_digest_equal(&found, digest))
         return true;
     int source = open(from, O_RDONLY | O_CLOEXEC);
-    int fd = source >= 0 ? open_temporary(to, temporary, sizeof temporary) : -1;
-    if (fd < 0) {
-        int reason = errno;
-        if (source >= 0)
-            close(source);
-        errno = reason;
+    if (source < 0)
         return false;
-    }
-    bool good = pour(source, fd, &found);
+    bool opened = open_temporary(&t, to);
+    bool good = opened && pour(source, t.fd, &found);
     if (good && !batch_digest_equal(&found, digest)) {
         good = false;
         errno = EBADMSG;
     }
-    good = good && (!sync || fsync(fd) == 0);
+    good = good && (!sync || fsync(t.fd) == 0);
     int reason = errno;
     close(source);
     errno = reason;
-    return finish(fd, good, temporary, to);
+    return opened && finish(&t, good, to);
 }
 
 /* ---- leftovers ------------------------------------------------------------------------ */

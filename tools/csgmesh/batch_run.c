@@ -41,7 +41,7 @@ static bool make_locked(batch_run *run, size_t index)
     const batch_job *job = &run->plan->jobs[index];
     batch_result *result = &run->results[index];
     bool is_large = false;
-    if (!run->may_defer_locked && batch_is_current(run, job, result))
+    if (batch_is_current(run, job, result))
         return true; /* another process has made it meanwhile */
     if (batch_take_from_cache(run, job, result))
         return true;

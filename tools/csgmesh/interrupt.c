@@ -13,6 +13,8 @@
 
 static atomic_bool progress_shown;
 static _Atomic(const char *) pending_file;
+enum { SLOTS = 64 };
+static _Atomic(const char *) guarded[SLOTS];
 
 static void say(const char *text)
 {
@@ -28,6 +30,9 @@ static void on_signal(int signal_number)
     csgm_files_abandon();
     if (path)
         unlink(path);
+    for (int i = 0; i < SLOTS; i++)
+        if ((path = atomic_load(&guarded[i])))
+            unlink(path);
     if (atomic_load(&progress_shown))
         say("\n");
     say("csgmesh: interrupted\n");
@@ -60,4 +65,20 @@ bool cli_interrupt_progress_shown(bool shown)
 void cli_interrupt_pending_file(const char *path)
 {
     atomic_store(&pending_file, path);
+}
+
+int cli_interrupt_guard(const char *path)
+{
+    for (int i = 0; i < SLOTS; i++) {
+        const char *none = NULL;
+        if (atomic_compare_exchange_strong(&guarded[i], &none, path))
+            return i;
+    }
+    return -1;
+}
+
+void cli_interrupt_release(int slot)
+{
+    if (slot >= 0)
+        atomic_store(&guarded[slot], NULL);
 }
