@@ -12,10 +12,10 @@
 #include "field/dispatch.h"
 #include "grid/octree.h"
 
-enum { PIECES = 1 << 14, STACK = 64 };
+enum { PIECES = 1 << 11, STACK = 64 };
 
 /* Looked at before the proof is given up: all in all, and of one piece that was cut. */
-static const uint64_t MOST_PIECES = 12000000, MOST_OF_ONE = 1000000;
+static const uint64_t MOST_PIECES = 6000000, MOST_OF_ONE = 20000;
 
 typedef struct piece {
     csg_vec3 at[3], normal;

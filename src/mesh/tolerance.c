@@ -98,7 +98,8 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
     csgm_status status = csg_refine_until_near(r, goal->allowed, &proof);
     if (status != CSGM_OK)
         return status;
-    goal->open = proof.stopped && !proof.open ? 1 : proof.open;
+    goal->unproven = proof.stopped;
+    goal->open = proof.stopped ? 0 : proof.open;
     goal->bound = goal->open || proof.stopped ? INFINITY : goal->allowed;
     goal->place = csg_vec3_add(proof.place, r->work->field->center);
     return CSGM_OK;
@@ -123,7 +124,10 @@ static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
         status = thin_out(r, goal);
     if (status == CSGM_OK && goal->improve)
         status = improve(r, goal);
-    if (status == CSGM_OK && thins)
+    if (status == CSGM_OK && thins && goal->chooses && goal->measured > goal->error &&
+        !goal->is_last)
+        goal->cell_size = 0.6 * r->cell; /* the lattice is too coarse for its own samples */
+    else if (status == CSGM_OK && thins)
         status = prove(r, goal);
     if (status == CSGM_OK && goal->open && !goal->is_last)
         goal->cell_size = goal->chooses ? 0.6 * r->cell : r->cell;
@@ -159,6 +163,16 @@ static void tell(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
                        "first at %g,%g,%g",
                        (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
                        goal->place.z);
+    if (goal->error > 0 && goal->measured > goal->error)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise -r, or the tolerance",
+                       "a place of the surface is %g from the mesh, more than %g", goal->measured,
+                       goal->error);
+    if (goal->unproven)
+        csg_diag_plain(
+            &context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise the tolerance",
+            "the distance of the mesh is %g as measured; to prove it below %g would take "
+            "too long",
+            goal->measured, goal->allowed);
     if (goal->tight)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, NULL,
                        "fewer triangles were asked for than the shape allows");
@@ -188,7 +202,7 @@ csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *fie
                                     const csgm_mesh_options *options, const csg_mesh_share *share,
                                     csgm_mesh **out, csgm_mesh_stats *stats)
 {
-    enum { MOST_TRIES = 5, FIRST_CELLS = 64, MOST_CELLS = 768 };
+    enum { MOST_TRIES = 6, FIRST_CELLS = 64, MOST_CELLS = 768 };
     csgm_mesh_options base = *options;
     csg_mesh_goal goal = {
         .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,

@@ -25,6 +25,7 @@ typedef struct csg_mesh_goal {
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
     uint64_t begun, open;
     csg_vec3 place; /* of what is open, scene units */
+    bool unproven;  /* it would have taken too long: measured only */
     bool tight;     /* `share` was out of reach */
 } csg_mesh_goal;
 
