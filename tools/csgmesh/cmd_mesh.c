@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * csgmesh [mesh] SCENE -o FILE...: scene -> mesh -> files, statistics and a dependency rule.
  */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,7 +65,7 @@ static void put_work(cli_json *json, const cli_work *work)
 static void put_distance(cli_json *json, const csgm_mesh_stats *stats)
 {
     cli_json_number(json, "distance_allowed", stats->distance_allowed);
-    if (!stats->open_places)
+    if (isfinite(stats->max_distance_bound))
         cli_json_number(json, "max_distance_bound", stats->max_distance_bound);
     cli_json_number(json, "max_distance_measured", stats->max_distance_measured);
     cli_json_count(json, "open_places", stats->open_places);
