@@ -90,11 +90,15 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal)
     return status;
 }
 
-/* The bound that is proven: of what is allowed if nothing was asked for. */
+/* The bound that is proven. */
 static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 {
     csg_distance_proof proof;
-    goal->allowed = goal->error > 0 ? goal->error : r->error / goal->care;
+    goal->allowed = goal->error > 0 ? goal->error : r->error;
+    goal->bound = INFINITY;
+    if (goal->share >
+        0) /* a proof might refine it again: every collapse was checked, that is all */
+        return CSGM_OK;
     csgm_status status = csg_refine_until_near(r, goal->allowed, &proof);
     if (status != CSGM_OK)
         return status;
