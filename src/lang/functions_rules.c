@@ -271,7 +271,7 @@ csg_value csg_function_profile(const csg_function_call *call)
 /* What a profile's bounds say about it. */
 static void warn_profile(csg_module_call *call, uint32_t index, const csg_profile *p)
 {
-    const double room = 1e-9;
+    const double room = 1e-3; /* intervals say a little more than there is */
     if (!isfinite(p->support))
         csg_eval_report(call->e, CSG_DIAG_LOOSE_PROFILE, call->spans[index],
                         "end it, as max(0, w - x) does",

@@ -12,6 +12,7 @@
 #include <string.h>
 
 static unsigned scene_count = 60, largest_resolution = 40;
+static bool all_rules = false;
 
 static uint32_t resolution_of(unsigned seed)
 {
@@ -33,7 +34,7 @@ static void compile_scene(mesh_case *c, unsigned seed, uint32_t threads)
 {
     csg_random random = {1000 + seed};
     test_random_shapes = seed % 2;
-    test_random_rules = seed % 3 == 1;
+    test_random_rules = all_rules || seed % 3 == 1;
     mesh_case_begin(c, threads);
     unsigned primitives = 1 + seed * 13 % 60;
     mesh_case_compile(c, test_random_scene(&c->builder, &random, primitives));
@@ -168,6 +169,7 @@ int main(int argc, char **argv)
         scene_count = (unsigned)atoi(argv[1]);
     if (argc > 2)
         largest_resolution = (unsigned)atoi(argv[2]);
+    all_rules = argc > 3; /* every scene mixes all families of operators */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_noise),
