@@ -190,6 +190,9 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
         return csg_context_no_memory(w->context);
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
     order_features(w);
+    csg_feature_part(&w->features, &w->lattice);
+    for (int round = 0; round < 8 && csg_feature_settle(&w->features); round++)
+        continue;
     csg_pool_run(w->context->pool, w->features.block_count, flip_item, NULL, w);
     return CSGM_OK;
 }

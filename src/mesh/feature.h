@@ -121,6 +121,11 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
 bool csg_feature_store_index(csg_feature_store *store);
 /* Who lies beyond each side that a crease crosses. Any thread; writes one block alone. */
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
+/* Makes polygons smooth again that reach into another one's place; how many. Not in parallel. */
+size_t csg_feature_part(csg_feature_store *store, const csg_lattice *lattice);
+/* Makes polygons smooth again whose crease cannot go on into the neighbour without folding over;
+ * how many. To be called until there are none; not in parallel. */
+size_t csg_feature_settle(csg_feature_store *store);
 /* Which sides are flipped, once all are linked and in their places. As csg_feature_link. */
 void csg_feature_flip(csg_feature_store *store, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,

@@ -2,11 +2,12 @@
  * All features of a mesh, block by block in Morton order, and how they hang together: which side of
  * a polygon leads to which other one, and whether the segment between them is flipped.
  */
+#include <math.h>
 #include <string.h>
 
 #include "mesh/feature.h"
 
-enum { E = CSG_BLOCK_EDGE };
+enum { E = CSG_BLOCK_EDGE, NEAR = 5 };
 
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count)
@@ -185,21 +186,152 @@ void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, s
 }
 
 /* Both ask the same question, in the order of the features. */
+static bool side_flips(const csg_feature_store *store, uint32_t i, int s)
+{
+    const csg_feature *f = &store->features[i];
+    uint32_t other = f->beyond[s];
+    const csg_feature *g = &store->features[other];
+    int t = f->beyond_side[s];
+    return i < other ? may_flip(f, s, g, t) : may_flip(g, t, f, s);
+}
+
 void csg_feature_flip(csg_feature_store *store, size_t index)
 {
     const csg_feature_block *block = &store->blocks[index];
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         csg_feature *f = &store->features[i];
-        for (int s = 0; s < f->side_count; s++) {
-            uint32_t other = f->beyond[s];
-            if (other == CSG_FEATURE_NONE)
+        for (int s = 0; s < f->side_count; s++)
+            if (f->beyond[s] != CSG_FEATURE_NONE && side_flips(store, i, s))
+                f->flipped |= (uint16_t)(1u << s);
+    }
+}
+
+/* ---- giving up
+ * ------------------------------------------------------------------------------------
+ */
+
+/* The apex becomes the middle of its polygon: smooth again, with the same numbers of everything. */
+static void demote(csg_feature_store *store, csg_feature *f)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        if (f->beyond[s] == CSG_FEATURE_NONE)
+            continue;
+        csg_feature *g = &store->features[f->beyond[s]];
+        g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
+        f->beyond[s] = CSG_FEATURE_NONE;
+    }
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int s = 0; s < f->side_count; s++)
+            sum += (double)f->corner[s][i];
+        f->at[i] = (float)(sum / f->side_count);
+    }
+    f->creased = 0;
+    f->triangle_count = f->side_count;
+    for (int s = 0; s < f->side_count; s++) {
+        f->triangle[s][0] = CSG_FEATURE_APEX;
+        f->triangle[s][1] = (uint8_t)s;
+        f->triangle[s][2] = (uint8_t)((s + 1) % f->side_count);
+    }
+    store->smooth++;
+}
+
+/* A triangle across a crease that is not flipped looks out between its two sheets. */
+static bool stays_outward(const csg_feature *f, int s)
+{
+    int s1 = (s + 1) % f->side_count;
+    float n[3];
+    for (int i = 0; i < 3; i++)
+        n[i] = f->normal[f->sheet[s]][i] + f->normal[f->sheet[s1]][i];
+    return looks_along(f->at, f->corner[s], f->corner[s1], n);
+}
+
+static bool is_corner(const csg_feature *f)
+{
+    return f->sheet_count > 2;
+}
+
+/* Whether a way along creases of at most `steps` leads there. */
+static bool is_linked(const csg_feature_store *store, const csg_feature *f, uint32_t other,
+                      int steps)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        uint32_t next = f->beyond[s];
+        if (next == CSG_FEATURE_NONE)
+            continue;
+        if (next == other ||
+            (steps > 1 && is_linked(store, &store->features[next], other, steps - 1)))
+            return true;
+    }
+    return false;
+}
+
+/* The cell that an apex lies in: its block in at. False: beyond the lattice. */
+static bool cell_of_apex(const csg_feature *f, const csg_lattice *lattice, uint32_t at[3],
+                         uint16_t *cell)
+{
+    const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
+    uint32_t c[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double place = floor(((double)f->at[axis] - origin[axis]) / lattice->cell_size);
+        if (!(place >= 0 && place < lattice->cells[axis]))
+            return false;
+        c[axis] = (uint32_t)place;
+        at[axis] = c[axis] / E;
+    }
+    *cell = (uint16_t)((c[2] % E * E + c[1] % E) * E + c[0] % E);
+    return true;
+}
+
+/* Apexes in a cell that another polygon has a crease in, one not joined to theirs: where a solid
+ * comes in pieces between lattice points, as at a thin tip, two pieces would reach for one place.
+ */
+size_t csg_feature_part(csg_feature_store *store, const csg_lattice *lattice)
+{
+    size_t parted = 0;
+    for (size_t b = 0; b < store->block_count; b++) {
+        const csg_feature_block *home = &store->blocks[b];
+        for (uint32_t i = home->first; i < home->first + home->count; i++) {
+            csg_feature *f = &store->features[i];
+            uint32_t at[3];
+            uint16_t cell;
+            if (!f->creased || !cell_of_apex(f, lattice, at, &cell))
                 continue;
-            const csg_feature *g = &store->features[other];
-            int t = f->beyond_side[s];
-            bool flips = i < other ? may_flip(f, s, g, t) : may_flip(g, t, f, s);
-            f->flipped |= (uint16_t)(flips << s);
+            const csg_feature_block *host = csg_feature_store_find(store, at);
+            bool taken = false;
+            for (uint32_t k = host ? host->first : 0; host && k < host->first + host->count; k++)
+                taken = taken || (k != i && store->features[k].cell == cell &&
+                                  store->features[k].creased && !is_linked(store, f, k, NEAR));
+            if (taken) {
+                demote(store, f);
+                parted++;
+            }
         }
     }
+    return parted;
+}
+
+size_t csg_feature_settle(csg_feature_store *store)
+{
+    size_t changed = 0;
+    for (uint32_t i = 0; i < store->count; i++) {
+        csg_feature *f = &store->features[i];
+        for (int s = 0; s < f->side_count; s++) {
+            if (!(f->creased >> s & 1))
+                continue;
+            csg_feature *g =
+                f->beyond[s] == CSG_FEATURE_NONE ? NULL : &store->features[f->beyond[s]];
+            if (g ? side_flips(store, i, s) : stays_outward(f, s))
+                continue;
+            bool both = !g || is_corner(f) == is_corner(g);
+            changed++;
+            if (g && (both || is_corner(f)))
+                demote(store, g);
+            if (both || !is_corner(f))
+                demote(store, f);
+        }
+    }
+    return changed;
 }
 
 /* ---- triangles ---------------------------------------------------------------------------------
