@@ -551,11 +551,18 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     }
 }
 
+static void join_alone(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,
+                       size_t count)
+{
+    join(node, tape->parameters + node->join_parameters, a, b, count);
+}
+
 const csg_kernel CSG_THIS_KERNEL = {
     .name = STRING(CSG_KERNEL),
     .values = values,
     .gradients = gradients,
     .colors = colors,
     .intervals = intervals,
+    .join = join_alone,
     .roots = CSG_THIS_ROOTS,
 };

@@ -50,6 +50,11 @@ typedef struct csg_kernel {
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       float *low, float *high, float *scratch);
 
+    /* One join alone, a = a op b, for benchmarks: node is a child that joins, count a multiple of
+     * CSG_LANES and at most CSG_BATCH. Not one that turns with gradients. */
+    void (*join)(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,
+                 size_t count);
+
     /* Fills x, y, z of edges with ends of different signs. noise: the
      * field's rounding error, below which no value is better than another.
      * Returns point evaluations made. */

@@ -13,6 +13,9 @@
 #include "field/functions.h"
 #include "field/tape.h"
 
+/* Else gcc may call the longer ones, and a loop with a call is no vector loop. */
+#define INLINED __attribute__((always_inline)) static inline
+
 /* A value and its partial derivatives with respect to both operands. */
 typedef struct mixture {
     float value, a, b;
@@ -61,32 +64,33 @@ static inline curve step_cubic(float t)
 
 /* ---- Ricci's operators (6.1) --------------------------------------------------------------- */
 
-/* t^p for 0 <= t <= 1, p >= 1: never negative, 0 only where t is. */
-static inline float power(float t, float p)
+/* t^p for 0 <= t <= 1, p >= 1, by ln t, -200 for 0, of which the power is exactly 0. Sums instead
+ * of choices, which would keep gcc 12 from vectorising the exponential's conversion. */
+INLINED float power(float t, float p)
 {
-    float v = value_exp(p * value_ln(larger(t, FLT_MIN), 0), 0);
-    return t > 0 ? v : 0;
+    float nothing = t > 0 ? 0 : 1.0f;
+    return value_exp(p * (value_ln(t + nothing, 0) - 200.0f * nothing), 0);
 }
 
 /* (x^n + y^n)^(1/n) or, of = -1, (x^-n + y^-n)^(-1/n), by the ratio t of the operands and the root
  * r of 1 + t^n. */
-static inline mixture ricci(float n, float of, float x, float y)
+INLINED mixture ricci(float n, float of, float x, float y)
 {
     float most = larger(x, y), least = smaller(x, y);
     float t = quotient(least, most), u = power(t, n);
     float log = value_ln(1.0f + u, 0);
-    float r = u > 0 ? value_exp(of * log / n, 0) : 1.0f;
+    float r = value_exp(of * log / n, 0); /* exactly 1 where u = 0 */
     /* Union: (most / G)^(n - 1), intersection: (G / least)^(n + 1). */
-    float near = u > 0 ? value_exp((of / n - 1.0f) * log, 0) : 1.0f;
+    float near = value_exp((of / n - 1.0f) * log, 0);
     float far = near * (of > 0 ? quotient(u, t) : u * t);
     int x_near = of > 0 ? x >= y : x <= y;
     return (mixture){(of > 0 ? most : least) * r, x_near ? near : far, x_near ? far : near};
 }
-static inline mixture ricci_union(float n, float x, float y)
+INLINED mixture ricci_union(float n, float x, float y)
 {
     return ricci(n, 1.0f, x, y);
 }
-static inline mixture ricci_intersection(float n, float x, float y)
+INLINED mixture ricci_intersection(float n, float x, float y)
 {
     return ricci(n, -1.0f, x, y);
 }
@@ -109,7 +113,7 @@ static inline float superellipsoid_at(const float *own, point at, point *g)
  */
 
 /* B(x, y; r1, r2, p), kappa = p / (r1 r2) < 1. */
-static inline mixture scale(float r1, float r2, float kappa, float x, float y)
+INLINED mixture scale(float r1, float r2, float kappa, float x, float y)
 {
     int first = x <= y;
     float least = smaller(x, y), d = absolute(x - y);
@@ -164,11 +168,11 @@ static inline curve normalise_turned(float h, float s, float u)
 
 /* ---- products (6.4) -------------------------------------------------------------------------- */
 
-static inline mixture perlin_union(float x, float y)
+INLINED mixture perlin_union(float x, float y)
 {
     return (mixture){x + y * (1.0f - x), 1.0f - y, 1.0f - x};
 }
-static inline mixture perlin_intersection(float x, float y)
+INLINED mixture perlin_intersection(float x, float y)
 {
     return (mixture){x * y, y, x};
 }
@@ -182,7 +186,7 @@ static inline int arc_blends(float a, float b, float x, float y)
     return (y > b * x) & (x > a * y);
 }
 
-static inline mixture arc_union(float a, float b, float x, float y)
+INLINED mixture arc_union(float a, float b, float x, float y)
 {
     float al = 1.0f - a, be = 1.0f - b;
     float nu = (be * be) * (x * x) + (al * al) * (y * y), w = a * y - b * x;
@@ -198,7 +202,7 @@ static inline mixture arc_union(float a, float b, float x, float y)
 }
 
 /* 1 / A = b and 1 / B = a of 5.3, multiplied through by a^2 b^2. */
-static inline mixture arc_intersection(float a, float b, float x, float y)
+INLINED mixture arc_intersection(float a, float b, float x, float y)
 {
     float al = 1.0f - b, be = 1.0f - a, w = a * y - b * x;
     float square = (be * be) * (b * b) * (x * x) + (al * al) * (a * a) * (y * y) - w * w;
@@ -218,7 +222,7 @@ static inline mixture arc_intersection(float a, float b, float x, float y)
  */
 
 /* Newton's method on phi(c) = r - (c - m), m(c) the centre of the circle through (x, y). */
-static inline mixture sharp_union(float x, float y)
+INLINED mixture sharp_union(float x, float y)
 {
     float most = larger(x, y), least = smaller(x, y);
     int below = 0.5f * least > most * most, above = least * least > 0.5f * most;
@@ -246,7 +250,7 @@ static inline mixture sharp_union(float x, float y)
  * 0. Both are concave or convex from the right end of their brackets, so steps do not pass the
  * root.
  */
-static inline mixture sharp_intersection(float x, float y)
+INLINED mixture sharp_intersection(float x, float y)
 {
     float most = larger(x, y), least = smaller(x, y);
     int below = 0.5f * least > most * most, above = least * least > 0.5f * most;
