@@ -805,6 +805,7 @@ typedef struct csgm_diff_report {
     csgm_diff_field field[2]; /* 0: A's mesh against scene_b */
     csgm_diff_attribute normals, colors, names;
     bool is_turned; /* IGNORE_UP: B was turned to fit; its places are given as turned */
+    int turn;       /* how: 1 is (x, y, z) -> (x, -z, y), 2 (x, z, -y); 0: not turned */
 } csgm_diff_report;
 
 typedef struct csgm_diff csgm_diff;

@@ -64,6 +64,7 @@ static void set_tolerance(comparison *c)
     r->precision = to_scene(c, pair->precision);
     c->limit = r->tolerance * pair->frame.scale + pair->precision;
     r->is_turned = pair->sides[1].turn != CSG_DIFF_AS_IT_IS;
+    r->turn = (int)pair->sides[1].turn;
     c->counts_all =
         o->material == CSGM_DIFF_ANY_MATERIAL || !((pair->sides[0].is_closed || c->is_empty[0]) &&
                                                    (pair->sides[1].is_closed || c->is_empty[1]));

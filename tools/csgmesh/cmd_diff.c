@@ -8,8 +8,7 @@
 #include <sys/stat.h>
 
 #include "diff_folders.h"
-#include "diff_result.h"
-#include "diff_side.h"
+#include "diff_report.h"
 
 /* ---- options --------------------------------------------------------------------------- */
 
@@ -62,7 +61,8 @@ static csgm_diff_options diff_options(const cli_options *options, uint32_t ignor
     diff.ignored = ignored;
     if (options->given[CLI_OPTION_diff_samples])
         diff.samples = options->diff_samples;
-    diff.verdict_only = options->quiet && !options->diff_json && !options->diff_heatmap;
+    diff.verdict_only = options->quiet && !options->diff_json && !options->diff_heatmap &&
+                        !options->diff_png && !options->diff_html;
     return diff;
 }
 
@@ -92,8 +92,8 @@ static int check_usage(cli_app *app)
                                "%s cannot hold a heat map", o->diff_heatmap);
     if (o->diff_heatmap && is_folder(paths[0]))
         return cli_usage_error(app, NULL, "--heatmap wants two files, not folders");
-    if (o->diff_json && o->diff_junit && strcmp(o->diff_json, o->diff_junit) == 0)
-        return cli_usage_error(app, NULL, "--json and --junit both write to %s", o->diff_json);
+    if (diff_report_check(app) != CLI_DONE)
+        return CLI_TROUBLE;
     if (o->diff_field && !is_folder(paths[0]) && !diff_path_is_scene(paths[0]) &&
         !diff_path_is_scene(paths[1]))
         return cli_usage_error(app, NULL, "--field wants a scene: both are meshes");
@@ -174,6 +174,8 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
             csgm_diff_write_heatmap(app->context, diff, 1, heatmap, heatmap_format(heatmap), NULL);
         exit_status = status == CSGM_OK ? CLI_DONE : CLI_TROUBLE;
     }
+    if (exit_status == CLI_DONE)
+        exit_status = diff_report_add(app, diff, sides, result);
     csgm_diff_destroy(diff);
     return exit_status;
 }
@@ -188,7 +190,8 @@ static bool is_missing(const char *path)
 static int compare(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
                    diff_result *result)
 {
-    if (!app->options.diff_heatmap && diff_same_bytes(result->a, result->b)) {
+    if (!app->options.diff_heatmap && !diff_report_draws(app, result) &&
+        diff_same_bytes(result->a, result->b)) {
         result->report = (csgm_diff_report){.level = CSGM_DIFF_SAME_BYTES};
         result->outcome = DIFF_SAME;
         return CLI_DONE;
@@ -241,13 +244,15 @@ static int run(cli_app *app, const csgm_diff_options *options, diff_results *res
     const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
     const cli_options *o = &app->options;
     bool is_shown = !o->quiet && !(o->diff_json && strcmp(o->diff_json, "-") == 0) &&
-                    !(o->diff_junit && strcmp(o->diff_junit, "-") == 0);
+                    !(o->diff_junit && strcmp(o->diff_junit, "-") == 0) &&
+                    !(o->diff_html && strcmp(o->diff_html, "-") == 0);
     size_t same = 0;
     int worst = CLI_DONE;
     for (size_t i = 0; i < results->count; i++) {
         diff_result *result = &results->items[i];
         if (results->of_folders && !name_in_a(app, a, b, result))
             return CLI_TROUBLE;
+        diff_report_begin(results, i);
         work_on(app, options, result);
         worst = result->exit_status > worst ? result->exit_status : worst;
         same += result->outcome == DIFF_SAME;
@@ -290,6 +295,8 @@ int cli_cmd_diff(cli_app *app)
         if (app->options.diff_json && diff_write_json(app, &results) != CLI_DONE)
             status = CLI_TROUBLE;
         if (app->options.diff_junit && diff_write_junit(app, &results) != CLI_DONE)
+            status = CLI_TROUBLE;
+        if (app->options.diff_html && diff_write_html(app, &results) != CLI_DONE)
             status = CLI_TROUBLE;
     }
     diff_results_release(&results);

@@ -169,6 +169,7 @@ void diff_results_release(diff_results *results)
     for (size_t i = 0; i < results->count; i++) {
         free(results->items[i].a);
         free(results->items[i].b);
+        free(results->items[i].models);
     }
     free(results->items);
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "diff_result.h"
+#include "diff_report.h"
 #include "facts.h"
 #include "textfile.h"
 
@@ -106,7 +106,7 @@ static void put_reasons(cli_json *json, uint32_t reasons)
     cli_json_end(json, ']');
 }
 
-static void put_report(cli_json *json, const csgm_diff_report *r)
+void diff_put_report(cli_json *json, const csgm_diff_report *r)
 {
     cli_json_string(json, "level", levels[r->level]);
     if (r->level == CSGM_DIFF_SAME_BYTES)
@@ -141,7 +141,7 @@ static void put_result(cli_json *json, const diff_result *result)
     cli_json_string(json, "verdict", outcomes[result->outcome]);
     cli_json_bool(json, "updated", result->is_updated);
     if (result->outcome <= DIFF_DIFFERENT)
-        put_report(json, &result->report);
+        diff_put_report(json, &result->report);
 }
 
 static void put_json(FILE *out, const diff_results *results)

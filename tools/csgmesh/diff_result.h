@@ -20,7 +20,9 @@ typedef struct diff_result {
     int exit_status; /* of this pair */
     bool is_updated; /* A is now B */
     csgm_diff_report
-        report; /* of pairs that were compared; level SAME_BYTES: nothing else is set */
+        report;         /* of pairs that were compared; level SAME_BYTES: nothing else is set */
+    char *models;       /* for --html: the meshes as JSON, or NULL */
+    uint64_t page_room; /* triangles that the page may still hold */
 } diff_result;
 
 typedef struct diff_results {

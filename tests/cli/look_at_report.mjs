@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Opens a page of csgmesh diff --html from its file in headless Chromium and prints what is to be seen as JSON.
+//
+//   CSGMESH_VIEW=tools/view node tests/cli/look_at_report.mjs report.html [picture.png] [WIDTHxHEIGHT] [dark]
+import { createRequire } from "node:module";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const { chromium } = createRequire(join(resolve(process.env.CSGMESH_VIEW), "package.json"))("playwright-core");
+const [file, picture, size = "1440x950", scheme = "light"] = process.argv.slice(2);
+const [width, height] = size.split("x").map(Number);
+const FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
+  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+  "--force-color-profile=srgb"];
+
+// How many colours are in the middle of the canvas, and how many pixels are not the background.
+function lookAtCanvas() {
+  const view = window.report.view, gl = view.gl;
+  if (!gl || !view.models) return null;
+  view.draw();
+  const w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, pixels = new Uint8Array(4 * w * h);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const words = new Uint32Array(pixels.buffer), colors = new Set(words);
+  let red = 0;
+  for (let i = 0; i < pixels.length; i += 4) red += pixels[i] > 90 && pixels[i] > 2 * pixels[i + 1];
+  return { colors: colors.size, drawn: words.filter((word) => word !== words[0]).length / words.length, red };
+}
+
+const cameraOf = (page) => page.evaluate(() => structuredClone(window.report.view.camera ?? null));
+
+async function useHands(page, seen) {
+  const box = await page.locator("#canvas").boundingBox(), x = box.x + box.width / 2, y = box.y + box.height / 2;
+  seen.start = await cameraOf(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + 20);
+  await page.mouse.up();
+  seen.dragged = await cameraOf(page);
+  await page.mouse.wheel(0, -240);
+  await page.waitForTimeout(50);
+  seen.zoomed = await cameraOf(page);
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("ArrowLeft");
+  seen.keyed = await cameraOf(page);
+  seen.modes = {};
+  for (const key of ["1", "2", "3", "4"]) {
+    await page.keyboard.press(key);
+    seen.modes[await page.evaluate(() => window.report.view.mode)] = await page.evaluate(lookAtCanvas);
+  }
+  await page.locator("#slider").fill("80");
+  seen.split = await page.evaluate(() => [window.report.view.mode, window.report.view.split]);
+  await page.keyboard.press("4");
+  await page.locator("#fit").click();
+  await page.waitForTimeout(700);
+  seen.fitted = await cameraOf(page);
+}
+
+async function visit(page, seen) {
+  seen.title = await page.title();
+  seen.text = await page.locator("body").innerText();
+  seen.word = await page.locator("#word").innerText();
+  seen.pairs = await page.locator("#pairs button").allInnerTexts();
+  seen.canvas = await page.evaluate(lookAtCanvas);
+  seen.worst = await page.locator("#worst button").count();
+  seen.overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+  if (picture) await page.screenshot({ path: picture });
+  if (!seen.canvas) return;
+  await useHands(page, seen);
+  if (!seen.worst) return;
+  await page.locator("#worst button").first().click();
+  await page.waitForTimeout(700);
+  seen.flown = await cameraOf(page);
+  seen.ring = await page.evaluate(() => [getComputedStyle(document.getElementById("marks")).visibility,
+    Number(document.getElementById("ring").getAttribute("cx")), document.getElementById("canvas").clientWidth]);
+  if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-worst.png") });
+}
+
+async function main() {
+  const profile = mkdtempSync(join(tmpdir(), "csgmesh-report-")), seen = { errors: [], requests: [] };
+  const browser = await chromium.launchPersistentContext(profile, {
+    executablePath: process.env.CSGMESH_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: FLAGS,
+    viewport: { width, height }, colorScheme: scheme, offline: true,
+  });
+  try {
+    const page = await browser.newPage();
+    page.on("console", (message) => ["error", "warning"].includes(message.type())
+      && !/GPU stall/.test(message.text()) && seen.errors.push(message.text()));
+    page.on("pageerror", (error) => seen.errors.push(String(error)));
+    page.on("request", (request) => /^(file|data):/.test(request.url()) || seen.requests.push(request.url()));
+    await page.goto(pathToFileURL(resolve(file)).href);
+    await visit(page, seen);
+  } finally {
+    await browser.close();
+    rmSync(profile, { recursive: true, force: true });
+  }
+  process.stdout.write(JSON.stringify(seen));
+}
+
+await main();
