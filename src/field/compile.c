@@ -604,14 +604,6 @@ void csg_field_destroy(csgm_field *field)
     csg_memory_release(memory, field, sizeof *field);
 }
 
-static void count_nodes(const csgm_scene *scene, csgm_field *field)
-{
-    for (size_t i = 0; i < scene->node_count; i++) {
-        field->primitive_count += csg_node_is_primitive(scene->nodes[i].kind);
-        field->operator_count += csg_node_is_operator(scene->nodes[i].kind);
-    }
-}
-
 /* Meets all that is written so far with a box around the field's centre. */
 static bool write_clip(compiler *c, csg_box box)
 {
@@ -640,16 +632,6 @@ static bool write_clip(compiler *c, csg_box box)
     return true;
 }
 
-/* Primitives are distances; formulas may be steeper. */
-static double steepest_leaf(const csgm_scene *scene)
-{
-    double most = 1;
-    for (size_t i = 0; i < scene->node_count; i++)
-        if (scene->nodes[i].kind == CSG_NODE_FIELD)
-            most = fmax(most, scene->formulas[scene->nodes[i].payload].lipschitz);
-    return most;
-}
-
 static bool compile_field(compiler *c, const csg_box *clip)
 {
     csgm_field *field = c->field;
@@ -659,11 +641,10 @@ static bool compile_field(compiler *c, const csg_box *clip)
     if (clip)
         field->bounds = csg_box_intersect(field->bounds, *clip);
     field->center = center_of(clip ? *clip : field->bounds);
-    count_nodes(scene, field);
+    csg_field_count(scene, field);
     field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
     if (clip)
         field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
-    field->tape.steepest = (float)steepest_leaf(scene);
     return compile_tree(c) && (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
            keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
                      c->color_count);

@@ -7,6 +7,20 @@
 
 #include "field/dispatch.h"
 
+/* Primitives are distances; formulas may be steeper. */
+void csg_field_count(const csgm_scene *scene, csgm_field *field)
+{
+    field->tape.steepest = 1;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        field->primitive_count += csg_node_is_primitive((csg_node_kind)node->kind);
+        field->operator_count += csg_node_is_operator((csg_node_kind)node->kind);
+        if (node->kind == CSG_NODE_FIELD)
+            field->tape.steepest =
+                fmaxf(field->tape.steepest, (float)scene->formulas[node->payload].lipschitz);
+    }
+}
+
 uint32_t csg_tape_depth(const csg_tape *tape)
 {
     uint32_t top = 0, most = 1;

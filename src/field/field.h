@@ -22,6 +22,9 @@ void csg_field_release_parts(csgm_field *field);
 csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
                            csgm_field **out);
 
+/* The scene's counts of nodes and its steepest leaf, into the field. */
+void csg_field_count(const csgm_scene *scene, csgm_field *field);
+
 /* count values at points in scene units; arrays must not overlap. */
 void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
                     float *out, size_t count);
