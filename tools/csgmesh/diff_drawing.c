@@ -140,11 +140,59 @@ bool diff_drawing_shows(const diff_drawing *drawing, uint64_t triangle_of_a)
     return (double)largest > 0.05 * drawing->most;
 }
 
-const csgm_diff_place *diff_drawing_worst(const csgm_diff_report *report)
+/* ---- what is in sight ------------------------------------------------------------------------ */
+
+static csgm_vec3 minus(csgm_vec3 a, csgm_vec3 b)
 {
-    const csgm_diff_distance *d = report->distance;
-    const csgm_diff_distance *worst =
-        &d[d[1].worst_count &&
-           (!d[0].worst_count || d[1].worst[0].distance > d[0].worst[0].distance)];
-    return worst->worst_count ? &worst->worst[0] : NULL;
+    return (csgm_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static csgm_vec3 cross(csgm_vec3 a, csgm_vec3 b)
+{
+    return (csgm_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static double dot(csgm_vec3 a, csgm_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* Moeller and Trumbore 1997; `from` itself lies on a triangle, which does not count. */
+static bool is_between(const csgm_mesh_view *view, uint64_t triangle, csgm_vec3 from, csgm_vec3 way,
+                       double least)
+{
+    const uint32_t *index = view->indices + 3 * triangle;
+    csgm_vec3 a = diff_drawing_vertex(view, index[0]);
+    csgm_vec3 u = minus(diff_drawing_vertex(view, index[1]), a),
+              v = minus(diff_drawing_vertex(view, index[2]), a), s = minus(from, a);
+    csgm_vec3 p = cross(way, v), q = cross(s, u);
+    double scale = dot(u, p), first = dot(s, p) / scale, second = dot(way, q) / scale;
+    return scale != 0 && first >= 0 && second >= 0 && first + second <= 1 &&
+           dot(v, q) / scale > least;
+}
+
+static bool is_seen(const diff_drawing *d, csgm_vec3 place, csgm_vec3 eye)
+{
+    csgm_vec3 way = minus(eye, place), size = minus(d->box.max, d->box.min);
+    double least = 0.004 * sqrt(dot(size, size) / dot(way, way));
+    for (int side = 0; side < 2; side++)
+        for (uint64_t t = 0; t < d->sides[side].triangle_count; t++)
+            if ((side == 1 || diff_drawing_shows(d, t)) &&
+                is_between(&d->sides[side], t, place, way, least))
+                return false;
+    return true;
+}
+
+const csgm_diff_place *diff_drawing_worst_seen(const diff_drawing *drawing,
+                                               const csgm_diff_report *report, csgm_vec3 eye)
+{
+    const csgm_diff_place *best = NULL;
+    for (int i = 0; i < 2; i++)
+        for (uint32_t k = 0; k < report->distance[i].worst_count; k++) {
+            const csgm_diff_place *place = &report->distance[i].worst[k];
+            if (place->distance >= (best ? best->distance * 1.000001 : drawing->most / 2) &&
+                is_seen(drawing, place->at, eye))
+                best = place;
+        }
+    return best;
 }

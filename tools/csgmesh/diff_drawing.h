@@ -24,7 +24,9 @@ void diff_drawing_release(diff_drawing *drawing);
 csgm_vec3 diff_drawing_vertex(const csgm_mesh_view *view, uint32_t vertex);
 /* Whether A's triangle is far enough from B to be shown where B is: the heat map has both. */
 bool diff_drawing_shows(const diff_drawing *drawing, uint64_t triangle_of_a);
-/* The largest distance of both directions; NULL when there is none. */
-const csgm_diff_place *diff_drawing_worst(const csgm_diff_report *report);
+/* The largest distance of both directions whose place is in sight from the eye, if it is at least
+ * half of the largest at all; else NULL. */
+const csgm_diff_place *diff_drawing_worst_seen(const diff_drawing *drawing,
+                                               const csgm_diff_report *report, csgm_vec3 eye);
 
 #endif

@@ -19,7 +19,7 @@ static const uint8_t white[3] = {255, 255, 255}, ink[3] = {40, 44, 52}, paper[3]
 /* ---- the camera ------------------------------------------------------------------------------ */
 
 typedef struct frame {
-    csgm_vec3 middle, right, up, toward;
+    csgm_vec3 middle, right, up, toward, eye;
     double distance;
 } frame;
 
@@ -46,6 +46,8 @@ static frame make_frame(const diff_drawing *d)
         f.distance = fmax(f.distance, dot(corner, n) + fmax(wide, high) / tangent);
     }
     f.distance = f.distance > 0 ? 1.06 * f.distance : 1;
+    f.eye = (csgm_vec3){f.middle.x + f.distance * n.x, f.middle.y + f.distance * n.y,
+                        f.middle.z + f.distance * n.z};
     return f;
 }
 
@@ -83,9 +85,7 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
     options.height = TALL;
     options.camera.placed = true;
     options.camera.target = f->middle;
-    options.camera.eye = (csgm_vec3){f->middle.x + f->distance * f->toward.x,
-                                     f->middle.y + f->distance * f->toward.y,
-                                     f->middle.z + f->distance * f->toward.z};
+    options.camera.eye = f->eye;
     memcpy(options.background, paper, 3);
     csgm_status status = csgm_render_mesh(p->app->context, mesh, &options, &image, NULL);
     if (status != CSGM_OK)
@@ -216,7 +216,8 @@ static void write_words(painter *p, const diff_result *result)
 {
     static const char *const captions[PANELS] = {"A: before", "B: after", "distance"};
     const csgm_diff_report *r = &result->report;
-    const csgm_diff_place *worst = diff_drawing_worst(r);
+    const csgm_diff_place *worst =
+        p->drawing->most > 0 ? diff_drawing_worst_seen(p->drawing, r, p->frame.eye) : NULL;
     int x, y;
     write_verdict(p, result);
     for (int i = 0; i < PANELS; i++)
@@ -227,7 +228,7 @@ static void write_words(painter *p, const diff_result *result)
     write_side(p, r, 1);
     if (p->drawing->most > 0)
         write_scale(p, 2 * PANEL + 14, HEIGHT - FOOT + 15);
-    if (p->drawing->most > 0 && worst && project(&p->frame, worst->at, &x, &y))
+    if (worst && project(&p->frame, worst->at, &x, &y))
         for (int i = 0; i < PANELS; i++) {
             cli_canvas_ring(&p->canvas, i * PANEL + x, BAND + CAPTION + y, 15, 4, white);
             cli_canvas_ring(&p->canvas, i * PANEL + x, BAND + CAPTION + y, 14, 2, black);

@@ -38,8 +38,9 @@ function addVolumes(words, report) {
   const change = b.volume / a.volume - 1;
   if (Math.abs(change) > 1e-6) words.push(`Volume ${percent(change)} (${show(a.volume, 5)} to ${show(b.volume, 5)})`);
   if (!volume || !(volume.ratio > 1e-6)) return;
-  const share = (part) => `${show(part, 3)} (${show((100 * part) / a.volume, 2)} %)`;
-  words.push(`Material added ${share(volume.only_b)}, removed ${share(volume.only_a)}`);
+  const share = (part) => part > Math.max(2 * volume.accuracy, 1e-6 * a.volume)
+    ? `${show(part, 3)} (${show((100 * part) / a.volume, 2)} %)` : "none";
+  words.push(`Material added: ${share(volume.only_b)}; removed: ${share(volume.only_a)}`);
 }
 
 function addTopology(words, { a, b }) {
@@ -75,8 +76,8 @@ function figureRows(report) {
   const row = (name, x, y, least = 1e-9) => {
     const known = typeof x === "number" && typeof y === "number", change = known ? y - x : 0;
     const tells = known && Math.abs(change) > least * Math.max(Math.abs(x), Math.abs(y));
-    const share = tells && x ? ` (${percent(change / Math.abs(x))})` : "";
-    return { cells: [name, show(x), show(y), tells ? signed(change, 4) + share : ""], changed: tells };
+    const share = tells && x ? percent(change / Math.abs(x)) : "";
+    return { cells: [name, show(x), show(y), tells ? signed(change, 4) : "", share], changed: tells };
   };
   const rows = [row("Triangles", a.triangles, b.triangles), row("Vertices", a.vertices, b.vertices)];
   "xyz".split("").forEach((axis, i) => rows.push(row(`Size ${axis}`, sizeA?.[i], sizeB?.[i], 1e-6)));
@@ -111,7 +112,7 @@ function fillFigures(pair) {
   const box = find("figures"), report = pair.report;
   box.replaceChildren(make("h2", {}, "Figures"));
   if (!report?.a) return box.append(make("p", {}, report ? "The files are the same: nothing was measured." : "Nothing was measured."));
-  box.append(table(["", "A", "B", "Change"], figureRows(report)), make("h2", {}, "Distances"), distanceTable(report),
+  box.append(table(["", "A", "B", "Change", ""], figureRows(report)), make("h2", {}, "Distances"), distanceTable(report),
     make("h2", {}, "Volumes"), volumeTable(report));
   const more = [];
   for (const [key, name] of [["a_to_field_of_b", "A from B's exact surface"], ["b_to_field_of_a", "B from A's exact surface"]])
@@ -152,6 +153,7 @@ function fillWorst(pair, view) {
     button.addEventListener("click", () => {
       for (const other of list.querySelectorAll("button")) other.setAttribute("aria-pressed", String(other === button));
       view.flyTo(place);
+      find("view").scrollIntoView({ block: "nearest" });
     });
     list.append(make("li", {}, button));
   }
