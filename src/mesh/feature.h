@@ -43,7 +43,8 @@ typedef struct csg_feature {
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     uint8_t triangle_count;
     uint8_t side_count, sheet_count;
-    uint8_t loop;     /* of the cell's pattern */
+    uint8_t pattern;  /* of the cell */
+    uint8_t loop;     /* of the pattern */
     uint16_t cell;    /* (8 z + y) 8 + x */
     uint16_t creased; /* bit s: a crease crosses side s */
     uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
@@ -83,7 +84,7 @@ typedef struct csg_segment {
 
 typedef struct csg_found_loop {
     uint16_t cell;
-    uint8_t loop, side_count;
+    uint8_t pattern, loop, side_count;
     uint8_t edge[CSG_FEATURE_MOST_SIDES];
     uint16_t slot[CSG_FEATURE_MOST_SIDES];
     int16_t crease[CSG_FEATURE_MOST_SIDES]; /* segment, or -1 */
@@ -121,11 +122,24 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
 bool csg_feature_store_index(csg_feature_store *store);
 /* Who lies beyond each side that a crease crosses. Any thread; writes one block alone. */
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
-/* Makes polygons smooth again that reach into another one's place; how many. Not in parallel. */
-size_t csg_feature_part(csg_feature_store *store, const csg_lattice *lattice);
+/* Whether the apex of a feature (and of which block) reaches into a cell that has a crease of its
+ * own, one not joined to this one: where a solid comes in pieces between lattice points, as at a
+ * thin tip, two pieces would reach for one place. Otherwise, where the apex lies in another cell
+ * with no feature at all, lowest is that cell's lowest lattice point, else lowest[0] is UINT32_MAX:
+ * such a cell must be free of surface. */
+bool csg_feature_is_stray(const csg_feature_store *store, uint32_t block, uint32_t feature,
+                          const csg_lattice *lattice, uint32_t lowest[3]);
+/* The polygon is as plain marching cubes makes it, but for a vertex in one of its triangles where
+ * the apex was: the numbers of everything stay. */
+void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
+                        csg_feature *feature);
 /* Makes polygons smooth again whose crease cannot go on into the neighbour without folding over;
  * how many. To be called until there are none; not in parallel. */
-size_t csg_feature_settle(csg_feature_store *store);
+size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables);
+/* Makes polygons smooth again whose triangles run through those of other features, flips done (they
+ * are to be done again); how many. Not in parallel. */
+size_t csg_feature_uncross(csg_feature_store *store, const csg_cell_tables *tables,
+                           const csg_lattice *lattice);
 /* Which sides are flipped, once all are linked and in their places. As csg_feature_link. */
 void csg_feature_flip(csg_feature_store *store, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,

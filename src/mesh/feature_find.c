@@ -191,6 +191,7 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
         return;
     csg_found_loop *loop = &room->loops[room->loop_count];
     *loop = (csg_found_loop){.cell = (uint16_t)cell,
+                             .pattern = (uint8_t)pattern,
                              .loop = (uint8_t)index,
                              .side_count = tables->loop_sides[pattern][index]};
     int i = cell & 7, j = cell >> 3 & 7, k = cell >> 6;

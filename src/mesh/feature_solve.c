@@ -479,6 +479,7 @@ static void record(const csg_found_loop *loop, const polygon *p, const apex *a, 
     out->sheet_count = (uint8_t)p->sheets;
     out->creased = p->creased;
     out->flipped = 0;
+    out->pattern = loop->pattern;
     out->vertex = 0;
     for (int s = 0; s < p->sides; s++) {
         for (int i = 0; i < 3; i++)

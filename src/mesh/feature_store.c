@@ -210,29 +210,55 @@ void csg_feature_flip(csg_feature_store *store, size_t index)
  * ------------------------------------------------------------------------------------
  */
 
-/* The apex becomes the middle of its polygon: smooth again, with the same numbers of everything. */
-static void demote(csg_feature_store *store, csg_feature *f)
+static uint8_t corner_of(const csg_feature *f, uint8_t edge)
+{
+    uint8_t corner = 0;
+    while (f->edge[corner] != edge)
+        corner++;
+    return corner;
+}
+
+static void put_triangle(csg_feature *f, uint8_t a, uint8_t b, uint8_t c)
+{
+    uint8_t *t = f->triangle[f->triangle_count++];
+    t[0] = a, t[1] = b, t[2] = c;
+}
+
+/* The triangles of plain marching cubes; the apex divides the first. */
+static void retriangulate(csg_feature *f, const csg_cell_tables *tables)
+{
+    const uint8_t *edge = tables->edge[f->pattern];
+    for (int loop = 0; loop < f->loop; loop++)
+        edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
+    f->triangle_count = 0;
+    for (int t = 0; t < f->side_count - 2; t++, edge += 3) {
+        uint8_t a = corner_of(f, edge[0]), b = corner_of(f, edge[1]), c = corner_of(f, edge[2]);
+        if (t) {
+            put_triangle(f, a, b, c);
+            continue;
+        }
+        put_triangle(f, CSG_FEATURE_APEX, a, b);
+        put_triangle(f, CSG_FEATURE_APEX, b, c);
+        put_triangle(f, CSG_FEATURE_APEX, c, a);
+        for (int i = 0; i < 3; i++) /* nearly a vertex, which lies on the surface */
+            f->at[i] = 0.9f * f->corner[a][i] + 0.05f * f->corner[b][i] + 0.05f * f->corner[c][i];
+        for (int k = 0; k < f->sheet_count; k++)
+            memcpy(f->normal[k], f->normal[f->sheet[a]], sizeof f->normal[k]);
+    }
+}
+
+void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
     for (int s = 0; s < f->side_count; s++) {
         if (f->beyond[s] == CSG_FEATURE_NONE)
             continue;
         csg_feature *g = &store->features[f->beyond[s]];
         g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
+        g->flipped &= (uint16_t) ~(1u << f->beyond_side[s]);
         f->beyond[s] = CSG_FEATURE_NONE;
     }
-    for (int i = 0; i < 3; i++) {
-        double sum = 0;
-        for (int s = 0; s < f->side_count; s++)
-            sum += (double)f->corner[s][i];
-        f->at[i] = (float)(sum / f->side_count);
-    }
-    f->creased = 0;
-    f->triangle_count = f->side_count;
-    for (int s = 0; s < f->side_count; s++) {
-        f->triangle[s][0] = CSG_FEATURE_APEX;
-        f->triangle[s][1] = (uint8_t)s;
-        f->triangle[s][2] = (uint8_t)((s + 1) % f->side_count);
-    }
+    f->creased = f->flipped = 0;
+    retriangulate(f, tables);
     store->smooth++;
 }
 
@@ -283,35 +309,41 @@ static bool cell_of_apex(const csg_feature *f, const csg_lattice *lattice, uint3
     return true;
 }
 
-/* Apexes in a cell that another polygon has a crease in, one not joined to theirs: where a solid
- * comes in pieces between lattice points, as at a thin tip, two pieces would reach for one place.
- */
-size_t csg_feature_part(csg_feature_store *store, const csg_lattice *lattice)
+/* Whether a feature other than i, not joined to it nearby, has its polygon in that cell; and
+ * whether one that is joined has. */
+static void hosts_of(const csg_feature_store *store, uint32_t i, const uint32_t at[3],
+                     uint16_t cell, bool *stranger, bool *friend)
 {
-    size_t parted = 0;
-    for (size_t b = 0; b < store->block_count; b++) {
-        const csg_feature_block *home = &store->blocks[b];
-        for (uint32_t i = home->first; i < home->first + home->count; i++) {
-            csg_feature *f = &store->features[i];
-            uint32_t at[3];
-            uint16_t cell;
-            if (!f->creased || !cell_of_apex(f, lattice, at, &cell))
-                continue;
-            const csg_feature_block *host = csg_feature_store_find(store, at);
-            bool taken = false;
-            for (uint32_t k = host ? host->first : 0; host && k < host->first + host->count; k++)
-                taken = taken || (k != i && store->features[k].cell == cell &&
-                                  store->features[k].creased && !is_linked(store, f, k, NEAR));
-            if (taken) {
-                demote(store, f);
-                parted++;
-            }
-        }
+    const csg_feature_block *host = csg_feature_store_find(store, at);
+    for (uint32_t k = host ? host->first : 0; host && k < host->first + host->count; k++) {
+        const csg_feature *g = &store->features[k];
+        if (k == i || g->cell != cell || !g->creased)
+            continue;
+        bool linked = is_linked(store, &store->features[i], k, NEAR);
+        *stranger = *stranger || !linked;
+        *friend = *friend || linked;
     }
-    return parted;
 }
 
-size_t csg_feature_settle(csg_feature_store *store)
+bool csg_feature_is_stray(const csg_feature_store *store, uint32_t block, uint32_t i,
+                          const csg_lattice *lattice, uint32_t lowest[3])
+{
+    const csg_feature *f = &store->features[i];
+    uint32_t at[3];
+    uint16_t cell;
+    bool stranger = false, friend = false;
+    lowest[0] = UINT32_MAX;
+    if (!f->creased || !cell_of_apex(f, lattice, at, &cell))
+        return false;
+    hosts_of(store, i, at, cell, &stranger, &friend);
+    bool home = cell == f->cell && !memcmp(at, store->blocks[block].at, sizeof at);
+    if (!stranger && !friend && !home)
+        for (int axis = 0; axis < 3; axis++)
+            lowest[axis] = at[axis] * E + (cell >> (3 * axis) & 7);
+    return stranger;
+}
+
+size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables)
 {
     size_t changed = 0;
     for (uint32_t i = 0; i < store->count; i++) {
@@ -326,9 +358,9 @@ size_t csg_feature_settle(csg_feature_store *store)
             bool both = !g || is_corner(f) == is_corner(g);
             changed++;
             if (g && (both || is_corner(f)))
-                demote(store, g);
+                csg_feature_demote(store, tables, g);
             if (both || !is_corner(f))
-                demote(store, f);
+                csg_feature_demote(store, tables, f);
         }
     }
     return changed;
