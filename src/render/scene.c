@@ -347,6 +347,8 @@ static csgm_status trace_all(scene_job *job, csgm_render_stats *stats)
     csgm_status status = make_tracer(job);
     if (status == CSGM_OK && !create_rooms(job))
         status = csg_context_no_memory(picture->context);
+    if (status == CSGM_OK)
+        csg_tracer_find_slope(&job->tracer, &job->rooms[0]->trace);
     stats->prepare_s = csg_clock_now_s() - picture->started_s;
     job->columns = (picture->image->width + TILE - 1) / TILE;
     job->rows = (picture->image->height + TILE - 1) / TILE;

@@ -136,7 +136,7 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         points += count;
         uint32_t kept = 0;
         for (uint32_t k = 0; k < count; k++) {
-            float height = -m->f[k] * tracer->inverse_lipschitz, t = lanes[k].t;
+            float height = -m->f[k] * tracer->inverse_slope, t = lanes[k].t;
             float width = LIGHT_SLOPE * t + 0.01f * reach;
             float share = height / (width < reach ? width : reach);
             float *here = &lit[m->ray[lanes[k].from]];

@@ -12,6 +12,7 @@ enum {
 };
 
 static const float RELAXATION = 1.6f;
+static const float CREEP = 8; /* tolerances, of which a pixel has 25 */
 
 /* Directions parallel to a face: far away but finite, so that nothing becomes NaN. */
 static float inverse_of(float d)
@@ -159,26 +160,31 @@ static void place_points(const csg_rays *rays, csg_march *m)
         m->x[k] = m->y[k] = m->z[k] = 0;
 }
 
-/* Takes ray k one step further. False: it is through, or has hit (then *hit). */
+/* Takes ray k one step further. False: it is through, or has hit (then *hit). Where lambda is far
+ * above the slope, |f| / lambda is near 0 long before the surface: a ray that close creeps on, a
+ * third of a pixel at a time, until the sign changes. */
 static bool advance(const csg_tracer *tracer, csg_march *m, uint32_t k, bool *hit)
 {
     float t = m->t[k], radius = fabsf(m->f[k]) * tracer->inverse_lipschitz;
     float tolerance = tracer->near_tolerance + tracer->tolerance_slope * t;
+    bool has_crept = tracer->is_loose && m->step[k] > 0 && m->radius[k] < tolerance;
     *hit = false;
-    if (m->step[k] > m->radius[k] && radius + m->radius[k] < m->step[k]) {
+    if (!has_crept && m->step[k] > m->radius[k] && radius + m->radius[k] < m->step[k]) {
         m->t[k] = t - (m->step[k] - m->radius[k]);
         m->step[k] = m->radius[k] = 0; /* and no relaxed step before the next sphere is known */
         return true;
     }
-    if (m->f[k] >= 0 || radius < tolerance) {
-        float at = m->f[k] >= 0 ? t - radius : t + radius;
+    if (m->f[k] >= 0 || (radius < tolerance && !tracer->is_loose)) {
+        float sum = radius + m->radius[k];
+        float back = has_crept && sum > 0 ? m->step[k] * (radius / sum) : radius;
+        float at = m->f[k] >= 0 ? t - back : t + radius;
         m->t[k] = at > m->begin[k] ? at : m->begin[k];
         *hit = true;
         return false;
     }
     if (t + radius >= m->end[k])
         return false;
-    float next = t + RELAXATION * radius;
+    float next = t + (radius < tolerance ? CREEP * tolerance : RELAXATION * radius);
     next = next < m->end[k] ? next : m->end[k];
     m->step[k] = next - t;
     m->radius[k] = radius;

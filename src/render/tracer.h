@@ -75,6 +75,8 @@ typedef struct csg_tracer {
     float light_across[2][3];              /* at right angles to it and each other */
     float near_tolerance, tolerance_slope; /* |f| / lambda of a hit: near + slope * t */
     float inverse_lipschitz;
+    float inverse_slope; /* of the field as it is near the surface, where that is known better */
+    bool is_loose;       /* lambda is far above that slope */
     bool occlusion, shadows, colors;
 } csg_tracer;
 
@@ -85,6 +87,9 @@ void csg_tracer_find_rectangles(const csg_tracer *tracer, csg_pixel_rectangle *o
 void csg_tracer_begin(csg_rays *rays, uint32_t first_row);
 /* Appends a ray of the view; y may not fall below an earlier one's row of pixels. */
 void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y);
+
+/* slope.c: fills inverse_slope and is_loose by looking into the cells. */
+void csg_tracer_find_slope(csg_tracer *tracer, csg_trace_room *room);
 
 /* room->rays, aimed: fills the rest. */
 void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room);
