@@ -133,6 +133,17 @@ static bool has_shape(const csg_collapse_room *room)
 /* ---- the collapse ------------------------------------------------------------------------------
  */
 
+static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
+{
+    const csg_collapse_room *room = d->room;
+    const csg_crossing_change change = {.at = (const csg_vec3(*)[3])room->after,
+                                        .vertex = (const uint32_t(*)[3])room->vertex,
+                                        .count = room->count,
+                                        .vertices = {from, to},
+                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
+    return csg_crossing_is_made(&d->remesh->crossing, &change);
+}
+
 static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
                           uint32_t to)
 {
@@ -148,7 +159,8 @@ static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 
     else if (r->looks)
         d->room->look = csg_remesh_look(r, *at);
     return csg_decimation_can_hand_over(d, to) &&
-           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count);
+           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count) &&
+           !crosses(d, from, to);
 }
 
 static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t to, csg_vec3 at)
@@ -157,6 +169,9 @@ static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t
     csg_decimation_hand_over(d);
     csg_corners_collapse(&r->corners, corner);
     r->at[to] = at;
+    csg_crossing_update_around(&r->crossing, to);
+    for (uint32_t i = 0; i < 2; i++)
+        csg_crossing_update(&r->crossing, d->room->triangle[d->room->count + i]);
     r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
     if (r->looks)
         r->looks[to] = d->room->look;

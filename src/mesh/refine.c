@@ -47,7 +47,7 @@ static uint32_t longest_side(const csg_remesh *r, uint32_t triangle)
     return longest;
 }
 
-/* Whether the four triangles keep the way they face. */
+/* Whether the four triangles keep the way they face, and cross nothing. */
 static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
 {
     uint32_t apex = csg_corner_previous(corner);
@@ -62,7 +62,19 @@ static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
             csg_triangle_quality(cut[i][0], cut[i][1], cut[i][2]) < 1e-3)
             return false;
     }
-    return true;
+    const uint32_t *v = r->corners.vertex;
+    uint32_t ends[2] = {v[corner], v[csg_corner_next(corner)]}, new = CSG_CORNER_NONE;
+    uint32_t apexes[2] = {v[apex], v[r->corners.across[apex]]};
+    const uint32_t ids[4][3] = {{apexes[0], ends[0], new},
+                                {apexes[0], new, ends[1]},
+                                {apexes[1], ends[1], new},
+                                {apexes[1], new, ends[0]}};
+    const csg_crossing_change change = {.at = cut,
+                                        .vertex = ids,
+                                        .count = 4,
+                                        .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
+                                        .triangles = {corner / 3, r->corners.across[apex] / 3}};
+    return !csg_crossing_is_made(&r->crossing, &change);
 }
 
 static bool halve(refiner *f, uint32_t corner)
@@ -83,6 +95,7 @@ static bool halve(refiner *f, uint32_t corner)
     if (r->looks)
         r->looks[vertex] = csg_remesh_look(r, at);
     csg_corners_split(&r->corners, corner, vertex, triangles);
+    csg_crossing_update_around(&r->crossing, vertex);
     f->pending[corner / 3] = f->pending[other] = 2; /* next round */
     f->pending[triangles[0]] = f->pending[triangles[1]] = 2;
     return true;

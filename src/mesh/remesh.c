@@ -155,7 +155,7 @@ csgm_status csg_remesh_begin(csg_remesh *r, csg_mesh_work *work)
     bool done = result == CSG_CORNERS_MADE && take_arrays(r) && csg_probe_make(&r->probe, work);
     if (done) {
         copy_vertices(r);
-        done = find_creases(r);
+        done = find_creases(r) && csg_crossing_make(&r->crossing, &r->corners, r->at);
     }
     if (done)
         return CSGM_OK;
@@ -170,6 +170,7 @@ void csg_remesh_end(csg_remesh *r)
     csg_memory_release(r->memory, r->kind, count);
     csg_memory_release(r->memory, r->looks, count * sizeof *r->looks);
     csg_probe_release(&r->probe);
+    csg_crossing_release(&r->crossing);
     csg_corners_release(&r->corners);
     *r = (csg_remesh){0};
 }

@@ -8,6 +8,7 @@
 #define CSG_MESH_REMESH_H
 
 #include "mesh/corners.h"
+#include "mesh/crossing.h"
 #include "mesh/probe.h"
 
 typedef enum csg_vertex_kind {
@@ -26,6 +27,7 @@ typedef struct csg_remesh {
     csg_memory *memory;
     csg_probe probe;
     csg_corners corners;
+    csg_crossing crossing;     /* of these, kept true by whoever changes them */
     csg_vec3 *at;              /* per vertex, field frame */
     uint8_t *kind;             /* per vertex: csg_vertex_kind */
     csg_look_at_vertex *looks; /* per vertex; NULL: the mesh has neither colours nor materials */
