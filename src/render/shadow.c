@@ -136,10 +136,11 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         points += count;
         uint32_t kept = 0;
         for (uint32_t k = 0; k < count; k++) {
-            float height = -m->f[k] * tracer->inverse_slope, t = lanes[k].t;
+            uint16_t ray = m->ray[lanes[k].from];
+            float height = -m->f[k] * room->rays.inverse_slope[ray], t = lanes[k].t;
             float width = LIGHT_SLOPE * t + 0.01f * reach;
             float share = height / (width < reach ? width : reach);
-            float *here = &lit[m->ray[lanes[k].from]];
+            float *here = &lit[ray];
             *here = share < *here ? (share > 0 ? share : 0) : *here;
             /* half a sphere: whole ones would miss where the ratio is least, in streaks */
             lanes[k].t = t + (height > 0.08f * reach ? 0.5f * height : 0.04f * reach);

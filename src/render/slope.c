@@ -38,5 +38,5 @@ void csg_tracer_find_slope(csg_tracer *tracer, csg_trace_room *room)
         if (cells->cells[i].is_leaf && cells->cells[i].has_surface)
             steepest = fmaxf(steepest, slope_at(tracer, &cells->cells[i], room));
     tracer->is_loose = LOOSE * steepest * tracer->inverse_lipschitz < 1 && steepest > 0;
-    tracer->inverse_slope = tracer->is_loose ? 1 / steepest : tracer->inverse_lipschitz;
+    tracer->steepest = steepest > 0 ? steepest : 1 / tracer->inverse_lipschitz;
 }

@@ -239,6 +239,15 @@ static void place_hits(const csg_rays *rays, csg_march *m)
     place_points(rays, m);
 }
 
+/* What is as steep as lambda allows has lambda's inverse to the bit; next to flat is a crease or a
+ * tip, which says nothing of the field around it. */
+static float inverse_slope_of(const csg_tracer *tracer, float slope)
+{
+    if (slope * tracer->inverse_lipschitz > 0.9f)
+        return tracer->inverse_lipschitz;
+    return 1 / fmaxf(slope, 0.25f * tracer->steepest);
+}
+
 static void find_normals(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
 {
     csg_march *m = &room->march;
@@ -254,6 +263,7 @@ static void find_normals(const csg_tracer *tracer, const csg_tape *tape, csg_tra
         rays->ny[i] = is_known ? -y / length : -rays->dy[i];
         rays->nz[i] = is_known ? -z / length : -rays->dz[i];
         m->radius[k] = is_known ? length : 1; /* the field's slope, for occlusion */
+        rays->inverse_slope[i] = inverse_slope_of(tracer, is_known ? length : 0);
     }
 }
 

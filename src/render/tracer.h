@@ -31,8 +31,9 @@ typedef struct csg_rays {
     float nx[CSG_RAYS_MOST], ny[CSG_RAYS_MOST], nz[CSG_RAYS_MOST]; /* unit, outward */
     float r[CSG_RAYS_MOST], g[CSG_RAYS_MOST], b[CSG_RAYS_MOST];    /* sRGB 0..1, of the scene */
     float metallic[CSG_RAYS_MOST], roughness[CSG_RAYS_MOST];
-    float open[CSG_RAYS_MOST]; /* 1 - ambient occlusion */
-    float lit[CSG_RAYS_MOST];  /* share of the key light that arrives */
+    float inverse_slope[CSG_RAYS_MOST]; /* 1 / the field's slope */
+    float open[CSG_RAYS_MOST];          /* 1 - ambient occlusion */
+    float lit[CSG_RAYS_MOST];           /* share of the key light that arrives */
 } csg_rays;
 
 /* Those of a batch that are in one cell, packed. */
@@ -75,8 +76,8 @@ typedef struct csg_tracer {
     float light_across[2][3];              /* at right angles to it and each other */
     float near_tolerance, tolerance_slope; /* |f| / lambda of a hit: near + slope * t */
     float inverse_lipschitz;
-    float inverse_slope; /* of the field as it is near the surface, where that is known better */
-    bool is_loose;       /* lambda is far above that slope */
+    float steepest; /* the field's slope near its surface, where that is largest, as measured */
+    bool is_loose;  /* lambda is far above that slope */
     bool occlusion, shadows, colors;
 } csg_tracer;
 
@@ -88,7 +89,7 @@ void csg_tracer_begin(csg_rays *rays, uint32_t first_row);
 /* Appends a ray of the view; y may not fall below an earlier one's row of pixels. */
 void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y);
 
-/* slope.c: fills inverse_slope and is_loose by looking into the cells. */
+/* slope.c: fills steepest and is_loose by looking into the cells. */
 void csg_tracer_find_slope(csg_tracer *tracer, csg_trace_room *room);
 
 /* room->rays, aimed: fills the rest. */
