@@ -163,8 +163,8 @@ class Page(ReportTest):
     def test_large_meshes_are_thinned(self):
         for name, radius in (("a.ply", 1), ("b.ply", 1.01)):
             self.write("ball.txt", f"sphere({radius});")
-            self.assert_status(self.run_in("ball.txt", "-o", name, "-r", 300, "-q"), 0)
-        self.diff(1, "a.ply", "b.ply", "--html", "out.html")
+            self.assert_status(self.run_in("ball.txt", "-o", name, "-r", 220, "-q"), 0)
+        self.diff(1, "a.ply", "b.ply", "--samples", 1000, "--html", "out.html")
         pair = data_of(self.read("out.html"))["pairs"][0]
         for side in "ab":
             model = pair["models"][side]

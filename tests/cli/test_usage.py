@@ -123,7 +123,9 @@ class Order(cli.CliTest):
             self.assert_status(result, 0)
             self.assertEqual(result.stdout, usual.stdout)
         self.assertIn(b"csgmesh deps", self.run_in("-q", "help", "deps").stdout)
-        self.assert_refused(self.run_in("-q", "diff", "a.txt", "a.txt"), 2, "not available")
+        # --json takes a value with diff and none with info
+        self.assert_status(self.run_in("-q", "--json", "d.json", "diff", "a.txt", "a.txt"), 0)
+        self.assertEqual(json.loads(self.read("d.json"))["verdict"], "same")
 
     def test_an_options_value_is_no_command(self):
         self.write("a.txt", cli.BALL)

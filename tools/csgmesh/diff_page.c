@@ -11,7 +11,7 @@
 #include "textfile.h"
 
 static const unsigned char page[] = {
-#include "report_page.inc"
+#include <report_page.inc> /* made by report/embed.py */
 };
 
 static const char *const verdicts[] = {"same", "different", "only in A", "only in B", "failed"};

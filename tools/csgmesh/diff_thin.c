@@ -161,9 +161,12 @@ static bool thin(const diff_drawing *d, diff_thin *mesh, uint64_t most)
     int cells = FINEST;
     while (good) {
         count = find_clusters(d, mesh, cells, scratch, cluster_of);
-        if (count_left(mesh, cluster_of) <= most || cells <= COARSEST)
+        uint64_t left = count_left(mesh, cluster_of);
+        if (left <= most || cells <= COARSEST)
             break;
-        cells = cells * 3 / 4;
+        /* triangles grow as the square of the cells */
+        double share = sqrt((double)most / (double)left);
+        cells = (int)(cells * fmin(0.9, fmax(0.25, 0.97 * share)));
     }
     free(scratch);
     sums *total = good ? calloc(count, sizeof *total) : NULL;

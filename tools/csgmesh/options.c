@@ -482,13 +482,36 @@ bool cli_options_parse(cli_options *options, cli_command command, int argc, char
     return true;
 }
 
-/* Does the argument after this one belong to it? */
-static bool takes_next(const char *option)
+static bool is_command(const char *text)
+{
+#define COMMAND(NAME, name, operands, summary, examples) || strcmp(text, #name) == 0
+#define LATER_COMMAND(name)
+    return false
+#include "commands.def"
+        ;
+#undef COMMAND
+#undef LATER_COMMAND
+}
+
+/* Some names take a value with one command and none with another: --json. */
+static bool is_somewhere_flag(const char *name, size_t length)
+{
+    for (size_t i = 0; i < ROW_COUNT; i++)
+        if (rows[i].name && rows[i].kind == FLAG && strlen(rows[i].name) == length &&
+            strncmp(rows[i].name, name, length) == 0)
+            return true;
+    return false;
+}
+
+/* Does the argument after this one (NULL: there is none) belong to it? */
+static bool takes_next(const char *option, const char *next)
 {
     const row *found;
     if (option[1] == '-') {
         size_t length = strcspn(option + 2, "=");
         found = find_long(option + 2, length, 0);
+        if (next && is_command(next) && is_somewhere_flag(option + 2, length))
+            return false;
         return found && !option[2 + length] && found->kind != FLAG && found->kind != REPORT;
     }
     for (const char *letter = option + 1; *letter; letter++) {
@@ -506,7 +529,7 @@ int cli_options_first_operand(int argc, char **argv)
             return argc; /* what follows is files */
         if (argv[i][0] != '-' || argv[i][1] == '\0')
             return i;
-        i += takes_next(argv[i]);
+        i += takes_next(argv[i], i + 1 < argc ? argv[i + 1] : NULL);
     }
     return argc;
 }

@@ -5,8 +5,9 @@
 set -u
 work=${RUNNER_TEMP:-/tmp}
 "$CSGMESH" diff "$GOLDENS" "$DIRECTORY" --tol "$TOLERANCE" --json "$work/csgmesh-diff.json" \
-    >"$work/csgmesh-diff.txt"
+    --html "$work/csgmesh-diff.html" >"$work/csgmesh-diff.txt"
 status=$?
+if [ -f "$work/csgmesh-diff.html" ]; then echo "report=$work/csgmesh-diff.html" >>"${GITHUB_OUTPUT:-/dev/null}"; fi
 cat "$work/csgmesh-diff.txt"
 echo "$status" >"$work/csgmesh-diff-status"
 {

@@ -76,7 +76,7 @@ function figureRows(report) {
   const row = (name, x, y, least = 1e-9) => {
     const known = typeof x === "number" && typeof y === "number", change = known ? y - x : 0;
     const tells = known && Math.abs(change) > least * Math.max(Math.abs(x), Math.abs(y));
-    const share = tells && x ? percent(change / Math.abs(x)) : "";
+    const share = tells && x && least > 0 ? percent(change / Math.abs(x)) : "";
     return { cells: [name, show(x), show(y), tells ? signed(change, 4) : "", share], changed: tells };
   };
   const rows = [row("Triangles", a.triangles, b.triangles), row("Vertices", a.vertices, b.vertices)];
@@ -85,7 +85,7 @@ function figureRows(report) {
     area: "Area", volume: "Volume", components: "Components", genus: "Genus (holes)",
     boundary_edges: "Boundary edges", nonmanifold_edges: "Non-manifold edges",
   };
-  for (const [key, name] of Object.entries(names)) rows.push(row(name, a[key], b[key]));
+  for (const [key, name] of Object.entries(names)) rows.push(row(name, a[key], b[key], key === "area" || key === "volume" ? 1e-9 : 0));
   return rows;
 }
 
