@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Help, version and mistakes on the command line: a message that says what to do, exit status 2."""
+import json
+
 import cli
 
 
