@@ -9,7 +9,7 @@
 
 #include "mesh/feature_solve.h"
 
-enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 8 };
+enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
 
 /* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 1 degree,
  * the least that makes a crease. */
@@ -91,7 +91,10 @@ static bool may_have_edges(const csg_tape *tape, const csg_tape_node *node, ball
 static bool is_smooth_blend(uint8_t blend)
 {
     return blend == CSG_BLEND_HYPERBOLA || blend == CSG_BLEND_RECIPROCAL ||
-           blend == CSG_BLEND_OVERBLEND || blend == CSG_BLEND_COSINE || blend == CSG_BLEND_PARABOLA;
+           blend == CSG_BLEND_OVERBLEND || blend == CSG_BLEND_COSINE ||
+           blend == CSG_BLEND_PARABOLA || blend == CSG_BLEND_RICCI || blend == CSG_BLEND_SOFT_SUM ||
+           blend == CSG_BLEND_PERLIN || blend == CSG_BLEND_SOFT_SET ||
+           blend == CSG_BLEND_SCALE_SET || blend == CSG_BLEND_ARC;
 }
 
 static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
@@ -101,7 +104,7 @@ static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, ui
         const csg_tape_node *node = &nodes[i];
         bool leaf = csg_op_is_leaf(node->op);
         if ((node->join && !is_smooth_blend(node->join_blend)) || node->op == CSG_OP_COMBINE ||
-            (leaf && may_have_edges(tape, node, b)) || (!leaf && node->op > CSG_OP_COMBINE))
+            (leaf && may_have_edges(tape, node, b)))
             return true;
     }
     return false;

@@ -147,7 +147,7 @@ static bool is_still(const polygon *p, const apex *a, int sheet, const double *g
 }
 
 /* Asks for all sheets of all starts at once. */
-static void sample_sheets(const polygon *p, apex *apexes, double off, csg_probe *probe)
+static void sample_sheets(const polygon *p, apex *apexes, double off, bool last, csg_probe *probe)
 {
     enum { MOST = MOST_STARTS * MOST_SHEETS };
     float x[MOST] = {0}, y[MOST] = {0}, z[MOST] = {0}, f[MOST], gx[MOST], gy[MOST], gz[MOST];
@@ -170,10 +170,9 @@ static void sample_sheets(const polygon *p, apex *apexes, double off, csg_probe 
     for (size_t i = 0; i < n; i++) {
         csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
         owner[i]->lost |= f[i] != f[i];
-        if (fabs((double)f[i]) <= band && is_still(p, owner[i], sheet[i], plane.g))
-            fresh[i] = plane;
-        else
-            fresh[i] = owner[i]->planes[sheet[i]];
+        bool still = fabs((double)f[i]) <= band && is_still(p, owner[i], sheet[i], plane.g);
+        fresh[i] = still ? plane : owner[i]->planes[sheet[i]];
+        owner[i]->lost |= last && !still;
     }
     for (size_t i = 0; i < n; i++)
         owner[i]->planes[sheet[i]] = fresh[i];
@@ -230,7 +229,7 @@ static void improve(const polygon *p, apex *apexes, double cell, csg_probe *prob
 {
     static const double off[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
     for (int step = 0; step < STEPS; step++) {
-        sample_sheets(p, apexes, off[step] * cell, probe);
+        sample_sheets(p, apexes, off[step] * cell, step >= STEPS - 2, probe);
         for (int k = 0; k < p->start_count; k++) {
             apexes[k].lost = apexes[k].lost ||
                              !csg_planes_meet(apexes[k].planes, p->sheets, apexes[k].at) ||
