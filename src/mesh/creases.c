@@ -104,6 +104,7 @@ csgm_status csg_mesh_find_features(csg_mesh_work *w)
     csg_memory *memory = &w->context->memory;
     size_t items = csg_mesh_item_count(w), first_block = w->features.block_count;
     w->features.memory = memory;
+    w->features.cell_size = w->lattice.cell_size;
     w->found = csg_memory_alloc(memory, (items + !items) * sizeof(found_item));
     if (!w->found)
         return csg_context_no_memory(w->context);

@@ -64,6 +64,7 @@ typedef struct csg_feature_store {
     size_t count, capacity, block_count, block_capacity;
     uint32_t *slots; /* block + 1, 0 = free */
     size_t slot_count;
+    double cell_size;
     size_t numbered; /* blocks whose features have vertex numbers */
     uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
 } csg_feature_store;

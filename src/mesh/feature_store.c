@@ -144,9 +144,18 @@ static bool looks_along(const float *a, const float *b, const float *c, const fl
            0;
 }
 
+/* Apexes this near to each other are one place: cells. */
+static const double APART = 1e-3;
+
 /* Both halves of a flipped segment must look the way their sheets do. */
-static bool may_flip(const csg_feature *f, int s, const csg_feature *g, int t)
+static bool may_flip(const csg_feature_store *store, const csg_feature *f, int s,
+                     const csg_feature *g, int t)
 {
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
+    if (square < APART * APART * store->cell_size * store->cell_size)
+        return false;
     int s1 = (s + 1) % f->side_count;
     return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
            looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
@@ -192,7 +201,7 @@ static bool side_flips(const csg_feature_store *store, uint32_t i, int s)
     uint32_t other = f->beyond[s];
     const csg_feature *g = &store->features[other];
     int t = f->beyond_side[s];
-    return i < other ? may_flip(f, s, g, t) : may_flip(g, t, f, s);
+    return i < other ? may_flip(store, f, s, g, t) : may_flip(store, g, t, f, s);
 }
 
 void csg_feature_flip(csg_feature_store *store, size_t index)
