@@ -14,7 +14,8 @@ enum { PANEL = 480, TALL = 400, BAND = 40, CAPTION = 30, FOOT = 44, PANELS = 3 }
 enum { WIDTH = PANELS * PANEL, HEIGHT = BAND + CAPTION + TALL + FOOT };
 
 static const uint8_t white[3] = {255, 255, 255}, ink[3] = {40, 44, 52}, paper[3] = {244, 245, 247},
-                     red[3] = {176, 28, 36}, green[3] = {26, 116, 62}, black[3] = {0, 0, 0};
+                     stage[3] = {216, 220, 226}, red[3] = {176, 28, 36}, green[3] = {26, 116, 62},
+                     black[3] = {0, 0, 0};
 
 /* ---- the camera ------------------------------------------------------------------------------ */
 
@@ -79,6 +80,7 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
     csgm_render_options options = csgm_render_options_default();
     csgm_image *image = NULL;
     const frame *f = &p->frame;
+    cli_canvas_fill(&p->canvas, panel * PANEL, BAND + CAPTION, PANEL, TALL, stage);
     if (mesh->triangle_count == 0)
         return CSGM_OK;
     options.width = PANEL;
@@ -86,7 +88,7 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
     options.camera.placed = true;
     options.camera.target = f->middle;
     options.camera.eye = f->eye;
-    memcpy(options.background, paper, 3);
+    memcpy(options.background, stage, 3);
     csgm_status status = csgm_render_mesh(p->app->context, mesh, &options, &image, NULL);
     if (status != CSGM_OK)
         return status;
