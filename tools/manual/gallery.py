@@ -31,7 +31,7 @@ FOLDER = os.path.join(ROOT, "docs", "pictures", "papers")
 OTHERS = {"nguyen.png"}  # of docs/evaluations.md
 BLOCK = re.compile(r'^<!-- figure (\S+) "([^"]*)" ?(.*?) ?-->\n(.*?)^<!-- end figure -->\n', re.M | re.S)
 MOST_BYTES = 60_000
-COARSE = 56  # cells along a mesh whose triangles are to be seen
+COARSE = 72  # cells along a mesh whose triangles are to be seen
 
 
 class Figure:
