@@ -205,8 +205,9 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
     if (status == CSGM_OK && w->goal && w->counts.triangle_count)
         status = csg_mesh_reshape(w);
     if (status == CSGM_OK && !(w->goal && w->goal->cell_size > 0)) {
-        warn(w);
         status = csg_mesh_look_for_missed(w);
+        if (status == CSGM_OK)
+            warn(w);
     }
     if (status == CSGM_OK && stats)
         fill_stats(w, stats);

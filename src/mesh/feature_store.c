@@ -250,7 +250,7 @@ static void retriangulate(csg_feature *f, const csg_cell_tables *tables)
         put_triangle(f, CSG_FEATURE_APEX, b, c);
         put_triangle(f, CSG_FEATURE_APEX, c, a);
         for (int i = 0; i < 3; i++) /* nearly a vertex, which lies on the surface */
-            f->at[i] = 0.9f * f->corner[a][i] + 0.05f * f->corner[b][i] + 0.05f * f->corner[c][i];
+            f->at[i] = 0.998f * f->corner[a][i] + 0.001f * (f->corner[b][i] + f->corner[c][i]);
         for (int k = 0; k < f->sheet_count; k++)
             memcpy(f->normal[k], f->normal[f->sheet[a]], sizeof f->normal[k]);
     }

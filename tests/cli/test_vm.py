@@ -18,6 +18,8 @@ class Tapes(cli.CliTest):
 
     def check_scene(self, path):
         tape = cli.run("dump", "--vm", "-q", path)
+        if tape.returncode == 2 and "E0345" in tape.stderr:
+            return False  # soft solids: no tape can hold them, and it is said so
         self.assert_status(tape, 0)
         self.write("scene.vm", tape.stdout)
         self.write("again.txt", 'import("scene.vm", lipschitz = 1000);\n')
@@ -28,14 +30,17 @@ class Tapes(cli.CliTest):
             self.assertLessEqual(abs(got - value), 1e-6 * (1 + abs(value)), f"{path} at {p}")
         self.assertLess(len(set(map(str, wanted))), len(points) + 1)
         self.assertGreater(len(set(map(str, wanted))), 10)
+        return True
 
     def test_the_tour_comes_back(self):
         folder = os.path.join(cli.SCENES, "tour")
         names = [name for name in sorted(os.listdir(folder)) if name.endswith(".txt")]
         self.assertGreater(len(names), 8)
+        held = 0
         for name in names:
             with self.subTest(name):
-                self.check_scene(os.path.join(folder, name))
+                held += self.check_scene(os.path.join(folder, name))
+        self.assertGreater(held, 8)
 
     def test_shapes_and_deformations_come_back(self):
         self.write("a.txt", "linear_extrude(7, twist = 20) difference() { square(9); circle(2); }\n"

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT
+ * Sharp features: solids with edges in random poses have apexes on their true edges and corners and
+ * flat faces; what cannot have them is counted; copies at creases join again; hard places stay
+ * closed. Crossing triangles are looked for by tests/mesh/intersections.py, with CGAL.
+ *
+ * Argument: how many poses of each solid (default 4).
+ */
+#include "mesh/mesh_support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "mesh/weld.h"
+
+static unsigned pose_count = 4;
+
+enum { RESOLUTION = 64 };
+
+/* ---- solids ------------------------------------------------------------------------------------
+ */
+
+static csg_node_id primitive(mesh_case *c, csg_node_kind kind, const double *parameters)
+{
+    return csg_build_primitive(&c->builder, kind, parameters, csg_span_nowhere());
+}
+
+static csg_node_id cube(mesh_case *c)
+{
+    return primitive(c, CSG_NODE_BOX, (const double[]){1, 1, 1, 0});
+}
+
+static csg_node_id plane(mesh_case *c, double x, double y, double z)
+{
+    double k = 1 / sqrt(3);
+    return primitive(c, CSG_NODE_PLANE, (const double[]){k * x, k * y, k * z, 0.7});
+}
+
+static csg_node_id tetrahedron(mesh_case *c)
+{
+    csg_node_id sides[] = {plane(c, 1, 1, 1), plane(c, -1, -1, 1), plane(c, -1, 1, -1),
+                           plane(c, 1, -1, -1)};
+    return csg_build_operator(&c->builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
+                              sides, 4, csg_span_nowhere());
+}
+
+static csg_node_id cylinder(mesh_case *c)
+{
+    return primitive(c, CSG_NODE_FRUSTUM, (const double[]){1, 1, 1, 0});
+}
+
+static csg_node_id cone(mesh_case *c)
+{
+    return primitive(c, CSG_NODE_FRUSTUM, (const double[]){1, 0, 1, 0});
+}
+
+static csg_node_id drilled(mesh_case *c)
+{
+    csg_node_id parts[] = {
+        primitive(c, CSG_NODE_BOX, (const double[]){1, 1, 0.4, 0}),
+        primitive(c, CSG_NODE_FRUSTUM, (const double[]){0.5, 0.5, 1, 0}),
+    };
+    return csg_build_operator(&c->builder, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_SHARP, 0},
+                              parts, 2, csg_span_nowhere());
+}
+
+typedef struct solid {
+    const char *name;
+    csg_node_id (*make)(mesh_case *c);
+    double volume;       /* 0: faces are curved, chords cut it */
+    double volume_error; /* relative */
+    double smooth_share; /* of polygons on creases that may stay smooth */
+} solid;
+
+static const solid solids[] = {
+    {"cube", cube, 8, 1e-5, 0.01},
+    /* thin tips come in pieces between lattice points */
+    {"tetrahedron", tetrahedron, 8 * 1.7320508075688772 * 0.7 * 0.7 * 0.7, 2e-4, 0.2},
+    {"cylinder", cylinder, 0, 0, 0.01},
+    {"cone", cone, 0, 0, 0.1},
+    {"drilled plate", drilled, 0, 0, 0.02},
+};
+
+static csg_node_id posed(mesh_case *c, csg_node_id child, csg_random *random)
+{
+    double axis[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        axis[i] = csg_random_uniform(random, -1, 1);
+        length += axis[i] * axis[i];
+    }
+    csg_vec3 u = {axis[0] / sqrt(length), axis[1] / sqrt(length), axis[2] / sqrt(length)};
+    csg_affine place = csg_affine_rotate(csg_random_uniform(random, 0, 360), u);
+    place.t[0] = csg_random_uniform(random, -1, 1);
+    place.t[1] = csg_random_uniform(random, -1, 1);
+    place.t[2] = csg_random_uniform(random, -1, 1);
+    return csg_build_transform(&c->builder, &place, child, csg_span_nowhere());
+}
+
+/* ---- what is asked of them ---------------------------------------------------------------------
+ */
+
+/* Vertices of the mesh that are off the surface by more than this much of a cell; apexes are
+ * vertices like others. */
+static void check_vertices(const mesh_case *c, const char *what)
+{
+    double most = 2e-3 * c->stats.cell_size;
+    for (uint64_t i = 0; i < c->mesh->vertex_count; i++) {
+        double f = fabs(test_sample(c->scene, mesh_vertex(c, i)).value);
+        if (!(f <= most))
+            fail_msg("%s: vertex %llu is %g cells off", what, (unsigned long long)i,
+                     f / c->stats.cell_size);
+    }
+}
+
+/* Middles of triangles: on plane faces these lie on the surface, except where a crease is cut. */
+static void check_faces(const mesh_case *c, double share, const char *what)
+{
+    uint64_t off = 0;
+    for (uint64_t t = 0; t < c->mesh->triangle_count; t++) {
+        csg_vec3 sum = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            sum = csg_vec3_add(sum, mesh_vertex(c, c->mesh->indices[3 * t + (uint64_t)k]));
+        double f = test_sample(c->scene, csg_vec3_scale(sum, 1.0 / 3)).value;
+        off += fabs(f) <= 1e-3 * c->stats.cell_size ? 0 : 1;
+    }
+    uint64_t allowed = (uint64_t)(share * 8 * (double)(c->stats.feature_vertices + 1));
+    if (off > allowed)
+        fail_msg("%s: %llu of %llu triangles are off the surface, %llu may be", what,
+                 (unsigned long long)off, (unsigned long long)c->mesh->triangle_count,
+                 (unsigned long long)allowed);
+}
+
+static void check_pose(const solid *s, uint64_t seed)
+{
+    mesh_case c;
+    char what[64];
+    csg_random random = {seed};
+    snprintf(what, sizeof what, "%s, pose %llu", s->name, (unsigned long long)seed);
+    mesh_case_begin(&c, 2);
+    csg_node_id root = s->make(&c);
+    mesh_case_compile(&c, posed(&c, root, &random));
+    csgm_mesh_options options = mesh_options(RESOLUTION);
+    mesh_build_closed(&c, &options, what);
+    assert_true(c.stats.feature_vertices > 100);
+    if ((double)c.stats.smooth_features > s->smooth_share * (double)c.stats.feature_vertices)
+        fail_msg("%s: %llu polygons stay smooth beside %llu apexes", what,
+                 (unsigned long long)c.stats.smooth_features,
+                 (unsigned long long)c.stats.feature_vertices);
+    check_vertices(&c, what);
+    if (s->volume > 0) {
+        check_faces(&c, s->smooth_share, what);
+        if (!(fabs(c.check.volume / s->volume - 1) <= s->volume_error))
+            fail_msg("%s: volume %.12g, not %.12g", what, c.check.volume, s->volume);
+    }
+    mesh_case_end(&c);
+}
+
+static void test_poses(void **state)
+{
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++)
+        for (unsigned pose = 0; pose < pose_count; pose++)
+            check_pose(&solids[i], 500 + pose);
+}
+
+/* ---- smooth solids have none -------------------------------------------------------------------
+ */
+
+static csg_node_id blended(mesh_case *c)
+{
+    csg_node_id parts[] = {
+        primitive(c, CSG_NODE_SPHERE, (const double[]){1}),
+        primitive(c, CSG_NODE_TORUS, (const double[]){1.2, 0.3, 180}),
+    };
+    return csg_build_operator(&c->builder, CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.3}, parts,
+                              2, csg_span_nowhere());
+}
+
+static void test_smooth_solids(void **state)
+{
+    for (uint32_t resolution = 12; resolution <= 96; resolution *= 2) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, blended(&c));
+        csgm_mesh_options options = mesh_options(resolution);
+        mesh_build_closed(&c, &options, "blended");
+        assert_int_equal(c.stats.feature_vertices, 0);
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- normals split at creases ------------------------------------------------------------------
+ */
+
+static void test_split(void **state)
+{
+    mesh_case joined, split;
+    csgm_mesh_options options = mesh_options(24);
+    mesh_case_begin(&joined, 2);
+    mesh_case_compile(&joined, drilled(&joined));
+    mesh_build_closed(&joined, &options, "joined");
+    options.normals = CSGM_NORMALS_CREASE;
+    mesh_case_begin(&split, 2);
+    mesh_case_compile(&split, drilled(&split));
+    assert_int_equal(mesh_build(&split, &options), CSGM_OK);
+    assert_true(split.mesh->split);
+    assert_true(split.mesh->vertex_count > joined.mesh->vertex_count);
+
+    csgm_mesh_view view = csg_mesh_view(split.mesh);
+    csgm_mesh *welded;
+    assert_int_equal(csg_weld_runs(&split.context, &view, &welded), CSGM_OK);
+    assert_int_equal(welded->vertex_count, joined.mesh->vertex_count);
+    assert_memory_equal(welded->positions, joined.mesh->positions,
+                        joined.mesh->vertex_count * 3 * sizeof(float));
+    assert_memory_equal(welded->indices, joined.mesh->indices,
+                        joined.mesh->triangle_count * 3 * sizeof(uint32_t));
+    csg_mesh_destroy(welded);
+
+    /* corners of a triangle agree with it: flat faces shade flat */
+    for (uint64_t t = 0; t < split.mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = split.mesh->indices[3 * t + (uint64_t)k];
+            csg_vec3 p = mesh_vertex(&split, a);
+            double level = fabs(fabs(p.z) - 0.4);
+            const float *n = split.mesh->normals + 3 * (uint64_t)a;
+            if (level > 1e-4 || fabs((double)n[2]) < 0.5)
+                continue;
+            assert_true(fabs((double)n[2]) > 0.9999);
+        }
+    mesh_case_end(&joined);
+    mesh_case_end(&split);
+}
+
+/* ---- smooth on demand --------------------------------------------------------------------------
+ */
+
+static void test_features_off(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    mesh_case_compile(&c, cube(&c));
+    csgm_mesh_options options = mesh_options(20);
+    options.features = CSGM_FEATURES_SMOOTH;
+    mesh_build_closed(&c, &options, "smooth cube");
+    assert_int_equal(c.stats.feature_vertices, 0);
+    assert_true(c.check.volume < 8 * (1 - 1e-3));
+    mesh_case_end(&c);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1)
+        pose_count = (unsigned)strtoul(argv[1], NULL, 10);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_poses),
+        cmocka_unit_test(test_smooth_solids),
+        cmocka_unit_test(test_split),
+        cmocka_unit_test(test_features_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
