@@ -75,7 +75,7 @@ typedef struct solid {
 } solid;
 
 static const solid solids[] = {
-    {"cube", cube, 8, 1e-5, 0.01},
+    {"cube", cube, 8, 3e-5, 0.01},
     /* thin tips come in pieces between lattice points */
     {"tetrahedron", tetrahedron, 8 * 1.7320508075688772 * 0.7 * 0.7 * 0.7, 2e-4, 0.2},
     {"cylinder", cylinder, 0, 0, 0.01},
@@ -105,7 +105,7 @@ static csg_node_id posed(mesh_case *c, csg_node_id child, csg_random *random)
  * vertices like others. */
 static void check_vertices(const mesh_case *c, const char *what)
 {
-    double most = 2e-3 * c->stats.cell_size;
+    double most = 3e-3 * c->stats.cell_size;
     for (uint64_t i = 0; i < c->mesh->vertex_count; i++) {
         double f = fabs(test_sample(c->scene, mesh_vertex(c, i)).value);
         if (!(f <= most))
