@@ -11,6 +11,7 @@ enum { PASSES = 6, MOST_RING = CSG_CORNERS_MOST_VALENCE };
 
 typedef struct fan {
     csg_vec3 now[MOST_RING][3], then[MOST_RING][3];
+    uint32_t vertex[MOST_RING][3];
     size_t count;
 } fan;
 
@@ -47,7 +48,11 @@ static bool gather(const csg_remesh *r, uint32_t vertex, fan *f)
     do {
         if (f->count == MOST_RING)
             return false;
+        uint32_t *ids = f->vertex[f->count];
         csg_vec3 *v = f->now[f->count++];
+        ids[0] = vertex;
+        ids[1] = m->vertex[csg_corner_next(c)];
+        ids[2] = m->vertex[csg_corner_previous(c)];
         v[0] = r->at[vertex];
         v[1] = csg_remesh_corner(r, csg_corner_next(c));
         v[2] = csg_remesh_corner(r, csg_corner_previous(c));
@@ -108,7 +113,15 @@ static bool move(csg_remesh *r, uint32_t vertex, fan *f)
     if (after < LEAST_GAIN * before ||
         !csg_remesh_brackets(r, (const csg_vec3(*)[3])f->then, f->count))
         return false;
+    const csg_crossing_change change = {.at = (const csg_vec3(*)[3])f->then,
+                                        .vertex = (const uint32_t(*)[3])f->vertex,
+                                        .count = f->count,
+                                        .vertices = {vertex, CSG_CORNER_NONE},
+                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
+    if (csg_crossing_is_made(&r->crossing, &change))
+        return false;
     r->at[vertex] = at;
+    csg_crossing_update_around(&r->crossing, vertex);
     if (r->looks)
         r->looks[vertex] = look;
     return true;
@@ -134,7 +147,18 @@ static bool flip(csg_remesh *r, uint32_t corner)
         turns_over(now[1], then[1]) || turns_over(now[0], then[1]) || turns_over(now[1], then[0]) ||
         !csg_remesh_brackets(r, then, 2))
         return false;
+    const uint32_t *v = m->vertex, a_id = v[corner], b_id = v[csg_corner_next(corner)];
+    const uint32_t ids[2][3] = {{v[apex], a_id, v[other]}, {v[other], b_id, v[apex]}};
+    const csg_crossing_change change = {.at = then,
+                                        .vertex = ids,
+                                        .count = 2,
+                                        .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
+                                        .triangles = {corner / 3, other / 3}};
+    if (csg_crossing_is_made(&r->crossing, &change))
+        return false;
     csg_corners_flip(&r->corners, corner);
+    csg_crossing_update(&r->crossing, corner / 3);
+    csg_crossing_update(&r->crossing, other / 3);
     return true;
 }
 

@@ -68,7 +68,8 @@ static bool is_near_surface(const mesh_case *c, csg_vec3 p, double error)
     csg_sample here = test_sample(c->scene, p);
     double norm = csg_vec3_norm(here.gradient);
     bool inside = here.value >= 0;
-    for (int i = 0; i < 60; i++) {
+    enum { TRIES = 20000 }; /* where two sheets meet the other side may be a narrow wedge */
+    for (int i = 0; i < TRIES; i++) {
         csg_random random = {(uint64_t)i};
         csg_vec3 way = i < 2 && norm > 0 ? csg_vec3_scale(here.gradient, (i ? 1 : -1) / norm)
                                          : csg_vec3_normalize(test_point(&random, 1));
@@ -372,7 +373,7 @@ static void test_random_scenes(void **state)
         if (c.mesh->triangle_count) {
             with_surface++;
             assert_no_crossings(&c, what);
-            bool good = c.stats.open_places == 0;
+            bool good = c.stats.open_places == 0 && c.stats.max_distance_measured <= 0.02;
             proven += good;
             assert_int_equal(c.findings > 0, !good);
             if (good) {

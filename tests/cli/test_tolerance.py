@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""-e, --simplify and --improve as users meet them: every format, parts, colours, figures, errors."""
+import json
+
+import cli
+
+PLATE = """difference() {
+  union(blend = 0.2) { color("red") cube([4, 3, 0.6], center = true); cylinder(r = 0.8, h = 2, center = true); }
+  cylinder(r = 0.4, h = 5, center = true);
+}
+"""
+PARTS = """part("left") cube(1);
+part("right") translate([3, 0, 0]) sphere(r = 1);
+"""
+
+
+class Tolerance(cli.CliTest):
+    def stats(self, *arguments):
+        result = self.run_in(*arguments, "--stats")
+        self.assert_status(result, 0)
+        stats = json.loads(result.stdout)
+        flat = {}
+        for value in stats.values():
+            flat.update(value if isinstance(value, dict) else {})
+        return {**stats, **flat, **stats["mesh"]}
+
+    def test_box(self):
+        self.write("box.txt", "rotate([10, 20, 30]) cube([3, 2, 1]);\n")
+        stats = self.stats("box.txt", "-e", "0.01", "-o", "box.ply")
+        self.assertLessEqual(stats["triangles"], 100)
+        self.assertLessEqual(stats["max_distance_measured"], 0.01)
+        self.assertEqual(stats["max_distance_bound"], 0.01)
+
+    def test_formats(self):
+        self.write("plate.txt", PLATE)
+        counts = set()
+        for ending in ("stl", "obj", "ply", "glb"):
+            if ending in cli.formats_written():
+                stats = self.stats("plate.txt", "-e", "0.05", "-o", "out." + ending)
+                counts.add(stats["triangles"])
+                self.assertGreater(len(self.read("out." + ending)), 100)
+        self.assertEqual(len(counts), 1, counts)
+
+    def test_colors_stay(self):
+        self.write("plate.txt", PLATE)
+        self.assert_status(self.run_in("plate.txt", "-e", "0.05", "-o", "out.ply"), 0)
+        self.assertIn(b"property uchar red", self.read("out.ply"))
+
+    def test_parts_stay(self):
+        self.write("parts.txt", PARTS)
+        self.assert_status(self.run_in("parts.txt", "-e", "0.05", "-o", "out.obj"), 0)
+        text = self.read("out.obj").decode()
+        self.assertIn("left", text)
+        self.assertIn("right", text)
+
+    def test_simplify(self):
+        self.write("ball.txt", cli.BALL)
+        before = self.stats("ball.txt", "-r", "48", "-o", "out.ply")["triangles"]
+        share = self.stats("ball.txt", "-r", "48", "--simplify", "20%", "-o", "out.ply")
+        self.assertLessEqual(abs(share["triangles"] - before / 5), 2)
+        error = self.stats("ball.txt", "-r", "48", "--simplify", "0.02", "-o", "out.ply")
+        self.assertLess(error["triangles"], before / 5)
+        self.assertLessEqual(error["max_distance_measured"], 0.02)
+
+    def test_improve(self):
+        self.write("ball.txt", cli.BALL)
+        before = self.stats("ball.txt", "-r", "24", "-o", "out.ply")
+        after = self.stats("ball.txt", "-r", "24", "--improve", "-o", "out.ply")
+        self.assertEqual(before["triangles"], after["triangles"])
+        self.assertGreater(after["min_angle_deg"], before["min_angle_deg"])
+
+    def test_errors(self):
+        self.write("ball.txt", cli.BALL)
+        for bad in (("-e", "0.1", "--simplify", "0.1"), ("-e", "0"), ("-e", "-1"), ("-e", "x"),
+                    ("--simplify", "0%"), ("--simplify", "x%")):
+            with self.subTest(bad=bad):
+                result = self.run_in("ball.txt", "-o", "out.ply", *bad)
+                self.assertNotEqual(result.returncode, 0)
+                self.assertIn("error", result.stderr)
+                self.assert_files("ball.txt")
+
+    def test_too_little_memory(self):
+        self.write("plate.txt", PLATE)
+        result = self.run_in("plate.txt", "-e", "0.001", "--max-memory", "8M", "-o", "out.ply")
+        self.assertNotEqual(result.returncode, 0)
+        self.assert_files("plate.txt")
+
+
+if __name__ == "__main__":
+    cli.main()
