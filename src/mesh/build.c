@@ -194,11 +194,10 @@ static csgm_status run(csg_mesh_work *w, csgm_mesh_stats *stats)
     w->stage = CSGM_STAGE_OCTREE;
     w->stage_share = 1;
     if (w->context->limits.timeout_s > 0)
-        w->deadline_s =
-            (w->share  ? w->share->started_s
-             : w->goal ? w->goal->started_s
-                       : w->started_s) +
-            w->context->limits.timeout_s;
+        w->deadline_s = (w->share  ? w->share->started_s
+                         : w->goal ? w->goal->started_s
+                                   : w->started_s) +
+                        w->context->limits.timeout_s;
     csgm_status status = prepare(w);
     if (status == CSGM_OK)
         status = make_mesh(w);
@@ -240,11 +239,8 @@ csgm_status csg_mesh_build_with(csgm_context *context, const csgm_field *field,
                                 const csgm_mesh_options *options, const csg_mesh_share *share,
                                 csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
 {
-    csg_mesh_work work = {.context = context,
-                          .options = options,
-                          .field = field,
-                          .share = share,
-                          .goal = goal};
+    csg_mesh_work work = {
+        .context = context, .options = options, .field = field, .share = share, .goal = goal};
     csgm_status status = run(&work, stats);
     if (status == CSGM_OK)
         *out = work.mesh;

@@ -134,7 +134,8 @@ class Statistics(cli.CliTest):
             "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
                      "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
                      "volume", "bounds"],
-            "quality": ["max_abs_field", "vertices_measured", "min_angle_deg", "degenerate"],
+            "quality": ["max_abs_field", "vertices_measured", "min_angle_deg", "max_aspect",
+                        "degenerate"],
             "time_s": ["parse", "evaluate", "compile", "octree", "mesh", "write", "total"],
         }
         self.assertEqual(set(stats), set(expected))
