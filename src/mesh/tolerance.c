@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "mesh/decimate.h"
 #include "mesh/improve.h"
-#include "mesh/measure.h"
 #include "mesh/refine.h"
 
 /* ---- which resolution -------------------------------------------------------------------------
@@ -118,23 +117,10 @@ static csgm_status improve(csg_remesh *r, csg_mesh_goal *goal)
     return csg_improve(r);
 }
 
-/* From the surface to the mesh as it is. Where the cells are chosen, smaller ones are asked what
- * they see that these do not; if it is too much, they are the next try's. */
-static csgm_status measure(csg_remesh *r, csg_mesh_goal *goal)
-{
-    double cell = goal->chooses ? 0.5 * r->cell : r->cell;
-    csgm_status status = csg_mesh_measure(r, cell, &goal->measured);
-    if (status == CSGM_OK && goal->chooses && goal->measured > goal->error && !goal->is_last)
-        goal->cell_size = cell;
-    return status;
-}
-
 static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
 {
     goal->begun = r->corners.live;
     csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
-    if (status == CSGM_OK && goal->chooses && !goal->is_last && !(goal->cell_size > 0))
-        status = measure(r, goal); /* before the work is done */
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;
     bool thins = goal->error > 0 || goal->share > 0;
@@ -149,8 +135,6 @@ static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
         status = prove(r, goal);
     if (status == CSGM_OK && goal->open && !goal->is_last)
         goal->cell_size = goal->chooses ? 0.6 * r->cell : r->cell;
-    if (status == CSGM_OK && thins && !(goal->cell_size > 0))
-        status = measure(r, goal);
     if (status == CSGM_OK && !(goal->cell_size > 0))
         status = csg_remesh_write_back(r, goal->normals != CSGM_NORMALS_NONE,
                                        goal->normals == CSGM_NORMALS_CREASE);
@@ -160,8 +144,6 @@ static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
 csgm_status csg_mesh_reshape(csg_mesh_work *work)
 {
     csg_remesh remesh;
-    if (work->goal->against)
-        return csg_mesh_measure_against(work);
     double begin_s = csg_clock_now_s();
     csgm_status status = csg_remesh_begin(&remesh, work);
     if (status == CSGM_OK) {

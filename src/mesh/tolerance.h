@@ -20,7 +20,6 @@ typedef struct csg_mesh_goal {
     double started_s;     /* for the time limit of all tries */
     uint32_t tries;       /* before this one */
     bool is_last;
-    const struct csg_remesh *against; /* the mesh is there to measure this one, that is all */
     /* results */
     double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
