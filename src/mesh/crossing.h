@@ -44,7 +44,4 @@ void csg_crossing_update_around(csg_crossing *crossing, uint32_t vertex);
  * What they share, a corner or an edge, does not count. */
 bool csg_crossing_is_made(const csg_crossing *crossing, const csg_crossing_change *change);
 
-/* The distance of a point to the nearest triangle, INFINITY if it is over `most`. */
-double csg_crossing_distance(const csg_crossing *crossing, csg_vec3 at, double most);
-
 #endif
