@@ -95,10 +95,12 @@ double csg_field_level(const csgm_scene *scene, const csg_node *node, uint32_t i
     csg_operand operand = csg_scene_operand(scene, node, index);
     double field = 0.5 - level * csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA];
     field -= level > 0 ? ROOM : 0;
-    field = node->kind == CSG_NODE_UNION ? union_floor(rule, node->child_count, field)
-                                         : intersection_floor(rule, field);
     if (!(field > ROOM))
         return INFINITY;
+    field = node->kind == CSG_NODE_UNION ? union_floor(rule, node->child_count, field)
+                                         : intersection_floor(rule, field);
+    /* where all operands are 0 the union is 0, whatever the floor says of small ones */
+    field = fmax(field, 4 * ROOM);
     if (field >= 0.5)
         return 0;
     return operand.soft ? fmax(0.5 - field, 0) / operand.slope
