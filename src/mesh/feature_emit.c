@@ -153,8 +153,9 @@ static int slot_of(const emitter *e, uint8_t edge)
 
 static void put_index(emitter *e, const csg_fan_corner *corner)
 {
+    const uint32_t *vertex = e->room->vertex[0];
     *e->indices++ = corner->apex ? corner->apex->vertex + (e->split ? corner->sheet : 0)
-                                 : e->room->vertex[0][slot_of(e, corner->edge)];
+                                 : vertex[slot_of(e, corner->edge)];
 }
 
 static void put_position(emitter *e, const csg_fan_corner *corner)

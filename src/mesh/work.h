@@ -72,7 +72,7 @@ typedef struct csg_mesh_work {
 
     csg_feature_store features;
     struct csg_found_item *found; /* of the slab at hand */
-    bool split; /* a vertex for each sheet at a crease */
+    bool split;                   /* a vertex for each sheet at a crease */
 
     csg_cell_tables tables;
     csg_marching_places places;
