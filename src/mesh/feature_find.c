@@ -77,34 +77,27 @@ static bool may_have_edges(const csg_tape *tape, const csg_tape_node *node, ball
     case CSG_OP_SLAB:
         return node->warp != 0;
     case CSG_OP_BOX:
-        return node->warp || to_box_edges(own, q, 3) <= reach;
+        return node->warp || to_box_edges(own, q, 3) <= reach + 2 * own[3];
     case CSG_OP_RECTANGLE:
-        return node->warp || to_box_edges(own, q, 2) <= reach;
+        return node->warp || to_box_edges(own, q, 2) <= reach + 2 * own[2];
     case CSG_OP_FRUSTUM:
-        return node->warp || to_frustum_rims(own, q) <= reach;
+        return node->warp || to_frustum_rims(own, q) <= reach + 2 * own[6];
     default:
         return true;
     }
 }
 
-/* Joins that are smooth wherever their operands are. */
-static bool is_smooth_blend(uint8_t blend)
-{
-    return blend == CSG_BLEND_HYPERBOLA || blend == CSG_BLEND_RECIPROCAL ||
-           blend == CSG_BLEND_OVERBLEND || blend == CSG_BLEND_COSINE ||
-           blend == CSG_BLEND_PARABOLA || blend == CSG_BLEND_RICCI || blend == CSG_BLEND_SOFT_SUM ||
-           blend == CSG_BLEND_PERLIN || blend == CSG_BLEND_SOFT_SET ||
-           blend == CSG_BLEND_SCALE_SET || blend == CSG_BLEND_ARC;
-}
-
+/* More than one leaf: however smooth their blend, a fillet much finer than a cell looks like a
+ * crease, and whether it does must not depend on what else a tape still holds. */
 static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
                             ball b)
 {
+    uint32_t leaves = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const csg_tape_node *node = &nodes[i];
-        bool leaf = csg_op_is_leaf(node->op);
-        if ((node->join && !is_smooth_blend(node->join_blend)) || node->op == CSG_OP_COMBINE ||
-            (leaf && may_have_edges(tape, node, b)))
+        bool leaf = csg_op_is_leaf(nodes[i].op);
+        leaves += leaf;
+        if (leaves > 1 || nodes[i].op == CSG_OP_COMBINE ||
+            (leaf && may_have_edges(tape, &nodes[i], b)))
             return true;
     }
     return false;
