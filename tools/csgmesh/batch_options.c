@@ -19,13 +19,9 @@ static const row rows[] = {
 #define SECTION(title)
 #define OPTION(field, letter, name, kind, argument, commands, help)                                \
     {name, #kind, commands, CLI_OPTION_##field, letter},
-#define LATER(letter, name)
-#define LATER_VALUE(name, value)
 #include "options.def"
 #undef SECTION
 #undef OPTION
-#undef LATER
-#undef LATER_VALUE
 };
 
 enum { ROWS = sizeof rows / sizeof *rows };

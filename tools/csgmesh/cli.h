@@ -37,9 +37,7 @@ void cli_help(void);
 void cli_help_command(cli_command command);
 
 #define COMMAND(NAME, name, operands, summary, examples) int cli_cmd_##name(cli_app *app);
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
 
 #endif

@@ -8,10 +8,8 @@
 
 enum {
 #define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
     ANY_SCENE = (1 << CLI_COMMAND_COUNT) - 1,
     ANY = ANY_SCENE
 };

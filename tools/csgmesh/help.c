@@ -13,10 +13,8 @@ typedef struct command_help {
 
 static const command_help commands[] = {
 #define COMMAND(NAME, name, operands, summary, examples) {#name, operands, summary, examples},
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
 };
 
 typedef struct option_help {
@@ -30,11 +28,9 @@ static const option_help option_rows[] = {
 #define SECTION(title) {.section = title},
 #define OPTION(field, letter_, name_, kind_, argument_, commands_, help_)                          \
     {NULL, name_, #kind_, argument_, help_, letter_, commands_},
-#define LATER(letter, name)
 #include "options.def"
 #undef SECTION
 #undef OPTION
-#undef LATER
 };
 
 enum { OPTION_ROWS = sizeof option_rows / sizeof *option_rows, TEXT_COLUMN = 28, LINE_WIDTH = 92 };

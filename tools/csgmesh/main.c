@@ -14,19 +14,9 @@ static const struct {
     int (*run)(cli_app *app);
 } commands[] = {
 #define COMMAND(NAME, name, operands, summary, examples) {#name, cli_cmd_##name},
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
 };
-
-static const char *const later_commands[] = {
-#define COMMAND(NAME, name, operands, summary, examples)
-#define LATER_COMMAND(name) name,
-#include "commands.def"
-#undef COMMAND
-#undef LATER_COMMAND
-    NULL};
 
 static bool find_command(const char *name, cli_command *command)
 {
@@ -36,14 +26,6 @@ static bool find_command(const char *name, cli_command *command)
             return true;
         }
     }
-    return false;
-}
-
-static bool is_later_command(const char *name)
-{
-    for (size_t i = 0; later_commands[i]; i++)
-        if (strcmp(name, later_commands[i]) == 0)
-            return true;
     return false;
 }
 
@@ -64,10 +46,7 @@ static int help(cli_app *app, const char *topic)
     else if (find_command(topic, &command))
         cli_help_command(command);
     else
-        return cli_usage_error(app, NULL,
-                               is_later_command(topic) ? "'%s' is not available in this version"
-                                                       : "there is no command '%s'",
-                               topic);
+        return cli_usage_error(app, NULL, "there is no command '%s'", topic);
     return cli_finish_stdout(app, CLI_DONE);
 }
 
@@ -104,8 +83,6 @@ static int run(cli_app *app, int argc, char **argv)
     int operand = cli_options_first_operand(argc, argv);
     if (operand < argc && strcmp(argv[operand], "help") == 0)
         return help(app, operand + 1 < argc ? argv[operand + 1] : NULL);
-    if (operand < argc && is_later_command(argv[operand]))
-        return cli_usage_error(app, NULL, "'%s' is not available in this version", argv[operand]);
     int named = find_named(argc, argv, &command);
     if (named > 0) /* the options before it go where those behind it are */
         memmove(argv + 2, argv + 1, (size_t)(named - 1) * sizeof *argv);

@@ -27,8 +27,7 @@ typedef enum kind {
     POINTS,
     REPORT,
     BITS,
-    LEVEL,
-    UNAVAILABLE
+    LEVEL
 } kind;
 
 typedef struct row {
@@ -44,18 +43,14 @@ static const row rows[] = {
 #define SECTION(title)
 #define OPTION(field, letter, name, kind, argument, commands, help)                                \
     {kind, CLI_OPTION_##field, offsetof(cli_options, field), letter, name, argument, commands},
-#define LATER(letter, name) {UNAVAILABLE, CLI_OPTION_COUNT, 0, letter, name, NULL, ANY},
 #include "options.def"
 #undef OPTION
-#undef LATER
 };
 
 static const char *const command_names[] = {
 #define COMMAND(NAME, name, operands, summary, examples) #name,
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
 };
 
 enum { ROW_COUNT = sizeof rows / sizeof *rows };
@@ -312,8 +307,6 @@ static bool set_option(parser *p, const row *option, const char *value)
         return set_bits(p, option, value, slot);
     case LEVEL:
         return set_level(p, option, value, slot);
-    case UNAVAILABLE:
-        break;
     }
     return refuse(p, NULL, "unknown kind of option");
 }
@@ -363,8 +356,7 @@ static bool refuse_unknown(parser *p, const char *name, size_t length)
     size_t count = 0;
     char text[64], hint[128];
     for (size_t i = 0; i < ROW_COUNT; i++)
-        if (rows[i].name && rows[i].kind != UNAVAILABLE &&
-            rows[i].commands & 1 << p->options->command)
+        if (rows[i].name && rows[i].commands & 1 << p->options->command)
             names[count++] = rows[i].name;
     names[count] = NULL;
     snprintf(text, sizeof text, "%.*s", (int)(length < 60 ? length : 60), name);
@@ -381,8 +373,6 @@ static bool check_row(parser *p, const row *option)
 {
     char label[40];
     row_label(option, label, sizeof label);
-    if (option->kind == UNAVAILABLE)
-        return refuse(p, NULL, "%s is not available in this version", label);
     if (!(option->commands & 1 << p->options->command))
         return refuse(p, NULL, "%s does not apply to 'csgmesh %s'", label,
                       command_names[p->options->command]);
@@ -485,12 +475,10 @@ bool cli_options_parse(cli_options *options, cli_command command, int argc, char
 static bool is_command(const char *text)
 {
 #define COMMAND(NAME, name, operands, summary, examples) || strcmp(text, #name) == 0
-#define LATER_COMMAND(name)
     return false
 #include "commands.def"
         ;
 #undef COMMAND
-#undef LATER_COMMAND
 }
 
 /* Some names take a value with one command and none with another: --json. */

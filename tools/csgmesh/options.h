@@ -47,17 +47,14 @@ typedef uint32_t cli_kind_LEVEL; /* 0 .. 10 */
 
 typedef enum cli_command {
 #define COMMAND(NAME, name, operands, summary, examples) CLI_##NAME,
-#define LATER_COMMAND(name)
 #include "commands.def"
 #undef COMMAND
-#undef LATER_COMMAND
     CLI_COMMAND_COUNT
 } cli_command;
 
 typedef enum cli_option_id {
 #define SECTION(title)
 #define OPTION(field, letter, name, kind, argument, commands, help) CLI_OPTION_##field,
-#define LATER(letter, name)
 #include "options.def"
 #undef OPTION
     CLI_OPTION_COUNT
@@ -68,7 +65,6 @@ typedef struct cli_options {
 #include "options.def"
 #undef OPTION
 #undef SECTION
-#undef LATER
     cli_command command;
     cli_list operands;
     bool given[CLI_OPTION_COUNT];

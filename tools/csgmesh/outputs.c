@@ -106,6 +106,9 @@ static int check_collisions(cli_app *app)
     return CLI_DONE;
 }
 
+/* The values of --normals, in their order. */
+enum { AUTO, VERTEX, CREASE, NONE };
+
 /* An option that no output of this run can follow is said to be so, not dropped in silence. */
 static void warn_without_effect(cli_app *app)
 {
@@ -131,7 +134,7 @@ static void warn_without_effect(cli_app *app)
         {CLI_OPTION_draco_bits, draco, "draco-bits", "Draco (.drc, or --draco with .glb)"},
         {CLI_OPTION_draco_level, draco, "draco-level", "Draco (.drc, or --draco with .glb)"},
     };
-    if (options->normals == 2 && !crease) /* crease */
+    if (options->normals == CREASE && !crease)
         cli_console_say(&app->console, CSGM_WARNING, NULL,
                         "--normals crease has no effect: no output is OBJ, glTF or GLB");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
@@ -164,7 +167,6 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
 
 csgm_normals cli_outputs_normals(const cli_options *options)
 {
-    enum { AUTO, VERTEX, CREASE, NONE };
     if (options->normals != AUTO)
         return options->normals == VERTEX   ? CSGM_NORMALS_VERTEX
                : options->normals == CREASE ? CSGM_NORMALS_CREASE
