@@ -104,7 +104,9 @@ csg_blend csg_build_profile(csg_scene_builder *builder, const csg_formula_step *
         return none;
     }
     if (!(k <= 1e12)) {
-        csg_check_fail(builder, CSGM_ERR_SCENE, "how steep the profile gets cannot be told");
+        csg_check_fail(builder, CSGM_ERR_SCENE,
+                       "how steep the profile gets for large x cannot be told; "
+                       "let it end, as max(0, 1 - x) ^ 2 does");
         return none;
     }
     csg_formula formula = {.count = count, .lipschitz = k, .bounds = all, .profile = *out};
