@@ -34,6 +34,28 @@ static inline float csg_lattice_coordinate(const csg_lattice *lattice, int axis,
     return (float)(origin[axis] + (double)index * lattice->cell_size);
 }
 
+/* The cell that a point of the field's frame lies in. False: beyond the lattice, or no number. */
+static inline bool csg_lattice_cell_of(const csg_lattice *lattice, const float at[3],
+                                       uint32_t cell[3])
+{
+    const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
+    for (int axis = 0; axis < 3; axis++) {
+        double place = floor(((double)at[axis] - origin[axis]) / lattice->cell_size);
+        if (!(place >= 0 && place < lattice->cells[axis]))
+            return false;
+        cell[axis] = (uint32_t)place;
+    }
+    return true;
+}
+
+/* Where open addressing of blocks by their coordinates begins; slot_count is a power of two. */
+static inline size_t csg_lattice_home_slot(const uint32_t block[3], size_t slot_count)
+{
+    uint64_t key = (uint64_t)block[0] | (uint64_t)block[1] << 21 | (uint64_t)block[2] << 42;
+    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing: the high bits are well mixed */
+    return (size_t)(key >> 20) & (slot_count - 1);
+}
+
 /* Largest absolute coordinate of a lattice point in the field's frame. */
 double csg_lattice_extent(const csg_lattice *lattice);
 

@@ -143,6 +143,9 @@ void csg_mesh_number_features(csg_mesh_work *w)
     }
 }
 
+/* How often what runs on one thread asks whether to stop. */
+enum { FEATURES_PER_QUESTION = 1024, BLOCKS_PER_QUESTION = 64 };
+
 /* ---- once all are found ------------------------------------------------------------------------
  */
 
@@ -164,7 +167,7 @@ static bool flip_item(void *user, uint32_t worker, size_t item)
 
 /* Apexes out of order between their neighbours, in the order of the features, so that the outcome
  * does not depend on threads: there are few. Each sees where those before it have gone. */
-static void order_features(csg_mesh_work *w, csg_probe *probe)
+static bool order_features(csg_mesh_work *w, csg_feature_probe *probe)
 {
     enum { ROUNDS = 3 };
     csg_feature_store *store = &w->features;
@@ -173,16 +176,20 @@ static void order_features(csg_mesh_work *w, csg_probe *probe)
         moved = 0;
         for (uint32_t i = 0; i < store->count; i++) {
             csg_feature fresh;
+            if (i % FEATURES_PER_QUESTION == 0 && csg_mesh_should_stop(w))
+                return false;
             if (!csg_feature_move(store, i, probe, &fresh))
                 continue;
             store->features[i] = fresh;
             moved++;
         }
     }
+    return true;
 }
 
 /* Whether the corners of a cell differ in sign, or are not known. */
-static bool has_surface(const csg_lattice *lattice, const uint32_t lowest[3], csg_probe *probe)
+static bool has_surface(const csg_lattice *lattice, const uint32_t lowest[3],
+                        csg_feature_probe *probe)
 {
     float x[8], y[8], z[8], f[8], g[3][8];
     unsigned inside = 0;
@@ -191,7 +198,7 @@ static bool has_surface(const csg_lattice *lattice, const uint32_t lowest[3], cs
         y[c] = csg_lattice_coordinate(lattice, 1, lowest[1] + (c >> 1 & 1));
         z[c] = csg_lattice_coordinate(lattice, 2, lowest[2] + (c >> 2));
     }
-    csg_probe_points(probe, x, y, z, 8, f, (float *const[3]){g[0], g[1], g[2]});
+    csg_feature_probe_points(probe, x, y, z, 8, f, (float *const[3]){g[0], g[1], g[2]});
     for (unsigned c = 0; c < 8; c++) {
         if (f[c] != f[c])
             return true;
@@ -201,10 +208,12 @@ static bool has_surface(const csg_lattice *lattice, const uint32_t lowest[3], cs
 }
 
 /* Apexes that lie where others do become smooth. */
-static void part_features(csg_mesh_work *w, csg_probe *probe)
+static bool part_features(csg_mesh_work *w, csg_feature_probe *probe)
 {
     csg_feature_store *store = &w->features;
-    for (uint32_t b = 0; b < store->block_count; b++)
+    for (uint32_t b = 0; b < store->block_count; b++) {
+        if (b % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(w))
+            return false;
         for (uint32_t k = 0; k < store->blocks[b].count; k++) {
             uint32_t lowest[3], i = store->blocks[b].first + k;
             bool stray = csg_feature_is_stray(store, b, i, &w->lattice, lowest);
@@ -212,23 +221,28 @@ static void part_features(csg_mesh_work *w, csg_probe *probe)
                           has_surface(&w->lattice, lowest, probe)))
                 csg_feature_demote(store, &w->tables, &store->features[i]);
         }
+    }
+    return true;
 }
 
-static void settle_features(csg_mesh_work *w)
+/* False: asked to stop. */
+static bool settle_features(csg_mesh_work *w)
 {
     enum { ROUNDS = 8 };
     csg_feature_store *store = &w->features;
-    csg_probe probe = csg_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
-    order_features(w, &probe);
-    part_features(w, &probe);
+    csg_feature_probe probe =
+        csg_feature_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
+    bool go_on = order_features(w, &probe) && part_features(w, &probe);
     size_t changed = 1;
-    for (int round = 0; round < ROUNDS && changed; round++) {
-        while (csg_feature_settle(store, &w->tables))
-            continue;
+    for (int round = 0; round < ROUNDS && changed && go_on; round++) {
+        while (go_on && csg_feature_settle(store, &w->tables))
+            go_on = !csg_mesh_should_stop(w);
         csg_pool_run(w->context->pool, store->block_count, flip_item, NULL, w);
         changed = csg_feature_uncross(store, &w->tables, &w->lattice);
+        go_on = go_on && !csg_mesh_should_stop(w);
     }
     w->workers[0].point_evaluations += probe.evaluations;
+    return go_on;
 }
 
 csgm_status csg_mesh_link_features(csg_mesh_work *w)
@@ -238,6 +252,5 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
     if (!csg_feature_store_index(&w->features))
         return csg_context_no_memory(w->context);
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
-    settle_features(w);
-    return CSGM_OK;
+    return settle_features(w) ? CSGM_OK : csg_mesh_why_stopped(w);
 }

@@ -7,12 +7,12 @@
  * A crease is found by what the gradient does, not by what made it: where it jumps along a segment
  * however short the rest of it. An apex is the point where the tangent planes meet of the sheets
  * around it, taken ever nearer to it, so it answers to the field itself: edges of primitives, of
- * operators, of polyhedra and of expressions alike (find.c, solve.c).
+ * operators, of polyhedra and of expressions alike (feature_find, feature_solve).
  *
  * Whether a polygon has an apex depends on its block alone; flips on two neighbours, so features
- * are kept for the whole mesh, in memory of the length of its creases (store.c). A polygon with
- * an apex has two triangles more than without, flips change no number: blocks can be counted and
- * filled in any order.
+ * are kept for the whole mesh, in memory of the length of its creases (feature_store). A polygon
+ * with an apex has two triangles more than without, flips change no number: blocks can be counted
+ * and filled in any order.
  */
 #ifndef CSG_MESH_FEATURE_H
 #define CSG_MESH_FEATURE_H
@@ -110,6 +110,7 @@ typedef struct csg_feature_room {
     uint64_t smooth, evaluations;
 } csg_feature_room;
 
+void csg_feature_room_init(csg_feature_room *room);
 void csg_feature_room_release(csg_feature_room *room, csg_memory *memory);
 /* Adds the block's features to the room's. False: out of memory. */
 bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,

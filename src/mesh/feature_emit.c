@@ -65,13 +65,6 @@ static csg_tape tape_of_cell(const csg_marching *m, const csg_block *block, cons
     return tape;
 }
 
-/* The mean of count values each of 'channels' numbers, to the place of the first. */
-static void mean_of(const uint32_t *sums, uint32_t count, int channels, uint32_t *out)
-{
-    for (int c = 0; c < channels; c++)
-        out[c] = (sums[c] + count / 2) / count;
-}
-
 /* Colours and materials of an apex: of each sheet, or their mean. */
 static void paint(const csg_marching *m, const csg_block *block, const csg_feature *f, bool split,
                   uint32_t vertex, csg_marching_room *room, const csg_marching_output *out,
@@ -93,7 +86,7 @@ static void paint(const csg_marching *m, const csg_block *block, const csg_featu
         csg_marching_colors(m, &tape, e, channels, color, scratch, scratch_floats);
     if (out->materials)
         csg_marching_materials(m, &tape, e, channels, material, scratch, scratch_floats);
-    uint32_t sums[6] = {0}, mean[6];
+    uint32_t sums[6] = {0}; /* over the sheets, then their means */
     for (uint32_t k = 0; k < e->count; k++) {
         for (uint32_t c = 0; c < 6; c++)
             sums[c] += c < 4 ? color[4 * k + c] : material[2 * k + c - 4];
@@ -102,11 +95,12 @@ static void paint(const csg_marching *m, const csg_block *block, const csg_featu
         if (split && out->materials)
             memcpy(out->materials + 2 * (vertex + k), material + 2 * k, 2 * sizeof *material);
     }
-    mean_of(sums, e->count, 6, mean);
+    for (int c = 0; c < 6; c++)
+        sums[c] = (sums[c] + e->count / 2) / e->count;
     for (uint32_t c = 0; c < 4 && !split && out->colors; c++)
-        out->colors[4 * vertex + c] = (uint8_t)mean[c];
+        out->colors[4 * vertex + c] = (uint8_t)sums[c];
     for (uint32_t c = 0; c < 2 && !split && out->materials; c++)
-        out->materials[2 * vertex + c] = (uint16_t)mean[4 + c];
+        out->materials[2 * vertex + c] = (uint16_t)sums[4 + c];
 }
 
 void csg_feature_vertices(const csg_marching *m, const csg_block *block,

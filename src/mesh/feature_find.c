@@ -103,7 +103,8 @@ static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, ui
     return false;
 }
 
-static bool may_crease(const csg_marching *m, const csg_block *block, const csg_probe *probe)
+static bool may_crease(const csg_marching *m, const csg_block *block,
+                       const csg_feature_probe *probe)
 {
     const csg_tape *tape = &m->field->tape;
     ball b = {.radius = 0.8661f * (float)(E * m->lattice->cell_size)}; /* sqrt(3) / 2 */
@@ -123,7 +124,7 @@ static bool may_crease(const csg_marching *m, const csg_block *block, const csg_
 /* ---- vertices -------------------------------------------------------------------------------- */
 
 /* Gradients at the vertices in room->gradient, by slot. */
-static void take_gradients(csg_feature_room *room, csg_probe *probe)
+static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
 {
     const csg_slots *slots = &room->slots;
     for (uint32_t i = 0; i < slots->count; i++) {
@@ -131,7 +132,7 @@ static void take_gradients(csg_feature_room *room, csg_probe *probe)
         room->x[i] = p[0], room->y[i] = p[1], room->z[i] = p[2];
     }
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_probe_points(probe, room->x, room->y, room->z, slots->count, NULL, g);
+    csg_feature_probe_points(probe, room->x, room->y, room->z, slots->count, NULL, g);
     for (uint32_t i = 0; i < slots->count; i++)
         for (int axis = 0; axis < 3; axis++)
             room->gradient[slots->slot[i]][axis] = room->g[axis][i];
@@ -231,7 +232,7 @@ static void point_along(const csg_feature_room *room, const csg_segment *s, floa
 }
 
 /* One halving of all active segments. */
-static void halve(csg_feature_room *room, csg_probe *probe)
+static void halve(csg_feature_room *room, csg_feature_probe *probe)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < room->segment_count; i++) {
@@ -244,7 +245,7 @@ static void halve(csg_feature_room *room, csg_probe *probe)
         room->which[count++] = i;
     }
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_probe_points(probe, room->x, room->y, room->z, count, NULL, g);
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, NULL, g);
     for (uint32_t i = 0; i < count; i++) {
         csg_segment *s = &room->segments[room->which[i]];
         const float middle[3] = {g[0][i], g[1][i], g[2][i]};
@@ -258,25 +259,29 @@ static void halve(csg_feature_room *room, csg_probe *probe)
     }
 }
 
-/* Where the tangent planes on both sides of the jump meet, near it: for all that have one. */
-static void locate_creases(csg_feature_room *room, csg_probe *probe)
+/* Both sides of the jumps from segment `first` on, as many as there is room for: two points each.
+ * Returns the first segment that is left. */
+static uint32_t beside_jumps(csg_feature_room *room, uint32_t first, uint32_t *count)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < room->segment_count; i++) {
+    *count = 0;
+    uint32_t i = first;
+    for (; i < room->segment_count && *count + 2 <= CSG_FEATURE_SEGMENTS; i++) {
         const csg_segment *s = &room->segments[i];
-        if (!s->active)
-            continue;
-        for (int end = 0; end < 2; end++) {
+        for (int end = 0; s->active && end < 2; end++) {
             float p[3];
             point_along(room, s, end ? s->high : s->low, p);
-            room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
-            room->which[count++] = i;
-            if (count == CSG_FEATURE_SEGMENTS)
-                return;
+            room->x[*count] = p[0], room->y[*count] = p[1], room->z[*count] = p[2];
+            room->which[(*count)++] = i;
         }
     }
+    return i;
+}
+
+/* Where the tangent planes on both sides of the jump meet, near it: of those at hand. */
+static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_probe *probe)
+{
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
     for (uint32_t i = 0; i + 1 < count; i += 2) {
         csg_segment *s = &room->segments[room->which[i]];
         csg_plane planes[2];
@@ -293,11 +298,14 @@ static void locate_creases(csg_feature_room *room, csg_probe *probe)
     }
 }
 
-static void find_creases(csg_feature_room *room, csg_probe *probe)
+static void find_creases(csg_feature_room *room, csg_feature_probe *probe)
 {
     for (int step = 0; step < HALVINGS; step++)
         halve(room, probe);
-    locate_creases(room, probe);
+    for (uint32_t next = 0, count; next < room->segment_count;) {
+        next = beside_jumps(room, next, &count);
+        locate_creases(room, count, probe);
+    }
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -320,7 +328,7 @@ static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_bloc
 bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats)
 {
-    csg_probe probe = csg_probe_of(m, block, scratch, scratch_floats);
+    csg_feature_probe probe = csg_feature_probe_of(m, block, scratch, scratch_floats);
     if (!may_crease(m, block, &probe))
         return true;
     room->evaluations +=
@@ -336,6 +344,16 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
             return false;
     room->evaluations += probe.evaluations;
     return end_block(room, memory, block, before);
+}
+
+/* The large arrays are filled before they are read, but for whole vectors of edges. */
+void csg_feature_room_init(csg_feature_room *room)
+{
+    memset(&room->edges, 0, sizeof room->edges);
+    room->features = NULL;
+    room->blocks = NULL;
+    room->count = room->capacity = room->block_count = room->block_capacity = 0;
+    room->smooth = room->evaluations = 0;
 }
 
 void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)

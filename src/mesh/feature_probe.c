@@ -8,10 +8,10 @@
 
 enum { WHOLE_BLOCK = CSG_OCTANTS, WHOLE_FIELD, UNKNOWN, DOMAINS };
 
-csg_probe csg_probe_of(const csg_marching *m, const csg_block *block, float *scratch,
-                       size_t scratch_floats)
+csg_feature_probe csg_feature_probe_of(const csg_marching *m, const csg_block *block,
+                                       float *scratch, size_t scratch_floats)
 {
-    csg_probe probe = {
+    csg_feature_probe probe = {
         .marching = m, .block = block, .scratch = scratch, .scratch_floats = scratch_floats};
     for (int axis = 0; axis < 3 && block; axis++)
         for (uint32_t i = 0; i < CSG_BLOCK_SAMPLES; i++)
@@ -20,7 +20,7 @@ csg_probe csg_probe_of(const csg_marching *m, const csg_block *block, float *scr
     return probe;
 }
 
-static int domain_of(const csg_probe *p, float x, float y, float z)
+static int domain_of(const csg_feature_probe *p, float x, float y, float z)
 {
     const float at[3] = {x, y, z};
     unsigned octant = 0;
@@ -30,7 +30,8 @@ static int domain_of(const csg_probe *p, float x, float y, float z)
         inside = inside && at[axis] >= line[0] && at[axis] <= line[CSG_BLOCK_EDGE];
         octant |= (unsigned)(at[axis] > line[CSG_PART_EDGE]) << axis;
     }
-    int far = p->marching->field->tape.count <= CSG_PROBE_MOST_NODES ? WHOLE_FIELD : UNKNOWN;
+    int far =
+        p->marching->field->tape.count <= CSG_FEATURE_PROBE_MOST_NODES ? WHOLE_FIELD : UNKNOWN;
     if (!inside)
         return far;
     if (!p->block->parts)
@@ -38,7 +39,7 @@ static int domain_of(const csg_probe *p, float x, float y, float z)
     return p->block->parts[octant].state == CSG_CELL_SURFACE ? (int)octant : far;
 }
 
-static csg_tape tape_of(const csg_probe *p, int domain)
+static csg_tape tape_of(const csg_feature_probe *p, int domain)
 {
     csg_tape tape = p->marching->field->tape;
     if (domain == WHOLE_BLOCK) {
@@ -56,7 +57,8 @@ typedef struct gathered {
     uint32_t from[CSG_BATCH];
 } gathered;
 
-static void ask(csg_probe *p, int domain, gathered *at, size_t count, float *f, float *const g[3])
+static void ask(csg_feature_probe *p, int domain, gathered *at, size_t count, float *f,
+                float *const g[3])
 {
     csg_tape tape = tape_of(p, domain);
     const csg_kernel *kernel = p->marching->kernel;
@@ -87,8 +89,8 @@ static void unknown(const gathered *at, size_t count, float *f, float *const g[3
 }
 
 /* Points [first, end) of one domain, at most a batch. */
-static void probe_batch(csg_probe *p, const float *x, const float *y, const float *z, size_t first,
-                        size_t end, float *f, float *const g[3])
+static void probe_batch(csg_feature_probe *p, const float *x, const float *y, const float *z,
+                        size_t first, size_t end, float *f, float *const g[3])
 {
     uint8_t domain[CSG_BATCH];
     unsigned met = 0;
@@ -114,8 +116,8 @@ static void probe_batch(csg_probe *p, const float *x, const float *y, const floa
     }
 }
 
-void csg_probe_points(csg_probe *p, const float *x, const float *y, const float *z, size_t count,
-                      float *f, float *const g[3])
+void csg_feature_probe_points(csg_feature_probe *p, const float *x, const float *y, const float *z,
+                              size_t count, float *f, float *const g[3])
 {
     for (size_t i = 0; i < count; i += CSG_BATCH)
         probe_batch(p, x, y, z, i, i + CSG_BATCH < count ? i + CSG_BATCH : count, f, g);

@@ -9,23 +9,23 @@
 
 /* Beyond this many nodes the whole tape is too slow to ask: points outside the block are not known
  * then, pruned or not. */
-enum { CSG_PROBE_MOST_NODES = 4096 };
+enum { CSG_FEATURE_PROBE_MOST_NODES = 4096 };
 
-typedef struct csg_probe {
+typedef struct csg_feature_probe {
     const csg_marching *marching;
     const csg_block *block;
     float line[3][CSG_BLOCK_SAMPLES]; /* the block's lattice coordinates */
     float *scratch;
     size_t scratch_floats;
     uint64_t evaluations;
-} csg_probe;
+} csg_feature_probe;
 
 /* block NULL: by the whole tape alone. */
-csg_probe csg_probe_of(const csg_marching *marching, const csg_block *block, float *scratch,
-                       size_t scratch_floats);
+csg_feature_probe csg_feature_probe_of(const csg_marching *marching, const csg_block *block,
+                                       float *scratch, size_t scratch_floats);
 
 /* f[i] and g[0..2][i] at count points; f is NaN where the field is not known. f may be NULL. */
-void csg_probe_points(csg_probe *probe, const float *x, const float *y, const float *z,
-                      size_t count, float *f, float *const g[3]);
+void csg_feature_probe_points(csg_feature_probe *probe, const float *x, const float *y,
+                              const float *z, size_t count, float *f, float *const g[3]);
 
 #endif

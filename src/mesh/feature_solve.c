@@ -147,7 +147,8 @@ static bool is_still(const polygon *p, const apex *a, int sheet, const double *g
 }
 
 /* Asks for all sheets of all starts at once. */
-static void sample_sheets(const polygon *p, apex *apexes, double off, bool last, csg_probe *probe)
+static void sample_sheets(const polygon *p, apex *apexes, double off, bool last,
+                          csg_feature_probe *probe)
 {
     enum { MOST = MOST_STARTS * MOST_SHEETS };
     float x[MOST] = {0}, y[MOST] = {0}, z[MOST] = {0}, f[MOST], gx[MOST], gy[MOST], gz[MOST];
@@ -164,7 +165,7 @@ static void sample_sheets(const polygon *p, apex *apexes, double off, bool last,
             owner[n] = &apexes[k];
             sheet[n] = s;
         }
-    csg_probe_points(probe, x, y, z, n, f, g);
+    csg_feature_probe_points(probe, x, y, z, n, f, g);
     /* beyond a cell's edge from the surface a pruned tape knows the sign alone */
     const double band = 0.9 * probe->marching->lattice->cell_size;
     for (size_t i = 0; i < n; i++) {
@@ -225,7 +226,7 @@ static bool near_polygon(const polygon *p, const apex *a, double cell)
     return dot(way, way) <= REACH * REACH * cell * cell; /* false for NaN */
 }
 
-static void improve(const polygon *p, apex *apexes, double cell, csg_probe *probe)
+static void improve(const polygon *p, apex *apexes, double cell, csg_feature_probe *probe)
 {
     static const double off[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
     for (int step = 0; step < STEPS; step++) {
@@ -350,8 +351,8 @@ static bool cut_sheets(const polygon *p, const apex *a, const csg_cell_tables *t
 }
 
 /* The first start whose apex holds good; NULL: none. */
-static const apex *choose(const polygon *p, const apex *apexes, double cell, csg_probe *probe,
-                          csg_feature *out)
+static const apex *choose(const polygon *p, const apex *apexes, double cell,
+                          csg_feature_probe *probe, csg_feature *out)
 {
     float x[MOST_STARTS], y[MOST_STARTS], z[MOST_STARTS], f[MOST_STARTS], g[3][MOST_STARTS];
     float *const gradient[3] = {g[0], g[1], g[2]};
@@ -359,7 +360,7 @@ static const apex *choose(const polygon *p, const apex *apexes, double cell, csg
         const double *at = apexes[k].lost ? p->middle : apexes[k].at;
         x[k] = (float)at[0], y[k] = (float)at[1], z[k] = (float)at[2];
     }
-    csg_probe_points(probe, x, y, z, (size_t)p->start_count, f, gradient);
+    csg_feature_probe_points(probe, x, y, z, (size_t)p->start_count, f, gradient);
     double zero = ZERO * cell + 4 * (double)probe->marching->noise;
     for (int k = 0; k < p->start_count; k++)
         if (!apexes[k].lost && fabs((double)f[k]) <= zero && sheets_differ(p, &apexes[k]) &&
@@ -492,7 +493,7 @@ static void record(const csg_found_loop *loop, const polygon *p, const apex *a, 
 
 /* False where the polygon has no apex. */
 static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *loop, polygon *p,
-                          csg_probe *probe, csg_feature *out)
+                          csg_feature_probe *probe, csg_feature *out)
 {
     double cell = probe->marching->lattice->cell_size;
     apex apexes[MOST_STARTS];
@@ -512,11 +513,11 @@ static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *lo
     return best != NULL;
 }
 
-bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_probe *probe,
+bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
                        csg_memory *memory)
 {
     polygon p;
-    if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 2,
+    if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
                             sizeof(csg_feature)))
         return false;
     bool good = mark_sheets(room, loop, &p);
@@ -561,7 +562,7 @@ static void restore(const csg_feature *f, polygon *p, apex *a)
                                     -f->normal[k][1], -f->normal[k][2]);
 }
 
-bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_probe *probe,
+bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_feature_probe *probe,
                       csg_feature *out)
 {
     const csg_feature *f = &store->features[index], *beside[2];

@@ -18,12 +18,12 @@ csg_plane csg_plane_at(float x, float y, float z, float f, float gx, float gy, f
 bool csg_planes_meet(const csg_plane *planes, int count, double x[3]);
 
 /* Adds the features of a loop, none where no apex holds good. False: out of memory. */
-bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_probe *probe,
+bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
                        csg_memory *memory);
 
 /* Where feature `index` lies on a crease and not between its neighbours: *out is the same between
  * them. False: it stays. Writes nothing of the store. */
-bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_probe *probe,
+bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_feature_probe *probe,
                       csg_feature *out);
 
 #endif

@@ -32,13 +32,6 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
     return true;
 }
 
-static size_t home_slot(const csg_feature_store *store, const uint32_t at[3])
-{
-    uint64_t key = (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42;
-    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing, as in marching.c */
-    return (size_t)(key >> 20) & (store->slot_count - 1);
-}
-
 bool csg_feature_store_index(csg_feature_store *store)
 {
     size_t count = 16;
@@ -50,7 +43,7 @@ bool csg_feature_store_index(csg_feature_store *store)
     store->slot_count = count;
     memset(store->slots, 0, count * sizeof(uint32_t));
     for (size_t i = 0; i < store->block_count; i++) {
-        size_t slot = home_slot(store, store->blocks[i].at);
+        size_t slot = csg_lattice_home_slot(store->blocks[i].at, count);
         while (store->slots[slot])
             slot = (slot + 1) & (count - 1);
         store->slots[slot] = (uint32_t)i + 1;
@@ -63,7 +56,7 @@ const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
 {
     if (!store->block_count)
         return NULL;
-    for (size_t slot = home_slot(store, at); store->slots[slot];
+    for (size_t slot = csg_lattice_home_slot(at, store->slot_count); store->slots[slot];
          slot = (slot + 1) & (store->slot_count - 1)) {
         const csg_feature_block *block = &store->blocks[store->slots[slot] - 1];
         if (!memcmp(block->at, at, sizeof block->at))
@@ -305,15 +298,11 @@ static bool is_linked(const csg_feature_store *store, const csg_feature *f, uint
 static bool cell_of_apex(const csg_feature *f, const csg_lattice *lattice, uint32_t at[3],
                          uint16_t *cell)
 {
-    const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
     uint32_t c[3];
-    for (int axis = 0; axis < 3; axis++) {
-        double place = floor(((double)f->at[axis] - origin[axis]) / lattice->cell_size);
-        if (!(place >= 0 && place < lattice->cells[axis]))
-            return false;
-        c[axis] = (uint32_t)place;
+    if (!csg_lattice_cell_of(lattice, f->at, c))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
         at[axis] = c[axis] / E;
-    }
     *cell = (uint16_t)((c[2] % E * E + c[1] % E) * E + c[0] % E);
     return true;
 }

@@ -13,13 +13,6 @@ enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 /* ---- finding blocks ---------------------------------------------------------------------------
  */
 
-static size_t home_slot(const csg_block_index *index, const uint32_t at[3])
-{
-    uint64_t key = (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42;
-    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing: the high bits are well mixed */
-    return (size_t)(key >> 20) & (index->slot_count - 1);
-}
-
 bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block *const *blocks,
                           size_t count)
 {
@@ -31,7 +24,7 @@ bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block 
         return false;
     memset(index->slots, 0, index->slot_count * sizeof(uint32_t));
     for (size_t i = 0; i < count; i++) {
-        size_t slot = home_slot(index, blocks[i]->at);
+        size_t slot = csg_lattice_home_slot(blocks[i]->at, index->slot_count);
         while (index->slots[slot])
             slot = (slot + 1) & (index->slot_count - 1);
         index->slots[slot] = (uint32_t)i + 1;
@@ -49,7 +42,7 @@ void csg_block_index_release(csg_block_index *index)
 const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
                                       const uint32_t at[3])
 {
-    for (size_t slot = home_slot(index, at); index->slots[slot];
+    for (size_t slot = csg_lattice_home_slot(at, index->slot_count); index->slots[slot];
          slot = (slot + 1) & (index->slot_count - 1)) {
         const csg_block *block = blocks[index->slots[slot] - 1];
         if (!memcmp(block->at, at, sizeof block->at))

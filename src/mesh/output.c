@@ -261,7 +261,7 @@ csgm_status csg_mesh_create_workers(csg_mesh_work *w)
             w->workers[i].features = csg_memory_alloc(memory, sizeof(csg_feature_room));
             if (!w->workers[i].features)
                 return csg_context_no_memory(w->context);
-            memset(w->workers[i].features, 0, sizeof(csg_feature_room));
+            csg_feature_room_init(w->workers[i].features);
         }
     }
     return CSGM_OK;

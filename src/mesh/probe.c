@@ -51,19 +51,6 @@ void csg_probe_release(csg_probe *probe)
 /* ---- which tape -------------------------------------------------------------------------------
  */
 
-/* The lattice cell of a point; false: it lies outside. */
-static bool cell_of(const csg_lattice *lattice, const float at[3], uint32_t cell[3])
-{
-    const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
-    for (int axis = 0; axis < 3; axis++) {
-        double place = floor(((double)at[axis] - origin[axis]) / lattice->cell_size);
-        if (!(place >= 0 && place < lattice->cells[axis]))
-            return false;
-        cell[axis] = (uint32_t)place;
-    }
-    return true;
-}
-
 static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
 {
     const csg_marching *m = probe->marching;
@@ -71,7 +58,7 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
     uint32_t cell[3];
     room->nodes[i] = m->field->tape.nodes;
     room->node_count[i] = m->field->tape.count;
-    if (!cell_of(m->lattice, at, cell))
+    if (!csg_lattice_cell_of(m->lattice, at, cell))
         return;
     const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,
                                cell[2] / CSG_BLOCK_EDGE};
