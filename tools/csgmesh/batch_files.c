@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "interrupt.h"
+#include "textfile.h"
 
 bool batch_make_folders(const char *path, bool whole)
 {
@@ -74,20 +75,6 @@ static bool open_temporary(temporary *t, const char *target)
     return false;
 }
 
-static bool write_fully(int fd, const char *bytes, size_t count)
-{
-    while (count > 0) {
-        ssize_t written = write(fd, bytes, count);
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written < 0)
-            return false;
-        bytes += written;
-        count -= (size_t)written;
-    }
-    return true;
-}
-
 /* Closes, and gives the file its name if all went well; errno is that of the first failure. */
 static bool finish(temporary *t, bool good, const char *target)
 {
@@ -110,7 +97,7 @@ static bool finish(temporary *t, bool good, const char *target)
 bool batch_write_small(const char *path, const char *text, size_t length)
 {
     temporary t;
-    return open_temporary(&t, path) && finish(&t, write_fully(t.fd, text, length), path);
+    return open_temporary(&t, path) && finish(&t, cli_write_fully(t.fd, text, length), path);
 }
 
 char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
@@ -150,7 +137,7 @@ static bool pour(int from, int to, batch_digest *digest)
         if (count == 0)
             break;
         batch_hash_add(&hasher, buffer, (size_t)count);
-        if (!write_fully(to, buffer, (size_t)count))
+        if (!cli_write_fully(to, buffer, (size_t)count))
             return false;
     }
     *digest = batch_hash_end(&hasher);

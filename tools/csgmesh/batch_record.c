@@ -18,6 +18,7 @@
 #include <time.h>
 
 #include "batch_names.h"
+#include "textfile.h"
 
 batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
 {
@@ -163,15 +164,13 @@ static void put_record(FILE *out, batch_arena *arena, const batch_job *job, cons
 
 const char *batch_record_print(batch_arena *arena, const batch_job *job, const batch_record *record)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    if (out)
-        put_record(out, arena, job, record);
-    bool good = out && fclose(out) == 0;
-    const char *copy = good ? batch_strndup(arena, text, length) : NULL;
+    cli_text record_text;
+    if (cli_text_open(&record_text))
+        put_record(record_text.out, arena, job, record);
+    char *text = cli_text_close(&record_text);
+    const char *copy = text ? batch_strndup(arena, text, record_text.length) : NULL;
+    arena->failed = arena->failed || !text;
     free(text);
-    arena->failed = arena->failed || !good;
     return copy;
 }
 

@@ -3,7 +3,6 @@
  */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -126,19 +125,10 @@ static int write_statistics(cli_app *app, const cli_work *work, run_report *repo
     if (status != CSGM_OK)
         return cli_exit_status(status);
     report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view, &report->vertices_measured);
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    if (out)
-        put_statistics(out, app, work, report);
-    if (!out || fclose(out) != 0) {
-        free(text);
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-        return CLI_TROUBLE;
-    }
-    int exit_status = cli_write_text(app, app->options.stats, text, length);
-    free(text);
-    return exit_status;
+    cli_text text;
+    if (cli_text_open(&text))
+        put_statistics(text.out, app, work, report);
+    return cli_text_write(app, &text, app->options.stats);
 }
 
 /* ---- the run --------------------------------------------------------------------------- */

@@ -162,19 +162,10 @@ static void put_stats(FILE *out, const cli_app *app, const csgm_render_options *
 static int write_stats(cli_app *app, const csgm_render_options *options, uint64_t pictures,
                        const csgm_render_stats *stats)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    if (out)
-        put_stats(out, app, options, pictures, stats);
-    if (!out || fclose(out) != 0) {
-        free(text);
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-        return CLI_TROUBLE;
-    }
-    int status = cli_write_text(app, app->options.stats, text, length);
-    free(text);
-    return status;
+    cli_text text;
+    if (cli_text_open(&text))
+        put_stats(text.out, app, options, pictures, stats);
+    return cli_text_write(app, &text, app->options.stats);
 }
 
 /* ---- pictures -------------------------------------------------------------------------- */

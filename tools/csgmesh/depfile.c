@@ -80,19 +80,10 @@ static void put_rules(FILE *out, const cli_list *targets, const cli_list *depend
 int cli_depfile_put(cli_app *app, const char *path, const cli_list *targets,
                     const cli_list *dependencies)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    if (out)
-        put_rules(out, targets, dependencies);
-    if (!out || fclose(out) != 0) {
-        free(text);
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-        return CLI_TROUBLE;
-    }
-    int status = cli_write_text(app, path, text, length);
-    free(text);
-    return status;
+    cli_text text;
+    if (cli_text_open(&text))
+        put_rules(text.out, targets, dependencies);
+    return cli_text_write(app, &text, path);
 }
 
 int cli_depfile_write(cli_app *app, const csgm_scene *scene)

@@ -3,11 +3,10 @@
  * for any number of threads.
  */
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "diff_report.h"
 #include "facts.h"
+#include "markup.h"
 #include "textfile.h"
 
 static const char *const outcomes[] = {"same", "different", "only in A", "only in B", "failed"};
@@ -167,34 +166,17 @@ static void put_json(FILE *out, const diff_results *results)
 
 /* ---- JUnit ----------------------------------------------------------------------------- */
 
-/* What XML cannot hold becomes a question mark. */
-static void put_escaped(FILE *out, const char *text)
-{
-    for (; *text; text++) {
-        unsigned char c = (unsigned char)*text;
-        const char *entity = c == '&'   ? "&amp;"
-                             : c == '<' ? "&lt;"
-                             : c == '>' ? "&gt;"
-                             : c == '"' ? "&quot;"
-                                        : NULL;
-        if (entity)
-            fputs(entity, out);
-        else
-            fputc(c < 0x20 || c == 0x7F ? '?' : c, out);
-    }
-}
-
 static void put_case(FILE *out, const diff_result *result)
 {
     char reason[512];
     diff_explain(result, reason, sizeof reason);
     fputs("  <testcase classname=\"csgmesh diff\" name=\"", out);
-    put_escaped(out, result->a ? result->a : result->b);
+    cli_put_markup(out, result->a ? result->a : result->b, CLI_XML);
     fputs("\">", out);
     if (result->outcome != DIFF_SAME && !result->is_updated) {
         const char *kind = result->outcome == DIFF_FAILED ? "error" : "failure";
         fprintf(out, "<%s message=\"", kind);
-        put_escaped(out, reason);
+        cli_put_markup(out, reason, CLI_XML);
         fprintf(out, "\"/>");
     }
     fputs("</testcase>\n", out);
@@ -220,18 +202,10 @@ static void put_junit(FILE *out, const diff_results *results)
 static int write_with(cli_app *app, const char *path, const diff_results *results,
                       void (*put)(FILE *out, const diff_results *results))
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    if (out)
-        put(out, results);
-    int status = CLI_TROUBLE;
-    if (!out || fclose(out) != 0)
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-    else
-        status = cli_write_text(app, path, text, length);
-    free(text);
-    return status;
+    cli_text text;
+    if (cli_text_open(&text))
+        put(text.out, results);
+    return cli_text_write(app, &text, path);
 }
 
 int diff_write_json(cli_app *app, const diff_results *results)

@@ -8,6 +8,7 @@
 #include "diff_report.h"
 #include "diff_thin.h"
 #include "json.h"
+#include "textfile.h"
 
 /* A stream of bytes in base64. */
 typedef struct encoder {
@@ -119,17 +120,14 @@ static bool put_models(FILE *out, const diff_drawing *d, uint64_t *room)
 char *diff_models_text(const diff_drawing *drawing, uint64_t *room)
 {
     enum { LEAST = 20000 }; /* fewer would show nothing */
-    char *text = NULL;
-    size_t length = 0;
+    cli_text text;
     uint64_t wanted = drawing->sides[0].triangle_count + drawing->sides[1].triangle_count;
     if (*room < LEAST && wanted > *room)
         return strdup("null");
-    FILE *out = open_memstream(&text, &length);
-    if (!out)
-        return NULL;
-    bool good = put_models(out, drawing, room);
-    if (fclose(out) == 0 && good)
-        return text;
-    free(text);
+    bool good = cli_text_open(&text) && put_models(text.out, drawing, room);
+    char *models = cli_text_close(&text);
+    if (good)
+        return models;
+    free(models);
     return NULL;
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "diff_report.h"
+#include "markup.h"
 #include "textfile.h"
 
 static const unsigned char page[] = {
@@ -30,22 +31,6 @@ static const char *name_of(const char *path)
 
 /* ---- words ----------------------------------------------------------------------------------- */
 
-static void put_escaped(FILE *out, const char *text)
-{
-    for (; *text; text++) {
-        const char *entity = *text == '&'    ? "&amp;"
-                             : *text == '<'  ? "&lt;"
-                             : *text == '>'  ? "&gt;"
-                             : *text == '"'  ? "&quot;"
-                             : *text == '\'' ? "&#39;"
-                                             : NULL;
-        if (entity)
-            fputs(entity, out);
-        else
-            fputc(*text, out);
-    }
-}
-
 static void put_title(FILE *out, const diff_results *results)
 {
     size_t same = 0;
@@ -57,7 +42,7 @@ static void put_title(FILE *out, const diff_results *results)
     }
     const diff_result *only = &results->items[0];
     fprintf(out, "%s: ", verdicts[only->outcome]);
-    put_escaped(out, name_of(only->b ? only->b : only->a));
+    cli_put_markup(out, name_of(only->b ? only->b : only->a), CLI_HTML);
 }
 
 static void put_plain(FILE *out, const diff_results *results)
@@ -67,11 +52,11 @@ static void put_plain(FILE *out, const diff_results *results)
         char reason[512];
         diff_explain(result, reason, sizeof reason);
         fprintf(out, "<p><b>%s</b>: ", verdicts[result->outcome]);
-        put_escaped(out, result->a ? name_of(result->a) : "");
+        cli_put_markup(out, result->a ? name_of(result->a) : "", CLI_HTML);
         fputs(result->a && result->b ? " and " : "", out);
-        put_escaped(out, result->b ? name_of(result->b) : "");
+        cli_put_markup(out, result->b ? name_of(result->b) : "", CLI_HTML);
         fputs(": ", out);
-        put_escaped(out, reason);
+        cli_put_markup(out, reason, CLI_HTML);
         fputs("</p>\n", out);
     }
 }
@@ -117,20 +102,17 @@ static void put_json(FILE *out, const diff_results *results)
 /* No "</script>" or "<!--" ends the data: '<' is only in strings there. */
 static bool put_data(FILE *out, const diff_results *results)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *memory = open_memstream(&text, &length);
-    if (!memory)
-        return false;
-    put_json(memory, results);
-    bool good = fclose(memory) == 0;
-    for (size_t i = 0; good && i < length; i++)
+    cli_text json;
+    if (cli_text_open(&json))
+        put_json(json.out, results);
+    char *text = cli_text_close(&json);
+    for (size_t i = 0; text && i < json.length; i++)
         if (text[i] == '<')
             fputs("\\u003c", out);
         else
             fputc(text[i], out);
     free(text);
-    return good;
+    return text != NULL;
 }
 
 /* ---- the page -------------------------------------------------------------------------------- */
@@ -163,16 +145,10 @@ static bool put_page(FILE *out, const diff_results *results)
 
 int diff_write_html(cli_app *app, const diff_results *results)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&text, &length);
-    bool good = out && put_page(out, results);
-    good = out && fclose(out) == 0 && good;
-    int status = CLI_TROUBLE;
-    if (!good)
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-    else
-        status = cli_write_text(app, app->options.diff_html, text, length);
-    free(text);
-    return status;
+    cli_text text;
+    if (!cli_text_open(&text) || put_page(text.out, results))
+        return cli_text_write(app, &text, app->options.diff_html);
+    free(cli_text_close(&text));
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    return CLI_TROUBLE;
 }

@@ -8,7 +8,6 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,16 +15,16 @@
 
 #include "interrupt.h"
 
-static bool write_all(int fd, const char *text, size_t length)
+bool cli_write_fully(int fd, const char *bytes, size_t count)
 {
-    while (length > 0) {
-        ssize_t written = write(fd, text, length);
+    while (count > 0) {
+        ssize_t written = write(fd, bytes, count);
         if (written < 0 && errno == EINTR)
             continue;
         if (written < 0)
             return false;
-        text += written;
-        length -= (size_t)written;
+        bytes += written;
+        count -= (size_t)written;
     }
     return true;
 }
@@ -35,7 +34,7 @@ static bool write_directly(const char *path, const char *text, size_t length)
     int fd = open(path, O_WRONLY | O_CLOEXEC);
     if (fd < 0)
         return false;
-    bool good = write_all(fd, text, length);
+    bool good = cli_write_fully(fd, text, length);
     int reason = errno;
     good = close(fd) == 0 && good;
     if (!good && reason)
@@ -71,7 +70,7 @@ static bool write_renamed(const char *target, const char *text, size_t length)
         return false;
     cli_interrupt_pending_file(temporary);
     errno = 0;
-    bool good = write_all(fd, text, length) && fsync(fd) == 0;
+    bool good = cli_write_fully(fd, text, length) && fsync(fd) == 0;
     int reason = errno;
     good = close(fd) == 0 && good && rename(temporary, target) == 0;
     if (!good) {
@@ -89,7 +88,7 @@ static bool write_path(const char *path, const char *text, size_t length)
     char target[PATH_MAX];
     errno = 0;
     if (strcmp(path, "-") == 0)
-        return write_all(STDOUT_FILENO, text, length);
+        return cli_write_fully(STDOUT_FILENO, text, length);
     if (stat(path, &status) != 0)
         return write_renamed(path, text, length);
     errno = 0;
@@ -107,6 +106,33 @@ int cli_write_text(cli_app *app, const char *path, const char *text, size_t leng
     cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot write %s: %s",
                     is_stdout ? "standard output" : path, reason);
     return CLI_TROUBLE;
+}
+
+FILE *cli_text_open(cli_text *text)
+{
+    *text = (cli_text){NULL, NULL, 0};
+    text->out = open_memstream(&text->text, &text->length);
+    return text->out;
+}
+
+char *cli_text_close(cli_text *text)
+{
+    if (text->out && fclose(text->out) == 0)
+        return text->text;
+    free(text->text);
+    return NULL;
+}
+
+int cli_text_write(cli_app *app, cli_text *text, const char *path)
+{
+    char *bytes = cli_text_close(text);
+    int status = CLI_TROUBLE;
+    if (bytes)
+        status = cli_write_text(app, path, bytes, text->length);
+    else
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    free(bytes);
+    return status;
 }
 
 char *cli_read_stdin(cli_app *app, size_t *length)
