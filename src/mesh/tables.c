@@ -9,6 +9,11 @@
  * loop of every pattern (tests/mesh checks it). Hence the surface is a closed oriented 2-manifold:
  * each segment is drawn by exactly two cells, in opposite directions, each diagonal by one cell
  * twice, and the polygons around a vertex follow one another around its lattice edge in one fan.
+ *
+ * No triangle meets another one but in what they share, wherever the vertices lie on their edges:
+ * segments of a face cut off corners that no other segment reaches, so cells keep apart; within one
+ * cell that was searched for all patterns with all their cuts (tests/mesh/test_tables.c does it for
+ * those here), and all are good but four of the sixteen cuts of a loop of seven sides: see `fan`.
  */
 #include "mesh/tables.h"
 
@@ -101,6 +106,25 @@ static bool cut(const uint8_t *loop, const unsigned *faces, int first, int last,
     return false;
 }
 
+/* Seven sides go round a lone outside corner and, through a face, round an edge of two. Cut like
+ * any other they may run through one another; a fan from the lone corner's edge that does not lie
+ * in that face (the one between two edges of one face) never does. With the lone corner at (0, 0,
+ * 0) and the face x = 0, the apex is (a, 0, 0); seen from there the others follow one another, in
+ * (x - a) / (y + z) and z / (y + z), along (-, 0), (-, < 1/2), (+, < 1/2), (+, > 1/2), (-, > 1/2),
+ * (-, 1), the first two and the last two each with the outer one further out: a line that does not
+ * meet itself. */
+static void fan(const uint8_t *loop, const unsigned *faces, int length, uint8_t *edges, int *count)
+{
+    int apex = 0;
+    while (!(faces[(apex + 1) % length] & faces[(apex + length - 1) % length]))
+        apex++;
+    for (int i = 1; i + 1 < length; i++, ++*count) {
+        edges[3 * *count] = loop[apex];
+        edges[3 * *count + 1] = loop[(apex + i + 1) % length];
+        edges[3 * *count + 2] = loop[(apex + i) % length];
+    }
+}
+
 static void keep_loop(csg_cell_tables *tables, unsigned pattern, const uint8_t *loop, int length)
 {
     uint8_t index = tables->loop_count[pattern]++;
@@ -125,7 +149,10 @@ static void make_pattern(csg_cell_tables *tables, unsigned pattern)
             next[edge] = NO_EDGE;
             edge = following;
         }
-        cut(loop, faces, 0, length - 1, length, tables->edge[pattern], &count);
+        if (length == 7)
+            fan(loop, faces, length, tables->edge[pattern], &count);
+        else
+            cut(loop, faces, 0, length - 1, length, tables->edge[pattern], &count);
         if (length)
             keep_loop(tables, pattern, loop, length);
     }

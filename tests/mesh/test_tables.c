@@ -133,6 +133,96 @@ static void test_orientation(void **state)
     }
 }
 
+/* ---- no crossings ------------------------------------------------------------------------------
+ */
+
+enum { STEPS = 4096 }; /* of a cell's edge: whole numbers, so that every sign below is exact */
+
+typedef struct place {
+    int64_t at[3];
+} place;
+
+/* Six times the volume of a tetrahedron. */
+static int64_t volume_of(const place *a, const place *b, const place *c, const place *d)
+{
+    int64_t u[3], v[3], w[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = b->at[i] - a->at[i];
+        v[i] = c->at[i] - a->at[i];
+        w[i] = d->at[i] - a->at[i];
+    }
+    return (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+           (u[0] * v[1] - u[1] * v[0]) * w[2];
+}
+
+static int sign(int64_t x)
+{
+    return (x > 0) - (x < 0);
+}
+
+/* Whether a segment meets a triangle in whose plane it does not lie, rims included. */
+static bool pierces(const place *p, const place *q, const place *t[3])
+{
+    int above = sign(volume_of(t[0], t[1], t[2], p)), below = sign(volume_of(t[0], t[1], t[2], q));
+    if (above == below) /* one side; both 0 has no weight among random places */
+        return false;
+    int least = 1, most = -1;
+    for (int k = 0; k < 3; k++) {
+        int turn = sign(volume_of(p, q, t[k], t[(k + 1) % 3]));
+        least = turn < least ? turn : least;
+        most = turn > most ? turn : most;
+    }
+    return least >= 0 || most <= 0;
+}
+
+/* Whether triangles meet in more than the vertex that they share, or none; with two they cannot. */
+static bool cross(const uint8_t *a, const uint8_t *b, const place *places)
+{
+    const place *p[3], *q[3];
+    int shared = 0, in_a = 0, in_b = 0;
+    for (int i = 0; i < 3; i++) {
+        p[i] = &places[a[i]];
+        q[i] = &places[b[i]];
+        for (int k = 0; k < 3; k++)
+            if (a[i] == b[k]) {
+                shared++;
+                in_a = i, in_b = k;
+            }
+    }
+    for (int i = 0; i < 3 && shared < 2; i++)
+        if (((!shared || i == (in_a + 1) % 3) && pierces(p[i], p[(i + 1) % 3], q)) ||
+            ((!shared || i == (in_b + 1) % 3) && pierces(q[i], q[(i + 1) % 3], p)))
+            return true;
+    return false;
+}
+
+/* Places on the cell's edges, many of them near to an end. */
+static void draw_places(csg_random *random, place places[CSG_CELL_EDGES])
+{
+    for (unsigned e = 0; e < CSG_CELL_EDGES; e++) {
+        for (unsigned axis = 0; axis < 3; axis++)
+            places[e].at[axis] = STEPS * tables.offset[e][axis];
+        double most = csg_random_uniform(random, 0, 1) < 0.3 ? STEPS - 1 : 40;
+        int64_t from = 1 + (int64_t)(most * csg_random_uniform(random, 0, 0.999));
+        places[e].at[e / 4] = csg_random_uniform(random, 0, 1) < 0.5 ? from : STEPS - from;
+    }
+}
+
+/* Wherever the surface crosses the edges of a cell, its triangles keep clear of one another. */
+static void test_crossings(void **state)
+{
+    csg_random random = {3};
+    for (int round = 0; round < 300; round++) {
+        place places[CSG_CELL_EDGES];
+        draw_places(&random, places);
+        for (unsigned pattern = 0; pattern < 256; pattern++)
+            for (int i = 0; i < tables.count[pattern]; i++)
+                for (int k = 0; k < i; k++)
+                    if (cross(tables.edge[pattern] + 3 * i, tables.edge[pattern] + 3 * k, places))
+                        fail_msg("pattern %u: triangles %d and %d cross", pattern, i, k);
+    }
+}
+
 /* ---- each pattern beside each other ------------------------------------------------------------
  */
 
@@ -303,7 +393,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_patterns),    cmocka_unit_test(test_offsets),
         cmocka_unit_test(test_orientation), cmocka_unit_test(test_neighbours),
-        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_crossings),   cmocka_unit_test(test_noise),
     };
     return cmocka_run_group_tests(tests, make_tables, NULL);
 }
