@@ -60,17 +60,27 @@ csgm_render_options csgm_render_options_default(void)
     return csg_render_options_default();
 }
 
+/* The options to take: the defaults for NULL; NULL where they are of another version. */
+static const csgm_render_options *options_of(const csgm_render_options *options,
+                                             csgm_render_options *defaults)
+{
+    *defaults = csg_render_options_default();
+    if (!options)
+        return defaults;
+    return options->struct_size == sizeof *options ? options : NULL;
+}
+
 csgm_status csgm_render_scene(csgm_context *context, const csgm_field *field,
                               const csgm_render_options *options, csgm_image **out,
                               csgm_render_stats *stats)
 {
-    csgm_render_options defaults = csg_render_options_default();
+    csgm_render_options defaults;
     csgm_render_stats ignored;
-    options = options ? options : &defaults;
+    options = options_of(options, &defaults);
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !field || options->struct_size != sizeof *options)
+    if (!context || !field || !options)
         return CSGM_ERR_ARGUMENT;
     return csg_render_scene(context, field, options, out, stats ? stats : &ignored);
 }
@@ -79,13 +89,13 @@ csgm_status csgm_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                              const csgm_render_options *options, csgm_image **out,
                              csgm_render_stats *stats)
 {
-    csgm_render_options defaults = csg_render_options_default();
+    csgm_render_options defaults;
     csgm_render_stats ignored;
-    options = options ? options : &defaults;
+    options = options_of(options, &defaults);
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !csg_view_is_sound(mesh) || options->struct_size != sizeof *options)
+    if (!context || !csg_view_is_sound(mesh) || !options)
         return CSGM_ERR_ARGUMENT;
     return csg_render_mesh(context, mesh, options, out, stats ? stats : &ignored);
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lang/loader.h"
 #include "lang/pieces.h"
 #include "outline/dxf.h"
 #include "outline/svg.h"
@@ -53,15 +54,7 @@ static const char *search(csg_module_call *call, const char *name, csg_span aski
 
 void csg_import_depend(csg_eval *e, const char *path)
 {
-    csg_program *program = e->program;
-    for (uint32_t i = 0; i < program->dependency_count; i++)
-        if (strcmp(program->dependencies[i], path) == 0)
-            return;
-    const char **place = csg_arena_push(&program->arena, (void **)&program->dependencies,
-                                        &program->dependency_count, sizeof path);
-    if (place)
-        *place = path;
-    else
+    if (!csg_program_depend(e->program, path))
         csg_eval_no_memory(e);
 }
 

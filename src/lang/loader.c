@@ -83,17 +83,21 @@ static void report_cycle(csg_parser *parser, csg_span where, const char *path)
                       "'%.200s' would read itself without end", path);
 }
 
-static void add_dependency(csg_parser *parser, const char *path)
+bool csg_program_depend(csg_program *program, const char *path)
 {
-    csg_program *program = parser->program;
     for (uint32_t i = 0; i < program->dependency_count; i++)
         if (strcmp(program->dependencies[i], path) == 0)
-            return;
+            return true;
     const char **place = csg_arena_push(&program->arena, (void **)&program->dependencies,
                                         &program->dependency_count, sizeof path);
     if (place)
         *place = path;
-    else
+    return place != NULL;
+}
+
+static void add_dependency(csg_parser *parser, const char *path)
+{
+    if (!csg_program_depend(parser->program, path))
         csg_parser_no_memory(parser);
 }
 

@@ -12,6 +12,10 @@ void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path);
 /* Parses the file on its own (once) and adds it to the parser's file's uses. */
 void csg_load_use(csg_parser *parser, csg_span path);
 
+/* Counts a file among the scene's dependencies, once; `path` stays valid as long as the program.
+ * False without memory. */
+bool csg_program_depend(csg_program *program, const char *path);
+
 /* A new scope; NULL stops the parser. */
 csg_scope *csg_parser_scope(csg_parser *parser);
 /* All statements of the current source. */

@@ -296,6 +296,16 @@ double csg_argument_number(csg_module_call *call, uint32_t index, double otherwi
     return value.as.number;
 }
 
+double csg_argument_rounding(csg_module_call *call, uint32_t index, double smallest_edge)
+{
+    double round = csg_argument_number(call, index, 0, CSG_NOT_NEGATIVE);
+    if (!call->failed && round > smallest_edge / 2)
+        csg_argument_error(call, index, CSG_DIAG_OUT_OF_RANGE,
+                           "round is %g, more than half the smallest edge, %g", round,
+                           smallest_edge / 2);
+    return round;
+}
+
 bool csg_argument_boolean(const csg_module_call *call, uint32_t index)
 {
     return csg_value_is_true(call->values[index]);

@@ -66,6 +66,8 @@ bool csg_has_argument(const csg_module_call *call, uint32_t index);
 /* The number given, or `otherwise`; reports what is no number or out of range. */
 double csg_argument_number(csg_module_call *call, uint32_t index, double otherwise,
                            csg_range_kind range);
+/* The radius of rounded edges, at most half the smallest edge. */
+double csg_argument_rounding(csg_module_call *call, uint32_t index, double smallest_edge);
 bool csg_argument_boolean(const csg_module_call *call, uint32_t index);
 /* [x, y, z] or [x, y] (z = otherwise.z); a single number stands for all three when `spread`. */
 csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 otherwise,

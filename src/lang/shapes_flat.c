@@ -33,11 +33,7 @@ csg_node_id csg_module_square(csg_module_call *call)
     if (known && !(smallest > 0))
         csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
                            "an edge of length %g makes no figure, it must be above 0", smallest);
-    double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE);
-    if (!call->failed && round > smallest / 2)
-        csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE,
-                           "round is %g, more than half the smallest edge, %g", round,
-                           smallest / 2);
+    double round = csg_argument_rounding(call, ROUND, smallest);
     if (call->failed)
         return csg_shape_empty(call);
     const double half[3] = {size[0] / 2, size[1] / 2, round};

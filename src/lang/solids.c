@@ -51,11 +51,7 @@ csg_node_id csg_module_cube(csg_module_call *call)
     if (!call->failed && !(smallest > 0))
         csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
                            "an edge of length %g makes no solid, it must be above 0", smallest);
-    double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE);
-    if (!call->failed && round > smallest / 2)
-        csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE,
-                           "round is %g, more than half the smallest edge, %g", round,
-                           smallest / 2);
+    double round = csg_argument_rounding(call, ROUND, smallest);
     if (call->failed)
         return empty(call);
     const double half[4] = {size.x / 2, size.y / 2, size.z / 2, round};

@@ -6,6 +6,8 @@
 
 #include <assert.h>
 
+#include "scene/choice.h"
+
 #define PI 3.14159265358979323846
 
 void csg_reference_blend_function(csg_blend_kind kind, double n, double x, double *value,
@@ -52,30 +54,13 @@ void csg_reference_blend_function(csg_blend_kind kind, double n, double x, doubl
     }
 }
 
-/* The last of the largest. */
-static size_t largest_of(const double *values, size_t count)
-{
-    size_t largest = 0;
-    for (size_t i = 1; i < count; i++)
-        if (values[i] >= values[largest])
-            largest = i;
-    return largest;
-}
-
-static double choose(const double *values, size_t count, size_t chosen, double *partials)
-{
-    for (size_t i = 0; i < count; i++)
-        partials[i] = i == chosen;
-    return values[chosen];
-}
-
 static double fold_union(csg_blend blend, const double *values, double *partials)
 {
-    size_t hi = largest_of(values, 2), lo = 1 - hi;
+    size_t hi = csg_largest_of(values, 2), lo = 1 - hi;
     double x = values[hi] - values[lo], value, derivative;
     csg_reference_blend_function(blend.kind, blend.n, x, &value, &derivative);
     if (value == 0 && derivative == 0)
-        return choose(values, 2, hi, partials);
+        return csg_choose(values, 2, hi, partials);
     partials[hi] = 1 + derivative;
     partials[lo] = -derivative;
     return values[hi] + value;
@@ -121,12 +106,12 @@ static double solve_round(const double *values, size_t count, double max, double
 
 static double round_union(double w, const double *values, size_t count, double *partials)
 {
-    size_t top = largest_of(values, count), active = 0;
+    size_t top = csg_largest_of(values, count), active = 0;
     double max = values[top];
     for (size_t i = 0; i < count; i++)
         active += w + (values[i] - max) > 0;
     if (active < 2)
-        return choose(values, count, top, partials);
+        return csg_choose(values, count, top, partials);
     double t = solve_round(values, count, max, w), total = 0;
     for (size_t i = 0; i < count; i++)
         total += partials[i] = fmax(w + (values[i] - max) - t, 0);
@@ -140,7 +125,7 @@ static double orthogonal_union(const double *values, double *partials)
 {
     double a = values[0], b = values[1], both = sqrt(a * a + b * b);
     if (!(a > 0 && b > 0))
-        return choose(values, 2, largest_of(values, 2), partials);
+        return csg_choose(values, 2, csg_largest_of(values, 2), partials);
     partials[0] = a / both;
     partials[1] = b / both;
     return both;
@@ -149,11 +134,11 @@ static double orthogonal_union(const double *values, double *partials)
 double csg_reference_union(csg_blend blend, const double *values, size_t count, double *partials)
 {
     assert(count > 0);
-    size_t top = largest_of(values, count);
+    size_t top = csg_largest_of(values, count);
     if (blend.kind == CSG_BLEND_ORTHOGONAL && count == 2)
         return orthogonal_union(values, partials);
     if (count == 1 || blend.kind == CSG_BLEND_SHARP || !(blend.n > 0) || isinf(values[top]))
-        return choose(values, count, top, partials);
+        return csg_choose(values, count, top, partials);
     if (blend.kind == CSG_BLEND_ROUND)
         return round_union(blend.n, values, count, partials);
     assert(count == 2);

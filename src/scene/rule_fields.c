@@ -5,40 +5,16 @@
 #include <assert.h>
 #include <math.h>
 
+#include "scene/choice.h"
 #include "scene/rule_private.h"
 
 #define DEGREE 0.017453292519943295
 #define C 0.5
 
-static size_t largest_of(const double *values, size_t count)
-{
-    size_t at = 0;
-    for (size_t i = 1; i < count; i++)
-        if (values[i] >= values[at])
-            at = i;
-    return at;
-}
-
-static size_t smallest_of(const double *values, size_t count)
-{
-    size_t at = 0;
-    for (size_t i = 1; i < count; i++)
-        if (values[i] <= values[at])
-            at = i;
-    return at;
-}
-
-static double choose(const double *values, size_t count, size_t chosen, double *partials)
-{
-    for (size_t i = 0; i < count; i++)
-        partials[i] = i == chosen;
-    return values[chosen];
-}
-
 static double sharp(bool is_union, const double *values, size_t count, double *partials)
 {
-    size_t at = is_union ? largest_of(values, count) : smallest_of(values, count);
-    return choose(values, count, at, partials);
+    size_t at = is_union ? csg_largest_of(values, count) : csg_smallest_of(values, count);
+    return csg_choose(values, count, at, partials);
 }
 
 /* ---- n-ary ------------------------------------------------------------------------------------
@@ -46,7 +22,7 @@ static double sharp(bool is_union, const double *values, size_t count, double *p
 
 static double ricci_union(double n, const double *values, size_t count, double *partials)
 {
-    double most = values[largest_of(values, count)], sum = 0;
+    double most = values[csg_largest_of(values, count)], sum = 0;
     for (size_t i = 0; i < count; i++)
         partials[i] = n == 1;
     if (most <= 0)
@@ -61,7 +37,7 @@ static double ricci_union(double n, const double *values, size_t count, double *
 
 static double ricci_intersection(double n, const double *values, size_t count, double *partials)
 {
-    double least = values[smallest_of(values, count)], sum = 0;
+    double least = values[csg_smallest_of(values, count)], sum = 0;
     for (size_t i = 0; i < count; i++)
         partials[i] = 0;
     if (least <= 0)
@@ -213,7 +189,7 @@ double csg_plain_arc(const csg_rule *rule, bool is_union, const double *values, 
     double x = values[0], y = values[1], most = fmax(x, y);
     bool below = y <= t1 * x, above = x <= t2 * y;
     if (below || above)
-        return choose(values, 2, is_union ? !below : below, partials);
+        return csg_choose(values, 2, is_union ? !below : below, partials);
     if (t1 == 1 || t2 == 1)
         return sharp(is_union, values, 2, partials);
     return most * (is_union ? arc_union(t2, t1, x / most, y / most, partials)
@@ -337,7 +313,7 @@ double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values,
 {
     const double *v = rule->parameters;
     if (count == 1)
-        return choose(values, 1, 0, partials);
+        return csg_choose(values, 1, 0, partials);
     switch (rule->kind) {
     case CSG_BLEND_EXTERIOR:
     case CSG_BLEND_INTERIOR:
