@@ -7,28 +7,9 @@
 
 #include "fuzz/fuzz.h"
 #include "lang/lang.h"
+#include "scene/collected_text.h"
 #include "scene/print.h"
 #include "scene/reference.h"
-
-typedef struct printed {
-    char *text;
-    size_t length, capacity;
-} printed;
-
-static void append(void *user, const char *text, size_t length)
-{
-    printed *p = user;
-    if (length == 0)
-        return;
-    if (p->length + length > p->capacity) {
-        p->capacity = (p->length + length) * 2;
-        p->text = realloc(p->text, p->capacity);
-        if (!p->text)
-            abort();
-    }
-    memcpy(p->text + p->length, text, length);
-    p->length += length;
-}
 
 static void check_field(const csgm_scene *scene)
 {
@@ -41,28 +22,28 @@ static void check_field(const csgm_scene *scene)
 /* Limits differ: a loop that made a solid step by step is one line of print. */
 static void check_print(csgm_context *context, const csgm_scene *scene)
 {
-    printed first = {0}, second = {0};
+    text first = {0}, second = {0};
     csgm_scene *again = NULL;
     context->limits.eval_steps = 100000000;
     context->limits.depth = 10000;
     context->limits.scene_nodes = 4000000;
     context->memory.limit_bytes = (uint64_t)1 << 30;
-    csg_scene_print(scene, append, &first);
-    csg_lang_input input = {.path = "print", .text = first.text, .text_length = first.length};
+    csg_scene_print(scene, collect, &first);
+    csg_lang_input input = {.path = "print", .text = first.data, .text_length = first.length};
     csgm_status status = csg_lang_compile(context, &input, &again);
     if (status == CSGM_ERR_SYNTAX || status == CSGM_ERR_SCENE)
-        fuzz_fail("the print does not parse back", first.text, first.length);
+        fuzz_fail("the print does not parse back", first.data, first.length);
     if (status == CSGM_OK) {
-        csg_scene_print(again, append, &second);
-        if (first.length != second.length || memcmp(first.text, second.text, first.length) != 0) {
-            append(&first, "\n---- again:\n", 13);
-            append(&first, second.text, second.length);
-            fuzz_fail("the print parses back to another scene", first.text, first.length);
+        csg_scene_print(again, collect, &second);
+        if (first.length != second.length || memcmp(first.data, second.data, first.length) != 0) {
+            collect(&first, "\n---- again:\n", 13);
+            collect(&first, second.data, second.length);
+            fuzz_fail("the print parses back to another scene", first.data, first.length);
         }
     }
     csg_scene_destroy(again);
-    free(first.text);
-    free(second.text);
+    free(first.data);
+    free(second.data);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -70,12 +51,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     csgm_context context;
     csgm_scene *scene = NULL;
     fuzz_context_init(&context);
-    fuzz_text text = fuzz_files_open(data, size);
+    fuzz_text file = fuzz_files_open(data, size);
     csg_lang_input input = {
-        .path = "scene.txt", .text = text.text, .text_length = text.length, .options = NULL};
+        .path = "scene.txt", .text = file.text, .text_length = file.length, .options = NULL};
     csgm_status status = csg_lang_compile(&context, &input, &scene);
     if (status != CSGM_OK && context.diags.errors == 0)
-        fuzz_fail("refused without a word", text.text, text.length);
+        fuzz_fail("refused without a word", file.text, file.length);
     if (status == CSGM_OK) {
         check_field(scene);
         check_print(&context, scene);

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/random.h"
+#include "failing.h"
 #include "lang/support.h"
 
 static bench b;
@@ -152,26 +153,6 @@ static const char rich[] =
     "union(blend = 0.5) { torus(5, 1, 200); capsule([0, 0, 0], [3, 0, 0], 1, 0.5); ellipsoid([1, "
     "2, 3]); }\n"
     "shpere(oops); x = 1; x = 2; assert(r == 3); echo(rands(0, 1, 3), chr([65 : 70]));\n";
-
-typedef struct failing {
-    long left; /* allocations before the one that fails */
-    size_t live;
-} failing;
-
-static void *failing_alloc(void *user, size_t size)
-{
-    failing *f = user;
-    void *memory = f->left-- > 0 ? malloc(size) : NULL;
-    f->live += memory != NULL;
-    return memory;
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->live--;
-    free(memory);
-}
 
 static void every_allocation_may_fail(void **state)
 {

@@ -12,29 +12,12 @@
 
 #include "lang/support.h"
 #include "scene/build.h"
+#include "scene/collected_text.h"
 #include "scene/print.h"
 #include "scene/random_scene.h"
 #include "shape/polyhedron.h"
 
 static bench b;
-
-typedef struct text {
-    char *data;
-    size_t length, capacity;
-} text;
-
-static void collect(void *user, const char *piece, size_t length)
-{
-    text *t = user;
-    if (t->length + length + 1 > t->capacity) {
-        t->capacity = 2 * (t->length + length + 1);
-        t->data = realloc(t->data, t->capacity);
-        assert_non_null(t->data);
-    }
-    memcpy(t->data + t->length, piece, length);
-    t->length += length;
-    t->data[t->length] = '\0';
-}
 
 static text print(const csgm_scene *scene)
 {

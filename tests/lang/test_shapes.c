@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "failing.h"
 #include "lang/support.h"
 #include "scene/bounds.h"
 #include "scene/reference.h"
@@ -532,26 +533,6 @@ static void flat_transforms_keep_the_plane(void **state)
 
 /* ---- memory ------------------------------------------------------------------------------------
  */
-
-typedef struct failing {
-    long left; /* allocations before the one that fails */
-    size_t live;
-} failing;
-
-static void *failing_alloc(void *user, size_t size)
-{
-    failing *f = user;
-    void *memory = f->left-- > 0 ? malloc(size) : NULL;
-    f->live += memory != NULL;
-    return memory;
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->live--;
-    free(memory);
-}
 
 static void every_allocation_may_fail(void **state)
 {

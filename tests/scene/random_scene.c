@@ -4,6 +4,8 @@
  */
 #include "random_scene.h"
 
+#include "random_rule.h"
+
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
 
 static const csg_span nowhere = {.source = UINT32_MAX};
@@ -105,26 +107,6 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 
 bool test_random_rules = false;
 
-static csg_step random_step(csg_random *random)
-{
-    csg_step step = {(csg_step_kind)csg_random_below(random, CSG_STEP_COUNT), 0};
-    step.parameter = step.kind == CSG_STEP_SIGMOID   ? uniform(random, 12, 40)
-                     : step.kind <= CSG_STEP_BSPLINE ? 1 + csg_random_below(random, 6)
-                                                     : 1 + csg_random_below(random, 4);
-    return step;
-}
-
-static void random_profile(csg_random *random, csg_rule *rule)
-{
-    double at = rule->parameters[0], step = (rule->parameters[1] - at) / 5;
-    rule->spline.count = csg_random_below(random, 4);
-    for (uint32_t i = 0; i < rule->spline.count; i++) {
-        at += step * uniform(random, 0.4, 1.2);
-        rule->spline.angle[i] = at;
-        rule->spline.factor[i] = uniform(random, 0.85, 1.1);
-    }
-}
-
 csg_rule test_random_rule(csg_random *random, csg_blend_kind kind)
 {
     csg_rule rule = csg_rule_standard(kind);
@@ -132,7 +114,7 @@ csg_rule test_random_rule(csg_random *random, csg_blend_kind kind)
     if (csg_blend_takes_fields(kind)) /* what is soft may have no size that is known */
         rule.range = uniform(random, 0.1, 0.6);
     if (!csg_blend_takes_fields(kind))
-        rule.step = random_step(random);
+        rule.step = test_random_step(random, (test_step_ranges){12, 6, 4});
     if (kind == CSG_BLEND_EXTERIOR) {
         v[0] = uniform(random, 0.02, 0.2);
         v[1] = v[0] * uniform(random, 0.1, 1);
@@ -148,7 +130,7 @@ csg_rule test_random_rule(csg_random *random, csg_blend_kind kind)
     } else if (kind == CSG_BLEND_ARC) {
         v[0] = uniform(random, 2, 40);
         v[1] = uniform(random, 50, 88);
-        random_profile(random, &rule);
+        test_random_profile(random, &rule, 0.85, 1.1);
     }
     return rule;
 }

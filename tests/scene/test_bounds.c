@@ -3,27 +3,11 @@
  * node, and the two-level scheme, whose clamped values must have the plain field's sign everywhere
  * and its value inside the band.
  */
-#include "scene_support.h"
+#include "scene_fixture.h"
 
 #include <stdlib.h>
 
 #include "random_scene.h"
-
-static csgm_context context;
-static csg_scene_builder builder;
-
-static int begin(void **state)
-{
-    test_context_init(&context);
-    return csg_build_begin(&builder, &context) != CSGM_OK;
-}
-
-static int end(void **state)
-{
-    csg_build_abandon(&builder);
-    test_context_end(&context);
-    return 0;
-}
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
 

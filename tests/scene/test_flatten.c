@@ -8,6 +8,7 @@
 #include <limits.h>
 #include <stdlib.h>
 
+#include "failing.h"
 #include "scene/flatten.h"
 #include "shape/polygons.h"
 #include "shape/region.h"
@@ -264,25 +265,6 @@ static void depth_is_no_matter(void **state)
     }
     assert_int_equal(csg_flatten(&builder, node, 1e-3, &outline), CSGM_OK);
     test_near(area(), 3.14159265358979, 0.01);
-}
-
-typedef struct failing {
-    long left, live;
-} failing;
-
-static void *failing_alloc(void *user, size_t size)
-{
-    failing *f = user;
-    void *memory = f->left-- > 0 ? malloc(size) : NULL;
-    f->live += memory != NULL;
-    return memory;
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->live--;
-    free(memory);
 }
 
 static void every_allocation_may_fail(void **state)

@@ -2,48 +2,15 @@
  * The printed tree: exact text of each kind of node, numbers that read back, depth without
  * recursion, memory. (That the text parses back to the same tree is tested with the parser.)
  */
-#include "scene_support.h"
+#include "scene_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "collected_text.h"
 #include "random_scene.h"
 #include "scene/print.h"
-
-static csgm_context context;
-static csg_scene_builder builder;
-
-static int begin(void **state)
-{
-    test_context_init(&context);
-    return csg_build_begin(&builder, &context) != CSGM_OK;
-}
-
-static int end(void **state)
-{
-    csg_build_abandon(&builder);
-    test_context_end(&context);
-    return 0;
-}
-
-typedef struct text {
-    char *data;
-    size_t length, capacity;
-} text;
-
-static void collect(void *user, const char *piece, size_t length)
-{
-    text *t = user;
-    if (t->length + length + 1 > t->capacity) {
-        t->capacity = 2 * (t->length + length + 1);
-        t->data = realloc(t->data, t->capacity);
-        assert_non_null(t->data);
-    }
-    memcpy(t->data + t->length, piece, length);
-    t->length += length;
-    t->data[t->length] = '\0';
-}
 
 static void check_text(csg_node_id root, const char *expected)
 {

@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "random_rule.h"
+
 /* Points for each rule; 5000 in the slow suite: a million for each operator. */
 #ifndef POINTS
 #define POINTS 400
@@ -28,32 +30,12 @@ static double uniform(csg_random *random, double low, double high)
     return csg_random_uniform(random, low, high);
 }
 
-static csg_step random_step(csg_random *random)
-{
-    csg_step step = {(csg_step_kind)csg_random_below(random, CSG_STEP_COUNT), 0};
-    step.parameter = step.kind == CSG_STEP_SIGMOID   ? uniform(random, 1, 40)
-                     : step.kind <= CSG_STEP_BSPLINE ? 1 + csg_random_below(random, 8)
-                                                     : 1 + csg_random_below(random, 5);
-    return step;
-}
-
-static void random_profile(csg_random *random, csg_rule *rule)
-{
-    double at = rule->parameters[0], step = (rule->parameters[1] - at) / 5;
-    rule->spline.count = csg_random_below(random, 4);
-    for (uint32_t i = 0; i < rule->spline.count; i++) {
-        at += step * uniform(random, 0.4, 1.2);
-        rule->spline.angle[i] = at;
-        rule->spline.factor[i] = uniform(random, 0.8, 1.15);
-    }
-}
-
 /* Within the ranges of operators.def. */
 static csg_rule random_rule(csg_random *random, csg_blend_kind kind)
 {
     csg_rule rule = csg_rule_standard(kind);
     double *v = rule.parameters;
-    rule.step = random_step(random);
+    rule.step = test_random_step(random, (test_step_ranges){1, 8, 5});
     if (kind == CSG_BLEND_EXTERIOR) {
         v[0] = uniform(random, 0.05, 1);
         v[1] = v[0] * uniform(random, 0.1, 1);
@@ -71,7 +53,7 @@ static csg_rule random_rule(csg_random *random, csg_blend_kind kind)
     } else if (kind == CSG_BLEND_ARC) {
         v[0] = uniform(random, 1, 40);
         v[1] = uniform(random, 50, 89);
-        random_profile(random, &rule);
+        test_random_profile(random, &rule, 0.8, 1.15);
     }
     char text[160];
     const char *problem = csg_rule_problem(&rule, text, sizeof text);

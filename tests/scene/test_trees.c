@@ -3,25 +3,9 @@
  * Lipschitz constant, gradients agree with central differences, |f| is a lower bound of the
  * distance, and pruning by support changes nothing. Small hand-made trees fix the signs.
  */
-#include "scene_support.h"
+#include "scene_fixture.h"
 
 #include "random_scene.h"
-
-static csgm_context context;
-static csg_scene_builder builder;
-
-static int begin(void **state)
-{
-    test_context_init(&context);
-    return csg_build_begin(&builder, &context) != CSGM_OK;
-}
-
-static int end(void **state)
-{
-    csg_build_abandon(&builder);
-    test_context_end(&context);
-    return 0;
-}
 
 static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 {

@@ -2,34 +2,19 @@
  * Scenes as formulas and as .vm tapes: the same values as the reference, also after a tape was read
  * back; operations that only tapes have; tapes that are wrong.
  */
-#include "scene_support.h"
+#include "scene_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "collected_text.h"
 #include "random_scene.h"
 #include "scene/formulate.h"
 #include "scene/reference.h"
 #include "scene/vm.h"
 #include "shape/polyhedron.h"
 #include "shape/region.h"
-
-static csgm_context context;
-static csg_scene_builder builder;
-
-static int begin(void **state)
-{
-    test_context_init(&context);
-    return csg_build_begin(&builder, &context) != CSGM_OK;
-}
-
-static int end(void **state)
-{
-    csg_build_abandon(&builder);
-    test_context_end(&context);
-    return 0;
-}
 
 /* A finished formula. */
 typedef struct finished {
@@ -60,24 +45,6 @@ static void release(finished *f)
 {
     free(f->steps);
     free(f->work);
-}
-
-typedef struct text {
-    char *data;
-    size_t length, capacity;
-} text;
-
-static void collect(void *user, const char *piece, size_t length)
-{
-    text *t = user;
-    if (t->length + length + 1 > t->capacity) {
-        t->capacity = 2 * (t->length + length + 1);
-        t->data = realloc(t->data, t->capacity);
-        assert_non_null(t->data);
-    }
-    memcpy(t->data + t->length, piece, length);
-    t->length += length;
-    t->data[t->length] = '\0';
 }
 
 static void check_close(double got, double wanted, csg_vec3 p, const char *what)

@@ -5,26 +5,10 @@
 
 #include <stdlib.h>
 
-static void *failing_alloc(void *user, size_t size)
+void failing_init(failing_memory *f, long left)
 {
-    failing *f = user;
-    void *memory = f->left-- > 0 ? malloc(size) : NULL;
-    f->live += memory != NULL;
-    return memory;
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->live--;
-    free(memory);
-}
-
-void failing_init(failing *f, long left)
-{
-    const csgm_allocator allocator = {failing_alloc, failing_release, f};
-    f->left = left;
-    f->live = 0;
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f->allocator};
+    f->allocator = (failing){left, 0};
     csg_memory_init(&f->memory, &allocator, 0);
 }
 

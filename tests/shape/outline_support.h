@@ -12,15 +12,15 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "failing.h"
 #include "shape/outline.h"
 
-typedef struct failing {
+typedef struct failing_memory {
     csg_memory memory;
-    long left; /* allocations before the one that fails */
-    long live;
-} failing;
+    failing allocator;
+} failing_memory;
 
-void failing_init(failing *f, long left);
+void failing_init(failing_memory *f, long left);
 
 /* A counter-clockwise loop about the centre; radii between inner and outer. */
 void add_star(csg_outline *outline, csg_random *random, csg_vec2 center, double inner, double outer,

@@ -131,7 +131,7 @@ static void test_every_allocation_fails(void **state)
         points[i] = solid_random_point(&random, 1);
     csgm_status status = CSGM_ERR_MEMORY;
     for (long n = 0; status != CSGM_OK; n++) {
-        failing f;
+        failing_memory f;
         csg_triangles out;
         failing_init(&f, n);
         status = csg_hull(&f.memory, points, 60, &out);

@@ -212,14 +212,14 @@ static void every_allocation_may_fail(void **state)
     bool is_done = false;
     long n = 0;
     for (; !is_done; n++) {
-        failing f;
+        failing_memory f;
         csg_outline poor;
         failing_init(&f, n);
         csg_outline_init(&poor, &f.memory);
         is_done = make_much(&poor);
-        assert_int_equal(is_done, f.left >= 0);
+        assert_int_equal(is_done, f.allocator.left >= 0);
         csg_outline_release(&poor);
-        assert_int_equal(f.live, 0);
+        assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 8);
 }

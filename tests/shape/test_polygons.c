@@ -322,15 +322,15 @@ static void every_allocation_may_fail(void **state)
         csgm_status status = CSGM_ERR_MEMORY;
         long n = 0;
         for (; status; n++) {
-            failing f;
+            failing_memory f;
             csg_outline left = a, right = b;
             failing_init(&f, n);
             left.memory = right.memory = &f.memory;
             status = run(which, &left, &right);
-            assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+            assert_int_equal(status, f.allocator.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
             assert_true(!status || !out.points);
             csg_outline_release(&out);
-            assert_int_equal(f.live, 0);
+            assert_int_equal(f.allocator.live, 0);
         }
         assert_true(n > 4);
     }

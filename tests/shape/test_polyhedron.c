@@ -356,14 +356,14 @@ static void test_every_allocation_fails(void **state)
     csgm_status status = CSGM_ERR_MEMORY;
     long n = 0;
     for (; status != CSGM_OK; n++) {
-        failing f;
+        failing_memory f;
         csg_shape *shape = NULL;
         failing_init(&f, n);
         status = csg_polyhedron_create(&f.memory, &c.triangles, NULL, &shape);
         assert_true(status == CSGM_OK || (status == CSGM_ERR_MEMORY && !shape));
         csg_shape_release(shape);
         assert_int_equal(f.memory.used_bytes, 0);
-        assert_int_equal(f.live, 0);
+        assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 8);
     end(&c);

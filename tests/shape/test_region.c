@@ -276,13 +276,13 @@ static void every_allocation_may_fail(void **state)
     long n = 0;
     add_star(&outline, &dice, (csg_vec2){0, 0}, 0.3, 1, 100, false);
     for (; status; n++) {
-        failing f;
+        failing_memory f;
         csg_shape *shape = NULL;
         failing_init(&f, n);
         status = csg_region_create(&f.memory, &outline, &shape);
-        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        assert_int_equal(status, f.allocator.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
         csg_shape_release(shape);
-        assert_int_equal(f.live, 0);
+        assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 8);
 }

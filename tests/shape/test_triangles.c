@@ -160,7 +160,7 @@ static void test_every_allocation_fails(void **state)
 {
     bool done = false;
     for (long n = 0; !done; n++) {
-        failing f;
+        failing_memory f;
         csg_triangles t;
         static const uint32_t corners[4] = {0, 1, 2, 3};
         failing_init(&f, n);

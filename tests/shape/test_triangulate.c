@@ -237,25 +237,25 @@ static void every_allocation_may_fail(void **state)
     csgm_status status = CSGM_ERR_MEMORY;
     long n = 0;
     for (; status; n++) {
-        failing f;
+        failing_memory f;
         uint32_t *indices;
         size_t count;
         failing_init(&f, n);
         status = csg_polygons_triangulate(&outline, &f.memory, &indices, &count);
-        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        assert_int_equal(status, f.allocator.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
         csg_memory_release(&f.memory, indices, count * sizeof *indices);
-        assert_int_equal(f.live, 0);
+        assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 4);
     for (status = CSGM_ERR_MEMORY, n = 0; status; n++) {
-        failing f;
+        failing_memory f;
         csg_outline hull, copy = outline;
         failing_init(&f, n);
         copy.memory = &f.memory;
         status = csg_polygons_hull(&copy, &hull);
-        assert_int_equal(status, f.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
+        assert_int_equal(status, f.allocator.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
         csg_outline_release(&hull);
-        assert_int_equal(f.live, 0);
+        assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 2);
 }
