@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/feature_possible.h"
 #include "mesh/feature_solve.h"
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
@@ -19,107 +20,6 @@ static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.5e-4f;
 static const float ALIKE = 1.1f, LITTLE = 0.02f;
 /* Corners of a polygon around a tip look apart by 25 degrees and more. */
 static const float WIDE = 0.9f;
-
-/* ---- blocks that cannot have any ----------------------------------------------------------- */
-
-typedef struct ball {
-    float at[3], radius;
-} ball;
-
-static void to_own(const csg_tape_node *node, const float *frame, const float at[3], float q[3])
-{
-    for (int i = 0; i < 3; i++)
-        q[i] = node->frame == CSG_FRAME_OFFSET ? at[i] - frame[i]
-                                               : frame[3 * i] * at[0] + frame[3 * i + 1] * at[1] +
-                                                     frame[3 * i + 2] * at[2] + frame[9 + i];
-}
-
-/* Distance from the nearest edge of a box with half sizes own[0..]: of two coordinates at once. */
-static float to_box_edges(const float *own, const float q[3], int axes)
-{
-    float d[3] = {0, 0, 0}, best = INFINITY;
-    for (int i = 0; i < axes; i++)
-        d[i] = fabsf(fabsf(q[i]) - own[i]);
-    for (int i = 0; i < axes; i++)
-        for (int j = i + 1; j < axes; j++)
-            best = fminf(best, sqrtf(d[i] * d[i] + d[j] * d[j]));
-    return best;
-}
-
-/* The rims, and the tips of cones. own: see frustum_at in field/formulas.h */
-static float to_frustum_rims(const float *own, const float q[3])
-{
-    float rho = sqrtf(q[0] * q[0] + q[1] * q[1]), best = INFINITY;
-    for (int side = -1; side <= 1; side += 2) {
-        float over = rho - (own[1] + (float)side * own[7]), along = q[2] - (float)side * own[2];
-        best = fminf(best, sqrtf(over * over + along * along));
-    }
-    return best;
-}
-
-/* A lower bound on the distance, in the leaf's own frame, from what a leaf has of edges. Frames
- * stretch lengths by at most 1 / sigma. */
-static bool may_have_edges(const csg_tape *tape, const csg_tape_node *node, ball b)
-{
-    const float *parameters = tape->parameters + node->parameters;
-    bool offset = node->frame == CSG_FRAME_OFFSET;
-    const float *own = parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
-    float q[3], stretch = offset ? 1.0f : 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
-    float reach = 1.01f * b.radius * fmaxf(stretch, 1.0f);
-    to_own(node, parameters + CSG_LEAF_FRAME, b.at, q);
-    switch (node->op) {
-    case CSG_OP_SPHERE:
-    case CSG_OP_TORUS:
-    case CSG_OP_CAPSULE:
-    case CSG_OP_ELLIPSOID:
-    case CSG_OP_PLANE:
-    case CSG_OP_CIRCLE:
-    case CSG_OP_SLAB:
-        return node->warp != 0;
-    case CSG_OP_BOX:
-        return node->warp || to_box_edges(own, q, 3) <= reach + 2 * own[3];
-    case CSG_OP_RECTANGLE:
-        return node->warp || to_box_edges(own, q, 2) <= reach + 2 * own[2];
-    case CSG_OP_FRUSTUM:
-        return node->warp || to_frustum_rims(own, q) <= reach + 2 * own[6];
-    default:
-        return true;
-    }
-}
-
-/* More than one leaf: however smooth their blend, a fillet much finer than a cell looks like a
- * crease, and whether it does must not depend on what else a tape still holds. */
-static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
-                            ball b)
-{
-    uint32_t leaves = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        bool leaf = csg_op_is_leaf(nodes[i].op);
-        leaves += leaf;
-        if (leaves > 1 || nodes[i].op == CSG_OP_COMBINE ||
-            (leaf && may_have_edges(tape, &nodes[i], b)))
-            return true;
-    }
-    return false;
-}
-
-static bool may_crease(const csg_marching *m, const csg_block *block,
-                       const csg_feature_probe *probe)
-{
-    const csg_tape *tape = &m->field->tape;
-    ball b = {.radius = 0.8661f * (float)(E * m->lattice->cell_size)}; /* sqrt(3) / 2 */
-    for (int axis = 0; axis < 3; axis++)
-        b.at[axis] = probe->line[axis][E / 2];
-    if (!block->parts)
-        return tape_may_crease(tape, block->nodes, block->node_count, b);
-    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
-        const csg_block_part *part = &block->parts[octant];
-        if (part->state == CSG_CELL_SURFACE &&
-            tape_may_crease(tape, part->nodes, part->node_count, b))
-            return true;
-    }
-    return false;
-}
 
 /* ---- vertices -------------------------------------------------------------------------------- */
 
@@ -329,7 +229,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
                       csg_memory *memory, float *scratch, size_t scratch_floats)
 {
     csg_feature_probe probe = csg_feature_probe_of(m, block, scratch, scratch_floats);
-    if (!may_crease(m, block, &probe))
+    if (!csg_feature_is_possible(m, block, &probe))
         return true;
     room->evaluations +=
         csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);

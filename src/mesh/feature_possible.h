@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ * Blocks that cannot have creases, told by what stands in their tapes.
+ */
+#ifndef CSG_MESH_FEATURE_POSSIBLE_H
+#define CSG_MESH_FEATURE_POSSIBLE_H
+
+#include "mesh/feature_probe.h"
+
+/* False: the gradient does not jump anywhere on the surface in this block, and does not turn so
+ * fast that it would look like a jump. */
+bool csg_feature_is_possible(const csg_marching *m, const csg_block *block,
+                             const csg_feature_probe *probe);
+
+#endif
