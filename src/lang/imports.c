@@ -154,6 +154,11 @@ static csgm_status read_svg(csg_module_call *call, const drawing *d, const csg_b
     return status;
 }
 
+static uint32_t fragments(const void *user, double radius)
+{
+    return csg_fragments(user, radius);
+}
+
 static csgm_status read_dxf(csg_module_call *call, const drawing *d, const csg_bytes *bytes,
                             csg_outline *out, csg_problem *problem)
 {
@@ -166,6 +171,8 @@ static csgm_status read_dxf(csg_module_call *call, const drawing *d, const csg_b
     const csg_dxf_request request = {.text = bytes->data,
                                      .length = bytes->size,
                                      .tolerance = 0.002,
+                                     .fragments = csg_facets_are_exact(call->e) ? fragments : NULL,
+                                     .fragments_user = call->e,
                                      .layer = text_of(call, d->layer),
                                      .origin = {origin.x, origin.y},
                                      .scale = scale,

@@ -127,9 +127,7 @@ static void draw_entity(drawing *d, size_t index, size_t past, const place *oute
     double stretch = hypot(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1]));
     size_t first = d->lines.count;
     bool drawn = false;
-    d->status =
-        csg_dxf_draw(&d->file, index, past, d->request->tolerance / (stretch > 0 ? stretch : 1),
-                     &d->lines, &drawn);
+    d->status = csg_dxf_draw(&d->file, index, past, d->request, stretch, &d->lines, &drawn);
     csg_polylines_transform(&d->lines, first, &p.map);
     if (drawn)
         d->report->entities++;

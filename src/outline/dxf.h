@@ -13,7 +13,12 @@
 typedef struct csg_dxf_request {
     const char *text; /* the file's bytes */
     size_t length;
-    double tolerance;  /* of flattened curves, in mm; > 0 */
+    double tolerance; /* of flattened curves, in mm; > 0 */
+    /* How many pieces a whole circle of this radius in the drawing is to have; arcs and ellipses
+     * (by their larger radius) have their share, rounded up. NULL: by the tolerance, as splines
+     * always are. */
+    uint32_t (*fragments)(const void *user, double radius);
+    const void *fragments_user;
     const char *layer; /* NULL or "" = all */
     csg_vec2 origin;   /* p becomes (p - origin) scale */
     double scale;      /* 0 = 1 */

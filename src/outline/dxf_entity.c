@@ -14,7 +14,8 @@ typedef struct artist {
     const csg_dxf_file *file;
     size_t index, past;
     const csg_dxf_entity *entity;
-    double tolerance;
+    const csg_dxf_request *request;
+    double tolerance; /* before what is drawn is enlarged */
     csg_polylines *out;
     csg_outline *pen;
 } artist;
@@ -52,6 +53,23 @@ static csg_vec2 on_circle(csg_vec2 center, double radius, double degrees)
     return (csg_vec2){center.x + radius * cos(angle), center.y + radius * sin(angle)};
 }
 
+/* Of an arc; 0: by the tolerance. */
+static int pieces_of(const artist *a, double radius, double turns)
+{
+    const csg_dxf_request *request = a->request;
+    if (!request->fragments)
+        return 0;
+    return (int)fmax(ceil(request->fragments(request->fragments_user, radius) * fabs(turns)), 1);
+}
+
+static bool draw_arc(artist *a, csg_vec2 center, double radius, double from_deg, double sweep_deg)
+{
+    int pieces = pieces_of(a, radius, sweep_deg / 360);
+    if (pieces)
+        return csg_outline_arc_in_pieces(a->pen, center, radius, from_deg, sweep_deg, pieces);
+    return csg_outline_arc(a->pen, center, radius, from_deg, sweep_deg, a->tolerance);
+}
+
 static csgm_status draw_circle(artist *a, bool whole)
 {
     const csg_dxf_entity *e = a->entity;
@@ -64,7 +82,7 @@ static csgm_status draw_circle(artist *a, bool whole)
     if (!(radius > 0))
         return CSGM_OK;
     bool done = whole || csg_outline_add(a->pen, on_circle(center, radius, from));
-    done = done && csg_outline_arc(a->pen, center, radius, from, sweep, a->tolerance);
+    done = done && draw_arc(a, center, radius, from, sweep);
     return finish(a, done, whole);
 }
 
@@ -83,8 +101,12 @@ static csgm_status draw_ellipse(artist *a)
         return CSGM_OK;
     csg_vec2 start = {center.x + cos(from) * major.x + sin(from) * minor.x,
                       center.y + cos(from) * major.y + sin(from) * minor.y};
-    bool done = (whole || csg_outline_add(a->pen, start)) &&
-                csg_svg_ellipse(a->pen, center, major, minor, from, sweep, a->tolerance);
+    int pieces = pieces_of(a, fmax(1, fabs(ratio)) * hypot(major.x, major.y), sweep / (2 * pi));
+    bool done = whole || csg_outline_add(a->pen, start);
+    if (pieces)
+        done = done && csg_svg_ellipse_in_pieces(a->pen, center, major, minor, from, sweep, pieces);
+    else
+        done = done && csg_svg_ellipse(a->pen, center, major, minor, from, sweep, a->tolerance);
     return finish(a, done, whole);
 }
 
@@ -100,7 +122,7 @@ static bool draw_to(artist *a, csg_vec2 from, double bulge, csg_vec2 to)
     csg_vec2 center = {(from.x + to.x) / 2 - dy * height, (from.y + to.y) / 2 + dx * height};
     double radius = length * (1 + bulge * bulge) / (4 * fabs(bulge));
     double start = atan2(from.y - center.y, from.x - center.x) * 180 / pi;
-    if (!csg_outline_arc(a->pen, center, radius, start, sweep, a->tolerance))
+    if (!draw_arc(a, center, radius, start, sweep))
         return false;
     a->pen->points[a->pen->point_count - 1] = to; /* the same bits as the next one begins with */
     return true;
@@ -243,10 +265,18 @@ static csgm_status draw_spline(artist *a)
 /* ---- all ---------------------------------------------------------------------------------------
  */
 
-csgm_status csg_dxf_draw(const csg_dxf_file *file, size_t index, size_t past, double tolerance,
-                         csg_polylines *out, bool *drawn)
+csgm_status csg_dxf_draw(const csg_dxf_file *file, size_t index, size_t past,
+                         const csg_dxf_request *request, double stretch, csg_polylines *out,
+                         bool *drawn)
 {
-    artist a = {file, index, past, &file->entities[index], tolerance, out, &out->pen};
+    artist a = {.file = file,
+                .index = index,
+                .past = past,
+                .entity = &file->entities[index],
+                .request = request,
+                .tolerance = request->tolerance / (stretch > 0 ? stretch : 1),
+                .out = out,
+                .pen = &out->pen};
     csg_dxf_text kind = a.entity->kind;
     size_t before = out->count;
     csgm_status status = CSGM_OK;

@@ -62,6 +62,12 @@ bool csg_svg_ellipse(csg_outline *pen, csg_vec2 center, csg_vec2 u, csg_vec2 v, 
     double step =
         2 * acos(1 - fmin(fmax(tolerance / radius, 1e-7), 0.29)); /* 0.29: quarter turns */
     int pieces = (int)fmin(fmax(ceil(fabs(sweep) / step), 1), 4096);
+    return csg_svg_ellipse_in_pieces(pen, center, u, v, from, sweep, pieces);
+}
+
+bool csg_svg_ellipse_in_pieces(csg_outline *pen, csg_vec2 center, csg_vec2 u, csg_vec2 v,
+                               double from, double sweep, int pieces)
+{
     for (int i = 1; i <= pieces; i++) {
         double t = from + sweep * i / pieces, c = cos(t), s = sin(t);
         if (!csg_outline_add(

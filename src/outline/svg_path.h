@@ -16,5 +16,7 @@ bool csg_svg_number(const char **at, double *out);
 /* An arc of an ellipse, drawn by the pen: center + cos t u + sin t v, after `from` radians. */
 bool csg_svg_ellipse(csg_outline *pen, csg_vec2 center, csg_vec2 u, csg_vec2 v, double from,
                      double sweep, double tolerance);
+bool csg_svg_ellipse_in_pieces(csg_outline *pen, csg_vec2 center, csg_vec2 u, csg_vec2 v,
+                               double from, double sweep, int pieces);
 
 #endif

@@ -159,7 +159,13 @@ bool csg_outline_arc(csg_outline *outline, csg_vec2 center, double radius, doubl
     /* sagitta radius (1 - cos(step / 2)); below 1e-7 the cosine would be 1 */
     double sagitta = fmin(fmax(tolerance / fabs(radius), 1e-7), 1);
     double step_deg = 2 * acos(1 - sagitta) * (180 / 3.14159265358979323846);
-    int pieces = pieces_of(fabs(sweep_deg) / fmin(step_deg, 90));
+    return csg_outline_arc_in_pieces(outline, center, radius, from_deg, sweep_deg,
+                                     pieces_of(fabs(sweep_deg) / fmin(step_deg, 90)));
+}
+
+bool csg_outline_arc_in_pieces(csg_outline *outline, csg_vec2 center, double radius,
+                               double from_deg, double sweep_deg, int pieces)
+{
     for (int i = 1; i <= pieces; i++) {
         double angle = i < pieces ? from_deg + sweep_deg * i / pieces : from_deg + sweep_deg;
         if (!csg_outline_add(outline, on_circle(center, radius, angle)))

@@ -41,6 +41,9 @@ csg_box csg_outline_box(const csg_outline *outline); /* z = 0; empty without poi
  * to and with the end. */
 bool csg_outline_arc(csg_outline *outline, csg_vec2 center, double radius, double from_deg,
                      double sweep_deg, double tolerance);
+/* The same in that many pieces. */
+bool csg_outline_arc_in_pieces(csg_outline *outline, csg_vec2 center, double radius,
+                               double from_deg, double sweep_deg, int pieces);
 bool csg_outline_quadratic(csg_outline *outline, csg_vec2 from, csg_vec2 control, csg_vec2 to,
                            double tolerance);
 bool csg_outline_cubic(csg_outline *outline, csg_vec2 from, csg_vec2 control1, csg_vec2 control2,

@@ -187,6 +187,37 @@ static void test_options(void **state)
 }
 
 /* Even-odd, as OpenSCAD. */
+static uint32_t eight(const void *user, double radius)
+{
+    *(double *)user = radius;
+    return 8;
+}
+
+/* Polygons of n corners: n / 2 r^2 sin(360 / n). */
+static void test_fragments(void **state)
+{
+    double asked;
+    csg_dxf_request octagons = {.fragments = eight, .fragments_user = &asked};
+    const double corner = 0.5 * sqrt(0.5);
+    (void)state;
+    read_words(&octagons, "", CIRCLE(0, 5, 5, 3));
+    assert_int_equal(outline.point_count, 8);
+    expect(2, 2, 8, 8, 8 * 9 * corner);
+    assert_true(asked == 3);
+    read_words(&octagons, "",
+               "0 ELLIPSE 8 0 10 0 20 0 11 4 21 0 40 0.5 41 0 42 6.283185307179586 ");
+    assert_int_equal(outline.point_count, 8);
+    expect(-4, -2, 4, 2, 8 * 8 * corner);
+    assert_true(asked == 4);
+    octagons.scale = 10; /* the radius is the drawing's */
+    read_words(&octagons, "",
+               "0 ARC 8 0 10 0 20 0 40 1 50 0 51 100 0 LINE 8 0 10 1 20 0 11 0 21 0 "
+               "0 LINE 8 0 10 0 20 0 11 -0.17364817766693 21 0.984807753012208 ");
+    assert_int_equal(outline.point_count, 5); /* three pieces of 33 1/3 degrees, two of lines */
+    assert_true(asked == 1);
+    csg_outline_release(&outline);
+}
+
 static void test_nesting(void **state)
 {
     (void)state;
@@ -317,9 +348,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, support_setup, support_teardown)
-        TEST(test_lines),   TEST(test_gap),     TEST(test_curves),      TEST(test_polylines),
-        TEST(test_splines), TEST(test_options), TEST(test_nesting),     TEST(test_blocks),
-        TEST(test_ignored), TEST(test_refused), TEST(test_block_bombs), TEST(test_damage),
+        TEST(test_lines),   TEST(test_gap),     TEST(test_curves),    TEST(test_polylines),
+        TEST(test_splines), TEST(test_options), TEST(test_fragments), TEST(test_nesting),
+        TEST(test_blocks),  TEST(test_ignored), TEST(test_refused),   TEST(test_block_bombs),
+        TEST(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
