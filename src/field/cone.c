@@ -42,7 +42,7 @@ static void step_towards(double w[3], const csg_cone_ball *ball)
         w[k] += share * to[k];
 }
 
-static bool find_axis(const csg_cone_balls *balls, csg_cone *out)
+bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
 {
     enum { STEPS = 12 };
     double w[3] = {0, 0, 0}, best = 0;
@@ -105,5 +105,5 @@ bool csg_cone_find(const csg_tape *tape, const float c[3], double radius, csg_co
         }
     }
     out->is_crease |= balls.has_edges;
-    return balls.count > 0 && find_axis(&balls, out);
+    return balls.count > 0 && csg_cone_find_axis(&balls, out);
 }

@@ -42,4 +42,10 @@ typedef struct csg_cone_balls {
 bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                        const float c[3], double radius);
 
+/* ---- cone.c -----------------------------------------------------------------------------------
+ */
+
+/* Axis and least climb of a cone that holds the balls' convex hull. False: none was found. */
+bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out);
+
 #endif

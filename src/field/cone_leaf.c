@@ -84,6 +84,14 @@ static bool add_box(local *l, int axes)
         most = fmax(most, a[k]);
         over[k] = copysign(fmax(a[k], 0), l->q[k]);
     }
+    for (int k = 0; k < axes; k++) { /* all over the ball one face is the nearest place */
+        bool alone = a[k] > l->rho;
+        for (int j = 0; j < axes; j++)
+            alone = alone && (j == k || a[j] < -l->rho);
+        if (alone)
+            return add(l, k == 0 ? copysign(1, -l->q[0]) : 0, k == 1 ? copysign(1, -l->q[1]) : 0,
+                       k == 2 ? copysign(1, -l->q[2]) : 0, 0);
+    }
     if (sqrt(square_of(over)) > 1.2 * l->rho)
         return add_away(l, over[0], over[1], over[2]);
     uint32_t faces = 0;
@@ -121,6 +129,14 @@ static bool add_frustum(local *l)
     double most = fmax(side, fmax(top, bottom));
     point g, q = {(float)l->q[0], (float)l->q[1], (float)l->q[2]};
     double value = (double)own[6] - (double)frustum_at(own, q, &g);
+    /* All over the ball the nearest place is on the side, or on a cap. */
+    double along = (l->q[2] + (double)own[2]) * nx - (radius - (double)own[0]) * nz;
+    double wide = l->rho * (1 + 1e-4), bend = turn_within(radius, l->rho);
+    if (side > wide && along > wide && along + wide < (double)own[5] && bend < 1.4)
+        return add(l, -nx * l->q[0] / radius, -nx * l->q[1] / radius, -nz, nx * bend);
+    double rim = (double)own[1] + (l->q[2] < 0 ? -(double)own[7] : (double)own[7]);
+    if (fabs(l->q[2]) - (double)own[2] > wide && radius + wide < rim)
+        return add(l, 0, 0, copysign(1, -l->q[2]), 0);
     if (most > 0 && value > 1.2 * l->rho)
         return add(l, (double)g.x, (double)g.y, (double)g.z, turn_within(value, l->rho) + 1e-5);
     /* Outside by up to 2.2 rho; at an acute rim a face takes part from further below its plane. */

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "field/cone.h"
 #include "field/dispatch.h"
 #include "grid/octree.h"
+#include "mesh/check_distance_slopes.h"
 
 enum { PIECES = 1 << 11, STACK = 64 };
 
@@ -73,54 +73,22 @@ static double value_at(const proof *p, settler *s, csg_vec3 at)
     return (double)f[0];
 }
 
-/* Least climb of f against the normal, and most along the triangle, within a ball. */
-typedef struct slopes {
-    double climb, along;
-} slopes;
-
-static bool find_slopes(const csg_tape *tape, csg_vec3 c, double radius, csg_vec3 normal,
-                        slopes *out)
-{
-    csg_cone_balls balls;
-    balls.count = 0;
-    balls.has_edges = false;
-    const float at[3] = {(float)c.x, (float)c.y, (float)c.z};
-    bool stretched = false; /* weights of gradients may add up to more than 1 */
-    for (uint32_t i = 0; i < tape->count; i++) {
-        const csg_tape_node *node = &tape->nodes[i];
-        if (csg_op_is_leaf(node->op) ? !csg_cone_add_leaf(&balls, tape, node, at, radius)
-                                     : csg_op_takes_all(node->op) && !csg_op_is_round(node->op))
-            return false;
-        stretched |=
-            node->blend == CSG_BLEND_ORTHOGONAL || node->join_blend == CSG_BLEND_ORTHOGONAL;
-    }
-    *out = (slopes){INFINITY, 0};
-    for (uint32_t i = 0; i < balls.count; i++) {
-        csg_vec3 g = {balls.items[i].at[0], balls.items[i].at[1], balls.items[i].at[2]};
-        double up = -csg_vec3_dot(g, normal);
-        csg_vec3 flat = csg_vec3_add(g, csg_vec3_scale(normal, up));
-        out->climb = fmin(out->climb, up - balls.items[i].spread);
-        out->along = fmax(out->along, csg_vec3_norm(flat) + balls.items[i].spread);
-    }
-    if (stretched || balls.has_edges) /* sqrt(2) at an orthogonal edge, sqrt(3) at a box's corner */
-        out->along *= 2.5;
-    out->along = fmin(out->along, (double)tape->lipschitz);
-    return balls.count > 0 && out->climb > 0;
-}
-
 /* Rounding of places and values is kept clear of, twice over. */
 static double slack_of(const proof *p)
 {
     return 4 * (double)p->remesh->probe.noise;
 }
 
-static bool settles_by_cone(const proof *p, settler *s, disc d, csg_vec3 normal)
+static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3])
 {
-    slopes slope;
-    if (!find_slopes(&s->tape, d.center, d.radius + p->error, normal, &slope))
+    csg_gradients gradients;
+    csg_cone cone;
+    if (!csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, v, d.center,
+                            d.radius + p->error, s->scratch, p->scratch_floats, &gradients) ||
+        !csg_cone_find_axis(&gradients.balls, &cone))
         return false;
-    double f = fabs(value_at(p, s, d.center)) + slack_of(p);
-    return f + slope.along * d.radius <= slope.climb * p->error;
+    double least = cone.least * p->error - slack_of(p);
+    return gradients.low >= -least && gradients.high <= least;
 }
 
 static bool settles_by_signs(const proof *p, settler *s, disc d, csg_vec3 normal)
@@ -159,7 +127,7 @@ static bool settles(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 no
 {
     disc d = disc_of(v);
     s->pieces++;
-    if (settles_by_cone(p, s, d, normal)) {
+    if (settles_by_cone(p, s, d, v)) {
         s->by_cone++;
         return true;
     }
@@ -213,7 +181,9 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
 /* ---- eight at a time ---------------------------------------------------------------------------
  */
 
-enum { DEEPEST = 8 };
+/* Pieces begin with sides of so many cells. What has few leaves, whose gradients say by themselves
+ * what does not take part, is cut without another tape. */
+enum { FIRST_SIDE = 8, DEEPEST = 8, FEW_NODES = 6 };
 
 /* Eight parts of a piece, by three bisections. */
 static void cut_in_eight(const piece *whole, piece parts[CSG_OCTANTS])
@@ -272,7 +242,7 @@ static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *piec
         pieces[i].open = !tapes[i].count;
         if (pieces[i].open || settles(p, s, pieces[i].at, pieces[i].normal))
             continue;
-        if (tapes[i].count == 1 || depth == DEEPEST ||
+        if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
             disc_of(pieces[i].at).radius < 2 * p->error) {
             pieces[i].open = !settle_piece(p, s, &pieces[i]);
             continue;
@@ -329,9 +299,8 @@ static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof 
 static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *pending,
                                   csg_distance_proof *out)
 {
-    /* near enough to its neighbourhood that the far side of a thin wall is pruned away */
     const csg_remesh *r = p->remesh;
-    double side = fmax(0.8 * r->cell, 2 * p->error);
+    double side = fmax(FIRST_SIDE * r->cell, 2 * p->error);
     csg_vec3 stack[STACK][3];
     size_t top = 1;
     for (uint32_t k = 0; k < 3; k++)

@@ -3,9 +3,11 @@
  * samples of it. Triangles are bisected until each piece, of centroid c and radius r, is settled by
  * one of these, with the tape pruned to the piece's neighbourhood:
  *
- *   cone     gradients of the leaves there (field/cone.h): against the normal f climbs by at least
- *            m, along the triangle by at most s: |f(c)| + s r <= m E. Of the order of sqrt(E /
- *            curvature), so that smooth parts are settled by large pieces.
+ *   cone     gradients in the ball of radius r + E around c have a direction v in common in which f
+ *            climbs by at least m, and |f| <= m E all over the piece (check_distance_slopes.h): so
+ *            c + E v is inside and c - E v outside, for all of its points. Of the order of
+ *            sqrt(E / curvature), so that smooth parts are settled by large pieces, and flat ones
+ *            up to their edges.
  *   signs    f(c + E n) <= -lambda r and f(c - E n) >= lambda r: the signs hold for all of the
  * piece nearby   f changes its sign within E - r of c
  *
