@@ -30,6 +30,31 @@ function lookAtCanvas() {
 
 const cameraOf = (page) => page.evaluate(() => structuredClone(window.report.view.camera ?? null));
 
+// The camera at the end of its way: a loaded machine takes its time. (waitForFunction needs eval, which the page forbids.)
+async function landed(page) {
+  while (await page.evaluate(() => Boolean(window.report.view.flight))) await page.waitForTimeout(50);
+  return cameraOf(page);
+}
+
+// Fingers as the screen sees them: one turns, two that part zoom, two side by side move.
+async function useFingers(page, seen) {
+  const box = await page.locator("#canvas").boundingBox(), x = box.x + box.width / 2, y = box.y + box.height / 2;
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent",
+    { type, touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })) });
+  const stroke = async (from, to) => {
+    await touch("touchStart", ...from);
+    for (const share of [0.5, 1])
+      await touch("touchMove", ...from.map((at, i) => at.map((v, k) => v + (to[i][k] - v) * share)));
+    await touch("touchEnd");
+    return cameraOf(page);
+  };
+  seen.touch = { before: await cameraOf(page) };
+  seen.touch.turned = await stroke([[0, 0]], [[80, 30]]);
+  seen.touch.pinched = await stroke([[-40, 0], [40, 0]], [[-80, 0], [80, 0]]);
+  seen.touch.moved = await stroke([[-40, 0], [40, 0]], [[-40, 60], [40, 60]]);
+}
+
 async function useHands(page, seen) {
   const box = await page.locator("#canvas").boundingBox(), x = box.x + box.width / 2, y = box.y + box.height / 2;
   seen.start = await cameraOf(page);
@@ -53,8 +78,8 @@ async function useHands(page, seen) {
   seen.split = await page.evaluate(() => [window.report.view.mode, window.report.view.split]);
   await page.keyboard.press("4");
   await page.locator("#fit").click();
-  await page.waitForTimeout(700);
-  seen.fitted = await cameraOf(page);
+  seen.fitted = await landed(page);
+  await useFingers(page, seen);
 }
 
 async function visit(page, seen) {
@@ -70,8 +95,7 @@ async function visit(page, seen) {
   await useHands(page, seen);
   if (!seen.worst) return;
   await page.locator("#worst button").first().click();
-  await page.waitForTimeout(700);
-  seen.flown = await cameraOf(page);
+  seen.flown = await landed(page);
   seen.ring = await page.evaluate(() => [getComputedStyle(document.getElementById("marks")).visibility,
     Number(document.getElementById("ring").getAttribute("cx")), document.getElementById("canvas").clientWidth]);
   if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-worst.png") });

@@ -12,26 +12,13 @@ import unittest
 import xml.dom.minidom
 
 import cli
+import diff_support
 
 BALL = "sphere(10);\n"
 KNOB = "sphere(10); translate([10, 0, 0]) sphere(2);\n"
 
 
-class DiffTest(cli.CliTest):
-    def mesh(self, text, name, *options):
-        self.write("scene.txt", text)
-        self.assert_status(self.run_in("scene.txt", "-o", name, "-r", 32, "-q", *options), 0)
-        os.unlink(self.path("scene.txt"))
-
-    def diff(self, status, *arguments):
-        result = self.run_in("diff", *arguments)
-        self.assert_clean(result)
-        self.assert_status(result, status)
-        return result
-
-    def report(self, status, *arguments):
-        return json.loads(self.diff(status, *arguments, "--json", "-").stdout)
-
+class Diff(diff_support.DiffTest):
     def test_levels(self):
         self.mesh(BALL, "a.ply")
         shutil.copy(self.path("a.ply"), self.path("b.ply"))
@@ -189,7 +176,7 @@ class DiffTest(cli.CliTest):
         self.assertIn(b"apart, more than 0.01", self.git("diff", "HEAD"))
 
 
-class AgainstScipy(DiffTest):
+class AgainstScipy(diff_support.DiffTest):
     """Samples of another program lie below our upper bounds, and its vertices not above."""
 
     def test_sampled(self):

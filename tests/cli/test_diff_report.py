@@ -12,6 +12,7 @@ import sys
 import unittest
 
 import cli
+import diff_support
 from test_render import HAS_PNG, read_png, read_ppm
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -47,18 +48,8 @@ def data_of(page):
     return json.loads(text)
 
 
-class ReportTest(cli.CliTest):
-    def mesh(self, text, name, *options):
-        self.write("scene.txt", text)
-        os.makedirs(os.path.dirname(self.path(name)) or ".", exist_ok=True)
-        self.assert_status(self.run_in("scene.txt", "-o", name, "-r", 48, "-q", *options), 0)
-        os.unlink(self.path("scene.txt"))
-
-    def diff(self, status, *arguments):
-        result = self.run_in("diff", *arguments)
-        self.assert_clean(result)
-        self.assert_status(result, status)
-        return result
+class ReportTest(diff_support.DiffTest):
+    RESOLUTION = 48
 
     def plates(self):
         self.mesh(PLATE, "a.ply")
@@ -213,12 +204,23 @@ class Page(ReportTest):
             self.assertEqual(canvas["red"] > 30, mode == "heat", mode)
         self.assertEqual(seen["split"], ["split", 0.8])
         self.assertAlmostEqual(seen["fitted"]["distance"], start["distance"], places=6)
+        self.check_fingers(seen["touch"])
         self.assertGreater(seen["worst"], 0)
         self.assertLess(seen["flown"]["distance"], 0.8 * start["distance"])
         self.assertNotEqual(seen["flown"]["target"], start["target"])
         shown, x, width = seen["ring"]
         self.assertEqual(shown, "visible")
         self.assertAlmostEqual(x, width / 2, delta=2)
+
+    def check_fingers(self, seen):
+        before, turned, pinched, moved = (seen[name] for name in ("before", "turned", "pinched", "moved"))
+        self.assertAlmostEqual(turned["azimuth"], before["azimuth"] - 0.64, places=6)
+        self.assertAlmostEqual(turned["elevation"], before["elevation"] + 0.24, places=6)
+        self.assertEqual(turned["distance"], before["distance"])
+        self.assertAlmostEqual(pinched["distance"], turned["distance"] / 2, places=6)
+        self.assertEqual((pinched["azimuth"], pinched["elevation"]), (turned["azimuth"], turned["elevation"]))
+        self.assertNotEqual(moved["target"], pinched["target"])
+        self.assertAlmostEqual(moved["distance"], pinched["distance"], delta=0.05 * pinched["distance"])
 
     @needs_browser
     @unittest.skipUnless(THOROUGH, "with --thorough")

@@ -209,7 +209,7 @@ class View {
         azimuth: from.azimuth + swing * share, elevation: mix(from.elevation, to.elevation),
       };
       this.draw();
-      if (raw < 1) this.flight = requestAnimationFrame(step);
+      this.flight = raw < 1 ? requestAnimationFrame(step) : 0;
     };
     this.flight = requestAnimationFrame(step);
   }
@@ -315,6 +315,7 @@ class View {
       canvas.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
       cancelAnimationFrame(this.flight);
+      this.flight = 0;
     });
     for (const name of ["pointerup", "pointercancel"])
       canvas.addEventListener(name, (event) => fingers.delete(event.pointerId));
