@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "mesh/feature_solve.h"
+#include "mesh/feature_move.h"
 #include "mesh/work.h"
 
 /* What one item of the parallel loop has found, in the room of one worker. */
@@ -161,7 +161,7 @@ static bool flip_item(void *user, uint32_t worker, size_t item)
 {
     csg_mesh_work *w = user;
     (void)worker;
-    csg_feature_flip(&w->features, item);
+    csg_feature_flip(&w->features, &w->tables, item);
     return true;
 }
 

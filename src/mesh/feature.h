@@ -23,6 +23,7 @@ enum {
     CSG_FEATURE_MOST_SIDES = 12,
     CSG_FEATURE_MOST_SHEETS = 8,
     CSG_FEATURE_APEX = 0xFF,
+    CSG_FEATURE_BEYOND = 0x80,
     CSG_FEATURE_SEGMENTS = 8192 /* candidates of one block at most */
 };
 
@@ -34,14 +35,17 @@ typedef struct csg_feature {
     float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
     uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* creased sides: the feature beyond, or NONE */
     uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
-    uint16_t flipped;                      /* bit s: side s */
+    uint16_t flipped; /* bit s: side s */
+    /* Of the two triangles at a flipped side each feature has one: bit s: that at the side's end,
+     * corner s + 1, otherwise that at corner s. */
+    uint16_t takes_next;
     uint8_t edge[CSG_FEATURE_MOST_SIDES];  /* the cell's crossed edges, counter-clockwise from
                                               outside; side s leads from edge s to edge s + 1 */
     uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
-    /* Triangles that lie in one sheet: corners of the polygon, or CSG_FEATURE_APEX. A side that a
-     * crease crosses has one more, of the apex and itself, until it is flipped. */
+    /* As many as sides: of corners of the polygon, CSG_FEATURE_APEX, or CSG_FEATURE_BEYOND + s: the
+     * apex beyond side s. The first that is a corner of
+     * the polygon lies in the triangle's sheet. */
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
-    uint8_t triangle_count;
     uint8_t side_count, sheet_count;
     uint8_t pattern;  /* of the cell */
     uint8_t loop;     /* of the pattern */
@@ -142,8 +146,8 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
  * are to be done again); how many. Not in parallel. */
 size_t csg_feature_uncross(csg_feature_store *store, const csg_cell_tables *tables,
                            const csg_lattice *lattice);
-/* Which sides are flipped, once all are linked and in their places. As csg_feature_link. */
-void csg_feature_flip(csg_feature_store *store, size_t block);
+/* The triangles, once all are linked, in their places and settled. As csg_feature_link. */
+void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
                                                 const uint32_t at[3]);
 void csg_feature_store_release(csg_feature_store *store);

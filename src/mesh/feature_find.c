@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/feature_apex.h"
 #include "mesh/feature_possible.h"
 #include "mesh/feature_solve.h"
 
@@ -189,10 +190,9 @@ static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_p
             planes[end] =
                 csg_plane_at(room->x[i + end], room->y[i + end], room->z[i + end], room->f[i + end],
                              g[0][i + end], g[1][i + end], g[2][i + end]);
-        double x[3] = {(double)room->x[i], (double)room->y[i], (double)room->z[i]};
-        s->active = csg_planes_meet(planes, 2, x);
-        for (int axis = 0; axis < 3; axis++)
-            s->at[axis] = (float)x[axis];
+        csg_vec3 at = {(double)room->x[i], (double)room->y[i], (double)room->z[i]};
+        s->active = csg_planes_meet(planes, 2, &at);
+        s->at[0] = (float)at.x, s->at[1] = (float)at.y, s->at[2] = (float)at.z;
         if (s->active)
             room->loops[s->loop].crease[s->side] = (int16_t)room->which[i];
     }

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/feature.h"
+#include "mesh/feature_cut.h"
 
 enum { E = CSG_BLOCK_EDGE, NEAR = 5 };
 
@@ -124,36 +124,6 @@ static uint32_t feature_with(const csg_feature_store *store, const csg_feature_b
     return CSG_FEATURE_NONE;
 }
 
-/* Whether triangle (a, b, c) looks out of the sheet with normal n. */
-static bool looks_along(const float *a, const float *b, const float *c, const float *n)
-{
-    double u[3], v[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - (double)a[i];
-        v[i] = (double)c[i] - (double)a[i];
-    }
-    return (u[1] * v[2] - u[2] * v[1]) * (double)n[0] + (u[2] * v[0] - u[0] * v[2]) * (double)n[1] +
-               (u[0] * v[1] - u[1] * v[0]) * (double)n[2] >
-           0;
-}
-
-/* Apexes this near to each other are one place: cells. */
-static const double APART = 1e-3;
-
-/* Both halves of a flipped segment must look the way their sheets do. */
-static bool may_flip(const csg_feature_store *store, const csg_feature *f, int s,
-                     const csg_feature *g, int t)
-{
-    double square = 0;
-    for (int i = 0; i < 3; i++)
-        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
-    if (square < APART * APART * store->cell_size * store->cell_size)
-        return false;
-    int s1 = (s + 1) % f->side_count;
-    return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
-           looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
-}
-
 static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
                       const csg_feature_block *block, csg_feature *f, int s)
 {
@@ -174,6 +144,7 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
         return;
     f->beyond[s] = other;
     f->beyond_side[s] = side;
+    f->flipped |= (uint16_t)(1u << s);
 }
 
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
@@ -187,24 +158,13 @@ void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, s
     }
 }
 
-/* Both ask the same question, in the order of the features. */
-static bool side_flips(const csg_feature_store *store, uint32_t i, int s)
-{
-    const csg_feature *f = &store->features[i];
-    uint32_t other = f->beyond[s];
-    const csg_feature *g = &store->features[other];
-    int t = f->beyond_side[s];
-    return i < other ? may_flip(store, f, s, g, t) : may_flip(store, g, t, f, s);
-}
-
-void csg_feature_flip(csg_feature_store *store, size_t index)
+void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
 {
     const csg_feature_block *block = &store->blocks[index];
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         csg_feature *f = &store->features[i];
-        for (int s = 0; s < f->side_count; s++)
-            if (f->beyond[s] != CSG_FEATURE_NONE && side_flips(store, i, s))
-                f->flipped |= (uint16_t)(1u << s);
+        if (f->creased)
+            csg_feature_cut(store->features, tables, f, f->triangle);
     }
 }
 
@@ -220,28 +180,27 @@ static uint8_t corner_of(const csg_feature *f, uint8_t edge)
     return corner;
 }
 
-static void put_triangle(csg_feature *f, uint8_t a, uint8_t b, uint8_t c)
+static void put_triangle(uint8_t **to, uint8_t a, uint8_t b, uint8_t c)
 {
-    uint8_t *t = f->triangle[f->triangle_count++];
-    t[0] = a, t[1] = b, t[2] = c;
+    *(*to)++ = a, *(*to)++ = b, *(*to)++ = c;
 }
 
 /* The triangles of plain marching cubes; the apex divides the first. */
 static void retriangulate(csg_feature *f, const csg_cell_tables *tables)
 {
     const uint8_t *edge = tables->edge[f->pattern];
+    uint8_t *to = f->triangle[0];
     for (int loop = 0; loop < f->loop; loop++)
         edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
-    f->triangle_count = 0;
     for (int t = 0; t < f->side_count - 2; t++, edge += 3) {
         uint8_t a = corner_of(f, edge[0]), b = corner_of(f, edge[1]), c = corner_of(f, edge[2]);
         if (t) {
-            put_triangle(f, a, b, c);
+            put_triangle(&to, a, b, c);
             continue;
         }
-        put_triangle(f, CSG_FEATURE_APEX, a, b);
-        put_triangle(f, CSG_FEATURE_APEX, b, c);
-        put_triangle(f, CSG_FEATURE_APEX, c, a);
+        put_triangle(&to, CSG_FEATURE_APEX, a, b);
+        put_triangle(&to, CSG_FEATURE_APEX, b, c);
+        put_triangle(&to, CSG_FEATURE_APEX, c, a);
         for (int i = 0; i < 3; i++) /* nearly a vertex, which lies on the surface */
             f->at[i] = 0.998f * f->corner[a][i] + 0.001f * (f->corner[b][i] + f->corner[c][i]);
         for (int k = 0; k < f->sheet_count; k++)
@@ -257,21 +216,13 @@ void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
         csg_feature *g = &store->features[f->beyond[s]];
         g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
         g->flipped &= (uint16_t) ~(1u << f->beyond_side[s]);
+        g->takes_next &= g->flipped;
+        csg_feature_cut(store->features, tables, g, g->triangle);
         f->beyond[s] = CSG_FEATURE_NONE;
     }
-    f->creased = f->flipped = 0;
+    f->creased = f->flipped = f->takes_next = 0;
     retriangulate(f, tables);
     store->smooth++;
-}
-
-/* A triangle across a crease that is not flipped looks out between its two sheets. */
-static bool stays_outward(const csg_feature *f, int s)
-{
-    int s1 = (s + 1) % f->side_count;
-    float n[3];
-    for (int i = 0; i < 3; i++)
-        n[i] = f->normal[f->sheet[s]][i] + f->normal[f->sheet[s1]][i];
-    return looks_along(f->at, f->corner[s], f->corner[s1], n);
 }
 
 static bool is_corner(const csg_feature *f)
@@ -341,6 +292,118 @@ bool csg_feature_is_stray(const csg_feature_store *store, uint32_t block, uint32
     return stranger;
 }
 
+/* ---- joining -----------------------------------------------------------------------------------
+ */
+
+/* Whether triangle (a, b, c) looks out of the sheet with normal n. */
+static bool looks_along(const float *a, const float *b, const float *c, const float *n)
+{
+    double u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - (double)a[i];
+        v[i] = (double)c[i] - (double)a[i];
+    }
+    return (u[1] * v[2] - u[2] * v[1]) * (double)n[0] + (u[2] * v[0] - u[0] * v[2]) * (double)n[1] +
+               (u[0] * v[1] - u[1] * v[0]) * (double)n[2] >
+           0;
+}
+
+/* Apexes this near to each other are one place: cells. */
+static const double APART = 1e-3;
+
+static bool are_apart(const csg_feature_store *store, const csg_feature *f, const csg_feature *g)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
+    return square >= APART * APART * store->cell_size * store->cell_size;
+}
+
+/* Whether both halves of a flipped segment look the way their sheets do, as they are. */
+static bool flips_plainly(const csg_feature *f, int s, const csg_feature *g, int t)
+{
+    int s1 = (s + 1) % f->side_count;
+    return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
+           looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
+}
+
+/* A triangle across a crease that is not flipped looks out between its two sheets. */
+static bool stays_outward(const csg_feature *f, int s)
+{
+    int s1 = (s + 1) % f->side_count;
+    float n[3];
+    for (int i = 0; i < 3; i++)
+        n[i] = f->normal[f->sheet[s]][i] + f->normal[f->sheet[s1]][i];
+    return looks_along(f->at, f->corner[s], f->corner[s1], n);
+}
+
+/* Gives the feature's flipped sides the halves that the bits of `mask` say, in order. */
+static void share_out(csg_feature_store *store, csg_feature *f, unsigned mask)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        if (!(f->flipped >> s & 1))
+            continue;
+        csg_feature *g = &store->features[f->beyond[s]];
+        uint16_t own = (uint16_t)(1u << s), others = (uint16_t)(1u << f->beyond_side[s]);
+        f->takes_next = (uint16_t)(mask & 1 ? f->takes_next | own : f->takes_next & ~own);
+        g->takes_next = (uint16_t)(mask & 1 ? g->takes_next | others : g->takes_next & ~others);
+        mask >>= 1;
+    }
+}
+
+/* What share_out() would change nothing with. */
+static unsigned shares_of(const csg_feature *f)
+{
+    unsigned mask = 0;
+    for (int s = 0, bit = 0; s < f->side_count; s++)
+        if (f->flipped >> s & 1)
+            mask |= (unsigned)(f->takes_next >> s & 1) << bit++;
+    return mask;
+}
+
+/* Whether the feature and what its neighbours have of the same sheets can be cut. */
+static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables,
+                   const csg_feature *f)
+{
+    uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
+    bool good = csg_feature_cut(store->features, tables, f, triangles);
+    for (int s = 0; s < f->side_count && good; s++)
+        if (f->flipped >> s & 1)
+            good = csg_feature_cuts_at(store->features, tables, &store->features[f->beyond[s]],
+                                       f->beyond_side[s]);
+    return good;
+}
+
+/* Looks for a way to share the halves of its flipped sides out that lets the feature be cut. */
+static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    unsigned before = shares_of(f), end = 1u << __builtin_popcount(f->flipped);
+    if (is_cut(store, tables, f))
+        return true;
+    for (unsigned mask = 0; mask < end; mask++) {
+        share_out(store, f, mask);
+        if (is_cut(store, tables, f))
+            return true;
+    }
+    share_out(store, f, before);
+    return false;
+}
+
+/* Both ask the same question. */
+static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                       int s)
+{
+    csg_feature *g = &store->features[f->beyond[s]];
+    int t = f->beyond_side[s];
+    if (!are_apart(store, f, g))
+        return false;
+    if (!f->takes_next && !g->takes_next && flips_plainly(f, s, g, t))
+        return true;
+    return (csg_feature_cuts_at(store->features, tables, f, s) &&
+            csg_feature_cuts_at(store->features, tables, g, t)) ||
+           find_shares(store, tables, f) || find_shares(store, tables, g);
+}
+
 size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables)
 {
     size_t changed = 0;
@@ -351,7 +414,7 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
                 continue;
             csg_feature *g =
                 f->beyond[s] == CSG_FEATURE_NONE ? NULL : &store->features[f->beyond[s]];
-            if (g ? side_flips(store, i, s) : stays_outward(f, s))
+            if (g ? side_flips(store, tables, f, s) : stays_outward(f, s))
                 continue;
             bool both = !g || is_corner(f) == is_corner(g);
             changed++;
@@ -367,36 +430,31 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
 /* ---- triangles ---------------------------------------------------------------------------------
  */
 
-/* A side that a crease crosses: with the apex, or flipped to join it to the apex beyond. */
-static void side_triangle(const csg_feature_store *store, const csg_feature *f, int s,
-                          csg_fan_corner corners[3])
+/* The sheet of the apex beyond side s that lies in this sheet of the feature. */
+static uint8_t sheet_beyond(const csg_feature_store *store, const csg_feature *f, int s,
+                            uint8_t sheet)
 {
-    int s1 = (s + 1) % f->side_count;
-    corners[0] = (csg_fan_corner){.apex = f, .sheet = f->sheet[s]};
-    corners[1] = (csg_fan_corner){.edge = f->edge[s]};
-    if (!(f->flipped >> s & 1)) {
-        corners[2] = (csg_fan_corner){.edge = f->edge[s1]};
-        return;
-    }
     const csg_feature *g = &store->features[f->beyond[s]];
-    uint8_t sheet = g->sheet[(f->beyond_side[s] + 1) % g->side_count];
-    corners[2] = (csg_fan_corner){.apex = g, .sheet = sheet};
+    int t = f->beyond_side[s];
+    return g->sheet[f->sheet[s] == sheet ? (t + 1) % g->side_count : t];
 }
 
 void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int index,
                           csg_fan_corner corners[3])
 {
-    if (index >= f->triangle_count) {
-        int side = -1;
-        for (int left = index - f->triangle_count; left >= 0; left--)
-            for (side++; !(f->creased >> side & 1);)
-                side++;
-        side_triangle(store, f, side, corners);
-        return;
-    }
     const uint8_t *t = f->triangle[index];
-    uint8_t sheet = f->sheet[t[0] != CSG_FEATURE_APEX ? t[0] : t[1]];
-    for (int c = 0; c < 3; c++)
-        corners[c] = t[c] == CSG_FEATURE_APEX ? (csg_fan_corner){.apex = f, .sheet = sheet}
-                                              : (csg_fan_corner){.edge = f->edge[t[c]]};
+    int c = 0;
+    while (t[c] >= CSG_FEATURE_BEYOND)
+        c++;
+    uint8_t sheet = f->sheet[t[c]];
+    for (c = 0; c < 3; c++) {
+        int s = t[c] - CSG_FEATURE_BEYOND;
+        if (t[c] == CSG_FEATURE_APEX)
+            corners[c] = (csg_fan_corner){.apex = f, .sheet = sheet};
+        else if (s >= 0)
+            corners[c] = (csg_fan_corner){.apex = &store->features[f->beyond[s]],
+                                          .sheet = sheet_beyond(store, f, s, sheet)};
+        else
+            corners[c] = (csg_fan_corner){.edge = f->edge[t[c]]};
+    }
 }
