@@ -4,6 +4,7 @@
  */
 #include <string.h>
 
+#include "field/compile_curve.h"
 #include "field/compile_formula.h"
 #include "field/compile_leaf.h"
 #include "field/compile_rule.h"
@@ -220,23 +221,105 @@ static bool write_entry(compiler *c, const frame *f, uint32_t begin)
     return true;
 }
 
-static bool compile_leaf(compiler *c, const csg_node *node, const frame *f)
+/* Whether operands of a sharp operator can be those of the one above: max of max, min of min. */
+static bool is_alike(const compiler *c, const task *above, bool is_union)
 {
+    return above && csg_node_is_operator(c->scene->nodes[above->node].kind) &&
+           above->blend.kind == CSG_BLEND_SHARP && above->is_union == is_union;
+}
+
+/* The last node written completes a child of this operator. */
+static void join(compiler *c, task *group)
+{
+    csg_tape_node *node = &c->nodes[c->node_count - 1];
+    if (group->written && group->blend.kind != CSG_BLEND_ROUND && !group->combines) {
+        node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
+        node->join_blend = (uint8_t)group->blend.kind;
+        node->join_parameters = group->parameters;
+    }
+    group->written++;
+}
+
+static bool begin_blend(compiler *c, task *t)
+{
+    float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
+                                                                              : (float)t->blend.n,
+                                             (float)csg_blend_support(t->blend)};
+    if (t->blend.kind == CSG_BLEND_ORTHOGONAL)
+        values[CSG_OPERATOR_N] = (float)t->frame.raise;
+    return push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
+}
+
+static uint8_t op_of(const task *t)
+{
+    if (t->combines)
+        return CSG_OP_COMBINE;
+    if (t->softens)
+        return CSG_OP_SOFTEN;
+    if (t->blend.kind == CSG_BLEND_ROUND)
+        return t->is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION;
+    if (csg_blend_takes_fields(t->blend.kind))
+        return t->is_union ? CSG_OP_RULE_UNION : CSG_OP_RULE_INTERSECTION;
+    return t->is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION;
+}
+
+/* After its operands. */
+static bool write_operator(compiler *c, const task *t)
+{
+    csg_tape_node *node = push_node(c);
+    if (!node)
+        return false;
+    node->op = op_of(t);
+    if (t->combines)
+        node->frame = CSG_FRAME_AFFINE;
+    node->blend = (uint8_t)(t->softens ? (int)t->curve : (int)t->blend.kind);
+    node->parameters = t->parameters;
+    node->arity = t->written;
+    node->size = (uint32_t)c->node_count - t->begin;
+    return true;
+}
+
+static bool write_curve(compiler *c, const csg_node *node, const frame *f, task *above)
+{
+    csg_curve curve = csg_curve_make(node->kind, csg_scene_parameters(c->scene, node));
+    csg_curve pieces[CSG_CURVE_MOST_PIECES];
+    csg_affine place = place_of(c, f);
+    size_t count = csg_curve_cut(&curve, pieces);
+    bool alike = count == 1 || (f->form == CSG_FORM_VALUE && is_alike(c, above, !f->negate));
+    task own = {.begin = (uint32_t)c->node_count, .is_union = !f->negate};
+    if (!alike && !begin_blend(c, &own))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        csg_leaf l = {.raise = f->raise};
+        csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind, pieces[i].at[0]);
+        l.magnitude += f->magnitude;
+        if (!write_leaf(c, &l, f->color, f->warp))
+            return false;
+        if (!alike || i + 1 < count)
+            join(c, alike ? above : &own);
+    }
+    return alike || write_operator(c, &own);
+}
+
+static bool compile_leaf(compiler *c, const csg_node *node, const frame *f, task *above)
+{
+    uint32_t begin = (uint32_t)c->node_count;
     csg_leaf l = {.op = CSG_OP_EMPTY, .sigma = f->negate ? -1 : 1};
     if (node->kind == CSG_NODE_FIELD) {
         if (!place_field(c, &l, f, node))
             return false;
     } else if (node->kind == CSG_NODE_SHAPE) {
         place_shape(c, &l, f, node);
-    } else if (node->kind != CSG_NODE_EMPTY) {
+    } else if (node->kind != CSG_NODE_EMPTY && !csg_node_is_curve(node->kind)) {
         csg_affine place = place_of(c, f);
         csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind,
                            csg_scene_parameters(c->scene, node));
     }
     l.magnitude += f->magnitude;
     l.raise = f->raise;
-    return write_leaf(c, &l, f->color, f->warp) &&
-           (f->form == CSG_FORM_VALUE || write_entry(c, f, (uint32_t)c->node_count - 1));
+    bool done = csg_node_is_curve(node->kind) ? write_curve(c, node, f, above)
+                                              : write_leaf(c, &l, f->color, f->warp);
+    return done && (f->form == CSG_FORM_VALUE || write_entry(c, f, begin));
 }
 
 /* ---- operators ------------------------------------------------------------------------------ */
@@ -309,16 +392,6 @@ static bool begin_rule(compiler *c, const csg_node *node, const csg_rule *rule, 
     return push_parameters(c, values, count, &t->parameters);
 }
 
-static bool begin_blend(compiler *c, task *t)
-{
-    float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
-                                                                              : (float)t->blend.n,
-                                             (float)csg_blend_support(t->blend)};
-    if (t->blend.kind == CSG_BLEND_ORTHOGONAL)
-        values[CSG_OPERATOR_N] = (float)t->frame.raise;
-    return push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
-}
-
 /* outer: the group that the operator stands in, or NULL. */
 static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, task *t)
 {
@@ -328,9 +401,7 @@ static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, ta
     if (rule)
         return begin_rule(c, node, rule, t);
     const task *above = outer != UINT32_MAX ? &c->tasks[outer] : NULL;
-    bool is_nested = above && csg_node_is_operator(c->scene->nodes[above->node].kind) &&
-                     t->blend.kind == CSG_BLEND_SHARP && above->blend.kind == CSG_BLEND_SHARP &&
-                     above->is_union == t->is_union;
+    bool is_nested = t->blend.kind == CSG_BLEND_SHARP && is_alike(c, above, t->is_union);
     if (is_nested) {
         t->group = outer; /* max of max, min of min: one operator */
         return true;
@@ -365,31 +436,11 @@ static bool begin_task(compiler *c, csg_node_id id, const frame *f)
     return true;
 }
 
-/* The last node written completes a child of this group. */
 static void join_child(compiler *c, task *group)
 {
     if (!is_group(c, group))
         return; /* nothing above but nodes of one child */
-    csg_tape_node *node = &c->nodes[c->node_count - 1];
-    if (group->written && group->blend.kind != CSG_BLEND_ROUND && !group->combines) {
-        node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
-        node->join_blend = (uint8_t)group->blend.kind;
-        node->join_parameters = group->parameters;
-    }
-    group->written++;
-}
-
-static uint8_t op_of(const task *t)
-{
-    if (t->combines)
-        return CSG_OP_COMBINE;
-    if (t->softens)
-        return CSG_OP_SOFTEN;
-    if (t->blend.kind == CSG_BLEND_ROUND)
-        return t->is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION;
-    if (csg_blend_takes_fields(t->blend.kind))
-        return t->is_union ? CSG_OP_RULE_UNION : CSG_OP_RULE_INTERSECTION;
-    return t->is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION;
+    join(c, group);
 }
 
 static bool end_task(compiler *c)
@@ -398,16 +449,9 @@ static bool end_task(compiler *c)
     task t = c->tasks[index];
     if (t.group != index || !is_group(c, &t))
         return true;
-    csg_tape_node *node = push_node(c);
-    if (!node)
+    if (!write_operator(c, &t))
         return false;
-    node->op = op_of(&t);
-    if (t.combines)
-        node->frame = CSG_FRAME_AFFINE;
-    node->blend = (uint8_t)(t.softens ? (int)t.curve : (int)t.blend.kind);
-    node->parameters = t.parameters;
-    node->arity = t.written;
-    node->size = (uint32_t)c->node_count - t.begin;
+    const csg_tape_node *node = &c->nodes[c->node_count - 1];
     if (csg_op_delivers(node->op))
         take_color(c, node, t.begin);
     bool is_field = delivers_field(c, &c->scene->nodes[t.node]) && !t.frame.is_raised;
@@ -502,7 +546,7 @@ static bool compile_tree(compiler *c)
     if (!push_color(c, &outermost))
         return false;
     if (!root->child_count)
-        return compile_leaf(c, root, &outermost);
+        return compile_leaf(c, root, &outermost, NULL);
     if (!begin_task(c, c->scene->root, &outermost))
         return false;
     while (c->task_count) {
@@ -521,7 +565,7 @@ static bool compile_tree(compiler *c)
             if (!begin_task(c, child, &f))
                 return false;
         } else {
-            if (!compile_leaf(c, &c->scene->nodes[child], &f))
+            if (!compile_leaf(c, &c->scene->nodes[child], &f, &c->tasks[t->group]))
                 return false;
             join_child(c, &c->tasks[t->group]);
         }
@@ -531,18 +575,6 @@ static bool compile_tree(compiler *c)
 
 /* ---- the field --------------------------------------------------------------------------------
  */
-
-static double finite_or_zero(double value)
-{
-    return isfinite(value) ? value : 0;
-}
-
-static csg_vec3 center_of(csg_box bounds)
-{
-    csg_vec3 center = csg_box_is_empty(bounds) ? csg_vec3_make(0, 0, 0) : csg_box_center(bounds);
-    return csg_vec3_make(finite_or_zero(center.x), finite_or_zero(center.y),
-                         finite_or_zero(center.z));
-}
 
 static void *keep(csg_arena *arena, const void *data, size_t bytes)
 {
@@ -584,26 +616,6 @@ static bool keep_formulas(compiler *c)
     return field->tape.steps && field->tape.formulas && field->tape.warps;
 }
 
-static csgm_field *field_create(csgm_context *context)
-{
-    csgm_field *field = csg_memory_alloc(&context->memory, sizeof *field);
-    if (field) {
-        *field = (csgm_field){.context = context};
-        csg_arena_init(&field->arena, &context->memory);
-    }
-    return field;
-}
-
-void csg_field_destroy(csgm_field *field)
-{
-    if (!field)
-        return;
-    csg_memory *memory = &field->context->memory;
-    csg_field_release_parts(field);
-    csg_arena_reset(&field->arena);
-    csg_memory_release(memory, field, sizeof *field);
-}
-
 /* Meets all that is written so far with a box around the field's centre. */
 static bool write_clip(compiler *c, csg_box box)
 {
@@ -640,7 +652,7 @@ static bool compile_field(compiler *c, const csg_box *clip)
     field->bounds = scene->bounds[scene->root];
     if (clip)
         field->bounds = csg_box_intersect(field->bounds, *clip);
-    field->center = center_of(clip ? *clip : field->bounds);
+    field->center = csg_field_center(clip ? *clip : field->bounds);
     csg_field_count(scene, field);
     field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
     if (clip)
@@ -653,7 +665,7 @@ static bool compile_field(compiler *c, const csg_box *clip)
 static csgm_status compile(csgm_context *context, const csgm_scene *scene, const csg_box *clip,
                            csgm_field **out)
 {
-    compiler c = {.context = context, .scene = scene, .field = field_create(context)};
+    compiler c = {.context = context, .scene = scene, .field = csg_field_create(context)};
     bool done = c.field && compile_field(&c, clip);
     csg_memory *memory = &context->memory;
     csg_memory_release(memory, c.nodes, c.node_capacity * sizeof *c.nodes);

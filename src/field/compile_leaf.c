@@ -6,6 +6,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "field/compile_curve.h"
 #include "field/formulas.h"
 
 static void own_of_frustum(csg_leaf *l, const double *p, double k)
@@ -170,7 +171,12 @@ void csg_leaf_primitive(csg_leaf *l, const csg_affine *at, double factor, bool n
     if (similar && kind == CSG_NODE_SPHERE)
         l->frame = CSG_FRAME_OFFSET;
     l->sigma = (negate ? -1 : 1) * (similar ? factor / k : factor);
-    own_parameters(l, kind, p, k, factor);
+    if (csg_node_is_curve(kind)) {
+        csg_curve piece = csg_curve_make(kind, p);
+        csg_curve_pack(l, &piece, &place, similar, k);
+    } else {
+        own_parameters(l, kind, p, k, factor);
+    }
     /* Lengths as the scene sees them: an own-frame value is multiplied by sigma at the end. */
     l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
 }

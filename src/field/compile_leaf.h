@@ -10,22 +10,23 @@
 
 #include "field/tape.h"
 
+enum { CSG_LEAF_MOST_OWN = 19, CSG_LEAF_MOST_PARAMETERS = CSG_LEAF_OWN_AFFINE + CSG_LEAF_MOST_OWN };
+
 typedef struct csg_leaf {
     uint8_t op;
     csg_frame frame;
     double sigma, raise;
     csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
     csg_vec3 offset;
-    double own[8];
+    double own[CSG_LEAF_MOST_OWN];
     int own_count;
     double magnitude; /* largest length that takes part in its arithmetic */
 } csg_leaf;
 
-enum { CSG_LEAF_MOST_PARAMETERS = CSG_LEAF_OWN_AFFINE + 8 };
-
 /* Frame and offset of a leaf whose own frame lies at `place` (relative to the field's centre). */
 void csg_leaf_place(csg_leaf *leaf, const csg_affine *place);
-/* A placed primitive. factor: product of its ancestors' smallest singular values. */
+/* A placed primitive; of a curve a gentle piece (compile_curve.h). factor: product of its
+ * ancestors' smallest singular values. */
 void csg_leaf_primitive(csg_leaf *leaf, const csg_affine *place, double factor, bool negate,
                         csg_node_kind kind, const double *parameters);
 /* The leaf's parameters as tape.h lays them out; returns how many. */

@@ -7,6 +7,38 @@
 
 #include "field/dispatch.h"
 
+static double finite_or_zero(double value)
+{
+    return isfinite(value) ? value : 0;
+}
+
+csg_vec3 csg_field_center(csg_box bounds)
+{
+    csg_vec3 center = csg_box_is_empty(bounds) ? csg_vec3_make(0, 0, 0) : csg_box_center(bounds);
+    return csg_vec3_make(finite_or_zero(center.x), finite_or_zero(center.y),
+                         finite_or_zero(center.z));
+}
+
+csgm_field *csg_field_create(csgm_context *context)
+{
+    csgm_field *field = csg_memory_alloc(&context->memory, sizeof *field);
+    if (field) {
+        *field = (csgm_field){.context = context};
+        csg_arena_init(&field->arena, &context->memory);
+    }
+    return field;
+}
+
+void csg_field_destroy(csgm_field *field)
+{
+    if (!field)
+        return;
+    csg_memory *memory = &field->context->memory;
+    csg_field_release_parts(field);
+    csg_arena_reset(&field->arena);
+    csg_memory_release(memory, field, sizeof *field);
+}
+
 /* Primitives are distances; formulas may be steeper. */
 void csg_field_count(const csgm_scene *scene, csgm_field *field)
 {

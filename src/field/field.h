@@ -12,6 +12,10 @@ extern const csg_color csg_default_material;
 /* The scene must outlive the field. */
 csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out);
 void csg_field_destroy(csgm_field *field);
+/* Of the floats of a field with these bounds. */
+csg_vec3 csg_field_center(csg_box bounds);
+/* An empty one; NULL: no memory. */
+csgm_field *csg_field_create(csgm_context *context);
 
 /* For a scene with named parts: a field for each in field->parts, which the field owns. */
 csgm_status csg_field_compile_parts(csgm_field *field);

@@ -56,6 +56,18 @@ enum {
     OWN_SUPERELLIPSOID = 6 /* soft_formulas.h */
 };
 
+/* Own parameters of a piece of a curve (curve_kernel.c), s = -1 to 1 along it, its middle the
+ * origin: coefficients of Q for s, s^2, s^3, of r for 1, s, s^2, s^3, and of Q . Q' for s to s^5;
+ * whether r varies. */
+enum {
+    CURVE_FIRST,
+    CURVE_RADII = CURVE_FIRST + 9,
+    CURVE_PRODUCTS = CURVE_RADII + 4,
+    CURVE_VARIES = CURVE_PRODUCTS + 5,
+    OWN_QUADRATIC_TUBE,
+    OWN_CUBIC_TUBE = OWN_QUADRATIC_TUBE
+};
+
 /* own: r */
 static inline float sphere_at(const float *own, point q, point *g)
 {

@@ -7,29 +7,13 @@
 
 #include <string.h>
 
+#include "field/curve_kernel.h"
 #include "field/formula_kernel.h"
+#include "field/frames.h"
 #include "field/soft_formulas.h"
 #include "field/warp_kernel.h"
 
 /* ---- leaves ---------------------------------------------------------------------------- */
-
-static inline point offset_frame(const float *t, float x, float y, float z)
-{
-    return (point){x - t[0], y - t[1], z - t[2]};
-}
-
-static inline point affine_frame(const float *m, float x, float y, float z)
-{
-    return (point){m[0] * x + m[1] * y + m[2] * z + m[9], m[3] * x + m[4] * y + m[5] * z + m[10],
-                   m[6] * x + m[7] * y + m[8] * z + m[11]};
-}
-
-/* transpose(m) g */
-static inline point affine_back(const float *m, point g)
-{
-    return (point){m[0] * g.x + m[3] * g.y + m[6] * g.z, m[1] * g.x + m[4] * g.y + m[7] * g.z,
-                   m[2] * g.x + m[5] * g.y + m[8] * g.z};
-}
 
 #define EACH_PRIMITIVE(X)                                                                          \
     X(SPHERE, sphere)                                                                              \
@@ -164,6 +148,10 @@ static void own_values(const csg_tape *tape, const csg_tape_node *node, csg_poin
         break;
         EACH_PRIMITIVE(CASE)
 #undef CASE
+    case CSG_OP_QUADRATIC_TUBE:
+    case CSG_OP_CUBIC_TUBE:
+        CSG_THIS_CURVE_KERNEL.values(node, parameters, p, out);
+        break;
     case CSG_OP_FIELD:
         CSG_THIS_FORMULA_KERNEL.values(tape, node, p.x, p.y, p.z, p.count, out);
         break;
@@ -227,6 +215,10 @@ static void own_gradients(const csg_tape *tape, const csg_tape_node *node, csg_p
         break;
         EACH_PRIMITIVE(CASE)
 #undef CASE
+    case CSG_OP_QUADRATIC_TUBE:
+    case CSG_OP_CUBIC_TUBE:
+        CSG_THIS_CURVE_KERNEL.gradients(node, parameters, p, out, gx, gy, gz);
+        break;
     case CSG_OP_FIELD:
         CSG_THIS_FORMULA_KERNEL.gradients(tape, node, p.x, p.y, p.z, p.count, out, gx, gy, gz);
         break;

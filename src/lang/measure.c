@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "lang/pieces.h"
+#include "scene/curve.h"
 #include "scene/flatten.h"
 #include "scene/services.h"
 
@@ -53,6 +54,8 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
     if (csg_node_is_operator(node->kind) &&
         !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
         (node->blend != CSG_BLEND_SHARP || (!joins && !meets)))
+        return false;
+    if (csg_node_is_curve(node->kind) && !at.outside) /* bends back to itself */
         return false;
     for (uint32_t i = 0; i < node->child_count; i++) {
         bool flips = node->kind == CSG_NODE_DIFFERENCE && i > 0;

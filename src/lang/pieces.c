@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "scene/curve.h"
 #include "shape/polyhedron.h"
 #include "shape/region.h"
 
@@ -184,6 +185,20 @@ static void add_shape(clouding *c, const csg_shape *shape)
         add(c, outline->points[i].x, outline->points[i].y, 0, 0);
 }
 
+/* Chords of the balls between which a tube differs from their hull by less than the tolerance. */
+static void add_curve(clouding *c, csg_node_kind kind, const double *p)
+{
+    const double most = 4000;
+    csg_curve curve = csg_curve_make(kind, p);
+    double within = c->tolerance / widest(&c->piece->map);
+    uint32_t chords = (uint32_t)fmin(csg_curve_chords(&curve, within), most);
+    for (uint32_t i = 0; i <= chords; i++) {
+        double at[CSG_CURVE_AXES];
+        csg_curve_at(&curve, (double)i / chords, at);
+        add(c, at[0], at[1], at[2], at[CSG_CURVE_RADIUS]);
+    }
+}
+
 /* The balls of leaves; false where there is no such cloud. */
 static bool add_leaf(clouding *c, const csgm_scene *scene, const csg_node *node)
 {
@@ -209,6 +224,10 @@ static bool add_leaf(clouding *c, const csgm_scene *scene, const csg_node *node)
         return true;
     case CSG_NODE_TORUS:
         add_torus(c, p);
+        return true;
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        add_curve(c, node->kind, p);
         return true;
     case CSG_NODE_ELLIPSOID:
         add(c, 0, 0, 0, 1);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * tube and spline: a ball swept along a polyline, Bezier curves or a Catmull-Rom curve, its radius
- * changing with the parameter. A polyline is a union of capsules, exactly; curves are polylines
- * within 1e-4 of the radius.
+ * changing with the parameter. A polyline is a union of capsules, a curve one of the scene's tubes
+ * along Bezier curves (scene/curve.h), both exactly.
  */
 #include <math.h>
+#include <string.h>
 
 #include "lang/shapes.h"
-
-static const double tolerance = 1e-4; /* of the largest radius */
+#include "scene/curve.h"
 
 typedef struct knot { /* of a skeleton */
     csg_vec3 at;
@@ -21,7 +21,6 @@ typedef struct skeleton {
     csg_node_id *parts;
     size_t part_count, part_capacity;
     knot last; /* where the next capsule begins */
-    double within;
     bool ok;
 } skeleton;
 
@@ -31,16 +30,10 @@ static knot mix(knot a, knot b, double t)
                   a.radius * (1 - t) + b.radius * t};
 }
 
-/* A capsule from where the last one ended. */
-static void line_to(skeleton *s, knot to)
+static void add(skeleton *s, csg_node_id node)
 {
     csg_eval *e = s->call->e;
-    csg_span where = s->call->statement->where;
-    s->ok = s->ok && csg_eval_charge(e, 10, where);
-    if (!s->ok)
-        return;
-    csg_node_id node = csg_shape_done(s->call, csg_build_capsule(&e->builder, s->last.at, to.at,
-                                                                 s->last.radius, to.radius, where));
+    node = csg_shape_done(s->call, node);
     s->ok = node != CSG_NODE_NONE;
     if (s->ok && !csg_memory_reserve(e->heap.memory, (void **)&s->parts, &s->part_capacity,
                                      s->part_count + 1, sizeof node)) {
@@ -49,30 +42,52 @@ static void line_to(skeleton *s, knot to)
     }
     if (s->ok)
         s->parts[s->part_count++] = node;
+}
+
+/* A capsule from where the last one ended. */
+static void line_to(skeleton *s, knot to)
+{
+    csg_eval *e = s->call->e;
+    csg_span where = s->call->statement->where;
+    s->ok = s->ok && csg_eval_charge(e, 10, where);
+    if (s->ok)
+        add(s, csg_build_capsule(&e->builder, s->last.at, to.at, s->last.radius, to.radius, where));
     s->last = to;
 }
 
-/* A cubic by de Casteljau's scheme. */
-static knot cubic_at(const knot c[4], double t)
+/* Whether it runs straight and evenly from end to end, so that it is a capsule. */
+static bool is_straight(const knot *c, int degree)
 {
-    knot ab = mix(c[0], c[1], t), bc = mix(c[1], c[2], t), cd = mix(c[2], c[3], t);
-    return mix(mix(ab, bc, t), mix(bc, cd, t), t);
+    double size = csg_vec3_norm(csg_vec3_sub(c[degree].at, c[0].at)) + c[0].radius;
+    for (int i = 0; i + 2 <= degree; i++) {
+        knot middle = mix(c[i], c[i + 2], 0.5);
+        if (csg_vec3_norm(csg_vec3_sub(middle.at, c[i + 1].at)) > 1e-13 * size ||
+            fabs(middle.radius - c[i + 1].radius) > 1e-13 * size)
+            return false;
+    }
+    return true;
 }
 
-/* A chord over 1 / n of a cubic stays within |second difference| * 6 / (8 n^2) of it. */
-static void cubic_to(skeleton *s, const knot c[4])
+/* Control points, the first of which is where the last curve ended. */
+static void curve_to(skeleton *s, const knot *c, int degree)
 {
-    const double most = 1e5;
-    double bend = 0;
-    for (int i = 0; i < 2; i++) {
-        csg_vec3 second =
-            csg_vec3_add(csg_vec3_sub(c[i].at, csg_vec3_scale(c[i + 1].at, 2)), c[i + 2].at);
-        double swell = c[i].radius - 2 * c[i + 1].radius + c[i + 2].radius;
-        bend = fmax(bend, csg_vec3_norm(second) + fabs(swell));
+    csg_eval *e = s->call->e;
+    csg_span where = s->call->statement->where;
+    double largest = 0, v[CSG_CURVE_MOST * CSG_CURVE_AXES];
+    for (int i = 0; i <= degree; i++) {
+        const double of[] = {c[i].at.x, c[i].at.y, c[i].at.z, c[i].radius};
+        memcpy(v + CSG_CURVE_AXES * i, of, sizeof of);
+        largest = fmax(largest, c[i].radius);
     }
-    double n = fmin(fmax(ceil(sqrt(6 * bend / (8 * s->within))), 1), most);
-    for (uint32_t i = 1; i <= (uint32_t)n && s->ok; i++)
-        line_to(s, cubic_at(c, i / n));
+    if (largest == 0 || is_straight(c, degree)) { /* no radius: what makes that of a line */
+        line_to(s, c[degree]);
+        return;
+    }
+    s->ok = s->ok && csg_eval_charge(e, 10, where);
+    csg_node_kind kind = degree == 2 ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    if (s->ok)
+        add(s, csg_build_primitive(&e->builder, kind, v, where));
+    s->last = c[degree];
 }
 
 /* ---- the kinds of curves --------------------------------------------------------------------- */
@@ -83,18 +98,10 @@ static void polyline(skeleton *s)
         line_to(s, s->knots[i]);
 }
 
-static void quadratics(skeleton *s)
+static void curves(skeleton *s, int degree)
 {
-    for (size_t i = 0; i + 2 < s->count; i += 2) {
-        const knot *k = &s->knots[i];
-        cubic_to(s, (knot[]){k[0], mix(k[0], k[1], 2.0 / 3), mix(k[2], k[1], 2.0 / 3), k[2]});
-    }
-}
-
-static void cubics(skeleton *s)
-{
-    for (size_t i = 0; i + 3 < s->count; i += 3)
-        cubic_to(s, &s->knots[i]);
+    for (size_t i = 0; i + (size_t)degree < s->count; i += (size_t)degree)
+        curve_to(s, &s->knots[i], degree);
 }
 
 /* Catmull-Rom: through all knots, tangents parallel to the chord of the neighbours. */
@@ -109,7 +116,7 @@ static void catmull_rom(skeleton *s, bool closed)
                       fmax(b.radius + (c.radius - a.radius) / 6, 0)};
         knot before = {csg_vec3_sub(c.at, csg_vec3_scale(csg_vec3_sub(d.at, b.at), 1.0 / 6)),
                        fmax(c.radius - (d.radius - b.radius) / 6, 0)};
-        cubic_to(s, (knot[]){b, after, before, c});
+        curve_to(s, (knot[]){b, after, before, c}, 3);
     }
 }
 
@@ -172,7 +179,6 @@ static void begin(skeleton *s)
     double largest = 0;
     for (size_t i = 0; i < s->count; i++)
         largest = fmax(largest, s->knots[i].radius);
-    s->within = tolerance * largest;
     s->last = s->knots[0];
     s->ok = largest > 0;
     if (!s->ok)
@@ -212,10 +218,8 @@ csg_node_id csg_module_tube(csg_module_call *call)
     begin(&s);
     if (degree == 1)
         polyline(&s);
-    else if (degree == 2)
-        quadratics(&s);
     else
-        cubics(&s);
+        curves(&s, (int)degree);
     return finish(&s);
 }
 

@@ -173,7 +173,7 @@ csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where)
 csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
                                 const double *parameters, csg_span where)
 {
-    enum { MOST_PARAMETERS = 6 };
+    enum { MOST_PARAMETERS = 16 };
     double values[MOST_PARAMETERS] = {0};
     if (builder->status != CSGM_OK)
         return CSG_NODE_NONE;

@@ -4,6 +4,7 @@
  */
 #include "scene/build_private.h"
 #include "scene/check.h"
+#include "scene/curve.h"
 #include "scene/reference.h"
 
 #include <string.h>
@@ -255,6 +256,7 @@ static double height_of(const csgm_scene *scene, csg_node_id id)
     double scale;
     const csg_node *node = undressed(scene, id, &scale);
     const double *v = scene->parameters + node->payload;
+    csg_curve curve;
     switch ((csg_node_kind)node->kind) {
     case CSG_NODE_SPHERE:
     case CSG_NODE_CIRCLE:
@@ -263,6 +265,10 @@ static double height_of(const csgm_scene *scene, csg_node_id id)
         return v[1] == v[2] ? scale * v[1] : 0;
     case CSG_NODE_TORUS:
         return scale * v[1];
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        curve = csg_curve_make(node->kind, v);
+        return scale * csg_curve_only_radius(&curve);
     case CSG_NODE_SUPERELLIPSOID:
         return scale / v[5];
     default:

@@ -7,6 +7,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "scene/curve.h"
+
 /* Larger lengths leave no room for the squares and ratios that the formulas need. */
 #define LARGEST_LENGTH 1e15
 /* A map whose smallest stretch is below this part of its largest is as good as singular. */
@@ -141,6 +143,21 @@ static bool check_superellipsoid(csg_scene_builder *builder, double *v)
     return true;
 }
 
+static bool check_tube(csg_scene_builder *builder, csg_node_kind kind, const double *v)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < csg_primitive_parameter_count(kind); i++) {
+        bool is_radius = i % CSG_CURVE_AXES == CSG_CURVE_RADIUS;
+        if (!(is_radius ? check_not_negative(builder, v[i], "the radius")
+                        : check_range(builder, v[i], "a control point")))
+            return false;
+        most = is_radius ? fmax(most, v[i]) : most;
+    }
+    if (most < CSG_SMALLEST_LENGTH)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "one of the radii must be positive");
+    return builder->status == CSGM_OK;
+}
+
 bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
 {
     switch (kind) {
@@ -169,6 +186,9 @@ bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double 
         return check_positive(builder, v[0], "the height");
     case CSG_NODE_SUPERELLIPSOID:
         return check_superellipsoid(builder, v);
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        return check_tube(builder, kind, v);
     default:
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
         return false;

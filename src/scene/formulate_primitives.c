@@ -3,6 +3,8 @@
  */
 #include "scene/formulate.h"
 
+#include "scene/curve.h"
+
 /* Distance in the half plane of a convex solid of revolution, or of any convex figure, from
  * `behind`, the largest of its half planes (below 0 inside, where it is the distance), and
  * `outside`, the distance to its boundary. */
@@ -136,6 +138,49 @@ static csg_term gauge(csg_terms *t, csg_term x, csg_term y, double n)
     return csg_term_pow_number(t, sum, 1 / n);
 }
 
+/* The balls between two of a curve's: a capsule in its own frame, or the larger ball where that
+ * holds the other. */
+static csg_term chord(csg_terms *t, const double *a, const double *b, const csg_term p[3])
+{
+    csg_vec3 d = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    double r1 = a[CSG_CURVE_RADIUS], r2 = b[CSG_CURVE_RADIUS], length = csg_vec3_norm(d);
+    const double *larger = r1 >= r2 ? a : b;
+    bool is_ball = !(fabs(r1 - r2) < length);
+    csg_term own[3];
+    for (int i = 0; i < 3; i++)
+        own[i] = csg_term_sub_number(t, p[i], is_ball ? larger[i] : a[i]);
+    if (is_ball)
+        return csg_term_less(t, fmax(r1, r2), csg_term_norm3(t, own[0], own[1], own[2]));
+    csg_affine place = csg_affine_z_to(d);
+    csg_term turned[3];
+    for (int i = 0; i < 3; i++) {
+        turned[i] = csg_term_mul_number(t, own[0], place.m[0][i]);
+        for (int k = 1; k < 3; k++)
+            turned[i] = csg_term_add(t, turned[i], csg_term_mul_number(t, own[k], place.m[k][i]));
+    }
+    return capsule(t, (double[]){length, r1, r2}, turned);
+}
+
+/* No formula of a point's nearest ball is short: chords within 1e-4 of the largest radius. */
+static csg_term tube(csg_terms *t, csg_node_kind kind, const double *v, const csg_term p[3])
+{
+    csg_curve curve = csg_curve_make(kind, v);
+    double largest = 0, from[CSG_CURVE_AXES], to[CSG_CURVE_AXES];
+    for (int i = 0; i <= curve.degree; i++)
+        largest = fmax(largest, curve.at[i][CSG_CURVE_RADIUS]);
+    uint32_t chords = (uint32_t)fmin(csg_curve_chords(&curve, 1e-4 * largest), 1e5);
+    csg_term all = CSG_FORMULA_NONE;
+    csg_curve_at(&curve, 0, from);
+    for (uint32_t i = 1; i <= chords; i++) {
+        csg_curve_at(&curve, (double)i / chords, to);
+        csg_term one = chord(t, from, to, p);
+        all = i > 1 ? csg_term_max(t, all, one) : one;
+        for (int k = 0; k < CSG_CURVE_AXES; k++)
+            from[k] = to[k];
+    }
+    return all;
+}
+
 csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double *v,
                                  const csg_term p[3])
 {
@@ -170,6 +215,9 @@ csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double 
         csg_term whole = gauge(t, across, csg_term_mul_number(t, p[2], 1 / v[2]), v[4]);
         return csg_term_mul_number(t, csg_term_less(t, 1, whole), 1 / v[5]);
     }
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        return tube(t, kind, v, p);
     default: /* EMPTY */
         return csg_term_number(t, -CSG_FORMULA_FAR);
     }

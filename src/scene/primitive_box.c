@@ -7,6 +7,8 @@
 #include <assert.h>
 #include <float.h>
 
+#include "scene/curve.h"
+
 static double torus_support(const double *v, csg_vec3 n)
 {
     double across = hypot(n.x, n.y);
@@ -55,6 +57,7 @@ static double dual_norm(double x, double y, double p)
 double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
 {
     double length = csg_vec3_norm(n), across;
+    csg_curve curve;
     switch (kind) {
     case CSG_NODE_SPHERE:
         return v[0] * length;
@@ -83,6 +86,10 @@ double csg_primitive_support(csg_node_kind kind, const double *v, csg_vec3 n)
     case CSG_NODE_SUPERELLIPSOID:
         across = dual_norm(v[0] * n.x, v[1] * n.y, v[3]);
         return dual_norm(across, v[2] * n.z, v[4]) * (1 + 16 * DBL_EPSILON);
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        curve = csg_curve_make(kind, v);
+        return csg_curve_support(&curve, n, length);
     default:
         assert(kind == CSG_NODE_EMPTY);
         return -INFINITY;

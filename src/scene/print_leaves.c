@@ -16,7 +16,7 @@ typedef struct primitive_text {
     double usual;          /* that last parameter where `whole` says all */
 } primitive_text;
 
-/* $a to $e: the parameters (primitives.def), $A to $D: twice that. A rounded frustum is printed by
+/* $a to $p: the parameters (primitives.def), $A to $D: twice that. A rounded frustum is printed by
  * the sizes of its core, since those of its outside would come back with other last bits. */
 static const primitive_text primitives[] = {
     [CSG_NODE_SPHERE] = {"sphere(r = $a)", NULL, 0},
@@ -36,6 +36,12 @@ static const primitive_text primitives[] = {
                             "square(size = [$A, $B], center = true, round = $c)", 0},
     [CSG_NODE_SLAB] = {"slab(h = $a)", NULL, 0},
     [CSG_NODE_SUPERELLIPSOID] = {"superellipsoid(r = [$a, $b, $c], exponents = [$d, $e])", NULL, 0},
+    [CSG_NODE_QUADRATIC_TUBE] = {"tube(points = [[$a, $b, $c], [$e, $f, $g], [$i, $j, $k]], "
+                                 "r = [$d, $h, $l], degree = 2)",
+                                 NULL, 0},
+    [CSG_NODE_CUBIC_TUBE] = {"tube(points = [[$a, $b, $c], [$e, $f, $g], [$i, $j, $k], "
+                             "[$m, $n, $o]], r = [$d, $h, $l, $p], degree = 3)",
+                             NULL, 0},
 };
 
 static void put_primitive(const csg_printer *out, const csg_node *node)

@@ -9,6 +9,8 @@
 
 #include <assert.h>
 
+#include "scene/curve.h"
+
 static csg_vec3 vec3(double x, double y, double z)
 {
     return (csg_vec3){x, y, z};
@@ -258,6 +260,14 @@ double csg_gauge_slope(const double *v)
     return gauge_slope(gauge_slope(1 / v[0], 1 / v[1], v[3]), 1 / v[2], v[4]);
 }
 
+static csg_sample tube(csg_node_kind kind, const double *parameters, csg_vec3 p)
+{
+    csg_curve curve = csg_curve_make(kind, parameters);
+    csg_vec3 to;
+    double value = csg_curve_nearest(&curve, p, &to);
+    return (csg_sample){value, csg_vec3_normalize(to)};
+}
+
 csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p)
 {
     switch (kind) {
@@ -285,6 +295,9 @@ csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters,
         return (csg_sample){parameters[0] - fabs(p.z), vec3(0, 0, -sign(p.z))};
     case CSG_NODE_SUPERELLIPSOID:
         return superellipsoid(parameters, p);
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        return tube(kind, parameters, p);
     default:
         assert(kind == CSG_NODE_EMPTY);
         return (csg_sample){-INFINITY, vec3(0, 0, 0)};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * golden.csv: blend functions, binary operators, sphere sweeps, half-space, box, cylinder and the
- * round n-ary union, computed with 40 digits (a table's name, then its columns). The primitives
- * are built, placed and evaluated as scenes.
+ * golden.csv: blend functions, binary operators, sphere sweeps (Bezier curves among them),
+ * half-space, box, cylinder and the round n-ary union, computed with 40 digits (a table's name,
+ * then its columns). The primitives are built, placed and evaluated as scenes.
  */
 #include "golden_rows.h"
 
@@ -71,12 +71,29 @@ static void test_round(void **state)
     for_each("round", 10, check_round);
 }
 
+/* "quadratic Bezier (x,y,z)(x,y,z)(x,y,z)" or cubic, four points. */
+static csg_node_id build_curve(csg_scene_builder *builder, const char *text, double radius)
+{
+    csg_node_kind kind = *text == 'q' ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    double v[16];
+    int points = kind == CSG_NODE_QUADRATIC_TUBE ? 3 : 4;
+    for (int i = 0; i < points; i++) {
+        text = strchr(text + 1, '(');
+        assert_int_equal(sscanf(text, "(%lf,%lf,%lf)", &v[4 * i], &v[4 * i + 1], &v[4 * i + 2]), 3);
+        v[4 * i + 3] = radius;
+    }
+    assert_null(strchr(text + 1, '('));
+    return csg_build_primitive(builder, kind, v, NOWHERE);
+}
+
 static csg_node_id build(csg_scene_builder *builder, const char *text, const char *radius)
 {
     csg_vec3 a, b, h;
     double r = radius ? number(radius) : 0, big;
     csg_node_id node;
     csg_affine place = csg_affine_identity();
+    if (strstr(text, "Bezier"))
+        return build_curve(builder, text, r);
     if (sscanf(text, "sphere m=(%lf,%lf,%lf)", &a.x, &a.y, &a.z) == 3) {
         node = csg_build_primitive(builder, CSG_NODE_SPHERE, &r, NOWHERE);
     } else if (sscanf(text, "capsule m1=(%lf,%lf,%lf) m2=(%lf,%lf,%lf)", &a.x, &a.y, &a.z, &b.x,
@@ -127,7 +144,7 @@ static void check_sweep(const row *r)
 
 static void test_sweeps(void **state)
 {
-    for_each("prims", 24, check_sweep);
+    for_each("prims", 40, check_sweep);
 }
 
 static void check_exact(const row *r)
