@@ -4,7 +4,7 @@ import os
 
 import cli
 
-FOLDERS = ["tour", "models", "parts", "stress", "papers"]
+FOLDERS = ["tour", "models", "parts", "stress", "hard", "papers"]
 
 
 def scenes():

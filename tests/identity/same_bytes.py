@@ -8,7 +8,7 @@ import subprocess
 from run_scenes import Expectations
 
 SCENES = os.environ["CSGMESH_SCENES"]
-FOLDERS = ["tour", "parts", "stress", "papers", os.path.join("..", "docs")]
+FOLDERS = ["tour", "parts", "stress", "hard", "papers", os.path.join("..", "docs")]
 
 
 def scenes():
