@@ -207,6 +207,67 @@ static bool add_ellipsoid(local *l)
     return add(l, (double)g.x, (double)g.y, (double)g.z, spread + 1e-4);
 }
 
+/* ---- shapes ----------------------------------------------------------------------------------
+ */
+
+enum { SHAPE_MOST = 12 }; /* balls; further normals widen the nearest of them */
+
+typedef struct shape_normals {
+    local *leaf;
+    uint32_t first; /* of the balls */
+    csg_vec3 one;
+    bool is_set, is_bent;
+} shape_normals;
+
+/* 1 degree, as where the mesh looks for creases. */
+static const double STRAIGHT = 0.01745;
+
+static double distance_between(const double a[3], const double b[3])
+{
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return sqrt(square_of(d));
+}
+
+static bool take_normal(void *user, csg_vec3 n)
+{
+    shape_normals *s = user;
+    csg_cone_balls *balls = s->leaf->balls;
+    if (!s->is_set)
+        s->one = n;
+    s->is_set = true;
+    s->is_bent |= csg_vec3_norm(csg_vec3_sub(n, s->one)) > STRAIGHT;
+    if (csg_vec3_dot(n, s->one) < -0.999 || !add(s->leaf, n.x, n.y, n.z, 0))
+        return false;
+    const csg_cone_ball *last = &balls->items[balls->count - 1];
+    csg_cone_ball *nearest = NULL;
+    double least = INFINITY;
+    for (uint32_t i = s->first; i + 1 < balls->count; i++) {
+        double d = distance_between(balls->items[i].at, last->at);
+        if (d < least) {
+            least = d;
+            nearest = &balls->items[i];
+        }
+    }
+    bool is_full = balls->count - s->first > SHAPE_MOST || balls->count == CSG_CONE_MOST;
+    if (nearest && (least <= nearest->spread + 1e-6 || is_full)) {
+        nearest->spread = fmax(nearest->spread, least);
+        balls->count--;
+    }
+    return true;
+}
+
+/* shape.h: gradients are the normals of what can be nearest, or combinations of them with weights
+ * >= 0, whose sum is at least 1 as that of faces. */
+static bool add_shape(local *l, const csg_tape *tape)
+{
+    shape_normals s = {.leaf = l, .first = l->balls->count};
+    const csg_shape *shape = tape->shapes[(uint32_t)l->own[0]];
+    bool done =
+        csg_shape_normals(shape, csg_vec3_make(l->q[0], l->q[1], l->q[2]), l->rho, take_normal, &s);
+    l->balls->has_edges |= s.is_bent;
+    return done && s.is_set;
+}
+
 static bool add_own(local *l, uint8_t op)
 {
     switch (op) {
@@ -287,5 +348,5 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
         l.own = parameters + CSG_LEAF_OWN_AFFINE;
         place_affine(&l, frame, c, sigma);
     }
-    return add_own(&l, leaf->op);
+    return leaf->op == CSG_OP_SHAPE ? add_shape(&l, tape) : add_own(&l, leaf->op);
 }

@@ -25,7 +25,7 @@ static const double LOCAL = 1.3;
 enum {
     MOST_VISITS = 20000,        /* of cubes, a cell */
     MOST_BLOCK_VISITS = 300000, /* a block */
-    SLOW_VISIT = 3000           /* what one counts where a shape, formula or warp is evaluated */
+    SLOW_VISIT = 60             /* what one counts where a shape, formula or warp is evaluated */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
@@ -95,6 +95,8 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
                    bool *settled)
 {
     csg_reach_end end;
+    if (csg_reach_slide(&w->local, p, sign * value, sign))
+        return true;
     csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &end);
     if (state == CSG_REACH_SAMPLE)
         return true;
@@ -179,12 +181,8 @@ static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *se
             return follow_ends(w, cube, (const double(*)[3])p, values,
                                cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
     }
-    float c[3][CSG_LANES] = {{0}}, g[3][CSG_LANES];
-    for (int axis = 0; axis < 3; axis++)
-        c[axis][0] = (float)cube->c[axis];
-    w->reach.kernel->gradients(w->local.tape, c[0], c[1], c[2], 1, g[0], g[1], g[2],
-                               w->reach.scratch, w->reach.scratch_floats);
-    double axis[3] = {(double)g[0][0], (double)g[1][0], (double)g[2][0]};
+    double axis[3];
+    csg_reach_gradient(&w->local, cube->c, axis);
     double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     if (!(norm > 1e-3))
         return true;
@@ -215,44 +213,72 @@ static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
     return true;
 }
 
+static bool is_slow(const csg_certify_cube *cube)
+{
+    for (uint32_t i = 0; i < cube->node_count; i++) {
+        const csg_tape_node *node = &cube->nodes[i];
+        if (csg_op_is_leaf(node->op) &&
+            (node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD || node->warp))
+            return true;
+    }
+    return false;
+}
+
 static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
 {
-    uint32_t cost = 1;
-    for (uint32_t i = 0; i < cube->node_count && cost == 1; i++) {
-        const csg_tape_node *node = &cube->nodes[i];
-        bool is_slow = node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD || node->warp;
-        cost = csg_op_is_leaf(node->op) && is_slow ? SLOW_VISIT : 1;
-    }
+    uint32_t cost = is_slow(cube) ? SLOW_VISIT : 1;
     w->cubes++;
     w->block_visits += cost;
     w->visits[cube->cell] += cost;
     return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
 }
 
-static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
-{
-    csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
-    return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end);
-}
-
 /* The quick way to what hides in a cell: up and down from its centre. What is found in another cell
  * is that one's. */
-static bool look_for_missed(csg_certify_worker *w, const csg_certify_cube *cube)
+static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
 {
-    double value;
+    double c[1][3], value, h = w->lattice->cell_size;
     csg_reach_end end;
-    csg_reach_values(&w->reach, (const double(*)[3])cube->c, 1, &value);
+    for (int axis = 0; axis < 3; axis++)
+        c[0][axis] =
+            (double)csg_lattice_coordinate(
+                w->lattice, axis, w->block.at[axis] * CSG_BLOCK_EDGE + (cell >> (3 * axis) & 7)) +
+            h / 2;
+    csg_reach_values(&w->reach, (const double(*)[3])c, 1, &value);
     for (int sign = -1; sign <= 1; sign += 2) {
-        if (csg_reach_from(&w->reach, cube->c, sign * value, sign, &end) != CSG_REACH_NONE ||
+        if (csg_reach_from(&w->reach, c[0], sign * value, sign, &end) != CSG_REACH_NONE ||
             !(end.thickness > 0))
             continue;
         bool here = true;
         for (int axis = 0; axis < 3; axis++)
-            here = here && fabs(end.at[axis] - cube->c[axis]) <= 1.5 * cube->half;
-        if (here && !find(w, cube->cell, CSG_CELL_MISSED, sign, &end))
+            here = here && fabs(end.at[axis] - c[0][axis]) <= 0.75 * h;
+        if (here && !find(w, cell, CSG_CELL_MISSED, sign, &end))
             return false;
     }
     return true;
+}
+
+/* Where values are slow to find, this is the time to look for what hides. */
+static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
+    bool first = w->kinds[cube->cell] < CSG_CELL_UNRESOLVED;
+    return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end) &&
+           (!first || !is_slow(cube) || look_for_missed(w, cube->cell));
+}
+
+/* All that is looked at in a cell as a whole is within reach of its own tape. */
+static void use_own_tape(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    double h = w->lattice->cell_size;
+    w->local = w->reach;
+    w->local_tape = tape_of(w, cube);
+    w->local.tape = &w->local_tape;
+    w->local.band = w->reach.lipschitz * h;
+    for (int axis = 0; axis < 3; axis++) {
+        w->local.low[axis] = cube->c[axis] - FAR * h;
+        w->local.high[axis] = cube->c[axis] + FAR * h;
+    }
 }
 
 /* A cube of a cell or less that is not empty. */
@@ -262,7 +288,7 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
     bool settled = false, is_cell = 2 * cube->half > 0.75 * w->lattice->cell_size;
     *divide = false;
     if (is_cell)
-        w->local = w->reach;
+        use_own_tape(w, cube);
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;
     if (!is_cell && !is_within_budget(w, cube))
@@ -275,8 +301,10 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return false;
     if (settled)
         return true;
-    if (is_cell && (!look_for_missed(w, cube) || w->kinds[cube->cell] == CSG_CELL_MISSED))
-        return w->kinds[cube->cell] == CSG_CELL_MISSED;
+    if (is_cell && !is_slow(cube) && !look_for_missed(w, cube->cell))
+        return false;
+    if (w->kinds[cube->cell] == CSG_CELL_MISSED)
+        return true;
     if (is_cell && !is_within_budget(w, cube))
         return give_up(w, cube);
     *divide = 2 * cube->half > w->size * (1 + 1e-9);
@@ -305,6 +333,10 @@ static bool localize(csg_certify_worker *w, const csg_certify_cube *cube)
             c[axis][o] = (float)cube->c[axis];
     w->local = w->reach;
     w->local.tape = &w->local_tape;
+    for (int axis = 0; axis < 3; axis++) {
+        w->local.low[axis] = cube->c[axis] - 0.99 * reach;
+        w->local.high[axis] = cube->c[axis] + 0.99 * reach;
+    }
     return csg_prune_octants(&w->plain, w->reach.tape, c[0], c[1], c[2],
                              (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
            csg_prune_shorten(&w->plain, 0, (float)w->reach.band, &w->tapes, &w->local_tape);

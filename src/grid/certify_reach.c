@@ -20,6 +20,17 @@ void csg_reach_values(const csg_reach *reach, const double (*points)[3], size_t 
         values[i] = (double)f[i];
 }
 
+void csg_reach_gradient(const csg_reach *reach, const double p[3], double gradient[3])
+{
+    float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES];
+    for (int axis = 0; axis < 3; axis++)
+        at[axis][0] = (float)p[axis];
+    reach->kernel->gradients(reach->tape, at[0], at[1], at[2], 1, g[0], g[1], g[2], reach->scratch,
+                             reach->scratch_floats);
+    for (int axis = 0; axis < 3; axis++)
+        gradient[axis] = (double)g[axis][0];
+}
+
 static void lattice_point(const csg_lattice *lattice, const int64_t index[3], double p[3])
 {
     const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
@@ -106,6 +117,14 @@ static void look_up(const csg_reach *reach, const double p[3], double value, int
     csg_reach_values(reach, (const double(*)[3])points + WAYS, 2, values + WAYS);
 }
 
+/* Balls of one sign around points with these values, `apart` from each other, touch. Where no point
+ * of that sign was found yet, any step may lead to one. */
+static bool are_connected(const csg_reach *reach, double apart, double one, double other)
+{
+    return one < 0 || apart * reach->lipschitz * (1 + 0x1p-10) <=
+                          fmin(one, reach->band) + fmin(other, reach->band);
+}
+
 /* Moves to the best of the points around, where it is better by a part of the step. */
 static bool climb(const csg_reach *reach, double p[3], double *value, int sign, double step)
 {
@@ -115,7 +134,8 @@ static bool climb(const csg_reach *reach, double p[3], double *value, int sign, 
     double most = *value + least * step * reach->lipschitz;
     look_up(reach, p, *value, sign, step, points, values);
     for (int i = 0; i < CANDIDATES; i++)
-        if (sign * values[i] > most) {
+        if (sign * values[i] > most &&
+            are_connected(reach, distance(p, points[i]), *value, sign * values[i])) {
             most = sign * values[i];
             best = i;
         }
@@ -124,6 +144,35 @@ static bool climb(const csg_reach *reach, double p[3], double *value, int sign, 
     memcpy(p, points[best], 3 * sizeof *p);
     *value = most;
     return true;
+}
+
+/* One way straight up the gradients, which mostly does and is quick. */
+bool csg_reach_slide(const csg_reach *reach, const double from[3], double value, int sign)
+{
+    enum { STEPS = 12 };
+    double p[3], h = reach->lattice->cell_size, step = fmax(value / reach->lipschitz, h / 256);
+    memcpy(p, from, sizeof p);
+    for (int i = 0; i < STEPS; i++) {
+        if (holds_sample(reach, p, value, sign))
+            return true;
+        double g[3], next[1][3], risen;
+        csg_reach_gradient(reach, p, g);
+        double norm = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        if (!(norm > 1e-3))
+            return false;
+        for (int axis = 0; axis < 3; axis++)
+            next[0][axis] = p[axis] + sign * step * g[axis] / norm;
+        if (!is_within(reach, next[0]))
+            return false;
+        csg_reach_values(reach, (const double(*)[3])next, 1, &risen);
+        risen *= sign;
+        if (!(risen > value && are_connected(reach, step, value, risen)))
+            return false;
+        memcpy(p, next[0], sizeof p);
+        value = risen;
+        step = fmin(0.7 * h, 2 * step);
+    }
+    return false;
 }
 
 /* ---- where no ball holds a lattice point ----------------------------------------------------- */
@@ -184,15 +233,19 @@ static double distance_to_other(const csg_reach *reach, const double p[3], doubl
 csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], double value, int sign,
                                csg_reach_end *end)
 {
-    enum { MOST_CLIMBS = 48, SHORTEST = 256 };
-    double p[3], h = reach->lattice->cell_size, step = h / 2;
+    enum { MOST_CLIMBS = 64, SHORTEST = 256 };
+    double p[3], h = reach->lattice->cell_size;
+    double step = fmin(h / 2, fmax(2 * value / reach->lipschitz, h / (SHORTEST / 4)));
+    step = value < 0 ? h / 2 : step;
     memcpy(p, from, sizeof p);
     bool found = holds_sample(reach, p, value, sign);
     for (int i = 0; i < MOST_CLIMBS && !found && step * SHORTEST >= h; i++) {
-        if (!climb(reach, p, &value, sign, step))
+        if (!climb(reach, p, &value, sign, step)) {
             step /= 2;
-        else
+        } else {
             found = holds_sample(reach, p, value, sign);
+            step = fmin(h / 2, 2 * step);
+        }
     }
     memcpy(end->at, p, sizeof p);
     end->thickness = 2 * value / reach->lipschitz;

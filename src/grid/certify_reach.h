@@ -36,6 +36,11 @@ enum { CSG_REACH_POINTS = 64 };
 void csg_reach_values(const csg_reach *reach, const double (*points)[3], size_t count,
                       double *values);
 
+void csg_reach_gradient(const csg_reach *reach, const double p[3], double gradient[3]);
+
+/* Whether the way up the gradients is one to a lattice point: quick, and often enough. */
+bool csg_reach_slide(const csg_reach *reach, const double p[3], double value, int sign);
+
 /* sign * value >= 0 is the field at p. */
 csg_reach_state csg_reach_from(const csg_reach *reach, const double p[3], double value, int sign,
                                csg_reach_end *end);

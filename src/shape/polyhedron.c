@@ -21,7 +21,11 @@ typedef struct polyhedron {
     csg_tree tree;
     uint64_t hash;
     bool is_convex;
+    atomic_uchar
+        *plain; /* per triangle in the tree: whether csg_tree_is_plain, once it was asked */
 } polyhedron;
+
+enum { PLAIN_UNKNOWN, PLAIN_NO, PLAIN_YES };
 
 static const csg_shape_operations OPERATIONS;
 
@@ -203,6 +207,52 @@ static void polyhedron_gradients(const csg_shape *shape, const float *x, const f
     }
 }
 
+/* ---- normals ----------------------------------------------------------------------------------
+ */
+
+/* Threads may find it twice; they find the same. */
+static bool is_plain(const polyhedron *solid, uint32_t place)
+{
+    if (solid->is_convex)
+        return !solid->tree.triangles[place].is_needle;
+    int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
+    if (known == PLAIN_UNKNOWN) {
+        known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
+        atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
+    }
+    return known == PLAIN_YES;
+}
+
+typedef struct taking {
+    const polyhedron *solid;
+    csg_shape_take_normal *take;
+    void *user;
+    uint32_t count;
+} taking;
+
+static bool take_triangle(void *user, uint32_t place)
+{
+    enum { MOST = 256 };
+    taking *t = user;
+    const csg_tree_triangle *triangle = &t->solid->tree.triangles[place];
+    csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(triangle->ac, triangle->ab));
+    return ++t->count <= MOST && t->take(t->user, inward) && is_plain(t->solid, place);
+}
+
+/* Within the ball distances are at most that of c and its radius. */
+static bool polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius,
+                               csg_shape_take_normal *take, void *user)
+{
+    const polyhedron *solid = as_polyhedron(shape);
+    csg_vec3 at = csg_frame_enter(&solid->frame, c);
+    if (is_far(at))
+        return false;
+    double least = sqrt(csg_tree_nearest(&solid->tree, at, 0).squared);
+    double reach = (least + 2 * radius * solid->frame.scale) * (1 + 0x1p-40) + LEAST;
+    taking t = {solid, take, user, 0};
+    return csg_tree_within(&solid->tree, at, reach, take_triangle, &t);
+}
+
 /* ---- making it --------------------------------------------------------------------------------
  */
 
@@ -333,8 +383,16 @@ static csgm_status finish(csg_arena *scratch, polyhedron *solid, csg_chain *chai
     repairs->overlapping = is_overlapping(solid);
     solid->is_convex = chain->piece_count == 1 && !repairs->overlapping && !repairs->holes &&
                        csg_chain_is_convex(&chain->triangles, &edges);
-    if (!csg_repair_number(scratch, &chain->triangles))
+    solid->plain = csg_memory_alloc(solid->shape.memory, solid->tree.count * sizeof *solid->plain);
+    if (!solid->plain)
         return CSGM_ERR_MEMORY;
+    for (size_t i = 0; i < solid->tree.count; i++)
+        atomic_init(&solid->plain[i], PLAIN_UNKNOWN);
+    if (!csg_repair_number(scratch, &chain->triangles)) {
+        csg_memory_release(solid->shape.memory, solid->plain,
+                           solid->tree.count * sizeof *solid->plain);
+        return CSGM_ERR_MEMORY;
+    }
     take_triangles(solid, &chain->triangles);
     return CSGM_OK;
 }
@@ -382,6 +440,7 @@ csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *trian
 static void destroy_polyhedron(csg_shape *shape)
 {
     polyhedron *solid = (polyhedron *)shape;
+    csg_memory_release(shape->memory, solid->plain, solid->tree.count * sizeof *solid->plain);
     csg_tree_release(&solid->tree);
     csg_triangles_release(&solid->mended);
     csg_memory_release(shape->memory, solid, sizeof *solid);
@@ -396,7 +455,8 @@ static const csg_shape_operations OPERATIONS = {.destroy = destroy_polyhedron,
                                                 .sample = sample_polyhedron,
                                                 .values = polyhedron_values,
                                                 .gradients = polyhedron_gradients,
-                                                .hash = hash_polyhedron};
+                                                .hash = hash_polyhedron,
+                                                .normals = polyhedron_normals};
 
 const csg_triangles *csg_polyhedron_triangles(const csg_shape *shape)
 {

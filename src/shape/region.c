@@ -177,7 +177,38 @@ static void destroy(csg_shape *shape)
     csg_memory_release(memory, r, sizeof *r);
 }
 
-static const csg_shape_operations operations = {destroy, sample, values, gradients, hash};
+/* ---- normals ------------------------------------------------------------------------------ */
+
+typedef struct taking {
+    const csg_segment_tree *tree;
+    csg_shape_take_normal *take;
+    void *user;
+    uint32_t count;
+} taking;
+
+static bool take_segment(void *user, uint32_t segment)
+{
+    enum { MOST = 256 };
+    taking *t = user;
+    const csg_segment_leaf *leaf = &t->tree->leaves[segment / CSG_SEGMENT_LANES];
+    uint32_t k = segment % CSG_SEGMENT_LANES;
+    return ++t->count <= MOST && t->take(t->user, csg_vec3_make(-leaf->uy[k], leaf->ux[k], 0));
+}
+
+/* Within the ball distances are at most that of c and its radius. */
+static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
+                    void *user)
+{
+    const region *r = (const region *)shape;
+    if (is_nowhere(r, c.x, c.y))
+        return false;
+    double least = sqrt(csg_segment_nearest(&r->tree, c.x, c.y).squared);
+    taking t = {&r->tree, take, user, 0};
+    return csg_segment_within(&r->tree, c.x, c.y, (least + 2 * radius) * (1 + 0x1p-40),
+                              take_segment, &t);
+}
+
+static const csg_shape_operations operations = {destroy, sample, values, gradients, hash, normals};
 
 /* Below that squares do not overflow. */
 static bool is_in_range(const csg_outline *outline)

@@ -163,3 +163,35 @@ void csg_segment_around(const csg_segment_tree *tree, uint32_t of, double reach,
         }
     }
 }
+
+static double segment_squared(const csg_segment_tree *tree, uint32_t slot, double x, double y)
+{
+    csg_segment_place at = csg_segment_locate(tree, slot, x, y);
+    double beyond = greater(greater(-at.along, at.along - at.length), 0);
+    return at.left * at.left + beyond * beyond;
+}
+
+bool csg_segment_within(const csg_segment_tree *tree, double x, double y, double reach,
+                        csg_segment_visit *visit, void *user)
+{
+    uint32_t waiting[MOST_WAITING], count = 0;
+    double limit = reach * reach * (1 + 0x1p-40);
+    waiting[count++] = (uint32_t)tree->node_count - 1;
+    while (count) {
+        uint32_t child = waiting[--count];
+        if (child & CSG_SEGMENT_LEAF) {
+            uint32_t slot = (child & ~CSG_SEGMENT_LEAF) * CSG_SEGMENT_LANES;
+            uint32_t end = slot + CSG_SEGMENT_LANES;
+            for (; slot < end && slot < tree->segment_count; slot++)
+                if (segment_squared(tree, slot, x, y) <= limit && !visit(user, slot))
+                    return false;
+            continue;
+        }
+        double squared[CSG_SEGMENT_LANES];
+        box_distances(&tree->nodes[child], x, y, squared);
+        for (int k = 0; k < CSG_SEGMENT_LANES; k++)
+            if (squared[k] <= limit)
+                waiting[count++] = tree->nodes[child].child[k];
+    }
+    return true;
+}

@@ -67,6 +67,11 @@ typedef bool csg_segment_visit(void *user, uint32_t segment);
 void csg_segment_around(const csg_segment_tree *tree, uint32_t of, double reach,
                         csg_segment_visit *visit, void *user);
 
+/* Segments that come within `reach` of the point, and perhaps a few more; false as soon as `visit`
+ * says so. */
+bool csg_segment_within(const csg_segment_tree *tree, double x, double y, double reach,
+                        csg_segment_visit *visit, void *user);
+
 /* Position of the point along the segment and to its left. */
 typedef struct csg_segment_place {
     double along, left, length;

@@ -16,6 +16,9 @@ typedef enum csg_shape_kind { CSG_SHAPE_REGION, CSG_SHAPE_POLYHEDRON } csg_shape
 
 typedef struct csg_shape csg_shape;
 
+/* Takes a unit vector; false ends what gives it. */
+typedef bool csg_shape_take_normal(void *user, csg_vec3 inward);
+
 /* What each kind brings along. */
 typedef struct csg_shape_operations {
     void (*destroy)(csg_shape *shape);
@@ -25,6 +28,8 @@ typedef struct csg_shape_operations {
     void (*gradients)(const csg_shape *shape, const float *x, const float *y, const float *z,
                       size_t count, float *out, float *gx, float *gy, float *gz);
     uint64_t (*hash)(const csg_shape *shape);
+    bool (*normals)(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
+                    void *user);
 } csg_shape_operations;
 
 /* The first member of the struct of each kind. */
@@ -49,6 +54,14 @@ void csg_shape_values(const csg_shape *shape, const float *x, const float *y, co
                       size_t count, float *out);
 void csg_shape_gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
                          size_t count, float *out, float *gx, float *gy, float *gz);
+
+/* Gives the normals, into the solid, of all segments or faces that can be nearest to a point of the
+ * ball around c; the same one may come again. At every point of the ball where there is a gradient
+ * it is one of them, or a combination w_1 n_1 + w_2 n_2 + ... of unit length with all w >= 0
+ * (shape.c). False: `take` said so, or there are too many, or sides are not clear there (triangles
+ * that cross others, lie within the solid, or are needles). */
+bool csg_shape_normals(const csg_shape *shape, csg_vec3 c, double radius,
+                       csg_shape_take_normal *take, void *user);
 
 /* A stable hash of the geometry, for printing and comparing. */
 uint64_t csg_shape_hash(const csg_shape *shape);

@@ -58,6 +58,16 @@ csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
 /* The point of a triangle that is nearest to p. */
 csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *in_face);
 
+/* Triangles that come within `reach` of p, and perhaps a few more; false as soon as `visit` says
+ * so. */
+typedef bool csg_tree_visit(void *user, uint32_t place);
+bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
+                     void *user);
+
+/* Whether a triangle neither crosses nor touches others but where they share corners, is no needle
+ * and has the solid on its inner side only: winding number 1 there and 0 on the other. */
+bool csg_tree_is_plain(const csg_tree *tree, uint32_t place);
+
 /* Chooses which triangles count; NULL: all. */
 typedef struct csg_tree_filter {
     const uint32_t *pieces; /* per triangle of the chain */

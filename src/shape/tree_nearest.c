@@ -5,6 +5,8 @@
  * box, and the feet of triangles lie in their boxes up to 2^-50; float arithmetic errs by 2^-21 and
  * SLACK leaves 2^-10. So whatever the order, the triangle with the least computed distance is seen.
  */
+#include <float.h>
+
 #include "shape/four.h"
 #include "shape/tree.h"
 
@@ -171,4 +173,30 @@ csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint)
             depth = push_children(&tree->nodes[next.child], q.p, q.limit, stack, depth);
     }
     return best;
+}
+
+bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
+                     void *user)
+{
+    uint32_t stack[STACK];
+    size_t depth = 0;
+    const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
+    double squared = reach * reach * (1 + 0x1p-40);
+    float limit = (float)squared * SLACK + FLT_MIN;
+    stack[depth++] = 0;
+    while (depth) {
+        uint32_t next = stack[--depth];
+        if (next & CSG_TREE_LEAF) {
+            const csg_tree_leaf *leaf = &tree->leaves[next & ~CSG_TREE_LEAF];
+            for (uint32_t place = leaf->first; place < leaf->first + leaf->count; place++)
+                if (triangle_squared(&tree->triangles[place], p) <= squared && !visit(user, place))
+                    return false;
+            continue;
+        }
+        csg_four distances = box_distances(&tree->nodes[next], at);
+        for (uint32_t i = 0; i < 4; i++)
+            if (distances[i] <= limit)
+                stack[depth++] = tree->nodes[next].children[i];
+    }
+    return true;
 }
