@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "mesh/feature_cross.h"
 #include "mesh/feature_move.h"
 #include "mesh/work.h"
 
@@ -225,24 +226,94 @@ static bool part_features(csg_mesh_work *w, csg_feature_probe *probe)
     return true;
 }
 
-/* False: asked to stop. */
+/* ---- where features meet -----------------------------------------------------------------------
+ */
+
+typedef struct crossing_work {
+    csg_mesh_work *w;
+    csg_feature_cross cross;
+} crossing_work;
+
+static bool look_item(void *user, uint32_t worker, size_t item)
+{
+    crossing_work *c = user;
+    (void)worker;
+    csg_feature_cross_look(&c->cross, item);
+    return true;
+}
+
+static bool test_item(void *user, uint32_t worker, size_t item)
+{
+    crossing_work *c = user;
+    if (item % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(c->w))
+        return false;
+    if (csg_feature_cross_test(&c->cross, worker, item))
+        return true;
+    atomic_store(&c->w->out_of_memory, true);
+    return false;
+}
+
+/* Until nothing folds over and nothing meets anything else: in the end all are smooth. */
+static bool settle_rounds(crossing_work *c)
+{
+    csg_mesh_work *w = c->w;
+    csg_feature_store *store = &w->features;
+    for (size_t changed = 1; changed;) {
+        while (csg_feature_settle(store, &w->tables))
+            if (csg_mesh_should_stop(w))
+                return false;
+        csg_pool_run(w->context->pool, store->block_count, flip_item, NULL, w);
+        csg_pool_run(w->context->pool, store->block_count, look_item, NULL, c);
+        csg_feature_cross_wake(&c->cross);
+        if (!csg_pool_run(w->context->pool, store->block_count, test_item, NULL, c))
+            return false;
+        if (!csg_feature_cross_mend(&c->cross, &changed)) {
+            atomic_store(&w->out_of_memory, true);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* False: asked to stop, or out of memory. */
+static bool uncross_features(csg_mesh_work *w)
+{
+    csg_memory *memory = &w->context->memory;
+    size_t bytes = w->worker_count * sizeof(csg_near_room);
+    crossing_work c = {.w = w,
+                       .cross = {.near = {.store = &w->features,
+                                          .marching = &w->marching,
+                                          .octree = w->octree,
+                                          .memory = memory},
+                                 .rooms = csg_memory_alloc(memory, bytes),
+                                 .room_count = w->worker_count}};
+    if (!c.cross.rooms) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        c.cross.rooms[i] = (csg_near_room){.edges = &w->workers[i].room->edges,
+                                           .scratch = w->workers[i].scratch,
+                                           .scratch_floats = w->scratch_floats};
+    bool done = csg_feature_cross_begin(&c.cross);
+    if (!done)
+        atomic_store(&w->out_of_memory, true);
+    done = done && settle_rounds(&c);
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        w->workers[i].point_evaluations += c.cross.rooms[i].evaluations;
+    csg_feature_cross_end(&c.cross);
+    csg_memory_release(memory, c.cross.rooms, bytes);
+    return done;
+}
+
+/* False: asked to stop, or out of memory. */
 static bool settle_features(csg_mesh_work *w)
 {
-    enum { ROUNDS = 8 };
-    csg_feature_store *store = &w->features;
     csg_feature_probe probe =
         csg_feature_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
-    bool go_on = order_features(w, &probe) && part_features(w, &probe);
-    size_t changed = 1;
-    for (int round = 0; round < ROUNDS && changed && go_on; round++) {
-        while (go_on && csg_feature_settle(store, &w->tables))
-            go_on = !csg_mesh_should_stop(w);
-        csg_pool_run(w->context->pool, store->block_count, flip_item, NULL, w);
-        changed = csg_feature_uncross(store, &w->tables, &w->lattice);
-        go_on = go_on && !csg_mesh_should_stop(w);
-    }
+    bool done = order_features(w, &probe) && part_features(w, &probe) && uncross_features(w);
     w->workers[0].point_evaluations += probe.evaluations;
-    return go_on;
+    return done;
 }
 
 csgm_status csg_mesh_link_features(csg_mesh_work *w)
@@ -251,6 +322,7 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
         return CSGM_OK;
     if (!csg_feature_store_index(&w->features))
         return csg_context_no_memory(w->context);
+    w->marching.shift = csg_vec3_sub(w->field->center, csg_mesh_origin_of(w));
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
     return settle_features(w) ? CSGM_OK : csg_mesh_why_stopped(w);
 }

@@ -51,6 +51,7 @@ typedef struct csg_feature {
     uint8_t loop;     /* of the pattern */
     uint16_t cell;    /* (8 z + y) 8 + x */
     uint16_t creased; /* bit s: a crease crosses side s */
+    bool smooth;      /* given up: csg_feature_demote */
     uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
 } csg_feature;
 
@@ -142,10 +143,6 @@ void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
 /* Makes polygons smooth again whose crease cannot go on into the neighbour without folding over;
  * how many. To be called until there are none; not in parallel. */
 size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables);
-/* Makes polygons smooth again whose triangles run through those of other features, flips done (they
- * are to be done again); how many. Not in parallel. */
-size_t csg_feature_uncross(csg_feature_store *store, const csg_cell_tables *tables,
-                           const csg_lattice *lattice);
 /* The triangles, once all are linked, in their places and settled. As csg_feature_link. */
 void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "mesh/feature_cut.h"
+#include "mesh/feature_smooth.h"
 
 enum { E = CSG_BLOCK_EDGE, NEAR = 5 };
 
@@ -172,42 +173,6 @@ void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, s
  * ------------------------------------------------------------------------------------
  */
 
-static uint8_t corner_of(const csg_feature *f, uint8_t edge)
-{
-    uint8_t corner = 0;
-    while (f->edge[corner] != edge)
-        corner++;
-    return corner;
-}
-
-static void put_triangle(uint8_t **to, uint8_t a, uint8_t b, uint8_t c)
-{
-    *(*to)++ = a, *(*to)++ = b, *(*to)++ = c;
-}
-
-/* The triangles of plain marching cubes; the apex divides the first. */
-static void retriangulate(csg_feature *f, const csg_cell_tables *tables)
-{
-    const uint8_t *edge = tables->edge[f->pattern];
-    uint8_t *to = f->triangle[0];
-    for (int loop = 0; loop < f->loop; loop++)
-        edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
-    for (int t = 0; t < f->side_count - 2; t++, edge += 3) {
-        uint8_t a = corner_of(f, edge[0]), b = corner_of(f, edge[1]), c = corner_of(f, edge[2]);
-        if (t) {
-            put_triangle(&to, a, b, c);
-            continue;
-        }
-        put_triangle(&to, CSG_FEATURE_APEX, a, b);
-        put_triangle(&to, CSG_FEATURE_APEX, b, c);
-        put_triangle(&to, CSG_FEATURE_APEX, c, a);
-        for (int i = 0; i < 3; i++) /* nearly a vertex, which lies on the surface */
-            f->at[i] = 0.998f * f->corner[a][i] + 0.001f * (f->corner[b][i] + f->corner[c][i]);
-        for (int k = 0; k < f->sheet_count; k++)
-            memcpy(f->normal[k], f->normal[f->sheet[a]], sizeof f->normal[k]);
-    }
-}
-
 void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
     for (int s = 0; s < f->side_count; s++) {
@@ -221,7 +186,8 @@ void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
         f->beyond[s] = CSG_FEATURE_NONE;
     }
     f->creased = f->flipped = f->takes_next = 0;
-    retriangulate(f, tables);
+    f->smooth = true;
+    csg_feature_divide(f, tables, 0);
     store->smooth++;
 }
 

@@ -225,7 +225,7 @@ static csgm_status begin_arrays(csg_mesh_work *w)
     const csg_mesh_share *share = w->share;
     bool materials = w->options->colors && (share ? share->materials : w->field->has_materials);
     counts->colors = w->options->colors && (share ? share->colors : csg_mesh_is_colored(w->field));
-    counts->origin = share ? share->origin : csg_mesh_origin(w->field->center, w->bounds);
+    counts->origin = csg_mesh_origin_of(w);
     if (w->receiver)
         return w->receiver->begin(w->receiver->user, counts);
     csgm_status status = csg_mesh_create(w->context, counts->vertex_count, counts->triangle_count,

@@ -148,6 +148,10 @@ csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
                                  csgm_mesh_stats *stats);
 /* Where the floats of a mesh in these bounds have their zero. */
 csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds);
+static inline csg_vec3 csg_mesh_origin_of(const csg_mesh_work *work)
+{
+    return work->share ? work->share->origin : csg_mesh_origin(work->field->center, work->bounds);
+}
 static inline bool csg_mesh_is_colored(const csgm_field *field)
 {
     return field->has_colors && field->color_count > 1;

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * A polygon as marching cubes makes it, its largest triangle divided in three: so the numbers of
+ * vertices and triangles are those of a feature.
+ */
+#include "mesh/feature_smooth.h"
+
+#include <string.h>
+
+static uint8_t corner_of(const csg_feature *f, uint8_t edge)
+{
+    uint8_t corner = 0;
+    while (f->edge[corner] != edge)
+        corner++;
+    return corner;
+}
+
+/* The triangles of marching cubes, in corners of the polygon; how many. */
+static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tables,
+                                uint8_t corner[CSG_CELL_MOST_TRIANGLES][3])
+{
+    const uint8_t *edge = tables->edge[f->pattern];
+    unsigned count = f->side_count - 2u;
+    for (int loop = 0; loop < f->loop; loop++)
+        edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
+    for (unsigned i = 0; i < 3 * count; i++)
+        corner[i / 3][i % 3] = corner_of(f, edge[i]);
+    return count;
+}
+
+/* The square of twice the area. */
+static double area_of(const csg_feature *f, const uint8_t corner[3])
+{
+    const float *a = f->corner[corner[0]], *b = f->corner[corner[1]], *c = f->corner[corner[2]];
+    double u[3], v[3], square = 0;
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - (double)a[i];
+        v[i] = (double)c[i] - (double)a[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double n = u[j] * v[k] - u[k] * v[j];
+        square += n * n;
+    }
+    return square;
+}
+
+static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_MOST_TRIANGLES][3],
+                           unsigned count)
+{
+    double most = -1;
+    unsigned largest = 0;
+    for (unsigned t = 0; t < count; t++) {
+        double area = area_of(f, corner[t]);
+        if (area > most) {
+            most = area;
+            largest = t;
+        }
+    }
+    return largest;
+}
+
+/* One normal for all sheets. */
+static void level_normals(csg_feature *f, uint8_t corner)
+{
+    for (int k = 0; k < f->sheet_count; k++)
+        memmove(f->normal[k], f->normal[f->sheet[corner]], sizeof f->normal[k]);
+}
+
+/* Whereabouts in a triangle: nearly at a corner, which lies on the surface; where floats are too
+ * coarse for that, further in. */
+static const float WEIGHTS[][3] = {{0.998f, 0.001f, 0.001f}, {0.001f, 0.998f, 0.001f},
+                                   {0.001f, 0.001f, 0.998f}, {0.98f, 0.01f, 0.01f},
+                                   {0.01f, 0.98f, 0.01f},    {0.01f, 0.01f, 0.98f},
+                                   {0.8f, 0.1f, 0.1f},       {0.333f, 0.333f, 0.334f}};
+enum { WEIGHT_COUNT = sizeof WEIGHTS / sizeof *WEIGHTS };
+
+bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned attempt)
+{
+    uint8_t corner[CSG_CELL_MOST_TRIANGLES][3], (*to)[3] = f->triangle;
+    unsigned count = plain_triangles(f, tables, corner);
+    if (attempt / count >= WEIGHT_COUNT)
+        return false;
+    unsigned divided = attempt ? attempt % count : largest_of(f, corner, count);
+    const uint8_t *d = corner[divided];
+    const float *w = WEIGHTS[attempt / count];
+    for (unsigned t = 0; t < count; t++)
+        if (t != divided)
+            memcpy(*to++, corner[t], sizeof *to);
+    for (int c = 0; c < 3; c++, to++)
+        (*to)[0] = CSG_FEATURE_APEX, (*to)[1] = d[c], (*to)[2] = d[(c + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        f->at[i] =
+            w[0] * f->corner[d[0]][i] + w[1] * f->corner[d[1]][i] + w[2] * f->corner[d[2]][i];
+    level_normals(f, d[w[1] > w[0] ? 1 : w[2] > w[0] ? 2 : 0]);
+    return true;
+}
