@@ -25,7 +25,7 @@ static const double LOCAL = 1.3;
 enum {
     MOST_VISITS = 20000,        /* of cubes, a cell */
     MOST_BLOCK_VISITS = 300000, /* a block */
-    SLOW_VISIT = 60             /* what one counts where a shape, formula or warp is evaluated */
+    SLOW_VISIT = 8              /* what one counts where a shape, formula or warp is evaluated */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */

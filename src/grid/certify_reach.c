@@ -235,11 +235,13 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
 {
     enum { MOST_CLIMBS = 64, SHORTEST = 256 };
     double p[3], h = reach->lattice->cell_size;
-    double step = fmin(h / 2, fmax(2 * value / reach->lipschitz, h / (SHORTEST / 4)));
-    step = value < 0 ? h / 2 : step;
+    double least = reach->noise / reach->lipschitz;
+    double step = value < 0 ? h / 2 : fmin(h / 2, fmax(2 * value / reach->lipschitz, least));
     memcpy(p, from, sizeof p);
     bool found = holds_sample(reach, p, value, sign);
-    for (int i = 0; i < MOST_CLIMBS && !found && step * SHORTEST >= h; i++) {
+    for (int i = 0; i < MOST_CLIMBS && !found && step >= least; i++) {
+        if (step < h / SHORTEST && (value < 0 || step < value / (4 * reach->lipschitz)))
+            break; /* the part's thickest place */
         if (!climb(reach, p, &value, sign, step)) {
             step /= 2;
         } else {

@@ -35,12 +35,13 @@ static double volume(csg_vec3 a, csg_vec3 b, csg_vec3 c, csg_vec3 d)
     return fabs(sum) > 0x1p-49 * size ? sum : 0;
 }
 
-/* Whether the segment from p to q may meet the triangle. */
+/* Whether the segment from p to q may meet the triangle. Not one that lies in its plane: of what
+ * stands on such a segment other edges come from beside. */
 static bool meets(csg_vec3 p, csg_vec3 q, const corners *t)
 {
     double from = volume(t->at[0], t->at[1], t->at[2], p),
            to = volume(t->at[0], t->at[1], t->at[2], q);
-    if ((from > 0 && to > 0) || (from < 0 && to < 0))
+    if ((from > 0 && to > 0) || (from < 0 && to < 0) || (from == 0 && to == 0))
         return false;
     double low = INFINITY, high = -INFINITY;
     for (int k = 0; k < 3; k++) {
