@@ -23,17 +23,6 @@
 
 enum { MOST_SCENES = 64, MOST_TEXT = 4096, MOST_NAME = 128 };
 
-/* Crossing pairs that sharp meshes of a scene still have, in some rotations: the most seen in 20
- * rotations at 64 cells. */
-static const struct {
-    const char *name;
-    long long pairs;
-} known[] = {{"cone_on_its_tip.txt", 16},
-             {"double_cone.txt", 16},
-             {"hairline.txt", 16},
-             {"rod_in_a_bore.txt", 16},
-             {"touching_cubes.txt", 128}};
-
 static const char *folder = ".", *only = NULL;
 static unsigned rotation_count = 1, resolution = 32;
 
@@ -103,21 +92,16 @@ static void check_closed(const built *b, const char *what)
         fail_msg("%s: %llu faults of a closed oriented manifold", what, (unsigned long long)faults);
 }
 
-static void check_uncrossed(const built *b, const char *what, bool sharp)
+static void check_uncrossed(const built *b, const char *what)
 {
 #ifdef HAVE_CGAL
     long long count = test_self_intersections(b->view.positions, b->view.vertex_count,
                                               b->view.indices, b->view.triangle_count, NULL, 0);
-    long long allowed = 0;
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (sharp && !strncmp(what, known[i].name, strlen(known[i].name)))
-            allowed = known[i].pairs;
-    if (count < 0 || count > allowed)
+    if (count)
         fail_msg("%s: %lld pairs of triangles cross", what, count);
 #else
     (void)b;
     (void)what;
-    (void)sharp;
 #endif
 }
 
@@ -138,7 +122,7 @@ static void check_scene(const char *text, csgm_mesh_options options, const char 
     snprintf(smoothly, sizeof smoothly, "%s, smooth", what);
     build(&sharp, text, &options, 1);
     check_closed(&sharp, what);
-    check_uncrossed(&sharp, what, true);
+    check_uncrossed(&sharp, what);
     options.prune = false;
     build(&other, text, &options, 3);
     if (sharp.view.triangle_count)
@@ -147,7 +131,7 @@ static void check_scene(const char *text, csgm_mesh_options options, const char 
     options.features = CSGM_FEATURES_SMOOTH;
     build(&smooth, text, &options, 2);
     check_closed(&smooth, smoothly);
-    check_uncrossed(&smooth, smoothly, false);
+    check_uncrossed(&smooth, smoothly);
     unbuild(&smooth);
     unbuild(&sharp);
 }

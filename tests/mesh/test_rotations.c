@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Seven solids in random rotations at 64 cells against their closed forms (true_solids.h): vertices
  * on creases lie on the true curve, all vertices and flat faces on the true surface, every crease
- * and corner is in the mesh, polyhedra have their volume, nothing stays smooth.
+ * and corner is in the mesh, polyhedra have their volume, no triangles cross, nothing stays smooth.
  *
  * On curved parts the chord's sagitta is what a triangle may be off by besides: its corners span an
  * angle phi around the axis, so no point of it is deeper than R (1 - cos(phi / 2)).
@@ -21,6 +21,7 @@
 
 #include "base/random.h"
 #include "csgmesh/csgmesh.h"
+#include "mesh/self_intersections.h"
 #include "mesh/true_solids.h"
 
 #define PI 3.14159265358979323846
@@ -58,7 +59,7 @@ static const struct {
  * and 26, crossed cylinders 475, plate 26, gear 1038 and 1. */
 static const struct {
     double smooth, pieces;
-} most_of[] = {{2, 0.04}, {12, 0.5}, {0, 0}, {12, 0.52}, {20, 0}, {4, 0}, {45, 0.02}};
+} most_of[] = {{2, 0.04}, {12, 0.6}, {0, 0}, {12, 0.52}, {20, 0}, {4, 0}, {45, 0.02}};
 
 typedef struct tally {
     double most; /* of those within what is allowed */
@@ -89,6 +90,7 @@ typedef struct pose {
     bool *is_crease;
     uint32_t *corner; /* 3 a triangle */
     size_t vertex_count, triangle_count, crease_count;
+    long long crossings; /* pairs of triangles that cross */
     char what[64];
 } pose;
 
@@ -162,6 +164,10 @@ static void take(pose *p, const csgm_mesh_view *view, const csg_vec3 column[3])
                              .vertex_count = p->vertex_count,
                              .triangle_count = p->triangle_count};
     assert_int_equal(csgm_mesh_inspect(p->context, &joined, &p->check), CSGM_OK);
+#ifdef HAVE_CGAL
+    p->crossings =
+        test_self_intersections(places, p->vertex_count, p->corner, p->triangle_count, NULL, 0);
+#endif
     free(places);
     free(to);
 }
@@ -204,6 +210,8 @@ static void check_closed(const pose *p)
         fail_msg("%s: not a closed oriented manifold", p->what);
     if (k->genus != p->solid->genus)
         fail_msg("%s: genus %lld", p->what, (long long)k->genus);
+    if (p->crossings)
+        fail_msg("%s: %lld pairs of triangles cross", p->what, p->crossings);
     assert_true(p->crease_count <= p->stats.feature_vertices);
 }
 
