@@ -168,8 +168,9 @@ static bool take_arrays(csg_decimation *d)
     csg_memory *memory = r->memory;
     d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
     d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
-    d->samples = csg_memory_alloc(memory, (vertices + triangles) * sizeof *d->samples);
-    d->next_sample = csg_memory_alloc(memory, (vertices + triangles) * sizeof *d->next_sample);
+    d->sample_capacity = vertices + triangles + (d->missed ? d->missed->count : 0);
+    d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
+    d->next_sample = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->next_sample);
     d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
     d->queue = csg_memory_alloc(memory, sizeof *d->queue);
     d->room = csg_memory_alloc(memory, sizeof *d->room);
@@ -183,9 +184,9 @@ static bool take_arrays(csg_decimation *d)
            d->queue && d->room && keep_looks(d);
 }
 
-csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh)
+csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed)
 {
-    *d = (csg_decimation){.remesh = remesh};
+    *d = (csg_decimation){.remesh = remesh, .missed = missed};
     if (take_arrays(d) && make_quadrics(d) && csg_decimation_make_samples(d))
         return CSGM_OK;
     csg_decimation_end(d);
@@ -201,8 +202,8 @@ void csg_decimation_end(csg_decimation *d)
     size_t triangles = d->remesh->corners.triangle_count;
     csg_memory_release(memory, d->quadrics, vertices * sizeof *d->quadrics);
     csg_memory_release(memory, d->version, vertices * sizeof *d->version);
-    csg_memory_release(memory, d->samples, (vertices + triangles) * sizeof *d->samples);
-    csg_memory_release(memory, d->next_sample, (vertices + triangles) * sizeof *d->next_sample);
+    csg_memory_release(memory, d->samples, d->sample_capacity * sizeof *d->samples);
+    csg_memory_release(memory, d->next_sample, d->sample_capacity * sizeof *d->next_sample);
     csg_memory_release(memory, d->first_sample, triangles * sizeof *d->first_sample);
     csg_memory_release(memory, (void *)d->originals, vertices * sizeof *d->originals);
     if (d->queue)

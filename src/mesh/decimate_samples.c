@@ -85,6 +85,8 @@ bool csg_decimation_make_samples(csg_decimation *d)
     }
     d->vertex_samples = d->sample_count;
     sample_triangles(d);
+    for (size_t i = 0; d->missed && i < d->missed->count; i++)
+        add_sample(d, d->missed->points[i].at, d->missed->points[i].triangle);
     return true;
 }
 

@@ -1,124 +1,96 @@
 /* SPDX-License-Identifier: MIT
- * Smoothing and flipping; see improve.h. All changes are made one after the other in the order of
- * numbers, each only if the worst triangle around it gets better.
+ * Collapsing, flipping and smoothing in turn; see improve.h. All changes are made one after the
+ * other in the order of numbers.
  */
 #include "mesh/improve.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-enum { PASSES = 6, MOST_RING = CSG_CORNERS_MOST_VALENCE };
+#include "mesh/improve_private.h"
 
-typedef struct fan {
-    csg_vec3 now[MOST_RING][3], then[MOST_RING][3];
-    uint32_t vertex[MOST_RING][3];
-    size_t count;
-} fan;
-
-/* Of the sines of a triangle's angles the smallest, times the longest side over the shortest: what
- * is 0 for every kind of sliver, 0.87 at best. */
-static double shape(const csg_vec3 v[3])
-{
-    return csg_triangle_quality(v[0], v[1], v[2]);
-}
-
-static double worst_shape(const csg_vec3 (*triangles)[3], size_t count)
-{
-    double worst = 1;
-    for (size_t i = 0; i < count; i++)
-        worst = fmin(worst, shape(triangles[i]));
-    return worst;
-}
-
-static bool turns_over(const csg_vec3 now[3], const csg_vec3 then[3])
-{
-    csg_vec3 a = csg_triangle_cross(now[0], now[1], now[2]);
-    csg_vec3 b = csg_triangle_cross(then[0], then[1], then[2]);
-    return shape(now) > 0.02 && csg_vec3_dot(a, b) < 0.5 * csg_vec3_norm(a) * csg_vec3_norm(b);
-}
+/* Sines of angles: what is better than that, 25 degrees, may get worse as long as it stays so. */
+static const double GOOD = 0.42, BAD = 0.36;
 
 /* ---- moving -----------------------------------------------------------------------------------
  */
 
-static bool gather(const csg_remesh *r, uint32_t vertex, fan *f)
+static bool gather(csg_improver *m, uint32_t vertex)
 {
-    const csg_corners *m = &r->corners;
-    uint32_t first = m->corner[vertex], c = first;
-    f->count = 0;
+    csg_patch *p = &m->patch;
+    const csg_remesh *r = m->remesh;
+    const csg_corners *corners = &r->corners;
+    uint32_t first = corners->corner[vertex], c = first;
+    p->now_count = 0;
     do {
-        if (f->count == MOST_RING)
+        if (p->now_count == CSG_PATCH_MOST)
             return false;
-        uint32_t *ids = f->vertex[f->count];
-        csg_vec3 *v = f->now[f->count++];
-        ids[0] = vertex;
-        ids[1] = m->vertex[csg_corner_next(c)];
-        ids[2] = m->vertex[csg_corner_previous(c)];
-        v[0] = r->at[vertex];
-        v[1] = csg_remesh_corner(r, csg_corner_next(c));
-        v[2] = csg_remesh_corner(r, csg_corner_previous(c));
-        c = csg_corner_swing(m, c);
+        uint32_t i = p->now_count++;
+        p->vertex[i][0] = vertex;
+        p->vertex[i][1] = corners->vertex[csg_corner_next(c)];
+        p->vertex[i][2] = corners->vertex[csg_corner_previous(c)];
+        for (int k = 0; k < 3; k++)
+            p->now[i][k] = p->then[i][k] = r->at[p->vertex[i][k]];
+        c = csg_corner_swing(corners, c);
     } while (c != first);
+    p->then_count = p->now_count;
+    p->vertices[0] = vertex;
+    p->vertices[1] = p->triangles[0] = p->triangles[1] = CSG_CORNER_NONE;
     return true;
 }
 
 /* The mean of the triangles' centroids by their areas: equal areas pull together, few large ones do
  * not push. */
-static csg_vec3 middle_of(const fan *f)
+static csg_vec3 middle_of(const csg_patch *p)
 {
     csg_vec3 sum = {0, 0, 0};
     double total = 0;
-    for (size_t i = 0; i < f->count; i++) {
-        const csg_vec3 *v = f->now[i];
+    for (uint32_t i = 0; i < p->now_count; i++) {
+        const csg_vec3 *v = p->now[i];
         double area = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
         csg_vec3 center = csg_vec3_add(v[0], csg_vec3_add(v[1], v[2]));
         sum = csg_vec3_add(sum, csg_vec3_scale(center, area / 3));
         total += area;
     }
-    return total > 0 ? csg_vec3_scale(sum, 1 / total) : f->now[0][0];
+    return total > 0 ? csg_vec3_scale(sum, 1 / total) : p->now[0][0];
 }
 
-static bool looks_stay(csg_remesh *r, uint32_t vertex, csg_vec3 at, csg_look_at_vertex *look)
+/* The middle of a crease's two neighbours, where it is straight there. */
+static bool middle_of_crease(const csg_remesh *r, uint32_t vertex, csg_vec3 *out)
 {
-    enum { COLOR_STEP = 4, MATERIAL_STEP = 200 };
-    if (!r->looks)
-        return true;
-    *look = csg_remesh_look(r, at);
-    for (int c = 0; c < 4; c++)
-        if (abs(look->color[c] - r->looks[vertex].color[c]) > COLOR_STEP)
-            return false;
-    for (int c = 0; c < 2; c++)
-        if (abs(look->material[c] - r->looks[vertex].material[c]) > MATERIAL_STEP)
-            return false;
-    return true;
+    static const double STRAIGHT = 1e-5; /* of a cell */
+    const csg_corners *corners = &r->corners;
+    uint32_t first = corners->corner[vertex], c = first, count = 0;
+    csg_vec3 end[2] = {{0, 0, 0}, {0, 0, 0}};
+    do {
+        if (csg_remesh_is_crease(r, c)) {
+            if (count == 2)
+                return false;
+            end[count++] = csg_remesh_corner(r, csg_corner_next(c));
+        }
+        c = csg_corner_swing(corners, c);
+    } while (c != first);
+    if (count != 2)
+        return false;
+    csg_vec3 way = csg_vec3_normalize(csg_vec3_sub(end[1], end[0]));
+    csg_vec3 off = csg_vec3_sub(r->at[vertex], end[0]);
+    *out = csg_vec3_scale(csg_vec3_add(end[0], end[1]), 0.5);
+    return csg_vec3_norm(csg_vec3_cross(way, off)) <= STRAIGHT * r->cell;
 }
 
-static bool move(csg_remesh *r, uint32_t vertex, fan *f)
+static bool move_to(csg_improver *m, uint32_t vertex, csg_vec3 at)
 {
     static const double LEAST_GAIN = 1.001;
-    if (r->kind[vertex] != CSG_VERTEX_SMOOTH || !gather(r, vertex, f))
-        return false;
-    csg_vec3 at = middle_of(f);
+    csg_remesh *r = m->remesh;
+    csg_patch *p = &m->patch;
     csg_look_at_vertex look = {{0}, {0}};
-    if (!csg_remesh_project(r, &at, r->cell) || !looks_stay(r, vertex, at, &look))
+    if (r->kind[vertex] == CSG_VERTEX_SMOOTH && !csg_remesh_project(r, &at, r->cell))
         return false;
-    for (size_t i = 0; i < f->count; i++) {
-        f->then[i][0] = at;
-        f->then[i][1] = f->now[i][1];
-        f->then[i][2] = f->now[i][2];
-        if (turns_over(f->now[i], f->then[i]))
-            return false;
-    }
-    double before = worst_shape((const csg_vec3(*)[3])f->now, f->count);
-    double after = worst_shape((const csg_vec3(*)[3])f->then, f->count);
-    if (after < LEAST_GAIN * before ||
-        !csg_remesh_brackets(r, (const csg_vec3(*)[3])f->then, f->count))
-        return false;
-    const csg_crossing_change change = {.at = (const csg_vec3(*)[3])f->then,
-                                        .vertex = (const uint32_t(*)[3])f->vertex,
-                                        .count = f->count,
-                                        .vertices = {vertex, CSG_CORNER_NONE},
-                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
-    if (csg_crossing_is_made(&r->crossing, &change))
+    for (uint32_t i = 0; i < p->then_count; i++)
+        p->then[i][0] = at;
+    double before = csg_worst_sine((const csg_vec3(*)[3])p->now, p->now_count);
+    double after = csg_worst_sine((const csg_vec3(*)[3])p->then, p->then_count);
+    if (after < fmin(LEAST_GAIN * before, GOOD) || !csg_improve_looks_alike(m, vertex, at, &look) ||
+        !csg_patch_is_sound(m))
         return false;
     r->at[vertex] = at;
     csg_crossing_update_around(&r->crossing, vertex);
@@ -127,34 +99,61 @@ static bool move(csg_remesh *r, uint32_t vertex, fan *f)
     return true;
 }
 
+static bool move(csg_improver *m, uint32_t vertex, double enough)
+{
+    static const double LEAST_STEP = 0.01; /* of a cell */
+    csg_remesh *r = m->remesh;
+    csg_vec3 at;
+    if (r->kind[vertex] == CSG_VERTEX_CORNER || !gather(m, vertex) ||
+        csg_worst_sine((const csg_vec3(*)[3])m->patch.now, m->patch.now_count) > enough)
+        return false;
+    if (r->kind[vertex] == CSG_VERTEX_SMOOTH)
+        at = middle_of(&m->patch);
+    else if (!middle_of_crease(r, vertex, &at))
+        return false;
+    csg_vec3 step = csg_vec3_sub(at, r->at[vertex]);
+    for (int half = 0; half < 3; half++, step = csg_vec3_scale(step, 0.5)) {
+        if (csg_vec3_norm(step) < LEAST_STEP * r->cell)
+            return false;
+        if (move_to(m, vertex, csg_vec3_add(m->patch.now[0][0], step)))
+            return true;
+    }
+    return false;
+}
+
 /* ---- flipping ---------------------------------------------------------------------------------
  */
 
-static bool flip(csg_remesh *r, uint32_t corner)
+static bool flip(csg_improver *m, uint32_t corner)
 {
-    static const double FLAT_COS = 0.9, LEAST_GAIN = 1.01;
-    const csg_corners *m = &r->corners;
-    uint32_t apex = csg_corner_previous(corner), other = m->across[apex];
+    static const double FLAT_COS = 0.8, LEAST_GAIN = 1.01;
+    csg_remesh *r = m->remesh;
+    csg_patch *p = &m->patch;
+    const csg_corners *corners = &r->corners;
+    uint32_t apex = csg_corner_previous(corner), other = corners->across[apex];
     csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
     csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, other);
     const csg_vec3 now[2][3] = {{c, a, b}, {d, b, a}}, then[2][3] = {{c, a, d}, {d, b, c}};
-    if (worst_shape(then, 2) < LEAST_GAIN * worst_shape(now, 2) ||
-        csg_remesh_is_crease(r, corner) || !csg_corners_can_flip(m, corner))
+    if (csg_worst_sine(then, 2) < LEAST_GAIN * csg_worst_sine(now, 2) ||
+        csg_remesh_is_crease(r, corner) || !csg_corners_can_flip(corners, corner))
         return false;
     csg_vec3 left = csg_vec3_normalize(csg_triangle_cross(c, a, d));
     csg_vec3 right = csg_vec3_normalize(csg_triangle_cross(d, b, c));
-    if (csg_vec3_dot(left, right) < FLAT_COS || turns_over(now[0], then[0]) ||
-        turns_over(now[1], then[1]) || turns_over(now[0], then[1]) || turns_over(now[1], then[0]) ||
-        !csg_remesh_brackets(r, then, 2))
+    if (csg_vec3_dot(left, right) < FLAT_COS)
         return false;
-    const uint32_t *v = m->vertex, a_id = v[corner], b_id = v[csg_corner_next(corner)];
+    const uint32_t *v = corners->vertex, a_id = v[corner], b_id = v[csg_corner_next(corner)];
     const uint32_t ids[2][3] = {{v[apex], a_id, v[other]}, {v[other], b_id, v[apex]}};
-    const csg_crossing_change change = {.at = then,
-                                        .vertex = ids,
-                                        .count = 2,
-                                        .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
-                                        .triangles = {corner / 3, other / 3}};
-    if (csg_crossing_is_made(&r->crossing, &change))
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++) {
+            p->now[i][k] = now[i][k];
+            p->then[i][k] = then[i][k];
+            p->vertex[i][k] = ids[i][k];
+        }
+    p->now_count = p->then_count = 2;
+    p->vertices[0] = p->vertices[1] = CSG_CORNER_NONE;
+    p->triangles[0] = corner / 3;
+    p->triangles[1] = other / 3;
+    if (!csg_patch_is_sound(m))
         return false;
     csg_corners_flip(&r->corners, corner);
     csg_crossing_update(&r->crossing, corner / 3);
@@ -165,39 +164,77 @@ static bool flip(csg_remesh *r, uint32_t corner)
 /* ---- the passes -------------------------------------------------------------------------------
  */
 
-static uint64_t flip_all(csg_remesh *r)
+/* Of each bad triangle the shortest edge that may go. */
+static uint64_t collapse_all(csg_improver *m)
 {
+    csg_remesh *r = m->remesh;
     uint64_t changes = 0;
-    for (uint32_t c = 0; c < 3 * r->corners.triangle_count; c++)
-        if (csg_corners_is_live(&r->corners, c / 3) &&
-            csg_corner_previous(c) < r->corners.across[csg_corner_previous(c)])
-            changes += flip(r, c);
+    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
+        if (!csg_corners_is_live(&r->corners, t))
+            continue;
+        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
+                               csg_remesh_corner(r, 3 * t + 2)};
+        if (csg_least_sine(v) > BAD)
+            continue;
+        double length[3];
+        for (int k = 0; k < 3; k++)
+            length[k] = csg_vec3_norm(csg_vec3_sub(v[(k + 1) % 3], v[k]));
+        uint32_t least = length[1] < length[0] ? 1 : 0;
+        least = length[2] < length[least] ? 2 : least;
+        changes += csg_improve_collapse(m, 3 * t + least);
+    }
     return changes;
 }
 
-static uint64_t move_all(csg_remesh *r, fan *f)
+static uint64_t flip_all(csg_improver *m)
 {
+    const csg_corners *corners = &m->remesh->corners;
     uint64_t changes = 0;
-    for (uint32_t v = 0; v < r->corners.vertex_count; v++)
-        if (r->corners.corner[v] != CSG_CORNER_NONE)
-            changes += move(r, v, f);
+    for (uint32_t c = 0; c < 3 * corners->triangle_count; c++)
+        if (csg_corners_is_live(corners, c / 3) &&
+            csg_corner_previous(c) < corners->across[csg_corner_previous(c)])
+            changes += flip(m, c);
     return changes;
 }
 
-csgm_status csg_improve(csg_remesh *r)
+static uint64_t move_all(csg_improver *m, double enough)
+{
+    const csg_corners *corners = &m->remesh->corners;
+    uint64_t changes = 0;
+    for (uint32_t v = 0; v < corners->vertex_count; v++)
+        if (corners->corner[v] != CSG_CORNER_NONE)
+            changes += move(m, v, enough);
+    return changes;
+}
+
+/* At first everything that is not quite good is smoothed, later what is bad. */
+static csgm_status run_passes(csg_improver *m)
+{
+    enum { PASSES = 8, SMOOTHING = 3 };
+    csg_mesh_work *w = m->remesh->work;
+    for (int pass = 0; pass < PASSES; pass++) {
+        uint64_t changes = collapse_all(m);
+        changes += flip_all(m);
+        changes += move_all(m, pass < SMOOTHING ? 0.55 : GOOD);
+        if (csg_mesh_should_stop(w))
+            return csg_mesh_why_stopped(w);
+        if (!changes)
+            break;
+    }
+    return CSGM_OK;
+}
+
+csgm_status csg_improve(csg_remesh *r, bool thinned)
 {
     csg_mesh_work *w = r->work;
-    fan *f = csg_memory_alloc(r->memory, sizeof *f);
-    if (!f)
+    csg_improver *m = csg_memory_alloc(r->memory, sizeof *m);
+    if (!m)
         return csg_context_no_memory(w->context);
-    csgm_status status = CSGM_OK;
-    uint64_t changes = 1;
-    for (int pass = 0; pass < PASSES && changes && status == CSGM_OK; pass++) {
-        changes = flip_all(r);
-        changes += move_all(r, f);
-        if (csg_mesh_should_stop(w))
-            status = csg_mesh_why_stopped(w);
-    }
-    csg_memory_release(r->memory, f, sizeof *f);
+    m->remesh = r;
+    m->thinned = thinned;
+    csgm_status status = csg_improver_measure(m) ? CSGM_OK : csg_context_no_memory(w->context);
+    if (status == CSGM_OK)
+        status = run_passes(m);
+    csg_memory_release(r->memory, m, sizeof *m);
     return status;
 }

@@ -77,11 +77,11 @@ static csgm_status reach_share(csg_decimation *d, csg_mesh_goal *goal)
     return status;
 }
 
-static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal)
+static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed *missed)
 {
     csg_decimation d;
     r->error = goal->care * goal->error;
-    csgm_status status = csg_decimation_begin(&d, r);
+    csgm_status status = csg_decimation_begin(&d, r, missed);
     if (status != CSGM_OK)
         return status;
     status = goal->share > 0 ? reach_share(&d, goal) : csg_decimate(&d, 4);
@@ -109,12 +109,17 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
     return CSGM_OK;
 }
 
-/* Improving alone may stray from the surface as far as the triangles do already. */
-static csgm_status improve(csg_remesh *r, csg_mesh_goal *goal)
+/* What the cells are too large for; where they are free, smaller ones are asked for. */
+static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *missed)
 {
-    if (!(goal->error > 0) && !(goal->share > 0))
-        r->error = 0.1 * r->cell;
-    return csg_improve(r);
+    *missed = (csg_missed){0};
+    if (!(goal->error > 0))
+        return CSGM_OK;
+    csgm_status status = csg_missed_find(r, goal->error, missed);
+    if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
+        goal->cell_size = 0.5 * r->cell;
+    goal->unfinished = missed->unfinished;
+    return status;
 }
 
 static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
@@ -124,10 +129,15 @@ static csgm_status reshape(csg_remesh *r, csg_mesh_goal *goal)
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;
     bool thins = goal->error > 0 || goal->share > 0;
-    if (thins)
-        status = thin_out(r, goal);
+    csg_missed missed;
+    status = find_missed(r, goal, &missed);
+    if (status == CSGM_OK && thins && !(goal->cell_size > 0))
+        status = thin_out(r, goal, &missed);
+    csg_missed_release(&missed, r->memory);
+    if (status != CSGM_OK || goal->cell_size > 0)
+        return status;
     if (status == CSGM_OK && goal->improve)
-        status = improve(r, goal);
+        status = csg_improve(r, thins);
     if (status == CSGM_OK && thins && goal->chooses && goal->measured > goal->error &&
         !goal->is_last)
         goal->cell_size = 0.6 * r->cell; /* the lattice is too coarse for its own samples */

@@ -24,6 +24,7 @@ typedef struct csg_mesh_goal {
     double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
     uint64_t begun, open;
+    uint64_t unfinished; /* stretches of the surface that were too intricate to look through */
     csg_vec3 place; /* of what is open, scene units */
     bool unproven;  /* it would have taken too long: measured only */
     bool tight;     /* `share` was out of reach */

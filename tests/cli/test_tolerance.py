@@ -66,8 +66,9 @@ class Tolerance(cli.CliTest):
         self.write("ball.txt", cli.BALL)
         before = self.stats("ball.txt", "-r", "24", "-o", "out.ply")
         after = self.stats("ball.txt", "-r", "24", "--improve", "-o", "out.ply")
-        self.assertEqual(before["triangles"], after["triangles"])
-        self.assertGreater(after["min_angle_deg"], before["min_angle_deg"])
+        self.assertLessEqual(after["triangles"], before["triangles"])
+        self.assertLess(before["min_angle_deg"], 10)
+        self.assertGreater(after["min_angle_deg"], 20)
 
     def test_errors(self):
         self.write("ball.txt", cli.BALL)
