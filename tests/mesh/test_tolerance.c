@@ -411,6 +411,7 @@ static void test_random_scenes(void **state)
         mesh_build_closed(&c, &options, what);
         if (c.mesh->triangle_count) {
             with_surface++;
+            assert_no_crossings(&c, what);
             bool good = c.stats.open_places == 0 && c.stats.max_distance_measured <= error;
             proven += good;
             assert_int_equal(c.findings > 0, !good);
