@@ -641,8 +641,9 @@ typedef struct csgm_render_stats {
     uint64_t memory_peak_bytes;
 } csgm_render_stats;
 
-/* The field's surface, by sphere tracing. options NULL = defaults; stats may be NULL. A scene
- * without a surface gives the background and a warning. */
+/* The field's surface, by sphere tracing, and over it translucently what # and % stand before in
+ * the scene. options NULL = defaults; stats may be NULL. A scene without a surface gives the
+ * background and a warning. */
 CSGM_API csgm_status csgm_render_scene(csgm_context *context, const csgm_field *field,
                                        const csgm_render_options *options, csgm_image **out,
                                        csgm_render_stats *stats);

@@ -164,6 +164,13 @@ csg_affine csg_affine_multiply(csg_affine a, csg_affine b)
     return r;
 }
 
+csg_affine csg_affine_of_plane(csg_affine a)
+{
+    a.m[0][2] = a.m[1][2] = a.m[2][0] = a.m[2][1] = a.t[2] = 0;
+    a.m[2][2] = 1;
+    return a;
+}
+
 double csg_affine_determinant(csg_affine a)
 {
     return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) -

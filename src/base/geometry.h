@@ -83,6 +83,8 @@ csg_affine csg_affine_mirror(csg_vec3 normal);
 csg_affine csg_affine_z_to(csg_vec3 to);
 csg_affine csg_affine_multiply(csg_affine a, csg_affine b); /* first b, then a */
 double csg_affine_determinant(csg_affine a);
+/* What it does to x and y of points with z = 0; z stays. */
+csg_affine csg_affine_of_plane(csg_affine a);
 bool csg_affine_invert(csg_affine a, csg_affine *out); /* false when singular */
 csg_vec3 csg_affine_point(const csg_affine *a, csg_vec3 p);
 csg_vec3 csg_affine_vector(const csg_affine *a, csg_vec3 v);   /* m v */

@@ -117,10 +117,20 @@ static bool keep_texts(const csg_program *program, csgm_scene *scene)
     return kept;
 }
 
+/* What modifiers mark, as scenes of their own. */
+static csgm_status seal_marks(csg_eval *e, csgm_scene *out[CSG_MARK_COUNT])
+{
+    csgm_status status = CSGM_OK;
+    for (int i = 0; i < CSG_MARK_COUNT && status == CSGM_OK; i++)
+        if (e->marked[i] != CSG_NODE_NONE)
+            status = csg_build_snapshot(&e->builder, e->marked[i], &out[i]);
+    return status == CSGM_ERR_MEMORY ? csg_context_no_memory(e->context) : status;
+}
+
 static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **out)
 {
     csg_eval e;
-    csgm_scene *scene = NULL;
+    csgm_scene *scene = NULL, *marked[CSG_MARK_COUNT] = {NULL, NULL};
     csg_node_id root = CSG_NODE_NONE;
     csgm_status status = csg_eval_init(&e, program);
     if (status == CSGM_OK) {
@@ -130,12 +140,19 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
     }
     if (status == CSGM_OK && program->context->diags.errors > errors)
         status = CSGM_ERR_SCENE; /* warnings as errors */
+    if (status == CSGM_OK)
+        status = seal_marks(&e, marked);
     if (status == CSGM_OK) {
         status = csg_build_finish(&e.builder, root, program->dependencies,
                                   program->dependency_count, &scene);
         if (status == CSGM_ERR_MEMORY)
             csg_context_no_memory(program->context);
     }
+    for (int i = 0; i < CSG_MARK_COUNT; i++)
+        if (status == CSGM_OK)
+            scene->marked[i] = marked[i];
+        else
+            csg_scene_destroy(marked[i]);
     if (status == CSGM_OK && !keep_texts(program, scene)) {
         csg_scene_destroy(scene);
         status = csg_context_no_memory(program->context);

@@ -438,7 +438,10 @@ static bool intern_constants(csg_eval *e)
 csgm_status csg_eval_init(csg_eval *e, csg_program *program)
 {
     csg_memory *memory = &program->context->memory;
-    *e = (csg_eval){.program = program, .context = program->context, .root = CSG_NODE_NONE};
+    *e = (csg_eval){.program = program,
+                    .context = program->context,
+                    .root = CSG_NODE_NONE,
+                    .marked = {CSG_NODE_NONE, CSG_NODE_NONE}};
     csg_heap_init(&e->heap, memory, program->context->limits.depth);
     if (intern_constants(e)) { /* no name is interned after this: the table of heads stays */
         e->dynamic_heads =
@@ -468,5 +471,6 @@ void csg_eval_reset(csg_eval *e)
     csg_memory_release(memory, e->dynamics, e->dynamic_capacity * sizeof *e->dynamics);
     csg_memory_release(memory, e->trace, e->trace_capacity * sizeof *e->trace);
     csg_memory_release(memory, e->parts, e->part_capacity * sizeof *e->parts);
+    csg_memory_release(memory, e->marks, e->mark_capacity * sizeof *e->marks);
     csg_memory_release(memory, e->reported, e->reported_slots * sizeof *e->reported);
 }

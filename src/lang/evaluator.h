@@ -39,6 +39,12 @@ typedef struct csg_twister { /* of rands() */
     uint32_t next; /* word, CSG_TWISTER_WORDS = twist first */
 } csg_twister;
 
+/* What a modifier stands before. */
+typedef struct csg_mark {
+    csg_node_id node;
+    csg_scene_mark kind;
+} csg_mark;
+
 typedef struct csg_eval {
     csg_program *program;
     csgm_context *context;
@@ -70,7 +76,12 @@ typedef struct csg_eval {
 
     struct csg_fonts *fonts; /* of text(); NULL before the first one */
 
+    csg_mark *marks; /* a stack (marks.h) */
+    size_t mark_count, mark_capacity;
+
     csg_node_id root; /* what a ! modifier chose, or NONE */
+    csg_node_id
+        marked[CSG_MARK_COUNT]; /* after the run, or once there is a root: each mark's solid */
     csg_symbol symbol_pi, symbol_children_count, symbol_parent_modules, symbol_fn, symbol_round,
         symbol_x, symbol_y, symbol_z, symbol_begin, symbol_step, symbol_end, symbol_blend, symbol_n,
         symbol_r, symbol_children, symbol_w;

@@ -212,11 +212,25 @@ static void warn_childless(const csg_module_call *call, int row)
                             call->name);
 }
 
+/* Modules whose children are not where they were: marks among them are not either. */
+static bool moves_children(csg_module_handler *handler)
+{
+    static csg_module_handler *const movers[] = {
+        csg_module_projection, csg_module_linear_extrude, csg_module_rotate_extrude,
+        csg_module_minkowski,  csg_module_resize,         csg_module_repeat,
+        csg_module_twist,      csg_module_bend,           csg_module_extrude,
+        csg_module_warp};
+    for (size_t i = 0; i < sizeof movers / sizeof *movers; i++)
+        if (handler == movers[i])
+            return true;
+    return false;
+}
+
 void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame)
 {
     csg_module_call call = {
         .e = e, .name = modules[row].name, .statement = statement, .frame = frame};
-    size_t dynamics = e->dynamic_count;
+    size_t dynamics = e->dynamic_count, first_mark = e->mark_count;
     find_rows(&call, row);
     bind(&call);
     if (!modules[row].children && statement->children->statement_count && !e->stop)
@@ -227,6 +241,8 @@ void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_f
     csg_node_id node = e->stop ? CSG_NODE_NONE : modules[row].handler(&call);
     if (node != CSG_NODE_NONE && !e->stop)
         csg_push_part(e, csg_part_plain(node));
+    if (moves_children(modules[row].handler))
+        e->mark_count = first_mark;
     for (uint32_t i = 0; i < call.parameter_count; i++)
         csg_value_release(&e->heap, call.values[i]);
     csg_eval_pop_dynamics(e, dynamics);

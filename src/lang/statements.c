@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lang/marks.h"
 #include "lang/shapes.h"
 
 /* ---- parts -------------------------------------------------------------------------------------
@@ -225,33 +226,40 @@ static void run_if(csg_eval *e, const csg_statement *statement, csg_frame *frame
 }
 
 /* ! shows this alone: the first one holds. Its place in the scene becomes empty. */
-static void make_root(csg_eval *e, const csg_statement *statement, size_t first)
+static void make_root(csg_eval *e, const csg_statement *statement, size_t first, size_t first_mark)
 {
     csg_node_id node =
         csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, statement->where);
     if (node == CSG_NODE_NONE)
         return;
-    if (e->root != CSG_NODE_NONE)
+    if (e->root != CSG_NODE_NONE) {
         csg_eval_report(e, CSG_DIAG_SEVERAL_ROOTS, statement->where, NULL,
                         "a second '!' modifier; the first one holds");
-    else
+    } else {
         e->root = node;
+        csg_marks_take(e, first_mark, statement->where, e->marked);
+    }
+    e->mark_count = first_mark;
 }
 
 void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread)
 {
     enum { STATEMENT_STEPS = 4 };
-    size_t first = e->part_count;
+    size_t first = e->part_count, first_mark = e->mark_count;
     if (!csg_eval_charge(e, STATEMENT_STEPS, statement->where))
         return;
     if (statement->kind == CSG_STATEMENT_IF)
         run_if(e, statement, frame, spread);
     else
         run_call(e, statement, frame, spread);
+    if (statement->background)
+        csg_marks_add(e, first, CSG_MARK_BACKGROUND, statement->where);
+    else if (statement->highlight)
+        csg_marks_add(e, first, CSG_MARK_HIGHLIGHT, statement->where);
     if (statement->background && !e->stop)
         e->part_count = first; /* % : left out of the mesh */
     if (statement->root && !e->stop)
-        make_root(e, statement, first);
+        make_root(e, statement, first, first_mark);
 }
 
 void csg_run_statements(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool spread)
@@ -278,5 +286,7 @@ csg_node_id csg_eval_run(csg_eval *e)
     if (frame && !e->stop)
         csg_run_statements(e, scene->scope, frame, true);
     csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, whole);
+    if (e->root == CSG_NODE_NONE)
+        csg_marks_take(e, 0, whole, e->marked);
     return csg_shape_of_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
 }

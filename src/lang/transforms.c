@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "lang/marks.h"
 #include "lang/shapes.h"
 
 /* A figure of the plane stays in it, as in OpenSCAD: what turns out of it is told and left out. The
@@ -24,8 +25,7 @@ static bool keep_plane(csg_module_call *call, csg_affine *by)
         csg_eval_report(call->e, CSG_DIAG_LEAVES_PLANE, where,
                         "linear_extrude makes a solid of a figure",
                         "%s() takes a flat figure out of its plane: it stays there", call->name);
-    by->m[0][2] = by->m[1][2] = by->m[2][0] = by->m[2][1] = by->t[2] = 0;
-    by->m[2][2] = 1;
+    *by = csg_affine_of_plane(*by);
     return true;
 }
 
@@ -33,7 +33,9 @@ static csg_node_id transformed(csg_module_call *call, const csg_affine *by)
 {
     csg_eval *e = call->e;
     csg_affine map = *by;
+    size_t first_mark = e->mark_count;
     csg_node_id children = csg_module_children(call);
+    csg_marks_move(e, first_mark, by, call->statement->where);
     if (call->failed || children == CSG_NODE_NONE || e->stop)
         return children;
     bool flat = csg_shape_is_flat(e, children);

@@ -80,7 +80,7 @@ static void draw_pixel(const lazy_job *job, lazy_room *room, uint32_t x, uint32_
             sum[c] += light[c];
     }
     room->hits += covered;
-    csg_shade_pixel(picture->curve, sum, covered, n * n, picture->options->background,
+    csg_shade_pixel(picture->curve, sum, (float)covered, n * n, picture->options->background,
                     csg_picture_pixel(picture, x, y));
 }
 

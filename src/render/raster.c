@@ -255,8 +255,8 @@ static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const ar
         for (int c = 0; c < 3; c++)
             total[c] += light[c] * (float)count;
     }
-    csg_shade_pixel(draw->picture->curve, total, covered, n * n, draw->picture->options->background,
-                    csg_picture_pixel(draw->picture, x, y));
+    csg_shade_pixel(draw->picture->curve, total, (float)covered, n * n,
+                    draw->picture->options->background, csg_picture_pixel(draw->picture, x, y));
 }
 
 void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * A field's picture: an octree of short tapes (cells.h), then tile by tile one ray a pixel
+ * A field's picture: an octree of short tapes (layer.h), then tile by tile one ray a pixel
  * (tracer.h), light (shade.h), and n x n rays for the pixels that differ from a neighbour. A tile
  * looks one pixel over its border, so that it decides as its neighbours do, whoever draws them.
+ * What the scene marks (# and %) is traced by rays of its own and laid over the solid where it is
+ * not behind it.
  */
-#include <float.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "field/dispatch.h"
-#include "render/job.h"
+#include "render/layer.h"
 #include "render/lazy_scene.h"
-#include "render/tracer.h"
 
 enum {
     TILE = 34 - 2,     /* pixels: with a border of one on each side still a batch of rays */
@@ -19,7 +19,10 @@ enum {
 
 typedef struct tile_room {
     csg_trace_room trace;
+    csg_trace_room *over; /* for marks; NULL where there are none */
+    uint32_t count;       /* of rays in the batch */
     float light[CSG_RAYS_MOST][3];
+    float cover[CSG_RAYS_MOST]; /* how much of the background is hidden */
     uint8_t pixel[CSG_RAYS_MOST][4];
     uint16_t edges[TILE * TILE]; /* x + TILE * y in the tile */
     uint32_t edge_count;
@@ -27,12 +30,7 @@ typedef struct tile_room {
 
 typedef struct scene_job {
     csg_picture *picture;
-    const csgm_field *field;
-    csgm_field *clipped; /* owned, NULL when the bounds cut nothing */
-    csg_box bounds;
-    csg_ray_cells cells;
-    csg_pixel_rectangle *rectangles;
-    csg_tracer tracer;
+    csg_layer layers[CSG_LAYERS];
     tile_room **rooms; /* one a worker */
     uint32_t room_count, columns, rows;
 } scene_job;
@@ -63,23 +61,113 @@ static void shade_rays(const scene_job *job, tile_room *room)
 {
     const csg_rays *rays = &room->trace.rays;
     const csg_picture *picture = job->picture;
-    for (uint32_t i = 0; i < rays->count; i++) {
+    for (uint32_t i = 0; i < room->count; i++) {
         memset(room->light[i], 0, sizeof room->light[i]);
-        bool hit = rays->t[i] < INFINITY;
-        if (hit) {
-            csg_surface surface = {
-                .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
-                .to_eye = {-rays->dx[i], -rays->dy[i], -rays->dz[i]},
-                .color = {rays->r[i], rays->g[i], rays->b[i]},
-                .metallic = rays->metallic[i],
-                .roughness = rays->roughness[i],
-                .open = rays->open[i],
-                .lit = rays->lit[i],
-            };
-            csg_shade(&picture->lights, picture->curve, &surface, room->light[i]);
-        }
-        csg_shade_pixel(picture->curve, room->light[i], hit, 1, picture->options->background,
-                        room->pixel[i]);
+        room->cover[i] = rays->t[i] < INFINITY;
+        if (!(rays->t[i] < INFINITY))
+            continue;
+        csg_surface surface = {
+            .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
+            .to_eye = {-rays->dx[i], -rays->dy[i], -rays->dz[i]},
+            .color = {rays->r[i], rays->g[i], rays->b[i]},
+            .metallic = rays->metallic[i],
+            .roughness = rays->roughness[i],
+            .open = rays->open[i],
+            .lit = rays->lit[i],
+        };
+        csg_shade(&picture->lights, picture->curve, &surface, room->light[i]);
+    }
+}
+
+/* ---- marks over it --------------------------------------------------------------------------- */
+
+/* sRGB and opacity, about those of OpenSCAD's preview. */
+static const float mark_looks[CSG_MARK_COUNT][4] = {
+    [CSG_MARK_HIGHLIGHT] = {1.0f, 0.32f, 0.32f, 0.5f},
+    [CSG_MARK_BACKGROUND] = {0.65f, 0.65f, 0.65f, 0.5f}};
+
+/* By how much a mark may seem to lie behind the solid and still be the same surface: rays stop some
+ * tolerances before it, and the more the flatter they meet it. */
+static float slack_at(const csg_tracer *tracer, const csg_rays *rays, uint32_t i)
+{
+    const float tolerances = 10, flattest = 0.05f;
+    float cosine =
+        fabsf(rays->dx[i] * rays->nx[i] + rays->dy[i] * rays->ny[i] + rays->dz[i] * rays->nz[i]);
+    float tolerance = tracer->near_tolerance + tracer->tolerance_slope * rays->t[i];
+    return tolerances * tolerance / fmaxf(cosine, flattest);
+}
+
+static void lay_over(const scene_job *job, tile_room *room, csg_scene_mark kind)
+{
+    const csg_rays *rays = &room->over->rays;
+    const csg_picture *picture = job->picture;
+    const float *look = mark_looks[kind], opacity = look[3];
+    for (uint32_t i = 0; i < rays->count; i++) {
+        float light[3];
+        if (!(rays->t[i] < INFINITY) ||
+            rays->t[i] > room->trace.rays.t[i] + slack_at(&job->layers[1 + kind].tracer, rays, i))
+            continue;
+        csg_surface surface = {
+            .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
+            .to_eye = {-rays->dx[i], -rays->dy[i], -rays->dz[i]},
+            .color = {look[0], look[1], look[2]},
+            .roughness = 1,
+            .open = 1,
+            .lit = 1,
+        };
+        csg_shade(&picture->lights, picture->curve, &surface, light);
+        for (int c = 0; c < 3; c++)
+            room->light[i][c] += opacity * (light[c] - room->light[i][c]);
+        room->cover[i] += opacity * (1 - room->cover[i]);
+    }
+}
+
+/* ---- a batch --------------------------------------------------------------------------------- */
+
+/* Rays for all pixels of a tile, or n x n for each of some of its edges. */
+typedef struct batch {
+    const tile *tile;
+    uint32_t first_edge, end_edge; /* both 0: the tile */
+} batch;
+
+static void aim(const scene_job *job, const tile_room *room, const batch *b,
+                const csg_tracer *tracer, csg_rays *rays)
+{
+    const tile *t = b->tile;
+    uint32_t n = job->picture->options->samples;
+    csg_tracer_begin(rays, b->end_edge ? t->y0 : t->outer_y0);
+    for (uint32_t e = b->first_edge; e < b->end_edge; e++)
+        for (uint32_t s = 0; s < n * n; s++)
+            csg_tracer_aim(tracer, rays, t->x0 + room->edges[e] % TILE + (s % n + 0.5) / n,
+                           t->y0 + room->edges[e] / TILE + (s / n + 0.5) / n);
+    if (b->end_edge)
+        return;
+    for (uint32_t y = t->outer_y0; y < t->outer_y1; y++)
+        for (uint32_t x = t->outer_x0; x < t->outer_x1; x++)
+            csg_tracer_aim(tracer, rays, x + 0.5, y + 0.5);
+}
+
+static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
+{
+    csg_rays *rays = &room->trace.rays;
+    const csg_layer *layers = job->layers;
+    const tile *t = b->tile;
+    uint32_t n = job->picture->options->samples;
+    room->count = b->end_edge ? (b->end_edge - b->first_edge) * n * n
+                              : (t->outer_x1 - t->outer_x0) * (t->outer_y1 - t->outer_y0);
+    if (layers[0].field) {
+        aim(job, room, b, &layers[0].tracer, rays);
+        csg_tracer_trace(&layers[0].tracer, &room->trace);
+    }
+    for (uint32_t i = 0; i < room->count && !layers[0].field; i++)
+        rays->t[i] = INFINITY;
+    shade_rays(job, room);
+    for (int i = CSG_LAYERS - 1; i > 0; i--) { /* the background first */
+        if (!layers[i].field)
+            continue;
+        aim(job, room, b, &layers[i].tracer, &room->over->rays);
+        csg_tracer_trace(&layers[i].tracer, room->over);
+        lay_over(job, room, (csg_scene_mark)(i - 1));
     }
 }
 
@@ -87,13 +175,10 @@ static void shade_rays(const scene_job *job, tile_room *room)
 
 static void trace_tile(const scene_job *job, tile_room *room, const tile *t)
 {
-    csg_rays *rays = &room->trace.rays;
-    csg_tracer_begin(rays, t->outer_y0);
-    for (uint32_t y = t->outer_y0; y < t->outer_y1; y++)
-        for (uint32_t x = t->outer_x0; x < t->outer_x1; x++)
-            csg_tracer_aim(&job->tracer, rays, x + 0.5, y + 0.5);
-    csg_tracer_trace(&job->tracer, &room->trace);
-    shade_rays(job, room);
+    trace_batch(job, room, &(batch){.tile = t});
+    for (uint32_t i = 0; i < room->count; i++)
+        csg_shade_pixel(job->picture->curve, room->light[i], room->cover[i], 1,
+                        job->picture->options->background, room->pixel[i]);
 }
 
 static bool differ(const uint8_t *a, const uint8_t *b)
@@ -127,12 +212,11 @@ static void find_edges(const scene_job *job, tile_room *room, const tile *t)
 static void resolve(const scene_job *job, tile_room *room, const tile *t, uint32_t first,
                     uint32_t end, uint32_t samples)
 {
-    const csg_rays *rays = &room->trace.rays;
     for (uint32_t e = first, ray = 0; e < end; e++) {
         float light[3] = {0, 0, 0};
-        uint32_t covered = 0;
+        float covered = 0;
         for (uint32_t s = 0; s < samples; s++, ray++) {
-            covered += rays->t[ray] < INFINITY;
+            covered += room->cover[ray];
             for (int c = 0; c < 3; c++)
                 light[c] += room->light[ray][c];
         }
@@ -145,17 +229,9 @@ static void resolve(const scene_job *job, tile_room *room, const tile *t, uint32
 static void refine_edges(const scene_job *job, tile_room *room, const tile *t)
 {
     uint32_t n = job->picture->options->samples, samples = n * n, at_once = CSG_RAYS_MOST / samples;
-    csg_rays *rays = &room->trace.rays;
     for (uint32_t first = 0; first < room->edge_count; first += at_once) {
         uint32_t end = first + at_once < room->edge_count ? first + at_once : room->edge_count;
-        csg_tracer_begin(rays, t->y0);
-        for (uint32_t e = first; e < end; e++)
-            for (uint32_t s = 0; s < samples; s++)
-                csg_tracer_aim(&job->tracer, rays,
-                               t->x0 + room->edges[e] % TILE + (s % n + 0.5) / n,
-                               t->y0 + room->edges[e] / TILE + (s / n + 0.5) / n);
-        csg_tracer_trace(&job->tracer, &room->trace);
-        shade_rays(job, room);
+        trace_batch(job, room, &(batch){t, first, end});
         resolve(job, room, t, first, end, samples);
     }
 }
@@ -176,6 +252,41 @@ static bool draw_tile(void *user, uint32_t worker, size_t index)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
+/* The kernels' scratch must do for each layer. */
+static bool create_trace_room(const scene_job *job, csg_trace_room *room)
+{
+    uint32_t depth = 0;
+    for (int i = 0; i < CSG_LAYERS; i++)
+        if (job->layers[i].field && job->layers[i].field->depth > depth)
+            depth = job->layers[i].field->depth;
+    room->scratch_floats = csg_kernel_scratch_floats(depth);
+    room->scratch = csg_memory_alloc(&job->picture->context->memory,
+                                     room->scratch_floats * sizeof *room->scratch);
+    return room->scratch != NULL;
+}
+
+static void release_trace_room(csg_memory *memory, csg_trace_room *room)
+{
+    csg_memory_release(memory, room->scratch, room->scratch_floats * sizeof *room->scratch);
+}
+
+static bool create_room(const scene_job *job, tile_room **out)
+{
+    csg_memory *memory = &job->picture->context->memory;
+    bool has_marks = job->layers[1].field || job->layers[2].field;
+    tile_room *room = *out = csg_memory_alloc(memory, sizeof *room);
+    if (!room)
+        return false;
+    memset(room, 0, sizeof *room);
+    if (!create_trace_room(job, &room->trace) || !has_marks)
+        return room->trace.scratch != NULL;
+    room->over = csg_memory_alloc(memory, sizeof *room->over);
+    if (!room->over)
+        return false;
+    memset(room->over, 0, sizeof *room->over);
+    return create_trace_room(job, room->over);
+}
+
 static bool create_rooms(scene_job *job)
 {
     csgm_context *context = job->picture->context;
@@ -186,16 +297,8 @@ static bool create_rooms(scene_job *job)
         return false;
     memset(job->rooms, 0, bytes);
     bool done = true;
-    for (uint32_t i = 0; i < job->room_count && done; i++) {
-        tile_room *room = job->rooms[i] = csg_memory_alloc(&context->memory, sizeof *room);
-        if (!room)
-            return false;
-        memset(room, 0, sizeof *room);
-        room->trace.scratch_floats = csg_kernel_scratch_floats(job->field->depth);
-        room->trace.scratch =
-            csg_memory_alloc(&context->memory, room->trace.scratch_floats * sizeof(float));
-        done = room->trace.scratch != NULL;
-    }
+    for (uint32_t i = 0; i < job->room_count && done; i++)
+        done = create_room(job, &job->rooms[i]);
     return done;
 }
 
@@ -205,150 +308,51 @@ static void release_rooms(scene_job *job)
     for (uint32_t i = 0; job->rooms && i < job->room_count; i++) {
         tile_room *room = job->rooms[i];
         if (room)
-            csg_memory_release(memory, room->trace.scratch,
-                               room->trace.scratch_floats * sizeof(float));
+            release_trace_room(memory, &room->trace);
+        if (room && room->over)
+            release_trace_room(memory, room->over);
+        if (room)
+            csg_memory_release(memory, room->over, sizeof *room->over);
         csg_memory_release(memory, room, sizeof *room);
     }
     csg_memory_release(memory, job->rooms, job->room_count * sizeof *job->rooms);
 }
 
-static csg_box moved_box(csg_box box, csg_vec3 by)
+static void add_counts(csgm_render_stats *stats, const csg_trace_counts *counts)
 {
-    return (csg_box){csg_vec3_sub(box.min, by), csg_vec3_sub(box.max, by)};
-}
-
-/* How far from the surface a ray may stop: a part of a pixel. Returns the largest in the solid's
- * box. */
-static double set_tolerance(scene_job *job)
-{
-    csg_tracer *tracer = &job->tracer;
-    const csg_view *view = &tracer->view;
-    csg_box box = moved_box(job->bounds, job->field->center);
-    double diagonal = csg_vec3_norm(csg_box_size(box)), share = 0.04 * view->pixel;
-    double far = csg_vec3_norm(csg_vec3_sub(csg_box_center(box), view->eye)) + diagonal;
-    double near = view->orthographic ? share : share * view->nearest;
-    tracer->near_tolerance = (float)fmax(near, 64 * (double)FLT_EPSILON * (diagonal + 1e-30));
-    tracer->tolerance_slope = view->orthographic ? 0 : (float)share;
-    return (double)tracer->near_tolerance + (double)tracer->tolerance_slope * far;
-}
-
-/* The octree's depth follows from the size of a pixel where the solid is. */
-static csgm_status make_cells(scene_job *job)
-{
-    csg_picture *picture = job->picture;
-    const csg_view *view = &job->tracer.view;
-    csg_box box = moved_box(job->bounds, job->field->center);
-    csg_vec3 size = csg_box_size(box);
-    double side = fmax(size.x, fmax(size.y, size.z));
-    double away = csg_vec3_norm(csg_vec3_sub(csg_box_center(box), view->eye));
-    double pixels = side / (view->pixel * (view->orthographic ? 1 : fmax(away, 1e-3 * side)));
-    int level = 4;
-    for (double cell = pixels / 16; cell > 16 && level < 10; cell /= 2)
-        level++;
-    csg_ray_cells_options options = {
-        .wide = picture->options->occlusion || picture->options->shadows,
-        .band = (float)(4 * set_tolerance(job)) * job->field->tape.lipschitz,
-        .most_level = level,
-        .cancelled = csg_picture_should_stop,
-        .user = picture};
-    csgm_status status =
-        csg_ray_cells_create(picture->context, job->field, box, &options, &job->cells);
-    return status == CSGM_CANCELLED ? csg_picture_why_stopped(picture) : status;
-}
-
-static void set_light(csg_tracer *tracer, const csg_lights *lights, const csg_view *view)
-{
-    csg_vec3 key =
-        csg_vec3_make((double)lights->key[0], (double)lights->key[1], (double)lights->key[2]);
-    csg_vec3 u = csg_vec3_normalize(csg_vec3_cross(key, view->right));
-    csg_vec3 v = csg_vec3_cross(key, u);
-    memcpy(tracer->light, lights->key, sizeof tracer->light);
-    const double across[2][3] = {{u.x, u.y, u.z}, {v.x, v.y, v.z}};
-    for (int i = 0; i < 2; i++)
-        for (int axis = 0; axis < 3; axis++)
-            tracer->light_across[i][axis] = (float)across[i][axis];
-}
-
-/* The solid's bounds are only known to contain it; the cells of its surface are nearer. */
-static csg_box surface_box(const scene_job *job)
-{
-    csg_box box = csg_box_empty();
-    for (size_t i = 0; i < job->cells.count; i++) {
-        const csg_ray_cell *cell = &job->cells.cells[i];
-        csg_vec3 c = csg_vec3_make((double)cell->center[0], (double)cell->center[1],
-                                   (double)cell->center[2]);
-        if (cell->is_leaf && cell->has_surface)
-            box = csg_box_hull(box, csg_box_grow((csg_box){c, c}, (double)cell->half));
-    }
-    return csg_box_intersect(moved_box(box, csg_vec3_scale(job->field->center, -1)), job->bounds);
-}
-
-static void set_view(scene_job *job)
-{
-    csg_tracer *tracer = &job->tracer;
-    tracer->view = job->picture->view;
-    tracer->view.eye = csg_vec3_sub(job->picture->view.eye, job->field->center);
-    set_light(tracer, &job->picture->lights, &job->picture->view);
-    set_tolerance(job);
-}
-
-static csgm_status make_tracer(scene_job *job)
-{
-    csg_picture *picture = job->picture;
-    const csgm_field *field = job->field;
-    csgm_context *context = picture->context;
-    job->tracer = (csg_tracer){
-        .kernel = csg_kernel_for(context->isa),
-        .field = field,
-        .cells = &job->cells,
-        .inverse_lipschitz = 1 / field->tape.lipschitz,
-        .occlusion = picture->options->occlusion,
-        .shadows = picture->options->shadows,
-        .colors = field->has_colors && field->color_count > 1,
-    };
-    set_view(job);
-    csgm_status status = make_cells(job);
-    csg_box tight = status == CSGM_OK ? surface_box(job) : csg_box_empty();
-    if (status == CSGM_OK && !csg_box_is_empty(tight)) {
-        status = csg_picture_place(picture, tight);
-        set_view(job); /* tolerances only become smaller: the eye comes nearer */
-    }
-    if (status != CSGM_OK)
-        return status;
-    job->rectangles =
-        csg_memory_alloc(&context->memory, job->cells.count * sizeof *job->rectangles);
-    if (!job->rectangles)
-        return csg_context_no_memory(context);
-    job->tracer.rectangles = job->rectangles;
-    csg_tracer_find_rectangles(&job->tracer, job->rectangles);
-    return CSGM_OK;
+    stats->rays += counts->rays;
+    stats->shadow_rays += counts->shadow_rays;
+    stats->hits += counts->hits;
+    stats->point_evaluations += counts->point_evaluations;
+    stats->gradient_evaluations += counts->gradient_evaluations;
+    stats->primitive_evaluations += counts->primitive_evaluations;
 }
 
 static void fill_stats(const scene_job *job, csgm_render_stats *stats)
 {
-    for (size_t i = 0; i < job->cells.count; i++)
-        stats->cells += job->cells.cells[i].is_leaf && job->cells.cells[i].has_surface;
-    stats->interval_evaluations = job->cells.interval_evaluations;
-    stats->primitive_evaluations = job->cells.primitive_evaluations;
+    for (int k = 0; k < CSG_LAYERS; k++) {
+        const csg_ray_cells *cells = &job->layers[k].cells;
+        for (size_t i = 0; i < cells->count; i++)
+            stats->cells += cells->cells[i].is_leaf && cells->cells[i].has_surface;
+        stats->interval_evaluations += cells->interval_evaluations;
+        stats->primitive_evaluations += cells->primitive_evaluations;
+    }
     for (uint32_t i = 0; job->rooms && i < job->room_count; i++) {
-        const csg_trace_counts *counts = &job->rooms[i]->trace.counts;
-        stats->rays += counts->rays;
-        stats->shadow_rays += counts->shadow_rays;
-        stats->hits += counts->hits;
-        stats->point_evaluations += counts->point_evaluations;
-        stats->gradient_evaluations += counts->gradient_evaluations;
-        stats->primitive_evaluations += counts->primitive_evaluations;
+        add_counts(stats, &job->rooms[i]->trace.counts);
+        if (job->rooms[i]->over)
+            add_counts(stats, &job->rooms[i]->over->counts);
     }
 }
 
 static csgm_status trace_all(scene_job *job, csgm_render_stats *stats)
 {
     csg_picture *picture = job->picture;
-    csgm_status status = make_tracer(job);
+    csgm_status status = csg_layers_prepare(job->layers, picture);
     if (status == CSGM_OK && !create_rooms(job))
         status = csg_context_no_memory(picture->context);
-    if (status == CSGM_OK)
-        csg_tracer_find_slope(&job->tracer, &job->rooms[0]->trace);
+    for (int i = 0; i < CSG_LAYERS && status == CSGM_OK; i++)
+        if (job->layers[i].field)
+            csg_tracer_find_slope(&job->layers[i].tracer, &job->rooms[0]->trace);
     stats->prepare_s = csg_clock_now_s() - picture->started_s;
     job->columns = (picture->image->width + TILE - 1) / TILE;
     job->rows = (picture->image->height + TILE - 1) / TILE;
@@ -358,39 +362,6 @@ static csgm_status trace_all(scene_job *job, csgm_render_stats *stats)
     if (status == CSGM_OK)
         fill_stats(job, stats);
     release_rooms(job);
-    csg_memory_release(&picture->context->memory, job->rectangles,
-                       job->cells.count * sizeof *job->rectangles);
-    if (job->cells.context)
-        csg_ray_cells_release(&job->cells);
-    return status;
-}
-
-/* ---- bounds ---------------------------------------------------------------------------------- */
-
-static csgm_status choose_bounds(scene_job *job, csgm_context *context,
-                                 const csgm_render_options *options)
-{
-    job->bounds = csg_box_is_empty(options->bounds) ? job->field->bounds : options->bounds;
-    if (csg_box_is_empty(job->bounds))
-        return CSGM_OK;
-    if (!csg_box_is_empty(options->bounds) && !csg_box_is_finite(options->bounds)) {
-        csg_diag_plain(&context->diags, CSG_DIAG_BAD_BOUNDS, NULL, NULL,
-                       "the bounds must be finite numbers");
-        return CSGM_ERR_ARGUMENT;
-    }
-    if (!csg_box_is_finite(job->bounds)) {
-        csg_diag_plain(&context->diags, CSG_DIAG_UNBOUNDED, NULL,
-                       "give --bounds X0,Y0,Z0,X1,Y1,Z1, or intersect the solid with a cube",
-                       "the solid reaches to infinity, so there is no box to draw");
-        return CSGM_ERR_SCENE;
-    }
-    if (csg_box_contains_box(job->bounds, job->field->bounds) || options->slice_axis >= 0)
-        return CSGM_OK;
-    csgm_status status = csg_field_clip(context, job->field, job->bounds, &job->clipped);
-    if (status == CSGM_OK) {
-        job->field = job->clipped;
-        job->bounds = csg_box_intersect(job->bounds, job->clipped->bounds);
-    }
     return status;
 }
 
@@ -405,15 +376,30 @@ static csgm_status draw(scene_job *job, csgm_render_stats *stats)
 {
     csg_picture *picture = job->picture;
     const csgm_render_options *options = picture->options;
-    if (csg_box_is_empty(job->bounds)) {
+    const csg_layer *solid = &job->layers[0];
+    bool has_any = false;
+    for (int i = 0; i < CSG_LAYERS; i++)
+        has_any = has_any || job->layers[i].field;
+    if (!has_any) {
         draw_background(picture);
         return CSGM_OK;
     }
     if (options->slice_axis >= 0)
-        return csg_render_slice(picture, job->field, job->bounds, stats);
+        return csg_render_slice(picture, solid->field, solid->bounds, stats);
     if (options->evaluator == CSGM_EVALUATOR_LAZY)
-        return csg_render_lazy(picture, job->field, job->bounds, stats);
+        return csg_render_lazy(picture, solid->field, solid->bounds, stats);
     return trace_all(job, stats);
+}
+
+/* Sections and the evaluator that counts are of the solid alone. */
+static csgm_status make_layers(scene_job *job, csgm_context *context, const csgm_field *field,
+                               const csgm_render_options *options)
+{
+    csgm_status status = csg_layer_of_solid(&job->layers[0], context, field, options);
+    bool shows_marks = options->slice_axis < 0 && options->evaluator == CSGM_EVALUATOR_FAST;
+    if (status == CSGM_OK && shows_marks)
+        status = csg_layers_of_marks(job->layers, context, field->scene, options);
+    return status;
 }
 
 csgm_status csg_render_scene(csgm_context *context, const csgm_field *field,
@@ -421,17 +407,22 @@ csgm_status csg_render_scene(csgm_context *context, const csgm_field *field,
                              csgm_render_stats *stats)
 {
     csg_picture picture = {.context = context};
-    scene_job job = {.picture = &picture, .field = field};
+    scene_job job = {.picture = &picture};
+    csg_box bounds = csg_box_empty();
     *stats = (csgm_render_stats){0};
-    csgm_status status = choose_bounds(&job, context, options);
+    csgm_status status = make_layers(&job, context, field, options);
+    for (int i = 0; i < CSG_LAYERS; i++)
+        if (job.layers[i].field)
+            bounds = csg_box_hull(bounds, job.layers[i].bounds);
     if (status == CSGM_OK)
-        status = csg_picture_begin(&picture, context, options, job.bounds);
+        status = csg_picture_begin(&picture, context, options, bounds);
     if (status == CSGM_OK)
         status = draw(&job, stats);
     if (status == CSGM_OK && !stats->hits && options->slice_axis < 0)
         csg_diag_plain(&context->diags, CSG_DIAG_NO_SURFACE, NULL,
                        "the camera may look past the solid", "nothing of the solid is in sight");
-    csg_field_destroy(job.clipped);
+    for (int i = 0; i < CSG_LAYERS; i++)
+        csg_layer_release(&job.layers[i], context);
     stats->trace_s = csg_clock_now_s() - picture.started_s - stats->prepare_s;
     stats->memory_peak_bytes = atomic_load(&context->memory.peak_bytes);
     return csg_picture_end(&picture, status, out);

@@ -97,10 +97,10 @@ void csg_shade(const csg_lights *lights, const csg_light_curve *curve, const csg
     }
 }
 
-void csg_shade_pixel(const csg_light_curve *curve, const float light[3], uint32_t covered,
+void csg_shade_pixel(const csg_light_curve *curve, const float light[3], float covered,
                      uint32_t samples, const uint8_t background[4], uint8_t pixel[4])
 {
-    float cover = (float)covered / (float)samples;
+    float cover = covered / (float)samples;
     float behind = (1 - cover) * (float)background[3] / 255.0f, alpha = cover + behind;
     for (int i = 0; i < 3; i++) {
         float sum = light[i] / (float)samples + behind * curve->linear[background[i]];

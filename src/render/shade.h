@@ -37,9 +37,9 @@ uint8_t csg_light_to_byte(const csg_light_curve *curve, float linear);
 void csg_shade(const csg_lights *lights, const csg_light_curve *curve, const csg_surface *surface,
                float light[3]);
 
-/* A pixel: `light` is the sum over all samples, of which `covered` hit something; over the
+/* A pixel: `light` is the sum over all samples, of which `covered` hid the background; over the
  * background. */
-void csg_shade_pixel(const csg_light_curve *curve, const float light[3], uint32_t covered,
+void csg_shade_pixel(const csg_light_curve *curve, const float light[3], float covered,
                      uint32_t samples, const uint8_t background[4], uint8_t pixel[4]);
 
 #endif

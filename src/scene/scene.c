@@ -172,6 +172,8 @@ void csg_scene_destroy(csgm_scene *scene)
     csg_memory *memory = &scene->context->memory;
     for (size_t i = 0; i < scene->shape_count; i++)
         csg_shape_release(scene->shapes[i]);
+    for (int i = 0; i < CSG_MARK_COUNT; i++) /* these have none themselves */
+        csg_scene_destroy(scene->marked[i]);
     csg_arena_reset(&scene->arena);
     csg_memory_release(memory, scene, sizeof *scene);
 }

@@ -108,6 +108,22 @@ class Render(cli.CliTest):
         del pictures[15]
         self.assertEqual(len(set(pictures)), len(pictures))
 
+    def test_marks(self):
+        """# and % are in pictures, and mean to meshes what they always did."""
+        self.write("plain.txt", "difference() { cube(9); cylinder(h = 20, r = 3); }")
+        self.write("marked.txt", "difference() { cube(9); #cylinder(h = 20, r = 3); } %sphere(15);")
+        plain, marked = self.ppm("plain.txt", *SMALL), self.ppm("marked.txt", *SMALL)
+        red = [sum(p[i] > p[i + 1] + 30 for i in range(0, len(p), 3)) for _, _, p in (plain, marked)]
+        self.assertEqual(red[0], 0)
+        self.assertGreater(red[1], 20)
+        for arguments in (("--slice", "z=4"), ("--evaluator", "lazy", "--frame=0,0,0,9,9,9")):
+            self.assertEqual(self.ppm("plain.txt", *SMALL, *arguments),
+                             self.ppm("marked.txt", *SMALL, *arguments), arguments)
+        for name in ("plain", "marked"):
+            self.assert_status(self.run_in(f"{name}.txt", "-o", f"{name}.ply", "-r", 24), 0)
+        self.assertEqual(self.read("plain.ply"), self.read("marked.ply"))
+        self.assertEqual(self.ppm("marked.txt", *SMALL, "-j", 1), self.ppm("marked.txt", *SMALL, "-j", 3))
+
     def test_turntable(self):
         self.assert_status(self.run_in("render", "blend.txt", "-o", "t.ppm", "--turntable", 4, *SMALL,
                                        "--background", "black"), 0)

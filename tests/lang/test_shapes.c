@@ -545,6 +545,7 @@ static void every_allocation_may_fail(void **state)
         "minkowski() { cube(1); polyhedron([[0,0,0], [1,0,0], [0,1,0], [0,0,1]], [[0,1,2], [0,3,1],"
         " [0,2,3], [1,3,2]]); }\n"
         "linear_extrude(1) projection() rotate([20, 0, 0]) cube(2);\n"
+        "translate([9, 0, 0]) { #cube(1); %union() { sphere(1); cube(2); } #circle(1); }\n"
         "shell(0.1) resize([1, 2, 3]) repeat([2, 0, 0], 2) tube([[0,0,0], [1,0,0]], 0.5);\n";
     static bench poor;
     failing f = {0};

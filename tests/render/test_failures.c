@@ -8,7 +8,8 @@
 #include <unistd.h>
 
 static const char text[] = "union(blend = 0.3) { sphere(r = 1);\n"
-                           "  translate([0.8, 0, 0]) color(\"red\") cube(0.9); }\n";
+                           "  translate([0.8, 0, 0]) #color(\"red\") cube(0.9); }\n"
+                           "%cube([3, 1, 1]);\n";
 
 enum { BAD_PICTURE = 430, TIMEOUT = 902 };
 

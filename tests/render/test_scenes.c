@@ -256,6 +256,68 @@ static void test_nothing_in_sight(void **state)
     render_end(&c);
 }
 
+static bool is_reddish(const uint8_t *p)
+{
+    return p[3] == 255 && p[0] > p[1] + 40 && p[0] > p[2] + 40;
+}
+
+static bool is_gray(const uint8_t *p)
+{
+    return p[0] == p[1] && p[1] == p[2];
+}
+
+/* # over the solid and through it, % before it and before nothing; what is behind is hidden. */
+static void test_marks(void **state)
+{
+    static const char plain[] = "translate([-2, 0, 0]) cube(2, center = true);";
+    static const char marked[] =
+        "translate([-2, 0, 0]) cube(2, center = true);\n"
+        "translate([-2, 0, 0]) intersection() { #sphere(1.2); plane([0, 1, 0], -1.1); }\n"
+        "%translate([2, 0, 0]) cube(2, center = true);\n"
+        "%translate([-2, 9, 0]) cube(1, center = true);\n";
+    render_case c, without;
+    csgm_render_options options = front_options(96, 6);
+    options.frame = (csgm_box){{-3, -3, -3}, {3, 3, 3}};
+    render_begin(&without, 1, CSGM_ISA_AUTO, plain);
+    render_begin(&c, 2, CSGM_ISA_AUTO, marked);
+    render_scene(&without, &options);
+    render_scene(&c, &options);
+    assert_true(is_reddish(pixel_at(&c, 16, 48)));
+    const uint8_t *corner = pixel_at(&c, 4, 35), *same = pixel_at(&without, 4, 35);
+    assert_memory_equal(corner, same, 4);
+    assert_true(is_gray(pixel_at(&c, 80, 48)));
+    assert_int_equal(pixel_at(&c, 80, 48)[3], 128);
+    assert_int_equal(pixel_at(&c, 48, 48)[3], 0);
+    assert_true(fabs(covered(&c) - covered(&without) - 0.5 * 32 * 32) < 96);
+    options.camera.azimuth_deg = 180; /* from the back the small % is before the solid */
+    render_scene(&c, &options);
+    render_scene(&without, &options);
+    assert_true(memcmp(pixel_at(&c, 80, 48), pixel_at(&without, 80, 48), 4) != 0);
+    assert_true(is_gray(pixel_at(&c, 16, 48)));
+    render_end(&c);
+    render_end(&without);
+}
+
+/* Nothing but what is marked has a picture too, a section shows none of it; what is infinite ends
+ * where the solid does. */
+static void test_marks_alone(void **state)
+{
+    render_case c;
+    csgm_render_options options = front_options(64, 4);
+    render_begin(&c, 1, CSGM_ISA_AUTO, "%sphere(r = 1);");
+    render_scene(&c, &options);
+    assert_true(covered(&c) > 0);
+    options.slice_axis = 1;
+    render_scene(&c, &options);
+    assert_int_equal(c.warnings, 1); /* of the scene alone */
+    render_end(&c);
+    render_begin(&c, 1, CSGM_ISA_AUTO, "cube(2, center = true); %plane([0, 0, -1], 0);");
+    options.slice_axis = -1;
+    render_scene(&c, &options);
+    assert_true(fabs(covered(&c) - 32 * 32) < 1);
+    render_end(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -269,6 +331,8 @@ int main(void)
         cmocka_unit_test(test_many_solids),
         cmocka_unit_test(test_section),
         cmocka_unit_test(test_nothing_in_sight),
+        cmocka_unit_test(test_marks),
+        cmocka_unit_test(test_marks_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
