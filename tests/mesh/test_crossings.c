@@ -6,9 +6,11 @@
  * Arguments: how many scenes (default 30), the first one's seed (default 0). "-v" behind them: goes
  * on after a crossing and tells of each.
  */
+#include "mesh/exact.h"
 #include "mesh/mesh_support.h"
 #include "mesh/self_intersections.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +69,51 @@ static void test_planted(void **state)
         long long count = test_self_intersections(positions, 8, indices, 8, NULL, 0);
         assert_true(i == 2 ? count == 0 : count > 0);
     }
+}
+
+/* Coordinates among which much lies on one line or in one plane, or nearly. */
+static float draw_coordinate(csg_random *random, int kind)
+{
+    float whole = (float)(int)csg_random_uniform(random, 0, 4.999);
+    float fine = ldexpf(whole, -(int)csg_random_uniform(random, 0, 40));
+    return kind == 0 ? whole : kind == 1 ? 0.1f * whole + 0.7f : fine;
+}
+
+static bool has_area(const csg_exact_triangle *t)
+{
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++)
+        any = any || csg_exact_turn(t->at[0], t->at[1], t->at[2], axis);
+    return any;
+}
+
+/* What the mesher asks of two triangles is what CGAL says of them. */
+static void test_exact(void **state)
+{
+    static const uint32_t pairs[3][6] = {
+        {0, 1, 2, 3, 4, 5}, {0, 1, 2, 3, 4, 0}, {0, 1, 2, 1, 0, 3}};
+    csg_random random = {17};
+    unsigned met[3] = {0}, apart[3] = {0};
+    for (int i = 0; i < 30000; i++) {
+        float positions[6][3];
+        const uint32_t *indices = pairs[i % 3];
+        csg_exact_triangle t[2];
+        for (int v = 0; v < 6; v++)
+            for (int axis = 0; axis < 3; axis++)
+                positions[v][axis] = draw_coordinate(&random, i / 3 % 3);
+        for (int k = 0; k < 6; k++) {
+            t[k / 3].vertex[k % 3] = indices[k];
+            memcpy(t[k / 3].at[k % 3], positions[indices[k]], sizeof positions[0]);
+        }
+        if (!has_area(&t[0]) || !has_area(&t[1]))
+            continue;
+        bool meet = test_self_intersections(positions[0], 6, indices, 2, NULL, 0) > 0;
+        (meet ? met : apart)[i % 3]++;
+        assert_int_equal(csg_exact_meet(&t[0], &t[1]), meet);
+        assert_int_equal(csg_exact_meet(&t[1], &t[0]), meet);
+    }
+    for (int k = 0; k < 3; k++)
+        assert_true(met[k] > 100 && apart[k] > 1000);
 }
 
 /* A closed mesh of which one vertex goes too far. */
@@ -149,6 +196,7 @@ int main(int argc, char **argv)
     goes_on = argc > 3;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_planted),
+        cmocka_unit_test(test_exact),
         cmocka_unit_test(test_pierced),
         cmocka_unit_test(test_random_scenes),
     };
