@@ -11,10 +11,10 @@
 
 /* ---- gentle pieces ------------------------------------------------------------------------- */
 
-/* Random search finds two turns of m that the kernels miss from cosines of 0.5 on for quadratics,
- * from 0.7 on for cubics. */
-static const double LEAST_COSINE[] = {0.7, 0.88}; /* of the angle between any two sides */
-static const double MOST_RATIO[] = {3, 2.5};      /* of their lengths */
+/* What a search with millions of random points in wilder pieces than these still found wrong: one
+ * quadratic at cosines of 0.5, cubics now and then at 0.88 and ratios of 2.5. */
+static const double LEAST_COSINE[] = {0.7, 0.9}; /* of the angle between any two sides */
+static const double MOST_RATIO[] = {3, 2.0};     /* of their lengths */
 enum { DEEPEST = 6 }; /* what turns at once, at a cusp, is never gentle */
 
 static double product(const double *a, const double *b)

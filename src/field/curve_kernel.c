@@ -16,16 +16,21 @@
 
 #include "field/frames.h"
 
-enum { LANES = 32, PARTS = 4, STEPS = 4 };
+enum { LANES = 32, PARTS = 5, STEPS = 4 };
 
 #define INLINE static inline __attribute__((always_inline))
+
+/* Where the search for one minimum stands: between low and high, at s. */
+typedef struct place {
+    float low[LANES], high[LANES], s[LANES];
+} place;
 
 /* A group of points. */
 typedef struct group {
     size_t count;
     float x[LANES], y[LANES], z[LANES]; /* in the curve's frame */
     float a[LANES], b[LANES], c[LANES]; /* what m needs: the first coefficients, or the point */
-    float low[2][LANES], high[2][LANES], s[2][LANES];
+    place first, last;
     float value[LANES], gx[LANES], gy[LANES], gz[LANES];
 } group;
 
@@ -115,50 +120,83 @@ typedef struct stretch {
     float low, high; /* s */
     float was[LANES], now[LANES], slope_was[LANES], slope_now[LANES];
     float between[LANES], top[LANES]; /* where it was seen on the other side, and m there, else 0 */
+    float found[LANES];               /* 1 where m has turned before */
 } stretch;
 
-INLINE int may_cross(const stretch *t, size_t i)
+INLINE int may_cross(float was, float now, float slope_was, float slope_now)
 {
-    return ((t->was[i] > 0) == (t->now[i] > 0)) & ((t->was[i] > 0) == (t->slope_was[i] < 0)) &
-           ((t->was[i] > 0) == (t->slope_now[i] > 0));
+    int falls = (was > 0) & (now > 0) & (slope_was < 0) & (slope_now > 0);
+    int climbs = (was <= 0) & (now <= 0) & (slope_was > 0) & (slope_now < 0);
+    return falls | climbs;
 }
 
 /* Goes for the extremum by the chord of the slope; rarely needed. */
 INLINE void look_between(const float *own, int degree, int varies, const group *g, stretch *t)
 {
-    for (size_t i = 0; i < g->count; i++) {
-        float low = t->low, high = t->high, at_low = t->slope_was[i], at_high = t->slope_now[i];
-        int asked = may_cross(t, i);
-        for (int step = 0; step < 3; step++) {
-            float slope, s = low + (high - low) * (at_low / (at_low - at_high));
+    const size_t count = g->count;
+    float low[LANES], high[LANES], at_low[LANES], at_high[LANES];
+    for (size_t i = 0; i < count; i++) {
+        int asked = may_cross(t->was[i], t->now[i], t->slope_was[i], t->slope_now[i]);
+        low[i] = t->low;
+        high[i] = t->high;
+        at_low[i] = asked ? t->slope_was[i] : 0; /* s stays low, where nothing new is seen */
+        at_high[i] = asked ? t->slope_now[i] : 1.0f;
+    }
+    for (int step = 0; step < 3; step++)
+        for (size_t i = 0; i < count; i++) {
+            float slope, s = low[i] + (high[i] - low[i]) * (at_low[i] / (at_low[i] - at_high[i]));
             float m = climb(own, degree, varies, g->a[i], g->b[i], g->c[i], s, &slope);
-            int seen = asked & ((m > 0) != (t->was[i] > 0)), left = (slope > 0) == (at_low > 0);
+            float was = t->was[i];
+            int seen = ((m > 0) & (was <= 0)) | ((m < 0) & (was > 0));
+            int left = ((slope > 0) & (at_low[i] > 0)) | ((slope < 0) & (at_low[i] < 0));
             t->between[i] = seen ? s : t->between[i];
             t->top[i] = seen ? m : t->top[i];
-            at_high = left ? at_high : slope;
-            high = left ? high : s;
-            at_low = left ? slope : at_low;
-            low = left ? s : low;
+            at_high[i] = left ? at_high[i] : slope;
+            high[i] = left ? high[i] : s;
+            at_low[i] = left ? slope : at_low[i];
+            low[i] = left ? s : low[i];
         }
+}
+
+INLINE void look_at_stretch(const float *own, int degree, int varies, const group *g, stretch *t)
+{
+    const size_t count = g->count;
+    float s = t->high, any = 0;
+    for (size_t i = 0; i < count; i++) {
+        t->was[i] = t->now[i];
+        t->slope_was[i] = t->slope_now[i];
+        t->top[i] = t->between[i] = 0;
     }
+    for (size_t i = 0; i < count; i++)
+        t->now[i] = climb(own, degree, varies, g->a[i], g->b[i], g->c[i], s, &t->slope_now[i]);
+    for (size_t i = 0; i < count; i++) {
+        int may = may_cross(t->was[i], t->now[i], t->slope_was[i], t->slope_now[i]);
+        any = may ? 1.0f : any;
+    }
+    if (any != 0)
+        look_between(own, degree, varies, g, t);
 }
 
 /* Where m turns in the stretch, it does so between low and high. */
-INLINE void take_bracket(const stretch *t, group *g, float *found)
+INLINE void take_bracket(stretch *restrict t, size_t count, place *restrict first,
+                         place *restrict last)
 {
-    for (size_t i = 0; i < g->count; i++) {
-        int seen = t->top[i] != 0, below = seen & (t->was[i] > 0), above = seen & (t->was[i] <= 0);
-        float was = below ? t->top[i] : t->was[i], low = below ? t->between[i] : t->low;
-        float now = above ? t->top[i] : t->now[i], high = above ? t->between[i] : t->high;
-        int up = (was <= 0) & (now > 0), first = up & (found[i] == 0);
+    const float t_low = t->low, t_high = t->high;
+    for (size_t i = 0; i < count; i++) {
+        float was = t->was[i], now = t->now[i], top = t->top[i], between = t->between[i];
+        /* m was not seen below 0 unless it stood above, and the other way round */
+        float low = top < 0 ? between : t_low, high = top > 0 ? between : t_high;
+        was = top < 0 ? top : was;
+        now = top > 0 ? top : now;
         float start = low + (high - low) * (was / (was - now));
-        g->low[0][i] = first ? low : g->low[0][i];
-        g->high[0][i] = first ? high : g->high[0][i];
-        g->s[0][i] = first ? start : g->s[0][i];
-        g->low[1][i] = up ? low : g->low[1][i];
-        g->high[1][i] = up ? high : g->high[1][i];
-        g->s[1][i] = up ? start : g->s[1][i];
-        found[i] = up ? 1.0f : found[i];
+        int up = (was <= 0) & (now > 0), is_first = up & (t->found[i] == 0);
+        first->low[i] = is_first ? low : first->low[i];
+        first->high[i] = is_first ? high : first->high[i];
+        first->s[i] = is_first ? start : first->s[i];
+        last->low[i] = up ? low : last->low[i];
+        last->high[i] = up ? high : last->high[i];
+        last->s[i] = up ? start : last->s[i];
+        t->found[i] = up ? 1.0f : t->found[i];
     }
 }
 
@@ -166,81 +204,83 @@ INLINE void take_bracket(const stretch *t, group *g, float *found)
  * behind it above. s: where the chord of m is 0. */
 INLINE void bracket(const float *own, int degree, int varies, group *g)
 {
-    float found[LANES];
+    const size_t count = g->count;
     stretch t = {.high = -1};
-    for (size_t i = 0; i < g->count; i++) {
+    for (size_t i = 0; i < count; i++) {
         t.now[i] = t.slope_now[i] = -1;
-        found[i] = 0;
-        for (int side = 0; side < 2; side++)
-            g->low[side][i] = g->high[side][i] = g->s[side][i] = 1;
+        t.found[i] = 0;
+        g->first.low[i] = g->first.high[i] = g->first.s[i] = 1;
+        g->last.low[i] = g->last.high[i] = g->last.s[i] = 1;
     }
     for (int part = 0; part <= PARTS; part++) {
-        int any = 0;
         t.low = t.high;
         t.high = -1.0f + (2.0f / PARTS) * (float)part;
-        for (size_t i = 0; i < g->count; i++) {
-            t.was[i] = t.now[i];
-            t.slope_was[i] = t.slope_now[i];
-            t.top[i] = t.between[i] = 0;
-            t.now[i] =
-                climb(own, degree, varies, g->a[i], g->b[i], g->c[i], t.high, &t.slope_now[i]);
-        }
-        for (size_t i = 0; i < g->count; i++)
-            any |= may_cross(&t, i);
-        if (any)
-            look_between(own, degree, varies, g, &t);
-        take_bracket(&t, g, found);
+        look_at_stretch(own, degree, varies, g, &t);
+        take_bracket(&t, count, &g->first, &g->last);
     }
-    for (size_t i = 0; i < g->count; i++) {
-        int end = t.now[i] <= 0;
-        g->low[1][i] = end ? 1.0f : g->low[1][i];
-        g->high[1][i] = end ? 1.0f : g->high[1][i];
-        g->s[1][i] = end ? 1.0f : g->s[1][i];
+    for (size_t i = 0; i < count; i++) {
+        float end = t.now[i];
+        g->last.low[i] = end <= 0 ? 1.0f : g->last.low[i];
+        g->last.high[i] = end <= 0 ? 1.0f : g->last.high[i];
+        g->last.s[i] = end <= 0 ? 1.0f : g->last.s[i];
     }
 }
 
-INLINE void refine(const float *own, int degree, int varies, group *g, int side)
+INLINE void refine(const float *own, int degree, int varies, const group *g, place *at)
 {
+    const size_t count = g->count;
     for (int step = 0; step < STEPS; step++)
-        for (size_t i = 0; i < g->count; i++) {
-            float slope, s = g->s[side][i];
+        for (size_t i = 0; i < count; i++) {
+            float slope, s = at->s[i];
             float m = climb(own, degree, varies, g->a[i], g->b[i], g->c[i], s, &slope);
-            float low = m > 0 ? g->low[side][i] : s, high = m > 0 ? s : g->high[side][i];
-            float next = s - m / slope;
-            int is_in = (next >= low) & (next <= high);
-            g->low[side][i] = low;
-            g->high[side][i] = high;
-            g->s[side][i] = is_in ? next : 0.5f * (low + high);
+            float low = m > 0 ? at->low[i] : s, high = m > 0 ? s : at->high[i];
+            float next = s - m / slope, half = 0.5f * (low + high);
+            next = next >= low ? next : half;
+            at->low[i] = low;
+            at->high[i] = high;
+            at->s[i] = next <= high ? next : half;
         }
 }
 
-/* r - |w| at the better of both places, and where it is. */
-INLINE void settle(const float *own, int degree, group *g, int sides)
+/* r - |w| at s and the way there. */
+INLINE void take_ball(const float *own, int degree, group *g, const float *at_s)
 {
-    for (int side = 0; side < sides; side++)
-        for (size_t i = 0; i < g->count; i++) {
-            float s = g->s[side][i];
-            float x = at(own, degree, 0, s) - g->x[i], y = at(own, degree, 1, s) - g->y[i],
-                  z = at(own, degree, 2, s) - g->z[i];
-            float d = sqrtf(x * x + y * y + z * z), value = radius_at(own, degree, s) - d;
-            int better = side == 0 ? 1 : value > g->value[i];
-            g->value[i] = better ? value : g->value[i];
-            g->gx[i] = better ? quotient(x, d) : g->gx[i];
-            g->gy[i] = better ? quotient(y, d) : g->gy[i];
-            g->gz[i] = better ? quotient(z, d) : g->gz[i];
-        }
+    const size_t count = g->count;
+    for (size_t i = 0; i < count; i++) {
+        float s = at_s[i], old = g->value[i];
+        float x = at(own, degree, 0, s) - g->x[i], y = at(own, degree, 1, s) - g->y[i],
+              z = at(own, degree, 2, s) - g->z[i];
+        float d = sqrtf(x * x + y * y + z * z), value = radius_at(own, degree, s) - d;
+        float over = quotient(1.0f, d);
+        x *= over;
+        y *= over;
+        z *= over;
+        g->value[i] = value > old ? value : old;
+        g->gx[i] = value > old ? x : g->gx[i];
+        g->gy[i] = value > old ? y : g->gy[i];
+        g->gz[i] = value > old ? z : g->gz[i];
+    }
 }
 
-INLINE void search(const float *own, int degree, int varies, group *g)
+INLINE void search(const float *parameters, int degree, int varies, group *g)
 {
+    const size_t count = g->count;
+    float other = 0,
+          own[OWN_CUBIC_TUBE]; /* a copy: the compiler then knows that nothing writes it */
+    memcpy(own, parameters, sizeof own);
     prepare(own, degree, varies, g);
     bracket(own, degree, varies, g);
-    int one = 1;
-    for (size_t i = 0; i < g->count; i++)
-        one &= g->low[0][i] == g->low[1][i];
-    for (int side = 0; side < (one ? 1 : 2); side++)
-        refine(own, degree, varies, g, side);
-    settle(own, degree, g, one ? 1 : 2);
+    for (size_t i = 0; i < count; i++) {
+        other = g->first.low[i] != g->last.low[i] ? 1.0f : other;
+        g->value[i] = -INFINITY;
+        g->gx[i] = g->gy[i] = g->gz[i] = 0;
+    }
+    refine(own, degree, varies, g, &g->first);
+    take_ball(own, degree, g, g->first.s);
+    if (other != 0) {
+        refine(own, degree, varies, g, &g->last);
+        take_ball(own, degree, g, g->last.s);
+    }
 }
 
 static void search_quadratic(const float *own, group *g)
@@ -266,9 +306,9 @@ static void search_cubic_varying(const float *own, group *g)
 static size_t run(const csg_tape_node *node, const float *parameters, csg_points p, size_t from,
                   group *g)
 {
-    float own[OWN_CUBIC_TUBE], frame[12] = {0};
+    float frame[12] = {0};
     int offset = node->frame == CSG_FRAME_OFFSET;
-    memcpy(own, parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE), sizeof own);
+    const float *own = parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
     memcpy(frame, parameters + CSG_LEAF_FRAME, (offset ? 3 : 12) * sizeof *frame);
     g->count = p.count - from < LANES ? p.count - from : LANES;
     for (size_t i = 0; i < g->count; i++) {

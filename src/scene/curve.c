@@ -95,7 +95,7 @@ double csg_curve_chords(const csg_curve *curve, double within)
 
 /* ---- the nearest ball ---------------------------------------------------------------------- */
 
-enum { DEEPEST = 30, MOST_VISITS = 20000, SQUARE = 2 * (CSG_CURVE_MOST - 1) };
+enum { DEEPEST = 30, MOST_VISITS = 4000, SQUARE = 2 * (CSG_CURVE_MOST - 1) };
 
 typedef struct piece {
     csg_curve curve; /* relative to the point */
@@ -205,10 +205,14 @@ static void coefficients(const csg_curve *c, double v, double out[SQUARE + 1])
 static bool is_beaten(const search *s, const piece *now, bool settled)
 {
     const csg_curve *c = &now->curve;
-    double f[SQUARE + 1], radius = INFINITY, least = INFINITY, bend = INFINITY;
+    double f[SQUARE + 1], radius = INFINITY, largest = 0, least = INFINITY, bend = INFINITY;
     coefficients(c, s->least, f);
-    for (int i = 0; i <= c->degree; i++)
+    for (int i = 0; i <= c->degree; i++) {
         radius = fmin(radius, c->at[i][CSG_CURVE_RADIUS]);
+        largest = fmax(largest, c->at[i][CSG_CURVE_RADIUS]);
+    }
+    if (largest + s->least <= 0) /* not even balls around the point would do */
+        return true;
     for (int k = 0; k <= 2 * c->degree; k++)
         least = fmin(least, f[k]);
     double reach = fmax(radius + s->least, 0);
@@ -242,7 +246,8 @@ double csg_curve_nearest(const csg_curve *curve, csg_vec3 p, csg_vec3 *to)
         polish(&s, now.low, now.low + now.width);
         if (now.width < ldexp(1.5, -DEEPEST) || is_beaten(&s, &now, s.settled))
             continue;
-        piece *low = &stack[count], *high = &stack[count + 1];
+        bool low_first = s.t < now.low + 0.5 * now.width;
+        piece *low = &stack[count + low_first], *high = &stack[count + !low_first];
         csg_curve_halve(&now.curve, &low->curve, &high->curve);
         low->width = high->width = 0.5 * now.width;
         low->low = now.low;

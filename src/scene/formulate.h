@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A whole scene as one formula of x, y and z, in double: the same field as scene/reference, up to
- * rounding, but for tubes along curves, which become chords within 1e-4 of the largest radius. Choices become steep steps, iterations are written out. Solids bounded by triangles can
- * be written only where they are convex.
+ * rounding, but for tubes along curves, which become chords within 1e-4 of the largest radius.
+ * Choices become steep steps, iterations are written out. Solids bounded by triangles can be
+ * written only where they are convex.
  */
 #ifndef CSG_SCENE_FORMULATE_H
 #define CSG_SCENE_FORMULATE_H
