@@ -6,6 +6,7 @@
 
 #include "base/pool.h"
 #include "mesh/feature_cross.h"
+#include "mesh/feature_join.h"
 #include "mesh/feature_move.h"
 #include "mesh/work.h"
 
@@ -188,49 +189,12 @@ static bool order_features(csg_mesh_work *w, csg_feature_probe *probe)
     return true;
 }
 
-/* Whether the corners of a cell differ in sign, or are not known. */
-static bool has_surface(const csg_lattice *lattice, const uint32_t lowest[3],
-                        csg_feature_probe *probe)
-{
-    float x[8], y[8], z[8], f[8], g[3][8];
-    unsigned inside = 0;
-    for (unsigned c = 0; c < 8; c++) {
-        x[c] = csg_lattice_coordinate(lattice, 0, lowest[0] + (c & 1));
-        y[c] = csg_lattice_coordinate(lattice, 1, lowest[1] + (c >> 1 & 1));
-        z[c] = csg_lattice_coordinate(lattice, 2, lowest[2] + (c >> 2));
-    }
-    csg_feature_probe_points(probe, x, y, z, 8, f, (float *const[3]){g[0], g[1], g[2]});
-    for (unsigned c = 0; c < 8; c++) {
-        if (f[c] != f[c])
-            return true;
-        inside |= (unsigned)(f[c] >= 0) << c;
-    }
-    return inside != 0 && inside != 0xFF;
-}
-
-/* Apexes that lie where others do become smooth. */
-static bool part_features(csg_mesh_work *w, csg_feature_probe *probe)
-{
-    csg_feature_store *store = &w->features;
-    for (uint32_t b = 0; b < store->block_count; b++) {
-        if (b % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(w))
-            return false;
-        for (uint32_t k = 0; k < store->blocks[b].count; k++) {
-            uint32_t lowest[3], i = store->blocks[b].first + k;
-            bool stray = csg_feature_is_stray(store, b, i, &w->lattice, lowest);
-            if (stray || (store->features[i].creased && lowest[0] != UINT32_MAX &&
-                          has_surface(&w->lattice, lowest, probe)))
-                csg_feature_demote(store, &w->tables, &store->features[i]);
-        }
-    }
-    return true;
-}
-
 /* ---- where features meet -----------------------------------------------------------------------
  */
 
 typedef struct crossing_work {
     csg_mesh_work *w;
+    csg_feature_probe *probe;
     csg_feature_cross cross;
 } crossing_work;
 
@@ -259,7 +223,7 @@ static bool settle_rounds(crossing_work *c)
     csg_mesh_work *w = c->w;
     csg_feature_store *store = &w->features;
     for (size_t changed = 1; changed;) {
-        while (csg_feature_settle(store, &w->tables))
+        while (csg_feature_settle(store, &w->tables, c->probe))
             if (csg_mesh_should_stop(w))
                 return false;
         csg_pool_run(w->context->pool, store->block_count, flip_item, NULL, w);
@@ -276,11 +240,12 @@ static bool settle_rounds(crossing_work *c)
 }
 
 /* False: asked to stop, or out of memory. */
-static bool uncross_features(csg_mesh_work *w)
+static bool uncross_features(csg_mesh_work *w, csg_feature_probe *probe)
 {
     csg_memory *memory = &w->context->memory;
     size_t bytes = w->worker_count * sizeof(csg_near_room);
     crossing_work c = {.w = w,
+                       .probe = probe,
                        .cross = {.near = {.store = &w->features,
                                           .marching = &w->marching,
                                           .octree = w->octree,
@@ -311,7 +276,7 @@ static bool settle_features(csg_mesh_work *w)
 {
     csg_feature_probe probe =
         csg_feature_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
-    bool done = order_features(w, &probe) && part_features(w, &probe) && uncross_features(w);
+    bool done = order_features(w, &probe) && uncross_features(w, &probe);
     w->workers[0].point_evaluations += probe.evaluations;
     return done;
 }

@@ -33,7 +33,7 @@ typedef struct csg_feature {
     float at[3];                              /* the apex, field frame */
     float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
     float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
-    uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* creased sides: the feature beyond, or NONE */
+    uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* the feature beyond each side, or NONE */
     uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
     uint16_t flipped; /* bit s: side s */
     /* Of the two triangles at a flipped side each feature has one: bit s: that at the side's end,
@@ -47,10 +47,14 @@ typedef struct csg_feature {
      * the polygon lies in the triangle's sheet. */
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     uint8_t side_count, sheet_count;
+    bool folded;      /* its own fan folds over: an apex beyond must help */
+    bool unsolved;    /* no apex was found by the polygon alone */
+    uint8_t tries;    /* to find another place */
     uint8_t pattern;  /* of the cell */
     uint8_t loop;     /* of the pattern */
     uint16_t cell;    /* (8 z + y) 8 + x */
-    uint16_t creased; /* bit s: a crease crosses side s */
+    uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
+    uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
     bool smooth;      /* given up: csg_feature_demote */
     uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
 } csg_feature;
@@ -127,22 +131,13 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
                            size_t count);
 /* Once all blocks are there. */
 bool csg_feature_store_index(csg_feature_store *store);
-/* Who lies beyond each side that a crease crosses. Any thread; writes one block alone. */
+/* Who lies beyond each side; where a crease crosses it, it is to be flipped. Any thread; writes one
+ * block alone. */
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
-/* Whether the apex of a feature (and of which block) reaches into a cell that has a crease of its
- * own, one not joined to this one: where a solid comes in pieces between lattice points, as at a
- * thin tip, two pieces would reach for one place. Otherwise, where the apex lies in another cell
- * with no feature at all, lowest is that cell's lowest lattice point, else lowest[0] is UINT32_MAX:
- * such a cell must be free of surface. */
-bool csg_feature_is_stray(const csg_feature_store *store, uint32_t block, uint32_t feature,
-                          const csg_lattice *lattice, uint32_t lowest[3]);
 /* The polygon is as plain marching cubes makes it, but for a vertex in one of its triangles where
  * the apex was: the numbers of everything stay. */
 void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
                         csg_feature *feature);
-/* Makes polygons smooth again whose crease cannot go on into the neighbour without folding over;
- * how many. To be called until there are none; not in parallel. */
-size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables);
 /* The triangles, once all are linked, in their places and settled. As csg_feature_link. */
 void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,

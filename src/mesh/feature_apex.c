@@ -128,6 +128,37 @@ static bool is_still(const polygon *p, const apex *a, int sheet, csg_vec3 g)
     return own >= other;
 }
 
+/* A sheet that does not show itself towards its corners may do so elsewhere round the apex: where a
+ * corner bends inwards, or lies in another cell. False: it does not. */
+static bool look_around(const polygon *p, const apex *a, int sheet, double off,
+                        csg_feature_probe *probe, csg_plane *out)
+{
+    enum { WAYS = 8 };
+    float x[WAYS], y[WAYS], z[WAYS], f[WAYS], gx[WAYS], gy[WAYS], gz[WAYS];
+    csg_vec3 n = csg_vec3_normalize(a->planes[sheet].g);
+    csg_vec3 side = fabs(n.x) < 0.7 ? csg_vec3_make(1, 0, 0) : csg_vec3_make(0, 1, 0);
+    csg_vec3 u = csg_vec3_normalize(csg_vec3_cross(n, side)), v = csg_vec3_cross(n, u);
+    static const double turn[WAYS][2] = {{1, 0},  {0.7, 0.7},   {0, 1},  {-0.7, 0.7},
+                                         {-1, 0}, {-0.7, -0.7}, {0, -1}, {0.7, -0.7}};
+    for (int i = 0; i < WAYS; i++) {
+        csg_vec3 way = csg_vec3_add(csg_vec3_scale(u, turn[i][0]), csg_vec3_scale(v, turn[i][1]));
+        csg_vec3 q = csg_vec3_add(a->at, csg_vec3_scale(way, off));
+        x[i] = (float)q.x, y[i] = (float)q.y, z[i] = (float)q.z;
+    }
+    csg_feature_probe_points(probe, x, y, z, WAYS, f, (float *const[3]){gx, gy, gz});
+    double least = 0.3 * off;
+    bool found = false;
+    for (int i = 0; i < WAYS; i++) {
+        csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
+        if (!(fabs((double)f[i]) < least) || !is_still(p, a, sheet, plane.g))
+            continue;
+        least = fabs((double)f[i]);
+        *out = plane;
+        found = true;
+    }
+    return found;
+}
+
 /* Asks for all sheets of all starts at once. */
 static void sample_sheets(const polygon *p, apex *apexes, double off, bool last,
                           csg_feature_probe *probe)
@@ -154,6 +185,8 @@ static void sample_sheets(const polygon *p, apex *apexes, double off, bool last,
         owner[i]->lost |= f[i] != f[i];
         bool still = fabs((double)f[i]) <= band && is_still(p, owner[i], sheet[i], plane.g);
         fresh[i] = still ? plane : owner[i]->planes[sheet[i]];
+        if (!still && p->creased && f[i] == f[i])
+            still = look_around(p, owner[i], sheet[i], off, probe, &fresh[i]);
         owner[i]->lost |= last && !still;
     }
     for (size_t i = 0; i < n; i++)
@@ -233,7 +266,7 @@ static bool sheets_differ(const polygon *p, const apex *a)
     return p->creased || widest > 0.03; /* a tip: 14 degrees between corners */
 }
 
-static void place(const polygon *p, const apex *a, csg_feature *out)
+void csg_apex_place(const polygon *p, const apex *a, csg_feature *out)
 {
     out->at[0] = (float)a->at.x, out->at[1] = (float)a->at.y, out->at[2] = (float)a->at.z;
     for (int k = 0; k < p->sheets; k++) {
@@ -257,12 +290,17 @@ const apex *csg_apexes_choose(const polygon *p, const apex *apexes, csg_feature_
     }
     csg_feature_probe_points(probe, x, y, z, (size_t)p->start_count, f, gradient);
     double zero = ZERO * m->lattice->cell_size + 4 * (double)m->noise;
+    const apex *first = NULL;
     for (int k = 0; k < p->start_count; k++) {
         if (apexes[k].lost || !(fabs((double)f[k]) <= zero) || !sheets_differ(p, &apexes[k]))
             continue;
-        place(p, &apexes[k], out);
-        if (csg_feature_cut(NULL, m->tables, out, out->triangle))
+        first = first ? first : &apexes[k];
+        csg_apex_place(p, &apexes[k], out);
+        out->folded = !csg_feature_cut(NULL, m->tables, out, out->triangle);
+        if (!out->folded)
             return &apexes[k];
     }
-    return NULL;
+    if (first && first != &apexes[p->start_count - 1])
+        csg_apex_place(p, first, out);
+    return first;
 }

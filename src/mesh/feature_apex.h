@@ -48,9 +48,13 @@ void csg_apex_meet(const csg_feature_polygon *polygon, csg_apex *apex, double ce
 void csg_apexes_improve(const csg_feature_polygon *polygon, csg_apex *apexes, double cell,
                         csg_feature_probe *probe);
 
-/* The first apex that holds good: the field is 0 there, the sheets differ, and the polygon's
- * triangles (in *out, which begins as a copy of the polygon) do not fold over. NULL: none. */
+/* The first apex that holds good: the field is 0 there, the sheets differ, and, if there is such a
+ * one, the polygon's triangles (in *out, which begins as a copy of the polygon) do not fold over.
+ * NULL: none. */
 const csg_apex *csg_apexes_choose(const csg_feature_polygon *polygon, const csg_apex *apexes,
                                   csg_feature_probe *probe, csg_feature *out);
+
+/* Writes place and normals. */
+void csg_apex_place(const csg_feature_polygon *polygon, const csg_apex *apex, csg_feature *out);
 
 #endif

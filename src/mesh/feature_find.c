@@ -8,14 +8,15 @@
 #include <string.h>
 
 #include "mesh/feature_apex.h"
+#include "mesh/feature_help.h"
 #include "mesh/feature_possible.h"
 #include "mesh/feature_solve.h"
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
 
-/* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 1 degree,
- * the least that makes a crease. */
-static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.5e-4f;
+/* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 3
+ * degrees, the least that makes a crease. */
+static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.37e-3f;
 /* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
  * 10 % and below that of 12 degrees. */
 static const float ALIKE = 1.1f, LITTLE = 0.02f;
@@ -242,6 +243,8 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
     for (uint32_t i = 0; i < room->loop_count; i++)
         if (!csg_feature_solve(room, &room->loops[i], &probe, memory))
             return false;
+    if (!csg_feature_help(room, before, &probe, memory))
+        return false;
     room->evaluations += probe.evaluations;
     return end_block(room, memory, block, before);
 }

@@ -4,6 +4,7 @@
 #include "mesh/feature_move.h"
 
 #include "mesh/feature_apex.h"
+#include "mesh/feature_join.h"
 
 static csg_vec3 point(const float at[3])
 {
@@ -17,7 +18,7 @@ static bool neighbours_of(const csg_feature_store *store, const csg_feature *f,
     int count = 0;
     for (int s = 0; s < f->side_count; s++)
         if (f->creased >> s & 1) {
-            if (f->beyond[s] == CSG_FEATURE_NONE || count == 2)
+            if (!(f->flipped >> s & 1) || count == 2)
                 return false;
             beside[count++] = &store->features[f->beyond[s]];
         }
@@ -57,7 +58,103 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
     csg_apexes_improve(&p, &a, cell, probe);
     *out = *f;
     out->flipped = 0; /* the fan itself must look out */
-    bool found = csg_apexes_choose(&p, &a, probe, out) != NULL;
+    bool found = csg_apexes_choose(&p, &a, probe, out) && !out->folded;
     out->flipped = f->flipped;
     return found;
+}
+
+/* ---- another place -----------------------------------------------------------------------------
+ */
+
+/* What is known around a feature. */
+typedef struct surroundings {
+    const csg_feature *beside[CSG_FEATURE_MOST_SIDES];
+    int side[CSG_FEATURE_MOST_SIDES];
+    int count;
+} surroundings;
+
+static surroundings look_beside(const csg_feature_store *store, const csg_feature *f)
+{
+    surroundings q = {.count = 0};
+    for (int s = 0; s < f->side_count; s++) {
+        if (!(f->flipped & ~f->bent & 1u << s))
+            continue;
+        const csg_feature *g = &store->features[f->beyond[s]];
+        q.beside[q.count] = g;
+        q.side[q.count] = s;
+        q.count += !g->unsolved;
+    }
+    return q;
+}
+
+/* Takes the planes of both sheets at a creased side from the neighbour beyond. */
+static void borrow_planes(const csg_feature *f, const surroundings *q, int k, csg_apex *a)
+{
+    const csg_feature *g = q->beside[k];
+    int s = q->side[k], t = f->beyond_side[s], s1 = (s + 1) % f->side_count;
+    const float *here = g->normal[g->sheet[(t + 1) % g->side_count]];
+    const float *next = g->normal[g->sheet[t]];
+    a->planes[f->sheet[s]] =
+        csg_plane_at(g->at[0], g->at[1], g->at[2], 0, -here[0], -here[1], -here[2]);
+    a->planes[f->sheet[s1]] =
+        csg_plane_at(g->at[0], g->at[1], g->at[2], 0, -next[0], -next[1], -next[2]);
+}
+
+/* A start for try number n; false: there are no more. Corners have one, between all neighbours and
+ * with their planes; on a crease, places between both, with the planes of either or its own. */
+static bool begin_try(const csg_feature *f, const surroundings *q, const csg_feature_polygon *p,
+                      int n, csg_apex *a)
+{
+    enum { PLACES = 5 };
+    static const double place[PLACES] = {0.5, 0.25, 0.75, 0.1, 0.9};
+    if (f->sheet_count > 2) {
+        a->at = csg_vec3_make(0, 0, 0);
+        for (int k = 0; k < q->count; k++) {
+            a->at = csg_vec3_add(a->at, csg_vec3_scale(point(q->beside[k]->at), 1.0 / q->count));
+            borrow_planes(f, q, k, a);
+        }
+        return n == 0 && q->count > 0;
+    }
+    int source = n / PLACES;
+    if (q->count == 0 || source > q->count)
+        return false;
+    if (source > 0)
+        borrow_planes(f, q, source - 1, a);
+    csg_vec3 low = point(q->beside[0]->at);
+    csg_vec3 high = q->count > 1 ? point(q->beside[1]->at) : p->middle;
+    a->at = csg_vec3_add(low, csg_vec3_scale(csg_vec3_sub(high, low), place[n % PLACES]));
+    return true;
+}
+
+bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
+                         csg_feature_probe *probe)
+{
+    enum { MOST_TRIES = 2 };
+    csg_feature *f = &store->features[index], before = *f;
+    if (!f->creased || f->tries == MOST_TRIES)
+        return false;
+    before.tries++;
+    double cell = probe->marching->lattice->cell_size;
+    surroundings q = look_beside(store, f);
+    for (int n = 0;; n++) {
+        csg_feature_polygon p;
+        csg_apex a = {.lost = false};
+        restore(&before, &p, &a);
+        if (!begin_try(&before, &q, &p, n, &a))
+            break;
+        p.start_count = 1;
+        csg_apex_meet(&p, &a, cell);
+        csg_apexes_improve(&p, &a, cell, probe);
+        *f = before;
+        f->flipped = 0;
+        bool found = csg_apexes_choose(&p, &a, probe, f) != NULL;
+        f->flipped = before.flipped;
+        f->unsolved = false;
+        csg_feature_agree(store, f);
+        if (found && csg_feature_holds(store, tables, f))
+            return true;
+    }
+    *f = before;
+    csg_feature_agree(store, f);
+    return false;
 }

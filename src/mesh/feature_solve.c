@@ -18,6 +18,20 @@ static csg_vec3 point(const float at[3])
     return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
 }
 
+/* 1 - cos of 12 degrees: a crease that is as blunt as this where it enters a polygon and not found
+ * where it should leave it fades there: it ends, and smoothly. */
+static const float FADING = 0.0219f;
+
+/* Whether all creases that cross a polygon are blunt. */
+static bool is_fading(const csg_feature_room *room, const csg_found_loop *loop)
+{
+    float sharpest = 0;
+    for (int s = 0; s < loop->side_count; s++)
+        if (loop->crease[s] >= 0)
+            sharpest = fmaxf(sharpest, room->segments[loop->crease[s]].jump);
+    return sharpest < FADING;
+}
+
 /* Sheets are runs of corners between creases; without creases, round a tip, each corner. */
 static bool mark_sheets(const csg_feature_room *room, const csg_found_loop *loop, polygon *p)
 {
@@ -112,7 +126,18 @@ static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *lo
         csg_apex_meet(p, &apexes[k], cell);
     }
     csg_apexes_improve(p, apexes, cell, probe);
-    return csg_apexes_choose(p, apexes, probe, out) != NULL;
+    /* nobody beyond could help a tip */
+    return csg_apexes_choose(p, apexes, probe, out) && (p->creased || !out->folded);
+}
+
+/* An apex to be found from those of its neighbours. */
+static void leave_unsolved(const csg_feature_room *room, const csg_found_loop *loop,
+                           const polygon *p, csg_feature *out)
+{
+    apex a = {.at = p->start[0]};
+    first_planes(room, loop, p, &a);
+    csg_apex_place(p, &a, out);
+    out->folded = out->unsolved = true;
 }
 
 bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
@@ -122,12 +147,17 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
     if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
                             sizeof(csg_feature)))
         return false;
+    csg_feature *out = &room->features[room->count];
     bool good = mark_sheets(room, loop, &p);
     if (!p.creased && (!good || !loop->wide))
         return true;
-    if (good && solve_polygon(room, loop, &p, probe, &room->features[room->count]))
+    bool solved = good && solve_polygon(room, loop, &p, probe, out);
+    bool creased = p.creased && !is_fading(room, loop);
+    if (good && creased && !solved)
+        leave_unsolved(room, loop, &p, out);
+    if (solved || (good && creased))
         room->count++;
     else
-        room->smooth += p.creased != 0;
+        room->smooth += creased;
     return true;
 }

@@ -55,11 +55,13 @@ static const struct {
 #define NEAR 0.1 /* of a curved part, in cells: a chord's sagitta is less */
 
 /* Polygons left smooth and rotations with more than one piece, a rotation, in the order of
- * true_solids. Of fifty rotations: cube 69 and 2, tetrahedron 265 and 25, cylinder none, cone 264
- * and 26, crossed cylinders 475, plate 26, gear 1038 and 1. */
+ * true_solids; and polygons in which a crease fades: where two cylinders touch, the angle between
+ * them falls to nothing, and a crease ends where it is below 3 degrees. */
 static const struct {
     double smooth, pieces;
-} most_of[] = {{2, 0.04}, {12, 0.6}, {0, 0}, {12, 0.52}, {20, 0}, {4, 0}, {45, 0.02}};
+    unsigned fading;
+} most_of[] = {{0, 0.04, 0}, {6, 0.6, 0}, {0, 0, 0},   {5, 0.52, 0},
+               {2, 0, 8},    {0.1, 0, 0}, {5, 0.02, 0}};
 
 typedef struct tally {
     double most; /* of those within what is allowed */
@@ -350,7 +352,8 @@ static void check_rotation(const true_solid *solid, unsigned number, record *all
     all->smooth_rotations += p.stats.smooth_features > 0;
     all->pieces += p.check.components != 1;
     for (int i = 0; i < MEASURES; i++) {
-        if (r.of[i].beyond > asked[i].for_smooth * p.stats.smooth_features)
+        uint64_t cut = p.stats.smooth_features + most_of[solid - true_solids].fading;
+        if (r.of[i].beyond > asked[i].for_smooth * cut)
             fail_msg("%s: %llu %s, and %llu polygons stay smooth", p.what,
                      (unsigned long long)r.of[i].beyond, asked[i].name,
                      (unsigned long long)p.stats.smooth_features);
