@@ -89,6 +89,26 @@ class Picture(ReportTest):
         one, four = self.pixels("-j", 1), self.pixels("-j", 4)
         self.assertEqual(one, four)
 
+    def test_view(self):
+        """From the front the plate is 60 wide and 6 high, from the top 60 and 30."""
+        self.plates()
+        shapes = {}
+        for view in ("front", "top", "0,90", "180,0"):
+            before = self.panel(self.pixels("--view", view), 0)
+            drawn = [i for i in range(0, len(before), 3) if abs(before[i] - 216) > 8]
+            across, down = [i // 3 % (PANEL - 1) for i in drawn], [i // 3 // (PANEL - 1) for i in drawn]
+            shapes[view] = (max(across) - min(across)) / (max(down) - min(down))
+        self.assertAlmostEqual(shapes["front"], 10, delta=2)
+        self.assertAlmostEqual(shapes["top"], 2, delta=0.2)
+        self.assertEqual(shapes["0,90"], shapes["top"])
+        self.assertNotEqual(self.pixels("--view", "front"), self.pixels("--view", "180,0"))
+        self.diff(1, "a.ply", "b.ply", "--view", "top", "--html", "out.html")
+        toward = data_of(self.read("out.html"))["pairs"][0]["models"]["toward"]
+        self.assertAlmostEqual(toward[2], 1, places=9)
+        self.assertLess(toward[1], 0)
+        self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "top"), 2, "--png or --html")
+        self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "upon", "--png", "x.ppm"), 2, "upon")
+
     def test_same_meshes_are_drawn_too(self):
         self.plates()
         self.diff(0, "a.ply", "a.ply", "--png", "out.ppm")

@@ -124,6 +124,20 @@ class Render(cli.CliTest):
         self.assertEqual(self.read("plain.ply"), self.read("marked.ply"))
         self.assertEqual(self.ppm("marked.txt", *SMALL, "-j", 1), self.ppm("marked.txt", *SMALL, "-j", 3))
 
+    def test_depfile(self):
+        self.write("main.txt", "include <part.txt>\nthing();")
+        self.write("part.txt", "module thing() sphere(2);")
+        self.assert_status(self.run_in("render", "main.txt", "-o", "a.ppm", "-M", "a.d", *SMALL), 0)
+        self.assertEqual(self.read("a.d").split(b"\n\n")[0].split(), [b"a.ppm:", b"\\", b"main.txt", b"\\", b"part.txt"])
+        self.assert_status(self.run_in("render", "main.txt", "-o", "t.ppm", "--turntable", 2, "-M", "t.d", *SMALL), 0)
+        self.assertTrue(self.read("t.d").startswith(b"t-000.ppm t-001.ppm: \\\n  main.txt"))
+        self.assert_refused(self.run_in("render", "main.txt", "-o", "-", "-M", "a.d", *SMALL, "-f", "ppm"), 2, "-M needs")
+        self.assert_status(self.run_in("main.txt", "-o", "a.ply", "-r", 16), 0)
+        result = self.run_in("render", "a.ply", "-o", "b.ppm", "-M", "b.d", *SMALL)
+        self.assert_status(result, 0)
+        self.assertIn("--depfile has no effect on a mesh", result.stderr)
+        self.assertNotIn("b.d", os.listdir(self.folder))
+
     def test_turntable(self):
         self.assert_status(self.run_in("render", "blend.txt", "-o", "t.ppm", "--turntable", 4, *SMALL,
                                        "--background", "black"), 0)

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "depfile.h"
 #include "picture_options.h"
 #include "textfile.h"
 #include "work.h"
@@ -54,6 +55,7 @@ static void warn_without_effect(cli_app *app, bool is_mesh)
         {CLI_OPTION_evaluator, "evaluator", false},
         {CLI_OPTION_defines, "define", false},
         {CLI_OPTION_parameter_set, "parameter-set", false},
+        {CLI_OPTION_depfile, "depfile", false},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (app->options.given[rows[i].id] && rows[i].of_mesh != is_mesh)
@@ -244,12 +246,40 @@ static int draw_all(cli_app *app, const subject *s, csgm_render_options *options
     return app->options.stats ? write_stats(app, options, turns, &sum) : CLI_DONE;
 }
 
+/* The rule for Make or Ninja: of a turntable the targets are all its files. */
+static int write_rule(cli_app *app, const subject *s)
+{
+    cli_list given = app->options.outputs, turns = {0};
+    if (!app->options.turntable || !given.count)
+        return cli_depfile_write(app, s->work.scene);
+    char **names = calloc(app->options.turntable, sizeof *names);
+    bool done = names != NULL;
+    for (turns.items = (const char **)names; done && turns.count < app->options.turntable;
+         turns.count++) {
+        names[turns.count] = name_of_turn(given.items[0], turns.count, app->options.turntable);
+        done = names[turns.count] != NULL;
+    }
+    int status = CLI_TROUBLE;
+    app->options.outputs = turns;
+    if (done)
+        status = cli_depfile_write(app, s->work.scene);
+    else
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    app->options.outputs = given;
+    for (size_t i = 0; i < turns.count; i++)
+        free(names[i]);
+    free(names);
+    return status;
+}
+
 int cli_cmd_render(cli_app *app)
 {
     csgm_render_options options;
     csgm_image_format format = CSGM_IMAGE_AUTO;
     subject s = {.mesh = NULL};
     int status = check(app, &format);
+    if (status == CLI_DONE)
+        status = cli_depfile_check(app);
     if (status == CLI_DONE)
         status = cli_picture_options(app, &options);
     if (status == CLI_DONE)
@@ -260,6 +290,8 @@ int cli_cmd_render(cli_app *app)
         warn_without_effect(app, s.mesh != NULL);
     if (status == CLI_DONE)
         status = draw_all(app, &s, &options, format);
+    if (status == CLI_DONE && app->options.depfile && !s.mesh)
+        status = write_rule(app, &s);
     release(&s);
     return status;
 }

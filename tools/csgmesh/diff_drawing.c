@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * Both meshes of a comparison in one frame; see diff_drawing.h. The view is that of eight from the
- * corners which faces the largest changes: the sum over triangles of area, distance and cosine.
+ * Both meshes of a comparison in one frame; see diff_drawing.h. The view is --view, or that of
+ * eight from the corners which faces the largest changes: the sum over triangles of area, distance
+ * and cosine.
  */
 #include "diff_drawing.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "picture_options.h"
 
 csgm_vec3 diff_drawing_vertex(const csgm_mesh_view *view, uint32_t vertex)
 {
@@ -85,6 +88,22 @@ static void add_seen(const diff_drawing *d, int side, double seen[VIEWS])
     }
 }
 
+/* What --view says. Rounded, so that the last bits of a libm are not seen, and never quite along z,
+ * so that there is an up. */
+static bool chosen_view(cli_app *app, csgm_vec3 *out)
+{
+    const double degree = 0.017453292519943295, grid = 1e9, least = 1e-6;
+    csgm_camera camera = {.azimuth_deg = 0};
+    if (!app->options.view || cli_picture_view(app, &camera) != CLI_DONE)
+        return false;
+    double azimuth = camera.azimuth_deg * degree, elevation = camera.elevation_deg * degree;
+    double level = fmax(round(cos(elevation) * grid) / grid, least);
+    *out = (csgm_vec3){level * round(sin(azimuth) * grid) / grid,
+                       -level * round(cos(azimuth) * grid) / grid,
+                       round(sin(elevation) * grid) / grid};
+    return true;
+}
+
 /* The usual view stays unless another shows clearly more. */
 static csgm_vec3 best_view(const diff_drawing *d)
 {
@@ -120,7 +139,8 @@ bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side side
         out->box = (csgm_box){{0, 0, 0}, {1, 1, 1}};
     if (isfinite(report->hausdorff_lower) && report->hausdorff_lower > report->precision)
         out->most = report->hausdorff_lower;
-    out->toward = best_view(out);
+    if (!chosen_view(app, &out->toward))
+        out->toward = best_view(out);
     return true;
 }
 

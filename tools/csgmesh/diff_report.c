@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "picture_options.h"
+
 static bool is_folder(const char *path)
 {
     struct stat status;
@@ -50,6 +52,11 @@ int diff_report_check(cli_app *app)
             if (files[j].path && strcmp(files[i].path, files[j].path) == 0)
                 return cli_usage_error(app, NULL, "--%s and --%s both write to %s", files[i].name,
                                        files[j].name, files[i].path);
+    csgm_camera camera = {.azimuth_deg = 0};
+    if (o->view && !o->diff_png && !o->diff_html)
+        return cli_usage_error(app, NULL, "--view needs --png or --html");
+    if (cli_picture_view(app, &camera) != CLI_DONE)
+        return CLI_TROUBLE;
     return o->diff_png ? check_png(app) : CLI_DONE;
 }
 

@@ -38,7 +38,7 @@ static int read_size(cli_app *app, csgm_render_options *out)
     return CLI_DONE;
 }
 
-static int read_view(cli_app *app, csgm_camera *camera)
+int cli_picture_view(cli_app *app, csgm_camera *camera)
 {
     static const struct {
         const char *name;
@@ -189,7 +189,7 @@ int cli_picture_options(cli_app *app, csgm_render_options *out)
     out->monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};
     int status = read_size(app, out);
     if (status == CLI_DONE)
-        status = read_view(app, &out->camera);
+        status = cli_picture_view(app, &out->camera);
     if (status == CLI_DONE)
         status = read_camera(app, &out->camera);
     if (status == CLI_DONE)

@@ -8,5 +8,7 @@
 
 /* CLI_DONE, or CLI_TROUBLE after a message that names the option. */
 int cli_picture_options(cli_app *app, csgm_render_options *out);
+/* --view alone, into the camera's angles; without it they stay. */
+int cli_picture_view(cli_app *app, csgm_camera *camera);
 
 #endif
