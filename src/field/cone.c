@@ -5,6 +5,8 @@
  */
 #include "field/cone.h"
 
+#include "field/cone_along.h"
+
 #include <math.h>
 
 static double dot(const double a[3], const double b[3])
@@ -87,23 +89,82 @@ static bool is_sharp(const csg_tape_node *node)
            (node->blend == CSG_BLEND_SHARP || node->blend == CSG_BLEND_ORTHOGONAL);
 }
 
-bool csg_cone_find(const csg_tape *tape, const float c[3], double radius, csg_cone *out)
+/* Of each leaf; false: one has no bound. */
+static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
+                        csg_cone_leaves *leaves, csg_cone *out, bool *is_simple)
 {
-    csg_cone_balls balls;
-    balls.count = 0;
-    balls.has_edges = false;
-    out->is_crease = false;
     for (uint32_t i = 0; i < tape->count; i++) {
         const csg_tape_node *node = &tape->nodes[i];
         if (csg_op_is_leaf(node->op)) {
-            if (!csg_cone_add_leaf(&balls, tape, node, c, radius))
+            if (leaves->count >= CSG_CONE_MOST)
                 return false;
-        } else if (!operator_combines(node)) {
-            return false;
+            leaves->first[leaves->count++] = leaves->balls.count;
+            if (!csg_cone_add_leaf(&leaves->balls, tape, node, c, radius))
+                return false;
         } else {
+            *is_simple = *is_simple && operator_combines(node);
             out->is_crease |= is_sharp(node);
         }
     }
-    out->is_crease |= balls.has_edges;
-    return balls.count > 0 && csg_cone_find_axis(&balls, out);
+    return leaves->balls.count > 0;
+}
+
+static double largest_of(const csg_cone_balls *balls)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < balls->count; i++)
+        most =
+            fmax(most, sqrt(dot(balls->items[i].at, balls->items[i].at)) + balls->items[i].spread);
+    return most;
+}
+
+static bool try_axis(const csg_pruner *room, const csg_tape *tape, const csg_cone_leaves *leaves,
+                     csg_cone *out)
+{
+    return csg_cone_along(tape, leaves, room->low, room->high, out->axis, &out->least, &out->most,
+                          &out->is_crease);
+}
+
+/* Along the direction that suits all leaves, where there is one, or the gradient at the centre. */
+static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
+                       const csg_cone_leaves *leaves, csg_cone *out)
+{
+    float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES] = {{0}};
+    for (int axis = 0; axis < 3; axis++)
+        for (int o = 0; o < CSG_LANES; o++)
+            at[axis][o] = c[axis];
+    /* cubes around the ball, which they are given by the balls around them */
+    float reach = (float)(radius * 1.7320508 * (1 + 1e-6));
+    if (!room)
+        return false;
+    out->out_of_memory = !csg_prune_octants(room, tape, at[0], at[1], at[2], reach);
+    if (out->out_of_memory)
+        return false;
+    room->kernel->gradients(tape, at[0], at[1], at[2], 1, g[0], g[1], g[2], room->scratch,
+                            room->scratch_capacity);
+    double w[3] = {(double)g[0][0], (double)g[1][0], (double)g[2][0]}, norm = sqrt(dot(w, w));
+    if (csg_cone_find_axis(&leaves->balls, out) && try_axis(room, tape, leaves, out))
+        return true;
+    if (!(norm > 1e-6))
+        return false;
+    for (int k = 0; k < 3; k++)
+        out->axis[k] = w[k] / norm;
+    return try_axis(room, tape, leaves, out);
+}
+
+bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
+                   csg_cone *out)
+{
+    csg_cone_leaves leaves;
+    bool is_simple = true;
+    leaves.count = leaves.balls.count = 0;
+    leaves.balls.has_edges = out->is_crease = out->out_of_memory = false;
+    out->most = INFINITY;
+    if (!find_leaves(tape, c, radius, &leaves, out, &is_simple))
+        return false;
+    out->is_crease |= leaves.balls.has_edges;
+    if (!is_simple)
+        return find_along(room, tape, c, radius, &leaves, out);
+    out->most = 1.41421357 * largest_of(&leaves.balls); /* orthogonal shares add up to it */
+    return csg_cone_find_axis(&leaves.balls, out);
 }

@@ -17,6 +17,8 @@
 #include <math.h>
 
 #include "field/cone.h"
+#include "field/cone_formula.h"
+#include "field/cone_warp.h"
 #include "field/formulas.h"
 
 /* A leaf in its own frame. */
@@ -268,6 +270,49 @@ static bool add_shape(local *l, const csg_tape *tape)
     return done && s.is_set;
 }
 
+/* ---- formulas --------------------------------------------------------------------------------
+ */
+
+/* Where the domain ends a coordinate is held: its derivative is 0, on the way there 0 or 1. */
+static void place_box(const local *l, const csg_tape_formula *formula, csg_cone_box *at,
+                      csg_cone_box seeds[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const float from = formula->low[k], to = formula->high[k];
+        float low = (float)(l->q[k] - l->rho * (1 + 1e-6)) - 1e-6f * (float)fabs(l->q[k]);
+        float high = (float)(l->q[k] + l->rho * (1 + 1e-6)) + 1e-6f * (float)fabs(l->q[k]);
+        seeds[k] = (csg_cone_box){{0, 0, 0}, {0, 0, 0}};
+        seeds[k].low[k] = low > from && high < to ? 1 : 0;
+        seeds[k].high[k] = high >= from && low <= to ? 1 : 0;
+        at->low[k] = low < from ? from : low > to ? to : low;
+        at->high[k] = high < from ? from : high > to ? to : high;
+    }
+}
+
+/* The gradients' box: its corners, or a ball around it. */
+static bool add_formula(local *l, const csg_tape *tape)
+{
+    enum { CORNERS = 8 };
+    const csg_tape_formula *formula = &tape->formulas[(uint32_t)l->own[0]];
+    csg_cone_box at, seeds[3], gradient;
+    place_box(l, formula, &at, seeds);
+    if (!csg_cone_formula(tape, formula, &at, seeds, &gradient, &l->balls->has_edges))
+        return false;
+    double middle[3], half[3];
+    for (int k = 0; k < 3; k++) {
+        middle[k] = ((double)gradient.high[k] + (double)gradient.low[k]) / 2;
+        half[k] = ((double)gradient.high[k] - (double)gradient.low[k]) / 2;
+    }
+    if (l->balls->count + CORNERS > CSG_CONE_MOST)
+        return add(l, middle[0], middle[1], middle[2], sqrt(square_of(half)));
+    for (int i = 0; i < CORNERS; i++)
+        if (!add(l, middle[0] + (i & 1 ? half[0] : -half[0]),
+                 middle[1] + (i & 2 ? half[1] : -half[1]), middle[2] + (i & 4 ? half[2] : -half[2]),
+                 1e-6))
+            return false;
+    return true;
+}
+
 static bool add_own(local *l, uint8_t op)
 {
     switch (op) {
@@ -296,8 +341,8 @@ static bool add_own(local *l, uint8_t op)
     }
 }
 
-/* Bound on the largest singular value: the square root of the largest row sum of |M^T M|. */
-static double norm_of(const float *m)
+/* The square root of the largest row sum of |M^T M|. */
+double csg_cone_norm(const float *m)
 {
     double most = 0;
     for (int i = 0; i < 3; i++) {
@@ -313,13 +358,13 @@ static double norm_of(const float *m)
     return sqrt(most);
 }
 
-static void place_affine(local *l, const float *frame, const float c[3], double sigma)
+static void place_affine(local *l, const float *frame, const double c[3], double sigma)
 {
-    double norm = norm_of(frame);
+    double norm = csg_cone_norm(frame);
     for (int i = 0; i < 3; i++) {
         l->q[i] = (double)frame[9 + i];
         for (int k = 0; k < 3; k++) {
-            l->q[i] += (double)frame[3 * i + k] * (double)c[k];
+            l->q[i] += (double)frame[3 * i + k] * c[k];
             l->turn[k][i] = sigma * (double)frame[3 * i + k];
         }
     }
@@ -327,26 +372,37 @@ static void place_affine(local *l, const float *frame, const float c[3], double 
     l->norm = fabs(sigma) * norm;
 }
 
-bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
-                       const float c[3], double radius)
+static bool add_placed(local *l, const csg_tape *tape, const csg_tape_node *leaf, const double c[3])
 {
     const float *parameters = tape->parameters + leaf->parameters;
     const float *frame = parameters + CSG_LEAF_FRAME;
     double sigma = (double)parameters[CSG_LEAF_SIGMA];
-    if (leaf->warp)
-        return false;
-    /* the slack: the frame's own rounding */
-    local l = {.balls = balls, .rho = radius + (double)parameters[CSG_LEAF_SLACK]};
     if (leaf->frame == CSG_FRAME_OFFSET) {
-        l.own = parameters + CSG_LEAF_OWN_OFFSET;
-        l.norm = fabs(sigma);
+        l->own = parameters + CSG_LEAF_OWN_OFFSET;
+        l->norm = fabs(sigma);
         for (int k = 0; k < 3; k++) {
-            l.q[k] = (double)c[k] - (double)frame[k];
-            l.turn[k][k] = sigma;
+            l->q[k] = c[k] - (double)frame[k];
+            l->turn[k][k] = sigma;
         }
     } else {
-        l.own = parameters + CSG_LEAF_OWN_AFFINE;
-        place_affine(&l, frame, c, sigma);
+        l->own = parameters + CSG_LEAF_OWN_AFFINE;
+        place_affine(l, frame, c, sigma);
     }
-    return leaf->op == CSG_OP_SHAPE ? add_shape(&l, tape) : add_own(&l, leaf->op);
+    if (leaf->op == CSG_OP_SHAPE)
+        return add_shape(l, tape);
+    return leaf->op == CSG_OP_FIELD ? add_formula(l, tape) : add_own(l, leaf->op);
+}
+
+bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                       const float c[3], double radius)
+{
+    /* the slack: the frame's own rounding */
+    double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
+    local l = {.balls = balls,
+               .rho = radius + (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK]};
+    csg_cone_way way;
+    uint32_t first = balls->count;
+    if (leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l.rho, &way))
+        return false;
+    return add_placed(&l, tape, leaf, at) && (!leaf->warp || csg_cone_unwarp(&way, balls, first));
 }

@@ -208,6 +208,7 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
         .context = w->context, .lattice = w->lattice, .size = w->options->size};
     csg_pruner_init(&self->plain, memory, kernel, rounding);
     csg_pruner_init(&self->wide, memory, kernel, rounding);
+    csg_pruner_init(&self->cones, memory, kernel, rounding);
     csg_arena_init(&self->tapes, memory);
     self->samples = csg_memory_alloc(memory, sizeof *self->samples);
     self->reach = (csg_reach){.kernel = kernel,
@@ -243,6 +244,7 @@ static void release(walk *w)
             continue;
         csg_pruner_release(&self->plain);
         csg_pruner_release(&self->wide);
+        csg_pruner_release(&self->cones);
         csg_arena_reset(&self->tapes);
         csg_memory_release(memory, self->samples, sizeof *self->samples);
         csg_memory_release(memory, self->reach.scratch, self->reach.scratch_floats * sizeof(float));

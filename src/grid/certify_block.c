@@ -134,12 +134,15 @@ static csg_tape tape_of(const csg_certify_worker *w, const csg_certify_cube *cub
     return tape;
 }
 
-static bool cone_of(const csg_certify_worker *w, const csg_certify_cube *cube, double radius,
+static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double radius,
                     csg_cone *cone)
 {
     csg_tape tape = tape_of(w, cube);
     const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
-    return csg_cone_find(&tape, c, radius * (1 + 0x1p-20) + (double)w->wide.rounding, cone);
+    double reach = radius * (1 + 0x1p-20) + (double)w->wide.rounding;
+    bool found = csg_cone_find(&w->cones, &tape, c, reach, cone);
+    w->out_of_memory |= cone->out_of_memory;
+    return found;
 }
 
 /* The far cone: settles all cells in the cube. */
@@ -171,9 +174,10 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
 static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
 {
     csg_cone cone;
-    double r = ROOT3 * cube->half, p[2][3], values[2], need = r * w->reach.lipschitz;
+    double r = ROOT3 * cube->half, p[2][3], values[2];
     *settled = false;
     if (cone_of(w, cube, (1 + NEAR) * r, &cone)) {
+        double need = r * fmin(w->reach.lipschitz, cone.most * (1 + 0x1p-12));
         along(cube, cone.axis, NEAR * r, p);
         csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
         *settled = fmin(values[0], w->reach.band) > need && fmin(-values[1], w->reach.band) > need;
@@ -444,5 +448,5 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
     for (int i = 0; i < CSG_CELLS_PER_BLOCK; i++)
         if (w->kinds[i])
             w->cells[w->kinds[i]]++;
-    return done;
+    return done && !w->out_of_memory;
 }

@@ -35,7 +35,7 @@ typedef struct csg_certify_worker {
     csgm_context *context;
     const csg_lattice *lattice;
     double size; /* where dividing ends */
-    csg_pruner plain, wide;
+    csg_pruner plain, wide, cones;
     csg_arena tapes;
     csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
     csg_tape local_tape;
@@ -48,7 +48,7 @@ typedef struct csg_certify_worker {
     csg_certify_finding *findings; /* of all blocks so far */
     size_t finding_count, finding_capacity;
     uint64_t cells[CSG_CELL_KINDS], cubes;
-    bool reached_size;
+    bool reached_size, out_of_memory;
 } csg_certify_worker;
 
 /* Looks at all cells of a block, with a tape valid in it and CSG_CERTIFY_MARGIN cells around it.

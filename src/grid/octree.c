@@ -192,7 +192,7 @@ static bool begin_scan(const walk *w, csg_scan *scan, const uint32_t at[3], cons
         c[axis] = csg_lattice_coordinate(w->lattice, axis,
                                          at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
     *scan = (csg_scan){.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
-    return !csg_cone_find(tape, c, (double)ball_radius(w, CSG_BLOCK_EDGE / 2), &cone);
+    return !csg_cone_find(NULL, tape, c, (double)ball_radius(w, CSG_BLOCK_EDGE / 2), &cone);
 }
 
 static bool keep_doubt(walk *w, worker *self, const csg_scan *scan)

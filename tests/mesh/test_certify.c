@@ -20,7 +20,11 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     csg_cone cone;
     const float c[3] = {(float)(at.x - field->center.x), (float)(at.y - field->center.y),
                         (float)(at.z - field->center.z)};
-    if (!csg_cone_find(&field->tape, c, radius, &cone))
+    csg_pruner room;
+    csg_pruner_init(&room, &field->context->memory, csg_kernel_for(CSGM_ISA_AUTO), 0);
+    bool found = csg_cone_find(&room, &field->tape, c, radius, &cone);
+    csg_pruner_release(&room);
+    if (!found)
         return false;
     assert_true(cone.least > 0);
     for (int i = 0; i < 60; i++) {
