@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Soft shadows: from each point that was hit a ray goes to the key light through the cells of wide
  * tapes. How near the solid comes to it, against the width that the light has there, is the share
- * that arrives (Quilez 2010). Wide tapes know the field up to their reach, so that is the largest
- * width.
+ * that arrives (Quilez 2010). Wide tapes know the field up to their reach, and a bounded field is
+ * no deeper than it is far away: the lesser is the largest width.
  */
 #include "render/tracer.h"
 
@@ -139,7 +139,8 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
             uint16_t ray = m->ray[lanes[k].from];
             float height = -m->f[k] * room->rays.inverse_slope[ray], t = lanes[k].t;
             float width = LIGHT_SLOPE * t + 0.01f * reach;
-            float share = height / (width < reach ? width : reach);
+            float most = fminf(reach, tracer->depth * room->rays.inverse_slope[ray]);
+            float share = height / (width < most ? width : most);
             float *here = &lit[ray];
             *here = share < *here ? (share > 0 ? share : 0) : *here;
             /* half a sphere: whole ones would miss where the ratio is least, in streaks */

@@ -293,6 +293,13 @@ static void find_colors(const csg_tracer *tracer, const csg_tape *tape, csg_trac
     }
 }
 
+/* How far from the surface the field falls about as fast as at it: bounded fields end smoothly, at
+ * twice this. */
+static float occlusion_reach(const csg_tracer *tracer, float slope)
+{
+    return fminf(tracer->cells->reach, 0.5f * tracer->depth / slope);
+}
+
 /* Along the normal the field falls as on a plane unless something is near: how much less it has
  * fallen, at a few distances up to the reach of wide tapes. */
 static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
@@ -304,9 +311,9 @@ static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_t
     for (uint32_t k = 0; k < m->count; k++)
         m->step[k] = 0;
     for (int s = 0; s < OCCLUSION_SAMPLES; s++) {
-        float height = places[s] * tracer->cells->reach;
         for (uint32_t k = 0; k < m->count; k++) {
             uint32_t i = m->ray[k];
+            float height = places[s] * occlusion_reach(tracer, m->radius[k]);
             m->channel[0][k] = m->x[k] + height * rays->nx[i];
             m->channel[1][k] = m->y[k] + height * rays->ny[i];
             m->channel[2][k] = m->z[k] + height * rays->nz[i];
@@ -316,6 +323,7 @@ static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_t
         tracer->kernel->values(tape, m->channel[0], m->channel[1], m->channel[2], m->count, m->f,
                                room->scratch, room->scratch_floats);
         for (uint32_t k = 0; k < m->count; k++) {
+            float height = places[s] * occlusion_reach(tracer, m->radius[k]);
             float missing = 1 + m->f[k] / (m->radius[k] * height);
             missing = missing > 0 ? missing : 0;
             m->step[k] += weights[s] * (missing < 1 ? missing : 1);

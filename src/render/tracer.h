@@ -76,6 +76,7 @@ typedef struct csg_tracer {
     float light_across[2][3];              /* at right angles to it and each other */
     float near_tolerance, tolerance_slope; /* |f| / lambda of a hit: near + slope * t */
     float inverse_lipschitz;
+    float depth;    /* -f far from the solid: no place outside has more; INFINITY: no bound */
     float steepest; /* the field's slope near its surface, where that is largest, as measured */
     bool is_loose;  /* lambda is far above that slope */
     bool occlusion, shadows, colors;
@@ -89,7 +90,7 @@ void csg_tracer_begin(csg_rays *rays, uint32_t first_row);
 /* Appends a ray of the view; y may not fall below an earlier one's row of pixels. */
 void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y);
 
-/* slope.c: fills steepest and is_loose by looking into the cells. */
+/* slope.c: fills depth, steepest and is_loose by looking around and into the cells. */
 void csg_tracer_find_slope(csg_tracer *tracer, csg_trace_room *room);
 
 /* room->rays, aimed: fills the rest. */

@@ -256,6 +256,37 @@ static void test_nothing_in_sight(void **state)
     render_end(&c);
 }
 
+/* Far from soft objects the field is constant, and tells no distance: light falls on them as on
+ * solids, but for the soft edges of shadows. */
+static void test_light_on_soft_objects(void **state)
+{
+    static const char *const scenes[2] = {
+        "union() { translate([0, 0, 3]) sphere(2); translate([0, 0, -1]) cube([14, 14, 2], center "
+        "= "
+        "true); translate([4, 0, 7]) sphere(1.5); }",
+        "union() { soft(range = 0.3) translate([0, 0, 3]) sphere(2); soft(range = 0.3) "
+        "translate([0, "
+        "0, -1]) cube([14, 14, 2], center = true); translate([4, 0, 7]) sphere(1.5); }"};
+    render_case c[2];
+    csgm_render_options options = front_options(128, 18);
+    options.camera.elevation_deg = 30;
+    options.shadows = options.occlusion = true;
+    options.frame = (csgm_box){{-8, -8, -3}, {8, 8, 9}};
+    for (int i = 0; i < 2; i++) {
+        render_begin(&c[i], 1, CSGM_ISA_AUTO, scenes[i]);
+        render_scene(&c[i], &options);
+    }
+    int differ = 0, shown = (int)covered(&c[0]);
+    for (uint32_t y = 0; y < 128; y++)
+        for (uint32_t x = 0; x < 128; x++)
+            differ += abs(pixel_at(&c[0], x, y)[0] - pixel_at(&c[1], x, y)[0]) > 16;
+    assert_true(shown > 4000);
+    if (differ > shown / 12)
+        fail_msg("%d of %d pixels differ", differ, shown);
+    render_end(&c[0]);
+    render_end(&c[1]);
+}
+
 static bool is_reddish(const uint8_t *p)
 {
     return p[3] == 255 && p[0] > p[1] + 40 && p[0] > p[2] + 40;
@@ -331,6 +362,7 @@ int main(void)
         cmocka_unit_test(test_many_solids),
         cmocka_unit_test(test_section),
         cmocka_unit_test(test_nothing_in_sight),
+        cmocka_unit_test(test_light_on_soft_objects),
         cmocka_unit_test(test_marks),
         cmocka_unit_test(test_marks_alone),
     };
