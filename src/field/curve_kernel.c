@@ -16,7 +16,7 @@
 
 #include "field/frames.h"
 
-enum { LANES = 32, PARTS = 5, STEPS = 4 };
+enum { LANES = 64, PARTS = 5, STEPS = 4 };
 
 #define INLINE static inline __attribute__((always_inline))
 

@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "scene/curve.h"
 
-/* Control points within about [-1, 1]^3. */
+/* Control points within about [-1, 1]^3; v has room for four. */
 static inline void test_random_curve(csg_random *random, csg_node_kind kind, double *v)
 {
     int count = (int)csg_primitive_parameter_count(kind) / CSG_CURVE_AXES;
@@ -29,13 +29,14 @@ static inline void test_random_curve(csg_random *random, csg_node_kind kind, dou
                 p[k] = p[k - CSG_CURVE_AXES];
         if (shape == 5) /* in a plane: cusps and loops when crossed */
             p[2] = 0;
-        p[CSG_CURVE_RADIUS] = radii == 0 ? csg_random_uniform(random, 0.02, 0.5)
+        p[CSG_CURVE_RADIUS] = radii == 0   ? csg_random_uniform(random, 0.02, 0.5)
                               : radii == 1 ? fmax(csg_random_uniform(random, -0.1, 0.3), 0)
                                            : r;
     }
     if (shape == 5 && count == 4) /* a cusp in the middle, or nearly */
         for (int k = 0; k < 2; k++) {
-            v[4 + k] = v[12 + k] + csg_random_uniform(random, -0.05, 0.05);
+            v[4 + k] =
+                v[12 + k] + csg_random_uniform(random, -0.05, 0.05);
             v[8 + k] = v[k];
         }
     if (radii == 1)
