@@ -20,6 +20,7 @@
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
 static const double FAR = 2.5; /* cells */
 static const double NEAR = 3;  /* radii of the cube */
+static const double WIDE_NEAR = 8;
 static const double LOCAL = 1.3;
 
 enum {
@@ -95,7 +96,7 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
                    bool *settled)
 {
     csg_reach_end end;
-    if (csg_reach_slide(&w->local, p, sign * value, sign))
+    if (csg_reach_slide(&w->local, p, sign * value, sign, &w->trail))
         return true;
     csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &end);
     if (state == CSG_REACH_SAMPLE)
@@ -134,15 +135,21 @@ static csg_tape tape_of(const csg_certify_worker *w, const csg_certify_cube *cub
     return tape;
 }
 
+static bool cone_around(csg_certify_worker *w, const csg_tape *tape, const double at[3],
+                        double radius, csg_cone *cone)
+{
+    const float c[3] = {(float)at[0], (float)at[1], (float)at[2]};
+    double reach = radius * (1 + 0x1p-20) + (double)w->wide.rounding;
+    bool found = csg_cone_find(&w->cones, tape, c, reach, cone);
+    w->out_of_memory |= cone->out_of_memory;
+    return found;
+}
+
 static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double radius,
                     csg_cone *cone)
 {
     csg_tape tape = tape_of(w, cube);
-    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
-    double reach = radius * (1 + 0x1p-20) + (double)w->wide.rounding;
-    bool found = csg_cone_find(&w->cones, &tape, c, reach, cone);
-    w->out_of_memory |= cone->out_of_memory;
-    return found;
+    return cone_around(w, &tape, cube->c, radius, cone);
 }
 
 /* The far cone: settles all cells in the cube. */
@@ -170,21 +177,41 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
     return layer <= w->size;
 }
 
+/* Whether the points `near` radii up and down a cone that holds so far lie in balls that hold the
+ * cube's shift. The cone's own bound on slopes counts there, if it is less than the constant. */
+static bool has_near_balls(const csg_certify_worker *w, const csg_certify_cube *cube,
+                           const csg_cone *cone, double near, double p[2][3], double values[2])
+{
+    double r = ROOT3 * cube->half, slope = fmin(w->reach.lipschitz, cone->most * (1 + 0x1p-12));
+    along(cube, cone->axis, near * r, p);
+    csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
+    return fmin(values[0], w->reach.band) > r * slope &&
+           fmin(-values[1], w->reach.band) > r * slope;
+}
+
+/* Where slopes differ, as where a steep part meets a flat one, 3 radii may be too few. */
+static bool find_near_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone,
+                           double p[2][3], double values[2])
+{
+    double r = ROOT3 * cube->half;
+    if (!cone_of(w, cube, (1 + NEAR) * r, cone))
+        return false;
+    if (has_near_balls(w, cube, cone, NEAR, p, values))
+        return true;
+    return (1 + WIDE_NEAR) * r < 0.5 * w->lattice->cell_size &&
+           cone_around(w, &w->local_tape, cube->c, (1 + WIDE_NEAR) * r, cone) &&
+           has_near_balls(w, cube, cone, WIDE_NEAR, p, values);
+}
+
 /* Near cone or balls; *settled tells whether the cube needs no division. */
 static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
 {
     csg_cone cone;
     double r = ROOT3 * cube->half, p[2][3], values[2];
-    *settled = false;
-    if (cone_of(w, cube, (1 + NEAR) * r, &cone)) {
-        double need = r * fmin(w->reach.lipschitz, cone.most * (1 + 0x1p-12));
-        along(cube, cone.axis, NEAR * r, p);
-        csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
-        *settled = fmin(values[0], w->reach.band) > need && fmin(-values[1], w->reach.band) > need;
-        if (*settled)
-            return follow_ends(w, cube, (const double(*)[3])p, values,
-                               cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
-    }
+    *settled = find_near_cone(w, cube, &cone, p, values);
+    if (*settled)
+        return follow_ends(w, cube, (const double(*)[3])p, values,
+                           cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
     double axis[3];
     csg_reach_gradient(&w->local, cube->c, axis);
     double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -275,6 +302,7 @@ static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
 static void use_own_tape(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     double h = w->lattice->cell_size;
+    w->trail.count = 0;
     w->local = w->reach;
     w->local_tape = tape_of(w, cube);
     w->local.tape = &w->local_tape;

@@ -39,6 +39,7 @@ typedef struct csg_certify_worker {
     csg_arena tapes;
     csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
     csg_tape local_tape;
+    csg_reach_trail trail; /* of the cell at hand */
     csg_block block;
     csg_block_samples *samples;
     csg_certify_cube *stack;

@@ -146,30 +146,63 @@ static bool climb(const csg_reach *reach, double p[3], double *value, int sign, 
     return true;
 }
 
-/* One way straight up the gradients, which mostly does and is quick. */
-bool csg_reach_slide(const csg_reach *reach, const double from[3], double value, int sign)
+static void add_to_trail(csg_reach_trail *trail, const double p[3], double value, int sign)
+{
+    uint32_t place = trail->count++ % CSG_REACH_TRAIL;
+    memcpy(trail->at[place], p, sizeof trail->at[place]);
+    trail->value[place] = value;
+    trail->sign[place] = (int8_t)sign;
+}
+
+static bool touches_trail(const csg_reach *reach, const double p[3], double value, int sign,
+                          const csg_reach_trail *trail)
+{
+    uint32_t count = trail->count < CSG_REACH_TRAIL ? trail->count : CSG_REACH_TRAIL;
+    for (uint32_t i = 0; i < count; i++)
+        if (trail->sign[i] == sign &&
+            are_connected(reach, distance(p, trail->at[i]), value, trail->value[i]))
+            return true;
+    return false;
+}
+
+/* The next point up the gradient, its ball touching that of p. */
+static bool slide_on(const csg_reach *reach, double p[3], double *value, int sign, double step)
+{
+    double g[3], next[1][3], risen;
+    csg_reach_gradient(reach, p, g);
+    double norm = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (!(norm > 1e-3))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        next[0][axis] = p[axis] + sign * step * g[axis] / norm;
+    if (!is_within(reach, next[0]))
+        return false;
+    csg_reach_values(reach, (const double(*)[3])next, 1, &risen);
+    risen *= sign;
+    if (!(risen > *value && are_connected(reach, step, *value, risen)))
+        return false;
+    memcpy(p, next[0], sizeof next[0]);
+    *value = risen;
+    return true;
+}
+
+bool csg_reach_slide(const csg_reach *reach, const double from[3], double value, int sign,
+                     csg_reach_trail *trail)
 {
     enum { STEPS = 12 };
-    double p[3], h = reach->lattice->cell_size, step = fmax(value / reach->lipschitz, h / 256);
+    double way[STEPS][3], values[STEPS], p[3], h = reach->lattice->cell_size;
+    double step = fmax(value / reach->lipschitz, h / 256);
     memcpy(p, from, sizeof p);
-    for (int i = 0; i < STEPS; i++) {
-        if (holds_sample(reach, p, value, sign))
+    for (int i = 0; i < STEPS && value >= 0; i++) {
+        memcpy(way[i], p, sizeof p);
+        values[i] = value;
+        if (touches_trail(reach, p, value, sign, trail) || holds_sample(reach, p, value, sign)) {
+            for (int k = 0; k <= i; k++)
+                add_to_trail(trail, way[k], values[k], sign);
             return true;
-        double g[3], next[1][3], risen;
-        csg_reach_gradient(reach, p, g);
-        double norm = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        if (!(norm > 1e-3))
+        }
+        if (!slide_on(reach, p, &value, sign, step))
             return false;
-        for (int axis = 0; axis < 3; axis++)
-            next[0][axis] = p[axis] + sign * step * g[axis] / norm;
-        if (!is_within(reach, next[0]))
-            return false;
-        csg_reach_values(reach, (const double(*)[3])next, 1, &risen);
-        risen *= sign;
-        if (!(risen > value && are_connected(reach, step, value, risen)))
-            return false;
-        memcpy(p, next[0], sizeof p);
-        value = risen;
         step = fmin(0.7 * h, 2 * step);
     }
     return false;

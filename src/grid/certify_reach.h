@@ -38,8 +38,18 @@ void csg_reach_values(const csg_reach *reach, const double (*points)[3], size_t 
 
 void csg_reach_gradient(const csg_reach *reach, const double p[3], double gradient[3]);
 
-/* Whether the way up the gradients is one to a lattice point: quick, and often enough. */
-bool csg_reach_slide(const csg_reach *reach, const double p[3], double value, int sign);
+/* Points from which a way leads to the lattice, with their balls; the latest ones. */
+enum { CSG_REACH_TRAIL = 32 };
+typedef struct csg_reach_trail {
+    double at[CSG_REACH_TRAIL][3], value[CSG_REACH_TRAIL]; /* |f| */
+    int8_t sign[CSG_REACH_TRAIL];
+    uint32_t count; /* all that were added */
+} csg_reach_trail;
+
+/* Whether the ball of p touches that of a point of the trail, or the way up the gradients is one to
+ * a lattice point, which then joins the trail: quick, and often enough. */
+bool csg_reach_slide(const csg_reach *reach, const double p[3], double value, int sign,
+                     csg_reach_trail *trail);
 
 /* sign * value >= 0 is the field at p. */
 csg_reach_state csg_reach_from(const csg_reach *reach, const double p[3], double value, int sign,
