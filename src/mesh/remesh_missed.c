@@ -12,7 +12,7 @@
 #include "mesh/check_distance_slopes.h"
 #include "mesh/remesh_nearest.h"
 
-enum { MOST_POINTS = 4096, LEAST_CUBES = 1000, MOST_CUBES = 60000, ALL_CUBES = 1000000 };
+enum { MOST_POINTS = 4096, LEAST_CUBES = 4000, MOST_CUBES = 60000, ALL_CUBES = 1000000 };
 
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
 static const double SHEET_CELLS = 2, AROUND_CELLS = 1;

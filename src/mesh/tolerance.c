@@ -187,6 +187,11 @@ static void tell(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
             "the distance of the mesh is %g as measured; to prove it below %g would take "
             "too long",
             goal->measured, goal->allowed);
+    if (goal->unfinished)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise the tolerance",
+                       "%llu stretches of the surface are too intricate to look for parts in them "
+                       "that the mesh misses",
+                       (unsigned long long)goal->unfinished);
     if (goal->tight)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, NULL,
                        "fewer triangles were asked for than the shape allows");
