@@ -3,6 +3,7 @@
  * them. Nothing is scaled or hinted by the libraries. FreeType's memory comes from the budget.
  */
 #include "outline/font.h"
+#include "base/sized_block.h"
 
 #include <ft2build.h>
 #include <hb-ot.h>
@@ -11,6 +12,8 @@
 #include FT_FREETYPE_H
 #include FT_MODULE_H
 #include FT_OUTLINE_H
+
+#include "base/sized_block.h"
 
 struct csg_font {
     csg_memory *memory;
@@ -21,23 +24,18 @@ struct csg_font {
     hb_font_t *shaper;
 };
 
-/* ---- FreeType's memory: each block carries its size before it ----------------------------- */
+/* ---- FreeType's memory --------------------------------------------------------------------- */
 
 static void *ft_allocate(FT_Memory memory, long size)
 {
     csg_font *font = memory->user;
-    size_t *block = size > 0 ? csg_memory_alloc(font->memory, (size_t)size + 16) : NULL;
-    if (!block)
-        return NULL;
-    *block = (size_t)size + 16;
-    return (uint8_t *)block + 16;
+    return size > 0 ? csg_sized_block_alloc(font->memory, (size_t)size) : NULL;
 }
 
 static void ft_release(FT_Memory memory, void *pointer)
 {
     csg_font *font = memory->user;
-    size_t *block = (size_t *)(void *)((uint8_t *)pointer - 16);
-    csg_memory_release(font->memory, block, *block);
+    csg_sized_block_release(font->memory, pointer);
 }
 
 static void *ft_reallocate(FT_Memory memory, long before, long after, void *pointer)

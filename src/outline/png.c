@@ -7,6 +7,7 @@
 #include <png.h>
 #include <string.h>
 
+#include "base/sized_block.h"
 #include "outline/heights.h"
 
 enum { MOST_SIDE = 1 << 20 }; /* pixels */
@@ -48,25 +49,20 @@ static void read_data(png_structp png, png_bytep to, size_t count)
     im->at += count;
 }
 
-/* libpng's own memory comes from the budget too; each block carries its size before it. */
+/* libpng's own memory comes from the budget too. */
 static png_voidp allocate(png_structp png, png_alloc_size_t size)
 {
     image *im = png_get_mem_ptr(png);
-    size_t *block = size <= SIZE_MAX - 16 ? csg_memory_alloc(im->memory, size + 16) : NULL;
-    if (!block) {
+    void *block = csg_sized_block_alloc(im->memory, size);
+    if (!block)
         im->status = CSGM_ERR_MEMORY;
-        return NULL;
-    }
-    *block = size + 16;
-    return (uint8_t *)block + 16;
+    return block;
 }
 
 static void deallocate(png_structp png, png_voidp pointer)
 {
     image *im = png_get_mem_ptr(png);
-    size_t *block = pointer ? (size_t *)(void *)((uint8_t *)pointer - 16) : NULL;
-    if (block)
-        csg_memory_release(im->memory, block, *block);
+    csg_sized_block_release(im->memory, pointer);
 }
 
 /* Gray or RGB of 16 bits a channel, with or without alpha, whatever the file has. */

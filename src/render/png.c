@@ -7,6 +7,7 @@
 #include <png.h>
 #include <string.h>
 
+#include "base/sized_block.h"
 #include "render/image.h"
 
 /* Measured at 1920 x 1080: level 3 takes a third of the time of 6 for a tenth more bytes. */
@@ -33,23 +34,17 @@ static void on_warning(png_structp png, png_const_charp message)
     (void)png, (void)message;
 }
 
-/* libpng's own memory comes from the budget too; each block carries its size before it. */
+/* libpng's own memory comes from the budget too. */
 static png_voidp allocate(png_structp png, png_alloc_size_t size)
 {
     writer *w = png_get_mem_ptr(png);
-    size_t *block = size <= SIZE_MAX - 16 ? csg_memory_alloc(w->memory, size + 16) : NULL;
-    if (!block)
-        return NULL;
-    *block = size + 16;
-    return (uint8_t *)block + 16;
+    return csg_sized_block_alloc(w->memory, size);
 }
 
 static void deallocate(png_structp png, png_voidp pointer)
 {
     writer *w = png_get_mem_ptr(png);
-    size_t *block = pointer ? (size_t *)(void *)((uint8_t *)pointer - 16) : NULL;
-    if (block)
-        csg_memory_release(w->memory, block, *block);
+    csg_sized_block_release(w->memory, pointer);
 }
 
 static void write_data(png_structp png, png_bytep data, size_t count)
