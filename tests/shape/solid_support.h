@@ -7,6 +7,21 @@
 #include "shape/outline_support.h"
 #include "shape/polyhedron.h"
 
+/* Triangles and what csg_polyhedron_create makes of them. */
+typedef struct solid_case {
+    csg_memory memory;
+    csg_triangles triangles;
+    csg_repairs repairs;
+    csg_shape *shape;
+} solid_case;
+
+static inline void solid_begin(solid_case *c)
+{
+    csg_memory_init(&c->memory, NULL, 0);
+    csg_triangles_init(&c->triangles, &c->memory);
+    c->shape = NULL;
+}
+
 /* All of these add to what is there. */
 void solid_add_box(csg_triangles *t, csg_vec3 low, csg_vec3 high, bool inwards);
 /* Each face cut into n x n squares. */

@@ -2,24 +2,7 @@
  * Loops open and closed, curves within their tolerance, hostile numbers, every allocation failing
  * once.
  */
-#include "outline_support.h"
-
-static csg_memory memory;
-static csg_outline outline;
-
-static int begin(void **state)
-{
-    csg_memory_init(&memory, NULL, 0);
-    csg_outline_init(&outline, &memory);
-    return 0;
-}
-
-static int end(void **state)
-{
-    csg_outline_release(&outline);
-    assert_int_equal(memory.used_bytes, 0);
-    return 0;
-}
+#include "outline_fixture.h"
 
 static void add(double x, double y)
 {

@@ -7,20 +7,6 @@
 #include <limits.h>
 #include <string.h>
 
-typedef struct solid_case {
-    csg_memory memory;
-    csg_triangles triangles;
-    csg_repairs repairs;
-    csg_shape *shape;
-} solid_case;
-
-static void begin(solid_case *c)
-{
-    csg_memory_init(&c->memory, NULL, 0);
-    csg_triangles_init(&c->triangles, &c->memory);
-    c->shape = NULL;
-}
-
 static void make(solid_case *c)
 {
     assert_int_equal(csg_polyhedron_create(&c->memory, &c->triangles, &c->repairs, &c->shape),
@@ -66,7 +52,7 @@ static void test_box(void **state)
 {
     csg_random random = {1};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), false);
     make(&c);
     csg_repairs nothing = {0};
@@ -84,7 +70,7 @@ static void test_near_edges(void **state)
     static const double steps[] = {-1e-3, -1e-6, -1e-9, 0, 1e-9, 1e-6, 1e-3};
     csg_random random = {2};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 4);
     make(&c);
     assert_int_equal(c.repairs.welded, 6 * 25 - 98);
@@ -102,7 +88,7 @@ static void test_ball(void **state)
 {
     csg_random random = {3};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(5, 6, 7), 2, 96, 48, 0);
     make(&c);
     double sagitta = 2 * (1 - cos(M_PI / 48) * cos(M_PI / 96));
@@ -139,7 +125,7 @@ static void test_solids_of_all_kinds(void **state)
     csg_random random = {4};
     for (int kind = 0; kind < 6; kind++) {
         solid_case c;
-        begin(&c);
+        solid_begin(&c);
         csg_vec3 zero = {0, 0, 0};
         if (kind == 0)
             solid_add_ball(&c.triangles, zero, 1, 24, 16, 0.4);
@@ -181,7 +167,7 @@ static void test_needles(void **state)
 {
     csg_random random = {5};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(0, 0, 0), csg_vec3_make(1, 1e-9, 1e-9), false);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, 0.5), csg_vec3_make(1, 1, 0.5 + 1e-8), false);
     make(&c);
@@ -220,7 +206,7 @@ static void test_batches(void **state)
     static float x[POINTS], y[POINTS], z[POINTS], all[POINTS], f[POINTS], g[3][POINTS];
     csg_random random = {6};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 1.2);
     make(&c);
     fill_points(&random, x, y, z);
@@ -248,7 +234,7 @@ static void test_gradients(void **state)
 {
     csg_random random = {7};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 0.2);
     make(&c);
     int unlike = 0;
@@ -267,7 +253,7 @@ static void test_far_and_not_numbers(void **state)
 {
     static const double far[] = {1e3, 1e9, 1e17, 1e19, 1e30, 1e150};
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), false);
     make(&c);
     for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
@@ -291,7 +277,7 @@ static void test_scales(void **state)
     for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
         csg_random random = {8};
         solid_case c;
-        begin(&c);
+        solid_begin(&c);
         double s = scales[i], shift = i == 2 ? 1e6 : 0;
         solid_add_box(&c.triangles, csg_vec3_make(shift - s, -s, -s),
                       csg_vec3_make(shift + s, s, s), false);
@@ -314,7 +300,7 @@ static void test_convex(void **state)
 {
     for (int kind = 0; kind < 4; kind++) {
         solid_case c;
-        begin(&c);
+        solid_begin(&c);
         solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 20, 10, kind == 1 ? 0.3 : 0);
         if (kind == 2)
             solid_add_box(&c.triangles, csg_vec3_make(2, 0, 0), csg_vec3_make(3, 1, 1), false);
@@ -332,7 +318,7 @@ static void test_hash(void **state)
     uint64_t hashes[3];
     for (int i = 0; i < 3; i++) {
         solid_case c;
-        begin(&c);
+        solid_begin(&c);
         solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 20, 10, i == 2 ? 0.01 : 0);
         make(&c);
         hashes[i] = csg_shape_hash(c.shape);
@@ -345,7 +331,7 @@ static void test_hash(void **state)
 static void test_every_allocation_fails(void **state)
 {
     solid_case c;
-    begin(&c);
+    solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 20, 10, 0);
     solid_add_box(&c.triangles, csg_vec3_make(2, 0, 0), csg_vec3_make(2.5, 1, 1), true);
     solid_flip(&c.triangles, 30);

@@ -8,26 +8,12 @@
 
 #include "shape/repair.h"
 
-typedef struct broken {
-    csg_memory memory;
-    csg_triangles triangles;
-    csg_repairs repairs;
-    csg_shape *shape;
-} broken;
-
-static void begin(broken *b)
-{
-    csg_memory_init(&b->memory, NULL, 0);
-    csg_triangles_init(&b->triangles, &b->memory);
-    b->shape = NULL;
-}
-
-static csgm_status try_make(broken *b)
+static csgm_status try_make(solid_case *b)
 {
     return csg_polyhedron_create(&b->memory, &b->triangles, &b->repairs, &b->shape);
 }
 
-static double value(const broken *b, double x, double y, double z)
+static double value(const solid_case *b, double x, double y, double z)
 {
     csg_vec3 gradient;
     return csg_shape_sample(b->shape, csg_vec3_make(x, y, z), &gradient);
@@ -49,7 +35,7 @@ static void check_closed(const csg_triangles *t)
         }
 }
 
-static void check_field(const broken *b)
+static void check_field(const solid_case *b)
 {
     csg_random random = {11};
     const csg_triangles *t = csg_polyhedron_triangles(b->shape);
@@ -67,25 +53,25 @@ static void check_field(const broken *b)
     }
 }
 
-static void make(broken *b)
+static void make(solid_case *b)
 {
     assert_int_equal(try_make(b), CSGM_OK);
     check_field(b);
 }
 
-static void end(broken *b)
+static void end(solid_case *b)
 {
     csg_shape_release(b->shape);
     csg_triangles_release(&b->triangles);
     assert_int_equal(b->memory.used_bytes, 0);
 }
 
-static void add_ball(broken *b, double radius)
+static void add_ball(solid_case *b, double radius)
 {
     solid_add_ball(&b->triangles, csg_vec3_make(0, 0, 0), radius, 24, 12, 0);
 }
 
-static void add_box(broken *b, double low, double high, bool inwards)
+static void add_box(solid_case *b, double low, double high, bool inwards)
 {
     solid_add_box(&b->triangles, csg_vec3_make(low, low, low), csg_vec3_make(high, high, high),
                   inwards);
@@ -93,8 +79,8 @@ static void add_box(broken *b, double low, double high, bool inwards)
 
 static void test_holes(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_ball(&b, 1);
     solid_remove(&b.triangles, 300);
     solid_remove(&b.triangles, 200);
@@ -110,8 +96,8 @@ static void test_holes(void **state)
 /* The lid of a box, and half of a ball: large flat holes. */
 static void test_large_holes(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     solid_add_fine_box(&b.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 40);
     b.triangles.count -= 2 * 40 * 40; /* the face at z = 1: a rim of 160 points */
     make(&b);
@@ -125,8 +111,8 @@ static void test_large_holes(void **state)
 
 static void test_flipped(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_ball(&b, 1);
     for (size_t i = 0; i < b.triangles.count; i += 5)
         solid_flip(&b.triangles, i);
@@ -140,8 +126,8 @@ static void test_flipped(void **state)
 
 static void test_inside_out(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_box(&b, -1, 1, true);
     make(&b);
     assert_true(b.repairs.inside_out && b.repairs.flipped == 0);
@@ -151,8 +137,8 @@ static void test_inside_out(void **state)
 
 static void test_twice(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_box(&b, -1, 1, false);
     add_box(&b, -1, 1, false);
     make(&b);
@@ -161,7 +147,7 @@ static void test_twice(void **state)
     assert_int_equal(csg_polyhedron_triangles(b.shape)->count, 12);
     assert_true(csg_polyhedron_is_convex(b.shape));
     end(&b);
-    begin(&b); /* both sides of every triangle, as made for viewing */
+    solid_begin(&b); /* both sides of every triangle, as made for viewing */
     add_box(&b, -1, 1, false);
     add_box(&b, -1, 1, false);
     for (size_t i = 0; i < 12; i++)
@@ -175,8 +161,8 @@ static void test_twice(void **state)
 /* Two boxes with a face in common: the wall between them goes. */
 static void test_common_face(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     solid_add_box(&b.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(0, 1, 1), false);
     solid_add_box(&b.triangles, csg_vec3_make(0, -1, -1), csg_vec3_make(1, 1, 1), false);
     make(&b);
@@ -188,8 +174,8 @@ static void test_common_face(void **state)
 /* Two boxes that share an edge, and two that share a corner. */
 static void test_nonmanifold(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     solid_add_box(&b.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(0, 0, 1), false);
     solid_add_box(&b.triangles, csg_vec3_make(0, 0, -1), csg_vec3_make(1, 1, 1), false);
     make(&b);
@@ -204,8 +190,8 @@ static void test_nonmanifold(void **state)
 /* Three sheets at one edge: no orientation can close that; something does. */
 static void test_fins(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_box(&b, -1, 1, false);
     assert_true(csg_triangles_add_point(&b.triangles, csg_vec3_make(1.3, 0, 1.3)));
     assert_true(csg_triangles_add(&b.triangles, 0, 1, 8));
@@ -218,8 +204,8 @@ static void test_fins(void **state)
 static void test_nested(void **state)
 {
     for (int kind = 0; kind < 4; kind++) {
-        broken b;
-        begin(&b);
+        solid_case b;
+        solid_begin(&b);
         bool outer = kind & 1, inner = kind & 2;
         add_box(&b, -1, 1, outer);
         add_box(&b, -0.5, 0.5, inner);
@@ -237,8 +223,8 @@ static void test_nested(void **state)
 /* Beside each other, one inside out. */
 static void test_one_of_two_inverted(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     solid_add_box(&b.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(0, 1, 1), false);
     solid_add_box(&b.triangles, csg_vec3_make(0.5, -1, -1), csg_vec3_make(1, 1, 1), true);
     make(&b);
@@ -250,8 +236,8 @@ static void test_one_of_two_inverted(void **state)
 /* A seam whose two rims differ by rounding; and corners in the middle of a neighbour's edge. */
 static void test_seams(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_ball(&b, 1);
     csg_triangles apart;
     csg_random random = {12};
@@ -274,8 +260,8 @@ static void test_seams(void **state)
 
 static void test_t_junction(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_box(&b, -1, 1, false);
     /* the edge from corner 0 to 1 gets a point on one side only */
     assert_true(csg_triangles_add_point(&b.triangles, csg_vec3_make(0.25, -1, -1)));
@@ -299,8 +285,8 @@ static void test_t_junction(void **state)
 /* An open bowl becomes full; a strip with a half turn becomes something closed. */
 static void test_sheets(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     solid_add_ball(&b.triangles, csg_vec3_make(0, 0, 0), 1, 300, 20, 0);
     for (size_t i = b.triangles.count; i-- > 0;) {
         bool above = false;
@@ -315,7 +301,7 @@ static void test_sheets(void **state)
     assert_true(value(&b, 0, 0, -0.3) > 0.29 && value(&b, 0, 0, 0.3) < -0.29);
     end(&b);
 
-    begin(&b);
+    solid_begin(&b);
     for (uint32_t i = 0; i < 24; i++) {
         double turn = M_PI * i / 24, around = 2 * M_PI * i / 24;
         for (int side = -1; side <= 1; side += 2) {
@@ -333,7 +319,7 @@ static void test_sheets(void **state)
     end(&b);
 }
 
-static void add_corner_triangle(broken *b, csg_vec3 p, csg_vec3 q, csg_vec3 r)
+static void add_corner_triangle(solid_case *b, csg_vec3 p, csg_vec3 q, csg_vec3 r)
 {
     uint32_t first = (uint32_t)b->triangles.point_count;
     assert_true(csg_triangles_add_point(&b->triangles, p) &&
@@ -345,8 +331,8 @@ static void add_corner_triangle(broken *b, csg_vec3 p, csg_vec3 q, csg_vec3 r)
 /* A loose flat sheet beside a box is nothing; not even a surface. */
 static void test_loose_sheet(void **state)
 {
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     add_box(&b, -0.5, 0.5, false);
     csg_vec3 p = {0.7, -1, -1}, q = {0.7, 1, -1}, r = {0.9, 1, 1}, s = {0.9, -1, 1};
     add_corner_triangle(&b, p, q, r);
@@ -363,8 +349,8 @@ static void test_bow_tie(void **state)
     static const double loop[4][2] = {{-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
     static const uint32_t faces[6][4] = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
                                          {3, 0, 4, 7}, {3, 2, 1, 0}, {4, 5, 6, 7}};
-    broken b;
-    begin(&b);
+    solid_case b;
+    solid_begin(&b);
     for (int i = 0; i < 8; i++)
         assert_true(csg_triangles_add_point(&b.triangles,
                                             csg_vec3_make(loop[i % 4][0], loop[i % 4][1], i / 4)));
@@ -378,8 +364,8 @@ static void test_bow_tie(void **state)
 static void test_nothing_left(void **state)
 {
     for (int kind = 0; kind < 7; kind++) {
-        broken b;
-        begin(&b);
+        solid_case b;
+        solid_begin(&b);
         csg_vec3 p = {0, 0, 0}, q = {1, 0.5, 0.25}, r = {0, 1, 0.7};
         if (kind == 1) /* no area */
             add_corner_triangle(&b, p, q, csg_vec3_scale(q, 3));
@@ -411,15 +397,15 @@ static void test_nothing_left(void **state)
 static void test_mended_is_clean(void **state)
 {
     csg_random random = {13};
-    broken b, again;
-    begin(&b);
+    solid_case b, again;
+    solid_begin(&b);
     add_ball(&b, 1);
     for (int i = 0; i < 40; i++)
         solid_remove(&b.triangles, csg_random_below(&random, (uint32_t)b.triangles.count));
     for (int i = 0; i < 40; i++)
         solid_flip(&b.triangles, csg_random_below(&random, (uint32_t)b.triangles.count));
     make(&b);
-    begin(&again);
+    solid_begin(&again);
     solid_add_copy(&again.triangles, csg_polyhedron_triangles(b.shape));
     make(&again);
     csg_repairs nothing = {.nonmanifold = again.repairs.nonmanifold,
@@ -436,7 +422,7 @@ static void test_mended_is_clean(void **state)
 /* ---- soups of triangles over a few lattice points ---------------------------------------------
  */
 
-static void add_soup(broken *b, csg_random *random, uint32_t side)
+static void add_soup(solid_case *b, csg_random *random, uint32_t side)
 {
     uint32_t points = 4 + csg_random_below(random, 14), count = 1 + csg_random_below(random, 40);
     for (uint32_t i = 0; i < points; i++) {
@@ -451,7 +437,7 @@ static void add_soup(broken *b, csg_random *random, uint32_t side)
 }
 
 /* Rows that run along edges and through corners, or just beside them. */
-static void check_rows(const broken *b, csg_random *random, uint32_t side)
+static void check_rows(const solid_case *b, csg_random *random, uint32_t side)
 {
     enum { COUNT = 60 };
     float x[COUNT], y[COUNT], z[COUNT], f[COUNT];
@@ -480,9 +466,9 @@ static void test_soups(void **state)
     csg_random random = {14};
     int made = 0;
     for (int i = 0; i < 500; i++) {
-        broken b;
+        solid_case b;
         uint32_t side = 2 + csg_random_below(&random, 4);
-        begin(&b);
+        solid_begin(&b);
         add_soup(&b, &random, side);
         csgm_status status = try_make(&b);
         assert_true(status == CSGM_OK || status == CSGM_ERR_SCENE);

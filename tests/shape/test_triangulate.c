@@ -2,30 +2,13 @@
  * Convex hulls and triangles of outlines made by hand and at random: with holes, islands in them,
  * holes that touch, corners on straight edges; every allocation failing once.
  */
-#include "outline_support.h"
+#include "outline_fixture.h"
 
 #include <stdlib.h>
 #include <time.h>
 
 #include "shape/polygons.h"
 #include "shape/turn.h"
-
-static csg_memory memory;
-static csg_outline outline;
-
-static int begin(void **state)
-{
-    csg_memory_init(&memory, NULL, 0);
-    csg_outline_init(&outline, &memory);
-    return 0;
-}
-
-static int end(void **state)
-{
-    csg_outline_release(&outline);
-    assert_int_equal(memory.used_bytes, 0);
-    return 0;
-}
 
 static void add_loop(const double (*points)[2], int count)
 {
