@@ -10,10 +10,6 @@
  * alone creeps. Hardly an edge gets that far. */
 enum { MOST_STEPS = 32, BISECTION_EVERY = 4 };
 
-/* Roots keep this far from the ends of their edge: vertices of different edges then lie apart
- * and no triangle collapses where the surface runs through lattice points. */
-static const float END_DISTANCE = 0x1p-12f;
-
 static size_t padded(uint32_t count)
 {
     return (count + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
@@ -127,8 +123,8 @@ uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float noise, float *
     }
     for (size_t i = 0; i < n; i++) {
         float t = e->t[i];
-        t = t > END_DISTANCE ? t : END_DISTANCE;
-        e->t[i] = t < 1 - END_DISTANCE ? t : 1 - END_DISTANCE;
+        t = t > e->end_distance ? t : e->end_distance;
+        e->t[i] = t < 1 - e->end_distance ? t : 1 - e->end_distance;
     }
     place(e);
     return evaluations;

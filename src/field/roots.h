@@ -15,6 +15,7 @@ enum {
 /* Edges from a to b = a + d, one coordinate of d not zero. Arrays of whole CSG_LANES. */
 struct csg_edges {
     uint32_t count;
+    float end_distance; /* roots keep this far from both ends: a part of the edge */
     float ax[CSG_BLOCK_MOST_EDGES], ay[CSG_BLOCK_MOST_EDGES], az[CSG_BLOCK_MOST_EDGES];
     float dx[CSG_BLOCK_MOST_EDGES], dy[CSG_BLOCK_MOST_EDGES], dz[CSG_BLOCK_MOST_EDGES];
     /* results: the point on the edge, and working room */

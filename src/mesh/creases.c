@@ -287,7 +287,6 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
         return CSGM_OK;
     if (!csg_feature_store_index(&w->features))
         return csg_context_no_memory(w->context);
-    w->marching.shift = csg_vec3_sub(w->field->center, csg_mesh_origin_of(w));
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
     return settle_features(w) ? CSGM_OK : csg_mesh_why_stopped(w);
 }

@@ -212,6 +212,7 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_m
                           room->channels[3]};
     if (!e->count)
         return 0;
+    e->end_distance = m->end_distance;
     uint64_t evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     if (out->normals) {
@@ -437,6 +438,7 @@ uint64_t csg_marching_roots(const csg_marching *m, const csg_block *block, csg_e
         tape.nodes = part ? part->nodes : block->nodes;
         tape.count = part ? part->node_count : block->node_count;
         collect_all_edges(block, &lines, part != NULL, octant, edges);
+        edges->end_distance = m->end_distance;
         if (edges->count)
             evaluations += m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
         for (uint32_t i = 0; i < edges->count; i++) {

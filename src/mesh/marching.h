@@ -91,8 +91,9 @@ typedef struct csg_marching {
     const csg_marching_places *places;
     csg_block *const *blocks;
     const csg_block_index *index;
-    csg_vec3 shift; /* field frame -> relative to the mesh's origin */
-    float noise;    /* of the field's values: rounding */
+    csg_vec3 shift;     /* field frame -> relative to the mesh's origin */
+    float noise;        /* of the field's values: rounding */
+    float end_distance; /* of vertices from lattice points: a part of a cell */
 } csg_marching;
 
 static inline void csg_marching_shift(const csg_marching *m, const float at[3], float out[3])

@@ -202,6 +202,19 @@ csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds)
     return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
 }
 
+/* Vertices keep this far from the ends of their edge, so that those of different edges lie apart
+ * and no triangle collapses where the surface runs through lattice points: three units in the last
+ * place of the mesh's largest coordinates are more than all roundings on the way. */
+static float end_distance_of(const csg_mesh_work *w)
+{
+    const double usual = 0x1p-12, most = 0.25;
+    csg_vec3 shift = w->marching.shift;
+    double largest =
+        csg_lattice_extent(&w->lattice) + fmax(fabs(shift.x), fmax(fabs(shift.y), fabs(shift.z)));
+    double units = 3 * (double)FLT_EPSILON * largest / w->lattice.cell_size;
+    return (float)fmin(fmax(units, usual), most);
+}
+
 static void prepare_marching(csg_mesh_work *w)
 {
     double slope = (double)w->field->tape.lipschitz;
@@ -214,7 +227,9 @@ static void prepare_marching(csg_mesh_work *w)
         .index = &w->index,
         /* what a unit in the last place of a coordinate changes */
         .noise = (float)((double)FLT_EPSILON * csg_lattice_extent(&w->lattice) * slope),
+        .shift = csg_vec3_sub(w->field->center, csg_mesh_origin_of(w)),
     };
+    w->marching.end_distance = end_distance_of(w);
 }
 
 /* Where the mesh goes: arrays of its own, or a receiver. */
@@ -269,9 +284,7 @@ csgm_status csg_mesh_create_workers(csg_mesh_work *w)
 
 csgm_status csg_mesh_begin_output(csg_mesh_work *w)
 {
-    csgm_status status = begin_arrays(w);
-    w->marching.shift = csg_vec3_sub(w->field->center, w->counts.origin);
-    return status;
+    return begin_arrays(w);
 }
 
 csgm_status csg_mesh_make_blocks(csg_mesh_work *w)
