@@ -3,6 +3,8 @@
  */
 #include "grid/certify_reach.h"
 
+#include "field/cone.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -125,25 +127,61 @@ static bool are_connected(const csg_reach *reach, double apart, double one, doub
                           fmin(one, reach->band) + fmin(other, reach->band);
 }
 
-/* Moves to the best of the points around, where it is better by a part of the step. */
-static bool climb(const csg_reach *reach, double p[3], double *value, int sign, double step)
+/* Whether p may go to `to`, better by a part of the step. */
+static bool is_better(const csg_reach *reach, const double p[3], const double to[3], double step,
+                      double value, double risen)
 {
     const double least = 0.05; /* of what the Lipschitz constant allows */
+    return risen > value + least * step * reach->lipschitz &&
+           are_connected(reach, distance(p, to), value, risen) && is_within(reach, to);
+}
+
+/* Moves to the best of the points around, where it is better. */
+static bool climb(const csg_reach *reach, double p[3], double *value, int sign, double step)
+{
     double points[CANDIDATES][3], values[CANDIDATES];
     int best = -1;
-    double most = *value + least * step * reach->lipschitz;
     look_up(reach, p, *value, sign, step, points, values);
     for (int i = 0; i < CANDIDATES; i++)
-        if (sign * values[i] > most &&
-            are_connected(reach, distance(p, points[i]), *value, sign * values[i])) {
-            most = sign * values[i];
+        if ((best < 0 || sign * values[i] > sign * values[best]) &&
+            is_better(reach, p, points[i], step, *value, sign * values[i]))
             best = i;
-        }
-    if (best < 0 || !is_within(reach, points[best]))
+    if (best < 0)
         return false;
     memcpy(p, points[best], 3 * sizeof *p);
-    *value = most;
+    *value = sign * values[best];
     return true;
+}
+
+/* Where several surfaces meet, the way up may lie between all directions that were tried: it is
+ * the one that climbs along all the gradients around (gradient sampling: Burke, Lewis and Overton
+ * 2005). */
+static bool climb_ridge(const csg_reach *reach, double p[3], double *value, int sign, double step)
+{
+    double points[WAYS][3], to[2][3], risen[2];
+    csg_cone_balls balls = {.count = 0};
+    csg_cone cone;
+    around(p, step / 2, points);
+    for (int i = 0; i < WAYS; i++) {
+        csg_cone_ball *ball = &balls.items[balls.count++];
+        csg_reach_gradient(reach, points[i], ball->at);
+        for (int axis = 0; axis < 3; axis++)
+            ball->at[axis] *= sign;
+        ball->spread = 0;
+    }
+    if (!csg_cone_find_axis(&balls, &cone))
+        return false;
+    for (int k = 0; k < 2; k++)
+        for (int axis = 0; axis < 3; axis++)
+            to[k][axis] = p[axis] + step / (k + 1) * cone.axis[axis];
+    csg_reach_values(reach, (const double(*)[3])to, 2, risen);
+    for (int k = 0; k < 2; k++)
+        if (is_better(reach, p, to[k], step / (k + 1), *value, sign * risen[k])) {
+            memcpy(p, to[k], 3 * sizeof *p);
+            *value = sign * risen[k];
+            return true;
+        }
+    return false;
 }
 
 static void add_to_trail(csg_reach_trail *trail, const double p[3], double value, int sign)
@@ -275,7 +313,7 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
     for (int i = 0; i < MOST_CLIMBS && !found && step >= least; i++) {
         if (step < h / SHORTEST && (value < 0 || step < value / (4 * reach->lipschitz)))
             break; /* the part's thickest place */
-        if (!climb(reach, p, &value, sign, step)) {
+        if (!climb(reach, p, &value, sign, step) && !climb_ridge(reach, p, &value, sign, step)) {
             step /= 2;
         } else {
             found = holds_sample(reach, p, value, sign);
