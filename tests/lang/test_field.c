@@ -10,11 +10,9 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
+#include "lang/bench_fixture.h"
 #include "scene/print.h"
 #include "scene/reference.h"
-
-static bench b;
 
 static double value_at(csg_vec3 p)
 {
@@ -206,18 +204,6 @@ static void test_no_memory(void **state)
         assert_true(n < 10000);
     }
     bench_open(&b, NULL);
-}
-
-static int open_bench(void **state)
-{
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int close_bench(void **state)
-{
-    bench_close(&b);
-    return 0;
 }
 
 int main(void)

@@ -13,9 +13,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "failing.h"
-#include "lang/support.h"
-
-static bench b;
+#include "lang/bench_fixture.h"
 
 static void check_limit(const char *scene, int code)
 {
@@ -251,20 +249,6 @@ static void noise_never_crashes(void **state)
     assert_true(understood > 0);
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,5 +256,5 @@ int main(void)
         cmocka_unit_test(long_chains_are_no_nesting), cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(the_memory_limit_holds),     cmocka_unit_test(noise_never_crashes),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, open_bench, close_bench);
 }

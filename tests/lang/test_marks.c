@@ -11,12 +11,10 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
+#include "lang/bench_fixture.h"
 #include "scene/collected_text.h"
 #include "scene/print.h"
 #include "scene/reference.h"
-
-static bench b;
 
 /* Its field at a point; NAN: nothing is marked so. */
 static double mark_at(csg_scene_mark kind, double x, double y, double z)
@@ -116,20 +114,6 @@ static void the_scene_is_the_same(void **state)
         free(with.data);
         free(without.data);
     }
-}
-
-static int open_bench(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int close_bench(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
 }
 
 int main(void)

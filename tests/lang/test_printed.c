@@ -10,14 +10,12 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
+#include "lang/bench_fixture.h"
 #include "scene/build.h"
 #include "scene/collected_text.h"
 #include "scene/print.h"
 #include "scene/random_scene.h"
 #include "shape/polyhedron.h"
-
-static bench b;
 
 static text print(const csgm_scene *scene)
 {
@@ -303,20 +301,6 @@ static void what_is_no_node_is_refused(void **state)
     }
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -325,5 +309,5 @@ int main(void)
         cmocka_unit_test(mended_solids_parse_back),
         cmocka_unit_test(what_is_no_node_is_refused),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, open_bench, close_bench);
 }

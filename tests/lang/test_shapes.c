@@ -13,13 +13,11 @@
 #include <cmocka.h>
 
 #include "failing.h"
-#include "lang/support.h"
+#include "lang/bench_fixture.h"
 #include "scene/bounds.h"
 #include "scene/reference.h"
 
 #define PI 3.14159265358979323846
-
-static bench b;
 
 typedef struct solid {
     const char *scene;
@@ -570,20 +568,6 @@ static void every_allocation_may_fail(void **state)
     }
     bench_close(&poor);
     assert_true(failures > 100);
-}
-
-static int open_bench(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int close_bench(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
 }
 
 int main(void)

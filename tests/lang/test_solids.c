@@ -9,11 +9,9 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
+#include "lang/bench_fixture.h"
 #include "scene/print.h"
 #include "scene/reference.h"
-
-static bench b;
 
 static double value_at(double x, double y, double z)
 {
@@ -296,20 +294,6 @@ static void printed_scenes_parse_back(void **state)
     }
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -323,5 +307,5 @@ int main(void)
         cmocka_unit_test(the_mug_of_the_manual_compiles),
         cmocka_unit_test(printed_scenes_parse_back),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, open_bench, close_bench);
 }

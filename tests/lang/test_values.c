@@ -8,23 +8,7 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
-
-static bench b;
-
-static int setup(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    bench_close(&b);
-    return 0;
-}
+#include "lang/bench_fixture.h"
 
 static void echo_prints_what_openscad_prints(void **state)
 {
@@ -170,5 +154,5 @@ int main(void)
         cmocka_unit_test(differences_are_on_purpose),
         cmocka_unit_test(names_are_found_where_openscad_finds_them),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, open_bench, close_bench);
 }
