@@ -1,43 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * What hides between lattice points is found, what does not hide is not; cones hold.
+ * What hides between lattice points is found, what does not hide is not.
  * Arguments: poses of each planted part, 8 by default.
  */
 #include <stdlib.h>
 #include <string.h>
 
-#include "field/cone.h"
 #include "grid/certify.h"
 #include "mesh/mesh_support.h"
 
 static uint32_t pose_count = 8;
-
-/* ---- cones ---------------------------------------------------------------------------------- */
-
-/* A cone's promise, tried at random points of its ball. Returns whether there was a cone. */
-static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_random *random,
-                     csg_vec3 at, double radius)
-{
-    csg_cone cone;
-    const float c[3] = {(float)(at.x - field->center.x), (float)(at.y - field->center.y),
-                        (float)(at.z - field->center.z)};
-    csg_pruner room;
-    csg_pruner_init(&room, &field->context->memory, csg_kernel_for(CSGM_ISA_AUTO), 0);
-    bool found = csg_cone_find(&room, &field->tape, c, radius, &cone);
-    csg_pruner_release(&room);
-    if (!found)
-        return false;
-    assert_true(cone.least > 0);
-    for (int i = 0; i < 60; i++) {
-        csg_vec3 d =
-            csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
-        csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
-        double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
-        if (!(climb >= cone.least - 1e-3 || csg_vec3_norm(g) < 1e-9))
-            fail_msg("the field climbs by %g, not %g, near (%g, %g, %g) within %g", climb,
-                     cone.least, at.x, at.y, at.z, radius);
-    }
-    return true;
-}
 
 static csg_node_id primitive(mesh_case *c, int kind, csg_random *random)
 {
@@ -71,44 +42,6 @@ static csg_node_id posed(mesh_case *c, csg_node_id node, csg_random *random)
     node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
     return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
                  csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
-}
-
-static csg_blend any_blend(csg_random *random)
-{
-    const csg_blend blends[] = {SHARP,
-                                ROUND(0.2),
-                                {CSG_BLEND_PARABOLA, 0.4},
-                                {CSG_BLEND_CHAMFER, 0.1},
-                                {CSG_BLEND_HYPERBOLA, 0.02}};
-    return blends[(int)csg_random_uniform(random, 0, 4.999)];
-}
-
-static void cones_hold(void **state)
-{
-    (void)state;
-    csg_random random = {.state = 81};
-    uint32_t found = 0;
-    for (int kind = 0; kind < 36; kind++) {
-        mesh_case c;
-        mesh_case_begin(&c, 1);
-        csg_node_id root = posed(&c, primitive(&c, kind, &random), &random);
-        if (kind >= 9) {
-            csg_node_id other = posed(&c, primitive(&c, kind / 2, &random), &random);
-            csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
-                                         CSG_NODE_INTERSECTION};
-            root = joined(&c, operators[kind % 3], any_blend(&random), root, other);
-        }
-        if (kind % 4 == 3) {
-            csg_affine stretch = csg_affine_scale(csg_vec3_make(1.5, 0.8, 1));
-            root = csg_build_transform(&c.builder, &stretch, root, NOWHERE);
-        }
-        mesh_case_compile(&c, root);
-        for (int i = 0; i < 250; i++)
-            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.6),
-                              exp(csg_random_uniform(&random, -5, -0.5)));
-        mesh_case_end(&c);
-    }
-    assert_true(found > 3000);
 }
 
 /* ---- what hides ----------------------------------------------------------------------------- */
@@ -317,7 +250,6 @@ static void runs_out_and_stops(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cones_hold),
         cmocka_unit_test(planted_parts_are_found),
         cmocka_unit_test(clean_scenes_are_clean),
         cmocka_unit_test(reports_do_not_depend_on_threads),

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: MIT
+ * Cones of gradients hold: what cone.h promises of a ball, tried at random points of it, for every
+ * kind of leaf and operator. Arguments: scenes of each kind, 24 by default.
+ */
+#include <stdlib.h>
+
+#include "field/cone.h"
+#include "mesh/mesh_support.h"
+#include "scene/random_formula.h"
+#include "shape/polyhedron.h"
+#include "shape/region.h"
+
+static uint32_t scene_count = 24;
+
+enum { TRIES = 60 };
+
+/* A cone's promise, tried at random points of its ball. Returns whether there was a cone. */
+static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_random *random,
+                     csg_vec3 at, double radius)
+{
+    csg_cone cone;
+    const float c[3] = {(float)(at.x - field->center.x), (float)(at.y - field->center.y),
+                        (float)(at.z - field->center.z)};
+    csg_pruner room;
+    csg_pruner_init(&room, &field->context->memory, csg_kernel_for(CSGM_ISA_AUTO), 0);
+    bool found = csg_cone_find(&room, &field->tape, c, radius, &cone);
+    csg_pruner_release(&room);
+    if (!found)
+        return false;
+    assert_true(cone.least > 0);
+    for (int i = 0; i < TRIES; i++) {
+        csg_vec3 d =
+            csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
+        csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
+        double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
+        if (csg_vec3_norm(g) > cone.most + 1e-3)
+            fail_msg("a slope of %g, not %g at most, near (%g, %g, %g) within %g", csg_vec3_norm(g),
+                     cone.most, at.x, at.y, at.z, radius);
+        if (!(climb >= cone.least - 1e-3 || csg_vec3_norm(g) < 1e-9))
+            fail_msg("the field climbs by %g, not %g, near (%g, %g, %g) within %g", climb,
+                     cone.least, at.x, at.y, at.z, radius);
+    }
+    return true;
+}
+
+static csg_node_id primitive(mesh_case *c, int kind, csg_random *random)
+{
+    double a = csg_random_uniform(random, 0.3, 1), b = csg_random_uniform(random, 0.3, 1);
+    double e = csg_random_uniform(random, 0.3, 1);
+    double r = kind % 2 ? 0 : 0.2 * fmin(a, fmin(b, e));
+    csg_scene_builder *build = &c->builder;
+    switch (kind % 9) {
+    case 0:
+        return csg_build_primitive(build, CSG_NODE_SPHERE, (double[]){a}, NOWHERE);
+    case 1:
+    case 2:
+        return csg_build_primitive(build, CSG_NODE_BOX, (double[]){a, b, e, r}, NOWHERE);
+    case 3:
+    case 4:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, b, e, r}, NOWHERE);
+    case 5:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, 0, e, 0}, NOWHERE);
+    case 6:
+        return csg_build_primitive(build, CSG_NODE_CAPSULE, (double[]){1.5, a * 0.5, b * 0.5},
+                                   NOWHERE);
+    case 7:
+        return csg_build_primitive(build, CSG_NODE_TORUS, (double[]){a + 0.3, 0.25, 180}, NOWHERE);
+    default:
+        return csg_build_primitive(build, CSG_NODE_ELLIPSOID, (double[]){a, b, e}, NOWHERE);
+    }
+}
+
+static csg_node_id posed(mesh_case *c, csg_node_id node, csg_random *random)
+{
+    node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
+    return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
+                 csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
+}
+
+static csg_blend any_blend(csg_random *random)
+{
+    const csg_blend blends[] = {SHARP,
+                                ROUND(0.2),
+                                {CSG_BLEND_PARABOLA, 0.4},
+                                {CSG_BLEND_CHAMFER, 0.1},
+                                {CSG_BLEND_HYPERBOLA, 0.02}};
+    return blends[(int)csg_random_uniform(random, 0, 4.999)];
+}
+
+static void cones_hold(void **state)
+{
+    (void)state;
+    csg_random random = {.state = 81};
+    uint32_t found = 0;
+    for (int kind = 0; kind < 36; kind++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id root = posed(&c, primitive(&c, kind, &random), &random);
+        if (kind >= 9) {
+            csg_node_id other = posed(&c, primitive(&c, kind / 2, &random), &random);
+            csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
+                                         CSG_NODE_INTERSECTION};
+            root = joined(&c, operators[kind % 3], any_blend(&random), root, other);
+        }
+        if (kind % 4 == 3) {
+            csg_affine stretch = csg_affine_scale(csg_vec3_make(1.5, 0.8, 1));
+            root = csg_build_transform(&c.builder, &stretch, root, NOWHERE);
+        }
+        mesh_case_compile(&c, root);
+        for (int i = 0; i < 250; i++)
+            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.6),
+                              exp(csg_random_uniform(&random, -5, -0.5)));
+        mesh_case_end(&c);
+    }
+    assert_true(found > 3000);
+}
+
+/* ---- other leaves ---------------------------------------------------------------------------- */
+
+typedef csg_node_id make_node(mesh_case *c, csg_random *random);
+
+/* Balls of all sizes in scenes of one kind; some cones must be found, or nothing was tried. */
+static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t least_found)
+{
+    csg_random random = {.state = seed};
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < scene_count; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id node = make(&c, &random);
+        if (node == CSG_NODE_NONE) {
+            csg_build_abandon(&c.builder);
+            c.scene = NULL;
+            mesh_case_end(&c);
+            continue;
+        }
+        mesh_case_compile(&c, posed(&c, node, &random));
+        for (int k = 0; k < 250; k++)
+            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.4),
+                              exp(csg_random_uniform(&random, -6, -0.5)));
+        mesh_case_end(&c);
+    }
+    if (found < least_found * scene_count / 24)
+        fail_msg("%s: only %u cones", name, found);
+}
+
+/* A star with a hole in it, extruded. */
+static csg_node_id outline(mesh_case *c, csg_random *random)
+{
+    csg_outline star;
+    csg_shape *shape = NULL;
+    int count = 5 + (int)csg_random_uniform(random, 0, 40);
+    csg_outline_init(&star, &c->context.memory);
+    for (int i = 0; i < count; i++) {
+        double r = csg_random_uniform(random, 0.5, 1), angle = i * 6.283185307179586 / count;
+        assert_true(csg_outline_add(&star, (csg_vec2){r * cos(angle), r * sin(angle)}));
+    }
+    assert_true(csg_outline_close(&star));
+    static const csg_vec2 hole[4] = {{-0.2, -0.2}, {-0.2, 0.1}, {0.2, 0.1}, {0.2, -0.2}};
+    for (int i = 0; i < 4; i++)
+        assert_true(csg_outline_add(&star, hole[i]));
+    assert_true(csg_outline_close(&star));
+    assert_int_equal(csg_region_create(&c->context.memory, &star, &shape), CSGM_OK);
+    csg_outline_release(&star);
+    csg_node_id node = csg_build_shape(&c->builder, shape, NOWHERE);
+    return csg_build_extrude(&c->builder, node, -0.5, csg_random_uniform(random, -0.3, 0.7),
+                             NOWHERE);
+}
+
+/* A ball of triangles with another radius at every corner, or two of them that overlap. */
+static void add_bumpy(csg_triangles *t, csg_random *random, double x)
+{
+    enum { RINGS = 6, AROUND = 9 };
+    uint32_t base = (uint32_t)t->point_count;
+    for (int i = 0; i <= RINGS; i++)
+        for (int k = 0; k < (i % RINGS ? AROUND : 1); k++) {
+            double polar = i * 3.14159265358979 / RINGS, angle = k * 6.283185307179586 / AROUND;
+            double r = csg_random_uniform(random, 0.5, 0.9);
+            assert_true(csg_triangles_add_point(t, csg_vec3_make(x + r * sin(polar) * cos(angle),
+                                                                 r * sin(polar) * sin(angle),
+                                                                 r * cos(polar))));
+        }
+    uint32_t last = base + 1 + (RINGS - 1) * AROUND;
+    for (uint32_t k = 0; k < AROUND; k++) {
+        uint32_t next = (k + 1) % AROUND, low = base + 1 + (RINGS - 2) * AROUND;
+        assert_true(csg_triangles_add(t, base, base + 1 + k, base + 1 + next));
+        assert_true(csg_triangles_add(t, last, low + next, low + k));
+        for (uint32_t i = 0; i + 2 < RINGS; i++) {
+            uint32_t at = base + 1 + i * AROUND;
+            assert_true(csg_triangles_add(t, at + k, at + AROUND + k, at + AROUND + next));
+            assert_true(csg_triangles_add(t, at + k, at + AROUND + next, at + next));
+        }
+    }
+}
+
+static csg_node_id polyhedron(mesh_case *c, csg_random *random)
+{
+    csg_triangles triangles;
+    csg_shape *shape = NULL;
+    csg_triangles_init(&triangles, &c->context.memory);
+    add_bumpy(&triangles, random, -0.3);
+    if (csg_random_uniform(random, 0, 1) < 0.5)
+        add_bumpy(&triangles, random, 0.4);
+    assert_int_equal(csg_polyhedron_create(&c->context.memory, &triangles, NULL, &shape), CSGM_OK);
+    csg_triangles_release(&triangles);
+    return csg_build_shape(&c->builder, shape, NOWHERE);
+}
+
+static csg_node_id formula(mesh_case *c, csg_random *random)
+{
+    csg_formula_step steps[TEST_MOST_STEPS];
+    uint32_t count = test_random_formula(&c->context.memory, random, 8, true, steps);
+    csg_box box = {{-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}};
+    return csg_build_field(&c->builder, steps, count, box, true, 100, NOWHERE);
+}
+
+/* Extrusions, revolutions, twisted and bent solids, slices, offsets. */
+static csg_node_id shaped(mesh_case *c, csg_random *random)
+{
+    return test_random_shaped(&c->builder, random);
+}
+
+/* A formula of three solids' fields. */
+static csg_node_id combination(mesh_case *c, csg_random *random)
+{
+    csg_formula_step steps[TEST_MOST_STEPS];
+    csg_node_id children[3];
+    for (int i = 0; i < 3; i++)
+        children[i] =
+            posed(c, primitive(c, (int)csg_random_uniform(random, 0, 8.99), random), random);
+    uint32_t count = test_random_formula(&c->context.memory, random, 5, true, steps);
+    return csg_build_combine(&c->builder, steps, count, 100, children, 3, NOWHERE);
+}
+
+/* Soft solids and blends of every rule. */
+static csg_node_id ruled(mesh_case *c, csg_random *random)
+{
+    test_random_rules = true;
+    csg_node_id node = test_random_scene(&c->builder, random, 3);
+    test_random_rules = false;
+    return node;
+}
+
+static void cones_of_outlines_hold(void **state)
+{
+    (void)state;
+    try_kind("outlines", outline, 91, 1700);
+}
+
+static void cones_of_polyhedra_hold(void **state)
+{
+    (void)state;
+    try_kind("polyhedra", polyhedron, 92, 1700);
+}
+
+static void cones_of_formulas_hold(void **state)
+{
+    (void)state;
+    try_kind("formulas", formula, 93, 1700);
+}
+
+static void cones_of_warps_hold(void **state)
+{
+    (void)state;
+    try_kind("warps", shaped, 94, 1700);
+}
+
+static void cones_of_combinations_hold(void **state)
+{
+    (void)state;
+    try_kind("combinations", combination, 95, 1000);
+}
+
+static void cones_of_rules_hold(void **state)
+{
+    (void)state;
+    try_kind("rules", ruled, 96, 1000);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cones_hold),
+        cmocka_unit_test(cones_of_outlines_hold),
+        cmocka_unit_test(cones_of_polyhedra_hold),
+        cmocka_unit_test(cones_of_formulas_hold),
+        cmocka_unit_test(cones_of_warps_hold),
+        cmocka_unit_test(cones_of_combinations_hold),
+        cmocka_unit_test(cones_of_rules_hold),
+    };
+    if (argc > 1)
+        scene_count = (uint32_t)strtoul(argv[1], NULL, 10);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
