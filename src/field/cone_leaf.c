@@ -17,6 +17,7 @@
 #include <math.h>
 
 #include "field/cone.h"
+#include "field/cone_curve.h"
 #include "field/cone_formula.h"
 #include "field/cone_warp.h"
 #include "field/formulas.h"
@@ -315,6 +316,7 @@ static bool add_formula(local *l, const csg_tape *tape)
 
 static bool add_own(local *l, uint8_t op)
 {
+    double g[3], spread;
     switch (op) {
     case CSG_OP_SPHERE:
         return add_sphere(l);
@@ -336,6 +338,9 @@ static bool add_own(local *l, uint8_t op)
         return add_box(l, 2);
     case CSG_OP_SLAB:
         return add_slab(l);
+    case CSG_OP_QUADRATIC_TUBE:
+    case CSG_OP_CUBIC_TUBE:
+        return csg_cone_curve(l->own, l->q, l->rho, g, &spread) && add(l, g[0], g[1], g[2], spread);
     default:
         return false;
     }

@@ -5,6 +5,7 @@
  * into.
  */
 #include "field/compile_curve.h"
+#include "field/cone_curve.h"
 #include "field/field_support.h"
 #include "scene/random_curve.h"
 
@@ -26,14 +27,14 @@ static csg_affine any_place(csg_random *random, int kind)
                     : test_random_affine(random, 0.5, 2, 1);
 }
 
-/* What the smallest leaf's slack allows; a union's error is no larger than its operands'. */
+/* A union's error is no larger than its operands'. */
 static double slack_of(const csg_tape *tape)
 {
-    double slack = INFINITY;
+    double slack = 0;
     for (uint32_t i = 0; i < tape->count; i++)
         if (csg_op_is_leaf(tape->nodes[i].op))
             slack =
-                fmin(slack, (double)tape->parameters[tape->nodes[i].parameters + CSG_LEAF_SLACK]);
+                fmax(slack, (double)tape->parameters[tape->nodes[i].parameters + CSG_LEAF_SLACK]);
     return slack;
 }
 
@@ -132,11 +133,39 @@ static void fill_points(const test_subject *s, csg_random *random, const csg_aff
     }
 }
 
+/* Gradients in a ball keep to the cone that is claimed of a leaf whose frame is an offset. */
+static void check_cone(const test_subject *s, csg_random *random, uint32_t *claims)
+{
+    const csg_tape *tape = &s->field->tape;
+    const float *parameters = tape->parameters + tape->nodes[0].parameters;
+    if (tape->count > 1 || tape->nodes[0].frame != CSG_FRAME_OFFSET)
+        return;
+    for (int i = 0; i < 32; i++) {
+        csg_vec3 p = csg_vec3_add(s->field->center, test_point(random, 1.5));
+        double rho = pow(10, csg_random_uniform(random, -4, -0.5)), gradient[3], spread, q[3];
+        csg_vec3 from = csg_vec3_sub(p, s->field->center);
+        const double at[3] = {from.x, from.y, from.z};
+        for (int k = 0; k < 3; k++)
+            q[k] = at[k] - (double)parameters[CSG_LEAF_FRAME + k];
+        if (!csg_cone_curve(parameters + CSG_LEAF_OWN_OFFSET, q, rho, gradient, &spread))
+            continue;
+        csg_vec3 axis = {gradient[0], gradient[1], gradient[2]};
+        ++*claims;
+        for (int k = 0; k < 8; k++) {
+            double far = rho * cbrt(csg_random_uniform(random, 0, 1));
+            csg_vec3 near = csg_vec3_add(p, csg_vec3_scale(test_direction(random), far));
+            csg_vec3 away = csg_vec3_sub(test_sample(s->scene, near).gradient, axis);
+            assert_true(csg_vec3_norm(away) <= spread + 1e-5);
+        }
+    }
+}
+
 static void check_kind(csg_node_kind kind)
 {
     csg_random random = {7000 + (uint64_t)kind};
     static test_points points;
     static test_results results;
+    uint32_t claims = 0;
     for (int i = 0; i < POINTS / AT_A_CURVE; i++) {
         double v[CSG_CURVE_MOST * CSG_CURVE_AXES];
         test_subject s;
@@ -150,8 +179,10 @@ static void check_kind(csg_node_kind kind)
         check_values(&s, &points, &results);
         check_slopes(&s, &points, &results);
         check_ranges(&s, &points, &results, &random);
+        check_cone(&s, &random, &claims);
         test_subject_end(&s);
     }
+    assert_true(claims > POINTS / AT_A_CURVE / 2);
 }
 
 static void test_quadratic(void **state)
