@@ -274,7 +274,7 @@ static void cones_of_combinations_hold(void **state)
 static void cones_of_rules_hold(void **state)
 {
     (void)state;
-    try_kind("rules", ruled, 96, 1000);
+    try_kind("rules", ruled, 96, 400);
 }
 
 int main(int argc, char **argv)
