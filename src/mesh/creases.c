@@ -275,7 +275,8 @@ static bool uncross_features(csg_mesh_work *w, csg_feature_probe *probe)
 static bool settle_features(csg_mesh_work *w)
 {
     csg_feature_probe probe =
-        csg_feature_probe_of(&w->marching, NULL, w->workers[0].scratch, w->scratch_floats);
+        csg_feature_probe_of(&w->marching, NULL, &w->workers[0].features->around,
+                             &w->context->memory, w->workers[0].scratch, w->scratch_floats);
     bool done = order_features(w, &probe) && uncross_features(w, &probe);
     w->workers[0].point_evaluations += probe.evaluations;
     return done;

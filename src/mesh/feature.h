@@ -17,6 +17,7 @@
 #ifndef CSG_MESH_FEATURE_H
 #define CSG_MESH_FEATURE_H
 
+#include "mesh/feature_around.h"
 #include "mesh/marching.h"
 
 enum {
@@ -117,6 +118,7 @@ typedef struct csg_feature_room {
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
     uint64_t smooth, evaluations;
+    csg_feature_around around;
 } csg_feature_room;
 
 void csg_feature_room_init(csg_feature_room *room);

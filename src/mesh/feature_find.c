@@ -229,7 +229,8 @@ static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_bloc
 bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats)
 {
-    csg_feature_probe probe = csg_feature_probe_of(m, block, scratch, scratch_floats);
+    csg_feature_probe probe =
+        csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
     if (!csg_feature_is_possible(m, block, &probe))
         return true;
     room->evaluations +=
@@ -253,6 +254,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
 void csg_feature_room_init(csg_feature_room *room)
 {
     memset(&room->edges, 0, sizeof room->edges);
+    memset(&room->around, 0, sizeof room->around);
     room->features = NULL;
     room->blocks = NULL;
     room->count = room->capacity = room->block_count = room->block_capacity = 0;
@@ -261,6 +263,7 @@ void csg_feature_room_init(csg_feature_room *room)
 
 void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
 {
+    csg_feature_around_release(&room->around);
     csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
     csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
     room->features = NULL;
