@@ -42,7 +42,7 @@ bool csg_cloud_add(csg_cloud *cloud, csg_vec3 at, double radius)
 
 /* ---- taking apart ---------------------------------------------------------------------------- */
 
-static bool push(csg_pieces *pieces, csg_piece piece)
+bool csg_pieces_add(csg_pieces *pieces, csg_piece piece)
 {
     if (!csg_memory_reserve(pieces->memory, (void **)&pieces->items, &pieces->capacity,
                             pieces->count + 1, sizeof piece))
@@ -90,17 +90,17 @@ bool csg_pieces_collect(const csg_eval *e, csg_node_id root, csg_pieces *pieces)
     const csgm_scene *scene = e->builder.scene;
     csg_pieces work;
     csg_pieces_init(&work, pieces->memory);
-    bool ok = push(&work, (csg_piece){root, csg_affine_identity(), 0});
+    bool ok = csg_pieces_add(&work, (csg_piece){root, csg_affine_identity(), 0});
     while (ok && work.count) {
         csg_piece inner, piece = work.items[--work.count];
         const csg_node *node = &scene->nodes[piece.node];
         if (!is_transparent(e, &piece, &inner)) {
-            ok = node->kind == CSG_NODE_EMPTY || push(pieces, piece);
+            ok = node->kind == CSG_NODE_EMPTY || csg_pieces_add(pieces, piece);
             continue;
         }
         for (uint32_t i = node->child_count; i-- > 0 && ok;) {
             inner.node = csg_scene_children(scene, node)[i];
-            ok = push(&work, inner);
+            ok = csg_pieces_add(&work, inner);
         }
     }
     csg_pieces_release(&work);

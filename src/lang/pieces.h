@@ -42,6 +42,8 @@ bool csg_cloud_add(csg_cloud *cloud, csg_vec3 at, double radius);
  * them is within `tolerance` where the cloud's hull is round. flat: directions of the plane. */
 bool csg_cloud_spread(const csg_cloud *cloud, double tolerance, bool flat, csg_cloud *out);
 
+/* False: out of memory. */
+bool csg_pieces_add(csg_pieces *pieces, csg_piece piece);
 /* Appends the node's pieces. False: out of memory. */
 bool csg_pieces_collect(const csg_eval *e, csg_node_id node, csg_pieces *pieces);
 /* Appends balls that have the piece's hull, within `tolerance`. */

@@ -21,6 +21,8 @@ csg_node_id csg_shape_region(csg_module_call *call, csg_outline *clean);
 csg_node_id csg_shape_area(csg_module_call *call, csg_outline *outline, bool even_odd);
 /* The solid of the triangles, which are released; `told`: what was mended is a warning. */
 csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, bool told);
+/* A tube along a curve (scene/curve.h) as a union of capsules within 1e-4 of its largest radius. */
+csg_node_id csg_shape_capsules(csg_module_call *call, csg_node_kind kind, const double *parameters);
 /* A failure of csg_polygons_*, csg_hull and the like. `what` completes "cannot ...". Returns the
  * empty solid. */
 csg_node_id csg_shape_failed(csg_module_call *call, csgm_status status, const char *what);

@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "lang/pieces.h"
+#include "scene/curve.h"
 #include "shape/polygons.h"
 #include "shape/region.h"
 
@@ -261,6 +262,42 @@ static csg_node_id sum_pairs(summing *s)
     return node;
 }
 
+/* Capsules in the places of a tube along a curve, which is not convex. */
+static bool add_capsules(summing *s, const csg_piece *piece, csg_pieces *out)
+{
+    csg_eval *e = s->call->e;
+    const csg_node *node = &e->builder.scene->nodes[piece->node];
+    csg_node_id chain = csg_shape_capsules(s->call, (csg_node_kind)node->kind,
+                                           e->builder.scene->parameters + node->payload);
+    size_t first = out->count;
+    if (chain == CSG_NODE_NONE || !csg_pieces_collect(e, chain, out))
+        return false;
+    for (size_t i = first; i < out->count; i++) {
+        out->items[i].map = csg_affine_multiply(piece->map, out->items[i].map);
+        out->items[i].grow += piece->grow;
+    }
+    return true;
+}
+
+static bool split_curves(summing *s, csg_pieces *pieces)
+{
+    csg_eval *e = s->call->e;
+    csg_pieces all;
+    bool ok = true;
+    csg_pieces_init(&all, e->heap.memory);
+    for (size_t i = 0; i < pieces->count && ok; i++) {
+        const csg_piece *piece = &pieces->items[i];
+        ok = csg_node_is_curve(e->builder.scene->nodes[piece->node].kind)
+                 ? add_capsules(s, piece, &all)
+                 : csg_pieces_add(&all, *piece);
+    }
+    csg_pieces_release(pieces);
+    *pieces = all;
+    if (!ok && !e->stop)
+        csg_eval_no_memory(e);
+    return ok;
+}
+
 static csg_node_id sum(csg_module_call *call, csg_node_id a, csg_node_id b)
 {
     csg_eval *e = call->e;
@@ -281,7 +318,7 @@ static csg_node_id sum(csg_module_call *call, csg_node_id a, csg_node_id b)
         node = grow(call, a, ball);
     else if (is_one_ball(e, &s.a, &ball))
         node = grow(call, b, ball);
-    else
+    else if (split_curves(&s, &s.a) && split_curves(&s, &s.b))
         node = sum_pairs(&s);
     csg_pieces_release(&s.a);
     csg_pieces_release(&s.b);

@@ -234,3 +234,23 @@ csg_node_id csg_module_spline(csg_module_call *call)
         catmull_rom(&s, csg_argument_boolean(call, CLOSED));
     return finish(&s);
 }
+
+csg_node_id csg_shape_capsules(csg_module_call *call, csg_node_kind kind, const double *parameters)
+{
+    const double tolerance = 1e-4, most = 1e5; /* of the largest radius */
+    csg_curve curve = csg_curve_make(kind, parameters);
+    double largest = 0, at[CSG_CURVE_AXES];
+    for (int i = 0; i <= curve.degree; i++)
+        largest = fmax(largest, curve.at[i][CSG_CURVE_RADIUS]);
+    uint32_t chords = (uint32_t)fmin(csg_curve_chords(&curve, tolerance * largest), most);
+    skeleton s = {.call = call, .ok = true};
+    for (uint32_t i = 0; i <= chords && s.ok; i++) {
+        csg_curve_at(&curve, (double)i / chords, at);
+        knot to = {csg_vec3_make(at[0], at[1], at[2]), at[CSG_CURVE_RADIUS]};
+        if (i == 0)
+            s.last = to;
+        else
+            line_to(&s, to);
+    }
+    return finish(&s);
+}

@@ -383,6 +383,7 @@ static void test_random_trees(void **state)
     for (int i = 0; i < 60; i++) {
         test_subject subject;
         test_random_shapes = i % 2;
+        test_random_curves = i % 5 == 3;
         test_subject_begin(&subject);
         test_subject_compile(&subject,
                              test_random_scene(&subject.builder, &random, 1 + (unsigned)i % 12));

@@ -20,6 +20,7 @@ static void test_random_scenes(void **state)
         char what[48];
         snprintf(what, sizeof what, "random scene %u", i);
         test_random_shapes = i % 2;
+        test_random_curves = i % 5 == 3;
         test_subject_begin(&w.subject);
         test_subject_compile(&w.subject,
                              test_random_scene(&w.subject.builder, &random, 1 + i * 7 % 50));

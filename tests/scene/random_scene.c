@@ -4,6 +4,8 @@
  */
 #include "random_scene.h"
 
+#include "random_curve.h"
+
 #include "random_rule.h"
 
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
@@ -172,6 +174,16 @@ static csg_node_id colored(csg_scene_builder *builder, csg_random *random, csg_n
 
 bool test_random_shapes = false;
 
+bool test_random_curves = false;
+
+static csg_node_id random_tube(csg_scene_builder *builder, csg_random *random)
+{
+    double v[CSG_CURVE_MOST * CSG_CURVE_AXES];
+    csg_node_kind kind = chance(random, 0.3) ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    test_random_curve(random, kind, v);
+    return csg_build_primitive(builder, kind, v, nowhere);
+}
+
 /* A bounded primitive somewhere, one in eight of them cut by a half-space. */
 static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
 {
@@ -181,6 +193,8 @@ static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
         kind = CSG_NODE_SUPERELLIPSOID;
     csg_node_id node = shaped ? test_random_shaped(builder, random)
                               : test_random_primitive(builder, random, kind, NULL);
+    if (test_random_curves && chance(random, 0.3))
+        node = random_tube(builder, random);
     if (test_random_rules && chance(random, 0.35)) {
         csg_soft soft = {(csg_falloff)csg_random_below(random, CSG_FALLOFF_COUNT),
                          uniform(random, 0.15, 0.6)};

@@ -20,6 +20,10 @@ extern bool test_random_shapes;
  * leaves superellipsoids. Off at first, too. */
 extern bool test_random_rules;
 
+/* Whether a third of the leaves are tubes along Bezier curves (random_curve.h). Off at first, too.
+ */
+extern bool test_random_curves;
+
 /* A rule of this kind with random parameters, not settled. */
 csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
 

@@ -12,6 +12,7 @@ static csgm_scene *random_scene(uint64_t seed, csg_random *random)
     *random = (csg_random){seed};
     test_random_shapes = seed % 2;
     test_random_rules = seed % 3 == 1;
+    test_random_curves = seed % 5 == 2;
     csg_build_abandon(&builder);
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
     return test_seal(&builder, test_random_scene(&builder, random, 1 + (unsigned)seed % 60));
