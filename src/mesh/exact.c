@@ -110,7 +110,28 @@ static int exact_turn(const float a[3], const float b[3], const float c[3], int 
 /* Shewchuk's bounds, (7 + 56 e) e and (3 + 16 e) e with e = 2^-53, and a little more. */
 static const double SIDE_ERROR = 8.0 * 0x1p-53, TURN_ERROR = 4.0 * 0x1p-53;
 
-int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
+/* One norm of the cross product of two vectors, and the product. */
+static double cross(const double a[3], const double b[3], double out[3])
+{
+    double norm = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+        out[i] = a[j] * b[k] - a[k] * b[j];
+        norm += fabs(out[i]);
+    }
+    return norm;
+}
+
+/* How much the volume changes where all coordinates change by as much as the slack. */
+static double change_of_volume(const double u[3], const double v[3], const double w[3],
+                               double slack)
+{
+    double n[3];
+    return slack > 0 ? 2 * slack * (cross(u, v, n) + cross(v, w, n) + cross(w, u, n)) : 0;
+}
+
+static int side(const float a[3], const float b[3], const float c[3], const float d[3],
+                double slack)
 {
     double u[3], v[3], w[3], volume = 0, most = 0;
     for (int i = 0; i < 3; i++) {
@@ -124,9 +145,16 @@ int csg_exact_side(const float a[3], const float b[3], const float c[3], const f
         volume += u[i] * (x - y);
         most += fabs(u[i]) * (fabs(x) + fabs(y));
     }
+    if (slack > 0 && fabs(volume) <= change_of_volume(u, v, w, slack))
+        return 0;
     if (fabs(volume) > SIDE_ERROR * most)
         return sign_of(volume);
     return most > 0 ? exact_side(a, b, c, d) : 0;
+}
+
+int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
+{
+    return side(a, b, c, d, 0);
 }
 
 int csg_exact_turn(const float a[3], const float b[3], const float c[3], int axis)
@@ -209,7 +237,7 @@ static bool meets_in_plane(const csg_exact_triangle *t, const float *p, const fl
 
 /* Ends and rims included; above, below: on which sides of the triangle p and q lie. */
 static bool pierces(const float *p, const float *q, int above, int below,
-                    const csg_exact_triangle *t)
+                    const csg_exact_triangle *t, double slack)
 {
     if (above * below > 0)
         return false;
@@ -217,16 +245,16 @@ static bool pierces(const float *p, const float *q, int above, int below,
         return meets_in_plane(t, p, q);
     int least = 1, most = -1;
     for (int k = 0; k < 3; k++) {
-        int turn = csg_exact_side(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
+        int turn = side(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1], slack);
         least = turn < least ? turn : least;
         most = turn > most ? turn : most;
     }
     return least >= 0 || most <= 0;
 }
 
-static int side_of(const csg_exact_triangle *t, const float *p)
+static int side_of(const csg_exact_triangle *t, const float *p, double slack)
 {
-    return csg_exact_side(t->at[0], t->at[1], t->at[2], p);
+    return side(t->at[0], t->at[1], t->at[2], p, slack);
 }
 
 /* ---- two triangles -----------------------------------------------------------------------------
@@ -249,48 +277,49 @@ static bool boxes_apart(const csg_exact_triangle *s, const csg_exact_triangle *t
 }
 
 /* At an edge of both: folded onto one another? e, f: its ends; p, q: what is opposite. */
-static bool is_folded(const float *e, const float *f, const float *p, const float *q)
+static bool is_folded(const float *e, const float *f, const float *p, const float *q, double slack)
 {
     for (int axis = 0; axis < 3; axis++)
         if (csg_exact_turn(e, f, p, axis) * csg_exact_turn(e, f, q, axis) < 0)
             return false; /* apart in this view */
-    return csg_exact_side(e, f, p, q) == 0;
+    return side(e, f, p, q, slack) == 0;
 }
 
 /* At a vertex of both: does what is opposite to it in one meet the other? */
-static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k)
+static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k,
+                           double slack)
 {
     const float *p = s->at[(i + 1) % 3], *q = s->at[(i + 2) % 3];
-    int above = side_of(t, p), below = side_of(t, q);
+    int above = side_of(t, p, slack), below = side_of(t, q, slack);
     if (above * below > 0)
         return false;
-    if (pierces(p, q, above, below, t))
+    if (pierces(p, q, above, below, t, slack))
         return true;
     p = t->at[(k + 1) % 3], q = t->at[(k + 2) % 3];
-    return pierces(p, q, side_of(s, p), side_of(s, q), s);
+    return pierces(p, q, side_of(s, p, slack), side_of(s, q, slack), s, slack);
 }
 
-static bool meet_apart(const csg_exact_triangle *s, const csg_exact_triangle *t)
+static bool meet_apart(const csg_exact_triangle *s, const csg_exact_triangle *t, double slack)
 {
     int of_s[3], of_t[3];
     for (int k = 0; k < 3; k++)
-        of_s[k] = side_of(t, s->at[k]);
+        of_s[k] = side_of(t, s->at[k], slack);
     if (of_s[0] == of_s[1] && of_s[1] == of_s[2] && of_s[0])
         return false;
     for (int k = 0; k < 3; k++)
-        of_t[k] = side_of(s, t->at[k]);
+        of_t[k] = side_of(s, t->at[k], slack);
     if (of_t[0] == of_t[1] && of_t[1] == of_t[2] && of_t[0])
         return false;
     for (int k = 0; k < 3; k++) {
         int next = (k + 1) % 3;
-        if (pierces(s->at[k], s->at[next], of_s[k], of_s[next], t) ||
-            pierces(t->at[k], t->at[next], of_t[k], of_t[next], s))
+        if (pierces(s->at[k], s->at[next], of_s[k], of_s[next], t, slack) ||
+            pierces(t->at[k], t->at[next], of_t[k], of_t[next], s, slack))
             return true;
     }
     return false;
 }
 
-bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t)
+bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t, float slack)
 {
     int shared = 0, in_s[3], in_t[3];
     if (boxes_apart(s, t))
@@ -305,6 +334,7 @@ bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t)
         return true;
     if (shared == 2)
         return is_folded(s->at[in_s[0]], s->at[in_s[1]], s->at[3 - in_s[0] - in_s[1]],
-                         t->at[3 - in_t[0] - in_t[1]]);
-    return shared ? meet_at_vertex(s, in_s[0], t, in_t[0]) : meet_apart(s, t);
+                         t->at[3 - in_t[0] - in_t[1]], (double)slack);
+    return shared ? meet_at_vertex(s, in_s[0], t, in_t[0], (double)slack)
+                  : meet_apart(s, t, (double)slack);
 }

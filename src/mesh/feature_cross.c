@@ -7,10 +7,10 @@
 
 #include "mesh/feature_smooth.h"
 
-/* As a feature was in the last round. */
+/* As a feature was in the last round: apexes beyond its sides are others' business. */
 typedef struct csg_cross_state {
     float at[3];
-    uint16_t creased, flipped, takes_next;
+    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     bool known;
     uint8_t tries; /* places that a smooth one's apex has had */
 } cross_state;
@@ -52,13 +52,11 @@ void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         const csg_feature *f = &cross->near.store->features[i];
         cross_state *state = &cross->states[i];
-        changed = changed || !state->known || state->creased != f->creased ||
-                  state->flipped != f->flipped || state->takes_next != f->takes_next ||
+        size_t bytes = f->side_count * sizeof f->triangle[0];
+        changed = changed || !state->known || memcmp(state->triangle, f->triangle, bytes) != 0 ||
                   memcmp(state->at, f->at, sizeof f->at) != 0;
         memcpy(state->at, f->at, sizeof f->at);
-        state->creased = f->creased;
-        state->flipped = f->flipped;
-        state->takes_next = f->takes_next;
+        memcpy(state->triangle, f->triangle, bytes);
         state->known = true;
     }
     csg_near_measure(&cross->near, index);

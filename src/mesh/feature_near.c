@@ -400,6 +400,7 @@ static bool search_cell(const view *v, const uint64_t *places, size_t count, csg
 {
     const csg_near_triangle *triangles = v->room->triangles;
     csg_near_triangle smooth[CSG_CELL_MOST_TRIANGLES];
+    float slack = 0.5f * v->near->marching->unit; /* decimals are as far off */
     int smooth_count = -1, cell[3], place = (int)(places[0] >> 32);
     for (int axis = 0; axis < 3; axis++, place /= VIEW_CELLS)
         cell[axis] = place % VIEW_CELLS + v->first[axis];
@@ -407,14 +408,14 @@ static bool search_cell(const view *v, const uint64_t *places, size_t count, csg
         const csg_near_triangle *s = &triangles[(uint32_t)places[i]];
         for (size_t k = i + 1; k < count; k++) {
             const csg_near_triangle *t = &triangles[(uint32_t)places[k]];
-            if ((t->own || t->owner[0] > s->owner[0]) && csg_exact_meet(&s->shape, &t->shape) &&
-                !found(user, s, t))
+            if ((t->own || t->owner[0] > s->owner[0]) &&
+                csg_exact_meet(&s->shape, &t->shape, slack) && !found(user, s, t))
                 return false;
         }
         if (smooth_count < 0)
             smooth_count = smooth_triangles(v, cell, smooth);
         for (int k = 0; k < smooth_count; k++)
-            if (csg_exact_meet(&s->shape, &smooth[k].shape) && !found(user, s, &smooth[k]))
+            if (csg_exact_meet(&s->shape, &smooth[k].shape, slack) && !found(user, s, &smooth[k]))
                 return false;
     }
     return true;

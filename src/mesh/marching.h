@@ -93,6 +93,7 @@ typedef struct csg_marching {
     const csg_block_index *index;
     csg_vec3 shift;     /* field frame -> relative to the mesh's origin */
     float noise;        /* of the field's values: rounding */
+    float unit;         /* in the last place of the mesh's largest coordinates */
     float end_distance; /* of vertices from lattice points: a part of a cell */
 } csg_marching;
 

@@ -202,17 +202,20 @@ csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds)
     return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
 }
 
+static double unit_of(const csg_mesh_work *w)
+{
+    csg_vec3 shift = w->marching.shift;
+    double most = fmax(fabs(shift.x), fmax(fabs(shift.y), fabs(shift.z)));
+    return (double)FLT_EPSILON * (csg_lattice_extent(&w->lattice) + most);
+}
+
 /* Vertices keep this far from the ends of their edge, so that those of different edges lie apart
  * and no triangle collapses where the surface runs through lattice points: three units in the last
- * place of the mesh's largest coordinates are more than all roundings on the way. */
-static float end_distance_of(const csg_mesh_work *w)
+ * place are more than all roundings on the way. */
+static double end_distance_of(const csg_mesh_work *w)
 {
     const double usual = 0x1p-12, most = 0.25;
-    csg_vec3 shift = w->marching.shift;
-    double largest =
-        csg_lattice_extent(&w->lattice) + fmax(fabs(shift.x), fmax(fabs(shift.y), fabs(shift.z)));
-    double units = 3 * (double)FLT_EPSILON * largest / w->lattice.cell_size;
-    return (float)fmin(fmax(units, usual), most);
+    return fmin(fmax(3 * unit_of(w) / w->lattice.cell_size, usual), most);
 }
 
 static void prepare_marching(csg_mesh_work *w)
@@ -229,7 +232,8 @@ static void prepare_marching(csg_mesh_work *w)
         .noise = (float)((double)FLT_EPSILON * csg_lattice_extent(&w->lattice) * slope),
         .shift = csg_vec3_sub(w->field->center, csg_mesh_origin_of(w)),
     };
-    w->marching.end_distance = end_distance_of(w);
+    w->marching.unit = (float)unit_of(w);
+    w->marching.end_distance = (float)end_distance_of(w);
 }
 
 /* Where the mesh goes: arrays of its own, or a receiver. */
