@@ -266,7 +266,8 @@ static double round_value(const operand *of, which what, uint32_t count, double 
     return turn * f;
 }
 
-/* Shares are in the proportions of (f_i - F + w)_+; of the two operands that have one. */
+/* Shares are in the proportions of (f_i - F + w)_+. Operands are mixed one after the other, each
+ * with the mixture of those before it. */
 static bool join_round(walker *w, const csg_tape_node *node)
 {
     double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
@@ -280,30 +281,27 @@ static bool join_round(walker *w, const csg_tape_node *node)
         for (uint32_t k = i + 1; k < node->arity; k++)
             steepest = fmax(steepest, rate_of(w, &of[i], &of[k]));
     }
-    range weight[2] = {{0, 0}, {0, 0}};
-    uint32_t active[2] = {0, 0}, count = 0;
-    for (uint32_t i = 0; i < node->arity; i++) {
+    operand sum;
+    range total = {0, 0}; /* of the weights so far */
+    bool done = true;
+    for (uint32_t i = 0; i < node->arity && done; i++) {
         double at = turn * (of[i].value - value) + size;
         double reach = w->radius * steepest + 2 * doubt + 1e-5 * size;
-        if (at + reach <= 0)
+        range weight = {fmax(0, at - reach), at + reach};
+        if (weight.high <= 0)
             continue;
-        if (count < 2) {
-            active[count] = i;
-            weight[count] = (range){fmax(0, at - reach), at + reach};
-        }
-        count++;
+        range share = {total.low / (total.low + weight.high),
+                       total.high / (total.high + weight.low)};
+        if (total.high > 0)
+            done = mix(&sum, &of[i], share, false);
+        else
+            sum = of[i];
+        total = (range){total.low + weight.low, total.high + weight.high};
     }
     w->top -= node->arity - 1;
-    if (!count || count > 2)
+    if (!done || !(total.high > 0))
         return false;
-    operand first = of[active[0]];
-    bool done = true;
-    if (count == 2) {
-        range share = {weight[0].low / (weight[0].low + weight[1].high),
-                       weight[0].high / (weight[0].high + weight[1].low)};
-        done = mix(&first, &of[active[1]], share, false);
-    }
-    of[0] = first;
+    of[0] = sum;
     of[0].value = value;
     of[0].doubt = doubt + 1e-5 * size;
     of[0].low = low - of[0].doubt;

@@ -12,7 +12,14 @@
 #include "mesh/check_distance_slopes.h"
 #include "mesh/remesh_nearest.h"
 
-enum { MOST_POINTS = 4096, LEAST_CUBES = 4000, MOST_CUBES = 60000, ALL_CUBES = 1000000 };
+/* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
+enum {
+    MOST_POINTS = 4096,
+    LEAST_CUBES = 1500,
+    AGAIN_CUBES = 200000,
+    MOST_CUBES = 60000,
+    ALL_CUBES = 1000000
+};
 
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
 static const double SHEET_CELLS = 2, AROUND_CELLS = 1;
@@ -49,6 +56,7 @@ typedef struct walk {
     uint32_t worker_count;
     segment *segments;
     size_t segment_count;
+    size_t *again; /* those that were not finished; NULL = all of them */
     atomic_bool out_of_memory;
 } walk;
 
@@ -223,9 +231,10 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
     return done;
 }
 
-static bool look_at_cube(void *user, uint32_t worker_index, size_t item)
+static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
 {
     walk *w = user;
+    size_t item = w->again ? w->again[index] : index;
     worker *s = &w->workers[worker_index];
     const csg_lattice *lattice = &w->remesh->work->lattice;
     uint32_t at[3];
@@ -291,6 +300,29 @@ static void end(walk *w)
     csg_octree_destroy(w->octree);
 }
 
+/* Few cubes take much more than the others. */
+static bool look_again(walk *w)
+{
+    csg_memory *memory = w->remesh->memory;
+    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
+    w->again = csg_memory_alloc(memory, bytes);
+    if (!w->again) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
+    for (size_t i = 0; i < w->segment_count; i++)
+        if (w->segments[i].unfinished)
+            w->again[count++] = i;
+    w->most_cubes = ALL_CUBES / (count + 1);
+    if (w->most_cubes > AGAIN_CUBES)
+        w->most_cubes = AGAIN_CUBES;
+    bool done =
+        !count || csg_pool_run(w->remesh->work->context->pool, count, look_at_cube, NULL, w);
+    csg_memory_release(memory, w->again, bytes);
+    w->again = NULL;
+    return done;
+}
+
 static bool join(const walk *w, csg_missed *out)
 {
     for (size_t i = 0; i < w->segment_count; i++) {
@@ -328,8 +360,9 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
         csg_octree_create(work->context, work->field, &work->lattice, &options, &w.octree);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(work) : status;
-    bool done =
-        begin(&w) && csg_pool_run(work->context->pool, w.segment_count, look_at_cube, NULL, &w);
+    bool done = begin(&w) &&
+                csg_pool_run(work->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
+                look_again(&w);
     if (done)
         done = join(&w, out);
     else if (w.nearest.nodes && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(work))

@@ -235,9 +235,10 @@ csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *fie
     if (goal.chooses)
         base.resolution = FIRST_CELLS;
     double least = longest_side(field, options) / MOST_CELLS;
+    bool was_open = false; /* once more, with more care: what is open then stays so */
     csgm_status status;
     for (;; goal.tries++) {
-        goal.is_last = goal.tries + 1 >= MOST_TRIES ||
+        goal.is_last = goal.tries + 1 >= MOST_TRIES || was_open ||
                        (goal.chooses && base.cell_size > 0 && base.cell_size <= least) ||
                        (!goal.chooses && goal.tries + 1 >= 2);
         goal.cell_size = 0;
@@ -245,7 +246,8 @@ csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *fie
         if (status != CSGM_OK || !(goal.cell_size > 0))
             break;
         csg_mesh_destroy(*out);
-        if (goal.open)
+        was_open = goal.open > 0;
+        if (was_open)
             goal.care *= 0.8;
         goal.open = 0;
         base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
