@@ -26,7 +26,8 @@ static const double LOCAL = 1.3;
 enum {
     MOST_VISITS = 20000,        /* of cubes, a cell */
     MOST_BLOCK_VISITS = 300000, /* a block */
-    SLOW_VISIT = 8              /* what one counts where a shape, formula or warp is evaluated */
+    SLOW_VISIT = 8,             /* what one counts where a shape, formula or warp is evaluated */
+    SLOW_BLOCK_VISIT = 15       /* the same, of the block's */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
@@ -257,11 +258,30 @@ static bool is_slow(const csg_certify_cube *cube)
 
 static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
 {
-    uint32_t cost = is_slow(cube) ? SLOW_VISIT : 1;
+    bool slow = is_slow(cube);
     w->cubes++;
-    w->block_visits += cost;
-    w->visits[cube->cell] += cost;
+    w->block_visits += slow ? SLOW_BLOCK_VISIT : 1;
+    w->visits[cube->cell] += slow ? SLOW_VISIT : 1;
     return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
+}
+
+/* Whether a slide from c, or from beyond the surface as the gradient there has it, leads to the
+ * lattice: where nothing hides it mostly does. */
+static bool slides_from(csg_certify_worker *w, const double c[3], double value, int sign)
+{
+    double p[1][3], g[3], h = w->lattice->cell_size;
+    memcpy(p[0], c, sizeof p[0]);
+    if (sign * value < 0) {
+        csg_reach_gradient(&w->local, c, g);
+        double norm = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        double step = norm > 1e-3 ? fabs(value) / norm + h / 8 : 0;
+        for (int axis = 0; axis < 3; axis++)
+            p[0][axis] += norm > 1e-3 ? sign * step * g[axis] / norm : 0;
+        if (step > h)
+            return false;
+        csg_reach_values(&w->local, (const double(*)[3])p, 1, &value);
+    }
+    return sign * value > 0 && csg_reach_slide(&w->local, p[0], sign * value, sign, &w->trail);
 }
 
 /* The quick way to what hides in a cell: up and down from its centre. What is found in another cell
@@ -277,7 +297,8 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
             h / 2;
     csg_reach_values(&w->reach, (const double(*)[3])c, 1, &value);
     for (int sign = -1; sign <= 1; sign += 2) {
-        if (csg_reach_from(&w->reach, c[0], sign * value, sign, &end) != CSG_REACH_NONE ||
+        if (slides_from(w, c[0], value, sign) ||
+            csg_reach_from(&w->reach, c[0], sign * value, sign, &end) != CSG_REACH_NONE ||
             !(end.thickness > 0))
             continue;
         bool here = true;
@@ -293,7 +314,8 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
 static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
-    bool first = w->kinds[cube->cell] < CSG_CELL_UNRESOLVED;
+    bool first = !w->given_up[cube->cell];
+    w->given_up[cube->cell] = true;
     return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end) &&
            (!first || !is_slow(cube) || look_for_missed(w, cube->cell));
 }
@@ -455,6 +477,7 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
                      w->reach.scratch_floats);
     memset(w->kinds, 0, sizeof w->kinds);
     memset(w->visits, 0, sizeof w->visits);
+    memset(w->given_up, 0, sizeof w->given_up);
     w->block_visits = 0;
     place_reach(w, tape);
     csg_certify_cube root = {.half = CSG_BLOCK_EDGE * h / 2,

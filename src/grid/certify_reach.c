@@ -22,15 +22,27 @@ void csg_reach_values(const csg_reach *reach, const double (*points)[3], size_t 
         values[i] = (double)f[i];
 }
 
+/* count <= CSG_REACH_POINTS */
+static void find_gradients(const csg_reach *reach, const double (*points)[3], size_t count,
+                           double (*gradients)[3])
+{
+    float p[3][CSG_REACH_POINTS] = {{0}}, g[3][CSG_REACH_POINTS];
+    for (int axis = 0; axis < 3; axis++)
+        for (size_t i = 0; i < count; i++)
+            p[axis][i] = (float)points[i][axis];
+    reach->kernel->gradients(reach->tape, p[0], p[1], p[2], count, g[0], g[1], g[2], reach->scratch,
+                             reach->scratch_floats);
+    for (size_t i = 0; i < count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            gradients[i][axis] = (double)g[axis][i];
+}
+
 void csg_reach_gradient(const csg_reach *reach, const double p[3], double gradient[3])
 {
-    float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES];
-    for (int axis = 0; axis < 3; axis++)
-        at[axis][0] = (float)p[axis];
-    reach->kernel->gradients(reach->tape, at[0], at[1], at[2], 1, g[0], g[1], g[2], reach->scratch,
-                             reach->scratch_floats);
-    for (int axis = 0; axis < 3; axis++)
-        gradient[axis] = (double)g[axis][0];
+    double points[1][3], gradients[1][3];
+    memcpy(points[0], p, sizeof points[0]);
+    find_gradients(reach, (const double(*)[3])points, 1, gradients);
+    memcpy(gradient, gradients[0], sizeof gradients[0]);
 }
 
 static void lattice_point(const csg_lattice *lattice, const int64_t index[3], double p[3])
@@ -158,17 +170,14 @@ static bool climb(const csg_reach *reach, double p[3], double *value, int sign, 
  * 2005). */
 static bool climb_ridge(const csg_reach *reach, double p[3], double *value, int sign, double step)
 {
-    double points[WAYS][3], to[2][3], risen[2];
-    csg_cone_balls balls = {.count = 0};
+    double points[WAYS][3], gradients[WAYS][3], to[2][3], risen[2];
+    csg_cone_balls balls = {.count = WAYS};
     csg_cone cone;
     around(p, step / 2, points);
-    for (int i = 0; i < WAYS; i++) {
-        csg_cone_ball *ball = &balls.items[balls.count++];
-        csg_reach_gradient(reach, points[i], ball->at);
+    find_gradients(reach, (const double(*)[3])points, WAYS, gradients);
+    for (int i = 0; i < WAYS; i++)
         for (int axis = 0; axis < 3; axis++)
-            ball->at[axis] *= sign;
-        ball->spread = 0;
-    }
+            balls.items[i].at[axis] = sign * gradients[i][axis];
     if (!csg_cone_find_axis(&balls, &cone))
         return false;
     for (int k = 0; k < 2; k++)
@@ -313,7 +322,8 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
     for (int i = 0; i < MOST_CLIMBS && !found && step >= least; i++) {
         if (step < h / SHORTEST && (value < 0 || step < value / (4 * reach->lipschitz)))
             break; /* the part's thickest place */
-        if (!climb(reach, p, &value, sign, step) && !climb_ridge(reach, p, &value, sign, step)) {
+        if (!climb(reach, p, &value, sign, step) &&
+            (16 * step > h || !climb_ridge(reach, p, &value, sign, step))) {
             step /= 2;
         } else {
             found = holds_sample(reach, p, value, sign);
