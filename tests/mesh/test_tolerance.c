@@ -394,7 +394,7 @@ static void test_out_of_memory(void **state)
 
 static void test_random_scenes(void **state)
 {
-    const double error = 0.04;
+    const double error = 0.05;
     unsigned proven = 0, with_surface = 0;
     for (unsigned seed = first_scene; seed < first_scene + scene_count; seed++) {
         mesh_case c;
@@ -412,7 +412,8 @@ static void test_random_scenes(void **state)
         if (c.mesh->triangle_count) {
             with_surface++;
             assert_no_crossings(&c, what);
-            bool good = c.findings == 0;
+            /* a part thinner than E may be missed, and is told */
+            bool good = c.findings == 0 || c.last_code == CSG_DIAG_THIN_PART;
             proven += good;
             assert_true(good || c.last_code == CSG_DIAG_NOT_WITHIN);
             assert_true(!good || c.stats.max_distance_bound == error);
