@@ -193,7 +193,7 @@ static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
         kind = CSG_NODE_SUPERELLIPSOID;
     csg_node_id node = shaped ? test_random_shaped(builder, random)
                               : test_random_primitive(builder, random, kind, NULL);
-    if (test_random_curves && chance(random, 0.3))
+    if (test_random_curves && chance(random, 0.12))
         node = random_tube(builder, random);
     if (test_random_rules && chance(random, 0.35)) {
         csg_soft soft = {(csg_falloff)csg_random_below(random, CSG_FALLOFF_COUNT),

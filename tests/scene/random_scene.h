@@ -20,7 +20,7 @@ extern bool test_random_shapes;
  * leaves superellipsoids. Off at first, too. */
 extern bool test_random_rules;
 
-/* Whether a third of the leaves are tubes along Bezier curves (random_curve.h). Off at first, too.
+/* Whether one in eight leaves is a tube along a Bezier curve (random_curve.h). Off at first, too.
  */
 extern bool test_random_curves;
 
