@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "base/geometry.h"
+
 /* ---- sums that lose nothing --------------------------------------------------------------------
  */
 
@@ -110,28 +112,7 @@ static int exact_turn(const float a[3], const float b[3], const float c[3], int 
 /* Shewchuk's bounds, (7 + 56 e) e and (3 + 16 e) e with e = 2^-53, and a little more. */
 static const double SIDE_ERROR = 8.0 * 0x1p-53, TURN_ERROR = 4.0 * 0x1p-53;
 
-/* One norm of the cross product of two vectors, and the product. */
-static double cross(const double a[3], const double b[3], double out[3])
-{
-    double norm = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-        out[i] = a[j] * b[k] - a[k] * b[j];
-        norm += fabs(out[i]);
-    }
-    return norm;
-}
-
-/* How much the volume changes where all coordinates change by as much as the slack. */
-static double change_of_volume(const double u[3], const double v[3], const double w[3],
-                               double slack)
-{
-    double n[3];
-    return slack > 0 ? 2 * slack * (cross(u, v, n) + cross(v, w, n) + cross(w, u, n)) : 0;
-}
-
-static int side(const float a[3], const float b[3], const float c[3], const float d[3],
-                double slack)
+int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
 {
     double u[3], v[3], w[3], volume = 0, most = 0;
     for (int i = 0; i < 3; i++) {
@@ -145,16 +126,9 @@ static int side(const float a[3], const float b[3], const float c[3], const floa
         volume += u[i] * (x - y);
         most += fabs(u[i]) * (fabs(x) + fabs(y));
     }
-    if (slack > 0 && fabs(volume) <= change_of_volume(u, v, w, slack))
-        return 0;
     if (fabs(volume) > SIDE_ERROR * most)
         return sign_of(volume);
     return most > 0 ? exact_side(a, b, c, d) : 0;
-}
-
-int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
-{
-    return side(a, b, c, d, 0);
 }
 
 int csg_exact_turn(const float a[3], const float b[3], const float c[3], int axis)
@@ -237,7 +211,7 @@ static bool meets_in_plane(const csg_exact_triangle *t, const float *p, const fl
 
 /* Ends and rims included; above, below: on which sides of the triangle p and q lie. */
 static bool pierces(const float *p, const float *q, int above, int below,
-                    const csg_exact_triangle *t, double slack)
+                    const csg_exact_triangle *t)
 {
     if (above * below > 0)
         return false;
@@ -245,22 +219,22 @@ static bool pierces(const float *p, const float *q, int above, int below,
         return meets_in_plane(t, p, q);
     int least = 1, most = -1;
     for (int k = 0; k < 3; k++) {
-        int turn = side(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1], slack);
+        int turn = csg_exact_side(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
         least = turn < least ? turn : least;
         most = turn > most ? turn : most;
     }
     return least >= 0 || most <= 0;
 }
 
-static int side_of(const csg_exact_triangle *t, const float *p, double slack)
+static int side_of(const csg_exact_triangle *t, const float *p)
 {
-    return side(t->at[0], t->at[1], t->at[2], p, slack);
+    return csg_exact_side(t->at[0], t->at[1], t->at[2], p);
 }
 
 /* ---- two triangles -----------------------------------------------------------------------------
  */
 
-static bool boxes_apart(const csg_exact_triangle *s, const csg_exact_triangle *t)
+static bool boxes_apart(const csg_exact_triangle *s, const csg_exact_triangle *t, float reach)
 {
     for (int i = 0; i < 3; i++) {
         float s_low = s->at[0][i], s_high = s_low, t_low = t->at[0][i], t_high = t_low;
@@ -270,71 +244,134 @@ static bool boxes_apart(const csg_exact_triangle *s, const csg_exact_triangle *t
             t_low = t->at[k][i] < t_low ? t->at[k][i] : t_low;
             t_high = t->at[k][i] > t_high ? t->at[k][i] : t_high;
         }
-        if (s_low > t_high || t_low > s_high)
+        if (s_low - reach > t_high || t_low - reach > s_high)
             return true;
     }
     return false;
 }
 
 /* At an edge of both: folded onto one another? e, f: its ends; p, q: what is opposite. */
-static bool is_folded(const float *e, const float *f, const float *p, const float *q, double slack)
+static bool is_folded(const float *e, const float *f, const float *p, const float *q)
 {
     for (int axis = 0; axis < 3; axis++)
         if (csg_exact_turn(e, f, p, axis) * csg_exact_turn(e, f, q, axis) < 0)
             return false; /* apart in this view */
-    return side(e, f, p, q, slack) == 0;
+    return csg_exact_side(e, f, p, q) == 0;
 }
 
 /* At a vertex of both: does what is opposite to it in one meet the other? */
-static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k,
-                           double slack)
+static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k)
 {
     const float *p = s->at[(i + 1) % 3], *q = s->at[(i + 2) % 3];
-    int above = side_of(t, p, slack), below = side_of(t, q, slack);
+    int above = side_of(t, p), below = side_of(t, q);
     if (above * below > 0)
         return false;
-    if (pierces(p, q, above, below, t, slack))
+    if (pierces(p, q, above, below, t))
         return true;
     p = t->at[(k + 1) % 3], q = t->at[(k + 2) % 3];
-    return pierces(p, q, side_of(s, p, slack), side_of(s, q, slack), s, slack);
+    return pierces(p, q, side_of(s, p), side_of(s, q), s);
 }
 
-static bool meet_apart(const csg_exact_triangle *s, const csg_exact_triangle *t, double slack)
+static bool meet_apart(const csg_exact_triangle *s, const csg_exact_triangle *t)
 {
     int of_s[3], of_t[3];
     for (int k = 0; k < 3; k++)
-        of_s[k] = side_of(t, s->at[k], slack);
+        of_s[k] = side_of(t, s->at[k]);
     if (of_s[0] == of_s[1] && of_s[1] == of_s[2] && of_s[0])
         return false;
     for (int k = 0; k < 3; k++)
-        of_t[k] = side_of(s, t->at[k], slack);
+        of_t[k] = side_of(s, t->at[k]);
     if (of_t[0] == of_t[1] && of_t[1] == of_t[2] && of_t[0])
         return false;
     for (int k = 0; k < 3; k++) {
         int next = (k + 1) % 3;
-        if (pierces(s->at[k], s->at[next], of_s[k], of_s[next], t, slack) ||
-            pierces(t->at[k], t->at[next], of_t[k], of_t[next], s, slack))
+        if (pierces(s->at[k], s->at[next], of_s[k], of_s[next], t) ||
+            pierces(t->at[k], t->at[next], of_t[k], of_t[next], s))
             return true;
     }
     return false;
 }
 
-bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t, float slack)
+static int shared_vertices(const csg_exact_triangle *s, const csg_exact_triangle *t, int in_s[3],
+                           int in_t[3])
 {
-    int shared = 0, in_s[3], in_t[3];
-    if (boxes_apart(s, t))
-        return false;
+    int shared = 0;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             if (s->vertex[i] == t->vertex[k] && shared < 3) {
                 in_s[shared] = i;
                 in_t[shared++] = k;
             }
+    return shared;
+}
+
+bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t)
+{
+    int in_s[3], in_t[3];
+    if (boxes_apart(s, t, 0))
+        return false;
+    int shared = shared_vertices(s, t, in_s, in_t);
     if (shared == 3)
         return true;
     if (shared == 2)
         return is_folded(s->at[in_s[0]], s->at[in_s[1]], s->at[3 - in_s[0] - in_s[1]],
-                         t->at[3 - in_t[0] - in_t[1]], (double)slack);
-    return shared ? meet_at_vertex(s, in_s[0], t, in_t[0], (double)slack)
-                  : meet_apart(s, t, (double)slack);
+                         t->at[3 - in_t[0] - in_t[1]]);
+    return shared ? meet_at_vertex(s, in_s[0], t, in_t[0]) : meet_apart(s, t);
+}
+
+/* ---- nearly ------------------------------------------------------------------------------------
+ */
+
+static csg_vec3 point(const float at[3])
+{
+    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
+}
+
+/* Whether a point lies so near to a triangle. */
+static bool is_near(const csg_exact_triangle *t, const float at[3], double reach)
+{
+    csg_vec3 v[3], p = point(at);
+    for (int k = 0; k < 3; k++)
+        v[k] = point(t->at[k]);
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+    double norm = csg_vec3_norm(n);
+    if (!(fabs(csg_vec3_dot(n, csg_vec3_sub(p, v[0]))) <= reach * norm))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        csg_vec3 edge = csg_vec3_sub(v[k == 2 ? 0 : k + 1], v[k]);
+        double turn = csg_vec3_dot(csg_vec3_cross(edge, csg_vec3_sub(p, v[k])), n);
+        if (!(turn >= -reach * norm * csg_vec3_norm(edge)))
+            return false;
+    }
+    return true;
+}
+
+/* Whether two segments pass one another so near; parallel ones do at an end, if at all. */
+static bool pass_near(const float a[3], const float b[3], const float c[3], const float d[3],
+                      double reach)
+{
+    csg_vec3 u = csg_vec3_sub(point(b), point(a)), v = csg_vec3_sub(point(d), point(c));
+    csg_vec3 w = csg_vec3_sub(point(c), point(a)), n = csg_vec3_cross(u, v);
+    double square = csg_vec3_dot(n, n), apart = csg_vec3_dot(w, n);
+    double parallel = 1e-12 * csg_vec3_dot(u, u) * csg_vec3_dot(v, v);
+    if (!(square > parallel && apart * apart <= reach * reach * square))
+        return false;
+    double along_u = csg_vec3_dot(csg_vec3_cross(w, v), n);
+    double along_v = csg_vec3_dot(csg_vec3_cross(w, u), n);
+    return along_u >= 0 && along_u <= square && along_v >= 0 && along_v <= square;
+}
+
+bool csg_exact_nearly_meet(const csg_exact_triangle *s, const csg_exact_triangle *t, double reach)
+{
+    int in_s[3], in_t[3];
+    if (boxes_apart(s, t, (float)reach) || shared_vertices(s, t, in_s, in_t))
+        return false;
+    for (int k = 0; k < 3; k++)
+        if (is_near(t, s->at[k], reach) || is_near(s, t->at[k], reach))
+            return true;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            if (pass_near(s->at[i], s->at[(i + 1) % 3], t->at[k], t->at[(k + 1) % 3], reach))
+                return true;
+    return false;
 }

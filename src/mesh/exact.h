@@ -20,9 +20,11 @@ int csg_exact_side(const float a[3], const float b[3], const float c[3], const f
 int csg_exact_turn(const float a[3], const float b[3], const float c[3], int axis);
 
 /* Whether they have a point in common that is not of a vertex or an edge that they share. A
- * triangle without area meets those at its edges. slack: points this near to the plane of three
- * others count as in it, so that what does not meet does not when coordinates move by so much,
- * as by rounding to decimals. */
-bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t, float slack);
+ * triangle without area meets those at its edges. */
+bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t);
+
+/* Whether two that share no vertex come this near to each other: where coordinates are rounded to
+ * decimals they might meet. In double, not exactly. */
+bool csg_exact_nearly_meet(const csg_exact_triangle *s, const csg_exact_triangle *t, double reach);
 
 #endif

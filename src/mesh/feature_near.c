@@ -188,8 +188,8 @@ static bool stays_home(const view *v, const csg_near_triangle *t, const int home
     return goes_through_face(m, at[0], at[1], home, other);
 }
 
-/* The cells that it can meet anything in, from low to high, both included. */
-static void cells_of(const view *v, const csg_feature_block *block, const csg_near_triangle *t,
+/* The cells that it can meet anything in, from low to high, both included. False: it stays home. */
+static bool cells_of(const view *v, const csg_feature_block *block, const csg_near_triangle *t,
                      int low[3], int high[3])
 {
     const csg_feature_store *store = v->near->store;
@@ -212,6 +212,7 @@ static void cells_of(const view *v, const csg_feature_block *block, const csg_ne
         low[axis] = (int)floor(least - 10 * CLEAR);
         high[axis] = (int)floor(most + 10 * CLEAR);
     }
+    return !stays;
 }
 
 static bool enter_cells(const view *v, const int low[3], const int high[3], uint32_t triangle)
@@ -288,7 +289,7 @@ static bool add_triangle(const view *v, const csg_feature_block *block, const cs
                             room->count + 1, sizeof *room->triangles))
         return false;
     room->triangles[room->count] = *t;
-    cells_of(v, block, t, low, high);
+    room->triangles[room->count].far = cells_of(v, block, t, low, high);
     return enter_cells(v, low, high, (uint32_t)room->count++);
 }
 
@@ -394,13 +395,21 @@ static int smooth_triangles(const view *v, const int at[3],
 /* ---- what meets --------------------------------------------------------------------------------
  */
 
+/* Apexes out of order fold creases over to all but one line. There they must keep apart by what
+ * decimals are off: half a unit in the last place each coordinate, two points by less than two. */
+static bool meet(const view *v, const csg_near_triangle *s, const csg_near_triangle *t)
+{
+    double reach = 2 * (double)v->near->marching->unit;
+    return csg_exact_meet(&s->shape, &t->shape) ||
+           (s->far && t->far && csg_exact_nearly_meet(&s->shape, &t->shape, reach));
+}
+
 /* The triangles entered into one cell. */
 static bool search_cell(const view *v, const uint64_t *places, size_t count, csg_near_found *found,
                         void *user)
 {
     const csg_near_triangle *triangles = v->room->triangles;
     csg_near_triangle smooth[CSG_CELL_MOST_TRIANGLES];
-    float slack = 0.5f * v->near->marching->unit; /* decimals are as far off */
     int smooth_count = -1, cell[3], place = (int)(places[0] >> 32);
     for (int axis = 0; axis < 3; axis++, place /= VIEW_CELLS)
         cell[axis] = place % VIEW_CELLS + v->first[axis];
@@ -408,14 +417,13 @@ static bool search_cell(const view *v, const uint64_t *places, size_t count, csg
         const csg_near_triangle *s = &triangles[(uint32_t)places[i]];
         for (size_t k = i + 1; k < count; k++) {
             const csg_near_triangle *t = &triangles[(uint32_t)places[k]];
-            if ((t->own || t->owner[0] > s->owner[0]) &&
-                csg_exact_meet(&s->shape, &t->shape, slack) && !found(user, s, t))
+            if ((t->own || t->owner[0] > s->owner[0]) && meet(v, s, t) && !found(user, s, t))
                 return false;
         }
         if (smooth_count < 0)
             smooth_count = smooth_triangles(v, cell, smooth);
         for (int k = 0; k < smooth_count; k++)
-            if (csg_exact_meet(&s->shape, &smooth[k].shape, slack) && !found(user, s, &smooth[k]))
+            if (meet(v, s, &smooth[k]) && !found(user, s, &smooth[k]))
                 return false;
     }
     return true;

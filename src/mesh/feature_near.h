@@ -14,6 +14,7 @@ typedef struct csg_near_triangle {
     csg_exact_triangle shape; /* vertices: numbers of this search */
     uint32_t owner[2]; /* features; one twice where it is one's alone, NONE: of a smooth polygon */
     bool own;          /* of the block at hand */
+    bool far;          /* reaches out of its cell, and not only to the apex next door */
     bool plain;        /* with the feature's apex, or none; and with one next door only if it has a
                           corner in the face between */
 } csg_near_triangle;

@@ -109,8 +109,8 @@ static void test_exact(void **state)
             continue;
         bool meet = test_self_intersections(positions[0], 6, indices, 2, NULL, 0) > 0;
         (meet ? met : apart)[i % 3]++;
-        assert_int_equal(csg_exact_meet(&t[0], &t[1], 0), meet);
-        assert_int_equal(csg_exact_meet(&t[1], &t[0], 0), meet);
+        assert_int_equal(csg_exact_meet(&t[0], &t[1]), meet);
+        assert_int_equal(csg_exact_meet(&t[1], &t[0]), meet);
     }
     for (int k = 0; k < 3; k++)
         assert_true(met[k] > 100 && apart[k] > 1000);
