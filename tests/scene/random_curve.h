@@ -35,8 +35,7 @@ static inline void test_random_curve(csg_random *random, csg_node_kind kind, dou
     }
     if (shape == 5 && count == 4) /* a cusp in the middle, or nearly */
         for (int k = 0; k < 2; k++) {
-            v[4 + k] =
-                v[12 + k] + csg_random_uniform(random, -0.05, 0.05);
+            v[4 + k] = v[12 + k] + csg_random_uniform(random, -0.05, 0.05);
             v[8 + k] = v[k];
         }
     if (radii == 1)
