@@ -122,6 +122,39 @@ static void collect_signs(csg_block *block, const csg_lattice *lattice, const ui
         }
 }
 
+/* Points of a row all of whose neighbours within the block have the other sign. */
+static unsigned alone_in_row(uint16_t (*rows)[N], int j, int k)
+{
+    enum { ALL = (1 << N) - 1 };
+    unsigned r = rows[k][j], any = 0, all = ALL; /* of the rows around */
+    const int at[4][2] = {{j - 1, k}, {j + 1, k}, {j, k - 1}, {j, k + 1}};
+    for (int i = 0; i < 4; i++) {
+        if (at[i][0] < 0 || at[i][0] >= N || at[i][1] < 0 || at[i][1] >= N)
+            continue;
+        any |= rows[at[i][1]][at[i][0]];
+        all &= rows[at[i][1]][at[i][0]];
+    }
+    unsigned inside = r & ~(r << 1) & ~(r >> 1) & ~any;
+    unsigned outside = ~r & (r << 1 | 1) & (r >> 1 | 1 << (N - 1)) & all;
+    return (inside | outside) & ALL;
+}
+
+static void drop_beads(csg_block *block, csg_beads *beads)
+{
+    uint16_t before[N][N];
+    memcpy(before, block->inside, sizeof before);
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++)
+            for (unsigned rest = alone_in_row(before, j, k); rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest);
+                const uint32_t at[3] = {block->at[0] * CSG_BLOCK_EDGE + (uint32_t)i,
+                                        block->at[1] * CSG_BLOCK_EDGE + (uint32_t)j,
+                                        block->at[2] * CSG_BLOCK_EDGE + (uint32_t)k};
+                if (csg_bead_is(beads, at))
+                    block->inside[k][j] ^= (uint16_t)(1 << i);
+            }
+}
+
 static void collect_crossings(csg_block *block)
 {
     uint32_t count = 0;
@@ -164,6 +197,8 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     (block->parts ? sample_parts : sample_whole)(block, samples, kernel, tape, lattice, scratch,
                                                  scratch_floats);
     collect_signs(block, lattice, samples->inside);
+    if (samples->beads && !is_uniform(block))
+        drop_beads(block, samples->beads);
     if (is_uniform(block))
         return false;
     collect_crossings(block);

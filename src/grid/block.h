@@ -10,6 +10,7 @@
 #define CSG_GRID_BLOCK_H
 
 #include "field/prune.h"
+#include "grid/bead.h"
 #include "grid/lattice.h"
 #include "grid/scan.h"
 
@@ -44,7 +45,8 @@ typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];
     float f[CSG_BLOCK_POINTS_PADDED];
     uint8_t inside[CSG_BLOCK_POINTS_PADDED];
-    csg_scan *scan; /* looks at the values before they are forgotten; NULL = nobody does */
+    csg_scan *scan;   /* looks at the values before they are forgotten; NULL = nobody does */
+    csg_beads *beads; /* looks for beads of tips; NULL = they stay */
 } csg_block_samples;
 
 /* Fills everything but the triangle and first_* members; block->parts is set already. False: no

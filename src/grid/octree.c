@@ -41,6 +41,7 @@ typedef struct worker {
     size_t cell_count, cell_capacity, block_count, block_capacity;
     csg_block candidate; /* the block being sampled */
     csg_block_samples *samples;
+    csg_beads beads;
     float *scratch;
     size_t scratch_floats;
     csg_octree_stats stats;
@@ -214,6 +215,7 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
         return false;
     count_samples(self, tape);
     csg_scan scan = {0};
+    self->samples->beads = w->options.beads ? &self->beads : NULL;
     self->samples->scan = w->scans && begin_scan(w, &scan, at, tape) ? &scan : NULL;
     bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at,
                                     self->samples, self->scratch, self->scratch_floats);
@@ -413,6 +415,11 @@ static bool create_workers(walk *w, float rounding)
         self->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
         self->samples = csg_memory_alloc(memory, sizeof *self->samples);
         self->scratch = csg_memory_alloc(memory, self->scratch_floats * sizeof(float));
+        self->beads = (csg_beads){.kernel = w->kernel,
+                                  .tape = &w->field->tape,
+                                  .lattice = w->lattice,
+                                  .scratch = self->scratch,
+                                  .scratch_floats = self->scratch_floats};
         done = done && self->samples && self->scratch;
     }
     return done;

@@ -14,7 +14,8 @@ typedef struct csg_octree_options {
     /* Tapes and states hold also for what is this far, in scene units, from a cube's faces; values
      * in a band twice as wide. For certify.c, which looks around. 0: the cubes alone. */
     double margin;
-    bool scan; /* look at the samples for thin parts: csg_octree_doubts */
+    bool beads; /* give beads of tips the other sign: bead.h */
+    bool scan;  /* look at the samples for thin parts: csg_octree_doubts */
     /* Called on the calling thread; fraction of the walk done. May be NULL. */
     void (*progress)(void *user, double fraction);
     /* Any worker; true = stop. May be NULL. */

@@ -77,6 +77,7 @@ static csgm_status clip(csg_mesh_work *w)
 static csgm_status walk_octree(csg_mesh_work *w)
 {
     csg_octree_options options = {.prune = w->options->prune,
+                                  .beads = w->options->features == CSGM_FEATURES_SHARP,
                                   .scan = !w->options->certify,
                                   .progress = csg_mesh_report_progress,
                                   .cancelled = csg_mesh_should_stop,

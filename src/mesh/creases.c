@@ -27,7 +27,8 @@ static bool find_item(void *user, uint32_t worker_index, size_t item)
     size_t end = (item + 1) * CSG_BLOCKS_PER_ITEM;
     for (size_t i = item * CSG_BLOCKS_PER_ITEM; i < end && i < w->block_count; i++)
         if (!csg_feature_find(&w->marching, w->blocks[i], self->features, &w->context->memory,
-                              self->scratch, w->scratch_floats)) {
+                              self->scratch, w->scratch_floats) ||
+            self->features->around.out_of_memory) {
             atomic_store(&w->out_of_memory, true);
             return false;
         }
@@ -279,6 +280,10 @@ static bool settle_features(csg_mesh_work *w)
                              &w->context->memory, w->workers[0].scratch, w->scratch_floats);
     bool done = order_features(w, &probe) && uncross_features(w, &probe);
     w->workers[0].point_evaluations += probe.evaluations;
+    if (w->workers[0].features->around.out_of_memory) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
     return done;
 }
 

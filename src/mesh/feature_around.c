@@ -49,8 +49,11 @@ void csg_feature_around_move(csg_feature_around *around, csg_memory *memory, con
     /* twice the band of the octree, so that what is asked of it lies well inside */
     float band = 2 * m->field->tape.lipschitz * (float)m->lattice->cell_size + 2 * m->noise;
     float radius = 1.7321f * half; /* sqrt(3) */
-    if (!csg_prune_octants(&around->pruner, &m->field->tape, c[0], c[1], c[2], radius) ||
-        csg_prune_state(&around->pruner, 0) != CSG_CELL_SURFACE ||
-        !csg_prune_shorten(&around->pruner, 0, band, &around->arena, &around->tape))
+    bool done = csg_prune_octants(&around->pruner, &m->field->tape, c[0], c[1], c[2], radius);
+    if (done && csg_prune_state(&around->pruner, 0) == CSG_CELL_SURFACE)
+        done = csg_prune_shorten(&around->pruner, 0, band, &around->arena, &around->tape);
+    if (!done) {
         around->tape = m->field->tape;
+        around->out_of_memory = true;
+    }
 }

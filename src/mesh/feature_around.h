@@ -17,6 +17,7 @@ typedef struct csg_feature_around {
     csg_arena_mark empty;
     csg_tape tape;
     float center[3], half; /* half < 0: no tape */
+    bool out_of_memory;    /* once: the whole tape has stood in */
 } csg_feature_around;
 
 void csg_feature_around_release(csg_feature_around *around);

@@ -40,6 +40,21 @@ static bool tape_of(const csg_octree *octree, const uint32_t cell[3], csg_tape *
     return false;
 }
 
+/* Which corners have been given the other sign, as blocks do: those that differ from all three next
+ * to them may. */
+static unsigned beads_of(csg_beads *beads, const uint32_t cell[3], unsigned pattern)
+{
+    unsigned found = 0;
+    for (unsigned c = 0; c < 8; c++) {
+        unsigned own = pattern >> c & 1;
+        const uint32_t at[3] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
+        if ((pattern >> (c ^ 1) & 1) != own && (pattern >> (c ^ 2) & 1) != own &&
+            (pattern >> (c ^ 4) & 1) != own)
+            found |= (unsigned)csg_bead_is(beads, at) << c;
+    }
+    return found;
+}
+
 /* The lattice's border is outside by decree. */
 static unsigned pattern_of(const csg_marching *m, const csg_tape *tape, const uint32_t cell[3],
                            float *scratch, size_t scratch_floats)
@@ -57,7 +72,13 @@ static unsigned pattern_of(const csg_marching *m, const csg_tape *tape, const ui
     m->kernel->values(tape, x, y, z, 8, f, scratch, scratch_floats);
     for (unsigned c = 0; c < 8; c++)
         pattern |= (unsigned)(f[c] >= 0) << c;
-    return pattern & ~border;
+    pattern &= ~border;
+    csg_beads beads = {.kernel = m->kernel,
+                       .tape = &m->field->tape,
+                       .lattice = m->lattice,
+                       .scratch = scratch,
+                       .scratch_floats = scratch_floats};
+    return pattern ^ beads_of(&beads, cell, pattern);
 }
 
 static void add_edge(const csg_marching *m, const uint32_t cell[3], unsigned edge, csg_edges *e)

@@ -105,8 +105,8 @@ static void borrow_planes(const csg_feature *f, const surroundings *q, int k, cs
 static bool begin_try(const csg_feature *f, const surroundings *q, const csg_feature_polygon *p,
                       int n, csg_apex *a)
 {
-    enum { PLACES = 5 };
-    static const double place[PLACES] = {0.5, 0.25, 0.75, 0.1, 0.9};
+    enum { PLACES = 3 };
+    static const double place[PLACES] = {0.5, 0.2, 0.8};
     if (f->sheet_count > 2) {
         a->at = csg_vec3_make(0, 0, 0);
         for (int k = 0; k < q->count; k++) {
@@ -129,9 +129,10 @@ static bool begin_try(const csg_feature *f, const surroundings *q, const csg_fea
 bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
                          csg_feature_probe *probe)
 {
-    enum { MOST_TRIES = 2 };
+    enum { MOST_TRIES = 1, MOST_NODES = 512 /* the whole tape is asked */ };
     csg_feature *f = &store->features[index], before = *f;
-    if (!f->creased || f->tries == MOST_TRIES)
+    if (!f->creased || f->tries == MOST_TRIES ||
+        probe->marching->field->tape.count > MOST_NODES)
         return false;
     before.tries++;
     double cell = probe->marching->lattice->cell_size;
