@@ -290,6 +290,9 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
 {
     double c[1][3], value, h = w->lattice->cell_size;
     csg_reach_end end;
+    if (w->looked[cell])
+        return true;
+    w->looked[cell] = true;
     for (int axis = 0; axis < 3; axis++)
         c[0][axis] =
             (double)csg_lattice_coordinate(
@@ -310,14 +313,11 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
     return true;
 }
 
-/* Where values are slow to find, this is the time to look for what hides. */
+/* Where values are slow to find, this may be the time to look for what hides. */
 static bool give_up(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     csg_reach_end end = {{cube->c[0], cube->c[1], cube->c[2]}, 0};
-    bool first = !w->given_up[cube->cell];
-    w->given_up[cube->cell] = true;
-    return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end) &&
-           (!first || !is_slow(cube) || look_for_missed(w, cube->cell));
+    return find(w, cube->cell, CSG_CELL_UNRESOLVED, 1, &end) && look_for_missed(w, cube->cell);
 }
 
 /* All that is looked at in a cell as a whole is within reach of its own tape. */
@@ -473,12 +473,11 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
     memcpy(w->block.at, at, sizeof w->block.at);
     w->block.parts = NULL;
     w->samples->scan = NULL;
-    w->samples->beads = NULL;
     csg_block_sample(&w->block, w->reach.kernel, tape, w->lattice, at, w->samples, w->reach.scratch,
                      w->reach.scratch_floats);
     memset(w->kinds, 0, sizeof w->kinds);
     memset(w->visits, 0, sizeof w->visits);
-    memset(w->given_up, 0, sizeof w->given_up);
+    memset(w->looked, 0, sizeof w->looked);
     w->block_visits = 0;
     place_reach(w, tape);
     csg_certify_cube root = {.half = CSG_BLOCK_EDGE * h / 2,

@@ -46,8 +46,8 @@ typedef struct csg_certify_worker {
     size_t stack_count, stack_capacity;
     uint8_t kinds[CSG_CELLS_PER_BLOCK];
     uint32_t visits[CSG_CELLS_PER_BLOCK], block_visits;
-    bool given_up[CSG_CELLS_PER_BLOCK];
-    csg_certify_finding *findings; /* of all blocks so far */
+    bool looked[CSG_CELLS_PER_BLOCK]; /* from its centre */
+    csg_certify_finding *findings;    /* of all blocks so far */
     size_t finding_count, finding_capacity;
     uint64_t cells[CSG_CELL_KINDS], cubes;
     bool reached_size, out_of_memory;
