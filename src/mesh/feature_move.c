@@ -131,8 +131,7 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
 {
     enum { MOST_TRIES = 1, MOST_NODES = 512 /* the whole tape is asked */ };
     csg_feature *f = &store->features[index], before = *f;
-    if (!f->creased || f->tries == MOST_TRIES ||
-        probe->marching->field->tape.count > MOST_NODES)
+    if (!f->creased || f->tries == MOST_TRIES || probe->marching->field->tape.count > MOST_NODES)
         return false;
     before.tries++;
     double cell = probe->marching->lattice->cell_size;
