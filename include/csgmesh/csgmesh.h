@@ -394,6 +394,7 @@ typedef struct csgm_mesh_stats {
     uint64_t feature_vertices; /* places on creases, corners and tips that are vertices */
     uint64_t smooth_features;  /* polygons that a crease runs through without such a vertex: there
                                   it is cut as by plain marching cubes */
+    uint64_t fading_features;  /* the same, where the crease is blunter than 12 degrees and ends */
     double reshape_s;          /* wall time of thinning out and improving */
     uint64_t triangles_before; /* that; 0: it was not asked for */
     bool is_measured;          /* the rest is known */

@@ -159,6 +159,7 @@ static void fill_stats(const csg_mesh_work *w, csgm_mesh_stats *stats)
         .memory_peak_bytes = atomic_load(&w->context->memory.peak_bytes),
         .feature_vertices = w->features.count,
         .smooth_features = w->features.smooth,
+        .fading_features = w->features.fading,
     };
     if (octree.sampled_blocks)
         stats->mean_tape_length = (double)octree.tape_nodes_sampled / (double)octree.sampled_blocks;

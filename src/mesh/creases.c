@@ -41,9 +41,10 @@ static void empty_rooms(csg_mesh_work *w)
     for (uint32_t i = 0; i < w->worker_count; i++) {
         csg_feature_room *room = w->workers[i].features;
         w->features.smooth += room->smooth;
+        w->features.fading += room->fading;
         w->workers[i].point_evaluations += room->evaluations;
         room->count = room->block_count = 0;
-        room->smooth = room->evaluations = 0;
+        room->smooth = room->fading = room->evaluations = 0;
     }
 }
 

@@ -77,6 +77,7 @@ typedef struct csg_feature_store {
     double cell_size;
     size_t numbered; /* blocks whose features have vertex numbers */
     uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
+    uint64_t fading; /* the same, where all their creases are blunt and end */
 } csg_feature_store;
 
 /* ---- finding ------------------------------------------------------------------------------- */
@@ -117,7 +118,7 @@ typedef struct csg_feature_room {
     csg_feature *features; /* found since the last reset */
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
-    uint64_t smooth, evaluations;
+    uint64_t smooth, fading, evaluations;
     csg_feature_around around;
 } csg_feature_room;
 

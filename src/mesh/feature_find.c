@@ -258,7 +258,7 @@ void csg_feature_room_init(csg_feature_room *room)
     room->features = NULL;
     room->blocks = NULL;
     room->count = room->capacity = room->block_count = room->block_capacity = 0;
-    room->smooth = room->evaluations = 0;
+    room->smooth = room->fading = room->evaluations = 0;
 }
 
 void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)

@@ -152,12 +152,13 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
     if (!p.creased && (!good || !loop->wide))
         return true;
     bool solved = good && solve_polygon(room, loop, &p, probe, out);
-    bool creased = p.creased && !is_fading(room, loop);
+    bool fades = is_fading(room, loop);
+    bool creased = p.creased && !fades;
     if (good && creased && !solved)
         leave_unsolved(room, loop, &p, out);
     if (solved || (good && creased))
         room->count++;
-    else
-        room->smooth += creased;
+    else if (p.creased)
+        *(fades ? &room->fading : &room->smooth) += 1;
     return true;
 }

@@ -65,6 +65,7 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     csg_mesh_add_certify(&sum->certify, &part->certify);
     sum->feature_vertices += part->feature_vertices;
     sum->smooth_features += part->smooth_features;
+    sum->fading_features += part->fading_features;
     if (sum->leaf_blocks)
         sum->mean_tape_length = nodes / (double)sum->leaf_blocks;
 }

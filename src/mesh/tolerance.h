@@ -25,9 +25,9 @@ typedef struct csg_mesh_goal {
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
     uint64_t begun, open;
     uint64_t unfinished; /* stretches of the surface that were too intricate to look through */
-    csg_vec3 place; /* of what is open, scene units */
-    bool unproven;  /* it would have taken too long: measured only */
-    bool tight;     /* `share` was out of reach */
+    csg_vec3 place;      /* of what is open, scene units */
+    bool unproven;       /* it would have taken too long: measured only */
+    bool tight;          /* `share` was out of reach */
 } csg_mesh_goal;
 
 static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)

@@ -130,7 +130,7 @@ class Statistics(cli.CliTest):
             "evaluations": ["interval", "points", "gradient", "primitive", "mean_tape_length"],
             "octree": ["visited", "pruned_outside", "pruned_inside", "leaf_blocks",
                        "unresolved_cells"],
-            "features": ["vertices", "left_smooth"],
+            "features": ["vertices", "left_smooth", "fading"],
             "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
                      "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
                      "volume", "bounds"],

@@ -58,6 +58,7 @@ static void put_work(cli_json *json, const cli_work *work)
     cli_json_open(json, "features", '{');
     cli_json_count(json, "vertices", stats->feature_vertices);
     cli_json_count(json, "left_smooth", stats->smooth_features);
+    cli_json_count(json, "fading", stats->fading_features);
     cli_json_end(json, '}');
 }
 
