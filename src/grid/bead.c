@@ -192,11 +192,22 @@ static bool is_of_tip(csg_beads *b, const uint32_t at[3], const csg_vec3 root[AX
     return most <= near && fabs((double)p.f[0]) <= near * (double)b->tape->lipschitz;
 }
 
+/* Whether the tape is quick to ask: not long, and without formulas. */
+static bool is_quick(const csg_tape *tape)
+{
+    if (tape->count > CSG_BEAD_MOST_NODES)
+        return false;
+    for (uint32_t i = 0; i < tape->count; i++)
+        if (tape->nodes[i].op == CSG_OP_FIELD || tape->nodes[i].op == CSG_OP_COMBINE)
+            return false;
+    return true;
+}
+
 bool csg_bead_is(csg_beads *b, const uint32_t at[3])
 {
     enum { MOST_DIAGONALS = 3, MOST_EVALUATIONS = 4000 };
     static const int here[1][3] = {{0, 0, 0}};
-    if (b->tape->count > CSG_BEAD_MOST_NODES || !is_inner(b, at))
+    if (!is_quick(b->tape) || !is_inner(b, at))
         return false;
     step_table t = steps_around();
     b->left = MOST_EVALUATIONS;

@@ -13,7 +13,7 @@
 #include "field/dispatch.h"
 #include "grid/lattice.h"
 
-/* Longer tapes take too long to ask: their beads stay. */
+/* Longer tapes, and those with formulas, take too long to ask: their beads stay. */
 enum { CSG_BEAD_MOST_NODES = 512 };
 
 typedef struct csg_beads {

@@ -12,7 +12,8 @@ typedef struct csg_cross_state {
     float at[3];
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     bool known;
-    uint8_t tries; /* places that a smooth one's apex has had */
+    uint8_t tries;   /* places that a smooth one's apex has had */
+    uint32_t search; /* the last one that changed it: what was found of it before is past */
 } cross_state;
 
 enum { CHANGED = 1, AWAKE = 2, CROSSED = 4 }; /* bits of a block */
@@ -112,24 +113,41 @@ static uint32_t victim_of(const csg_feature_cross *cross, const uint32_t owners[
     return victim;
 }
 
-/* One becomes smooth; where all are, one's apex goes to another place in its polygon. True: there
- * is nothing to be done. */
+static bool is_past(const csg_feature_cross *cross, const uint32_t owners[4])
+{
+    for (int k = 0; k < 4; k++)
+        if (owners[k] != CSG_FEATURE_NONE && cross->states[owners[k]].search == cross->search)
+            return true;
+    return false;
+}
+
+static void has_changed(csg_feature_cross *cross, uint32_t feature)
+{
+    cross->states[feature].search = cross->search;
+    cross->has_changed = true;
+}
+
+/* One becomes smooth; where all are, one's apex goes to another place in its polygon. */
 static bool mend(void *user, const csg_near_triangle *s, const csg_near_triangle *t)
 {
     csg_feature_cross *cross = user;
     csg_feature_store *store = cross->near.store;
     const csg_cell_tables *tables = cross->near.marching->tables;
     const uint32_t owners[4] = {s->owner[0], s->owner[1], t->owner[0], t->owner[1]};
+    if (is_past(cross, owners))
+        return true;
     uint32_t victim = victim_of(cross, owners);
     if (victim != CSG_FEATURE_NONE) {
         csg_feature_demote(store, tables, &store->features[victim]);
-        return false;
+        has_changed(cross, victim);
+        return true;
     }
     for (int k = 0; k < 4; k += 2) {
         cross_state *state = owners[k] == CSG_FEATURE_NONE ? NULL : &cross->states[owners[k]];
         if (state && csg_feature_divide(&store->features[owners[k]], tables, state->tries + 1u)) {
             state->tries++;
-            return false;
+            has_changed(cross, owners[k]);
+            return true;
         }
     }
     return true;
@@ -139,7 +157,9 @@ static bool mend(void *user, const csg_near_triangle *s, const csg_near_triangle
 static bool mend_block(csg_feature_cross *cross, size_t index, size_t *changed)
 {
     const csg_feature_store *store = cross->near.store;
-    for (;; ++*changed) {
+    do {
+        cross->search++;
+        cross->has_changed = false;
         for (int k = 0; k < CSG_NEAR_BLOCKS; k++) {
             const csg_feature_block *around = csg_near_block(store, &store->blocks[index], k);
             if (around)
@@ -147,9 +167,10 @@ static bool mend_block(csg_feature_cross *cross, size_t index, size_t *changed)
         }
         if (!csg_near_collect(&cross->near, &cross->rooms[0], index))
             return false;
-        if (csg_near_search(&cross->near, &cross->rooms[0], index, mend, cross))
-            return true;
-    }
+        csg_near_search(&cross->near, &cross->rooms[0], index, mend, cross);
+        *changed += cross->has_changed;
+    } while (cross->has_changed);
+    return true;
 }
 
 bool csg_feature_cross_mend(csg_feature_cross *cross, size_t *changed)

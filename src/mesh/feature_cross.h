@@ -16,6 +16,8 @@ typedef struct csg_feature_cross {
     uint32_t room_count;
     struct csg_cross_state *states; /* one a feature */
     uint8_t *blocks;                /* what is known of each */
+    uint32_t search;                /* number of the one that mends */
+    bool has_changed;               /* something, in that */
 } csg_feature_cross;
 
 /* near is set but for its boxes, and so are the rooms. False: out of memory; to be ended all the
