@@ -124,12 +124,24 @@ static bool is_corner(const csg_feature *f)
     return f->sheet_count > 2;
 }
 
+/* Whether another side before it joins the same two apexes: they would have an edge twice. Polygons
+ * that meet in both segments of one face can. */
+static bool is_joined_already(const csg_feature *f, int s)
+{
+    for (int k = 0; k < s; k++)
+        if (f->flipped >> k & 1 && f->beyond[k] == f->beyond[s])
+            return true;
+    return false;
+}
+
 /* An apex that is not known yet stands in nobody's way. */
 static bool side_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
                        int s)
 {
     if (!(f->flipped >> s & 1))
         return stays_outward(f, s);
+    if (is_joined_already(f, s))
+        return false;
     return store->features[f->beyond[s]].unsolved || side_flips(store, tables, f, s);
 }
 
