@@ -188,8 +188,8 @@ static bool is_uniform(const csg_block *block)
 }
 
 bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape *tape,
-                      const csg_lattice *lattice, const uint32_t at[3], csg_block_samples *samples,
-                      float *scratch, size_t scratch_floats)
+                      const csg_lattice *lattice, const uint32_t at[3], csg_beads *beads,
+                      csg_block_samples *samples, float *scratch, size_t scratch_floats)
 {
     memcpy(block->at, at, sizeof block->at);
     block->nodes = tape->nodes;
@@ -197,8 +197,8 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     (block->parts ? sample_parts : sample_whole)(block, samples, kernel, tape, lattice, scratch,
                                                  scratch_floats);
     collect_signs(block, lattice, samples->inside);
-    if (samples->beads && !is_uniform(block))
-        drop_beads(block, samples->beads);
+    if (beads && !is_uniform(block))
+        drop_beads(block, beads);
     if (is_uniform(block))
         return false;
     collect_crossings(block);

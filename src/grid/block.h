@@ -45,14 +45,13 @@ typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];
     float f[CSG_BLOCK_POINTS_PADDED];
     uint8_t inside[CSG_BLOCK_POINTS_PADDED];
-    csg_scan *scan;   /* looks at the values before they are forgotten; NULL = nobody does */
-    csg_beads *beads; /* looks for beads of tips; NULL = they stay */
+    csg_scan *scan; /* looks at the values before they are forgotten; NULL = nobody does */
 } csg_block_samples;
 
-/* Fills everything but the triangle and first_* members; block->parts is set already. False: no
- * lattice edge is crossed. */
+/* Fills everything but the triangle and first_* members; block->parts is set already. beads looks
+ * for beads of tips; NULL: they stay. False: no lattice edge is crossed. */
 bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape *tape,
-                      const csg_lattice *lattice, const uint32_t at[3], csg_block_samples *samples,
-                      float *scratch, size_t scratch_floats);
+                      const csg_lattice *lattice, const uint32_t at[3], csg_beads *beads,
+                      csg_block_samples *samples, float *scratch, size_t scratch_floats);
 
 #endif

@@ -473,8 +473,8 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
     memcpy(w->block.at, at, sizeof w->block.at);
     w->block.parts = NULL;
     w->samples->scan = NULL;
-    csg_block_sample(&w->block, w->reach.kernel, tape, w->lattice, at, w->samples, w->reach.scratch,
-                     w->reach.scratch_floats);
+    csg_block_sample(&w->block, w->reach.kernel, tape, w->lattice, at, NULL, w->samples,
+                     w->reach.scratch, w->reach.scratch_floats);
     memset(w->kinds, 0, sizeof w->kinds);
     memset(w->visits, 0, sizeof w->visits);
     memset(w->looked, 0, sizeof w->looked);

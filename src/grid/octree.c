@@ -215,9 +215,9 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
         return false;
     count_samples(self, tape);
     csg_scan scan = {0};
-    self->samples->beads = w->options.beads ? &self->beads : NULL;
+    csg_beads *beads = w->options.beads ? &self->beads : NULL;
     self->samples->scan = w->scans && begin_scan(w, &scan, at, tape) ? &scan : NULL;
-    bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at,
+    bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, beads,
                                     self->samples, self->scratch, self->scratch_floats);
     if (!keep_doubt(w, self, &scan))
         return false;
