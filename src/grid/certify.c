@@ -199,13 +199,24 @@ static void fill_report(const walk *w, csg_certify_report *report)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
+/* So many visits of cubes as take about half a minute of one core are shared out among the blocks,
+ * about five to a cube of the frontier. */
+static uint32_t block_budget(size_t cubes)
+{
+    const size_t all = 60000000, least = 2000, most = 300000;
+    size_t share = all / (5 * (cubes + 1));
+    return (uint32_t)(share < least ? least : share > most ? most : share);
+}
+
 static bool create_worker(const walk *w, csg_certify_worker *self)
 {
     csg_memory *memory = &w->context->memory;
     const csg_kernel *kernel = csg_kernel_for(w->context->isa);
     float rounding = csg_octree_rounding(w->lattice);
-    *self = (csg_certify_worker){
-        .context = w->context, .lattice = w->lattice, .size = w->options->size};
+    *self = (csg_certify_worker){.context = w->context,
+                                 .lattice = w->lattice,
+                                 .size = w->options->size,
+                                 .most_block_visits = block_budget(w->cube_count)};
     csg_pruner_init(&self->plain, memory, kernel, rounding);
     csg_pruner_init(&self->wide, memory, kernel, rounding);
     csg_pruner_init(&self->cones, memory, kernel, rounding);

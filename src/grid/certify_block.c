@@ -24,10 +24,9 @@ static const double WIDE_NEAR = 8;
 static const double LOCAL = 1.3;
 
 enum {
-    MOST_VISITS = 20000,        /* of cubes, a cell */
-    MOST_BLOCK_VISITS = 300000, /* a block */
-    SLOW_VISIT = 8,             /* what one counts where a shape, formula or warp is evaluated */
-    SLOW_BLOCK_VISIT = 15       /* the same, of the block's */
+    MOST_VISITS = 20000,  /* of cubes, a cell */
+    SLOW_VISIT = 8,       /* what one counts where shapes, formulas or warps are evaluated */
+    SLOW_BLOCK_VISIT = 45 /* the same, of the block's, for each of them */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
@@ -245,24 +244,26 @@ static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
     return true;
 }
 
-static bool is_slow(const csg_certify_cube *cube)
+/* Leaves that are slow to evaluate. */
+static uint32_t slow_leaves(const csg_certify_cube *cube)
 {
+    uint32_t count = 0;
     for (uint32_t i = 0; i < cube->node_count; i++) {
         const csg_tape_node *node = &cube->nodes[i];
         if (csg_op_is_leaf(node->op) &&
             (node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD || node->warp))
-            return true;
+            count++;
     }
-    return false;
+    return count;
 }
 
 static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
 {
-    bool slow = is_slow(cube);
+    uint32_t slow = slow_leaves(cube);
     w->cubes++;
-    w->block_visits += slow ? SLOW_BLOCK_VISIT : 1;
+    w->block_visits += slow ? slow * SLOW_BLOCK_VISIT : 1;
     w->visits[cube->cell] += slow ? SLOW_VISIT : 1;
-    return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= MOST_BLOCK_VISITS;
+    return w->visits[cube->cell] <= MOST_VISITS && w->block_visits <= w->most_block_visits;
 }
 
 /* Whether a slide from c, or from beyond the surface as the gradient there has it, leads to the
@@ -355,7 +356,7 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return false;
     if (settled)
         return true;
-    if (is_cell && !is_slow(cube) && !look_for_missed(w, cube->cell))
+    if (is_cell && !slow_leaves(cube) && !look_for_missed(w, cube->cell))
         return false;
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;

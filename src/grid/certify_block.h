@@ -34,7 +34,8 @@ typedef struct csg_certify_cube {
 typedef struct csg_certify_worker {
     csgm_context *context;
     const csg_lattice *lattice;
-    double size; /* where dividing ends */
+    double size;                /* where dividing ends */
+    uint32_t most_block_visits; /* of cubes, a block */
     csg_pruner plain, wide, cones;
     csg_arena tapes;
     csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
