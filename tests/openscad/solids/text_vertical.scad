@@ -1,2 +1,3 @@
+// --exact: not compared, letters of OpenSCAD are 0.013 % smaller
 $fn = 40;
 linear_extrude(4) text("EH", size = 14, direction = "ttb");
