@@ -94,10 +94,18 @@ static void octant_of(const uint32_t parent[3], int octant, uint32_t at[3])
 }
 
 /* Of the ball around a cube of 2 * half cells along an edge, rounded up. */
-static float ball_radius(const walk *w, uint32_t half)
+static float ball_radius(const csg_lattice *lattice, double margin, uint32_t half)
 {
-    double reach = half * w->lattice->cell_size + w->options.margin;
+    double reach = half * lattice->cell_size + margin;
     return (float)(reach * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
+}
+
+/* By how much f can change along a lattice edge. */
+static float band_of(const csg_lattice *lattice, double margin, float lipschitz)
+{
+    double edge = lattice->cell_size * (margin > 0 ? 2 : 1);
+    return (float)((double)lipschitz *
+                   (edge * (1 + 0x1p-10) + 2 * (double)csg_octree_rounding(lattice)));
 }
 
 /* Centres of the eight children; returns the radius of their balls. */
@@ -110,7 +118,7 @@ static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTA
         for (int axis = 0; axis < 3; axis++)
             c[axis][octant] = csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
     }
-    return ball_radius(w, half);
+    return ball_radius(w->lattice, w->options.margin, half);
 }
 
 static uint32_t primitives_in(const csg_tape *tape)
@@ -133,29 +141,38 @@ static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tap
     return true;
 }
 
-/* Tapes for the eight parts of a block, in the arena of blocks. */
-static bool split_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
+bool csg_octree_split(csg_pruner *pruner, const csg_lattice *lattice, double margin,
+                      const uint32_t at[3], const csg_tape *tape, csg_arena *arena,
+                      csg_block_part parts[CSG_OCTANTS])
 {
-    csg_block_part *parts = csg_arena_alloc(&self->tapes[0], CSG_OCTANTS * sizeof *parts);
-    float c[3][CSG_OCTANTS];
+    float c[3][CSG_OCTANTS], tau = band_of(lattice, margin, tape->lipschitz);
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
         for (int axis = 0; axis < 3; axis++) {
             uint32_t half = CSG_PART_EDGE / 2, shift = (octant >> axis & 1) * CSG_PART_EDGE;
             c[axis][octant] =
-                csg_lattice_coordinate(w->lattice, axis, at[axis] * CSG_BLOCK_EDGE + shift + half);
+                csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + shift + half);
         }
-    if (!parts || !csg_prune_octants(&self->part_pruner, tape, c[0], c[1], c[2],
-                                     ball_radius(w, CSG_PART_EDGE / 2)))
+    if (!csg_prune_octants(pruner, tape, c[0], c[1], c[2],
+                           ball_radius(lattice, margin, CSG_PART_EDGE / 2)))
         return false;
-    self->stats.interval_evaluations += CSG_OCTANTS;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         csg_tape part = *tape;
-        csg_cell_state state = csg_prune_state(&self->part_pruner, octant);
-        if (state == CSG_CELL_SURFACE &&
-            !csg_prune_shorten(&self->part_pruner, octant, w->tau, &self->tapes[0], &part))
+        csg_cell_state state = csg_prune_state(pruner, octant);
+        if (state == CSG_CELL_SURFACE && !csg_prune_shorten(pruner, octant, tau, arena, &part))
             return false;
         parts[octant] = (csg_block_part){part.nodes, part.count, state};
     }
+    return true;
+}
+
+/* Tapes for the parts of a block, in the arena of blocks. */
+static bool split_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
+{
+    csg_block_part *parts = csg_arena_alloc(&self->tapes[0], CSG_OCTANTS * sizeof *parts);
+    if (!parts || !csg_octree_split(&self->part_pruner, w->lattice, w->options.margin, at, tape,
+                                    &self->tapes[0], parts))
+        return false;
+    self->stats.interval_evaluations += CSG_OCTANTS;
     self->candidate.parts = parts;
     return true;
 }
@@ -193,7 +210,8 @@ static bool begin_scan(const walk *w, csg_scan *scan, const uint32_t at[3], cons
         c[axis] = csg_lattice_coordinate(w->lattice, axis,
                                          at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
     *scan = (csg_scan){.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
-    return !csg_cone_find(NULL, tape, c, (double)ball_radius(w, CSG_BLOCK_EDGE / 2), &cone);
+    double radius = (double)ball_radius(w->lattice, w->options.margin, CSG_BLOCK_EDGE / 2);
+    return !csg_cone_find(NULL, tape, c, radius, &cone);
 }
 
 static bool keep_doubt(walk *w, worker *self, const csg_scan *scan)
@@ -485,10 +503,8 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
                 .options = *options,
                 .kernel = csg_kernel_for(context->isa),
                 .worker_count = csg_pool_threads(context->pool)};
-    double rounding = (double)csg_octree_rounding(lattice);
-    double band = lattice->cell_size * (options->margin > 0 ? 2 : 1);
-    w->tau = (float)((double)field->tape.lipschitz * (band * (1 + 0x1p-10) + 2 * rounding));
-    bool done = create_workers(w, (float)rounding) && make_root(w);
+    w->tau = band_of(lattice, options->margin, field->tape.lipschitz);
+    bool done = create_workers(w, csg_octree_rounding(lattice)) && make_root(w);
     if (!done)
         atomic_store(&w->out_of_memory, true);
     for (w->level = w->top_level - 1; done && w->level > 0; w->level--)

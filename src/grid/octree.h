@@ -44,6 +44,11 @@ size_t csg_octree_frontier_count(const csg_octree *octree);
 csg_tape csg_octree_frontier_tape(const csg_octree *octree, size_t index, uint32_t at[3]);
 /* Slack of lengths for pruners of this walk's tapes. */
 float csg_octree_rounding(const csg_lattice *lattice);
+/* Tapes for the eight parts of the block at `at`, in the arena, as a walk with that margin gives
+ * them to blocks of long tapes. False: out of memory. */
+bool csg_octree_split(csg_pruner *pruner, const csg_lattice *lattice, double margin,
+                      const uint32_t at[3], const csg_tape *tape, csg_arena *arena,
+                      csg_block_part parts[CSG_OCTANTS]);
 /* Samples the blocks of frontier cubes [first, end) and forgets those of the call before. */
 csgm_status csg_octree_sample(csg_octree *octree, size_t first, size_t end);
 /* The blocks, in Morton order, that the surface touches. */

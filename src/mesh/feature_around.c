@@ -7,8 +7,10 @@
 
 #include "grid/octree.h"
 
-static void begin(csg_feature_around *around, csg_memory *memory, const csg_marching *m)
+void csg_feature_around_begin(csg_feature_around *around, csg_memory *memory, const csg_marching *m)
 {
+    if (around->memory)
+        return;
     around->memory = memory;
     csg_pruner_init(&around->pruner, memory, m->kernel, csg_octree_rounding(m->lattice));
     csg_arena_init(&around->arena, memory);
@@ -35,8 +37,7 @@ bool csg_feature_around_holds(const csg_feature_around *around, float x, float y
 void csg_feature_around_move(csg_feature_around *around, csg_memory *memory, const csg_marching *m,
                              const float center[3], float half)
 {
-    if (!around->memory)
-        begin(around, memory, m);
+    csg_feature_around_begin(around, memory, m);
     float c[3][CSG_OCTANTS];
     for (int axis = 0; axis < 3; axis++) {
         around->center[axis] = center[axis];

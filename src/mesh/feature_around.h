@@ -20,6 +20,9 @@ typedef struct csg_feature_around {
     bool out_of_memory;    /* once: the whole tape has stood in */
 } csg_feature_around;
 
+/* Makes its pruner and arena ready, once. */
+void csg_feature_around_begin(csg_feature_around *around, csg_memory *memory,
+                              const csg_marching *marching);
 void csg_feature_around_release(csg_feature_around *around);
 
 bool csg_feature_around_holds(const csg_feature_around *around, float x, float y, float z);

@@ -231,7 +231,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
 {
     csg_feature_probe probe =
         csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
-    if (!csg_feature_is_possible(m, block, &probe))
+    if (!csg_feature_is_possible(&probe))
         return true;
     room->evaluations +=
         csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);

@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { E = CSG_BLOCK_EDGE };
+#include "grid/octree.h"
 
 typedef struct ball {
     float at[3], radius;
@@ -170,21 +170,55 @@ static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, ui
     return false;
 }
 
-bool csg_feature_is_possible(const csg_marching *m, const csg_block *block,
-                             const csg_feature_probe *probe)
+/* Of one part of the block: the ball around it. */
+static ball ball_of(const csg_feature_probe *probe, int octant, float cell)
 {
-    const csg_tape *tape = &m->field->tape;
-    float cell = (float)m->lattice->cell_size;
-    ball at = {.radius = 0.8661f * E * cell}; /* sqrt(3) / 2 */
+    ball at = {.radius = 0.8661f * CSG_PART_EDGE * cell}; /* sqrt(3) / 2 */
     for (int axis = 0; axis < 3; axis++)
-        at.at[axis] = probe->line[axis][E / 2];
-    if (!block->parts)
-        return tape_may_crease(tape, block->nodes, block->node_count, at, cell);
+        at.at[axis] = probe->line[axis][CSG_PART_EDGE * (octant >> axis & 1) + CSG_PART_EDGE / 2];
+    return at;
+}
+
+static bool parts_may_crease(const csg_feature_probe *probe, const csg_block_part *parts)
+{
+    const csg_tape *tape = &probe->marching->field->tape;
+    float cell = (float)probe->marching->lattice->cell_size;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
-        const csg_block_part *part = &block->parts[octant];
-        if (part->state == CSG_CELL_SURFACE &&
-            tape_may_crease(tape, part->nodes, part->node_count, at, cell))
+        const csg_block_part *part = &parts[octant];
+        if (part->state == CSG_CELL_SURFACE && tape_may_crease(tape, part->nodes, part->node_count,
+                                                               ball_of(probe, octant, cell), cell))
             return true;
     }
     return false;
+}
+
+/* The parts that a block of a long tape would have. */
+static bool split(const csg_feature_probe *probe, csg_block_part parts[CSG_OCTANTS])
+{
+    csg_tape tape = probe->marching->field->tape;
+    tape.nodes = probe->block->nodes;
+    tape.count = probe->block->node_count;
+    return csg_octree_split(&probe->around->pruner, probe->marching->lattice, 0, probe->block->at,
+                            &tape, &probe->around->arena, parts);
+}
+
+/* A sharp operand that is in the block's tape but far away would have smooth thin parts looked at
+ * that a shorter tape leaves alone; so whatever the octree has dropped, parts are asked. */
+bool csg_feature_is_possible(const csg_feature_probe *probe)
+{
+    const csg_block *block = probe->block;
+    if (block->parts)
+        return parts_may_crease(probe, block->parts);
+    csg_block_part parts[CSG_OCTANTS];
+    for (int octant = 0; octant < CSG_OCTANTS; octant++)
+        parts[octant] = (csg_block_part){block->nodes, block->node_count, CSG_CELL_SURFACE};
+    if (!parts_may_crease(probe, parts))
+        return false;
+    csg_feature_around_begin(probe->around, probe->memory, probe->marching);
+    csg_arena_mark mark = csg_arena_get_mark(&probe->around->arena);
+    bool done = split(probe, parts);
+    bool possible = !done || parts_may_crease(probe, parts);
+    probe->around->out_of_memory |= !done;
+    csg_arena_release_to(&probe->around->arena, mark);
+    return possible;
 }

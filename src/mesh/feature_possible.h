@@ -6,9 +6,8 @@
 
 #include "mesh/feature_probe.h"
 
-/* False: the gradient does not jump anywhere on the surface in this block, and does not turn so
- * fast that it would look like a jump. */
-bool csg_feature_is_possible(const csg_marching *m, const csg_block *block,
-                             const csg_feature_probe *probe);
+/* False: the gradient does not jump anywhere on the surface in the probe's block, and does not turn
+ * so fast that it would look like a jump. */
+bool csg_feature_is_possible(const csg_feature_probe *probe);
 
 #endif
