@@ -157,7 +157,7 @@ static void fill_stats(const csg_mesh_work *w, csgm_mesh_stats *stats)
         .unresolved_cells = w->unresolved_cells,
         .certify = w->certify,
         .memory_peak_bytes = atomic_load(&w->context->memory.peak_bytes),
-        .feature_vertices = w->features.count,
+        .feature_vertices = w->features.count - w->features.bare,
         .smooth_features = w->features.smooth,
         .fading_features = w->features.fading,
     };

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "mesh/feature_bare.h"
 #include "mesh/feature_cross.h"
 #include "mesh/feature_join.h"
 #include "mesh/feature_move.h"
@@ -75,7 +76,7 @@ static void count_vertices(csg_mesh_work *w, size_t first_block)
 static void add_counts(csg_block *block, const csg_feature_block *features)
 {
     block->vertex_count += features->vertices;
-    block->triangle_count += 2 * features->count;
+    block->triangle_count += 2 * (features->count - features->bare);
 }
 
 static void look_up(csg_mesh_work *w)
@@ -292,7 +293,10 @@ csgm_status csg_mesh_link_features(csg_mesh_work *w)
 {
     if (w->options->features != CSGM_FEATURES_SHARP || !w->octree)
         return CSGM_OK;
-    if (!csg_feature_store_index(&w->features))
+    csg_mesh_worker *self = &w->workers[0];
+    if (!csg_feature_store_index(&w->features) ||
+        !csg_feature_add_bare(&w->features, &w->marching, w->octree, &self->room->edges,
+                              self->scratch, w->scratch_floats, &self->point_evaluations))
         return csg_context_no_memory(w->context);
     csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
     return settle_features(w) ? CSGM_OK : csg_mesh_why_stopped(w);

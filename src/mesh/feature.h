@@ -57,13 +57,25 @@ typedef struct csg_feature {
     uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
     uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
     bool smooth;      /* given up: csg_feature_demote */
+    bool bare;        /* without an apex, and smooth: the triangles of marching cubes, two less */
+    bool shifted;     /* has asked for a vertex to make way */
+    uint16_t moved;   /* bit s: corner s is not where its lattice edge has it */
+    uint8_t moves;    /* of its corners until now */
     uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
 } csg_feature;
+
+/* A vertex that has made way for a corner of the solid (feature_shift.h). */
+typedef struct csg_feature_moved {
+    uint32_t feature[4]; /* that it is a corner of */
+    uint8_t corner[4];
+    float from[3], normal[3]; /* outward, at its new place */
+    bool back;                /* it has been put back */
+} csg_feature_moved;
 
 /* The features of one block, in the order of its cells. */
 typedef struct csg_feature_block {
     uint32_t at[3];
-    uint32_t first, count;
+    uint32_t first, count, bare; /* bare: of these, without an apex */
     uint32_t vertices; /* apexes, or sheets of all apexes where normals are split */
 } csg_feature_block;
 
@@ -74,6 +86,9 @@ typedef struct csg_feature_store {
     size_t count, capacity, block_count, block_capacity;
     uint32_t *slots; /* block + 1, 0 = free */
     size_t slot_count;
+    csg_feature_moved *moves;
+    size_t move_count, move_capacity;
+    size_t bare; /* of the features, those without an apex */
     double cell_size;
     size_t numbered; /* blocks whose features have vertex numbers */
     uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
@@ -153,10 +168,17 @@ void csg_feature_store_release(csg_feature_store *store);
 /* One corner of a triangle: a crossed edge of the cell (edge), or an apex. */
 typedef struct csg_fan_corner {
     const csg_feature *apex; /* NULL: an edge */
+    const float *at;         /* of an edge's vertex that has moved; else NULL */
     uint8_t edge, sheet;
 } csg_fan_corner;
 
-/* Triangle `index` of a feature, of as many as its polygon has sides. */
+/* As many as its polygon has sides; without an apex two less. */
+static inline int csg_feature_triangle_count(const csg_feature *feature)
+{
+    return feature->side_count - (feature->bare ? 2 : 0);
+}
+
+/* Triangle `index` of a feature. */
 void csg_feature_triangle(const csg_feature_store *store, const csg_feature *feature, int index,
                           csg_fan_corner corners[3]);
 

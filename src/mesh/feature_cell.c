@@ -120,8 +120,8 @@ uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,
         add_edge(m, cell, (unsigned)__builtin_ctz(rest), edges);
     uint64_t evaluations = m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
     for (uint32_t i = 0; i < edges->count; i++) {
-        const float at[3] = {edges->x[i], edges->y[i], edges->z[i]};
-        csg_marching_shift(m, at, out->at[edges->rank[i]]);
+        float *at = out->at[edges->rank[i]];
+        at[0] = edges->x[i], at[1] = edges->y[i], at[2] = edges->z[i];
     }
     return 8 + evaluations;
 }

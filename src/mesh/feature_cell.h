@@ -10,7 +10,7 @@
 
 typedef struct csg_feature_cell {
     unsigned pattern;            /* 0: no surface */
-    float at[CSG_CELL_EDGES][3]; /* of crossed edges, the mesh's frame */
+    float at[CSG_CELL_EDGES][3]; /* of crossed edges, field frame */
 } csg_feature_cell;
 
 /* edges: room for it. Returns point evaluations made. */

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "mesh/feature_shift.h"
 #include "mesh/feature_smooth.h"
 
 /* As a feature was in the last round: apexes beyond its sides are others' business. */
@@ -12,6 +13,7 @@ typedef struct csg_cross_state {
     float at[3];
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     bool known;
+    uint8_t moves;
     uint8_t tries;   /* places that a smooth one's apex has had */
     uint32_t search; /* the last one that changed it: what was found of it before is past */
 } cross_state;
@@ -55,10 +57,11 @@ void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
         cross_state *state = &cross->states[i];
         size_t bytes = f->side_count * sizeof f->triangle[0];
         changed = changed || !state->known || memcmp(state->triangle, f->triangle, bytes) != 0 ||
-                  memcmp(state->at, f->at, sizeof f->at) != 0;
+                  state->moves != f->moves || memcmp(state->at, f->at, sizeof f->at) != 0;
         memcpy(state->at, f->at, sizeof f->at);
         memcpy(state->triangle, f->triangle, bytes);
         state->known = true;
+        state->moves = f->moves;
     }
     csg_near_measure(&cross->near, index);
     cross->blocks[index] = changed ? CHANGED : 0;
@@ -127,6 +130,21 @@ static void has_changed(csg_feature_cross *cross, uint32_t feature)
     cross->has_changed = true;
 }
 
+/* Vertices of theirs that have moved go back first. */
+static bool put_back(csg_feature_cross *cross, const uint32_t owners[4])
+{
+    csg_feature_store *store = cross->near.store;
+    bool any = false;
+    for (int k = 0; k < 4; k++) {
+        if (owners[k] == CSG_FEATURE_NONE || !store->features[owners[k]].moved)
+            continue;
+        csg_feature_shift_back(store, cross->near.marching->tables, &store->features[owners[k]]);
+        has_changed(cross, owners[k]);
+        any = true;
+    }
+    return any;
+}
+
 /* One becomes smooth; where all are, one's apex goes to another place in its polygon. */
 static bool mend(void *user, const csg_near_triangle *s, const csg_near_triangle *t)
 {
@@ -135,6 +153,8 @@ static bool mend(void *user, const csg_near_triangle *s, const csg_near_triangle
     const csg_cell_tables *tables = cross->near.marching->tables;
     const uint32_t owners[4] = {s->owner[0], s->owner[1], t->owner[0], t->owner[1]};
     if (is_past(cross, owners))
+        return true;
+    if (put_back(cross, owners))
         return true;
     uint32_t victim = victim_of(cross, owners);
     if (victim != CSG_FEATURE_NONE) {

@@ -111,6 +111,8 @@ void csg_feature_vertices(const csg_marching *m, const csg_block *block,
     uint32_t v = block->vertex_count - features->vertices;
     for (uint32_t i = features->first; i < features->first + features->count; i++) {
         const csg_feature *f = &store->features[i];
+        if (f->bare)
+            continue;
         if (out->colors || out->materials)
             paint(m, block, f, split, v, room, out, scratch, scratch_floats);
         for (uint32_t k = 0; k < copies_of(f, split); k++, v++) {
@@ -154,8 +156,8 @@ static void put_index(emitter *e, const csg_fan_corner *corner)
 
 static void put_position(emitter *e, const csg_fan_corner *corner)
 {
-    if (corner->apex)
-        csg_marching_shift(e->m, corner->apex->at, e->corners);
+    if (corner->apex || corner->at)
+        csg_marching_shift(e->m, corner->apex ? corner->apex->at : corner->at, e->corners);
     else
         memcpy(e->corners, e->room->slots.at[slot_of(e, corner->edge)], 3 * sizeof(float));
     e->corners += 3;
@@ -164,7 +166,7 @@ static void put_position(emitter *e, const csg_fan_corner *corner)
 static void emit_fan(emitter *e, const csg_feature *f)
 {
     csg_fan_corner corners[3];
-    for (int s = 0; s < f->side_count; s++) {
+    for (int s = 0; s < csg_feature_triangle_count(f); s++) {
         csg_feature_triangle(e->store, f, s, corners);
         for (int c = 0; c < 3; c++)
             e->put(e, &corners[c]);
@@ -204,11 +206,38 @@ static void emit_block(emitter *e)
         }
 }
 
+/* Puts vertices of the block that have moved to their places. */
+static void place_moved(const csg_marching *m, const csg_block *block,
+                        const csg_feature_store *store, const csg_feature_block *features,
+                        const csg_marching_room *room, const csg_marching_output *out)
+{
+    for (size_t i = 0; i < store->move_count; i++) {
+        const csg_feature_moved *move = &store->moves[i];
+        for (int k = 0; k < 4 && !move->back; k++) {
+            if (move->feature[k] < features->first ||
+                move->feature[k] >= features->first + features->count)
+                continue;
+            const csg_feature *f = &store->features[move->feature[k]];
+            const uint8_t edge = f->edge[move->corner[k]], *o = m->tables->offset[edge];
+            const int at[3] = {(f->cell & 7) + o[0], (f->cell >> 3 & 7) + o[1],
+                               (f->cell >> 6) + o[2]};
+            if (at[0] == E || at[1] == E || at[2] == E) /* the block's above */
+                continue;
+            uint32_t v = room->vertex[edge / 4][(at[2] * N + at[1]) * N + at[0]];
+            v -= block->first_vertex;
+            csg_marching_shift(m, f->corner[move->corner[k]], out->positions + 3 * v);
+            if (out->normals)
+                memcpy(out->normals + 3 * v, move->normal, sizeof move->normal);
+        }
+    }
+}
+
 void csg_feature_triangles(const csg_marching *m, const csg_block *block,
                            const csg_feature_store *store, const csg_feature_block *features,
                            bool split, csg_marching_room *room, const csg_marching_output *out)
 {
     csg_marching_number(m, block, room);
+    place_moved(m, block, store, features, room, out);
     emitter e = {.m = m,
                  .block = block,
                  .store = store,

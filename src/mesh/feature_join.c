@@ -9,6 +9,7 @@
 
 #include "mesh/feature_cut.h"
 #include "mesh/feature_move.h"
+#include "mesh/feature_shift.h"
 
 /* Whether triangle (a, b, c) looks out of the sheet with normal n. */
 static bool looks_along(const float *a, const float *b, const float *c, const float *n)
@@ -176,7 +177,7 @@ static bool bend(csg_feature_store *store, const csg_cell_tables *tables, csg_fe
                         f->normal[f->sheet[s]]))
             continue;
         const csg_feature *g = &store->features[f->beyond[s]];
-        if (!g->unsolved && !(g->creased >> f->beyond_side[s] & 1))
+        if (!g->unsolved && !g->bare && !(g->creased >> f->beyond_side[s] & 1))
             set_bent(f, s, true);
     }
     if (f->bent == before.bent)
@@ -216,19 +217,39 @@ static void give_up(csg_feature_store *store, const csg_cell_tables *tables, csg
         csg_feature_demote(store, tables, f);
 }
 
+/* An apex that was not found yet, from its neighbours; those in its way are looked after first. */
+static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
+                       csg_feature_probe *probe)
+{
+    csg_feature *f = &store->features[index];
+    bool changed = false;
+    if (csg_feature_replace(store, tables, index, probe))
+        return true;
+    for (int s = 0; s < f->side_count; s++) {
+        csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
+        if (g && !g->unsolved && !csg_feature_holds(store, tables, g))
+            changed = csg_feature_shift(store, tables, f->beyond[s], probe) || changed;
+    }
+    if (!changed)
+        return false;
+    f->tries = 0;
+    return csg_feature_replace(store, tables, index, probe);
+}
+
 size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables,
                           csg_feature_probe *probe)
 {
     size_t changed = 0;
     for (uint32_t i = 0; i < store->count; i++) {
         csg_feature *f = &store->features[i];
-        if (f->creased && f->unsolved && !csg_feature_replace(store, tables, i, probe))
+        if (f->creased && f->unsolved && !solve_late(store, tables, i, probe))
             csg_feature_demote(store, tables, f);
     }
     for (uint32_t i = 0; i < store->count; i++) {
         csg_feature *f = &store->features[i];
         if (f->creased && !unfolds(store, tables, f)) {
-            if (!csg_feature_replace(store, tables, i, probe))
+            if (!csg_feature_replace(store, tables, i, probe) &&
+                !csg_feature_shift(store, tables, i, probe))
                 csg_feature_demote(store, tables, f);
             changed++;
         }
@@ -238,7 +259,9 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
             uint32_t other = f->flipped >> s & 1 ? f->beyond[s] : CSG_FEATURE_NONE;
             changed++;
             if (!csg_feature_replace(store, tables, i, probe) &&
-                (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)))
+                (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&
+                !csg_feature_shift(store, tables, i, probe) &&
+                (other == CSG_FEATURE_NONE || !csg_feature_shift(store, tables, other, probe)))
                 give_up(store, tables, f,
                         other == CSG_FEATURE_NONE ? NULL : &store->features[other]);
         }

@@ -101,7 +101,7 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
     const csg_feature *f = &store->features[i];
     csg_fan_corner corners[3];
     int cell[3], beside[3];
-    bool with_apex = false, in_face = false;
+    bool with_apex = false, in_face = false, moved = false;
     csg_feature_triangle(store, f, index, corners);
     cell_of(block, f, cell);
     *t = (csg_near_triangle){.owner = {i, i}, .own = block == v->block};
@@ -124,9 +124,10 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
             k++;
         csg_marching_shift(m, f->corner[k], t->shape.at[c]);
         t->shape.vertex[c] = number_of_edge(v, cell, corners[c].edge);
+        moved = moved || corners[c].at;
         in_face = in_face || is_in_face(m->tables, corners[c].edge, cell, beside);
     }
-    t->plain = t->owner[1] == i || (with_apex && in_face);
+    t->plain = !moved && (t->owner[1] == i || (with_apex && in_face));
 }
 
 /* ---- where they are ----------------------------------------------------------------------------
@@ -272,7 +273,7 @@ void csg_near_measure(const csg_near *near, size_t index)
     view v = view_of(near, NULL, index);
     for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++) {
         near->boxes[i] = NOWHERE;
-        for (int k = 0; k < near->store->features[i].side_count; k++) {
+        for (int k = 0; k < csg_feature_triangle_count(&near->store->features[i]); k++) {
             csg_near_triangle t;
             triangle_of(&v, v.block, i, k, &t);
             csg_near_box box = box_of(&t);
@@ -300,7 +301,8 @@ static bool add_block(const view *v, const csg_feature_block *block, const csg_n
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         if (within && !overlap(within, &near->boxes[i]))
             continue;
-        for (int index = 0; index < near->store->features[i].side_count; index++) {
+        for (int index = 0; index < csg_feature_triangle_count(&near->store->features[i]);
+             index++) {
             csg_near_triangle t;
             triangle_of(v, block, i, index, &t);
             csg_near_box box = box_of(&t);
@@ -385,7 +387,7 @@ static int smooth_triangles(const view *v, const int at[3],
             csg_near_triangle *to = &out[count++];
             *to = (csg_near_triangle){.owner = {CSG_FEATURE_NONE, CSG_FEATURE_NONE}};
             for (int c = 0; c < 3; c++) {
-                memcpy(to->shape.at[c], found.at[edge[c]], sizeof found.at[0]);
+                csg_marching_shift(m, found.at[edge[c]], to->shape.at[c]);
                 to->shape.vertex[c] = number_of_edge(v, at, edge[c]);
             }
         }

@@ -15,8 +15,8 @@ typedef struct csg_near_triangle {
     uint32_t owner[2]; /* features; one twice where it is one's alone, NONE: of a smooth polygon */
     bool own;          /* of the block at hand */
     bool far;          /* reaches out of its cell, and not only to the apex next door */
-    bool plain;        /* with the feature's apex, or none; and with one next door only if it has a
-                          corner in the face between */
+    bool plain; /* no vertex has moved; with the feature's apex, or none; and with one next door
+                   only if it has a corner in the face between */
 } csg_near_triangle;
 
 /* In the mesh's frame. */

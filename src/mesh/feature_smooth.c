@@ -78,7 +78,7 @@ bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned 
 {
     uint8_t corner[CSG_CELL_MOST_TRIANGLES][3], (*to)[3] = f->triangle;
     unsigned count = plain_triangles(f, tables, corner);
-    if (attempt / count >= WEIGHT_COUNT)
+    if (f->bare || attempt / count >= WEIGHT_COUNT)
         return false;
     unsigned divided = attempt ? attempt % count : largest_of(f, corner, count);
     const uint8_t *d = corner[divided];
@@ -93,4 +93,9 @@ bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned 
             w[0] * f->corner[d[0]][i] + w[1] * f->corner[d[1]][i] + w[2] * f->corner[d[2]][i];
     level_normals(f, d[w[1] > w[0] ? 1 : w[2] > w[0] ? 2 : 0]);
     return true;
+}
+
+void csg_feature_leave_plain(csg_feature *f, const csg_cell_tables *tables)
+{
+    plain_triangles(f, tables, f->triangle);
 }

@@ -10,4 +10,7 @@
  * place, others are for where it will not do. False: no more places. */
 bool csg_feature_divide(csg_feature *feature, const csg_cell_tables *tables, unsigned attempt);
 
+/* Gives it these triangles alone. */
+void csg_feature_leave_plain(csg_feature *feature, const csg_cell_tables *tables);
+
 #endif

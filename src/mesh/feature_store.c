@@ -6,6 +6,7 @@
 
 #include "mesh/feature_cut.h"
 #include "mesh/feature_face.h"
+#include "mesh/feature_shift.h"
 #include "mesh/feature_smooth.h"
 
 enum { E = CSG_BLOCK_EDGE };
@@ -38,10 +39,11 @@ bool csg_feature_store_index(csg_feature_store *store)
     size_t count = 16;
     while (count < 2 * store->block_count)
         count *= 2;
+    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
     store->slots = csg_memory_alloc(store->memory, count * sizeof(uint32_t));
+    store->slot_count = store->slots ? count : 0;
     if (!store->slots)
         return false;
-    store->slot_count = count;
     memset(store->slots, 0, count * sizeof(uint32_t));
     for (size_t i = 0; i < store->block_count; i++) {
         size_t slot = csg_lattice_home_slot(store->blocks[i].at, count);
@@ -74,6 +76,7 @@ void csg_feature_store_release(csg_feature_store *store)
     csg_memory_release(store->memory, store->blocks,
                        store->block_capacity * sizeof(csg_feature_block));
     csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
+    csg_memory_release(store->memory, store->moves, store->move_capacity * sizeof *store->moves);
     *store = (csg_feature_store){0};
 }
 
@@ -156,6 +159,7 @@ void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, s
 
 void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
+    csg_feature_shift_back(store, tables, f);
     for (int s = 0; s < f->side_count; s++) {
         if (f->beyond[s] == CSG_FEATURE_NONE)
             continue;
@@ -202,6 +206,7 @@ void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, 
             corners[c] = (csg_fan_corner){.apex = &store->features[f->beyond[s]],
                                           .sheet = sheet_beyond(store, f, s, sheet)};
         else
-            corners[c] = (csg_fan_corner){.edge = f->edge[t[c]]};
+            corners[c] = (csg_fan_corner){.edge = f->edge[t[c]],
+                                          .at = f->moved >> t[c] & 1 ? f->corner[t[c]] : NULL};
     }
 }
