@@ -81,8 +81,9 @@ static csg_text_request read_request(csg_module_call *call)
     if (csg_has_argument(call, DIRECTION))
         request.direction =
             (csg_text_direction)(CSG_TEXT_LTR + choose(call, DIRECTION, directions, 4, 0));
-    uint32_t facets = csg_facets_are_exact(call->e) ? csg_fragments(call->e, request.size) : 0;
-    request.tolerance = request.size * (facets ? (1 - csg_cosine_deg(180.0 / facets)) / 8 : 1e-4);
+    if (csg_facets_are_exact(call->e)) /* OpenSCAD's number for a curve of a letter */
+        request.pieces = (int)fmax(csg_fragments(call->e, request.size) / 8 + 1, 2);
+    request.tolerance = request.size * 1e-4;
     return request;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Fonts by FreeType (outlines) and HarfBuzz (which glyph goes where); the only file that knows
- * them. Nothing is scaled or hinted by the libraries. FreeType's memory comes from the budget.
+ * them. FreeType scales and hints glyphs for the one size that OpenSCAD asks it for: fonts round
+ * their em to whole pixels there, a 15000th, and some put their bars on pixels; so letters are
+ * OpenSCAD's to the last bit. FreeType's memory comes from the budget.
  */
 #include "outline/font.h"
 #include "base/sized_block.h"
@@ -8,12 +10,15 @@
 #include <ft2build.h>
 #include <hb-ot.h>
 #include <hb.h>
+#include <math.h>
 #include <string.h>
 #include FT_FREETYPE_H
 #include FT_MODULE_H
 #include FT_OUTLINE_H
 
 #include "base/sized_block.h"
+
+enum { dots_per_inch = 100 };
 
 struct csg_font {
     csg_memory *memory;
@@ -22,6 +27,7 @@ struct csg_font {
     FT_Library library;
     FT_Face face;
     hb_font_t *shaper;
+    bool starved; /* FreeType lacked memory for a glyph */
 };
 
 /* ---- FreeType's memory --------------------------------------------------------------------- */
@@ -66,7 +72,18 @@ static csgm_status open_face(csg_font *font, unsigned index, csg_problem *proble
     if (font->face->units_per_EM < 16 || font->face->units_per_EM > 16384)
         return csg_problem_set(problem, CSGM_ERR_FORMAT, "the font is broken: %d units to the em",
                                font->face->units_per_EM);
+    error = FT_Set_Char_Size(font->face, 0, CSG_FONT_SIZE, dots_per_inch, dots_per_inch);
+    if (error == FT_Err_Out_Of_Memory)
+        return CSGM_ERR_MEMORY;
+    if (error)
+        return csg_problem_set(problem, CSGM_ERR_FORMAT, "the font is broken: it has no size");
     return CSGM_OK;
+}
+
+/* An em as FreeType scales it, before rounding to pixels; distances of letters go by it. */
+static int em_of(const csg_font *font, FT_Fixed scale)
+{
+    return (int)FT_MulFix(font->face->units_per_EM, scale);
 }
 
 static csgm_status open_shaper(csg_font *font, unsigned index)
@@ -75,8 +92,8 @@ static csgm_status open_shaper(csg_font *font, unsigned index)
                                      HB_MEMORY_MODE_READONLY, NULL, NULL);
     hb_face_t *face = hb_face_create(blob, index & 0xffff);
     font->shaper = hb_font_create(face);
-    int units = font->face->units_per_EM;
-    hb_font_set_scale(font->shaper, units, units);
+    const FT_Size_Metrics *size = &font->face->size->metrics;
+    hb_font_set_scale(font->shaper, em_of(font, size->x_scale), em_of(font, size->y_scale));
     if (index >> 16)
         hb_font_set_var_named_instance(font->shaper, (index >> 16) - 1);
     hb_face_destroy(face);
@@ -118,11 +135,6 @@ void csg_font_close(csg_font *font)
     csg_memory_release(font->memory, font, sizeof *font);
 }
 
-double csg_font_units(const csg_font *font)
-{
-    return font->face->units_per_EM;
-}
-
 bool csg_font_has(const csg_font *font, uint32_t character)
 {
     hb_codepoint_t glyph;
@@ -132,11 +144,12 @@ bool csg_font_has(const csg_font *font, uint32_t character)
 csg_font_metrics csg_font_get_metrics(const csg_font *font)
 {
     const FT_FaceRec *face = font->face;
-    return (csg_font_metrics){.ascent = face->ascender,
-                              .descent = face->descender,
-                              .interline = face->height,
-                              .top = (double)face->bbox.yMax,
-                              .bottom = (double)face->bbox.yMin};
+    double scale = CSG_FONT_SIZE * (dots_per_inch / 72.0) / face->units_per_EM;
+    return (csg_font_metrics){.ascent = face->ascender * scale,
+                              .descent = face->descender * scale,
+                              .interline = face->height * scale,
+                              .top = (double)face->bbox.yMax * scale,
+                              .bottom = (double)face->bbox.yMin * scale};
 }
 
 /* ---- characters -------------------------------------------------------------------------- */
@@ -182,10 +195,17 @@ uint32_t csg_script_of_name(const char *name)
     return script == HB_SCRIPT_UNKNOWN || script == HB_SCRIPT_COMMON ? 0 : (uint32_t)script;
 }
 
-static bool load(csg_font *font, uint32_t glyph)
+static bool load(csg_font *font, uint32_t glyph, FT_Int32 hinting)
 {
-    return FT_Load_Glyph(font->face, glyph, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP) == 0 &&
-           font->face->glyph->format == FT_GLYPH_FORMAT_OUTLINE;
+    FT_Error error = FT_Load_Glyph(font->face, glyph, hinting | FT_LOAD_NO_BITMAP);
+    font->starved |= error == FT_Err_Out_Of_Memory;
+    return !error && font->face->glyph->format == FT_GLYPH_FORMAT_OUTLINE;
+}
+
+/* As OpenSCAD draws it; a glyph whose program fails is drawn without it. */
+static bool load_hinted(csg_font *font, uint32_t glyph)
+{
+    return load(font, glyph, FT_LOAD_DEFAULT) || load(font, glyph, FT_LOAD_NO_HINTING);
 }
 
 /* ---- shaping ------------------------------------------------------------------------------- */
@@ -222,7 +242,7 @@ static bool take_glyphs(hb_buffer_t *buffer, csg_memory *memory, csg_glyph **gly
 static void set_vertical_metrics(csg_font *font, csg_glyph *glyphs, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (load(font, glyphs[i].id)) {
+        if (load(font, glyphs[i].id, FT_LOAD_NO_HINTING)) {
             const FT_Glyph_Metrics *m = &font->face->glyph->metrics;
             glyphs[i].advance_y = -(double)m->vertAdvance;
             glyphs[i].offset_y = -(double)(m->horiBearingY + m->vertBearingY);
@@ -255,21 +275,26 @@ csgm_status csg_font_shape(csg_font *font, const csg_font_run *run, csg_memory *
 
 typedef struct tracer {
     csg_outline *out;
-    double scale, tolerance;
-    csg_vec2 shift, now;
-    bool failed;
+    const csg_font_pen *pen;
+    csg_vec2 now;
+    csgm_status status;
 } tracer;
 
 static csg_vec2 to_plane(const tracer *t, const FT_Vector *v)
 {
-    return (csg_vec2){(double)v->x * t->scale + t->shift.x, (double)v->y * t->scale + t->shift.y};
+    const csg_font_pen *pen = t->pen;
+    return (csg_vec2){(double)v->x * pen->scale + pen->shift.x,
+                      (double)v->y * pen->scale + pen->shift.y};
 }
 
 static int finish(tracer *t, csg_vec2 to, bool done)
 {
     t->now = to;
-    t->failed |= !done;
-    return t->failed;
+    if (!done)
+        t->status = CSGM_ERR_MEMORY;
+    else if (t->out->point_count > CSG_INPUT_MOST_POINTS)
+        t->status = CSGM_ERR_LIMIT;
+    return t->status != CSGM_OK;
 }
 
 static int move_to(const FT_Vector *to, void *user)
@@ -289,19 +314,22 @@ static int line_to(const FT_Vector *to, void *user)
 static int conic_to(const FT_Vector *control, const FT_Vector *to, void *user)
 {
     tracer *t = user;
-    csg_vec2 point = to_plane(t, to);
+    csg_vec2 point = to_plane(t, to), by = to_plane(t, control);
+    int pieces = t->pen->pieces;
     return finish(t, point,
-                  csg_outline_quadratic(t->out, t->now, to_plane(t, control), point, t->tolerance));
+                  pieces ? csg_outline_quadratic_in_pieces(t->out, t->now, by, point, pieces)
+                         : csg_outline_quadratic(t->out, t->now, by, point, t->pen->tolerance));
 }
 
 static int cubic_to(const FT_Vector *control1, const FT_Vector *control2, const FT_Vector *to,
                     void *user)
 {
     tracer *t = user;
-    csg_vec2 point = to_plane(t, to);
+    csg_vec2 point = to_plane(t, to), by1 = to_plane(t, control1), by2 = to_plane(t, control2);
+    int pieces = t->pen->pieces;
     return finish(t, point,
-                  csg_outline_cubic(t->out, t->now, to_plane(t, control1), to_plane(t, control2),
-                                    point, t->tolerance));
+                  pieces ? csg_outline_cubic_in_pieces(t->out, t->now, by1, by2, point, pieces)
+                         : csg_outline_cubic(t->out, t->now, by1, by2, point, t->pen->tolerance));
 }
 
 /* TrueType's outer loops run clockwise. */
@@ -315,28 +343,34 @@ static void reverse_loops(csg_outline *out, size_t first_loop)
         }
 }
 
-csgm_status csg_font_outline(csg_font *font, uint32_t glyph, double scale, csg_vec2 shift,
-                             double tolerance, csg_outline *out)
+csgm_status csg_font_outline(csg_font *font, uint32_t glyph, const csg_font_pen *pen,
+                             csg_outline *out)
 {
     static const FT_Outline_Funcs functions = {move_to, line_to, conic_to, cubic_to, 0, 0};
-    tracer t = {.out = out, .scale = scale, .tolerance = tolerance, .shift = shift};
+    tracer t = {.out = out, .pen = pen};
     size_t first = out->loop_count;
-    if (!load(font, glyph))
+    bool loaded = load_hinted(font, glyph), starved = font->starved;
+    font->starved = false;
+    if (starved)
+        return CSGM_ERR_MEMORY;
+    if (!loaded)
         return CSGM_OK;
     FT_Outline *outline = &font->face->glyph->outline;
     FT_Outline_Decompose(outline, &functions, &t);
-    if (t.failed || !csg_outline_close(out))
+    if (t.status != CSGM_OK)
+        return t.status;
+    if (!csg_outline_close(out))
         return CSGM_ERR_MEMORY;
     if (FT_Outline_Get_Orientation(outline) == FT_ORIENTATION_TRUETYPE)
         reverse_loops(out, first);
-    return out->point_count <= CSG_INPUT_MOST_POINTS ? CSGM_OK : CSGM_ERR_LIMIT;
+    return CSGM_OK;
 }
 
 csg_box csg_font_box(csg_font *font, uint32_t glyph)
 {
     FT_BBox box = {0, 0, 0, 0};
-    if (load(font, glyph))
+    if (load_hinted(font, glyph))
         FT_Outline_Get_CBox(&font->face->glyph->outline, &box);
-    return (csg_box){{(double)box.xMin, (double)box.yMin, 0},
-                     {(double)box.xMax, (double)box.yMax, 0}};
+    return (csg_box){{64 * floor((double)box.xMin / 64), 64 * floor((double)box.yMin / 64), 0},
+                     {64 * ceil((double)box.xMax / 64), 64 * ceil((double)box.yMax / 64), 0}};
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One font file in memory: which characters it has, glyphs placed for a run of text, their
- * outlines. TrueType and OpenType. All numbers are in the font's units, csg_font_units to the em.
+ * outlines. TrueType and OpenType. All numbers are for text of size CSG_FONT_SIZE, at OpenSCAD's
+ * resolution of 100 dots to the inch of 72 points: an em is 138889.
  */
 #ifndef CSG_OUTLINE_FONT_H
 #define CSG_OUTLINE_FONT_H
@@ -8,6 +9,9 @@
 #include "outline/input.h"
 
 typedef struct csg_font csg_font;
+
+/* Of FreeType's units of a 64th of a pixel. */
+enum { CSG_FONT_SIZE = 100000 };
 
 typedef enum csg_text_direction {
     CSG_TEXT_AUTO,
@@ -23,7 +27,6 @@ typedef enum csg_text_direction {
 csgm_status csg_font_open(csg_bytes *bytes, unsigned index, csg_font **out, csg_problem *problem);
 void csg_font_close(csg_font *font);
 
-double csg_font_units(const csg_font *font);
 bool csg_font_has(const csg_font *font, uint32_t character);
 
 typedef struct csg_font_metrics {
@@ -72,11 +75,19 @@ typedef struct csg_font_run {
 csgm_status csg_font_shape(csg_font *font, const csg_font_run *run, csg_memory *memory,
                            csg_glyph **glyphs, size_t *count, size_t *capacity);
 
-/* Adds the loops of a glyph, each point times `scale` (either sign) plus `shift`; they run
+typedef struct csg_font_pen {
+    double scale; /* either sign */
+    csg_vec2 shift;
+    int pieces;       /* of each curve; 0 = by the tolerance */
+    double tolerance; /* of flattened curves */
+} csg_font_pen;
+
+/* Adds the loops of a glyph, each point times the pen's scale plus its shift; they run
  * counter-clockwise around what is inside. What the font fails to give is empty. */
-csgm_status csg_font_outline(csg_font *font, uint32_t glyph, double scale, csg_vec2 shift,
-                             double tolerance, csg_outline *out);
-/* Highest and lowest of the points of a glyph, those off the curve included; 0 for an empty one. */
+csgm_status csg_font_outline(csg_font *font, uint32_t glyph, const csg_font_pen *pen,
+                             csg_outline *out);
+/* Highest and lowest of the points of a glyph, those off the curve included, out to whole pixels;
+ * 0 for an empty one. */
 csg_box csg_font_box(csg_font *font, uint32_t glyph);
 
 #endif

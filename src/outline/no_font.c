@@ -16,11 +16,6 @@ void csg_font_close(csg_font *font)
 {
     (void)font;
 }
-double csg_font_units(const csg_font *font)
-{
-    (void)font;
-    return 1000;
-}
 bool csg_font_has(const csg_font *font, uint32_t character)
 {
     (void)font, (void)character;
@@ -57,10 +52,10 @@ csgm_status csg_font_shape(csg_font *font, const csg_font_run *run, csg_memory *
     (void)font, (void)run, (void)memory, (void)glyphs, (void)count, (void)capacity;
     return CSGM_ERR_UNSUPPORTED;
 }
-csgm_status csg_font_outline(csg_font *font, uint32_t glyph, double scale, csg_vec2 shift,
-                             double tolerance, csg_outline *out)
+csgm_status csg_font_outline(csg_font *font, uint32_t glyph, const csg_font_pen *pen,
+                             csg_outline *out)
 {
-    (void)font, (void)glyph, (void)scale, (void)shift, (void)tolerance, (void)out;
+    (void)font, (void)glyph, (void)pen, (void)out;
     return CSGM_ERR_UNSUPPORTED;
 }
 csg_box csg_font_box(csg_font *font, uint32_t glyph)

@@ -8,9 +8,8 @@
 
 #include "outline/text_runs.h"
 
-/* An em, by the resolution that OpenSCAD asks FreeType for: 100 dots to the inch of 72 points. */
-static const double em_of_size = 100.0 / 72;
-/* OpenSCAD 2021.01 draws glyphs at 1000 times their size and takes their distances as 1024ths. */
+/* OpenSCAD 2021.01 takes the points of glyphs as 100000ths of the size, their distances as
+ * 102400ths. */
 static const double distance_factor = 1000.0 / 1024;
 
 typedef struct setter {
@@ -48,10 +47,10 @@ static csgm_status shape_runs(setter *s)
     return status;
 }
 
-/* From a font's units to the plane. */
-static double scale_of(const setter *s, const csg_font *font)
+/* From a font's numbers to the plane. */
+static double scale_of(const setter *s)
 {
-    return s->request->size * em_of_size / csg_font_units(font);
+    return s->request->size / CSG_FONT_SIZE;
 }
 
 /* Line ends and the like take no room. */
@@ -62,7 +61,7 @@ static bool is_shown(const setter *s, const csg_glyph *glyph)
 
 static void measure_glyph(setter *s, const csg_glyph *glyph, csg_font *font)
 {
-    double scale = scale_of(s, font) * distance_factor;
+    double scale = scale_of(s) * distance_factor;
     csg_box box = csg_font_box(font, glyph->id);
     s->advance.x += glyph->advance_x * scale * s->request->spacing;
     s->advance.y += glyph->advance_y * scale * s->request->spacing;
@@ -107,12 +106,15 @@ static csgm_status draw(setter *s, csg_vec2 origin, csg_outline *out)
         for (; g < s->glyph_ends[i] && status == CSGM_OK; g++) {
             const csg_glyph *glyph = &s->glyphs[g];
             csg_font *font = s->runs.runs[i].font;
-            double scale = scale_of(s, font), distance = scale * distance_factor;
+            double scale = scale_of(s), distance = scale * distance_factor;
             if (!is_shown(s, glyph))
                 continue;
-            csg_vec2 place = {origin.x + glyph->offset_x * distance,
-                              origin.y + glyph->offset_y * distance};
-            status = csg_font_outline(font, glyph->id, scale, place, s->request->tolerance, out);
+            csg_font_pen pen = {.scale = scale,
+                                .shift = {origin.x + glyph->offset_x * distance,
+                                          origin.y + glyph->offset_y * distance},
+                                .pieces = s->request->pieces,
+                                .tolerance = s->request->tolerance};
+            status = csg_font_outline(font, glyph->id, &pen, out);
             origin.x += glyph->advance_x * distance * s->request->spacing;
             origin.y += glyph->advance_y * distance * s->request->spacing;
         }
@@ -188,7 +190,7 @@ csgm_status csg_text_font_metrics(csg_fonts *fonts, const char *font, double siz
     memcpy(report->font, choice.name, sizeof report->font);
     report->font_missing = choice.font_missing;
     report->style_missing = choice.style_missing;
-    double scale = size * em_of_size / csg_font_units(choice.font);
+    double scale = size / CSG_FONT_SIZE;
     csg_font_metrics m = csg_font_get_metrics(choice.font);
     *out = (csg_font_metrics){m.ascent * scale, m.descent * scale, m.interline * scale,
                               m.top * scale, m.bottom * scale};

@@ -39,6 +39,7 @@ typedef struct csg_text_request {
     csg_valign valign;
     csg_text_direction direction;
     const char *language, *script; /* NULL or "" = "en", and by the characters */
+    int pieces;                    /* of each curve, > 0; 0 = by the tolerance */
     double tolerance;              /* of flattened curves; > 0 */
 } csg_text_request;
 

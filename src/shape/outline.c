@@ -188,7 +188,13 @@ static double bend(csg_vec2 a, csg_vec2 b, csg_vec2 c)
 bool csg_outline_quadratic(csg_outline *outline, csg_vec2 from, csg_vec2 control, csg_vec2 to,
                            double tolerance)
 {
-    int pieces = pieces_of(sqrt(bend(from, control, to) / (4 * tolerance)));
+    return csg_outline_quadratic_in_pieces(
+        outline, from, control, to, pieces_of(sqrt(bend(from, control, to) / (4 * tolerance))));
+}
+
+bool csg_outline_quadratic_in_pieces(csg_outline *outline, csg_vec2 from, csg_vec2 control,
+                                     csg_vec2 to, int pieces)
+{
     for (int i = 1; i < pieces; i++) {
         double t = (double)i / pieces;
         if (!csg_outline_add(outline, mix(mix(from, control, t), mix(control, to, t), t)))
@@ -201,7 +207,13 @@ bool csg_outline_cubic(csg_outline *outline, csg_vec2 from, csg_vec2 control1, c
                        csg_vec2 to, double tolerance)
 {
     double most = fmax(bend(from, control1, control2), bend(control1, control2, to));
-    int pieces = pieces_of(sqrt(0.75 * most / tolerance));
+    return csg_outline_cubic_in_pieces(outline, from, control1, control2, to,
+                                       pieces_of(sqrt(0.75 * most / tolerance)));
+}
+
+bool csg_outline_cubic_in_pieces(csg_outline *outline, csg_vec2 from, csg_vec2 control1,
+                                 csg_vec2 control2, csg_vec2 to, int pieces)
+{
     for (int i = 1; i < pieces; i++) {
         double t = (double)i / pieces;
         csg_vec2 middle = mix(control1, control2, t);

@@ -48,5 +48,10 @@ bool csg_outline_quadratic(csg_outline *outline, csg_vec2 from, csg_vec2 control
                            double tolerance);
 bool csg_outline_cubic(csg_outline *outline, csg_vec2 from, csg_vec2 control1, csg_vec2 control2,
                        csg_vec2 to, double tolerance);
+/* The same in that many pieces. */
+bool csg_outline_quadratic_in_pieces(csg_outline *outline, csg_vec2 from, csg_vec2 control,
+                                     csg_vec2 to, int pieces);
+bool csg_outline_cubic_in_pieces(csg_outline *outline, csg_vec2 from, csg_vec2 control1,
+                                 csg_vec2 control2, csg_vec2 to, int pieces);
 
 #endif

@@ -22,7 +22,8 @@ static void set(csg_font *font, csg_memory *memory, csg_text_direction direction
         csg_box box = csg_font_box(font, glyphs[i].id);
         if (!isfinite(box.min.x) || glyphs[i].character >= run.count)
             fuzz_fail("a glyph out of range", "", 0);
-        status = csg_font_outline(font, glyphs[i].id, 0.01, (csg_vec2){1, 2}, 0.01, &outline);
+        csg_font_pen pen = {.scale = 1e-4, .shift = {1, 2}, .tolerance = 0.01};
+        status = csg_font_outline(font, glyphs[i].id, &pen, &outline);
     }
     if (status == CSGM_OK)
         fuzz_expect_outline(status, &outline);

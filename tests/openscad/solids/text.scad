@@ -1,3 +1,2 @@
-// --exact: not compared, letters get steps of another number
 $fn = 40;
 linear_extrude(4) text("Rag 5", size = 20);

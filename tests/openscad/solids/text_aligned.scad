@@ -1,4 +1,3 @@
-// --exact: not compared, letters get steps of another number
 $fn = 40;
 linear_extrude(6) text("Hub", size = 16, halign = "center", valign = "center");
 translate([-3, 14]) linear_extrude(6) text("To", size = 12, halign = "right", valign = "bottom");

@@ -1,3 +1,2 @@
-// --exact: not compared, letters get steps of another number
 $fn = 40;
 linear_extrude(5) text("BOX", size = 18, font = "Liberation Sans:style=Bold", spacing = 1.3);

@@ -1,3 +1,2 @@
-// --exact: not compared, letters of OpenSCAD are 0.013 % smaller
 $fn = 40;
 linear_extrude(4) text("EH", size = 14, direction = "ttb");
