@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * golden.csv: blend functions, binary operators, sphere sweeps (Bezier curves among them),
- * half-space, box, cylinder and the round n-ary union, computed with 40 digits (a table's name,
- * then its columns). The primitives are built, placed and evaluated as scenes.
+ * golden.csv: blend functions, binary operators, sphere sweeps (polylines, Bezier curves and
+ * B-splines among them), half-space, box, cylinder and the round n-ary union, computed with 40
+ * digits (a table's name, then its columns). The primitives are built, placed and evaluated as
+ * scenes.
  */
 #include "golden_rows.h"
 
@@ -86,6 +87,31 @@ static csg_node_id build_curve(csg_scene_builder *builder, const char *text, dou
     return csg_build_primitive(builder, kind, v, NOWHERE);
 }
 
+/* Quadratic tube through a, towards b, to c. */
+static csg_node_id build_bend(csg_scene_builder *builder, csg_vec3 a, csg_vec3 b, csg_vec3 c,
+                              double r)
+{
+    const double v[] = {a.x, a.y, a.z, r, b.x, b.y, b.z, r, c.x, c.y, c.z, r};
+    return csg_build_primitive(builder, CSG_NODE_QUADRATIC_TUBE, v, NOWHERE);
+}
+
+/* The rows of polylines and of B-splines have the same four control points. */
+static csg_node_id build_chain(csg_scene_builder *builder, bool curved, double r)
+{
+    static const csg_vec3 p[] = {{-1, 0, 0}, {0, 1, 0.2}, {0.8, -0.3, 0.1}, {1.2, 0.4, -0.6}};
+    const csg_vec3 middle = csg_vec3_scale(csg_vec3_add(p[1], p[2]), 0.5);
+    csg_node_id links[3];
+    size_t count = 0;
+    if (curved) { /* operators.md, section 1.1: clamped ends, pieces join in the middles */
+        links[count++] = build_bend(builder, p[0], p[1], middle, r);
+        links[count++] = build_bend(builder, middle, p[2], p[3], r);
+    } else {
+        for (; count < 3; count++)
+            links[count] = csg_build_capsule(builder, p[count], p[count + 1], r, r, NOWHERE);
+    }
+    return csg_build_operator(builder, CSG_NODE_UNION, (csg_blend){0}, links, count, NOWHERE);
+}
+
 static csg_node_id build(csg_scene_builder *builder, const char *text, const char *radius)
 {
     csg_vec3 a, b, h;
@@ -94,6 +120,10 @@ static csg_node_id build(csg_scene_builder *builder, const char *text, const cha
     csg_affine place = csg_affine_identity();
     if (strstr(text, "Bezier"))
         return build_curve(builder, text, r);
+    if (strcmp(text, "polyline (-1,0,0)(0,1,0.2)(0.8,-0.3,0.1)(1.2,0.4,-0.6)") == 0)
+        return build_chain(builder, false, r);
+    if (strncmp(text, "quadratic B-spline, clamped ends", 32) == 0)
+        return build_chain(builder, true, r);
     if (sscanf(text, "sphere m=(%lf,%lf,%lf)", &a.x, &a.y, &a.z) == 3) {
         node = csg_build_primitive(builder, CSG_NODE_SPHERE, &r, NOWHERE);
     } else if (sscanf(text, "capsule m1=(%lf,%lf,%lf) m2=(%lf,%lf,%lf)", &a.x, &a.y, &a.z, &b.x,
@@ -144,7 +174,7 @@ static void check_sweep(const row *r)
 
 static void test_sweeps(void **state)
 {
-    for_each("prims", 40, check_sweep);
+    for_each("prims", 56, check_sweep);
 }
 
 static void check_exact(const row *r)
