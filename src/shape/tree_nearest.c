@@ -3,14 +3,15 @@
  * when its distance is above the best by more than all rounding can be: boxes are wider by 2^-22,
  * which is more than rounding p (2^-24 of it; beyond 2 that is small against the distance) and the
  * box, and the feet of triangles lie in their boxes up to 2^-50; float arithmetic errs by 2^-21 and
- * SLACK leaves 2^-10. So whatever the order, the triangle with the least computed distance is seen.
+ * SLACK leaves 2^-18. So whatever the order, the triangle with the least computed distance is seen.
+ * SLACK is not larger, since for a point far from a small mesh it decides how much of that is seen.
  */
 #include <float.h>
 
 #include "shape/four.h"
 #include "shape/tree.h"
 
-static const float SLACK = 1.001f;
+static const float SLACK = 1 + 0x1p-18f;
 
 /* ---- one triangle -----------------------------------------------------------------------------
  */
