@@ -182,6 +182,13 @@ class NoRights(TroubleTest):
         self.assertEqual(result.returncode, 2)
         self.assertIn("cannot write locked/out: Permission denied", result.stderr)
 
+    def test_directory_that_is_a_file(self):
+        self.write("out", "mine")
+        result = self.run_in("batch", "s/a0.txt", "-d", "out", "-r", "8")
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stderr, "csgmesh: error: cannot write out: Not a directory\n")
+        self.assertEqual(self.read("out"), b"mine")
+
     def test_cache_without_rights(self):
         os.mkdir(self.path("cache"), 0o755)
         result = self.batch_as_nobody("s/a0.txt", "-d", "out", "-r", "8", "--cache", "cache")

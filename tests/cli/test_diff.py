@@ -123,6 +123,11 @@ class Diff(diff_support.DiffTest):
         os.unlink(self.path("a/old.stl"))
         self.diff(0, "a", "b", "--tol", "0.1")
         self.assert_refused(self.run_in("diff", "a", "a/same.ply"), 2, "is a folder")
+        self.assert_refused(self.run_in("diff", "none/yet", "b"), 2, "none/yet is missing")
+        self.assert_refused(self.run_in("diff", "a", "none", "--update"), 2, "none is missing")
+        self.diff(0, "none/yet", "b", "--update")
+        self.assertEqual(self.read("none/yet/deep/new.stl"), self.read("b/deep/new.stl"))
+        self.diff(0, "none/yet", "b")
 
     def test_update_of_files(self):
         self.mesh(BALL, "b.ply")

@@ -32,11 +32,11 @@ bool batch_make_folders(const char *path, bool whole)
             continue;
         memcpy(folder, path, i);
         folder[i] = '\0';
-        if (mkdir(folder, 0777) != 0 && errno != EEXIST && errno != EISDIR) {
-            struct stat status; /* a read-only parent of a folder that is there */
+        if (mkdir(folder, 0777) != 0) {
+            struct stat status; /* a folder that is there, perhaps in one that is read-only */
             int reason = errno;
             if (stat(folder, &status) != 0 || !S_ISDIR(status.st_mode)) {
-                errno = reason;
+                errno = reason == EEXIST ? ENOTDIR : reason;
                 return false;
             }
         }

@@ -18,6 +18,12 @@ static bool is_folder(const char *path)
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
+static bool is_missing(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) != 0 && errno == ENOENT;
+}
+
 static int read_ignored(cli_app *app, uint32_t *ignored)
 {
     static const struct {
@@ -180,12 +186,6 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
     return exit_status;
 }
 
-static bool is_missing(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) != 0 && errno == ENOENT;
-}
-
 /* Loads and compares; CLI_TROUBLE: it could not be done. */
 static int compare(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
                    diff_result *result)
@@ -267,14 +267,16 @@ static int run(cli_app *app, const csgm_diff_options *options, diff_results *res
 static int find_pairs(cli_app *app, diff_results *results)
 {
     const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
-    bool folder_a = is_folder(a), folder_b = is_folder(b);
+    bool folder_b = is_folder(b);
+    /* one that is not there yet has no files: --update makes it */
+    bool folder_a = is_folder(a) || (app->options.diff_update && folder_b && is_missing(a));
     if (folder_a && folder_b) {
         results->of_folders = true;
         return diff_pair_folders(app, a, b, results);
     }
     if (folder_a || folder_b)
-        return cli_usage_error(app, NULL, "%s is a folder, %s is not", folder_a ? a : b,
-                               folder_a ? b : a);
+        return cli_usage_error(app, NULL, "%s is a folder, %s is %s", folder_a ? a : b,
+                               folder_a ? b : a, is_missing(folder_a ? b : a) ? "missing" : "not");
     return diff_results_add(app, results, a, b) ? CLI_DONE : CLI_TROUBLE;
 }
 
