@@ -58,7 +58,8 @@ typedef struct csg_feature {
     uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
     bool smooth;      /* given up: csg_feature_demote */
     bool bare;        /* without an apex, and smooth: the triangles of marching cubes, two less */
-    bool shifted;     /* has asked for a vertex to make way */
+    bool made_way;    /* a vertex has moved for it */
+    uint8_t shift;    /* how much has been tried of that (feature_shift.h) */
     uint16_t moved;   /* bit s: corner s is not where its lattice edge has it */
     uint8_t moves;    /* of its corners until now */
     uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
@@ -67,6 +68,7 @@ typedef struct csg_feature {
 /* A vertex that has made way for a corner of the solid (feature_shift.h). */
 typedef struct csg_feature_moved {
     uint32_t feature[4]; /* that it is a corner of */
+    uint32_t asker;      /* the feature that it has made way for */
     uint8_t corner[4];
     float from[3], normal[3]; /* outward, at its new place */
     bool back;                /* it has been put back */

@@ -69,6 +69,45 @@ static bool list_around(adding *a, const uint32_t cell[3], uint8_t edge)
     return true;
 }
 
+/* Around the vertices of a feature on some faces of its cell. */
+static bool list_feature(adding *a, const uint32_t cell[3], const csg_feature *f, unsigned faces)
+{
+    for (int s = 0; s < f->side_count; s++)
+        if (a->m->tables->faces[f->edge[s]] & faces && !list_around(a, cell, f->edge[s]))
+            return false;
+    return true;
+}
+
+/* The features of the cell beyond a face that the apex has passed, on the other faces passed. */
+static bool list_beyond(adding *a, const uint32_t cell[3], int face, unsigned passed)
+{
+    const csg_feature_store *store = a->store;
+    uint32_t beyond[3] = {cell[0], cell[1], cell[2]}, at[3];
+    beyond[face / 2] += face % 2 ? 1 : UINT32_MAX;
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = beyond[axis] / E;
+    const csg_feature_block *block = csg_feature_store_find(store, at);
+    uint16_t here = (uint16_t)(beyond[0] % E + (beyond[1] % E + beyond[2] % E * E) * E);
+    for (uint32_t i = block ? block->first : 0; block && i < block->first + block->count; i++)
+        if (store->features[i].cell == here &&
+            !list_feature(a, beyond, &store->features[i], passed & ~(3u << (face & ~1))))
+            return false;
+    return true;
+}
+
+static bool list_corner(adding *a, const csg_feature_block *block, const csg_feature *f)
+{
+    uint32_t cell[3];
+    for (int axis = 0; axis < 3; axis++)
+        cell[axis] = block->at[axis] * E + (f->cell >> (3 * axis) & 7u);
+    unsigned passed = faces_passed(a->m, cell, f->at);
+    bool done = list_feature(a, cell, f, passed);
+    for (int face = 0; face < 6 && done && passed & (passed - 1); face++)
+        if (passed >> face & 1)
+            done = list_beyond(a, cell, face, passed);
+    return done;
+}
+
 static bool list_places(adding *a)
 {
     const csg_feature_store *store = a->store;
@@ -76,15 +115,8 @@ static bool list_places(adding *a)
         const csg_feature_block *block = &store->blocks[b];
         for (uint32_t i = block->first; i < block->first + block->count; i++) {
             const csg_feature *f = &store->features[i];
-            uint32_t cell[3];
-            if (!f->folded || f->unsolved || f->sheet_count < 3)
-                continue;
-            for (int axis = 0; axis < 3; axis++)
-                cell[axis] = block->at[axis] * E + (f->cell >> (3 * axis) & 7u);
-            unsigned passed = faces_passed(a->m, cell, f->at);
-            for (int s = 0; s < f->side_count; s++)
-                if (a->m->tables->faces[f->edge[s]] & passed && !list_around(a, cell, f->edge[s]))
-                    return false;
+            if (!f->unsolved && f->sheet_count > 2 && !list_corner(a, block, f))
+                return false;
         }
     }
     return true;

@@ -15,6 +15,7 @@ typedef struct csg_cross_state {
     bool known;
     uint8_t moves;
     uint8_t tries;   /* places that a smooth one's apex has had */
+    bool waits;      /* vertices of it were put back: it is to be settled again */
     uint32_t search; /* the last one that changed it: what was found of it before is past */
 } cross_state;
 
@@ -61,6 +62,7 @@ void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
         memcpy(state->at, f->at, sizeof f->at);
         memcpy(state->triangle, f->triangle, bytes);
         state->known = true;
+        state->waits = false;
         state->moves = f->moves;
     }
     csg_near_measure(&cross->near, index);
@@ -119,7 +121,8 @@ static uint32_t victim_of(const csg_feature_cross *cross, const uint32_t owners[
 static bool is_past(const csg_feature_cross *cross, const uint32_t owners[4])
 {
     for (int k = 0; k < 4; k++)
-        if (owners[k] != CSG_FEATURE_NONE && cross->states[owners[k]].search == cross->search)
+        if (owners[k] != CSG_FEATURE_NONE &&
+            (cross->states[owners[k]].search == cross->search || cross->states[owners[k]].waits))
             return true;
     return false;
 }
@@ -130,16 +133,17 @@ static void has_changed(csg_feature_cross *cross, uint32_t feature)
     cross->has_changed = true;
 }
 
-/* Vertices of theirs that have moved go back first. */
+/* Vertices of theirs that have moved, or for them, go back first. */
 static bool put_back(csg_feature_cross *cross, const uint32_t owners[4])
 {
     csg_feature_store *store = cross->near.store;
     bool any = false;
     for (int k = 0; k < 4; k++) {
-        if (owners[k] == CSG_FEATURE_NONE || !store->features[owners[k]].moved)
+        if (owners[k] == CSG_FEATURE_NONE || !csg_feature_is_shifted(&store->features[owners[k]]))
             continue;
         csg_feature_shift_back(store, cross->near.marching->tables, &store->features[owners[k]]);
         has_changed(cross, owners[k]);
+        cross->states[owners[k]].waits = true;
         any = true;
     }
     return any;

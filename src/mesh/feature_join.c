@@ -228,7 +228,8 @@ static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, 
     for (int s = 0; s < f->side_count; s++) {
         csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
         if (g && !g->unsolved && !csg_feature_holds(store, tables, g))
-            changed = csg_feature_shift(store, tables, f->beyond[s], probe) || changed;
+            changed =
+                csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe) || changed;
     }
     if (!changed)
         return false;
@@ -249,7 +250,7 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
         csg_feature *f = &store->features[i];
         if (f->creased && !unfolds(store, tables, f)) {
             if (!csg_feature_replace(store, tables, i, probe) &&
-                !csg_feature_shift(store, tables, i, probe))
+                !csg_feature_shift(store, tables, i, CSG_FEATURE_NONE, probe))
                 csg_feature_demote(store, tables, f);
             changed++;
         }
@@ -260,8 +261,7 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
             changed++;
             if (!csg_feature_replace(store, tables, i, probe) &&
                 (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&
-                !csg_feature_shift(store, tables, i, probe) &&
-                (other == CSG_FEATURE_NONE || !csg_feature_shift(store, tables, other, probe)))
+                !csg_feature_shift(store, tables, i, other, probe))
                 give_up(store, tables, f,
                         other == CSG_FEATURE_NONE ? NULL : &store->features[other]);
         }

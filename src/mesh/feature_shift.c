@@ -111,13 +111,15 @@ static bool ring_holds(csg_feature_store *store, const csg_cell_tables *tables, 
     return true;
 }
 
-static bool keep(csg_feature_store *store, const ring *r, const float from[3], csg_vec3 normal)
+static bool keep(csg_feature_store *store, const csg_feature *asker, const ring *r,
+                 const float from[3], csg_vec3 normal)
 {
     if (!csg_memory_reserve(store->memory, (void **)&store->moves, &store->move_capacity,
                             store->move_count + 1, sizeof *store->moves))
         return false;
     csg_feature_moved *m = &store->moves[store->move_count++];
-    *m = (csg_feature_moved){.normal = {(float)normal.x, (float)normal.y, (float)normal.z}};
+    *m = (csg_feature_moved){.asker = (uint32_t)(asker - store->features),
+                             .normal = {(float)normal.x, (float)normal.y, (float)normal.z}};
     memcpy(m->from, from, sizeof m->from);
     for (int k = 0; k < AROUND; k++) {
         m->feature[k] = (uint32_t)(r->f[k] - store->features);
@@ -128,14 +130,29 @@ static bool keep(csg_feature_store *store, const ring *r, const float from[3], c
     return true;
 }
 
-/* Tries places in the plane of the sheet, nearer ones first. */
-static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
-                         int corner, csg_feature_probe *probe)
+/* A place to try in the plane of a sheet: around the vertex first, then around the apex that it is
+ * to make way for. */
+enum { RINGS = 6, APEX_RINGS = 3, WAYS = 16 };
+
+static csg_vec3 place_of(int i, csg_vec3 vertex, csg_vec3 apex, csg_vec3 normal, double cell)
 {
-    enum { RINGS = 6, WAYS = 8 };
-    static const double way[WAYS][2] = {{1, 0},  {0.7, 0.7},   {0, 1},  {-0.7, 0.7},
-                                        {-1, 0}, {-0.7, -0.7}, {0, -1}, {0.7, -0.7}};
-    static const double radius[RINGS] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+    static const double way[WAYS][2] = {{1, 0},       {0.7, 0.7},   {0, 1},      {-0.7, 0.7},
+                                        {-1, 0},      {-0.7, -0.7}, {0, -1},     {0.7, -0.7},
+                                        {0.9, 0.4},   {0.4, 0.9},   {-0.4, 0.9}, {-0.9, 0.4},
+                                        {-0.9, -0.4}, {-0.4, -0.9}, {0.4, -0.9}, {0.9, -0.4}};
+    static const double radius[RINGS + APEX_RINGS] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.2, 0.35, 0.5};
+    csg_vec3 axis = fabs(normal.x) < 0.7 ? csg_vec3_make(1, 0, 0) : csg_vec3_make(0, 1, 0);
+    csg_vec3 u = csg_vec3_normalize(csg_vec3_cross(normal, axis));
+    csg_vec3 v = csg_vec3_cross(normal, u), at = i < RINGS * WAYS ? vertex : apex;
+    double reach = radius[i / WAYS] * cell;
+    at = csg_vec3_add(at, csg_vec3_scale(u, reach * way[i % WAYS][0]));
+    return csg_vec3_add(at, csg_vec3_scale(v, reach * way[i % WAYS][1]));
+}
+
+/* Tries the places of one ring. */
+static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                         int corner, int around, csg_feature_probe *probe)
+{
     ring r;
     if (!find_ring(store, f, corner, &r))
         return false;
@@ -144,18 +161,14 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
     for (int k = 0; k < AROUND; k++)
         before[k] = *r.f[k];
     memcpy(from, f->corner[corner], sizeof from);
-    csg_vec3 n = point(f->normal[f->sheet[corner]]), start = point(from);
-    csg_vec3 axis = fabs(n.x) < 0.7 ? csg_vec3_make(1, 0, 0) : csg_vec3_make(0, 1, 0);
-    csg_vec3 u = csg_vec3_normalize(csg_vec3_cross(n, axis)), v = csg_vec3_cross(n, u);
-    for (int i = 0; i < RINGS * WAYS; i++) {
-        double reach = radius[i / WAYS] * store->cell_size;
-        csg_vec3 at = csg_vec3_add(start, csg_vec3_scale(u, reach * way[i % WAYS][0])), normal = n;
-        at = csg_vec3_add(at, csg_vec3_scale(v, reach * way[i % WAYS][1]));
+    csg_vec3 n = point(f->normal[f->sheet[corner]]);
+    for (int i = around * WAYS; i < (around + 1) * WAYS; i++) {
+        csg_vec3 normal = n, at = place_of(i, point(from), point(f->at), n, store->cell_size);
         if (!to_surface(probe, &at, &normal))
             continue;
         to[0] = (float)at.x, to[1] = (float)at.y, to[2] = (float)at.z;
         put(&r, to);
-        if (ring_holds(store, tables, &r, normal) && keep(store, &r, from, normal))
+        if (ring_holds(store, tables, &r, normal) && keep(store, f, &r, from, normal))
             return true;
         for (int k = 0; k < AROUND; k++) {
             *r.f[k] = before[k];
@@ -165,15 +178,26 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
     return false;
 }
 
-bool csg_feature_shift(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
-                       csg_feature_probe *probe)
+static bool shift_ring(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                       int around, csg_feature_probe *probe)
 {
-    csg_feature *f = &store->features[index];
-    if (!f->creased || f->unsolved || f->shifted)
+    if (!f->creased || f->unsolved || f->shift > around)
         return false;
-    f->shifted = true;
-    for (int corner = 0; corner < f->side_count; corner++)
-        if (shift_corner(store, tables, f, corner, probe))
+    f->shift = (uint8_t)(around + 1);
+    bool done = false;
+    for (int corner = 0; corner < f->side_count && !done; corner++)
+        done = shift_corner(store, tables, f, corner, around, probe);
+    f->made_way = f->made_way || done;
+    return done;
+}
+
+bool csg_feature_shift(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
+                       uint32_t other, csg_feature_probe *probe)
+{
+    for (int around = 0; around < RINGS + APEX_RINGS; around++)
+        if (shift_ring(store, tables, &store->features[index], around, probe) ||
+            (other != CSG_FEATURE_NONE &&
+             shift_ring(store, tables, &store->features[other], around, probe)))
             return true;
     return false;
 }
@@ -195,8 +219,10 @@ void csg_feature_shift_back(csg_feature_store *store, const csg_cell_tables *tab
                             csg_feature *feature)
 {
     uint32_t index = (uint32_t)(feature - store->features);
-    for (size_t i = 0; feature->moved && i < store->move_count; i++)
+    bool any = csg_feature_is_shifted(feature);
+    for (size_t i = 0; any && i < store->move_count; i++)
         for (int k = 0; k < AROUND && !store->moves[i].back; k++)
-            if (store->moves[i].feature[k] == index)
+            if (store->moves[i].feature[k] == index || store->moves[i].asker == index)
                 put_back(store, tables, &store->moves[i]);
+    feature->made_way = false;
 }

@@ -6,13 +6,20 @@
 
 #include "mesh/feature_probe.h"
 
-/* Where a corner cannot be joined to its neighbours because it lies beyond vertices of its polygon:
- * moves one of these along its sheet, so that all triangles around it look out. False: there is no
- * such place, nothing has changed. */
+/* Where a feature cannot be joined to its neighbours, or to `other` (may be NONE), because its apex
+ * lies beyond vertices of its polygon: moves one of these along its sheet, so that all triangles
+ * around it look out; the nearest place that has not been tried before. False: there is none,
+ * nothing has changed. */
 bool csg_feature_shift(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
-                       csg_feature_probe *probe);
+                       uint32_t other, csg_feature_probe *probe);
 
-/* Puts what has moved of the feature's vertices back. */
+/* Whether vertices of it, or for it, have moved. */
+static inline bool csg_feature_is_shifted(const csg_feature *feature)
+{
+    return feature->moved || feature->made_way;
+}
+
+/* Puts these back. */
 void csg_feature_shift_back(csg_feature_store *store, const csg_cell_tables *tables,
                             csg_feature *feature);
 
