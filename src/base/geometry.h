@@ -48,6 +48,13 @@ static inline csg_vec3 csg_vec3_normalize(csg_vec3 a)
     return n > 0 ? csg_vec3_scale(a, 1 / n) : csg_vec3_make(0, 0, 0);
 }
 
+static inline void csg_vec3_to_floats(float out[3], csg_vec3 a)
+{
+    out[0] = (float)a.x;
+    out[1] = (float)a.y;
+    out[2] = (float)a.z;
+}
+
 /* ---- boxes ------------------------------------------------------------------------- */
 
 csg_box csg_box_empty(void);

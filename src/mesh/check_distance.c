@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "field/dispatch.h"
+#include "field/point.h"
 #include "grid/octree.h"
 #include "mesh/check_distance_slopes.h"
 
@@ -62,15 +62,8 @@ static disc disc_of(const csg_vec3 v[3])
 
 static double value_at(const proof *p, settler *s, csg_vec3 at)
 {
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
-    for (int i = 0; i < CSG_LANES; i++) {
-        x[i] = (float)at.x;
-        y[i] = (float)at.y;
-        z[i] = (float)at.z;
-    }
-    p->remesh->probe.marching->kernel->values(&s->tape, x, y, z, 1, f, s->scratch,
-                                              p->scratch_floats);
-    return (double)f[0];
+    return csg_tape_value_at(p->remesh->probe.marching->kernel, &s->tape, at, s->scratch,
+                             p->scratch_floats);
 }
 
 /* Rounding of places and values is kept clear of, twice over. */

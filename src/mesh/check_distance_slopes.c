@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/formulas.h"
+#include "field/point.h"
 
 /* What one operand can be in the ball. */
 typedef struct operand {
@@ -56,32 +57,34 @@ static double rate_of(const walker *w, const operand *a, const operand *b)
     return a->faces || b->faces ? 1.2 * most : most;
 }
 
+/* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
+static blended blend_at(uint8_t blend, float n, float chi, double d)
+{
+    float x = (float)fabs(d);
+    switch (blend) {
+    case CSG_BLEND_HYPERBOLA:
+        return blend_hyperbola(n, chi, x);
+    case CSG_BLEND_RECIPROCAL:
+        return blend_reciprocal(n, chi, x);
+    case CSG_BLEND_COSINE:
+        return blend_cosine(n, chi, x);
+    case CSG_BLEND_OVERBLEND:
+        return blend_overblend(n, chi, x);
+    case CSG_BLEND_PARABOLA:
+        return blend_parabola(n, chi, x);
+    case CSG_BLEND_CHAMFER:
+        return blend_chamfer(n, chi, x);
+    default:
+        return blend_sharp(n, chi, x);
+    }
+}
+
 /* The share of operand a where a - b = d, of a union. */
 static double share_at(uint8_t blend, float n, float chi, double d)
 {
-    float x = (float)fabs(d), slope = 0;
-    switch (blend) {
-    case CSG_BLEND_HYPERBOLA:
-        slope = blend_hyperbola(n, chi, x).slope;
-        break;
-    case CSG_BLEND_RECIPROCAL:
-        slope = blend_reciprocal(n, chi, x).slope;
-        break;
-    case CSG_BLEND_COSINE:
-        slope = blend_cosine(n, chi, x).slope;
-        break;
-    case CSG_BLEND_PARABOLA:
-        slope = blend_parabola(n, chi, x).slope;
-        break;
-    case CSG_BLEND_CHAMFER:
-        slope = blend_chamfer(n, chi, x).slope;
-        break;
-    case CSG_BLEND_OVERBLEND: /* not monotone: anything, once it begins */
-        slope = x < chi ? -1.0f : 0;
-        return d > 0 ? (double)(x < chi ? 0.0f : 1.0f) : (double)-slope;
-    default:
-        break;
-    }
+    float slope = blend_at(blend, n, chi, d).slope;
+    if (blend == CSG_BLEND_OVERBLEND) /* not monotone: anything, once it begins */
+        slope = (float)fabs(d) < chi ? -1.0f : 0;
     return d > 0 ? 1 + (double)slope : -(double)slope;
 }
 
@@ -169,28 +172,7 @@ static bool mix(operand *a, const operand *b, range share, bool is_sharp)
 
 static double joined_value(const csg_tape_node *node, float n, float chi, double a, double b)
 {
-    float x = (float)fabs(a - b), more = 0;
-    switch (node->join_blend) {
-    case CSG_BLEND_HYPERBOLA:
-        more = blend_hyperbola(n, chi, x).value;
-        break;
-    case CSG_BLEND_RECIPROCAL:
-        more = blend_reciprocal(n, chi, x).value;
-        break;
-    case CSG_BLEND_COSINE:
-    case CSG_BLEND_OVERBLEND:
-        more = blend_cosine(n, chi, x).value;
-        break;
-    case CSG_BLEND_PARABOLA:
-        more = blend_parabola(n, chi, x).value;
-        break;
-    case CSG_BLEND_CHAMFER:
-        more = blend_chamfer(n, chi, x).value;
-        break;
-    default:
-        break;
-    }
-    return fmax(a, b) + (double)more;
+    return fmax(a, b) + (double)blend_at(node->join_blend, n, chi, a - b).value;
 }
 
 static double orthogonal_value(double n, double turn, double a, double b)
@@ -337,17 +319,10 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
 {
     csg_tape_node alone = *node;
     csg_tape tape = *w->tape;
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], g[3][CSG_LANES];
     alone.join = CSG_JOIN_NONE;
     tape.nodes = &alone;
     tape.count = 1;
-    for (int i = 0; i < CSG_LANES; i++) {
-        x[i] = (float)w->c.x;
-        y[i] = (float)w->c.y;
-        z[i] = (float)w->c.z;
-    }
-    w->kernel->gradients(&tape, x, y, z, 1, g[0], g[1], g[2], w->scratch, w->scratch_floats);
-    csg_vec3 slope = {(double)g[0][0], (double)g[1][0], (double)g[2][0]};
+    csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, w->c, w->scratch, w->scratch_floats);
     double most = 0;
     for (int k = 0; k < 3; k++)
         most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(w->v[k], w->c)));

@@ -141,7 +141,7 @@ static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
                                         .count = room->count,
                                         .vertices = {from, to},
                                         .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
-    return csg_crossing_is_made(&d->remesh->crossing, &change);
+    return csg_crossing_is_made(&d->remesh->tree, &change);
 }
 
 static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
@@ -169,9 +169,9 @@ static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t
     csg_decimation_hand_over(d);
     csg_corners_collapse(&r->corners, corner);
     r->at[to] = at;
-    csg_crossing_update_around(&r->crossing, to);
+    csg_triangle_tree_update_around(&r->tree, to);
     for (uint32_t i = 0; i < 2; i++)
-        csg_crossing_update(&r->crossing, d->room->triangle[d->room->count + i]);
+        csg_triangle_tree_update(&r->tree, d->room->triangle[d->room->count + i]);
     r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
     if (r->looks)
         r->looks[to] = d->room->look;

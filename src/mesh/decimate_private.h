@@ -34,9 +34,6 @@ typedef struct csg_collapse_room {
     size_t owner_count, owner_capacity;
 } csg_collapse_room;
 
-/* The nearest place of a triangle, as weights of its corners; returns the squared distance. */
-double csg_nearest_on_triangle(const csg_vec3 triangle[3], csg_vec3 p, double weights[3]);
-
 bool csg_decimation_make_samples(csg_decimation *d);
 /* Whether the samples of room->triangle are near enough to room->after, and who takes which. */
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept);

@@ -90,54 +90,6 @@ bool csg_decimation_make_samples(csg_decimation *d)
     return true;
 }
 
-/* ---- the nearest place of a triangle -----------------------------------------------------------
- */
-
-static double along(csg_vec3 from, csg_vec3 to, csg_vec3 p)
-{
-    csg_vec3 way = csg_vec3_sub(to, from);
-    double square = csg_vec3_dot(way, way);
-    double t = square > 0 ? csg_vec3_dot(csg_vec3_sub(p, from), way) / square : 0;
-    return t < 0 ? 0 : t > 1 ? 1 : t;
-}
-
-/* The nearest place of the three sides. */
-static double nearest_on_sides(const csg_vec3 v[3], csg_vec3 p, double weights[3])
-{
-    double least = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        int next = k == 2 ? 0 : k + 1;
-        double t = along(v[k], v[next], p);
-        csg_vec3 foot = csg_vec3_add(csg_vec3_scale(v[k], 1 - t), csg_vec3_scale(v[next], t));
-        csg_vec3 off = csg_vec3_sub(p, foot);
-        double square = csg_vec3_dot(off, off);
-        if (square < least) {
-            least = square;
-            weights[0] = weights[1] = weights[2] = 0;
-            weights[k] = 1 - t;
-            weights[next] = t;
-        }
-    }
-    return least;
-}
-
-double csg_nearest_on_triangle(const csg_vec3 v[3], csg_vec3 p, double weights[3])
-{
-    csg_vec3 normal = csg_triangle_cross(v[0], v[1], v[2]);
-    double square = csg_vec3_dot(normal, normal);
-    if (square > 0) {
-        for (int k = 0; k < 3; k++)
-            weights[k] =
-                csg_vec3_dot(normal, csg_triangle_cross(p, v[(k + 1) % 3], v[(k + 2) % 3])) /
-                square;
-        if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0) {
-            double height = csg_vec3_dot(normal, csg_vec3_sub(p, v[0]));
-            return height * height / square;
-        }
-    }
-    return nearest_on_sides(v, p, weights);
-}
-
 /* ---- handing over ------------------------------------------------------------------------------
  */
 
@@ -178,7 +130,7 @@ static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t 
     uint32_t owner = CSG_CORNER_NONE;
     for (uint32_t i = 0; i < room->count && least > most / 256; i++) {
         uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
-        double weights[3], square = csg_nearest_on_triangle(room->after[k], p, weights);
+        double weights[3], square = csg_triangle_nearest(room->after[k], p, weights);
         if (square < least) {
             least = square;
             owner = k;
@@ -235,7 +187,7 @@ double csg_decimation_largest_distance(const csg_decimation *d)
                                csg_remesh_corner(r, 3 * t + 2)};
         double weights[3];
         for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->next_sample[s])
-            most = fmax(most, csg_nearest_on_triangle(v, csg_sample_at(d, s), weights));
+            most = fmax(most, csg_triangle_nearest(v, csg_sample_at(d, s), weights));
     }
     return sqrt(most);
 }

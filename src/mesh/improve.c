@@ -93,7 +93,7 @@ static bool move_to(csg_improver *m, uint32_t vertex, csg_vec3 at)
         !csg_patch_is_sound(m))
         return false;
     r->at[vertex] = at;
-    csg_crossing_update_around(&r->crossing, vertex);
+    csg_triangle_tree_update_around(&r->tree, vertex);
     if (r->looks)
         r->looks[vertex] = look;
     return true;
@@ -156,8 +156,8 @@ static bool flip(csg_improver *m, uint32_t corner)
     if (!csg_patch_is_sound(m))
         return false;
     csg_corners_flip(&r->corners, corner);
-    csg_crossing_update(&r->crossing, corner / 3);
-    csg_crossing_update(&r->crossing, other / 3);
+    csg_triangle_tree_update(&r->tree, corner / 3);
+    csg_triangle_tree_update(&r->tree, other / 3);
     return true;
 }
 
@@ -174,7 +174,7 @@ static uint64_t collapse_all(csg_improver *m)
             continue;
         const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
                                csg_remesh_corner(r, 3 * t + 2)};
-        if (csg_least_sine(v) > BAD)
+        if (csg_triangle_least_sine(v) > BAD)
             continue;
         double length[3];
         for (int k = 0; k < 3; k++)

@@ -9,33 +9,16 @@
 /* ---- shape ------------------------------------------------------------------------------------
  */
 
-double csg_least_sine(const csg_vec3 v[3])
-{
-    double a = csg_vec3_norm(csg_vec3_sub(v[1], v[0])), b = csg_vec3_norm(csg_vec3_sub(v[2], v[1]));
-    double c = csg_vec3_norm(csg_vec3_sub(v[0], v[2]));
-    double shortest = fmin(a, fmin(b, c)),
-           others = a * b * c; /* over the shortest: of the others */
-    if (!(shortest > 0))
-        return 0;
-    return csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2])) * shortest / others;
-}
-
 double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count)
 {
     double worst = 1;
     for (uint32_t i = 0; i < count; i++)
-        worst = fmin(worst, csg_least_sine(triangles[i]));
+        worst = fmin(worst, csg_triangle_least_sine(triangles[i]));
     return worst;
 }
 
 /* ---- the surface ------------------------------------------------------------------------------
  */
-
-static int compare(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? -1 : x > y;
-}
 
 bool csg_improver_measure(csg_improver *m)
 {
@@ -44,27 +27,11 @@ bool csg_improver_measure(csg_improver *m)
     float *values = csg_memory_alloc(r->memory, count * sizeof *values);
     if (!values)
         return false;
-    for (uint32_t first = 0; first < count; first += CSG_PROBE_MOST) {
-        float at[CSG_PROBE_MOST][3];
-        size_t points = 0;
-        for (uint32_t t = first; t < count && t < first + CSG_PROBE_MOST; t++) {
-            if (!csg_corners_is_live(&r->corners, t))
-                continue;
-            csg_vec3 sum = csg_vec3_add(
-                csg_remesh_corner(r, 3 * t),
-                csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
-            at[points][0] = (float)(sum.x / 3);
-            at[points][1] = (float)(sum.y / 3);
-            at[points++][2] = (float)(sum.z / 3);
-        }
-        if (points)
-            csg_probe_values(&r->probe, (const float(*)[3])at, points, values + n);
-        n += points;
-    }
-    for (size_t i = 0; i < n; i++)
-        values[i] = fabsf(values[i]);
-    qsort(values, n, sizeof *values, compare);
-    m->allowed = n ? (double)values[n - 1 - n / 50] : 0;
+    csg_remesh_values_at_centroids(r, values);
+    for (uint32_t t = 0; t < count; t++)
+        if (csg_corners_is_live(&r->corners, t))
+            values[n++] = fabsf(values[t]);
+    m->allowed = csg_remesh_common_value(values, n);
     csg_memory_release(r->memory, values, count * sizeof *values);
     return true;
 }
@@ -76,13 +43,6 @@ typedef struct fit {
 
 enum { POINTS = 4 /* of a triangle: its middle, and those of its sides */ };
 
-static void put(float out[3], csg_vec3 p)
-{
-    out[0] = (float)p.x;
-    out[1] = (float)p.y;
-    out[2] = (float)p.z;
-}
-
 static fit fit_of(csg_remesh *r, const csg_vec3 (*triangles)[3], uint32_t count)
 {
     float at[CSG_PROBE_MOST][3], f[CSG_PROBE_MOST], g[CSG_PATCH_MOST][3];
@@ -90,9 +50,11 @@ static fit fit_of(csg_remesh *r, const csg_vec3 (*triangles)[3], uint32_t count)
     _Static_assert((int)POINTS * (int)CSG_PATCH_MOST <= (int)CSG_PROBE_MOST, "in one call");
     for (uint32_t i = 0; i < count; i++) { /* the middles first: their gradients are asked */
         const csg_vec3 *v = triangles[i];
-        put(at[i], csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3));
+        csg_vec3_to_floats(at[i],
+                           csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3));
         for (uint32_t k = 0; k < 3; k++)
-            put(at[count + 3 * i + k], csg_vec3_scale(csg_vec3_add(v[k], v[(k + 1) % 3]), 0.5));
+            csg_vec3_to_floats(at[count + 3 * i + k],
+                               csg_vec3_scale(csg_vec3_add(v[k], v[(k + 1) % 3]), 0.5));
     }
     csg_probe_values(&r->probe, (const float(*)[3])at, POINTS * (size_t)count, f);
     csg_probe_gradients(&r->probe, (const float(*)[3])at, count, g);
@@ -129,7 +91,7 @@ bool csg_patch_is_sound(csg_improver *m)
                                         .count = p->then_count,
                                         .vertices = {p->vertices[0], p->vertices[1]},
                                         .triangles = {p->triangles[0], p->triangles[1]}};
-    return !csg_crossing_is_made(&r->crossing, &change);
+    return !csg_crossing_is_made(&r->tree, &change);
 }
 
 bool csg_improve_looks_alike(csg_improver *m, uint32_t vertex, csg_vec3 at,

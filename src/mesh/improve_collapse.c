@@ -117,9 +117,9 @@ bool csg_improve_collapse(csg_improver *m, uint32_t corner)
         r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
         if (r->looks)
             r->looks[to] = look;
-        csg_crossing_update_around(&r->crossing, to);
-        csg_crossing_update(&r->crossing, gone[0]);
-        csg_crossing_update(&r->crossing, gone[1]);
+        csg_triangle_tree_update_around(&r->tree, to);
+        csg_triangle_tree_update(&r->tree, gone[0]);
+        csg_triangle_tree_update(&r->tree, gone[1]);
         return true;
     }
     return false;

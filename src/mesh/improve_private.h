@@ -24,8 +24,7 @@ typedef struct csg_improver {
     csg_patch patch;
 } csg_improver;
 
-/* Sine of a triangle's smallest angle. */
-double csg_least_sine(const csg_vec3 triangle[3]);
+/* Sine of the smallest angle of all. */
 double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count);
 /* |f| at centroids that only a fiftieth exceeds. False: out of memory. */
 bool csg_improver_measure(csg_improver *improver);

@@ -74,7 +74,7 @@ static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
                                         .count = 4,
                                         .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
                                         .triangles = {corner / 3, r->corners.across[apex] / 3}};
-    return !csg_crossing_is_made(&r->crossing, &change);
+    return !csg_crossing_is_made(&r->tree, &change);
 }
 
 static bool halve(refiner *f, uint32_t corner)
@@ -95,7 +95,7 @@ static bool halve(refiner *f, uint32_t corner)
     if (r->looks)
         r->looks[vertex] = csg_remesh_look(r, at);
     csg_corners_split(&r->corners, corner, vertex, triangles);
-    csg_crossing_update_around(&r->crossing, vertex);
+    csg_triangle_tree_update_around(&r->tree, vertex);
     f->pending[corner / 3] = f->pending[other] = 2; /* next round */
     f->pending[triangles[0]] = f->pending[triangles[1]] = 2;
     return true;

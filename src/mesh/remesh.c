@@ -4,6 +4,7 @@
 #include "mesh/remesh.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { BATCH = CSG_PROBE_MOST };
@@ -11,14 +12,6 @@ enum { BATCH = CSG_PROBE_MOST };
 static const double CREASE_COS = 0.94;     /* 20 degrees between normals */
 static const double ON_SURFACE = 0.02;     /* distance of a centroid, in longest sides */
 static const double SHARP_TURN_COS = 0.85; /* of a crease at a vertex: a corner beyond it */
-
-double csg_triangle_quality(csg_vec3 a, csg_vec3 b, csg_vec3 c)
-{
-    csg_vec3 s[3] = {csg_vec3_sub(b, a), csg_vec3_sub(c, b), csg_vec3_sub(a, c)};
-    double longest =
-        fmax(csg_vec3_dot(s[0], s[0]), fmax(csg_vec3_dot(s[1], s[1]), csg_vec3_dot(s[2], s[2])));
-    return longest > 0 ? csg_vec3_norm(csg_vec3_cross(s[0], s[1])) / longest : 0;
-}
 
 /* ---- creases ----------------------------------------------------------------------------------
  */
@@ -33,31 +26,51 @@ static face face_of(const csg_remesh *r, uint32_t triangle, float value)
     csg_vec3 a = csg_remesh_corner(r, 3 * triangle), b = csg_remesh_corner(r, 3 * triangle + 1),
              c = csg_remesh_corner(r, 3 * triangle + 2);
     csg_vec3 cross = csg_triangle_cross(a, b, c);
-    double longest =
-        fmax(csg_vec3_norm(csg_vec3_sub(b, a)),
-             fmax(csg_vec3_norm(csg_vec3_sub(c, b)), csg_vec3_norm(csg_vec3_sub(a, c))));
+    double longest = csg_triangle_longest_side((const csg_vec3[3]){a, b, c});
     double slope = (double)r->probe.marching->field->tape.lipschitz;
     bool near = fabs((double)value) <= ON_SURFACE * longest * slope + 4 * (double)r->probe.noise;
     return (face){csg_vec3_normalize(cross), near && csg_triangle_quality(a, b, c) > 0.05};
 }
 
+/* Centroids of the triangles that are there, of at most a batch from `first` on. */
+static size_t centroids_of(const csg_remesh *r, uint32_t first, float (*at)[3], uint32_t *of)
+{
+    size_t n = 0;
+    for (uint32_t t = first; t < r->corners.triangle_count && t - first < BATCH; t++) {
+        if (!csg_corners_is_live(&r->corners, t))
+            continue;
+        csg_vec3 sum = csg_vec3_add(
+            csg_remesh_corner(r, 3 * t),
+            csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
+        csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+        of[n++] = t;
+    }
+    return n;
+}
+
 void csg_remesh_values_at_centroids(csg_remesh *r, float *value)
 {
-    float at[BATCH][3];
+    float at[BATCH][3], f[BATCH];
+    uint32_t of[BATCH];
     for (uint32_t first = 0; first < r->corners.triangle_count; first += BATCH) {
-        uint32_t n = r->corners.triangle_count - first;
-        n = n < BATCH ? n : BATCH;
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t c = 3 * (first + i);
-            csg_vec3 sum =
-                csg_vec3_add(csg_remesh_corner(r, c), csg_vec3_add(csg_remesh_corner(r, c + 1),
-                                                                   csg_remesh_corner(r, c + 2)));
-            at[i][0] = (float)(sum.x / 3);
-            at[i][1] = (float)(sum.y / 3);
-            at[i][2] = (float)(sum.z / 3);
-        }
-        csg_probe_values(&r->probe, (const float(*)[3])at, n, value + first);
+        size_t n = centroids_of(r, first, at, of);
+        if (n)
+            csg_probe_values(&r->probe, (const float(*)[3])at, n, f);
+        for (size_t i = 0; i < n; i++)
+            value[of[i]] = f[i];
     }
+}
+
+static int compare_values(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+double csg_remesh_common_value(float *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_values);
+    return count ? (double)values[count - 1 - count / 50] : 0;
 }
 
 /* What the creases at a vertex make it. */
@@ -155,7 +168,7 @@ csgm_status csg_remesh_begin(csg_remesh *r, csg_mesh_work *work)
     bool done = result == CSG_CORNERS_MADE && take_arrays(r) && csg_probe_make(&r->probe, work);
     if (done) {
         copy_vertices(r);
-        done = find_creases(r) && csg_crossing_make(&r->crossing, &r->corners, r->at);
+        done = find_creases(r) && csg_triangle_tree_make(&r->tree, &r->corners, r->at);
     }
     if (done)
         return CSGM_OK;
@@ -170,7 +183,7 @@ void csg_remesh_end(csg_remesh *r)
     csg_memory_release(r->memory, r->kind, count);
     csg_memory_release(r->memory, r->looks, count * sizeof *r->looks);
     csg_probe_release(&r->probe);
-    csg_crossing_release(&r->crossing);
+    csg_triangle_tree_release(&r->tree);
     csg_corners_release(&r->corners);
     *r = (csg_remesh){0};
 }

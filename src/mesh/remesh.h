@@ -10,6 +10,7 @@
 #include "mesh/corners.h"
 #include "mesh/crossing.h"
 #include "mesh/probe.h"
+#include "mesh/triangle.h"
 
 typedef enum csg_vertex_kind {
     CSG_VERTEX_SMOOTH,
@@ -27,7 +28,7 @@ typedef struct csg_remesh {
     csg_memory *memory;
     csg_probe probe;
     csg_corners corners;
-    csg_crossing crossing;     /* of these, kept true by whoever changes them */
+    csg_triangle_tree tree;    /* of these, kept true by whoever changes them */
     csg_vec3 *at;              /* per vertex, field frame */
     uint8_t *kind;             /* per vertex: csg_vertex_kind */
     csg_look_at_vertex *looks; /* per vertex; NULL: the mesh has neither colours nor materials */
@@ -48,17 +49,10 @@ static inline csg_vec3 csg_remesh_corner(const csg_remesh *remesh, uint32_t c)
     return remesh->at[remesh->corners.vertex[c]];
 }
 
-/* Twice the area times the normal. */
-static inline csg_vec3 csg_triangle_cross(csg_vec3 a, csg_vec3 b, csg_vec3 c)
-{
-    return csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
-}
-
-/* The field at the centroids of all triangles, gone ones too: one float each. */
+/* The field at the centroids of all triangles; out[t] of one that is gone stays as it is. */
 void csg_remesh_values_at_centroids(csg_remesh *remesh, float *out);
-
-/* Smallest altitude over longest side: 0.866 at best, 0 for a sliver. */
-double csg_triangle_quality(csg_vec3 a, csg_vec3 b, csg_vec3 c);
+/* What only a fiftieth of the values exceed, 0 of none; they get sorted. */
+double csg_remesh_common_value(float *values, size_t count);
 
 /* Whether the edge that starts at this corner belongs to a crease: both ends do and its triangles
  * meet at an angle. */

@@ -5,20 +5,13 @@
 
 #include "mesh/remesh.h"
 
-static void put(float out[3], csg_vec3 p)
-{
-    out[0] = (float)p.x;
-    out[1] = (float)p.y;
-    out[2] = (float)p.z;
-}
-
 bool csg_remesh_project(csg_remesh *r, csg_vec3 *at, double reach)
 {
     enum { MOST_STEPS = 4 };
     csg_vec3 p = *at;
     for (int step = 0; step < MOST_STEPS; step++) {
         float place[1][3], f, g[1][3];
-        put(place[0], p);
+        csg_vec3_to_floats(place[0], p);
         csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
         if (fabsf(f) <= 2 * r->probe.noise)
             break;
@@ -40,7 +33,7 @@ csg_look_at_vertex csg_remesh_look(csg_remesh *r, csg_vec3 at)
     float place[1][3];
     uint8_t color[1][4] = {{0, 0, 0, 0}};
     uint16_t material[1][2] = {{0, 0}};
-    put(place[0], at);
+    csg_vec3_to_floats(place[0], at);
     const csgm_mesh *mesh = r->work->mesh;
     csg_probe_looks(&r->probe, (const float(*)[3])place, 1, mesh->colors ? color : NULL,
                     mesh->materials ? material : NULL);
@@ -78,8 +71,8 @@ static void take_step(csg_remesh *r, bracket *b, double step)
 {
     size_t left = 0;
     for (size_t i = 0; i < b->count; i++) {
-        put(b->out[i], csg_vec3_add(b->at[i], csg_vec3_scale(b->normal[i], step)));
-        put(b->in[i], csg_vec3_sub(b->at[i], csg_vec3_scale(b->normal[i], step)));
+        csg_vec3_to_floats(b->out[i], csg_vec3_add(b->at[i], csg_vec3_scale(b->normal[i], step)));
+        csg_vec3_to_floats(b->in[i], csg_vec3_sub(b->at[i], csg_vec3_scale(b->normal[i], step)));
     }
     float f_in[MOST_POINTS];
     csg_probe_values(&r->probe, (const float(*)[3])b->out, b->count, b->f);
@@ -112,10 +105,7 @@ bool csg_remesh_brackets(csg_remesh *r, const csg_vec3 (*triangles)[3], size_t c
     b.count = 0;
     for (size_t i = 0; i < count; i++) {
         const csg_vec3 *v = triangles[i];
-        double longest = fmax(
-            csg_vec3_norm(csg_vec3_sub(v[1], v[0])),
-            fmax(csg_vec3_norm(csg_vec3_sub(v[2], v[1])), csg_vec3_norm(csg_vec3_sub(v[0], v[2]))));
-        int split = (int)fmin(MOST_SPLIT, ceil(longest / (1.5 * r->cell)));
+        int split = (int)fmin(MOST_SPLIT, ceil(csg_triangle_longest_side(v) / (1.5 * r->cell)));
         if (b.count + MOST_OF_ONE > MOST_POINTS && !are_bracketed(r, &b))
             return false;
         spread(&b, v, csg_vec3_normalize(csg_triangle_cross(v[0], v[1], v[2])),

@@ -7,10 +7,9 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "field/dispatch.h"
+#include "field/point.h"
 #include "grid/octree.h"
 #include "mesh/check_distance_slopes.h"
-#include "mesh/remesh_nearest.h"
 
 /* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
 enum {
@@ -47,7 +46,6 @@ typedef struct worker {
 
 typedef struct walk {
     const csg_remesh *remesh;
-    csg_nearest nearest;
     csg_octree *octree;
     double error, least, lipschitz; /* least: half an edge that is not divided */
     uint64_t most_cubes;
@@ -72,28 +70,14 @@ typedef struct cube {
 
 static double value_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
 {
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
-    for (int i = 0; i < CSG_LANES; i++) {
-        x[i] = (float)at.x;
-        y[i] = (float)at.y;
-        z[i] = (float)at.z;
-    }
-    w->remesh->probe.marching->kernel->values(tape, x, y, z, 1, f, s->scratch, w->scratch_floats);
-    return (double)f[0];
+    return csg_tape_value_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
+                             w->scratch_floats);
 }
 
 static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
 {
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES];
-    float g[3][CSG_LANES];
-    for (int i = 0; i < CSG_LANES; i++) {
-        x[i] = (float)at.x;
-        y[i] = (float)at.y;
-        z[i] = (float)at.z;
-    }
-    w->remesh->probe.marching->kernel->gradients(tape, x, y, z, 1, g[0], g[1], g[2], s->scratch,
-                                                 w->scratch_floats);
-    return csg_vec3_make((double)g[0][0], (double)g[1][0], (double)g[2][0]);
+    return csg_tape_gradient_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
+                                w->scratch_floats);
 }
 
 /* A place of the surface in the cube or a little around it, by Newton's steps from its middle. */
@@ -174,13 +158,14 @@ static verdict settle(const walk *w, worker *s, const cube *q)
     if (fabs(value) > w->lipschitz * ball + 4 * (double)w->remesh->probe.noise)
         return SETTLED;
     bool small = q->half <= w->least, sheet = is_one_sheet(w, s, q);
-    bool near = ball < 0.9 * w->error &&
-                csg_nearest_distance(&w->nearest, q->c, 0.9 * w->error - ball, NULL) < INFINITY;
+    bool near =
+        ball < 0.9 * w->error &&
+        csg_triangle_tree_nearest(&w->remesh->tree, q->c, 0.9 * w->error - ball, NULL) < INFINITY;
     if (!small && !sheet && !near)
         return DIVIDE;
     if (!find_surface(w, s, q, value, &p))
         return small || near ? SETTLED : DIVIDE;
-    double distance = csg_nearest_distance(&w->nearest, p, far, &triangle);
+    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, &triangle);
     if (distance == INFINITY)
         distance = far;
     if (sheet && distance <= w->error)
@@ -271,7 +256,7 @@ static bool begin(walk *w)
                                                  : w->most_cubes;
     w->workers = csg_memory_alloc(r->memory, w->worker_count * sizeof *w->workers);
     w->segments = csg_memory_alloc(r->memory, (w->segment_count + 1) * sizeof *w->segments);
-    bool done = w->workers && w->segments && csg_nearest_make(&w->nearest, r);
+    bool done = w->workers && w->segments;
     for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
         worker *s = &w->workers[i];
         *s = (worker){0};
@@ -296,7 +281,6 @@ static void end(walk *w)
     }
     csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
     csg_memory_release(memory, w->segments, (w->segment_count + 1) * sizeof *w->segments);
-    csg_nearest_release(&w->nearest);
     csg_octree_destroy(w->octree);
 }
 
@@ -360,12 +344,13 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
         csg_octree_create(work->context, work->field, &work->lattice, &options, &w.octree);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(work) : status;
-    bool done = begin(&w) &&
+    bool begun = begin(&w);
+    bool done = begun &&
                 csg_pool_run(work->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
                 look_again(&w);
     if (done)
         done = join(&w, out);
-    else if (w.nearest.nodes && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(work))
+    else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(work))
         status = csg_mesh_why_stopped(work);
     if (!done && status == CSGM_OK)
         status = csg_context_no_memory(work->context);

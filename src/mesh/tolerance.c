@@ -4,7 +4,6 @@
 #include "mesh/tolerance.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/clock.h"
 #include "mesh/decimate.h"
@@ -13,12 +12,6 @@
 
 /* ---- which resolution -------------------------------------------------------------------------
  */
-
-static int compare(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? -1 : x > y;
-}
 
 /* How far the triangles of equal cells stray from the surface, but for a fiftieth of them, and
  * for those that cut off a crease: these do not get better with the square of the cell. */
@@ -36,9 +29,7 @@ static bool find_deviation(csg_remesh *r, double *out)
         if (f < CUT * fmax(side, 0.5 * r->cell))
             values[n++] = (float)f;
     }
-    qsort(values, n, sizeof *values, compare);
-    *out =
-        n ? (double)values[n - 1 - n / 50] / (double)r->probe.marching->field->tape.lipschitz : 0;
+    *out = csg_remesh_common_value(values, n) / (double)r->probe.marching->field->tape.lipschitz;
     csg_memory_release(r->memory, values, count * sizeof *values);
     return true;
 }
