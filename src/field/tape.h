@@ -227,6 +227,14 @@ typedef struct csg_tape {
     bool turns; /* some TURNING operator stands in the whole tape */
 } csg_tape;
 
+static inline uint32_t csg_tape_leaf_count(const csg_tape *tape)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tape->count; i++)
+        count += csg_op_is_leaf(tape->nodes[i].op);
+    return count;
+}
+
 struct csgm_field {
     csgm_context *context;
     const csgm_scene *scene; /* borrowed */

@@ -121,14 +121,6 @@ static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTA
     return ball_radius(w->lattice, w->options.margin, half);
 }
 
-static uint32_t primitives_in(const csg_tape *tape)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < tape->count; i++)
-        count += csg_op_is_leaf(tape->nodes[i].op);
-    return count;
-}
-
 static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
 {
     if (!csg_memory_reserve(&w->context->memory, (void **)&self->cells, &self->cell_capacity,
@@ -185,7 +177,7 @@ static void count_samples(worker *self, const csg_tape *tape)
     stats->sampled_blocks++;
     if (!parts) {
         stats->point_evaluations += CSG_BLOCK_POINTS;
-        stats->primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * primitives_in(tape);
+        stats->primitive_evaluations += (uint64_t)CSG_BLOCK_POINTS * csg_tape_leaf_count(tape);
         stats->tape_nodes_sampled += tape->count;
         return;
     }
@@ -195,7 +187,7 @@ static void count_samples(worker *self, const csg_tape *tape)
             continue;
         csg_tape part = {.nodes = parts[octant].nodes, .count = parts[octant].node_count};
         stats->point_evaluations += PART_POINTS;
-        stats->primitive_evaluations += (uint64_t)PART_POINTS * primitives_in(&part);
+        stats->primitive_evaluations += (uint64_t)PART_POINTS * csg_tape_leaf_count(&part);
         nodes += part.count;
     }
     stats->tape_nodes_sampled += nodes / CSG_OCTANTS;
@@ -304,7 +296,7 @@ static bool split(walk *w, worker *self, const cell *parent)
         if (!csg_prune_octants(&self->pruner, &tape, c[0], c[1], c[2], radius))
             return false;
         self->stats.interval_evaluations += CSG_OCTANTS;
-        self->stats.primitive_evaluations += (uint64_t)CSG_OCTANTS * primitives_in(&tape);
+        self->stats.primitive_evaluations += (uint64_t)CSG_OCTANTS * csg_tape_leaf_count(&tape);
     }
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         uint32_t at[3];

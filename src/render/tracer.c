@@ -104,14 +104,6 @@ static csg_tape tape_of(const csg_tracer *tracer, const csg_tape_node *nodes, ui
     return tape;
 }
 
-static uint32_t primitives_in(const csg_tape *tape)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < tape->count; i++)
-        count += csg_op_is_leaf(tape->nodes[i].op);
-    return count;
-}
-
 /* Rays of the rows that the cell's rectangle touches: [*first, *end). */
 static void rays_of(const csg_rays *rays, const csg_pixel_rectangle *in, uint32_t *first,
                     uint32_t *end)
@@ -223,7 +215,7 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         m->count = kept;
     }
     room->counts.point_evaluations += points;
-    room->counts.primitive_evaluations += points * primitives_in(tape);
+    room->counts.primitive_evaluations += points * csg_tape_leaf_count(tape);
 }
 
 /* ---- what is there --------------------------------------------------------------------------- */
@@ -333,7 +325,7 @@ static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_t
         rays->open[m->ray[k]] = m->step[k] < 1 ? 1 - m->step[k] : 0;
     room->counts.point_evaluations += (uint64_t)m->count * OCCLUSION_SAMPLES;
     room->counts.primitive_evaluations +=
-        (uint64_t)m->count * OCCLUSION_SAMPLES * primitives_in(tape);
+        (uint64_t)m->count * OCCLUSION_SAMPLES * csg_tape_leaf_count(tape);
 }
 
 static void look_at_hits(const csg_tracer *tracer, const csg_ray_cell *cell, const csg_tape *tape,
@@ -351,7 +343,7 @@ static void look_at_hits(const csg_tracer *tracer, const csg_ray_cell *cell, con
     uint64_t looks = 1u + tracer->colors + (tracer->field->materials != NULL);
     room->counts.hits += m->count;
     room->counts.gradient_evaluations += m->count;
-    room->counts.primitive_evaluations += looks * m->count * primitives_in(tape);
+    room->counts.primitive_evaluations += looks * m->count * csg_tape_leaf_count(tape);
 }
 
 static void trace_cell(const csg_tracer *tracer, uint32_t index, csg_trace_room *room)

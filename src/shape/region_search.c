@@ -81,6 +81,18 @@ csg_nearest csg_segment_nearest(const csg_segment_tree *tree, double x, double y
     }
 }
 
+typedef struct slots {
+    uint32_t first, end;
+} slots;
+
+/* The segments of a leaf; the last leaf may have fewer than lanes. */
+static slots slots_of(const csg_segment_tree *tree, uint32_t child)
+{
+    uint32_t first = (child & ~CSG_SEGMENT_LEAF) * CSG_SEGMENT_LANES;
+    uint32_t end = first + CSG_SEGMENT_LANES;
+    return (slots){first, end < tree->segment_count ? end : (uint32_t)tree->segment_count};
+}
+
 /* ---- winding ------------------------------------------------------------------------------ */
 
 /* Crossings of the ray from the point to +x. The lower end belongs to a segment, the upper does
@@ -109,9 +121,8 @@ int csg_segment_winding(const csg_segment_tree *tree, double x, double y)
     while (count) {
         uint32_t child = waiting[--count];
         if (child & CSG_SEGMENT_LEAF) {
-            size_t slot = (size_t)(child & ~CSG_SEGMENT_LEAF) * CSG_SEGMENT_LANES;
-            size_t end = slot + CSG_SEGMENT_LANES;
-            for (; slot < end && slot < tree->segment_count; slot++)
+            slots in = slots_of(tree, child);
+            for (uint32_t slot = in.first; slot < in.end; slot++)
                 winding += crossing(&tree->ends[slot], x, y);
             continue;
         }
@@ -149,9 +160,8 @@ void csg_segment_around(const csg_segment_tree *tree, uint32_t of, double reach,
     while (count) {
         uint32_t child = waiting[--count];
         if (child & CSG_SEGMENT_LEAF) {
-            uint32_t slot = (child & ~CSG_SEGMENT_LEAF) * CSG_SEGMENT_LANES;
-            uint32_t end = slot + CSG_SEGMENT_LANES;
-            for (; slot < end && slot < tree->segment_count; slot++) {
+            slots in = slots_of(tree, child);
+            for (uint32_t slot = in.first; slot < in.end; slot++) {
                 if (!visit(user, slot))
                     return;
             }
@@ -180,9 +190,8 @@ bool csg_segment_within(const csg_segment_tree *tree, double x, double y, double
     while (count) {
         uint32_t child = waiting[--count];
         if (child & CSG_SEGMENT_LEAF) {
-            uint32_t slot = (child & ~CSG_SEGMENT_LEAF) * CSG_SEGMENT_LANES;
-            uint32_t end = slot + CSG_SEGMENT_LANES;
-            for (; slot < end && slot < tree->segment_count; slot++)
+            slots in = slots_of(tree, child);
+            for (uint32_t slot = in.first; slot < in.end; slot++)
                 if (segment_squared(tree, slot, x, y) <= limit && !visit(user, slot))
                     return false;
             continue;

@@ -13,27 +13,17 @@
 
 #include <cmocka.h>
 
+#include "lang/bench_fixture.h"
 #include "lang/customizer.h"
-#include "lang/support.h"
 #include "text/json.h"
 
-static bench b;
 static csgm_params *params;
 
-static int open_bench(void **state)
+static int close_all(void **state)
 {
-    (void)state;
-    bench_open(&b, NULL);
-    return 0;
-}
-
-static int close_bench(void **state)
-{
-    (void)state;
     csg_params_destroy(params);
     params = NULL;
-    bench_close(&b);
-    return 0;
+    return close_bench(state);
 }
 
 static csgm_status list(const char *text, const csgm_scene_options *options)
@@ -316,7 +306,7 @@ int main(void)
     if (file < 0)
         return 1;
     close(file);
-#define TEST(name) cmocka_unit_test_setup_teardown(name, open_bench, close_bench)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, open_bench, close_all)
     const struct CMUnitTest tests[] = {
         TEST(literals_above_the_first_brace),
         TEST(the_last_assignment_counts),

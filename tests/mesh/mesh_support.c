@@ -167,3 +167,37 @@ csg_node_id joined(mesh_case *c, csg_node_kind kind, csg_blend blend, csg_node_i
 {
     return csg_build_operator(&c->builder, kind, blend, (csg_node_id[]){a, b}, 2, NOWHERE);
 }
+
+csg_node_id make_any_primitive(mesh_case *c, int kind, csg_random *random)
+{
+    double a = csg_random_uniform(random, 0.3, 1), b = csg_random_uniform(random, 0.3, 1);
+    double e = csg_random_uniform(random, 0.3, 1);
+    double r = kind % 2 ? 0 : 0.2 * fmin(a, fmin(b, e));
+    csg_scene_builder *build = &c->builder;
+    switch (kind % 9) {
+    case 0:
+        return csg_build_primitive(build, CSG_NODE_SPHERE, (double[]){a}, NOWHERE);
+    case 1:
+    case 2:
+        return csg_build_primitive(build, CSG_NODE_BOX, (double[]){a, b, e, r}, NOWHERE);
+    case 3:
+    case 4:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, b, e, r}, NOWHERE);
+    case 5:
+        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, 0, e, 0}, NOWHERE);
+    case 6:
+        return csg_build_primitive(build, CSG_NODE_CAPSULE, (double[]){1.5, a * 0.5, b * 0.5},
+                                   NOWHERE);
+    case 7:
+        return csg_build_primitive(build, CSG_NODE_TORUS, (double[]){a + 0.3, 0.25, 180}, NOWHERE);
+    default:
+        return csg_build_primitive(build, CSG_NODE_ELLIPSOID, (double[]){a, b, e}, NOWHERE);
+    }
+}
+
+csg_node_id posed_anyhow(mesh_case *c, csg_node_id node, csg_random *random)
+{
+    node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
+    return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
+                 csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
+}

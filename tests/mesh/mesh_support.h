@@ -49,8 +49,12 @@ csg_node_id make_sphere(mesh_case *c, double r);
 csg_node_id make_box(mesh_case *c, double hx, double hy, double hz);
 csg_node_id make_cylinder(mesh_case *c, double r, double half_height);
 csg_node_id make_half_space(mesh_case *c, double nx, double ny, double nz, double d);
+/* One of nine sorts of primitives (kind modulo 9) in random sizes, odd kinds without rounding. */
+csg_node_id make_any_primitive(mesh_case *c, int kind, csg_random *random);
 csg_node_id moved(mesh_case *c, csg_node_id node, double x, double y, double z);
 csg_node_id turned(mesh_case *c, csg_node_id node, double angle_deg, csg_vec3 axis);
+/* Turned and moved by chance, at most 0.5 along each axis. */
+csg_node_id posed_anyhow(mesh_case *c, csg_node_id node, csg_random *random);
 csg_node_id joined(mesh_case *c, csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b);
 
 #define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})

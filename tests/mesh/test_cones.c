@@ -7,8 +7,8 @@
 #include "field/cone.h"
 #include "mesh/mesh_support.h"
 #include "scene/random_formula.h"
+#include "scene/star.h"
 #include "shape/polyhedron.h"
-#include "shape/region.h"
 
 static uint32_t scene_count = 24;
 
@@ -43,40 +43,6 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     return true;
 }
 
-static csg_node_id primitive(mesh_case *c, int kind, csg_random *random)
-{
-    double a = csg_random_uniform(random, 0.3, 1), b = csg_random_uniform(random, 0.3, 1);
-    double e = csg_random_uniform(random, 0.3, 1);
-    double r = kind % 2 ? 0 : 0.2 * fmin(a, fmin(b, e));
-    csg_scene_builder *build = &c->builder;
-    switch (kind % 9) {
-    case 0:
-        return csg_build_primitive(build, CSG_NODE_SPHERE, (double[]){a}, NOWHERE);
-    case 1:
-    case 2:
-        return csg_build_primitive(build, CSG_NODE_BOX, (double[]){a, b, e, r}, NOWHERE);
-    case 3:
-    case 4:
-        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, b, e, r}, NOWHERE);
-    case 5:
-        return csg_build_primitive(build, CSG_NODE_FRUSTUM, (double[]){a, 0, e, 0}, NOWHERE);
-    case 6:
-        return csg_build_primitive(build, CSG_NODE_CAPSULE, (double[]){1.5, a * 0.5, b * 0.5},
-                                   NOWHERE);
-    case 7:
-        return csg_build_primitive(build, CSG_NODE_TORUS, (double[]){a + 0.3, 0.25, 180}, NOWHERE);
-    default:
-        return csg_build_primitive(build, CSG_NODE_ELLIPSOID, (double[]){a, b, e}, NOWHERE);
-    }
-}
-
-static csg_node_id posed(mesh_case *c, csg_node_id node, csg_random *random)
-{
-    node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
-    return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
-                 csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
-}
-
 static csg_blend any_blend(csg_random *random)
 {
     const csg_blend blends[] = {SHARP,
@@ -95,9 +61,10 @@ static void cones_hold(void **state)
     for (int kind = 0; kind < 36; kind++) {
         mesh_case c;
         mesh_case_begin(&c, 1);
-        csg_node_id root = posed(&c, primitive(&c, kind, &random), &random);
+        csg_node_id root = posed_anyhow(&c, make_any_primitive(&c, kind, &random), &random);
         if (kind >= 9) {
-            csg_node_id other = posed(&c, primitive(&c, kind / 2, &random), &random);
+            csg_node_id other =
+                posed_anyhow(&c, make_any_primitive(&c, kind / 2, &random), &random);
             csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
                                          CSG_NODE_INTERSECTION};
             root = joined(&c, operators[kind % 3], any_blend(&random), root, other);
@@ -134,7 +101,7 @@ static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t 
             mesh_case_end(&c);
             continue;
         }
-        mesh_case_compile(&c, posed(&c, node, &random));
+        mesh_case_compile(&c, posed_anyhow(&c, node, &random));
         for (int k = 0; k < 250; k++)
             found += try_cone(c.scene, c.field, &random, test_point(&random, 1.4),
                               exp(csg_random_uniform(&random, -6, -0.5)));
@@ -144,25 +111,17 @@ static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t 
         fail_msg("%s: only %u cones", name, found);
 }
 
-/* A star with a hole in it, extruded. */
+static double any_radius(int corner, csg_random *random)
+{
+    return csg_random_uniform(random, 0.5, 1);
+}
+
+/* Extruded. */
 static csg_node_id outline(mesh_case *c, csg_random *random)
 {
-    csg_outline star;
-    csg_shape *shape = NULL;
     int count = 5 + (int)csg_random_uniform(random, 0, 40);
-    csg_outline_init(&star, &c->context.memory);
-    for (int i = 0; i < count; i++) {
-        double r = csg_random_uniform(random, 0.5, 1), angle = i * 6.283185307179586 / count;
-        assert_true(csg_outline_add(&star, (csg_vec2){r * cos(angle), r * sin(angle)}));
-    }
-    assert_true(csg_outline_close(&star));
-    static const csg_vec2 hole[4] = {{-0.2, -0.2}, {-0.2, 0.1}, {0.2, 0.1}, {0.2, -0.2}};
-    for (int i = 0; i < 4; i++)
-        assert_true(csg_outline_add(&star, hole[i]));
-    assert_true(csg_outline_close(&star));
-    assert_int_equal(csg_region_create(&c->context.memory, &star, &shape), CSGM_OK);
-    csg_outline_release(&star);
-    csg_node_id node = csg_build_shape(&c->builder, shape, NOWHERE);
+    csg_shape *star = test_star(&c->context.memory, count, any_radius, random);
+    csg_node_id node = csg_build_shape(&c->builder, star, NOWHERE);
     return csg_build_extrude(&c->builder, node, -0.5, csg_random_uniform(random, -0.3, 0.7),
                              NOWHERE);
 }
@@ -226,8 +185,8 @@ static csg_node_id combination(mesh_case *c, csg_random *random)
     csg_formula_step steps[TEST_MOST_STEPS];
     csg_node_id children[3];
     for (int i = 0; i < 3; i++)
-        children[i] =
-            posed(c, primitive(c, (int)csg_random_uniform(random, 0, 8.99), random), random);
+        children[i] = posed_anyhow(
+            c, make_any_primitive(c, (int)csg_random_uniform(random, 0, 8.99), random), random);
     uint32_t count = test_random_formula(&c->context.memory, random, 5, true, steps);
     return csg_build_combine(&c->builder, steps, count, 100, children, 3, NOWHERE);
 }

@@ -14,7 +14,7 @@
 #include "scene/reference.h"
 #include "scene/vm.h"
 #include "shape/polyhedron.h"
-#include "shape/region.h"
+#include "star.h"
 
 /* A finished formula. */
 typedef struct finished {
@@ -151,25 +151,16 @@ static void test_random_trees(void **state)
     test_random_shapes = false;
 }
 
-/* A star with a hole of which corners share heights. */
+static double in_turn(int corner, csg_random *random)
+{
+    return corner % 2 ? 0.4 : 1;
+}
+
 static void test_regions(void **state)
 {
     csg_random random = {4};
-    csg_outline star;
-    csg_shape *shape = NULL;
-    csg_outline_init(&star, &context.memory);
-    for (int i = 0; i < 10; i++) {
-        double r = i % 2 ? 0.4 : 1, angle = i * 0.62831853071795865;
-        assert_true(csg_outline_add(&star, (csg_vec2){r * cos(angle), r * sin(angle)}));
-    }
-    assert_true(csg_outline_close(&star));
-    static const csg_vec2 hole[4] = {{-0.2, -0.2}, {-0.2, 0.1}, {0.2, 0.1}, {0.2, -0.2}};
-    for (int i = 0; i < 4; i++)
-        assert_true(csg_outline_add(&star, hole[i]));
-    assert_true(csg_outline_close(&star));
-    assert_int_equal(csg_region_create(&context.memory, &star, &shape), CSGM_OK);
-    csg_outline_release(&star);
-    csg_node_id node = csg_build_shape(&builder, shape, NOWHERE);
+    csg_shape *star = test_star(&context.memory, 10, in_turn, &random);
+    csg_node_id node = csg_build_shape(&builder, star, NOWHERE);
     check_scene(test_seal(&builder, csg_build_extrude(&builder, node, -0.5, 0.7, NOWHERE)), &random,
                 "a star");
 }

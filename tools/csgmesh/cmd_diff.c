@@ -12,12 +12,6 @@
 
 /* ---- options --------------------------------------------------------------------------- */
 
-static bool is_folder(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
-
 static bool is_missing(const char *path)
 {
     struct stat status;
@@ -96,11 +90,11 @@ static int check_usage(cli_app *app)
     if (o->diff_heatmap && heatmap_format(o->diff_heatmap) == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, "use .glb, .gltf, .ply, .obj or .off",
                                "%s cannot hold a heat map", o->diff_heatmap);
-    if (o->diff_heatmap && is_folder(paths[0]))
+    if (o->diff_heatmap && diff_is_folder(paths[0]))
         return cli_usage_error(app, NULL, "--heatmap wants two files, not folders");
     if (diff_report_check(app) != CLI_DONE)
         return CLI_TROUBLE;
-    if (o->diff_field && !is_folder(paths[0]) && !diff_path_is_scene(paths[0]) &&
+    if (o->diff_field && !diff_is_folder(paths[0]) && !diff_path_is_scene(paths[0]) &&
         !diff_path_is_scene(paths[1]))
         return cli_usage_error(app, NULL, "--field wants a scene: both are meshes");
     return cli_work_check(app);
@@ -267,9 +261,9 @@ static int run(cli_app *app, const csgm_diff_options *options, diff_results *res
 static int find_pairs(cli_app *app, diff_results *results)
 {
     const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
-    bool folder_b = is_folder(b);
+    bool folder_b = diff_is_folder(b);
     /* one that is not there yet has no files: --update makes it */
-    bool folder_a = is_folder(a) || (app->options.diff_update && folder_b && is_missing(a));
+    bool folder_a = diff_is_folder(a) || (app->options.diff_update && folder_b && is_missing(a));
     if (folder_a && folder_b) {
         results->of_folders = true;
         return diff_pair_folders(app, a, b, results);

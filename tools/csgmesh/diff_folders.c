@@ -14,6 +14,12 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+bool diff_is_folder(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
 typedef struct names {
     char **items; /* relative to the folder, sorted */
     size_t count, room;

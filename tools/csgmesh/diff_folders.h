@@ -6,6 +6,8 @@
 
 #include "diff_result.h"
 
+bool diff_is_folder(const char *path);
+
 /* A result for each pair and each file that stands alone, in the order of names, outcome SAME,
  * ONLY_A or ONLY_B. CLI_DONE or CLI_TROUBLE (reported). */
 int diff_pair_folders(cli_app *app, const char *a, const char *b, diff_results *out);

@@ -5,15 +5,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "diff_folders.h"
 #include "picture_options.h"
-
-static bool is_folder(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
 
 /* The pair of the command line, not one of two folders. */
 static bool is_alone(const cli_app *app, const diff_result *result)
@@ -25,7 +19,7 @@ static int check_png(cli_app *app)
 {
     const char *path = app->options.diff_png;
     csgm_image_format format = csgm_image_format_from_path(path);
-    if (is_folder(app->options.operands.items[0]))
+    if (diff_is_folder(app->options.operands.items[0]))
         return cli_usage_error(app, "--html shows all pairs on one page",
                                "--png wants two files, not folders");
     if (format == CSGM_IMAGE_AUTO)
