@@ -57,11 +57,24 @@ static csg_node_id combined(csg_module_call *call, const csg_node_id *operands, 
     return csg_shape_done(call, csg_build_cut(&e->builder, node, box, where));
 }
 
+/* As many parameters as operands, and others only with values of their own. */
+static bool takes(const csg_module_call *call, uint32_t count)
+{
+    if (!csg_argument_is_function(call, FUNCTION, count))
+        return false;
+    const csg_arguments *parameters =
+        &call->values[FUNCTION].as.function->literal->as.call.arguments;
+    for (uint32_t i = count; i < parameters->count; i++)
+        if (!parameters->items[i].value)
+            return false;
+    return true;
+}
+
 csg_node_id csg_module_combine(csg_module_call *call)
 {
     csg_node_id operands[CSG_COMBINE_MOST];
     uint32_t count = take_operands(call, operands);
-    if (count && !csg_argument_is_function(call, FUNCTION, count))
+    if (count && !takes(call, count))
         csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
                            "it needs a function of %u number%s, as function (%s) %s", count,
                            count == 1 ? "" : "s",

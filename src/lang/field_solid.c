@@ -72,8 +72,8 @@ static csg_formula_step *make_steps(csg_module_call *call, uint32_t index,
         result = csg_formula_constant(builder, value.as.number);
     else if (!e->stop && !e->refused)
         csg_argument_error(call, index, CSG_DIAG_BAD_TYPE,
-                           "the function gives a %s, it must give a number",
-                           csg_value_kind_name(value));
+                           "the function gives %s%s, it must give a number",
+                           value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value));
     csg_value_release(&e->heap, value);
     if (result == CSG_FORMULA_NONE || e->stop)
         return NULL;

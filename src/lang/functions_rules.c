@@ -27,10 +27,12 @@ static csg_value complain(const csg_function_call *call, uint32_t i, csg_diag_co
 static double number_of(const csg_function_call *call, uint32_t i, const char *what)
 {
     char problem[120];
-    if (call->arguments[i].kind == CSG_VALUE_NUMBER && !isnan(call->arguments[i].as.number))
-        return call->arguments[i].as.number;
-    snprintf(problem, sizeof problem, "%s must be a number, not a %s", what,
-             csg_value_kind_name(call->arguments[i]));
+    csg_value value = call->arguments[i];
+    if (value.kind == CSG_VALUE_NUMBER && !isnan(value.as.number))
+        return value.as.number;
+    snprintf(problem, sizeof problem, "%s must be a number, not %s%s", what,
+             value.kind == CSG_VALUE_NUMBER ? "" : "a ",
+             value.kind == CSG_VALUE_NUMBER ? "nan" : csg_value_kind_name(value));
     complain(call, i, CSG_DIAG_BAD_BLEND, problem);
     return NAN;
 }
@@ -49,7 +51,7 @@ csg_value csg_function_step(const csg_function_call *call)
     while (strcmp(csg_step_name((csg_step_kind)kind), call->name) != 0)
         kind++;
     csg_step step = {(csg_step_kind)kind, standard[kind]};
-    if (call->count)
+    if (call->count && call->arguments[0].kind != CSG_VALUE_UNDEF)
         step.parameter = number_of(call, 0, "its parameter");
     if (isnan(step.parameter))
         return csg_value_undef();
@@ -111,6 +113,8 @@ static bool take_number(const csg_function_call *call, uint32_t i, uint32_t posi
     bool fields = csg_blend_takes_fields(rule->kind);
     uint32_t count = csg_rule_parameter_count(rule->kind);
     uint32_t slot = name ? find_parameter(rule, name) : position;
+    if (call->arguments[i].kind == CSG_VALUE_UNDEF)
+        return true; /* as if not given; a step that was no step is reported already */
     if (!fields && (name ? strcmp(name, "step") == 0 : slot == count))
         return take_step(call, i, rule);
     if (name && fields && strcmp(name, "range") == 0) {

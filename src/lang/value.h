@@ -9,6 +9,8 @@
 #ifndef CSG_LANG_VALUE_H
 #define CSG_LANG_VALUE_H
 
+#include <math.h>
+
 #include "lang/ast.h"
 #include "scene/scene.h"
 
@@ -123,9 +125,10 @@ static inline csg_value csg_value_undef(void)
 {
     return (csg_value){.kind = CSG_VALUE_UNDEF};
 }
+/* Machines differ in the sign of 0 / 0, which would show in messages: all NaNs are one. */
 static inline csg_value csg_value_number(double number)
 {
-    return (csg_value){.kind = CSG_VALUE_NUMBER, .as.number = number};
+    return (csg_value){.kind = CSG_VALUE_NUMBER, .as.number = number == number ? number : NAN};
 }
 static inline csg_value csg_value_boolean(bool boolean)
 {

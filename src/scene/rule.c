@@ -85,12 +85,12 @@ csg_rule csg_rule_standard(csg_blend_kind kind)
 /* ---- checks -----------------------------------------------------------------------------------
  */
 
-/* "above 0 and at most 1" */
-static void put_range(char *text, size_t size, double least, bool open, double most)
+/* "above 0 and at most 1"; a limit that only keeps numbers finite is named when it is passed. */
+static void put_range(char *text, size_t size, double least, bool open, double most, double value)
 {
     const double unlimited = 1e15;
     const char *from = open ? "above" : "at least";
-    if (most >= unlimited)
+    if (most >= unlimited && !(value > most))
         snprintf(text, size, "%s %g", from, least);
     else if (open)
         snprintf(text, size, "%s %g and at most %g", from, least, most);
@@ -102,7 +102,7 @@ static const char *out_of_range(char *text, size_t size, const char *name, doubl
                                 double least, bool open, double most)
 {
     char range[80];
-    put_range(range, sizeof range, least, open, most);
+    put_range(range, sizeof range, least, open, most, value);
     snprintf(text, size, "%s must be %s, not %g", name, range, value);
     return text;
 }
