@@ -113,6 +113,14 @@ static void compare_runs(const mesh_case *first, unsigned seed, uint32_t threads
     mesh_case_end(&c);
 }
 
+/* With sanitizers the threads that race and the ways that differ once each: the bytes of these very
+ * scenes from all of them are compared by the build without. */
+#if defined(__SANITIZE_ADDRESS__)
+static const bool every_way = false;
+#else
+static const bool every_way = true;
+#endif
+
 /* ---- all of it
  * -------------------------------------------------------------------------------------- */
 
@@ -130,9 +138,11 @@ static void test_random_scenes(void **state)
         with_colors += c.mesh->colors != NULL;
         csgm_isa best = c.context.isa;
         compare(&c, seed, 1, best, false);
-        compare(&c, seed, 2, best, true);
         compare(&c, seed, 5, best, true);
-        compare(&c, seed, 5, best, false);
+        if (every_way) {
+            compare(&c, seed, 2, best, true);
+            compare(&c, seed, 5, best, false);
+        }
         for (csgm_isa isa = CSGM_ISA_SCALAR; isa <= CSGM_ISA_NEON; isa++)
             if (csg_cpu_best_isa(isa) == isa && isa != best)
                 compare(&c, seed, 1, isa, seed % 2 == 0);
