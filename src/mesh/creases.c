@@ -62,6 +62,19 @@ static bool collect(csg_mesh_work *w, size_t items)
     return done;
 }
 
+/* Two triangles a feature more than without; in a cell with a joined face all loops are features,
+ * and others than before. */
+static uint32_t triangles_of(const csg_mesh_work *w, const csg_feature *f, uint32_t count)
+{
+    uint32_t triangles = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        triangles += f[k].joined ? f[k].side_count : 2u;
+        if (f[k].joined && (k == 0 || f[k].cell != f[k - 1].cell))
+            triangles -= w->tables.count[f[k].pattern];
+    }
+    return triangles;
+}
+
 static void count_vertices(csg_mesh_work *w, size_t first_block)
 {
     csg_feature_store *store = &w->features;
@@ -70,13 +83,14 @@ static void count_vertices(csg_mesh_work *w, size_t first_block)
         block->vertices = block->count;
         for (uint32_t k = 0; w->split && k < block->count; k++)
             block->vertices += store->features[block->first + k].sheet_count - 1u;
+        block->triangles = triangles_of(w, store->features + block->first, block->count);
     }
 }
 
 static void add_counts(csg_block *block, const csg_feature_block *features)
 {
     block->vertex_count += features->vertices;
-    block->triangle_count += 2 * (features->count - features->bare);
+    block->triangle_count += features->triangles;
 }
 
 static void look_up(csg_mesh_work *w)

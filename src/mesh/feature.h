@@ -52,7 +52,8 @@ typedef struct csg_feature {
     bool unsolved;    /* no apex was found by the polygon alone */
     uint8_t tries;    /* to find another place */
     uint8_t pattern;  /* of the cell */
-    uint8_t loop;     /* of the pattern */
+    uint8_t joined;   /* its faces whose inside corners are joined: csg_cell_loops_of */
+    uint8_t loop;     /* of the pattern, joined */
     uint16_t cell;    /* (8 z + y) 8 + x */
     uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
     uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
@@ -78,7 +79,8 @@ typedef struct csg_feature_moved {
 typedef struct csg_feature_block {
     uint32_t at[3];
     uint32_t first, count, bare; /* bare: of these, without an apex */
-    uint32_t vertices; /* apexes, or sheets of all apexes where normals are split */
+    uint32_t vertices;           /* apexes, or sheets of all apexes where normals are split */
+    uint32_t triangles;          /* more than without features */
 } csg_feature_block;
 
 typedef struct csg_feature_store {
@@ -113,7 +115,7 @@ typedef struct csg_segment {
 
 typedef struct csg_found_loop {
     uint16_t cell;
-    uint8_t pattern, loop, side_count;
+    uint8_t pattern, joined, loop, side_count;
     uint8_t edge[CSG_FEATURE_MOST_SIDES];
     uint16_t slot[CSG_FEATURE_MOST_SIDES];
     int16_t crease[CSG_FEATURE_MOST_SIDES]; /* segment, or -1 */
@@ -129,6 +131,8 @@ typedef struct csg_feature_room {
     uint32_t segment_count;
     csg_found_loop loops[CSG_FEATURE_SEGMENTS / 4];
     uint32_t loop_count;
+    uint8_t joined[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by cell: feature_pair.h */
+    bool any_joined;
     float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
     float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
     uint32_t which[CSG_FEATURE_SEGMENTS];

@@ -179,6 +179,11 @@ static uint32_t emit_cell(emitter *e, unsigned pattern, int cell, uint32_t i)
     const csg_cell_tables *tables = e->m->tables;
     const uint8_t *edge = tables->edge[pattern];
     uint32_t end = e->features->first + e->features->count;
+    if (i < end && e->store->features[i].cell == cell && e->store->features[i].joined) {
+        for (; i < end && e->store->features[i].cell == cell; i++) /* all of its loops */
+            emit_fan(e, &e->store->features[i]);
+        return i;
+    }
     for (int loop = 0; loop < tables->loop_count[pattern]; loop++) {
         int count = 3 * (tables->loop_sides[pattern][loop] - 2);
         bool fanned = false;

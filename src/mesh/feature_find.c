@@ -9,6 +9,7 @@
 
 #include "mesh/feature_apex.h"
 #include "mesh/feature_help.h"
+#include "mesh/feature_pair.h"
 #include "mesh/feature_possible.h"
 #include "mesh/feature_solve.h"
 
@@ -83,7 +84,7 @@ static float widest_of(const csg_feature_room *room, const csg_found_loop *loop)
 
 /* Loops with a segment to look at, or around what may be a tip. */
 static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, unsigned pattern,
-                     int index)
+                     const csg_cell_loops *loops, int index)
 {
     const csg_cell_tables *tables = m->tables;
     if (room->loop_count == CSG_FEATURE_SEGMENTS / 4)
@@ -92,10 +93,11 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
     *loop = (csg_found_loop){.cell = (uint16_t)cell,
                              .pattern = (uint8_t)pattern,
                              .loop = (uint8_t)index,
-                             .side_count = tables->loop_sides[pattern][index]};
+                             .joined = room->any_joined ? room->joined[cell] : 0,
+                             .side_count = loops->sides[index]};
     int i = cell & 7, j = cell >> 3 & 7, k = cell >> 6;
     for (int s = 0; s < loop->side_count; s++) {
-        uint8_t edge = tables->loop_edge[pattern][index][s];
+        uint8_t edge = loops->edge[index][s];
         const uint8_t *o = tables->offset[edge];
         loop->edge[s] = edge;
         loop->slot[s] =
@@ -103,9 +105,10 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
         loop->crease[s] = -1;
     }
     float widest = widest_of(room, loop);
-    if (1.0f - widest <= LEAST_DIFFERENCE)
+    if (1.0f - widest <= LEAST_DIFFERENCE && !loop->joined)
         return;
     bool any = loop->wide = widest < WIDE;
+    any |= loop->joined != 0;
     for (int s = 0; s < loop->side_count; s++)
         any |= add_segment(room, loop, s);
     room->loop_count += any;
@@ -120,8 +123,10 @@ static void collect_loops(const csg_marching *m, const csg_block *block, csg_fea
             for (unsigned rest = rows.mixed; rest; rest &= rest - 1) {
                 int i = __builtin_ctz(rest);
                 unsigned pattern = csg_cell_pattern(&rows, i);
-                for (int l = 0; l < m->tables->loop_count[pattern]; l++)
-                    add_loop(m, room, (k * E + j) * E + i, pattern, l);
+                int cell = (k * E + j) * E + i;
+                csg_cell_loops loops = csg_feature_loops(room, m->tables, (unsigned)cell, pattern);
+                for (int l = 0; l < loops.count; l++)
+                    add_loop(m, room, cell, pattern, &loops, l);
             }
         }
 }
@@ -231,11 +236,16 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
 {
     csg_feature_probe probe =
         csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
-    if (!csg_feature_is_possible(&probe))
+    bool possible = csg_feature_is_possible(&probe);
+    bool has_pairs = csg_feature_has_pairs(block);
+    if (!possible && !has_pairs)
         return true;
     room->evaluations +=
         csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
     take_gradients(room, &probe);
+    room->any_joined = has_pairs && csg_feature_pair(room, &probe);
+    if (!possible && !room->any_joined)
+        return true;
     collect_loops(m, block, room);
     if (!room->loop_count)
         return true;

@@ -35,6 +35,8 @@ static bool find_loop(const csg_feature_room *room, const csg_feature_probe *pro
     const csg_cell_tables *tables = probe->marching->tables;
     csg_cell_rows rows = csg_cell_rows_of(probe->block, at[1], at[2]);
     unsigned pattern = csg_cell_pattern(&rows, at[0]);
+    if (room->any_joined && room->joined[(at[2] * E + at[1]) * E + at[0]])
+        return false; /* all are features */
     for (int l = 0; l < tables->loop_count[pattern]; l++) {
         const uint8_t *edge = tables->loop_edge[pattern][l];
         int count = tables->loop_sides[pattern][l], s = 0;
@@ -61,15 +63,9 @@ static bool find_loop(const csg_feature_room *room, const csg_feature_probe *pro
     return false;
 }
 
-/* Between the apex that pokes in and the corners away from it, on the surface. */
-static bool place_apex(csg_feature *h, int side, csg_vec3 poking, csg_feature_probe *probe)
+bool csg_feature_place_within(csg_feature *h, csg_vec3 at, csg_feature_probe *probe)
 {
     enum { STEPS = 4 };
-    csg_vec3 far = {0, 0, 0};
-    int others = h->side_count - 2;
-    for (int i = 0; i < others; i++)
-        far = csg_vec3_add(far, point(h->corner[(side + 2 + i) % h->side_count]));
-    csg_vec3 at = csg_vec3_scale(csg_vec3_add(poking, csg_vec3_scale(far, 1.0 / others)), 0.5);
     double cell = probe->marching->lattice->cell_size;
     float f = NAN, g[3][1];
     for (int step = 0; step < STEPS; step++) {
@@ -87,6 +83,17 @@ static bool place_apex(csg_feature *h, int side, csg_vec3 poking, csg_feature_pr
     }
     return fabs((double)f) <= 1e-4 * cell + 4 * (double)probe->marching->noise &&
            csg_feature_cut(NULL, probe->marching->tables, h, h->triangle);
+}
+
+/* Between the apex that pokes in and the corners away from it. */
+static bool place_apex(csg_feature *h, int side, csg_vec3 poking, csg_feature_probe *probe)
+{
+    csg_vec3 far = {0, 0, 0};
+    int others = h->side_count - 2;
+    for (int i = 0; i < others; i++)
+        far = csg_vec3_add(far, point(h->corner[(side + 2 + i) % h->side_count]));
+    csg_vec3 at = csg_vec3_scale(csg_vec3_add(poking, csg_vec3_scale(far, 1.0 / others)), 0.5);
+    return csg_feature_place_within(h, at, probe);
 }
 
 static bool is_there(const csg_feature_room *room, size_t first, const csg_feature *h)

@@ -12,4 +12,8 @@
 bool csg_feature_help(csg_feature_room *room, size_t first, csg_feature_probe *probe,
                       csg_memory *memory);
 
+/* Puts the apex of a polygon of one sheet on the surface near a point; false where that does not
+ * succeed, or its fan folds over. */
+bool csg_feature_place_within(csg_feature *feature, csg_vec3 near, csg_feature_probe *probe);
+
 #endif

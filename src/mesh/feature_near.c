@@ -343,8 +343,8 @@ bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
  */
 
 /* The polygons of a cell that are features, a bit each; its pattern, 0 where there is none. */
-static unsigned loops_known(const csg_feature_store *store, const uint32_t cell[3],
-                            unsigned *pattern)
+static unsigned loops_known(const csg_feature_store *store, const csg_cell_tables *tables,
+                            const uint32_t cell[3], unsigned *pattern)
 {
     unsigned known = 0;
     const uint32_t at[3] = {cell[0] / E, cell[1] / E, cell[2] / E};
@@ -355,6 +355,8 @@ static unsigned loops_known(const csg_feature_store *store, const uint32_t cell[
         if (store->features[i].cell == here) {
             *pattern = store->features[i].pattern;
             known |= 1u << store->features[i].loop;
+            if (store->features[i].joined) /* all of them are */
+                known = (1u << tables->loop_count[*pattern]) - 1;
         }
     return known;
 }
@@ -372,7 +374,7 @@ static int smooth_triangles(const view *v, const int at[3],
             return 0;
         cell[axis] = (uint32_t)at[axis];
     }
-    unsigned known = loops_known(v->near->store, cell, &pattern);
+    unsigned known = loops_known(v->near->store, m->tables, cell, &pattern);
     if (pattern && known == (1u << m->tables->loop_count[pattern]) - 1)
         return 0;
     csg_feature_cell found;

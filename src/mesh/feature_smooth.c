@@ -16,11 +16,14 @@ static uint8_t corner_of(const csg_feature *f, uint8_t edge)
 
 /* The triangles of marching cubes, in corners of the polygon; how many. */
 static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tables,
-                                uint8_t corner[CSG_CELL_MOST_TRIANGLES][3])
+                                uint8_t corner[CSG_CELL_EDGES][3])
 {
     const uint8_t *edge = tables->edge[f->pattern];
+    uint8_t own[3 * CSG_CELL_EDGES];
     unsigned count = f->side_count - 2u;
-    for (int loop = 0; loop < f->loop; loop++)
+    if (f->joined && csg_cell_cut(f->edge, f->side_count, own))
+        edge = own;
+    for (int loop = 0; loop < f->loop && !f->joined; loop++)
         edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
     for (unsigned i = 0; i < 3 * count; i++)
         corner[i / 3][i % 3] = corner_of(f, edge[i]);
@@ -44,8 +47,7 @@ static double area_of(const csg_feature *f, const uint8_t corner[3])
     return square;
 }
 
-static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_MOST_TRIANGLES][3],
-                           unsigned count)
+static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_EDGES][3], unsigned count)
 {
     double most = -1;
     unsigned largest = 0;
@@ -74,9 +76,35 @@ static const float WEIGHTS[][3] = {{0.998f, 0.001f, 0.001f}, {0.001f, 0.998f, 0.
                                    {0.8f, 0.1f, 0.1f},       {0.333f, 0.333f, 0.334f}};
 enum { WEIGHT_COUNT = sizeof WEIGHTS / sizeof *WEIGHTS };
 
+/* Long loops, of cells with a joined face, have no cut that never meets itself. Seen from a point
+ * inside the cell what lies on its faces meets nowhere: a fan from there never does, and nothing
+ * else is in such a cell. Attempts go from the middle towards the corners. */
+static bool fan_within(csg_feature *f, unsigned attempt)
+{
+    if (attempt > f->side_count)
+        return false;
+    for (uint8_t s = 0; s < f->side_count; s++) {
+        uint8_t *t = f->triangle[s];
+        t[0] = CSG_FEATURE_APEX, t[1] = s, t[2] = (uint8_t)((s + 1) % f->side_count);
+    }
+    for (int i = 0; i < 3; i++) {
+        float sum = 0;
+        for (int s = 0; s < f->side_count; s++)
+            sum += f->corner[s][i];
+        f->at[i] = sum / (float)f->side_count;
+        if (attempt)
+            f->at[i] = 0.5f * (f->at[i] + f->corner[attempt - 1][i]);
+    }
+    level_normals(f, 0);
+    return true;
+}
+
 bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned attempt)
 {
-    uint8_t corner[CSG_CELL_MOST_TRIANGLES][3], (*to)[3] = f->triangle;
+    enum { MOST_CUT = 7 };
+    if (f->side_count > MOST_CUT)
+        return fan_within(f, attempt);
+    uint8_t corner[CSG_CELL_EDGES][3], (*to)[3] = f->triangle;
     unsigned count = plain_triangles(f, tables, corner);
     if (f->bare || attempt / count >= WEIGHT_COUNT)
         return false;

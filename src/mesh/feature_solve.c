@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "mesh/feature_apex.h"
+#include "mesh/feature_help.h"
+#include "mesh/feature_smooth.h"
 
 enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS };
 
@@ -98,6 +100,7 @@ static void record(const csg_feature_room *room, const csg_found_loop *loop, con
 {
     *out = (csg_feature){.cell = loop->cell,
                          .pattern = loop->pattern,
+                         .joined = loop->joined,
                          .loop = loop->loop,
                          .side_count = (uint8_t)p->sides,
                          .sheet_count = (uint8_t)p->sheets,
@@ -140,6 +143,26 @@ static void leave_unsolved(const csg_feature_room *room, const csg_found_loop *l
     out->folded = out->unsolved = true;
 }
 
+/* In a cell with a joined face every loop is a feature: without a crease, with an apex within its
+ * sheet, or at least a smooth one. */
+static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loop,
+                         csg_feature_probe *probe, csg_feature *out)
+{
+    polygon p = {.sides = loop->side_count, .sheets = 1};
+    const float *g = room->gradient[loop->slot[0]];
+    memcpy(p.edge, loop->edge, sizeof p.edge);
+    record(room, loop, &p, out);
+    csg_apex a = {.planes = {csg_plane_at(0, 0, 0, 0, g[0], g[1], g[2])}};
+    csg_apex_place(&p, &a, out);
+    for (int s = 0; s < p.sides; s++)
+        p.corner[s] = point(out->corner[s]);
+    csg_feature_find_middles(&p);
+    if (csg_feature_place_within(out, p.middle, probe))
+        return;
+    csg_feature_divide(out, probe->marching->tables, 0);
+    out->smooth = true;
+}
+
 bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
                        csg_memory *memory)
 {
@@ -149,16 +172,19 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
         return false;
     csg_feature *out = &room->features[room->count];
     bool good = mark_sheets(room, loop, &p);
-    if (!p.creased && (!good || !loop->wide))
+    if (!p.creased && (!good || !loop->wide) && !loop->joined)
         return true;
-    bool solved = good && solve_polygon(room, loop, &p, probe, out);
+    bool solved = good && (p.creased || loop->wide) && solve_polygon(room, loop, &p, probe, out);
     bool fades = is_fading(room, loop);
     bool creased = p.creased && !fades;
     if (good && creased && !solved)
         leave_unsolved(room, loop, &p, out);
-    if (solved || (good && creased))
+    bool is_feature = solved || (good && creased);
+    if (!is_feature && loop->joined)
+        leave_smooth(room, loop, probe, out);
+    if (is_feature || loop->joined)
         room->count++;
-    else if (p.creased)
+    if (!is_feature && p.creased)
         *(fades ? &room->fading : &room->smooth) += 1;
     return true;
 }

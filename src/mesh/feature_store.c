@@ -125,7 +125,7 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
         return;
     uint32_t other = feature_with(store, beyond, cell, csg_edge_beyond(tables, to, face / 2),
                                   csg_edge_beyond(tables, from, face / 2), &side);
-    if (other == CSG_FEATURE_NONE)
+    if (other == CSG_FEATURE_NONE || f->smooth || store->features[other].smooth)
         return;
     f->beyond[s] = other;
     f->beyond_side[s] = side;

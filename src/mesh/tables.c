@@ -17,7 +17,6 @@
  */
 #include "mesh/tables.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 enum { FACES = 6, FACE_CORNERS = 4, NO_EDGE = 0xFF };
@@ -57,8 +56,9 @@ static unsigned faces_of_edge(uint8_t edge)
     return faces;
 }
 
-/* next[e]: the edge that the segment starting on crossed edge e ends on. */
-static void link_segments(unsigned pattern, uint8_t next[CSG_CELL_EDGES])
+/* next[e]: the edge that the segment starting on crossed edge e ends on. On a face that is joined,
+ * where the next run begins. */
+static void link_segments(unsigned pattern, unsigned joined, uint8_t next[CSG_CELL_EDGES])
 {
     memset(next, NO_EDGE, CSG_CELL_EDGES);
     for (int face = 0; face < FACES; face++) {
@@ -71,7 +71,9 @@ static void link_segments(unsigned pattern, uint8_t next[CSG_CELL_EDGES])
             int last = i;
             while (pattern >> corners[(last + 1) % FACE_CORNERS] & 1)
                 last++;
-            uint8_t enter = edge_between(before, corners[i]);
+            int across = joined >> face & 1 ? 2 : 0; /* runs are of one corner each then */
+            uint8_t enter = edge_between(corners[(i + 3 + across) % FACE_CORNERS],
+                                         corners[(i + across) % FACE_CORNERS]);
             uint8_t leave =
                 edge_between(corners[last % FACE_CORNERS], corners[(last + 1) % FACE_CORNERS]);
             next[leave] = enter;
@@ -125,38 +127,56 @@ static void fan(const uint8_t *loop, const unsigned *faces, int length, uint8_t 
     }
 }
 
-static void keep_loop(csg_cell_tables *tables, unsigned pattern, const uint8_t *loop, int length)
+csg_cell_loops csg_cell_loops_of(unsigned pattern, unsigned joined)
 {
-    uint8_t index = tables->loop_count[pattern]++;
-    tables->loop_sides[pattern][index] = (uint8_t)length;
-    for (int i = 0; i < length; i++) /* as the triangles turn: against the links */
-        tables->loop_edge[pattern][index][i] = loop[i ? length - i : 0];
-}
-
-static void make_pattern(csg_cell_tables *tables, unsigned pattern)
-{
+    csg_cell_loops loops = {.count = 0};
     uint8_t next[CSG_CELL_EDGES];
-    link_segments(pattern, next);
-    int count = 0;
+    link_segments(pattern, joined, next);
     for (uint8_t start = 0; start < CSG_CELL_EDGES; start++) {
         uint8_t loop[CSG_CELL_EDGES];
-        unsigned faces[CSG_CELL_EDGES];
         int length = 0;
         for (uint8_t edge = start; next[edge] != NO_EDGE;) {
-            loop[length] = edge;
-            faces[length++] = faces_of_edge(edge);
+            loop[length++] = edge;
             uint8_t following = next[edge];
             next[edge] = NO_EDGE;
             edge = following;
         }
-        if (length == 7)
-            fan(loop, faces, length, tables->edge[pattern], &count);
-        else
-            cut(loop, faces, 0, length - 1, length, tables->edge[pattern], &count);
-        if (length)
-            keep_loop(tables, pattern, loop, length);
+        if (!length)
+            continue;
+        uint8_t index = loops.count++;
+        loops.sides[index] = (uint8_t)length;
+        for (int i = 0; i < length; i++) /* as the triangles turn: against the links */
+            loops.edge[index][i] = loop[i ? length - i : 0];
     }
-    tables->count[pattern] = (uint8_t)count;
+    return loops;
+}
+
+bool csg_cell_cut(const uint8_t *edge, int sides, uint8_t *triangles)
+{
+    uint8_t loop[CSG_CELL_EDGES];
+    unsigned faces[CSG_CELL_EDGES];
+    int count = 0;
+    for (int i = 0; i < sides; i++) {
+        loop[i] = edge[i ? sides - i : 0];
+        faces[i] = faces_of_edge(loop[i]);
+    }
+    if (sides != 7)
+        return cut(loop, faces, 0, sides - 1, sides, triangles, &count);
+    fan(loop, faces, sides, triangles, &count);
+    return true;
+}
+
+static void make_pattern(csg_cell_tables *tables, unsigned pattern)
+{
+    csg_cell_loops loops = csg_cell_loops_of(pattern, 0);
+    tables->loop_count[pattern] = loops.count;
+    memcpy(tables->loop_sides[pattern], loops.sides, sizeof loops.sides);
+    memcpy(tables->loop_edge[pattern], loops.edge, sizeof loops.edge);
+    for (int l = 0; l < loops.count; l++) {
+        uint8_t *to = tables->edge[pattern] + 3 * tables->count[pattern];
+        csg_cell_cut(loops.edge[l], loops.sides[l], to);
+        tables->count[pattern] = (uint8_t)(tables->count[pattern] + loops.sides[l] - 2);
+    }
 }
 
 void csg_cell_tables_make(csg_cell_tables *tables)

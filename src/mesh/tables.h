@@ -8,6 +8,7 @@
 #ifndef CSG_MESH_TABLES_H
 #define CSG_MESH_TABLES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -31,5 +32,20 @@ typedef struct csg_cell_tables {
 } csg_cell_tables;
 
 void csg_cell_tables_make(csg_cell_tables *tables);
+
+/* The polygons of a cell, as in the tables. */
+typedef struct csg_cell_loops {
+    uint8_t count;
+    uint8_t sides[CSG_CELL_MOST_LOOPS];
+    uint8_t edge[CSG_CELL_MOST_LOOPS][CSG_CELL_EDGES];
+} csg_cell_loops;
+
+/* Where a face's inside corners lie on a diagonal they may be joined through the face instead of
+ * being cut off each, if both cells do so. joined: those faces, bit 2 axis + side. */
+csg_cell_loops csg_cell_loops_of(unsigned pattern, unsigned joined);
+
+/* Cuts a loop into triangles, two fewer than it has sides, as the tables do: three edges each.
+ * False: there is no cut without a diagonal in a face. */
+bool csg_cell_cut(const uint8_t *edge, int sides, uint8_t *triangles);
 
 #endif
