@@ -223,6 +223,112 @@ static void test_crossings(void **state)
     }
 }
 
+/* ---- joined faces ------------------------------------------------------------------------------
+ */
+
+/* Faces whose inside corners lie on a diagonal. */
+static unsigned diagonal_faces(unsigned pattern)
+{
+    unsigned faces = 0;
+    for (unsigned axis = 0; axis < 3; axis++)
+        for (unsigned side = 0; side < 2; side++) {
+            unsigned low = side << axis, b = 1u << (axis + 1) % 3, c = 1u << (axis + 2) % 3;
+            unsigned first = pattern >> low & 1, second = pattern >> (low | b) & 1;
+            if (first != second && first == (pattern >> (low | b | c) & 1) &&
+                second == (pattern >> (low | c) & 1))
+                faces |= 1u << (2 * axis + side);
+        }
+    return faces;
+}
+
+/* The sides of a cell's loops. */
+static void draw_loops(const csg_cell_loops *loops, bool drawn[CSG_CELL_EDGES][CSG_CELL_EDGES])
+{
+    memset(drawn, 0, CSG_CELL_EDGES * CSG_CELL_EDGES * sizeof(bool));
+    for (int l = 0; l < loops->count; l++)
+        for (int i = 0; i < loops->sides[l]; i++) {
+            uint8_t from = loops->edge[l][i], to = loops->edge[l][(i + 1) % loops->sides[l]];
+            assert_true(shared_face(from, to) >= 0 && !drawn[from][to]);
+            drawn[from][to] = true;
+        }
+}
+
+/* Whether a side cuts a corner of the cell off: it leads from one of its edges to another. */
+static bool is_round(unsigned a, unsigned b, unsigned corner)
+{
+    unsigned p[2], q[2];
+    edge_corners(a, p);
+    edge_corners(b, q);
+    return (p[0] == corner || p[1] == corner) && (q[0] == corner || q[1] == corner);
+}
+
+/* Joining changes the sides in that face, which go round the outside corners then, and no others.
+ */
+static void test_joined_sides(void **state)
+{
+    for (unsigned pattern = 0; pattern < 256; pattern++)
+        for (unsigned joined = 1; joined < 64; joined++) {
+            bool plain[CSG_CELL_EDGES][CSG_CELL_EDGES], drawn[CSG_CELL_EDGES][CSG_CELL_EDGES];
+            if (joined & ~diagonal_faces(pattern))
+                continue;
+            csg_cell_loops before = csg_cell_loops_of(pattern, 0),
+                           loops = csg_cell_loops_of(pattern, joined);
+            draw_loops(&before, plain);
+            draw_loops(&loops, drawn);
+            for (unsigned a = 0; a < CSG_CELL_EDGES; a++)
+                for (unsigned b = 0; b < CSG_CELL_EDGES; b++) {
+                    int face = shared_face(a, b);
+                    if (face < 0 || !(joined >> face & 1)) {
+                        assert_int_equal(drawn[a][b], plain[a][b]);
+                        continue;
+                    }
+                    for (unsigned c = 0; c < 8 && drawn[a][b]; c++)
+                        assert_false(is_round(a, b, c) && pattern >> c & 1);
+                    assert_false(drawn[a][b] && plain[a][b]);
+                }
+        }
+}
+
+static bool loops_cross(const csg_cell_loops *loops, const place *places,
+                        uint8_t (*cut)[3 * CSG_CELL_EDGES])
+{
+    for (int l = 0; l < loops->count; l++)
+        for (int k = 0; k <= l; k++)
+            for (int i = 0; i < loops->sides[l] - 2; i++)
+                for (int j = 0; j < (k == l ? i : loops->sides[k] - 2); j++)
+                    if (cross(cut[l] + 3 * i, cut[k] + 3 * j, places))
+                        return true;
+    return false;
+}
+
+/* Unless corners alternate all, loops of up to seven sides have cuts that do not cross, and longer
+ * ones are alone in their cell (mesh/feature_smooth.c). */
+static void test_joined_crossings(void **state)
+{
+    enum { MOST_CUT = 7, ROUNDS = 100, FACES = 63 };
+    csg_random random = {5};
+    for (unsigned pattern = 0; pattern < 256; pattern++)
+        for (unsigned joined = 1; joined < 64; joined++) {
+            unsigned faces = diagonal_faces(pattern);
+            if (joined & ~faces || faces == FACES)
+                continue;
+            csg_cell_loops loops = csg_cell_loops_of(pattern, joined);
+            uint8_t cut[CSG_CELL_MOST_LOOPS][3 * CSG_CELL_EDGES];
+            bool is_long = false;
+            for (int l = 0; l < loops.count; l++)
+                is_long = is_long || loops.sides[l] > MOST_CUT;
+            assert_true(!is_long || loops.count == 1);
+            for (int l = 0; l < loops.count && !is_long; l++)
+                assert_true(csg_cell_cut(loops.edge[l], loops.sides[l], cut[l]));
+            for (int round = 0; round < ROUNDS && !is_long; round++) {
+                place places[CSG_CELL_EDGES];
+                draw_places(&random, places);
+                if (loops_cross(&loops, places, cut))
+                    fail_msg("pattern %u, joined %u: triangles cross", pattern, joined);
+            }
+        }
+}
+
 /* ---- each pattern beside each other ------------------------------------------------------------
  */
 
@@ -391,9 +497,10 @@ static void test_noise(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_patterns),    cmocka_unit_test(test_offsets),
-        cmocka_unit_test(test_orientation), cmocka_unit_test(test_neighbours),
-        cmocka_unit_test(test_crossings),   cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_patterns),     cmocka_unit_test(test_offsets),
+        cmocka_unit_test(test_orientation),  cmocka_unit_test(test_neighbours),
+        cmocka_unit_test(test_crossings),    cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_joined_sides), cmocka_unit_test(test_joined_crossings),
     };
     return cmocka_run_group_tests(tests, make_tables, NULL);
 }
