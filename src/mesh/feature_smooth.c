@@ -102,7 +102,7 @@ static bool fan_within(csg_feature *f, unsigned attempt)
 bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned attempt)
 {
     enum { MOST_CUT = 7 };
-    if (f->side_count > MOST_CUT)
+    if (f->side_count > MOST_CUT && !f->bare)
         return fan_within(f, attempt);
     uint8_t corner[CSG_CELL_EDGES][3], (*to)[3] = f->triangle;
     unsigned count = plain_triangles(f, tables, corner);

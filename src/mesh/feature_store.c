@@ -111,6 +111,12 @@ static uint32_t feature_with(const csg_feature_store *store, const csg_feature_b
     return CSG_FEATURE_NONE;
 }
 
+/* Smooth from the beginning, in a cell with a joined face. */
+static bool is_given_up(const csg_feature *f)
+{
+    return f->smooth && !f->bare;
+}
+
 static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
                       const csg_feature_block *block, csg_feature *f, int s)
 {
@@ -125,7 +131,7 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
         return;
     uint32_t other = feature_with(store, beyond, cell, csg_edge_beyond(tables, to, face / 2),
                                   csg_edge_beyond(tables, from, face / 2), &side);
-    if (other == CSG_FEATURE_NONE || f->smooth || store->features[other].smooth)
+    if (other == CSG_FEATURE_NONE || is_given_up(f) || is_given_up(&store->features[other]))
         return;
     f->beyond[s] = other;
     f->beyond_side[s] = side;
