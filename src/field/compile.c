@@ -345,7 +345,7 @@ static bool push_combination(compiler *c, const csg_node *node, const frame *f, 
 }
 
 /* Whether the node gives a field to an operator that takes one, or takes values for one. */
-static bool delivers_field(const compiler *c, const csg_node *node)
+static bool delivers_field(const csg_node *node)
 {
     bool takes = csg_node_is_operator(node->kind) && csg_blend_takes_fields(node->blend);
     return takes || node->kind == CSG_NODE_SOFT;
@@ -454,7 +454,7 @@ static bool end_task(compiler *c)
     const csg_tape_node *node = &c->nodes[c->node_count - 1];
     if (csg_op_delivers(node->op))
         take_color(c, node, t.begin);
-    bool is_field = delivers_field(c, &c->scene->nodes[t.node]) && !t.frame.is_raised;
+    bool is_field = delivers_field(&c->scene->nodes[t.node]) && !t.frame.is_raised;
     if (t.frame.form != CSG_FORM_VALUE && !is_field && !write_entry(c, &t.frame, t.begin))
         return false;
     if (index)

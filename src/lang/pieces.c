@@ -353,7 +353,7 @@ static bool keeps_z(const csg_affine *map)
            fabs(map->m[2][0]) <= slack && fabs(map->m[2][1]) <= slack;
 }
 
-static bool is_extrusion(const csgm_scene *scene, const csg_node *node)
+static bool is_extrusion(const csg_node *node)
 {
     return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
 }
@@ -379,7 +379,7 @@ bool csg_piece_prism(csg_eval *e, const csg_piece *piece, csg_pieces *figure, do
     double half, middle = 0;
     if (piece->grow > 0 || !keeps_z(&piece->map))
         return false;
-    if (is_extrusion(builder->scene, &node)) {
+    if (is_extrusion(&node)) {
         slab_of(builder->scene, &node, &half, &middle);
         flat = csg_scene_children(builder->scene, &node)[0];
     } else if (node.kind == CSG_NODE_BOX && p[3] == 0) {
@@ -489,7 +489,7 @@ csgm_status csg_piece_cloud(csg_module_call *call, const csg_piece *piece, doubl
     clouding c = {.piece = piece, .tolerance = tolerance, .ok = true};
     csgm_status status = CSGM_OK;
     csg_cloud_init(&c.local, out->memory);
-    if (is_extrusion(scene, &node))
+    if (is_extrusion(&node))
         status = extrusion_cloud(call, &c, &node);
     else if (node.kind == CSG_NODE_WARP && scene->warps[node.payload].kind == CSG_WARP_REVOLVE)
         status = revolve_cloud(call, &c, &node);
@@ -545,7 +545,7 @@ bool csg_piece_is_convex(const csg_eval *e, const csg_piece *piece)
                                                    : is_convex_region(csg_region_outline(shape));
     }
     default:
-        if (!is_extrusion(scene, node))
+        if (!is_extrusion(node))
             return false;
         inner.node = csg_scene_children(scene, node)[0];
         csg_pieces_init(&figure, e->heap.memory);

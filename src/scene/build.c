@@ -123,7 +123,7 @@ static bool makes_soft(const csg_node *node, bool all_soft)
                          node->kind == CSG_NODE_WARP));
 }
 
-/* Room was made by has_room_for_nodes, reserve_children and reserve_parameters. */
+/* Room was made by csg_build_reserve_node, _children and _parameters. */
 csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const csg_node_id *children,
                              size_t count)
 {

@@ -151,11 +151,6 @@ uint64_t csg_lazy_node_count(const csg_lazy *lazy)
     return count;
 }
 
-csg_box csg_lazy_box(const csg_lazy *lazy)
-{
-    return lazy->bounds[lazy->tree.root].box;
-}
-
 double csg_lazy_lipschitz(const csg_lazy *lazy)
 {
     return lazy->lipschitz;

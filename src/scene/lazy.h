@@ -63,8 +63,6 @@ void csg_lazy_destroy(csg_lazy *lazy); /* NULL is a no-op */
 
 /* Nodes that an evaluation of everything counts. */
 uint64_t csg_lazy_node_count(const csg_lazy *lazy);
-/* Contains the solid; all of space with CSG_LAZY_NO_BOUNDS. */
-csg_box csg_lazy_box(const csg_lazy *lazy);
 /* The field's Lipschitz constant, for steps of |value| / lambda. */
 double csg_lazy_lipschitz(const csg_lazy *lazy);
 

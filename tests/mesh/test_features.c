@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sharp features: solids with edges in random poses have apexes on their true edges and corners and
  * flat faces; what cannot have them is counted; copies at creases join again; hard places stay
- * closed. Crossing triangles are looked for by tests/mesh/intersections.py, with CGAL.
+ * closed. (Crossing triangles are test_crossings.c's, with CGAL.)
  *
  * Argument: how many poses of each solid (default 4).
  */
