@@ -2,6 +2,10 @@
  * Points and samples of one mesh, their nearest triangles on the other; see distances.h. Items of
  * work are runs of 1024, each starts its search where the last point's ended; sums are made in the
  * order of the samples.
+ *
+ * Near the middle of a ball a search sees all of it, for each of a small part's points. So what a
+ * costly search found serves the points close to it as well: they are at least so far as the
+ * distance between them allows.
  */
 #include "diff/distances.h"
 
@@ -9,7 +13,13 @@
 
 #include "base/pool.h"
 
-enum { RUN = 1024 };
+enum {
+    RUN = 1024,
+    COSTLY = 256 /* leaves of a search; most see some tens */
+};
+/* Of its distance: how close to a costly search's point others take what it found. Their distance
+ * is then up to twice this less than it is. */
+static const double CLOSE = 0x1p-12;
 
 static csg_diff_side *other_of(csg_diff_pair *pair, int from)
 {
@@ -19,6 +29,29 @@ static csg_diff_side *other_of(csg_diff_pair *pair, int from)
 static size_t run_count(uint64_t count)
 {
     return (size_t)((count + RUN - 1) / RUN);
+}
+
+/* ---- one point ------------------------------------------------------------------------------ */
+
+/* The last search of a run. */
+typedef struct last_search {
+    csg_vec3 at;
+    double distance;
+    uint32_t place;
+    bool is_costly;
+} last_search;
+
+/* At most the distance to the nearest triangle, whose place is *place. */
+static double distance_from(const csg_tree *tree, csg_vec3 p, last_search *last, uint32_t *place)
+{
+    double between = last->is_costly ? csg_vec3_norm(csg_vec3_sub(p, last->at)) : INFINITY;
+    *place = last->place;
+    if (between <= CLOSE * last->distance)
+        return last->distance - between;
+    csg_nearest nearest = csg_tree_nearest(tree, p, last->place);
+    *last = (last_search){p, sqrt(nearest.squared), nearest.place, nearest.leaves >= COSTLY};
+    *place = last->place;
+    return last->distance;
 }
 
 /* ---- points --------------------------------------------------------------------------------- */
@@ -35,12 +68,11 @@ static bool measure_run(void *user, uint32_t worker, size_t index)
     csg_diff_side *side = &w->pair->sides[w->from];
     const csg_tree *tree = &other_of(w->pair, w->from)->tree;
     size_t end = (index + 1) * RUN < side->point_count ? (index + 1) * RUN : side->point_count;
-    uint32_t hint = 0;
+    last_search last = {.place = 0};
     for (size_t i = index * RUN; i < end; i++) {
         uint32_t point = side->points[i];
-        csg_nearest nearest = csg_tree_nearest(tree, w->pair->points[point], hint);
-        side->distance[point] = sqrt(nearest.squared);
-        side->nearest[point] = hint = nearest.place;
+        side->distance[point] =
+            distance_from(tree, w->pair->points[point], &last, &side->nearest[point]);
     }
     return !csg_diff_is_cancelled(w->pair);
 }
@@ -190,15 +222,14 @@ static bool sample_run(void *user, uint32_t worker, size_t index)
     uint64_t begin = (uint64_t)index * RUN;
     uint64_t end = begin + RUN < w->sampler.count ? begin + RUN : w->sampler.count;
     size_t triangle = csg_diff_sampler_find(&w->sampler, begin);
-    uint32_t hint = 0;
+    last_search last = {.place = 0};
     for (uint64_t i = begin; i < end; i++) {
         csg_diff_sample s = csg_diff_sampler_get(&w->sampler, i, triangle);
-        csg_nearest nearest = csg_tree_nearest(tree, s.at, hint);
+        uint32_t place;
         triangle = s.triangle;
-        hint = nearest.place;
-        w->distances[i] = sqrt(nearest.squared);
+        w->distances[i] = distance_from(tree, s.at, &last, &place);
         if (w->colors)
-            w->colors[i] = (float)color_difference(w->pair, w->from, &s, nearest.place);
+            w->colors[i] = (float)color_difference(w->pair, w->from, &s, place);
     }
     return !csg_diff_is_cancelled(w->pair);
 }

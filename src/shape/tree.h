@@ -49,8 +49,9 @@ void csg_tree_release(csg_tree *tree);
 void csg_tree_turn(csg_tree *tree, size_t place);
 
 typedef struct csg_nearest {
-    double squared; /* distance */
-    uint32_t place; /* in tree->triangles */
+    double squared;  /* distance */
+    uint32_t place;  /* in tree->triangles */
+    uint32_t leaves; /* that were looked into: what the search cost */
 } csg_nearest;
 
 /* p within 2^60 of the frame. hint: a place to begin with, any will do, a near one is quicker. */

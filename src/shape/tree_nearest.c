@@ -143,13 +143,15 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
                             csg_nearest *best)
 {
     csg_four least = disc_distances(leaf, q);
+    best->leaves++;
     for (uint32_t i = 0; i < leaf->count; i++) {
         if (least[i] > q->limit)
             continue;
         uint32_t place = leaf->first + i;
         double squared = triangle_squared(&tree->triangles[place], p);
         if (squared < best->squared || (squared == best->squared && place < best->place)) {
-            *best = (csg_nearest){squared, place};
+            best->squared = squared;
+            best->place = place;
             q->limit = (float)squared * SLACK;
         }
     }
@@ -157,7 +159,7 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
 
 csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint)
 {
-    csg_nearest best = {triangle_squared(&tree->triangles[hint], p), hint};
+    csg_nearest best = {triangle_squared(&tree->triangles[hint], p), hint, 0};
     query q = {.p = {(float)p.x, (float)p.y, (float)p.z}};
     q.error = 0x1p-20f * (1 + fabsf(q.p[0]) + fabsf(q.p[1]) + fabsf(q.p[2]));
     q.limit = (float)best.squared * SLACK;

@@ -205,6 +205,36 @@ static void test_random_pairs(void **state)
     }
 }
 
+/* A part and the same in metres: from the middle of a ball all of it is equally far, so there
+ * distances are those of a point close by, less up to 2^-11. */
+static void test_another_unit(void **state)
+{
+    for (int round = 0; round < 4; round++) {
+        double unit = round % 2 ? 1e-3 : 1e-5;
+        csgm_vec3 low = {-unit, -unit, -unit}, high = {unit, unit, unit};
+        diff_shape a =
+            round < 2 ? diff_ball(72, 36, 1, ORIGIN) : diff_box((csgm_vec3){-1, -1, -1}, ONE, 20);
+        diff_shape b = round < 2 ? diff_ball(72, 36, unit, ORIGIN) : diff_box(low, high, 20);
+        csgm_diff_report r = compare(&a, &b);
+        for (int from = 0; from < 2; from++) {
+            const csgm_diff_distance *d = &r.distance[from];
+            const diff_shape *shape = from ? &b : &a;
+            double most = 0;
+            for (uint64_t v = 0; v < shape->vertex_count; v += from ? 1 : 61)
+                most = fmax(most, vertex_distance(shape->positions + 3 * v, from ? &a : &b));
+            assert_true(d->is_refined && most <= d->upper * (1 + 1e-6));
+            assert_true(d->upper <= 1.01 * d->lower);
+            assert_true(d->mean <= d->upper && d->mean <= d->percentile_95 * (1 + 1e-9));
+            double largest = from ? most : sqrt(round < 2 ? 1 : 3) * (1 - unit);
+            assert_true(d->lower <= largest + 1e-5);
+            if (from && round < 2) /* the sagitta of a's triangles is 4e-3 */
+                assert_true(d->mean > 1 - unit - 6e-3 && d->mean < 1);
+        }
+        diff_shape_release(&a);
+        diff_shape_release(&b);
+    }
+}
+
 static void test_same_for_any_threads(void **state)
 {
     csg_random random = {99};
@@ -459,6 +489,7 @@ int main(void)
         cmocka_unit_test(test_other_triangles),
         cmocka_unit_test(test_order_and_seams),
         cmocka_unit_test(test_random_pairs),
+        cmocka_unit_test(test_another_unit),
         cmocka_unit_test(test_same_for_any_threads),
         cmocka_unit_test(test_empty),
         cmocka_unit_test(test_open),
