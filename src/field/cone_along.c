@@ -105,11 +105,11 @@ static slope_range mix_smoothly(slope_range a, slope_range b, double k)
 
 static slope_range multiply(slope_range a, slope_range b, bool is_union)
 {
-    float turn = is_union ? 1.0f : 0.0f; /* of a union the complements are multiplied */
-    float al = is_union ? turn - a.largest_value : a.least_value;
-    float ah = is_union ? turn - a.least_value : a.largest_value;
-    float bl = is_union ? turn - b.largest_value : b.least_value;
-    float bh = is_union ? turn - b.least_value : b.largest_value;
+    /* of a union the complements are multiplied */
+    float al = is_union ? 1 - a.largest_value : a.least_value;
+    float ah = is_union ? 1 - a.least_value : a.largest_value;
+    float bl = is_union ? 1 - b.largest_value : b.least_value;
+    float bh = is_union ? 1 - b.least_value : b.largest_value;
     slope_range r =
         sum(scale_range(a, (double)bl, (double)bh), scale_range(b, (double)al, (double)ah));
     r.least_value = is_union ? 1 - ah * bh : al * bl;
@@ -130,7 +130,7 @@ static float homogeneous_at(const csg_tape_node *node, const float *own, float x
                     : arc_intersection(own[CSG_ARC_A], own[CSG_ARC_B], x, y).value;
 }
 
-static bool mix_homogeneous(const csg_tape_node *node, const float *own, slope_range *a,
+static void mix_homogeneous(const csg_tape_node *node, const float *own, slope_range *a,
                             slope_range b)
 {
     float low = homogeneous_at(node, own, a->least_value, b.least_value);
@@ -145,7 +145,6 @@ static bool mix_homogeneous(const csg_tape_node *node, const float *own, slope_r
     *a = mix(*a, b, from * (1 - 1e-5), to * (1 + 1e-5));
     a->least_value = low * (1 - 1e-5f);
     a->largest_value = high * (1 + 1e-5f);
-    return true;
 }
 
 static bool join(const csg_tape *tape, const csg_tape_node *node, slope_range *a, slope_range b)
@@ -183,10 +182,12 @@ static bool join(const csg_tape *tape, const csg_tape_node *node, slope_range *a
     case CSG_BLEND_ARC:
         if (own[CSG_ARC_KNOTS] > 0)
             return false; /* a profile bends it both ways */
-        return mix_homogeneous(node, own, a, b);
+        mix_homogeneous(node, own, a, b);
+        return true;
     case CSG_BLEND_RICCI:
     case CSG_BLEND_SCALE_SET:
-        return mix_homogeneous(node, own, a, b);
+        mix_homogeneous(node, own, a, b);
+        return true;
     default:
         if (node->join_blend >= CSG_BLEND_COUNT)
             return false;
@@ -229,6 +230,7 @@ static void slopes_of_falloff(uint8_t curve_kind, float low, float high, double 
     default:
         break;
     }
+    /* where P'' is 0 */
     const double tops[] = {[CSG_CURVE_SEXTIC] = 0.50348,
                            [CSG_CURVE_CUBIC] = 0.44721,
                            [CSG_CURVE_QUARTIC] = 0.57735,

@@ -24,13 +24,23 @@ void csg_marks_add(csg_eval *e, size_t first_part, csg_scene_mark kind, csg_span
     }
 }
 
+/* NONE of none. */
+static csg_node_id join(csg_eval *e, const csg_node_id *nodes, size_t count, csg_span where)
+{
+    const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+    if (count < 2)
+        return count ? nodes[0] : CSG_NODE_NONE;
+    return csg_check_node(
+        e, csg_build_operator(&e->builder, CSG_NODE_UNION, sharp, nodes, count, where), where);
+}
+
 /* Those of one kind and dimension from `first` on, united; NONE where there is none. */
 static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool flat, csg_span where)
 {
     size_t most = e->mark_count - first, bytes = most * sizeof(csg_node_id), count = 0;
     if (most == 0 || e->stop)
         return CSG_NODE_NONE;
-    csg_node_id node = CSG_NODE_NONE, *nodes = csg_memory_alloc(&e->context->memory, bytes);
+    csg_node_id *nodes = csg_memory_alloc(&e->context->memory, bytes);
     if (!nodes) {
         csg_eval_no_memory(e);
         return CSG_NODE_NONE;
@@ -38,14 +48,7 @@ static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool fl
     for (size_t i = first; i < e->mark_count; i++)
         if (e->marks[i].kind == kind && csg_shape_is_flat(e, e->marks[i].node) == flat)
             nodes[count++] = e->marks[i].node;
-    if (count == 1)
-        node = nodes[0];
-    else if (count)
-        node =
-            csg_check_node(e,
-                           csg_build_operator(&e->builder, CSG_NODE_UNION,
-                                              (csg_blend){CSG_BLEND_SHARP, 0}, nodes, count, where),
-                           where);
+    csg_node_id node = join(e, nodes, count, where);
     csg_memory_release(&e->context->memory, nodes, bytes);
     return node;
 }
@@ -78,13 +81,10 @@ void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[C
         if (both[1] != CSG_NODE_NONE) /* as thick as a scene that is flat */
             both[1] =
                 csg_check_node(e, csg_build_extrude(&e->builder, both[1], -0.5, 0.5, where), where);
-        out[kind] = both[0] != CSG_NODE_NONE ? both[0] : both[1];
-        if (both[0] != CSG_NODE_NONE && both[1] != CSG_NODE_NONE)
-            out[kind] =
-                csg_check_node(e,
-                               csg_build_operator(&e->builder, CSG_NODE_UNION,
-                                                  (csg_blend){CSG_BLEND_SHARP, 0}, both, 2, where),
-                               where);
+        if (both[0] == CSG_NODE_NONE || both[1] == CSG_NODE_NONE)
+            out[kind] = both[0] != CSG_NODE_NONE ? both[0] : both[1];
+        else
+            out[kind] = join(e, both, 2, where);
     }
     e->mark_count = first;
 }

@@ -302,19 +302,22 @@ static bool create_rooms(scene_job *job)
     return done;
 }
 
+static void release_room(csg_memory *memory, tile_room *room)
+{
+    if (!room)
+        return;
+    release_trace_room(memory, &room->trace);
+    if (room->over)
+        release_trace_room(memory, room->over);
+    csg_memory_release(memory, room->over, sizeof *room->over);
+    csg_memory_release(memory, room, sizeof *room);
+}
+
 static void release_rooms(scene_job *job)
 {
     csg_memory *memory = &job->picture->context->memory;
-    for (uint32_t i = 0; job->rooms && i < job->room_count; i++) {
-        tile_room *room = job->rooms[i];
-        if (room)
-            release_trace_room(memory, &room->trace);
-        if (room && room->over)
-            release_trace_room(memory, room->over);
-        if (room)
-            csg_memory_release(memory, room->over, sizeof *room->over);
-        csg_memory_release(memory, room, sizeof *room);
-    }
+    for (uint32_t i = 0; job->rooms && i < job->room_count; i++)
+        release_room(memory, job->rooms[i]);
     csg_memory_release(memory, job->rooms, job->room_count * sizeof *job->rooms);
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * See curve.h. The nearest ball (operators.md 1.1) is found by branch and bound: v is the least
  * |p - Q(t)| - r(t) known, and over a piece of the curve nothing is less than v where the Bernstein
- * coefficients of F = |p - Q|^2 - (r + v)^2 are not below 0, since F = (|p - Q| - r - v) (|p - Q| +
- * r
- * + v). The ends and a few Newton steps in each piece that is left make v small soon.
+ * coefficients of F = |p - Q|^2 - (r + v)^2 are not below 0, since with d = |p - Q| this is
+ * (d - r - v) (d + r + v). The ends and a few Newton steps in each piece that is left make v small
+ * soon.
  */
 #include "scene/curve.h"
 
