@@ -75,6 +75,9 @@ void diff_explain(const diff_result *result, char *text, size_t size)
         add(text, size, "the same bytes");
     else if (r->level == CSGM_DIFF_SAME_TRIANGLES)
         add(text, size, "the same triangles");
+    else if (isinf(r->tolerance))
+        snprintf(text, size, "volumes within the tolerance, at most %.4g apart",
+                 r->hausdorff_upper);
     else
         snprintf(text, size, "at most %.4g apart, tolerance %.4g", r->hausdorff_upper,
                  r->tolerance);
