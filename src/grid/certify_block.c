@@ -18,9 +18,9 @@
 #include "field/cone.h"
 
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
-static const double FAR = 2.5; /* cells */
-static const double NEAR = 3;  /* radii of the cube */
-static const double WIDE_NEAR = 8;
+static const double FAR = 2.5, HALF_FAR = 1.3;  /* cells */
+static const double NEAR = 1.45, WIDE_NEAR = 8; /* radii of the cube */
+static const double WIDER = 1.2;                /* than a smaller cone needs */
 static const double LOCAL = 1.3;
 
 enum {
@@ -98,7 +98,7 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
     csg_reach_end end;
     if (csg_reach_slide(&w->local, p, sign * value, sign, &w->trail))
         return true;
-    csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &end);
+    csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &w->trail, &end);
     if (state == CSG_REACH_SAMPLE)
         return true;
     *settled = false;
@@ -108,11 +108,11 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
 
 /* What holds of both ends of a cube: they reach the lattice, or the cell says why not. */
 static bool follow_ends(csg_certify_worker *w, const csg_certify_cube *cube, const double p[2][3],
-                        const double values[2], csg_cell_kind kind)
+                        const double values[2], const int signs[2], csg_cell_kind kind)
 {
     bool settled = true;
     for (int side = 0; side < 2; side++)
-        if (!follow(w, cube->cell, p[side], values[side], values[side] >= 0 ? 1 : -1, &settled))
+        if (signs[side] && !follow(w, cube->cell, p[side], values[side], signs[side], &settled))
             return false;
     if (settled)
         note(w, cube->cell, kind);
@@ -152,14 +152,28 @@ static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double 
     return cone_around(w, &tape, cube->c, radius, cone);
 }
 
-/* The far cone: settles all cells in the cube. */
+/* What is inside climbs up the cone: t cells up it holds a ball of radius m t / lambda, and half a
+ * cell's diagonal is enough. The cone's own bound on slopes counts for balls that lie in it. */
+static bool climbs_far(const csg_certify_worker *w, const csg_cone *cone, double far)
+{
+    const double diagonal = 0.5 * ROOT3 * 1.01, up = far - 0.05;
+    double slope = fmin(w->reach.lipschitz, cone->most * (1 + 0x1p-12));
+    return cone->least * up > diagonal * w->reach.lipschitz ||
+           cone->least * (up - diagonal) > diagonal * slope;
+}
+
+/* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough. */
 static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone)
 {
     double h = w->lattice->cell_size;
-    /* at distance t up the cone it holds a ball of radius m t / lambda; half a cell's diagonal is
-     * enough */
-    return cone_of(w, cube, ROOT3 * cube->half + FAR * h, cone) &&
-           cone->least * (FAR - 0.05) > 0.5 * ROOT3 * w->reach.lipschitz * 1.01;
+    const double fars[2] = {HALF_FAR, FAR};
+    for (int i = 0; i < 2; i++) {
+        if (!cone_of(w, cube, ROOT3 * cube->half + fars[i] * h, cone))
+            return false;
+        if (climbs_far(w, cone, fars[i]))
+            return true;
+    }
+    return false;
 }
 
 /* Whether the balls around two points, `apart` along a line through the cube's centre, leave a
@@ -177,57 +191,111 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
     return layer <= w->size;
 }
 
-/* Whether the points `near` radii up and down a cone that holds so far lie in balls that hold the
- * cube's shift. The cone's own bound on slopes counts there, if it is less than the constant. */
-static bool has_near_balls(const csg_certify_worker *w, const csg_certify_cube *cube,
-                           const csg_cone *cone, double near, double p[2][3], double values[2])
-{
-    double r = ROOT3 * cube->half, slope = fmin(w->reach.lipschitz, cone->most * (1 + 0x1p-12));
-    along(cube, cone->axis, near * r, p);
-    csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
-    return fmin(values[0], w->reach.band) > r * slope &&
-           fmin(-values[1], w->reach.band) > r * slope;
-}
-
-/* Where slopes differ, as where a steep part meets a flat one, 3 radii may be too few. */
-static bool find_near_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone,
-                           double p[2][3], double values[2])
-{
-    double r = ROOT3 * cube->half;
-    if (!cone_of(w, cube, (1 + NEAR) * r, cone))
-        return false;
-    if (has_near_balls(w, cube, cone, NEAR, p, values))
-        return true;
-    return (1 + WIDE_NEAR) * r < 0.5 * w->lattice->cell_size &&
-           cone_around(w, &w->local_tape, cube->c, (1 + WIDE_NEAR) * r, cone) &&
-           has_near_balls(w, cube, cone, WIDE_NEAR, p, values);
-}
-
-/* Near cone or balls; *settled tells whether the cube needs no division. */
-static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
-{
+/* Two places up and down a cone, `height` radii of the cube from its centre. */
+typedef struct meeting {
     csg_cone cone;
-    double r = ROOT3 * cube->half, p[2][3], values[2];
-    *settled = find_near_cone(w, cube, &cone, p, values);
-    if (*settled)
-        return follow_ends(w, cube, (const double(*)[3])p, values,
-                           cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
-    double axis[3];
+    double height, p[2][3], values[2];
+} meeting;
+
+/* The ways to the meeting places lie within so many radii. */
+static double meeting_radius(double height)
+{
+    return sqrt(1 + height * height);
+}
+
+/* Twice how far the field is from 0, at least, on ways from the cube to the meeting places, and by
+ * how much the way across the axis may need more: from q, a along and b across the axis from the
+ * centre, f climbs by m (t - a) up to the height t. From there to the middle it changes by
+ * sqrt(slope^2 - m^2) b at most, and is f(p) in the end: no 0 is between where
+ * m t + |f(p)| > slope r >= m a + sqrt(slope^2 - m^2) b. If f(p) has the other sign, no q has this
+ * one. */
+static bool is_met(csg_certify_worker *w, const csg_certify_cube *cube, meeting *m, double *needed)
+{
+    double r = ROOT3 * cube->half, least = INFINITY;
+    double slope = fmin(w->reach.lipschitz, m->cone.most * (1 + 0x1p-12));
+    along(cube, m->cone.axis, m->height * r, m->p);
+    csg_reach_values(&w->local, (const double(*)[3])m->p, 2, m->values);
+    for (int side = 0; side < 2; side++)
+        least = fmin(least, fmin(fabs(m->values[side]), w->local.band));
+    double climbed = m->cone.least * m->height * r + least * (1 - 0x1p-12);
+    *needed = m->height * slope * r / climbed;
+    return climbed > slope * r * (1 + 0x1p-12);
+}
+
+/* In a wider ball than the cube's own tape is for. */
+static bool has_wide_cone(csg_certify_worker *w, const csg_certify_cube *cube, double radius,
+                          csg_cone *cone)
+{
+    csg_tape tape;
+    float c[3][CSG_OCTANTS], reach = (float)(radius * ROOT3 * (1 + 0x1p-20));
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        for (int axis = 0; axis < 3; axis++)
+            c[axis][o] = (float)cube->c[axis];
+    csg_arena_mark mark = csg_arena_get_mark(&w->tapes);
+    bool done = csg_prune_octants(&w->wide, &w->local_tape, c[0], c[1], c[2], reach);
+    bool is_here = done && csg_prune_state(&w->wide, 0) == CSG_CELL_SURFACE;
+    if (is_here)
+        done = csg_prune_shorten(&w->wide, 0, (float)w->local.band, &w->tapes, &tape);
+    w->out_of_memory |= !done;
+    bool found = done && is_here && cone_around(w, &tape, cube->c, radius, cone);
+    csg_arena_release_to(&w->tapes, mark);
+    return found;
+}
+
+/* Where slopes differ, as where a steep part meets a flat one, NEAR radii may be too few. */
+static bool find_meeting(csg_certify_worker *w, const csg_certify_cube *cube, meeting *m)
+{
+    double r = ROOT3 * cube->half, needed;
+    m->height = NEAR;
+    if (!cone_of(w, cube, meeting_radius(NEAR) * r, &m->cone))
+        return false;
+    if (is_met(w, cube, m, &needed))
+        return true;
+    m->height = WIDER * needed;
+    double radius = meeting_radius(m->height) * r;
+    return m->height <= WIDE_NEAR && radius < LOCAL * w->lattice->cell_size &&
+           has_wide_cone(w, cube, radius, &m->cone) && is_met(w, cube, m, &needed);
+}
+
+/* One way from each meeting place to the lattice answers for the cube; where a place has the other
+ * sign there is nothing to answer for. */
+static bool follow_meeting(csg_certify_worker *w, const csg_certify_cube *cube, const meeting *m)
+{
+    const int signs[2] = {m->values[0] > 0 ? 1 : 0, m->values[1] < 0 ? -1 : 0};
+    return follow_ends(w, cube, (const double(*)[3])m->p, m->values, signs,
+                       m->cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+}
+
+/* Two balls up and down the gradient. */
+static bool settle_by_balls(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
+{
+    double axis[3], p[2][3], values[2], h = w->lattice->cell_size, r = ROOT3 * cube->half;
+    if (!(r * r <= h * w->size)) /* balls that touch leave a layer of r^2 / t at least */
+        return true;
     csg_reach_gradient(&w->local, cube->c, axis);
     double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     if (!(norm > 1e-3))
         return true;
     for (int k = 0; k < 3; k++)
         axis[k] /= norm;
-    for (double t = 1; t > 0.1; t /= 2.5) {
-        along(cube, axis, t * w->lattice->cell_size, p);
+    for (double t = 1; t > 0.1 && r * r <= t * h * w->size; t /= 2.5) {
+        along(cube, axis, t * h, p);
         csg_reach_values(&w->local, (const double(*)[3])p, 2, values);
-        if (!balls_cover(w, r, 2 * t * w->lattice->cell_size, values))
+        if (!balls_cover(w, r, 2 * t * h, values))
             continue;
+        const int signs[2] = {values[0] >= 0 ? 1 : -1, values[1] >= 0 ? 1 : -1};
         *settled = w->reached_size = true;
-        return follow_ends(w, cube, (const double(*)[3])p, values, CSG_CELL_REFINED);
+        return follow_ends(w, cube, (const double(*)[3])p, values, signs, CSG_CELL_REFINED);
     }
     return true;
+}
+
+/* Near cone or balls; *settled tells whether the cube needs no division. */
+static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
+{
+    meeting m;
+    *settled = find_meeting(w, cube, &m);
+    return *settled ? follow_meeting(w, cube, &m) : settle_by_balls(w, cube, settled);
 }
 
 /* A cube that is not divided any more. */
@@ -302,7 +370,8 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
     csg_reach_values(&w->reach, (const double(*)[3])c, 1, &value);
     for (int sign = -1; sign <= 1; sign += 2) {
         if (slides_from(w, c[0], value, sign) ||
-            csg_reach_from(&w->reach, c[0], sign * value, sign, &end) != CSG_REACH_NONE ||
+            csg_reach_from(&w->reach, c[0], sign * value, sign, &w->trail, &end) !=
+                CSG_REACH_NONE ||
             !(end.thickness > 0))
             continue;
         bool here = true;
@@ -406,7 +475,7 @@ static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
     csg_tape tape = tape_of(w, cube), shorter;
     double h = w->lattice->cell_size, half = cube->half / 2, r = ROOT3 * half;
     bool is_small = 2 * half < 1.5 * h;
-    double reach = half + (is_small ? fmax(NEAR * r, 2 * half > 0.75 * h ? FAR * h : 0) : FAR * h);
+    double reach = is_small && !(2 * half > 0.75 * h) ? meeting_radius(NEAR) * r : half + FAR * h;
     float c[3][CSG_OCTANTS];
     for (int o = 0; o < CSG_OCTANTS; o++)
         for (int axis = 0; axis < 3; axis++)

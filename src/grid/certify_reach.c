@@ -310,30 +310,68 @@ static double distance_to_other(const csg_reach *reach, const double p[3], doubl
     return 0;
 }
 
-csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], double value, int sign,
-                               csg_reach_end *end)
+/* The points of a way from the first of its own sign on, each ball touching the one before. */
+typedef struct climbed_way {
+    double at[CSG_REACH_TRAIL][3], value[CSG_REACH_TRAIL];
+    uint32_t count;
+} climbed_way;
+
+static void add_to_way(climbed_way *way, const double p[3], double value)
+{
+    if (value < 0 || way->count == CSG_REACH_TRAIL)
+        return;
+    memcpy(way->at[way->count], p, sizeof way->at[0]);
+    way->value[way->count++] = value;
+}
+
+static bool is_there(const csg_reach *reach, const double p[3], double value, int sign,
+                     const csg_reach_trail *trail)
+{
+    return holds_sample(reach, p, value, sign) ||
+           (trail && value >= 0 && touches_trail(reach, p, value, sign, trail));
+}
+
+/* From p up to the part's thickest place. True: a place on the way is at the lattice, or touches
+ * the trail. */
+static bool climb_up(const csg_reach *reach, double p[3], double *value, int sign,
+                     const csg_reach_trail *trail, climbed_way *way)
 {
     enum { MOST_CLIMBS = 64, SHORTEST = 256 };
-    double p[3], h = reach->lattice->cell_size;
-    double least = reach->noise / reach->lipschitz;
-    double step = value < 0 ? h / 2 : fmin(h / 2, fmax(2 * value / reach->lipschitz, least));
-    memcpy(p, from, sizeof p);
-    bool found = holds_sample(reach, p, value, sign);
+    double h = reach->lattice->cell_size, least = reach->noise / reach->lipschitz;
+    double step = *value < 0 ? h / 2 : fmin(h / 2, fmax(2 * *value / reach->lipschitz, least));
+    add_to_way(way, p, *value);
+    bool found = is_there(reach, p, *value, sign, trail);
     for (int i = 0; i < MOST_CLIMBS && !found && step >= least; i++) {
-        if (step < h / SHORTEST && (value < 0 || step < value / (4 * reach->lipschitz)))
-            break; /* the part's thickest place */
-        if (!climb(reach, p, &value, sign, step) &&
-            (16 * step > h || !climb_ridge(reach, p, &value, sign, step))) {
+        if (step < h / SHORTEST && (*value < 0 || step < *value / (4 * reach->lipschitz)))
+            break;
+        if (!climb(reach, p, value, sign, step) &&
+            (16 * step > h || !climb_ridge(reach, p, value, sign, step))) {
             step /= 2;
         } else {
-            found = holds_sample(reach, p, value, sign);
+            add_to_way(way, p, *value);
+            found = is_there(reach, p, *value, sign, trail);
             step = fmin(h / 2, 2 * step);
         }
     }
+    return found;
+}
+
+csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], double value, int sign,
+                               csg_reach_trail *trail, csg_reach_end *end)
+{
+    double p[3];
+    climbed_way way = {.count = 0};
+    memcpy(p, from, sizeof p);
+    bool found = climb_up(reach, p, &value, sign, trail, &way);
     memcpy(end->at, p, sizeof p);
     end->thickness = 2 * value / reach->lipschitz;
-    if (found || fabs(value) <= reach->noise || (value >= 0 && has_way(reach, p, sign)))
+    if (!found && fabs(value) <= reach->noise)
         return CSG_REACH_SAMPLE;
+    if (found || (value >= 0 && has_way(reach, p, sign))) {
+        for (uint32_t i = 0; trail && i < way.count; i++)
+            add_to_trail(trail, way.at[i], way.value[i], sign);
+        return CSG_REACH_SAMPLE;
+    }
     double other = distance_to_other(reach, p, value / reach->lipschitz, sign);
     end->thickness = fmax(end->thickness, value >= 0 ? 2 / 1.2 * other : 0);
     return other > 0 ? CSG_REACH_NONE : CSG_REACH_UNPROVEN;

@@ -39,7 +39,7 @@ void csg_reach_values(const csg_reach *reach, const double (*points)[3], size_t 
 void csg_reach_gradient(const csg_reach *reach, const double p[3], double gradient[3]);
 
 /* Points from which a way leads to the lattice, with their balls; the latest ones. */
-enum { CSG_REACH_TRAIL = 32 };
+enum { CSG_REACH_TRAIL = 64 };
 typedef struct csg_reach_trail {
     double at[CSG_REACH_TRAIL][3], value[CSG_REACH_TRAIL]; /* |f| */
     int8_t sign[CSG_REACH_TRAIL];
@@ -51,8 +51,9 @@ typedef struct csg_reach_trail {
 bool csg_reach_slide(const csg_reach *reach, const double p[3], double value, int sign,
                      csg_reach_trail *trail);
 
-/* sign * value >= 0 is the field at p. */
+/* sign * value >= 0 is the field at p. Touching the trail is enough, and what led to the lattice
+ * joins it; NULL: none is kept. */
 csg_reach_state csg_reach_from(const csg_reach *reach, const double p[3], double value, int sign,
-                               csg_reach_end *end);
+                               csg_reach_trail *trail, csg_reach_end *end);
 
 #endif

@@ -52,7 +52,7 @@ static bool follow(scan_room *room, const csgm_field *field, const csg_lattice *
         return false;
     csg_reach_values(&room->reach, (const double(*)[3])middle, 1, &value);
     int sign = doubt->is_inside ? -1 : 1;
-    csg_reach_state state = csg_reach_from(&room->reach, middle[0], sign * value, sign, &end);
+    csg_reach_state state = csg_reach_from(&room->reach, middle[0], sign * value, sign, NULL, &end);
     csg_arena_release_to(&room->tapes, mark);
     *missed = state == CSG_REACH_NONE && end.thickness > 0;
     if (*missed && end.thickness > place->thickness) {
