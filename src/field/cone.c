@@ -165,6 +165,7 @@ bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], dou
     out->is_crease |= leaves.balls.has_edges;
     if (!is_simple)
         return find_along(room, tape, c, radius, &leaves, out);
-    out->most = 1.73205081 * largest_of(&leaves.balls); /* shares of a corner's faces add up to it */
+    out->most =
+        1.73205081 * largest_of(&leaves.balls); /* shares of a corner's faces add up to it */
     return csg_cone_find_axis(&leaves.balls, out);
 }

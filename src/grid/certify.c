@@ -203,7 +203,7 @@ static void fill_report(const walk *w, csg_certify_report *report)
  * about five to a cube of the frontier. */
 static uint32_t block_budget(size_t cubes)
 {
-    const size_t all = 60000000, least = 2000, most = 900000;
+    const size_t all = 30000000, least = 2000, most = 900000;
     size_t share = all / (5 * (cubes + 1));
     return (uint32_t)(share < least ? least : share > most ? most : share);
 }

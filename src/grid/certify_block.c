@@ -2,11 +2,12 @@
  * Dividing a block until every cube of it is settled. In the order tried:
  *
  *   empty      the field's interval over the cube does not hold 0
- *   far cone   one direction climbs at m all over the cube and FAR cells around: what hides in the
- *              cube is then the tip of a cone that holds a lattice point. Cubes down to a cell.
- *   near cone  the same around a cube within a cell, and the points 3 radii up and down that
- *              direction lie in balls that hold the cube's whole shift: one way from each of them
- *              to the lattice (certify_reach.h) answers for all that hides in the cube
+ *   far cone   one direction climbs at m all over the cube and HALF_FAR or FAR cells around: what
+ *              hides in the cube is then the tip of a cone that holds a lattice point. Cubes down
+ *              to a cell.
+ *   near cone  the same around a cube within a cell, so that all that hides in it is connected with
+ *              one of two places up and down that direction: one way from each of them to the
+ *              lattice (certify_reach.h) answers for the cube
  *   balls      two balls, of inside and of outside, leave of the cube a layer thinner than `size`
  *   the rest is divided, down to `size`; there the sign of the centre is followed to the lattice.
  */
