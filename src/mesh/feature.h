@@ -30,6 +30,9 @@ enum {
 
 #define CSG_FEATURE_NONE UINT32_MAX
 
+/* 1 - cos of 12 degrees: a crease that ends and is as blunt as this there has faded. */
+#define CSG_FEATURE_FADING 0.0219f
+
 typedef struct csg_feature {
     float at[3];                              /* the apex, field frame */
     float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
@@ -57,6 +60,7 @@ typedef struct csg_feature {
     uint16_t cell;    /* (8 z + y) 8 + x */
     uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
     uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
+    bool ends;        /* a crease ends here: the polygon beyond a creased side has none */
     bool smooth;      /* given up: csg_feature_demote */
     bool bare;        /* without an apex, and smooth: the triangles of marching cubes, two less */
     bool made_way;    /* a vertex has moved for it */

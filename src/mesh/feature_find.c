@@ -21,6 +21,8 @@ static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.37e-3f;
 /* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
  * 10 % and below that of 12 degrees. */
 static const float ALIKE = 1.1f, LITTLE = 0.02f;
+/* 1 - cos of 30 degrees. */
+static const float DETOUR = 0.134f;
 /* Corners of a polygon around a tip look apart by 25 degrees and more. */
 static const float WIDE = 0.9f;
 
@@ -204,10 +206,23 @@ static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_p
     }
 }
 
+/* Where the surface is curved a segment runs a little inside the solid, and near a crease that it
+ * does not cross, past the place where the other sheet becomes the nearer one: the gradient jumps
+ * away and back again, by far more than it differs between the ends. */
+static void drop_detours(csg_feature_room *room)
+{
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        csg_segment *s = &room->segments[i];
+        float ends = 1.0f - cosine(room->gradient[s->from], room->gradient[s->to]);
+        s->active = s->active && !(ends < LITTLE && s->jump > DETOUR);
+    }
+}
+
 static void find_creases(csg_feature_room *room, csg_feature_probe *probe)
 {
     for (int step = 0; step < HALVINGS; step++)
         halve(room, probe);
+    drop_detours(room);
     for (uint32_t next = 0, count; next < room->segment_count;) {
         next = beside_jumps(room, next, &count);
         locate_creases(room, count, probe);

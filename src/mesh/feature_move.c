@@ -116,12 +116,13 @@ static bool begin_try(const csg_feature *f, const surroundings *q, const csg_fea
         return n == 0 && q->count > 0;
     }
     int source = n / PLACES;
-    if (q->count == 0 || source > q->count)
+    bool ends = q->count == 1 && source > 1; /* the crease does: back from the apex as it was */
+    if (q->count == 0 || source > q->count + ends)
         return false;
-    if (source > 0)
+    if (source > 0 && !ends)
         borrow_planes(f, q, source - 1, a);
     csg_vec3 low = point(q->beside[0]->at);
-    csg_vec3 high = q->count > 1 ? point(q->beside[1]->at) : p->middle;
+    csg_vec3 high = q->count > 1 ? point(q->beside[1]->at) : ends ? point(f->at) : p->middle;
     a->at = csg_vec3_add(low, csg_vec3_scale(csg_vec3_sub(high, low), place[n % PLACES]));
     return true;
 }

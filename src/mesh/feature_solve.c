@@ -20,18 +20,15 @@ static csg_vec3 point(const float at[3])
     return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
 }
 
-/* 1 - cos of 12 degrees: a crease that is as blunt as this where it enters a polygon and not found
- * where it should leave it fades there: it ends, and smoothly. */
-static const float FADING = 0.0219f;
-
-/* Whether all creases that cross a polygon are blunt. */
+/* Whether all creases that cross a polygon are blunt: one that enters it and is not found where it
+ * should leave it fades there: it ends, and smoothly. */
 static bool is_fading(const csg_feature_room *room, const csg_found_loop *loop)
 {
     float sharpest = 0;
     for (int s = 0; s < loop->side_count; s++)
         if (loop->crease[s] >= 0)
             sharpest = fmaxf(sharpest, room->segments[loop->crease[s]].jump);
-    return sharpest < FADING;
+    return sharpest < CSG_FEATURE_FADING;
 }
 
 /* Sheets are runs of corners between creases; without creases, round a tip, each corner. */

@@ -146,6 +146,7 @@ void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, s
         csg_feature *f = &store->features[i];
         for (int s = 0; s < f->side_count; s++)
             link_side(store, tables, block, f, s);
+        f->ends = f->creased & ~f->flipped;
     }
 }
 
@@ -163,6 +164,15 @@ void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, s
  * ------------------------------------------------------------------------------------
  */
 
+/* Whether what ends in a polygon is a blunt crease. */
+static bool is_fading(const csg_feature *f)
+{
+    float cosine = 0;
+    for (int i = 0; i < 3; i++)
+        cosine += f->normal[0][i] * f->normal[1][i];
+    return f->ends && f->sheet_count == 2 && 1 - cosine < CSG_FEATURE_FADING;
+}
+
 void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
     csg_feature_shift_back(store, tables, f);
@@ -178,7 +188,8 @@ void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
             csg_feature_cut(store->features, tables, g, g->triangle);
         f->beyond[s] = CSG_FEATURE_NONE;
     }
-    store->smooth += (f->creased & ~f->bent) != 0;
+    if (f->creased & ~f->bent)
+        *(is_fading(f) ? &store->fading : &store->smooth) += 1;
     f->creased = f->flipped = f->takes_next = f->bent = 0;
     f->smooth = true;
     csg_feature_divide(f, tables, 0);
