@@ -222,17 +222,13 @@ static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, 
                        csg_feature_probe *probe)
 {
     csg_feature *f = &store->features[index];
-    bool changed = false;
     if (csg_feature_replace(store, tables, index, probe))
         return true;
     for (int s = 0; s < f->side_count; s++) {
         csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
         if (g && !g->unsolved && !csg_feature_holds(store, tables, g))
-            changed =
-                csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe) || changed;
+            csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe);
     }
-    if (!changed)
-        return false;
     f->tries = 0;
     return csg_feature_replace(store, tables, index, probe);
 }

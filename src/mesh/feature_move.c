@@ -131,10 +131,11 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
                          csg_feature_probe *probe)
 {
     enum { MOST_TRIES = 1, MOST_NODES = 512 /* the whole tape is asked */ };
-    csg_feature *f = &store->features[index], before = *f;
+    csg_feature *f = &store->features[index], before = *f, best;
     if (!f->creased || f->tries == MOST_TRIES || probe->marching->field->tape.count > MOST_NODES)
         return false;
     before.tries++;
+    best = before;
     double cell = probe->marching->lattice->cell_size;
     surroundings q = look_beside(store, f);
     for (int n = 0;; n++) {
@@ -154,8 +155,12 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
         csg_feature_agree(store, f);
         if (found && csg_feature_holds(store, tables, f))
             return true;
+        if (found && before.unsolved && n == 0) {
+            best = *f;
+            best.unsolved = true;
+        }
     }
-    *f = before;
+    *f = best;
     csg_feature_agree(store, f);
     return false;
 }

@@ -31,7 +31,7 @@ static bool find_ring(csg_feature_store *store, csg_feature *f, int corner, ring
     for (int k = 0; k < AROUND; k++) {
         r->f[k] = f;
         r->corner[k] = corner;
-        if ((f->smooth && !f->bare) || f->unsolved || f->moved >> corner & 1 ||
+        if ((f->smooth && !f->bare) || f->moved >> corner & 1 ||
             f->beyond[corner] == CSG_FEATURE_NONE)
             return false;
         int side = f->beyond_side[corner];
@@ -102,9 +102,9 @@ static bool ring_holds(csg_feature_store *store, const csg_cell_tables *tables, 
             return false;
     for (int k = 0; k < AROUND; k++) {
         csg_feature *f = r->f[k];
-        bool good = f->bare      ? true
-                    : f->creased ? csg_feature_holds(store, tables, f)
-                                 : csg_feature_cut(store->features, tables, f, triangles);
+        bool good = f->bare || f->unsolved ? true
+                    : f->creased           ? csg_feature_holds(store, tables, f)
+                                           : csg_feature_cut(store->features, tables, f, triangles);
         if (!good)
             return false;
     }
