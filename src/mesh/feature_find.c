@@ -206,6 +206,45 @@ static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_p
     }
 }
 
+/* Both segments at a vertex jump there: it lies on a crease, where its gradient may be neither
+ * sheet's. That of a point a little inside takes its place. */
+static bool correct_vertex(csg_feature_room *room, const csg_segment *before,
+                           const csg_segment *behind, csg_feature_probe *probe)
+{
+    static const float LITTLE_INSIDE = 2e-3f; /* cells */
+    uint16_t slot = behind->from;
+    float *g = room->gradient[slot], inside[3][1];
+    const float *at = room->slots.at[slot];
+    if (!before->active || !behind->active || before->high < 1 || behind->low > 0)
+        return false;
+    float square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+    float reach = LITTLE_INSIDE * (float)probe->marching->lattice->cell_size / sqrtf(square);
+    float x = at[0] + reach * g[0], y = at[1] + reach * g[1], z = at[2] + reach * g[2];
+    csg_feature_probe_points(probe, &x, &y, &z, 1, NULL,
+                             (float *const[3]){inside[0], inside[1], inside[2]});
+    const float fresh[3] = {inside[0][0], inside[1][0], inside[2][0]};
+    if (!(1.0f - cosine(fresh, g) > LEAST_JUMP))
+        return false;
+    memcpy(g, fresh, sizeof fresh);
+    return true;
+}
+
+/* Segments of a loop stand one after another. */
+static bool correct_vertices(csg_feature_room *room, csg_feature_probe *probe)
+{
+    bool any = false;
+    for (uint32_t i = 0, first = 0; i < room->segment_count; i++) {
+        const csg_segment *s = &room->segments[i];
+        first = room->segments[first].loop == s->loop ? first : i;
+        const csg_segment *start = &room->segments[first];
+        if (i > first && s[-1].side + 1 == s->side)
+            any = correct_vertex(room, &s[-1], s, probe) || any;
+        if (i > first && start->side == 0 && s->side + 1 == room->loops[s->loop].side_count)
+            any = correct_vertex(room, s, start, probe) || any;
+    }
+    return any;
+}
+
 /* Where the surface is curved a segment runs a little inside the solid, and near a crease that it
  * does not cross, past the place where the other sheet becomes the nearer one: the gradient jumps
  * away and back again, by far more than it differs between the ends. */
@@ -218,10 +257,20 @@ static void drop_detours(csg_feature_room *room)
     }
 }
 
-static void find_creases(csg_feature_room *room, csg_feature_probe *probe)
+static void find_jumps(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                       csg_feature_probe *probe)
 {
+    collect_loops(m, block, room);
     for (int step = 0; step < HALVINGS; step++)
         halve(room, probe);
+}
+
+static void find_creases(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                         csg_feature_probe *probe)
+{
+    find_jumps(m, block, room, probe);
+    if (correct_vertices(room, probe))
+        find_jumps(m, block, room, probe);
     drop_detours(room);
     for (uint32_t next = 0, count; next < room->segment_count;) {
         next = beside_jumps(room, next, &count);
@@ -261,10 +310,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
     room->any_joined = has_pairs && csg_feature_pair(room, &probe);
     if (!possible && !room->any_joined)
         return true;
-    collect_loops(m, block, room);
-    if (!room->loop_count)
-        return true;
-    find_creases(room, &probe);
+    find_creases(m, block, room, &probe);
     size_t before = room->count;
     for (uint32_t i = 0; i < room->loop_count; i++)
         if (!csg_feature_solve(room, &room->loops[i], &probe, memory))
