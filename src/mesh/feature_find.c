@@ -206,8 +206,20 @@ static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_p
     }
 }
 
-/* Both segments at a vertex jump there: it lies on a crease, where its gradient may be neither
- * sheet's. That of a point a little inside takes its place. */
+/* Whether g turns from a towards b, and not past it. */
+static bool is_between(const float *g, const float *a, const float *b)
+{
+    float u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        u[i] = a[j] * g[k] - a[k] * g[j];
+        v[i] = g[j] * b[k] - g[k] * b[j];
+    }
+    return cosine(u, v) > 0.999f && cosine(a, b) < cosine(a, g);
+}
+
+/* Both segments at a vertex jump there: it lies on a crease, and its gradient may be neither
+ * sheet's but between them. That of a point a little inside takes its place. */
 static bool correct_vertex(csg_feature_room *room, const csg_segment *before,
                            const csg_segment *behind, csg_feature_probe *probe)
 {
@@ -215,7 +227,8 @@ static bool correct_vertex(csg_feature_room *room, const csg_segment *before,
     uint16_t slot = behind->from;
     float *g = room->gradient[slot], inside[3][1];
     const float *at = room->slots.at[slot];
-    if (!before->active || !behind->active || before->high < 1 || behind->low > 0)
+    if (!before->active || !behind->active || before->high < 1 || behind->low > 0 ||
+        !is_between(g, before->low_gradient, behind->high_gradient))
         return false;
     float square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
     float reach = LITTLE_INSIDE * (float)probe->marching->lattice->cell_size / sqrtf(square);
