@@ -12,7 +12,8 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
                       csg_feature *out);
 
 /* Looks for a place where the feature holds (feature_join.h), from what its neighbours know. False:
- * there is none, nothing has changed, but that an apex that was not found goes to a likely place. */
+ * there is none, nothing has changed, but that an apex that was not found goes to a likely place.
+ */
 bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
                          csg_feature_probe *probe);
 

@@ -66,6 +66,20 @@ static csg_node_id drilled(mesh_case *c)
                               parts, 2, csg_span_nowhere());
 }
 
+/* Six teeth on a wheel: at their feet corners that bend inwards, and often lie outside the cell
+ * whose polygon they belong to, beyond one or two of its faces. */
+static csg_node_id cog(mesh_case *c)
+{
+    csg_node_id parts[4] = {primitive(c, CSG_NODE_FRUSTUM, (const double[]){0.8, 0.8, 0.3, 0})};
+    for (int i = 0; i < 3; i++) {
+        csg_affine turn = csg_affine_rotate(60 * i, csg_vec3_make(0, 0, 1));
+        csg_node_id bar = primitive(c, CSG_NODE_BOX, (const double[]){1.1, 0.13, 0.3, 0});
+        parts[i + 1] = csg_build_transform(&c->builder, &turn, bar, csg_span_nowhere());
+    }
+    return csg_build_operator(&c->builder, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, parts,
+                              4, csg_span_nowhere());
+}
+
 typedef struct solid {
     const char *name;
     csg_node_id (*make)(mesh_case *c);
@@ -80,6 +94,7 @@ static const solid solids[] = {
     {"cylinder", cylinder, 0, 0, 0},
     {"cone", cone, 0, 0, 0.05},
     {"drilled plate", drilled, 0, 0, 0},
+    {"cog", cog, 0, 0, 0},
 };
 
 static csg_node_id posed(mesh_case *c, csg_node_id child, csg_random *random)
