@@ -31,7 +31,17 @@ static bool is_fading(const csg_feature_room *room, const csg_found_loop *loop)
     return sharpest < CSG_FEATURE_FADING;
 }
 
-/* Sheets are runs of corners between creases; without creases, round a tip, each corner. */
+static bool has_crease(const csg_found_loop *loop)
+{
+    bool any = false;
+    for (int s = 0; s < loop->side_count; s++)
+        any = any || loop->crease[s] >= 0;
+    return any;
+}
+
+/* Sheets are runs of corners between creases; without creases, round a tip, each corner. A single
+ * crease is none: a side may pass so near to the axis below the tip of a cone that it looks like
+ * one; the polygon may be that round the tip. */
 static bool mark_sheets(const csg_feature_room *room, const csg_found_loop *loop, polygon *p)
 {
     *p = (polygon){.sides = loop->side_count};
@@ -41,8 +51,10 @@ static bool mark_sheets(const csg_feature_room *room, const csg_found_loop *loop
             p->creased |= (uint16_t)(1u << s);
             first = creases++ ? first : s + 1;
         }
-    if (creases == 1)
-        return false;
+    if (creases == 1) {
+        p->creased = 0;
+        creases = first = 0;
+    }
     int sheet = 0;
     for (int k = 0; k < p->sides; k++) {
         int s = (first + k) % p->sides;
@@ -126,8 +138,7 @@ static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *lo
         csg_apex_meet(p, &apexes[k], cell);
     }
     csg_apexes_improve(p, apexes, cell, probe);
-    /* nobody beyond could help a tip */
-    return csg_apexes_choose(p, apexes, probe, out) && (p->creased || !out->folded);
+    return csg_apexes_choose(p, apexes, probe, out);
 }
 
 /* An apex to be found from those of its neighbours. */
@@ -169,9 +180,12 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
         return false;
     csg_feature *out = &room->features[room->count];
     bool good = mark_sheets(room, loop, &p);
-    if (!p.creased && (!good || !loop->wide) && !loop->joined)
+    bool crossed = has_crease(loop);
+    if (!crossed && (!good || !loop->wide) && !loop->joined)
         return true;
-    bool solved = good && (p.creased || loop->wide) && solve_polygon(room, loop, &p, probe, out);
+    bool found = good && (crossed || loop->wide) && solve_polygon(room, loop, &p, probe, out);
+    /* nobody beyond could help a tip: it is for the polygon there to reach */
+    bool solved = found && (p.creased || !out->folded);
     bool fades = is_fading(room, loop);
     bool creased = p.creased && !fades;
     if (good && creased && !solved)
@@ -181,7 +195,7 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
         leave_smooth(room, loop, probe, out);
     if (is_feature || loop->joined)
         room->count++;
-    if (!is_feature && p.creased)
+    if (!is_feature && crossed && !found)
         *(fades ? &room->fading : &room->smooth) += 1;
     return true;
 }

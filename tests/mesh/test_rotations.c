@@ -61,7 +61,7 @@ static const struct {
  * them falls to nothing, and a crease ends where it is below 3 degrees. */
 static const struct {
     unsigned smooth, pieces, unsaid, fading;
-} most_of[] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {2, 0, 0, 0},
+} most_of[] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0},
                {0, 0, 0, 8}, {0, 0, 0, 0}, {9, 0, 0, 0}};
 
 /* Of fewer rotations: three times their share, since they differ. */
