@@ -320,6 +320,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
     room->evaluations +=
         csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
     take_gradients(room, &probe);
+    /* before gradients are corrected: that depends on the block, this must not */
     room->any_joined = has_pairs && csg_feature_pair(room, &probe);
     if (!possible && !room->any_joined)
         return true;
