@@ -368,10 +368,10 @@ static bool look_for_missed(csg_certify_worker *w, uint32_t cell)
             (double)csg_lattice_coordinate(
                 w->lattice, axis, w->block.at[axis] * CSG_BLOCK_EDGE + (cell >> (3 * axis) & 7)) +
             h / 2;
-    csg_reach_values(&w->reach, (const double(*)[3])c, 1, &value);
+    csg_reach_values(&w->local, (const double(*)[3])c, 1, &value);
     for (int sign = -1; sign <= 1; sign += 2) {
         if (slides_from(w, c[0], value, sign) ||
-            csg_reach_from(&w->reach, c[0], sign * value, sign, &w->trail, &end) !=
+            csg_reach_from(&w->local, c[0], sign * value, sign, &w->trail, &end) !=
                 CSG_REACH_NONE ||
             !(end.thickness > 0))
             continue;
