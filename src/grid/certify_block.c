@@ -27,7 +27,7 @@ static const double LOCAL = 1.3;
 enum {
     MOST_VISITS = 20000,  /* of cubes, a cell */
     SLOW_VISIT = 8,       /* what one counts where shapes, formulas or warps are evaluated */
-    SLOW_BLOCK_VISIT = 45 /* the same, of the block's, for each of them */
+    SLOW_BLOCK_VISIT = 20 /* the same, of the block's, for each of them */
 };
 
 /* ---- kinds ---------------------------------------------------------------------------------- */
