@@ -10,6 +10,9 @@ import sys
 
 ORDER = ["base", "text", "shape", "outline", "scene", "lang", "field", "grid", "mesh", "io", "render", "diff", "api"]
 
+# The folders of a layer in their order; files beside them may include any of them and be included by any.
+PARTS = {"mesh": ["marching", "features", "remesh", "distance", "reshape"]}
+
 # The scene layer knows nothing of text: spans are plain numbers there.
 FORBIDDEN = {("scene", "text"): "scenes know nothing of text"}
 
@@ -46,6 +49,20 @@ def fault_in_layer(layer, quote, name):
     return FORBIDDEN.get((layer, folder))
 
 
+def fault_in_part(path, name):
+    """Why a file of a layer's folder may not include `name` of a later one, or None."""
+    own, other = path.split("/"), name.split("/")
+    if len(own) < 3 or len(other) < 3 or own[0] != other[0]:
+        return None
+    parts = PARTS.get(own[0], [])
+    for part in (own[1], other[1]):
+        if part not in parts:
+            return f"no folder '{part}' of {own[0]}/ in tools/check_layers.py"
+    if parts.index(other[1]) > parts.index(own[1]):
+        return f"{own[0]}/{own[1]}/ stands above {own[0]}/{other[1]}/ and must not know it"
+    return None
+
+
 def check_source(root):
     for path in sources(os.path.join(root, "src")):
         layer = os.path.relpath(path, os.path.join(root, "src")).split(os.sep)[0]
@@ -53,7 +70,8 @@ def check_source(root):
             yield path, 1, f"no layer '{layer}' in the order of tools/check_layers.py"
             continue
         for number, quote, name in includes(path):
-            fault = fault_in_layer(layer, quote, name)
+            fault = fault_in_layer(layer, quote, name) or fault_in_part(
+                os.path.relpath(path, os.path.join(root, "src")).replace(os.sep, "/"), name)
             if fault:
                 yield path, number, fault
 

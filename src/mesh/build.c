@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "mesh/certify.h"
-#include "mesh/tolerance.h"
+#include "mesh/reshape/tolerance.h"
 #include "mesh/work.h"
 
 /* ---- bounds and lattice ------------------------------------------------------------------------

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * The stage of the pipeline that finds sharp features (feature.h): between sampling and numbering
- * of a slab's blocks. In a slab that is sampled again they are known.
+ * The stage of the pipeline that finds sharp features (features/features.h): between sampling and
+ * numbering of a slab's blocks. In a slab that is sampled again they are known.
  */
 #include <string.h>
 
 #include "base/pool.h"
-#include "mesh/feature_bare.h"
-#include "mesh/feature_cross.h"
-#include "mesh/feature_join.h"
-#include "mesh/feature_move.h"
+#include "mesh/features/bare.h"
+#include "mesh/features/cross.h"
+#include "mesh/features/join.h"
+#include "mesh/features/move.h"
 #include "mesh/work.h"
 
 /* What one item of the parallel loop has found, in the room of one worker. */

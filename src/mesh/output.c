@@ -8,7 +8,7 @@
 
 #include "base/pool.h"
 #include "field/dispatch.h"
-#include "mesh/feature_emit.h"
+#include "mesh/features/emit.h"
 #include "mesh/work.h"
 
 /* ---- blocks -------------------------------------------------------------------------------- */

@@ -7,7 +7,7 @@
 #define CSG_MESH_WORK_H
 
 #include "mesh/build.h"
-#include "mesh/feature.h"
+#include "mesh/features/features.h"
 
 /* A stretch of the octree's frontier, with what comes before it in the numbering. */
 typedef struct csg_slab {
@@ -138,7 +138,7 @@ csgm_status csg_mesh_build_one(csgm_context *context, const csgm_field *field,
                                const csgm_mesh_options *options, const csg_mesh_share *share,
                                csgm_mesh **out, csgm_mesh_stats *stats);
 /* The same whatever the options ask of the finished mesh; goal (may be NULL) says it
- * (tolerance.h). */
+ * (reshape/tolerance.h). */
 csgm_status csg_mesh_build_with(csgm_context *context, const csgm_field *field,
                                 const csgm_mesh_options *options, const csg_mesh_share *share,
                                 struct csg_mesh_goal *goal, csgm_mesh **out,

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "mesh/corners.h"
 #include "mesh/mesh_support.h"
+#include "mesh/remesh/corners.h"
 
 static void inspect(mesh_case *c, const csg_corners *m, csgm_mesh_check *check)
 {

@@ -6,7 +6,7 @@
  * Arguments: how many scenes (default 30), the first one's seed (default 0). "-v" behind them: goes
  * on after a crossing and tells of each.
  */
-#include "mesh/exact.h"
+#include "mesh/features/exact.h"
 #include "mesh/mesh_support.h"
 #include "mesh/self_intersections.h"
 

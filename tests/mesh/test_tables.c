@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "mesh/tables.h"
+#include "mesh/marching/tables.h"
 
 static csg_cell_tables tables;
 
@@ -302,7 +302,7 @@ static bool loops_cross(const csg_cell_loops *loops, const place *places,
 }
 
 /* Unless corners alternate all, loops of up to seven sides have cuts that do not cross, and longer
- * ones are alone in their cell (mesh/feature_smooth.c). */
+ * ones are alone in their cell (mesh/features/smooth.c). */
 static void test_joined_crossings(void **state)
 {
     enum { MOST_CUT = 7, ROUNDS = 100, FACES = 63 };

@@ -1,0 +1,376 @@
+/* SPDX-License-Identifier: MIT
+ * The proof; see check.h. Pieces of a few cells' size are made on one thread and settled
+ * on all, eight at a time, since tapes are pruned to eight cubes at a time.
+ */
+#include "mesh/distance/check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "field/point.h"
+#include "grid/octree.h"
+#include "mesh/distance/slopes.h"
+
+enum { PIECES = 1 << 11, STACK = 64 };
+
+/* Looked at before the proof is given up: all in all, and of one piece that was cut. */
+static const uint64_t MOST_PIECES = 6000000, MOST_OF_ONE = 20000;
+
+typedef struct piece {
+    csg_vec3 at[3], normal;
+    uint32_t triangle;
+    bool open;
+} piece;
+
+typedef struct settler {
+    csg_pruner pruner;
+    csg_arena arena;
+    csg_tape tape; /* of the piece at hand */
+    float *scratch;
+    uint64_t pieces, by_cone;
+} settler;
+
+typedef struct proof {
+    const csg_remesh *remesh;
+    double error;
+    settler *settlers;
+    size_t settler_count;
+    size_t scratch_floats;
+    piece *pieces;
+    size_t count;
+    uint64_t looked_at; /* before these pieces */
+    atomic_bool out_of_memory;
+} proof;
+
+/* ---- one piece --------------------------------------------------------------------------------
+ */
+
+typedef struct disc {
+    csg_vec3 center;
+    double radius;
+} disc;
+
+static disc disc_of(const csg_vec3 v[3])
+{
+    csg_vec3 c = csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3);
+    double r = 0;
+    for (int k = 0; k < 3; k++)
+        r = fmax(r, csg_vec3_norm(csg_vec3_sub(v[k], c)));
+    return (disc){c, r};
+}
+
+static double value_at(const proof *p, settler *s, csg_vec3 at)
+{
+    return csg_tape_value_at(p->remesh->probe.marching->kernel, &s->tape, at, s->scratch,
+                             p->scratch_floats);
+}
+
+/* Rounding of places and values is kept clear of, twice over. */
+static double slack_of(const proof *p)
+{
+    return 4 * (double)p->remesh->probe.noise;
+}
+
+static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3])
+{
+    csg_gradients gradients;
+    csg_cone cone;
+    if (!csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, v, d.center,
+                            d.radius + p->error, s->scratch, p->scratch_floats, &gradients) ||
+        !csg_cone_find_axis(&gradients.balls, &cone))
+        return false;
+    double least = cone.least * p->error - slack_of(p);
+    return gradients.low >= -least && gradients.high <= least;
+}
+
+static bool settles_by_signs(const proof *p, settler *s, disc d, csg_vec3 normal)
+{
+    double least = (double)s->tape.lipschitz * d.radius + slack_of(p);
+    csg_vec3 step = csg_vec3_scale(normal, p->error);
+    return value_at(p, s, csg_vec3_add(d.center, step)) < -least &&
+           value_at(p, s, csg_vec3_sub(d.center, step)) > least;
+}
+
+/* Thin walls, sharp tips: a change of sign in any direction will do. */
+static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, csg_vec3 side)
+{
+    csg_vec3 other = csg_vec3_cross(normal, side);
+    bool inside = false, outside = false;
+    double reach = p->error - d.radius;
+    for (int ring = 0; ring < 4 && !(inside && outside); ring++, reach /= 4)
+        for (int i = 0; i < 26 && !(inside && outside); i++) {
+            /* around in the plane, and leaning to both sides: the plane may be the surface itself
+             */
+            static const double around[8][2] = {{0.9, 0},   {0, 0.9},    {-0.9, 0},   {0, -0.9},
+                                                {0.6, 0.6}, {-0.6, 0.6}, {0.6, -0.6}, {-0.6, -0.6}};
+            double up = i >= 24 ? 49 - 2.0 * i : 0.4 * (i % 3 - 1);
+            double x = i >= 24 ? 0 : around[i / 3][0], y = i >= 24 ? 0 : around[i / 3][1];
+            csg_vec3 off =
+                csg_vec3_add(csg_vec3_scale(normal, up),
+                             csg_vec3_add(csg_vec3_scale(side, x), csg_vec3_scale(other, y)));
+            double f = value_at(p, s, csg_vec3_add(d.center, csg_vec3_scale(off, reach)));
+            inside |= f > slack_of(p);
+            outside |= f < -slack_of(p);
+        }
+    return inside && outside;
+}
+
+static bool settles(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal)
+{
+    disc d = disc_of(v);
+    s->pieces++;
+    if (settles_by_cone(p, s, d, v)) {
+        s->by_cone++;
+        return true;
+    }
+    if (d.radius <= 1.5 * p->error && settles_by_signs(p, s, d, normal))
+        return true;
+    csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
+    return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side);
+}
+
+/* The two halves by the middle of the longest side; false: small enough to give up. */
+static bool bisect(const csg_vec3 v[3], double least, csg_vec3 (*halves)[3])
+{
+    int longest = 0;
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        double length = csg_vec3_norm(csg_vec3_sub(v[(k + 1) % 3], v[k]));
+        if (length > most) {
+            most = length;
+            longest = k;
+        }
+    }
+    if (!(most > least))
+        return false;
+    csg_vec3 a = v[longest], b = v[(longest + 1) % 3], c = v[(longest + 2) % 3];
+    csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5);
+    const csg_vec3 first[3] = {a, middle, c}, second[3] = {middle, b, c};
+    memcpy(halves[0], first, sizeof first);
+    memcpy(halves[1], second, sizeof second);
+    return true;
+}
+
+/* Depth first: the stack holds one half for each time the piece was cut. */
+static bool settle_piece(const proof *p, settler *s, const piece *whole)
+{
+    csg_vec3 stack[STACK][3];
+    size_t top = 1;
+    uint64_t most = s->pieces + MOST_OF_ONE;
+    memcpy(stack[0], whole->at, sizeof whole->at);
+    while (top) {
+        csg_vec3 v[3];
+        memcpy(v, stack[--top], sizeof v);
+        if (settles(p, s, v, whole->normal))
+            continue;
+        if (top + 2 > STACK || s->pieces > most || !bisect(v, p->error / 16, &stack[top]))
+            return false;
+        top += 2;
+    }
+    return true;
+}
+
+/* ---- eight at a time ---------------------------------------------------------------------------
+ */
+
+/* Pieces begin with sides of so many cells. What has few leaves, whose gradients say by themselves
+ * what does not take part, is cut without another tape. */
+enum { FIRST_SIDE = 8, DEEPEST = 8, FEW_NODES = 6 };
+
+/* Eight parts of a piece, by three bisections. */
+static void cut_in_eight(const piece *whole, piece parts[CSG_OCTANTS])
+{
+    for (int i = 0; i < CSG_OCTANTS; i++)
+        parts[i] = *whole;
+    for (int half = CSG_OCTANTS / 2; half; half /= 2)
+        for (int i = 0; i < CSG_OCTANTS; i += 2 * half) {
+            csg_vec3 halves[2][3];
+            if (!bisect(parts[i].at, 0, halves))
+                continue;
+            memcpy(parts[i].at, halves[0], sizeof halves[0]);
+            memcpy(parts[i + half].at, halves[1], sizeof halves[1]);
+        }
+}
+
+/* Tapes for the pieces' neighbourhoods, from one that holds around all of them. A tape without
+ * nodes: no surface is there. */
+static bool prune_eight(proof *p, settler *s, const csg_tape *from, const piece *pieces,
+                        size_t count, csg_tape tapes[CSG_OCTANTS])
+{
+    float c[3][CSG_OCTANTS], tau = (float)(2.5 * (double)from->lipschitz * p->error);
+    double most = 0;
+    for (size_t i = 0; i < CSG_OCTANTS; i++) {
+        disc d = disc_of(pieces[i < count ? i : count - 1].at);
+        c[0][i] = (float)d.center.x;
+        c[1][i] = (float)d.center.y;
+        c[2][i] = (float)d.center.z;
+        most = fmax(most, d.radius);
+    }
+    /* a cube is told by the ball around it, and holds the ball that is needed */
+    float radius = (float)(1.733 * (most + 1.05 * p->error));
+    if (!csg_prune_octants(&s->pruner, from, c[0], c[1], c[2], radius))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        tapes[i] = *from;
+        tapes[i].count = 0;
+        if (csg_prune_state(&s->pruner, (int)i) == CSG_CELL_SURFACE &&
+            !csg_prune_shorten(&s->pruner, (int)i, tau, &s->arena, &tapes[i]))
+            return false;
+    }
+    return true;
+}
+
+/* Settles pieces one by one; what is large and of several leaves is cut in eight, whose tapes are
+ * shorter. False: out of memory. */
+static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *pieces, size_t count,
+                         int depth)
+{
+    csg_tape tapes[CSG_OCTANTS];
+    csg_arena_mark mark = csg_arena_get_mark(&s->arena);
+    bool done = prune_eight(p, s, from, pieces, count, tapes);
+    for (size_t i = 0; done && i < count; i++) {
+        piece parts[CSG_OCTANTS];
+        s->tape = tapes[i];
+        pieces[i].open = !tapes[i].count;
+        if (pieces[i].open || settles(p, s, pieces[i].at, pieces[i].normal))
+            continue;
+        if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
+            disc_of(pieces[i].at).radius < 2 * p->error) {
+            pieces[i].open = !settle_piece(p, s, &pieces[i]);
+            continue;
+        }
+        cut_in_eight(&pieces[i], parts);
+        done = settle_eight(p, s, &tapes[i], parts, CSG_OCTANTS, depth + 1);
+        for (int k = 0; done && k < CSG_OCTANTS; k++)
+            pieces[i].open |= parts[k].open;
+    }
+    csg_arena_release_to(&s->arena, mark);
+    return done;
+}
+
+static bool settle_group(void *user, uint32_t worker, size_t group)
+{
+    proof *p = user;
+    size_t first = group * CSG_OCTANTS, count = p->count - first;
+    const csg_tape *whole = &p->remesh->probe.marching->field->tape;
+    if (settle_eight(p, &p->settlers[worker], whole, p->pieces + first,
+                     count < CSG_OCTANTS ? count : CSG_OCTANTS, 0))
+        return !csg_mesh_should_stop(p->remesh->work);
+    atomic_store(&p->out_of_memory, true);
+    return false;
+}
+
+/* ---- all of them -------------------------------------------------------------------------------
+ */
+
+static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof *out)
+{
+    csg_mesh_work *w = p->remesh->work;
+    size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
+    bool done = csg_pool_run(w->context->pool, groups, settle_group, NULL, p);
+    if (atomic_load(&p->out_of_memory))
+        return csg_context_no_memory(w->context);
+    if (!done)
+        return csg_mesh_why_stopped(w);
+    for (size_t i = 0; i < p->count; i++) {
+        if (!p->pieces[i].open)
+            continue;
+        if (!out->open++)
+            out->place = disc_of(p->pieces[i].at).center;
+        pending[p->pieces[i].triangle] = 1;
+    }
+    p->count = 0;
+    p->looked_at = 0;
+    for (size_t i = 0; i < p->settler_count; i++)
+        p->looked_at += p->settlers[i].pieces;
+    out->stopped = p->looked_at > MOST_PIECES;
+    return CSGM_OK;
+}
+
+/* Cuts a triangle into pieces of a few cells and settles them whenever there are enough. */
+static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *pending,
+                                  csg_distance_proof *out)
+{
+    const csg_remesh *r = p->remesh;
+    double side = fmax(FIRST_SIDE * r->cell, 2 * p->error);
+    csg_vec3 stack[STACK][3];
+    size_t top = 1;
+    for (uint32_t k = 0; k < 3; k++)
+        stack[0][k] = csg_remesh_corner(r, 3 * triangle + k);
+    csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(stack[0][0], stack[0][1], stack[0][2]));
+    while (top && !out->stopped) {
+        csg_vec3 v[3];
+        memcpy(v, stack[--top], sizeof v);
+        if (top + 2 <= STACK && bisect(v, side, &stack[top])) {
+            top += 2;
+            continue;
+        }
+        if (p->count == PIECES) {
+            csgm_status status = settle_pieces(p, pending, out);
+            if (status != CSGM_OK)
+                return status;
+        }
+        piece *one = &p->pieces[p->count++];
+        memcpy(one->at, v, sizeof v);
+        one->normal = normal;
+        one->triangle = triangle;
+    }
+    return CSGM_OK;
+}
+
+static bool begin(proof *p)
+{
+    const csg_mesh_work *w = p->remesh->work;
+    csg_memory *memory = p->remesh->memory;
+    p->settler_count = csg_pool_threads(w->context->pool);
+    p->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
+    p->pieces = csg_memory_alloc(memory, PIECES * sizeof *p->pieces);
+    p->settlers = csg_memory_alloc(memory, p->settler_count * sizeof *p->settlers);
+    if (!p->pieces || !p->settlers)
+        return false;
+    bool done = true;
+    for (size_t i = 0; i < p->settler_count; i++) {
+        settler *s = &p->settlers[i];
+        *s = (settler){0};
+        csg_pruner_init(&s->pruner, memory, w->marching.kernel, csg_octree_rounding(&w->lattice));
+        csg_arena_init(&s->arena, memory);
+        s->scratch = csg_memory_alloc(memory, p->scratch_floats * sizeof(float));
+        done = done && s->scratch;
+    }
+    return done;
+}
+
+static void end(proof *p)
+{
+    csg_memory *memory = p->remesh->memory;
+    for (size_t i = 0; p->settlers && i < p->settler_count; i++) {
+        csg_pruner_release(&p->settlers[i].pruner);
+        csg_arena_reset(&p->settlers[i].arena);
+        csg_memory_release(memory, p->settlers[i].scratch, p->scratch_floats * sizeof(float));
+    }
+    csg_memory_release(memory, p->pieces, PIECES * sizeof *p->pieces);
+    csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
+}
+
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
+                               csg_distance_proof *out)
+{
+    proof p = {.remesh = remesh, .error = error};
+    *out = (csg_distance_proof){0};
+    csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->work->context);
+    const csg_corners *m = &remesh->corners;
+    for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
+        if (csg_corners_is_live(m, t) && pending[t]) {
+            pending[t] = 0;
+            status = prove_triangle(&p, t, pending, out);
+        }
+    if (status == CSGM_OK && p.count && !out->stopped)
+        status = settle_pieces(&p, pending, out);
+    for (size_t i = 0; p.settlers && i < p.settler_count; i++) {
+        out->pieces += p.settlers[i].pieces;
+        out->by_cone += p.settlers[i].by_cone;
+    }
+    end(&p);
+    return status;
+}

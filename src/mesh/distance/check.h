@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ * A proof that no point of a mesh is farther than E from the surface, of the field and not of
+ * samples of it. Triangles are bisected until each piece, of centroid c and radius r, is settled by
+ * one of these, with the tape pruned to the piece's neighbourhood:
+ *
+ *   cone     gradients in the ball of radius r + E around c have a direction v in common in which f
+ *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so
+ *            c + E v is inside and c - E v outside, for all of its points. Of the order of
+ *            sqrt(E / curvature), so that smooth parts are settled by large pieces, and flat ones
+ *            up to their edges.
+ *   signs    f(c + E n) <= -lambda r and f(c - E n) >= lambda r: the signs hold for all of the
+ * piece nearby   f changes its sign within E - r of c
+ *
+ * Every piece that is settled has the surface within E on the line through each of its points; and
+ * where a cone settled it, just once: the surface near it is one sheet, so it is within E of the
+ * mesh too.
+ */
+#ifndef CSG_MESH_DISTANCE_CHECK_H
+#define CSG_MESH_DISTANCE_CHECK_H
+
+#include "mesh/remesh/remesh.h"
+
+typedef struct csg_distance_proof {
+    uint64_t pieces;  /* looked at */
+    uint64_t by_cone; /* settled so */
+    uint64_t open;    /* could not be settled */
+    csg_vec3 place;   /* of the first of these, field frame */
+    bool stopped;     /* it would have taken too long: nothing is known */
+} csg_distance_proof;
+
+/* pending, a byte a triangle: in, whether it is to be looked at; out, whether a piece of it stayed
+ * open. CSGM_OK or why it was stopped. */
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
+                               csg_distance_proof *out);
+
+#endif

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: MIT
+ * The walk; see missed.h. Cubes of the frontier in parallel, results joined in their order.
+ */
+#include "mesh/distance/missed.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "field/point.h"
+#include "grid/octree.h"
+#include "mesh/distance/slopes.h"
+
+/* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
+enum {
+    MOST_POINTS = 4096,
+    LEAST_CUBES = 1500,
+    AGAIN_CUBES = 200000,
+    MOST_CUBES = 60000,
+    ALL_CUBES = 1000000
+};
+
+/* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
+static const double SHEET_CELLS = 2, AROUND_CELLS = 1;
+/* How near a sheet's gradients must be to their middle, of the field's slope. */
+static const double SMOOTH = 0.75, CREASED = 0.45;
+
+/* What a frontier cube gave, and where it is. */
+typedef struct segment {
+    uint32_t worker;
+    bool unfinished;
+    size_t first, count;
+    double farthest;
+    csg_vec3 place;
+} segment;
+
+typedef struct worker {
+    csg_pruner pruner;
+    csg_arena arena;
+    float *scratch;
+    csg_missed_point *points;
+    size_t count, capacity;
+    uint64_t cubes; /* in the frontier cube at hand */
+    segment *segment;
+} worker;
+
+typedef struct walk {
+    const csg_remesh *remesh;
+    csg_octree *octree;
+    double error, least, lipschitz; /* least: half an edge that is not divided */
+    uint64_t most_cubes;
+    size_t scratch_floats;
+    worker *workers;
+    uint32_t worker_count;
+    segment *segments;
+    size_t segment_count;
+    size_t *again; /* those that were not finished; NULL = all of them */
+    atomic_bool out_of_memory;
+} walk;
+
+/* A cube with the tape that holds in it and around it. */
+typedef struct cube {
+    csg_vec3 c;
+    double half, around;
+    csg_tape tape;
+} cube;
+
+/* ---- the field in a cube -----------------------------------------------------------------------
+ */
+
+static double value_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
+{
+    return csg_tape_value_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
+                             w->scratch_floats);
+}
+
+static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
+{
+    return csg_tape_gradient_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
+                                w->scratch_floats);
+}
+
+/* A place of the surface in the cube or a little around it, by Newton's steps from its middle. */
+static bool find_surface(const walk *w, worker *s, const cube *q, double value, csg_vec3 *out)
+{
+    enum { STEPS = 6 };
+    double noise = 4 * (double)w->remesh->probe.noise, reach = q->half + 0.9 * q->around;
+    csg_vec3 p = q->c;
+    for (int step = 0; step < STEPS && fabs(value) > noise; step++) {
+        csg_vec3 g = gradient_at(w, s, &q->tape, p);
+        double square = csg_vec3_dot(g, g);
+        if (!(square > 1e-6))
+            return false;
+        p = csg_vec3_sub(p, csg_vec3_scale(g, value / square));
+        if (!(fabs(p.x - q->c.x) <= reach && fabs(p.y - q->c.y) <= reach &&
+              fabs(p.z - q->c.z) <= reach))
+            return false;
+        value = value_at(w, s, &q->tape, p);
+    }
+    *out = p;
+    return fabs(value) <= noise;
+}
+
+/* Whether all gradients in the cube are near to one direction. */
+static bool is_one_sheet(const walk *w, worker *s, const cube *q)
+{
+    csg_gradients gradients;
+    const csg_vec3 middle[3] = {q->c, q->c, q->c};
+    if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, middle, q->c,
+                            sqrt(3.0) * q->half, s->scratch, w->scratch_floats, &gradients))
+        return false;
+    const csg_cone_balls *balls = &gradients.balls;
+    csg_vec3 axis = {0, 0, 0};
+    double least = INFINITY, steepest = 0;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const double *g = balls->items[i].at;
+        axis = csg_vec3_add(axis, csg_vec3_make(g[0], g[1], g[2]));
+    }
+    axis = csg_vec3_normalize(axis);
+    for (uint32_t i = 0; i < balls->count; i++) {
+        csg_vec3 g = {balls->items[i].at[0], balls->items[i].at[1], balls->items[i].at[2]};
+        least = fmin(least, csg_vec3_dot(g, axis) - balls->items[i].spread);
+        steepest = fmax(steepest, csg_vec3_norm(g));
+    }
+    return least >= (balls->count > 1 ? CREASED : SMOOTH) * steepest;
+}
+
+/* ---- the walk ----------------------------------------------------------------------------------
+ */
+
+static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t triangle)
+{
+    if (distance > s->segment->farthest) {
+        s->segment->farthest = distance;
+        s->segment->place = p;
+    }
+    if (triangle == CSG_CORNER_NONE || s->segment->count >= MOST_POINTS)
+        return true;
+    if (!csg_memory_reserve(w->remesh->memory, (void **)&s->points, &s->capacity, s->count + 1,
+                            sizeof *s->points))
+        return false;
+    s->points[s->count++] = (csg_missed_point){{(float)p.x, (float)p.y, (float)p.z}, triangle};
+    s->segment->count++;
+    return true;
+}
+
+typedef enum verdict { SETTLED, DIVIDE, NO_MEMORY } verdict;
+
+/* A place of the surface at hand, how far from the mesh it is. */
+static verdict settle(const walk *w, worker *s, const cube *q)
+{
+    double cell = w->remesh->cell, ball = sqrt(3.0) * q->half, far = 4 * w->error + 4 * cell;
+    uint32_t triangle;
+    csg_vec3 p;
+    if (2 * q->half > SHEET_CELLS * cell * 1.01)
+        return DIVIDE;
+    double value = value_at(w, s, &q->tape, q->c);
+    if (fabs(value) > w->lipschitz * ball + 4 * (double)w->remesh->probe.noise)
+        return SETTLED;
+    bool small = q->half <= w->least, sheet = is_one_sheet(w, s, q);
+    bool near =
+        ball < 0.9 * w->error &&
+        csg_triangle_tree_nearest(&w->remesh->tree, q->c, 0.9 * w->error - ball, NULL) < INFINITY;
+    if (!small && !sheet && !near)
+        return DIVIDE;
+    if (!find_surface(w, s, q, value, &p))
+        return small || near ? SETTLED : DIVIDE;
+    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, &triangle);
+    if (distance == INFINITY)
+        distance = far;
+    if (sheet && distance <= w->error)
+        return SETTLED;
+    return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
+}
+
+static void place_children(const cube *parent, float c[3][CSG_OCTANTS])
+{
+    const double at[3] = {parent->c.x, parent->c.y, parent->c.z};
+    for (int axis = 0; axis < 3; axis++)
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            c[axis][o] = (float)(at[axis] + (o >> axis & 1 ? 0.5 : -0.5) * parent->half);
+}
+
+/* Cubes are halved from 16 cells to a fraction of the error: the depth is bounded. */
+static bool divide(const walk *w, worker *s, const cube *parent, int depth)
+{
+    enum { DEEPEST = 24 };
+    float c[3][CSG_OCTANTS];
+    cube child = {.half = 0.5 * parent->half};
+    csg_cell_state states[CSG_OCTANTS];
+    csg_tape tapes[CSG_OCTANTS];
+    child.around = fmin(parent->around, child.half);
+    place_children(parent, c);
+    csg_arena_mark mark = csg_arena_get_mark(&s->arena);
+    double reach = (child.half + child.around) * sqrt(3.0) * (1 + 1e-6);
+    float tau = (float)(2 * w->lipschitz * w->remesh->cell);
+    bool done = csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], (float)reach);
+    for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        states[o] = csg_prune_state(&s->pruner, o);
+        if (states[o] == CSG_CELL_SURFACE)
+            done = csg_prune_shorten(&s->pruner, o, tau, &s->arena, &tapes[o]);
+    }
+    for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        if (states[o] != CSG_CELL_SURFACE)
+            continue;
+        if (++s->cubes > w->most_cubes || depth == DEEPEST) {
+            s->segment->unfinished = true;
+            break;
+        }
+        child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
+        child.tape = tapes[o];
+        verdict what = settle(w, s, &child);
+        done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &child, depth + 1));
+    }
+    csg_arena_release_to(&s->arena, mark);
+    return done;
+}
+
+static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
+{
+    walk *w = user;
+    size_t item = w->again ? w->again[index] : index;
+    worker *s = &w->workers[worker_index];
+    const csg_lattice *lattice = &w->remesh->work->lattice;
+    uint32_t at[3];
+    cube whole = {.half = CSG_BLOCK_EDGE * lattice->cell_size,
+                  .around = AROUND_CELLS * lattice->cell_size,
+                  .tape = csg_octree_frontier_tape(w->octree, item, at)};
+    double c[3];
+    for (int axis = 0; axis < 3; axis++)
+        c[axis] =
+            (double)csg_lattice_coordinate(lattice, axis, (2 * at[axis] + 1) * CSG_BLOCK_EDGE);
+    whole.c = csg_vec3_make(c[0], c[1], c[2]);
+    s->cubes = 0;
+    s->segment = &w->segments[item];
+    *s->segment = (segment){.worker = worker_index, .first = s->count};
+    if (!divide(w, s, &whole, 0)) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
+    return !csg_mesh_should_stop(w->remesh->work);
+}
+
+/* ---- all of it ---------------------------------------------------------------------------------
+ */
+
+static bool begin(walk *w)
+{
+    const csg_remesh *r = w->remesh;
+    w->worker_count = csg_pool_threads(r->work->context->pool);
+    w->scratch_floats = csg_kernel_scratch_floats(r->work->field->depth);
+    w->segment_count = csg_octree_frontier_count(w->octree);
+    w->most_cubes = ALL_CUBES / (w->segment_count + 1);
+    w->most_cubes = w->most_cubes < LEAST_CUBES  ? LEAST_CUBES
+                    : w->most_cubes > MOST_CUBES ? MOST_CUBES
+                                                 : w->most_cubes;
+    w->workers = csg_memory_alloc(r->memory, w->worker_count * sizeof *w->workers);
+    w->segments = csg_memory_alloc(r->memory, (w->segment_count + 1) * sizeof *w->segments);
+    bool done = w->workers && w->segments;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        worker *s = &w->workers[i];
+        *s = (worker){0};
+        csg_pruner_init(&s->pruner, r->memory, r->work->marching.kernel,
+                        csg_octree_rounding(&r->work->lattice));
+        csg_arena_init(&s->arena, r->memory);
+        s->scratch = csg_memory_alloc(r->memory, w->scratch_floats * sizeof(float));
+        done = done && s->scratch;
+    }
+    return done;
+}
+
+static void end(walk *w)
+{
+    csg_memory *memory = w->remesh->memory;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        worker *s = &w->workers[i];
+        csg_pruner_release(&s->pruner);
+        csg_arena_reset(&s->arena);
+        csg_memory_release(memory, s->scratch, w->scratch_floats * sizeof(float));
+        csg_memory_release(memory, s->points, s->capacity * sizeof *s->points);
+    }
+    csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
+    csg_memory_release(memory, w->segments, (w->segment_count + 1) * sizeof *w->segments);
+    csg_octree_destroy(w->octree);
+}
+
+/* Few cubes take much more than the others. */
+static bool look_again(walk *w)
+{
+    csg_memory *memory = w->remesh->memory;
+    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
+    w->again = csg_memory_alloc(memory, bytes);
+    if (!w->again) {
+        atomic_store(&w->out_of_memory, true);
+        return false;
+    }
+    for (size_t i = 0; i < w->segment_count; i++)
+        if (w->segments[i].unfinished)
+            w->again[count++] = i;
+    w->most_cubes = ALL_CUBES / (count + 1);
+    if (w->most_cubes > AGAIN_CUBES)
+        w->most_cubes = AGAIN_CUBES;
+    bool done =
+        !count || csg_pool_run(w->remesh->work->context->pool, count, look_at_cube, NULL, w);
+    csg_memory_release(memory, w->again, bytes);
+    w->again = NULL;
+    return done;
+}
+
+static bool join(const walk *w, csg_missed *out)
+{
+    for (size_t i = 0; i < w->segment_count; i++) {
+        const segment *s = &w->segments[i];
+        if (s->farthest > out->farthest) {
+            out->farthest = s->farthest;
+            out->place = s->place;
+        }
+        out->unfinished += s->unfinished;
+        if (!s->count)
+            continue;
+        if (!csg_memory_reserve(w->remesh->memory, (void **)&out->points, &out->capacity,
+                                out->count + s->count, sizeof *out->points))
+            return false;
+        memcpy(out->points + out->count, w->workers[s->worker].points + s->first,
+               s->count * sizeof *out->points);
+        out->count += s->count;
+    }
+    return true;
+}
+
+csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
+{
+    csg_mesh_work *work = r->work;
+    walk w = {.remesh = r,
+              .error = error,
+              .least = fmax(0.25 * error, 1e-4 * r->cell),
+              .lipschitz = (double)work->field->tape.lipschitz};
+    *out = (csg_missed){0};
+    const csg_octree_options options = {.prune = true,
+                                        .margin = 2 * AROUND_CELLS * r->cell,
+                                        .cancelled = csg_mesh_should_stop,
+                                        .user = work};
+    csgm_status status =
+        csg_octree_create(work->context, work->field, &work->lattice, &options, &w.octree);
+    if (status != CSGM_OK)
+        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(work) : status;
+    bool begun = begin(&w);
+    bool done = begun &&
+                csg_pool_run(work->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
+                look_again(&w);
+    if (done)
+        done = join(&w, out);
+    else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(work))
+        status = csg_mesh_why_stopped(work);
+    if (!done && status == CSGM_OK)
+        status = csg_context_no_memory(work->context);
+    end(&w);
+    if (status != CSGM_OK)
+        csg_missed_release(out, r->memory);
+    return status;
+}
+
+void csg_missed_release(csg_missed *missed, csg_memory *memory)
+{
+    csg_memory_release(memory, missed->points, missed->capacity * sizeof *missed->points);
+    *missed = (csg_missed){0};
+}

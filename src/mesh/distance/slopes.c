@@ -1,0 +1,448 @@
+/* SPDX-License-Identifier: MIT
+ * Gradients through operators; see slopes.h. A stack of operands, as the tape's own
+ * evaluation has one.
+ */
+#include "mesh/distance/slopes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "field/formulas.h"
+#include "field/point.h"
+
+/* What one operand can be in the ball. */
+typedef struct operand {
+    double value, doubt; /* at the centre; rounding */
+    double low, high;    /* over the triangle */
+    csg_cone_balls balls;
+    bool stretched; /* shares may add up to more than 1 */
+    bool faces;     /* gradients between the balls may be as long as these: where faces meet */
+} operand;
+
+typedef struct walker {
+    const csg_kernel *kernel;
+    const csg_tape *tape;
+    csg_vec3 v[3], c;
+    double radius, flat; /* of the ball; of the triangle's corners around the centre */
+    float *scratch;
+    size_t scratch_floats;
+    operand stack[CSG_SLOPES_NODES];
+    uint32_t top;
+} walker;
+
+/* ---- differences and shares --------------------------------------------------------------------
+ */
+
+static double norm_of(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
+{
+    const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
+    return norm_of(d) + a->spread + b->spread;
+}
+
+/* How fast the difference of two operands can change. Between faces' normals a unit vector is at
+ * most sqrt((1 + sqrt(3)) / 2) as far from any other as one of these. */
+static double rate_of(const walker *w, const operand *a, const operand *b)
+{
+    double most = 0;
+    if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
+        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz);
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++)
+            most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
+    return a->faces || b->faces ? 1.2 * most : most;
+}
+
+/* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
+static blended blend_at(uint8_t blend, float n, float chi, double d)
+{
+    float x = (float)fabs(d);
+    switch (blend) {
+    case CSG_BLEND_HYPERBOLA:
+        return blend_hyperbola(n, chi, x);
+    case CSG_BLEND_RECIPROCAL:
+        return blend_reciprocal(n, chi, x);
+    case CSG_BLEND_COSINE:
+        return blend_cosine(n, chi, x);
+    case CSG_BLEND_OVERBLEND:
+        return blend_overblend(n, chi, x);
+    case CSG_BLEND_PARABOLA:
+        return blend_parabola(n, chi, x);
+    case CSG_BLEND_CHAMFER:
+        return blend_chamfer(n, chi, x);
+    default:
+        return blend_sharp(n, chi, x);
+    }
+}
+
+/* The share of operand a where a - b = d, of a union. */
+static double share_at(uint8_t blend, float n, float chi, double d)
+{
+    float slope = blend_at(blend, n, chi, d).slope;
+    if (blend == CSG_BLEND_OVERBLEND) /* not monotone: anything, once it begins */
+        slope = (float)fabs(d) < chi ? -1.0f : 0;
+    return d > 0 ? 1 + (double)slope : -(double)slope;
+}
+
+typedef struct range {
+    double low, high;
+} range;
+
+/* It grows with the difference. Where the shape jumps, at 0, both sides are taken. */
+static range shares_of(uint8_t blend, float n, float chi, double low, double high)
+{
+    static const double ROUNDING = 1e-5;
+    range r = {share_at(blend, n, chi, low), share_at(blend, n, chi, high)};
+    if (blend == CSG_BLEND_OVERBLEND && low < (double)chi && high > -(double)chi)
+        r = (range){0, 1};
+    if (r.low >= 1 || r.high <= 0)
+        return r;
+    return (range){fmax(0, fmin(r.low, r.high) - ROUNDING),
+                   fmin(1, fmax(r.low, r.high) + ROUNDING)};
+}
+
+/* ---- mixing ------------------------------------------------------------------------------------
+ */
+
+static bool put(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b, double share)
+{
+    if (balls->count >= CSG_CONE_MOST)
+        return false;
+    csg_cone_ball *out = &balls->items[balls->count++];
+    for (int k = 0; k < 3; k++)
+        out->at[k] = share * a->at[k] + (1 - share) * b->at[k];
+    out->spread = share * a->spread + (1 - share) * b->spread;
+    return true;
+}
+
+/* A pair's mixtures lie between those of the least and of the largest share; where these are near
+ * to each other one ball around both will do. */
+static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b, range r)
+{
+    static const double NARROW = 0.3;
+    if (r.high - r.low > NARROW)
+        return put(balls, a, b, r.low) && put(balls, a, b, r.high);
+    if (!put(balls, a, b, 0.5 * (r.low + r.high)))
+        return false;
+    balls->items[balls->count - 1].spread += 0.5 * (r.high - r.low) * apart(a, b);
+    return true;
+}
+
+static bool append(operand *to, const operand *from)
+{
+    if (to->balls.count + from->balls.count > CSG_CONE_MOST)
+        return false;
+    memcpy(&to->balls.items[to->balls.count], from->balls.items,
+           from->balls.count * sizeof *from->balls.items);
+    to->balls.count += from->balls.count;
+    to->balls.has_edges |= from->balls.has_edges;
+    to->stretched |= from->stretched;
+    to->faces |= from->faces;
+    return true;
+}
+
+/* a becomes the mixture with b; the value is the caller's. */
+static bool mix(operand *a, const operand *b, range share, bool is_sharp)
+{
+    if (share.low >= 1)
+        return true;
+    if (share.high <= 0) {
+        a->balls = b->balls;
+        a->stretched = b->stretched;
+        a->faces = b->faces;
+        return true;
+    }
+    if (is_sharp || a->faces || b->faces) /* any share */
+        return append(a, b);
+    csg_cone_balls from = a->balls;
+    a->balls.count = 0;
+    for (uint32_t i = 0; i < from.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++)
+            if (!mix_pair(&a->balls, &from.items[i], &b->balls.items[k], share))
+                return false;
+    return true;
+}
+
+/* ---- operators ---------------------------------------------------------------------------------
+ */
+
+static double joined_value(const csg_tape_node *node, float n, float chi, double a, double b)
+{
+    return fmax(a, b) + (double)blend_at(node->join_blend, n, chi, a - b).value;
+}
+
+static double orthogonal_value(double n, double turn, double a, double b)
+{
+    double u = turn * (a - n), v = turn * (b - n);
+    return u > 0 && v > 0 ? n + turn * sqrt(u * u + v * v) : turn * fmax(turn * a, turn * b);
+}
+
+/* An intersection is a union of what is turned around: shares are the same, values too but for the
+ * sign. */
+static bool join_operands(walker *w, const csg_tape_node *node)
+{
+    const float *parameters = w->tape->parameters + node->join_parameters;
+    float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
+    operand *a = &w->stack[w->top - 2], *b = &w->stack[w->top - 1];
+    double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
+    double reach = w->radius * rate_of(w, a, b) + a->doubt + b->doubt;
+    double d = turn * (a->value - b->value);
+    w->top--;
+    if (node->join_blend == CSG_BLEND_ORTHOGONAL) {
+        /* an edge where both are beyond n; else the larger one */
+        double u = turn * (a->value - (double)n), v = turn * (b->value - (double)n);
+        bool edge = fmin(u, v) > -2 * w->radius - a->doubt - b->doubt;
+        range r = edge ? (range){0, 1} : shares_of(CSG_BLEND_SHARP, n, chi, d - reach, d + reach);
+        double value = orthogonal_value((double)n, turn, a->value, b->value);
+        bool done = mix(a, b, r, true);
+        a->low = orthogonal_value((double)n, turn, a->low, b->low);
+        a->high = orthogonal_value((double)n, turn, a->high, b->high);
+        a->stretched |= edge;
+        a->faces |= edge;
+        a->value = value;
+        a->doubt += b->doubt;
+        return done;
+    }
+    if (node->join_blend >= CSG_BLEND_COUNT)
+        return false;
+    range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
+    double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);
+    a->doubt = fmax(a->doubt, b->doubt) + 1e-6 * fabs(a->value - b->value);
+    a->value = value;
+    a->low = turn * joined_value(node, n, chi, turn * a->low, turn * b->low) - a->doubt;
+    a->high = turn * joined_value(node, n, chi, turn * a->high, turn * b->high) + a->doubt;
+    return mix(a, b, r, node->join_blend == CSG_BLEND_SHARP);
+}
+
+/* Which of an operand's values. */
+typedef enum which { MIDDLE, LOW, HIGH } which;
+
+static double value_of(const operand *o, which w)
+{
+    return w == MIDDLE ? o->value : w == LOW ? o->low : o->high;
+}
+
+/* The value of a round union, by Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12),
+ * from its largest operand: convex and falling there, so they rise to the root. */
+static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
+{
+    enum { STEPS = 40 };
+    double f = -INFINITY;
+    for (uint32_t i = 0; i < count; i++)
+        f = fmax(f, turn * value_of(&of[i], what));
+    for (int step = 0; step < STEPS; step++) {
+        double squares = -w * w, slope = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            double u = fmax(turn * value_of(&of[i], what) - f + w, 0);
+            squares += u * u;
+            slope += 2 * u;
+        }
+        if (!(squares > 1e-14 * w * w) || !(slope > 0))
+            break;
+        f += squares / slope;
+    }
+    return turn * f;
+}
+
+/* Shares are in the proportions of (f_i - F + w)_+. Operands are mixed one after the other, each
+ * with the mixture of those before it. */
+static bool join_round(walker *w, const csg_tape_node *node)
+{
+    double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, steepest = 0;
+    operand *of = &w->stack[w->top - node->arity];
+    double value = round_value(of, MIDDLE, node->arity, turn, size);
+    double low = round_value(of, LOW, node->arity, turn, size);
+    double high = round_value(of, HIGH, node->arity, turn, size);
+    for (uint32_t i = 0; i < node->arity; i++) {
+        doubt = fmax(doubt, of[i].doubt);
+        for (uint32_t k = i + 1; k < node->arity; k++)
+            steepest = fmax(steepest, rate_of(w, &of[i], &of[k]));
+    }
+    operand sum;
+    range total = {0, 0}; /* of the weights so far */
+    bool done = true;
+    for (uint32_t i = 0; i < node->arity && done; i++) {
+        double at = turn * (of[i].value - value) + size;
+        double reach = w->radius * steepest + 2 * doubt + 1e-5 * size;
+        range weight = {fmax(0, at - reach), at + reach};
+        if (weight.high <= 0)
+            continue;
+        range share = {total.low / (total.low + weight.high),
+                       total.high / (total.high + weight.low)};
+        if (total.high > 0)
+            done = mix(&sum, &of[i], share, false);
+        else
+            sum = of[i];
+        total = (range){total.low + weight.low, total.high + weight.high};
+    }
+    w->top -= node->arity - 1;
+    if (!done || !(total.high > 0))
+        return false;
+    of[0] = sum;
+    of[0].value = value;
+    of[0].doubt = doubt + 1e-5 * size;
+    of[0].low = low - of[0].doubt;
+    of[0].high = high + of[0].doubt;
+    return done;
+}
+
+/* ---- leaves ------------------------------------------------------------------------------------
+ */
+
+/* Signed distances to convex sets are concave, wherever they are asked. */
+static bool is_concave(uint8_t op)
+{
+    switch (op) {
+    case CSG_OP_SPHERE:
+    case CSG_OP_BOX:
+    case CSG_OP_FRUSTUM:
+    case CSG_OP_CAPSULE:
+    case CSG_OP_ELLIPSOID:
+    case CSG_OP_PLANE:
+    case CSG_OP_CIRCLE:
+    case CSG_OP_RECTANGLE:
+    case CSG_OP_SLAB:
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
+ * convex one, which is turned around, the least. */
+static double tangent_value(const walker *w, const csg_tape_node *node, double value, double turn)
+{
+    csg_tape_node alone = *node;
+    csg_tape tape = *w->tape;
+    alone.join = CSG_JOIN_NONE;
+    tape.nodes = &alone;
+    tape.count = 1;
+    csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, w->c, w->scratch, w->scratch_floats);
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(w->v[k], w->c)));
+    return value + turn * (most + 1e-5 * w->flat);
+}
+
+/* Over the triangle, from the values at its corners: no farther off than gradients stray from one
+ * another, and a concave leaf is nowhere less than there. */
+static void find_range(const walker *w, const csg_tape_node *node, const float *low,
+                       const float *high, operand *leaf)
+{
+    const csg_cone_ball *balls = leaf->balls.items;
+    double stray = 0;
+    leaf->low = fmin((double)low[0], fmin((double)low[1], (double)low[2]));
+    leaf->high = fmax((double)high[0], fmax((double)high[1], (double)high[2]));
+    for (uint32_t i = 0; i < leaf->balls.count; i++)
+        stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
+    if (!is_concave(node->op)) {
+        leaf->low -= stray * w->flat;
+        leaf->high += stray * w->flat;
+        return;
+    }
+    bool concave = w->tape->parameters[node->parameters + CSG_LEAF_SIGMA] > 0;
+    double beyond = concave ? leaf->high + stray * w->flat : leaf->low - stray * w->flat;
+    if (leaf->balls.count > 1) {
+        double turn = concave ? 1 : -1;
+        double tangent = tangent_value(w, node, leaf->value + turn * leaf->doubt, turn);
+        beyond = concave ? fmin(beyond, tangent) : fmax(beyond, tangent);
+    }
+    *(concave ? &leaf->high : &leaf->low) = beyond;
+}
+
+/* low, high: of the leaf's value at the corners, and at the centre behind them. */
+static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, const float *high)
+{
+    operand *leaf = &w->stack[w->top++];
+    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    leaf->balls.count = 0;
+    leaf->balls.has_edges = leaf->stretched = false;
+    leaf->value = 0.5 * ((double)low[3] + (double)high[3]);
+    leaf->doubt = 0.5 * ((double)high[3] - (double)low[3]) + 1e-6 * fabs(leaf->value);
+    if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
+        return false;
+    leaf->faces = leaf->balls.count > 1;
+    find_range(w, node, low, high, leaf);
+    return true;
+}
+
+/* ---- the walk ----------------------------------------------------------------------------------
+ */
+
+static bool walk(walker *w, const float *low, const float *high)
+{
+    for (uint32_t i = 0; i < w->tape->count; i++) {
+        const csg_tape_node *node = &w->tape->nodes[i];
+        size_t at = (size_t)i * CSG_OCTANTS;
+        bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
+        if (csg_op_is_leaf(node->op))
+            known = push_leaf(w, node, low + at, high + at);
+        else if (csg_op_is_round(node->op))
+            known = join_round(w, node);
+        if (!known || (node->join && !join_operands(w, node)))
+            return false;
+    }
+    return true;
+}
+
+/* Where the whole field's gradients stray little, its values at the corners say more than those of
+ * the leaves. */
+static void find_root_range(const walker *w, csg_gradients *out)
+{
+    const operand *root = &w->stack[0];
+    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
+    out->low = root->low;
+    out->high = root->high;
+    if (w->tape->count == 1 || root->balls.count != 1 || root->stretched || root->balls.has_edges)
+        return;
+    for (int i = 0; i < CSG_LANES; i++) {
+        x[i] = (float)w->v[i % 3].x;
+        y[i] = (float)w->v[i % 3].y;
+        z[i] = (float)w->v[i % 3].z;
+    }
+    w->kernel->values(w->tape, x, y, z, 3, f, w->scratch, w->scratch_floats);
+    double stray = root->balls.items[0].spread * w->flat + root->doubt;
+    out->low = fmax(out->low, (double)fminf(f[0], fminf(f[1], f[2])) - stray);
+    out->high = fmin(out->high, (double)fmaxf(f[0], fmaxf(f[1], f[2])) + stray);
+}
+
+bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
+                        csg_vec3 c, double radius, float *scratch, size_t scratch_floats,
+                        csg_gradients *out)
+{
+    float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS];
+    float x[CSG_OCTANTS], y[CSG_OCTANTS], z[CSG_OCTANTS];
+    walker w; /* not filled: its stack is large */
+    if (tape->count > CSG_SLOPES_NODES || !tape->count)
+        return false;
+    w.kernel = kernel;
+    w.tape = tape;
+    w.c = c;
+    w.radius = radius;
+    w.flat = 0;
+    w.scratch = scratch;
+    w.scratch_floats = scratch_floats;
+    w.top = 0;
+    for (int k = 0; k < CSG_OCTANTS; k++) {
+        csg_vec3 p = k < 3 ? triangle[k] : c;
+        x[k] = (float)p.x;
+        y[k] = (float)p.y;
+        z[k] = (float)p.z;
+        if (k < 3) {
+            w.v[k] = p;
+            w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, c)));
+        }
+    }
+    kernel->intervals(tape, x, y, z, 0, low, high, scratch);
+    if (!walk(&w, low, high))
+        return false;
+    out->balls = w.stack[0].balls;
+    out->stretched = w.stack[0].stretched;
+    find_root_range(&w, out);
+    return out->balls.count > 0;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ * The gradients that a field can have in a ball, through its operators: a few balls of vectors
+ * whose convex hull holds them all. Leaves give theirs (field/cone.h). A blend mixes its operands'
+ * gradients in shares that depend on the operands' difference alone, and that changes within the
+ * ball by no more than the gradients allow: so where two surfaces flow into each other the set
+ * shrinks with the ball, and what a sharp operator hides there does not take part at all.
+ *
+ * And the field's range over a triangle in the ball: that of a leaf from its values at the corners
+ * and how far its gradients stray, of convex primitives by their tangent planes, then through the
+ * operators, which are monotone. A triangle that ends at a crease has a narrow one.
+ */
+#ifndef CSG_MESH_DISTANCE_SLOPES_H
+#define CSG_MESH_DISTANCE_SLOPES_H
+
+#include "base/geometry.h"
+#include "field/cone.h"
+#include "field/kernel.h"
+
+enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
+
+typedef struct csg_gradients {
+    csg_cone_balls balls;
+    bool stretched;   /* shares may add up to more than 1: sqrt(3) at a box's corner at most */
+    double low, high; /* of the field, over the triangle */
+} csg_gradients;
+
+/* Over the ball around c, and over a triangle within it. scratch: as the kernel needs it. False: no
+ * bound is known. */
+bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
+                        csg_vec3 c, double radius, float *scratch, size_t scratch_floats,
+                        csg_gradients *out);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT
+ * One cell of marching cubes; see cell.h.
+ */
+#include "mesh/features/cell.h"
+
+#include <string.h>
+
+#include "field/field.h"
+
+enum { CUBE = 2 * CSG_BLOCK_EDGE /* cells of a frontier cube's edge */ };
+
+/* Whether a comes before b in Morton order: the highest bit in which they differ says. */
+static bool is_before(const uint32_t a[3], const uint32_t b[3])
+{
+    int most = 2;
+    for (int axis = 1; axis >= 0; axis--) {
+        uint32_t known = a[most] ^ b[most], other = a[axis] ^ b[axis];
+        if (known < other && known < (known ^ other))
+            most = axis;
+    }
+    return a[most] < b[most];
+}
+
+/* The tape of the frontier's cube that has a cell. False: the surface is not there. */
+static bool tape_of(const csg_octree *octree, const uint32_t cell[3], csg_tape *tape)
+{
+    const uint32_t cube[3] = {cell[0] / CUBE, cell[1] / CUBE, cell[2] / CUBE};
+    size_t low = 0, high = csg_octree_frontier_count(octree);
+    while (low < high) {
+        uint32_t at[3];
+        size_t middle = low + (high - low) / 2;
+        *tape = csg_octree_frontier_tape(octree, middle, at);
+        if (!memcmp(at, cube, sizeof at))
+            return true;
+        if (is_before(at, cube))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return false;
+}
+
+/* Which corners have been given the other sign, as blocks do: those that differ from all three next
+ * to them may. */
+static unsigned beads_of(csg_beads *beads, const uint32_t cell[3], unsigned pattern)
+{
+    unsigned found = 0;
+    for (unsigned c = 0; c < 8; c++) {
+        unsigned own = pattern >> c & 1;
+        const uint32_t at[3] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
+        if ((pattern >> (c ^ 1) & 1) != own && (pattern >> (c ^ 2) & 1) != own &&
+            (pattern >> (c ^ 4) & 1) != own)
+            found |= (unsigned)csg_bead_is(beads, at) << c;
+    }
+    return found;
+}
+
+/* The lattice's border is outside by decree. */
+static unsigned pattern_of(const csg_marching *m, const csg_tape *tape, const uint32_t cell[3],
+                           float *scratch, size_t scratch_floats)
+{
+    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
+    unsigned pattern = 0, border = 0;
+    for (unsigned c = 0; c < CSG_LANES; c++) {
+        const uint32_t at[3] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
+        x[c] = csg_lattice_coordinate(m->lattice, 0, at[0]);
+        y[c] = csg_lattice_coordinate(m->lattice, 1, at[1]);
+        z[c] = csg_lattice_coordinate(m->lattice, 2, at[2]);
+        for (int axis = 0; axis < 3; axis++)
+            border |= (unsigned)(at[axis] == 0 || at[axis] >= m->lattice->cells[axis]) << (c & 7);
+    }
+    m->kernel->values(tape, x, y, z, 8, f, scratch, scratch_floats);
+    for (unsigned c = 0; c < 8; c++)
+        pattern |= (unsigned)(f[c] >= 0) << c;
+    pattern &= ~border;
+    csg_beads beads = {.kernel = m->kernel,
+                       .tape = &m->field->tape,
+                       .lattice = m->lattice,
+                       .scratch = scratch,
+                       .scratch_floats = scratch_floats};
+    return pattern ^ beads_of(&beads, cell, pattern);
+}
+
+static void add_edge(const csg_marching *m, const uint32_t cell[3], unsigned edge, csg_edges *e)
+{
+    const uint8_t *o = m->tables->offset[edge];
+    uint32_t n = e->count++;
+    float low[3], step[3] = {0, 0, 0};
+    for (int axis = 0; axis < 3; axis++)
+        low[axis] = csg_lattice_coordinate(m->lattice, axis, cell[axis] + o[axis]);
+    int along = (int)edge / 4;
+    step[along] = csg_lattice_coordinate(m->lattice, along, cell[along] + 1) - low[along];
+    e->ax[n] = low[0], e->ay[n] = low[1], e->az[n] = low[2];
+    e->dx[n] = step[0], e->dy[n] = step[1], e->dz[n] = step[2];
+    e->rank[n] = (uint16_t)edge;
+}
+
+static unsigned crossed_edges(const csg_cell_tables *tables, unsigned pattern)
+{
+    unsigned crossed = 0;
+    for (int i = 0; i < 3 * tables->count[pattern]; i++)
+        crossed |= 1u << tables->edge[pattern][i];
+    return crossed;
+}
+
+uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,
+                               const uint32_t cell[3], csg_edges *edges, float *scratch,
+                               size_t scratch_floats, csg_feature_cell *out)
+{
+    csg_tape tape;
+    out->pattern = 0;
+    if (!tape_of(octree, cell, &tape))
+        return 0;
+    out->pattern = pattern_of(m, &tape, cell, scratch, scratch_floats);
+    if (!m->tables->count[out->pattern])
+        return 8;
+    edges->count = 0;
+    edges->end_distance = m->end_distance;
+    for (unsigned rest = crossed_edges(m->tables, out->pattern); rest; rest &= rest - 1)
+        add_edge(m, cell, (unsigned)__builtin_ctz(rest), edges);
+    uint64_t evaluations = m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
+    for (uint32_t i = 0; i < edges->count; i++) {
+        float *at = out->at[edges->rank[i]];
+        at[0] = edges->x[i], at[1] = edges->y[i], at[2] = edges->z[i];
+    }
+    return 8 + evaluations;
+}

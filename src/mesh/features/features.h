@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ * Sharp features: the apex of a polygon of marching cubes that a crease, a corner or a tip of the
+ * surface runs through. The polygon is fanned around its apex as in extended marching cubes
+ * (Kobbelt, Botsch, Schwanecke, Seidel 2001), and where a crease passes from one polygon to the
+ * next, the segment between them is flipped: two apexes become joined by an edge of the mesh.
+ *
+ * A crease is found by what the gradient does, not by what made it: where it jumps along a segment
+ * however short the rest of it. An apex is the point where the tangent planes meet of the sheets
+ * around it, taken ever nearer to it, so it answers to the field itself: edges of primitives, of
+ * operators, of polyhedra and of expressions alike (feature_find, feature_solve).
+ *
+ * Whether a polygon has an apex depends on its block alone; flips on two neighbours, so features
+ * are kept for the whole mesh, in memory of the length of its creases (feature_store). A polygon
+ * with an apex has two triangles more than without, flips change no number: blocks can be counted
+ * and filled in any order.
+ */
+#ifndef CSG_MESH_FEATURES_FEATURES_H
+#define CSG_MESH_FEATURES_FEATURES_H
+
+#include "mesh/features/around.h"
+#include "mesh/marching/marching.h"
+
+enum {
+    CSG_FEATURE_MOST_SIDES = 12,
+    CSG_FEATURE_MOST_SHEETS = 8,
+    CSG_FEATURE_APEX = 0xFF,
+    CSG_FEATURE_BEYOND = 0x80,
+    CSG_FEATURE_SEGMENTS = 8192 /* candidates of one block at most */
+};
+
+#define CSG_FEATURE_NONE UINT32_MAX
+
+/* 1 - cos of 12 degrees: a crease that ends and is as blunt as this there has faded. */
+#define CSG_FEATURE_FADING 0.0219f
+
+typedef struct csg_feature {
+    float at[3];                              /* the apex, field frame */
+    float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
+    float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
+    uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* the feature beyond each side, or NONE */
+    uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
+    uint16_t flipped; /* bit s: side s */
+    /* Of the two triangles at a flipped side each feature has one: bit s: that at the side's end,
+     * corner s + 1, otherwise that at corner s. */
+    uint16_t takes_next;
+    uint8_t edge[CSG_FEATURE_MOST_SIDES];  /* the cell's crossed edges, counter-clockwise from
+                                              outside; side s leads from edge s to edge s + 1 */
+    uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
+    /* As many as sides: of corners of the polygon, CSG_FEATURE_APEX, or CSG_FEATURE_BEYOND + s: the
+     * apex beyond side s. The first that is a corner of
+     * the polygon lies in the triangle's sheet. */
+    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
+    uint8_t side_count, sheet_count;
+    bool folded;      /* its own fan folds over: an apex beyond must help */
+    bool unsolved;    /* no apex was found by the polygon alone */
+    uint8_t tries;    /* to find another place */
+    uint8_t pattern;  /* of the cell */
+    uint8_t joined;   /* its faces whose inside corners are joined: csg_cell_loops_of */
+    uint8_t loop;     /* of the pattern, joined */
+    uint16_t cell;    /* (8 z + y) 8 + x */
+    uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
+    uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
+    bool ends;        /* a crease ends here: the polygon beyond a creased side has none */
+    bool smooth;      /* given up: csg_feature_demote */
+    bool bare;        /* without an apex, and smooth: the triangles of marching cubes, two less */
+    bool made_way;    /* a vertex has moved for it */
+    uint8_t shift;    /* how much has been tried of that (shift.h) */
+    uint16_t moved;   /* bit s: corner s is not where its lattice edge has it */
+    uint8_t moves;    /* of its corners until now */
+    uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
+} csg_feature;
+
+/* A vertex that has made way for a corner of the solid (shift.h). */
+typedef struct csg_feature_moved {
+    uint32_t feature[4]; /* that it is a corner of */
+    uint32_t asker;      /* the feature that it has made way for */
+    uint8_t corner[4];
+    float from[3], normal[3]; /* outward, at its new place */
+    bool back;                /* it has been put back */
+} csg_feature_moved;
+
+/* The features of one block, in the order of its cells. */
+typedef struct csg_feature_block {
+    uint32_t at[3];
+    uint32_t first, count, bare; /* bare: of these, without an apex */
+    uint32_t vertices;           /* apexes, or sheets of all apexes where normals are split */
+    uint32_t triangles;          /* more than without features */
+} csg_feature_block;
+
+typedef struct csg_feature_store {
+    csg_memory *memory;
+    csg_feature *features;
+    csg_feature_block *blocks;
+    size_t count, capacity, block_count, block_capacity;
+    uint32_t *slots; /* block + 1, 0 = free */
+    size_t slot_count;
+    csg_feature_moved *moves;
+    size_t move_count, move_capacity;
+    size_t bare; /* of the features, those without an apex */
+    double cell_size;
+    size_t numbered; /* blocks whose features have vertex numbers */
+    uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
+    uint64_t fading; /* the same, where all their creases are blunt and end */
+} csg_feature_store;
+
+/* ---- finding ------------------------------------------------------------------------------- */
+
+/* A segment of a polygon along which the gradient jumps. */
+typedef struct csg_segment {
+    uint16_t from, to; /* slots of the vertices */
+    uint16_t loop;     /* of the block's loops at hand */
+    uint8_t side;
+    uint8_t active;
+    float low, high; /* bracket of the jump, along the segment */
+    float low_gradient[3], high_gradient[3];
+    float jump;  /* 1 - cos of the angle that is left */
+    float at[3]; /* the crease near it */
+} csg_segment;
+
+typedef struct csg_found_loop {
+    uint16_t cell;
+    uint8_t pattern, joined, loop, side_count;
+    uint8_t edge[CSG_FEATURE_MOST_SIDES];
+    uint16_t slot[CSG_FEATURE_MOST_SIDES];
+    int16_t crease[CSG_FEATURE_MOST_SIDES]; /* segment, or -1 */
+    bool wide;                              /* its corners' normals lie far apart */
+} csg_found_loop;
+
+/* One thread's room. */
+typedef struct csg_feature_room {
+    csg_edges edges;
+    csg_slots slots;
+    float gradient[3 * CSG_BLOCK_POINTS][3]; /* by slot */
+    csg_segment segments[CSG_FEATURE_SEGMENTS];
+    uint32_t segment_count;
+    csg_found_loop loops[CSG_FEATURE_SEGMENTS / 4];
+    uint32_t loop_count;
+    uint8_t joined[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by cell: pair.h */
+    bool any_joined;
+    float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
+    float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
+    uint32_t which[CSG_FEATURE_SEGMENTS];
+    csg_feature *features; /* found since the last reset */
+    csg_feature_block *blocks;
+    size_t count, capacity, block_count, block_capacity;
+    uint64_t smooth, fading, evaluations;
+    csg_feature_around around;
+} csg_feature_room;
+
+void csg_feature_room_init(csg_feature_room *room);
+void csg_feature_room_release(csg_feature_room *room, csg_memory *memory);
+/* Adds the block's features to the room's. False: out of memory. */
+bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,
+                      csg_memory *memory, float *scratch, size_t scratch_floats);
+
+/* ---- the store ------------------------------------------------------------------------------- */
+
+bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
+                           size_t count);
+/* Once all blocks are there. */
+bool csg_feature_store_index(csg_feature_store *store);
+/* Who lies beyond each side; where a crease crosses it, it is to be flipped. Any thread; writes one
+ * block alone. */
+void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
+/* The polygon is as plain marching cubes makes it, but for a vertex in one of its triangles where
+ * the apex was: the numbers of everything stay. */
+void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
+                        csg_feature *feature);
+/* The triangles, once all are linked, in their places and settled. As csg_feature_link. */
+void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
+const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
+                                                const uint32_t at[3]);
+void csg_feature_store_release(csg_feature_store *store);
+
+/* ---- their vertices and triangles --------------------------------------------------------------
+ */
+
+/* One corner of a triangle: a crossed edge of the cell (edge), or an apex. */
+typedef struct csg_fan_corner {
+    const csg_feature *apex; /* NULL: an edge */
+    const float *at;         /* of an edge's vertex that has moved; else NULL */
+    uint8_t edge, sheet;
+} csg_fan_corner;
+
+/* As many as its polygon has sides; without an apex two less. */
+static inline int csg_feature_triangle_count(const csg_feature *feature)
+{
+    return feature->side_count - (feature->bare ? 2 : 0);
+}
+
+/* Triangle `index` of a feature. */
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *feature, int index,
+                          csg_fan_corner corners[3]);
+
+#endif

@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: MIT
+ * Where the gradient of the field jumps along the polygons of a block's cells: creases. Blocks
+ * without anything that could make one are passed over, the rest is asked in batches: gradients at
+ * the vertices, then at the middles of those segments whose ends differ, again and again: the half
+ * that keeps the difference is the one with the jump.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/features/apex.h"
+#include "mesh/features/help.h"
+#include "mesh/features/pair.h"
+#include "mesh/features/possible.h"
+#include "mesh/features/solve.h"
+
+enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
+
+/* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 3
+ * degrees, the least that makes a crease. */
+static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.37e-3f;
+/* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
+ * 10 % and below that of 12 degrees. */
+static const float ALIKE = 1.1f, LITTLE = 0.02f;
+/* 1 - cos of 30 degrees. */
+static const float DETOUR = 0.134f;
+/* Corners of a polygon around a tip look apart by 25 degrees and more. */
+static const float WIDE = 0.9f;
+
+/* ---- vertices -------------------------------------------------------------------------------- */
+
+/* Gradients at the vertices in room->gradient, by slot. */
+static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
+{
+    const csg_slots *slots = &room->slots;
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const float *p = slots->at[slots->slot[i]];
+        room->x[i] = p[0], room->y[i] = p[1], room->z[i] = p[2];
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_feature_probe_points(probe, room->x, room->y, room->z, slots->count, NULL, g);
+    for (uint32_t i = 0; i < slots->count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            room->gradient[slots->slot[i]][axis] = room->g[axis][i];
+}
+
+static float cosine(const float *a, const float *b)
+{
+    float ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    float aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    float bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+    float length = sqrtf(aa * bb);
+    return length > 1e-12f ? ab / length : 1.0f; /* a critical point says nothing */
+}
+
+/* ---- segments -------------------------------------------------------------------------------- */
+
+static bool add_segment(csg_feature_room *room, const csg_found_loop *loop, int side)
+{
+    uint16_t from = loop->slot[side], to = loop->slot[(side + 1) % loop->side_count];
+    float difference = 1.0f - cosine(room->gradient[from], room->gradient[to]);
+    if (!(difference > LEAST_DIFFERENCE) || room->segment_count == CSG_FEATURE_SEGMENTS)
+        return false;
+    csg_segment *s = &room->segments[room->segment_count++];
+    *s = (csg_segment){.from = from,
+                       .to = to,
+                       .loop = (uint16_t)room->loop_count,
+                       .side = (uint8_t)side,
+                       .active = 1,
+                       .high = 1,
+                       .jump = difference};
+    memcpy(s->low_gradient, room->gradient[from], sizeof s->low_gradient);
+    memcpy(s->high_gradient, room->gradient[to], sizeof s->high_gradient);
+    return true;
+}
+
+/* The smallest cosine between normals of its corners. */
+static float widest_of(const csg_feature_room *room, const csg_found_loop *loop)
+{
+    float widest = 1;
+    for (int a = 0; a < loop->side_count; a++)
+        for (int b = a + 1; b < loop->side_count; b++)
+            widest =
+                fminf(widest, cosine(room->gradient[loop->slot[a]], room->gradient[loop->slot[b]]));
+    return widest;
+}
+
+/* Loops with a segment to look at, or around what may be a tip. */
+static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, unsigned pattern,
+                     const csg_cell_loops *loops, int index)
+{
+    const csg_cell_tables *tables = m->tables;
+    if (room->loop_count == CSG_FEATURE_SEGMENTS / 4)
+        return;
+    csg_found_loop *loop = &room->loops[room->loop_count];
+    *loop = (csg_found_loop){.cell = (uint16_t)cell,
+                             .pattern = (uint8_t)pattern,
+                             .loop = (uint8_t)index,
+                             .joined = room->any_joined ? room->joined[cell] : 0,
+                             .side_count = loops->sides[index]};
+    int i = cell & 7, j = cell >> 3 & 7, k = cell >> 6;
+    for (int s = 0; s < loop->side_count; s++) {
+        uint8_t edge = loops->edge[index][s];
+        const uint8_t *o = tables->offset[edge];
+        loop->edge[s] = edge;
+        loop->slot[s] =
+            (uint16_t)(edge / 4 * CSG_BLOCK_POINTS + ((k + o[2]) * N + j + o[1]) * N + i + o[0]);
+        loop->crease[s] = -1;
+    }
+    float widest = widest_of(room, loop);
+    if (1.0f - widest <= LEAST_DIFFERENCE && !loop->joined)
+        return;
+    bool any = loop->wide = widest < WIDE;
+    any |= loop->joined != 0;
+    for (int s = 0; s < loop->side_count; s++)
+        any |= add_segment(room, loop, s);
+    room->loop_count += any;
+}
+
+static void collect_loops(const csg_marching *m, const csg_block *block, csg_feature_room *room)
+{
+    room->segment_count = room->loop_count = 0;
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            csg_cell_rows rows = csg_cell_rows_of(block, j, k);
+            for (unsigned rest = rows.mixed; rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest);
+                unsigned pattern = csg_cell_pattern(&rows, i);
+                int cell = (k * E + j) * E + i;
+                csg_cell_loops loops = csg_feature_loops(room, m->tables, (unsigned)cell, pattern);
+                for (int l = 0; l < loops.count; l++)
+                    add_loop(m, room, cell, pattern, &loops, l);
+            }
+        }
+}
+
+static void point_along(const csg_feature_room *room, const csg_segment *s, float t, float p[3])
+{
+    const float *a = room->slots.at[s->from], *b = room->slots.at[s->to];
+    for (int axis = 0; axis < 3; axis++)
+        p[axis] = a[axis] + t * (b[axis] - a[axis]);
+}
+
+/* One halving of all active segments. */
+static void halve(csg_feature_room *room, csg_feature_probe *probe)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        csg_segment *s = &room->segments[i];
+        if (!s->active)
+            continue;
+        float p[3];
+        point_along(room, s, 0.5f * (s->low + s->high), p);
+        room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+        room->which[count++] = i;
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, NULL, g);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_segment *s = &room->segments[room->which[i]];
+        const float middle[3] = {g[0][i], g[1][i], g[2][i]};
+        float low = 1.0f - cosine(s->low_gradient, middle);
+        float high = 1.0f - cosine(middle, s->high_gradient);
+        float t = 0.5f * (s->low + s->high), kept = fmaxf(low, high);
+        s->active = (kept > ALIKE * fminf(low, high) || kept > LITTLE) && kept > LEAST_JUMP;
+        s->jump = kept;
+        memcpy(low >= high ? s->high_gradient : s->low_gradient, middle, sizeof middle);
+        *(low >= high ? &s->high : &s->low) = t;
+    }
+}
+
+/* Both sides of the jumps from segment `first` on, as many as there is room for: two points each.
+ * Returns the first segment that is left. */
+static uint32_t beside_jumps(csg_feature_room *room, uint32_t first, uint32_t *count)
+{
+    *count = 0;
+    uint32_t i = first;
+    for (; i < room->segment_count && *count + 2 <= CSG_FEATURE_SEGMENTS; i++) {
+        const csg_segment *s = &room->segments[i];
+        for (int end = 0; s->active && end < 2; end++) {
+            float p[3];
+            point_along(room, s, end ? s->high : s->low, p);
+            room->x[*count] = p[0], room->y[*count] = p[1], room->z[*count] = p[2];
+            room->which[(*count)++] = i;
+        }
+    }
+    return i;
+}
+
+/* Where the tangent planes on both sides of the jump meet, near it: of those at hand. */
+static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_probe *probe)
+{
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
+    for (uint32_t i = 0; i + 1 < count; i += 2) {
+        csg_segment *s = &room->segments[room->which[i]];
+        csg_plane planes[2];
+        for (uint32_t end = 0; end < 2; end++)
+            planes[end] =
+                csg_plane_at(room->x[i + end], room->y[i + end], room->z[i + end], room->f[i + end],
+                             g[0][i + end], g[1][i + end], g[2][i + end]);
+        csg_vec3 at = {(double)room->x[i], (double)room->y[i], (double)room->z[i]};
+        s->active = csg_planes_meet(planes, 2, &at);
+        s->at[0] = (float)at.x, s->at[1] = (float)at.y, s->at[2] = (float)at.z;
+        if (s->active)
+            room->loops[s->loop].crease[s->side] = (int16_t)room->which[i];
+    }
+}
+
+/* Whether g turns from a towards b, and not past it. */
+static bool is_between(const float *g, const float *a, const float *b)
+{
+    float u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        u[i] = a[j] * g[k] - a[k] * g[j];
+        v[i] = g[j] * b[k] - g[k] * b[j];
+    }
+    return cosine(u, v) > 0.999f && cosine(a, b) < cosine(a, g);
+}
+
+/* Both segments at a vertex jump there: it lies on a crease, and its gradient may be neither
+ * sheet's but between them. That of a point a little inside takes its place. */
+static bool correct_vertex(csg_feature_room *room, const csg_segment *before,
+                           const csg_segment *behind, csg_feature_probe *probe)
+{
+    static const float LITTLE_INSIDE = 2e-3f; /* cells */
+    uint16_t slot = behind->from;
+    float *g = room->gradient[slot], inside[3][1];
+    const float *at = room->slots.at[slot];
+    if (!before->active || !behind->active || before->high < 1 || behind->low > 0 ||
+        !is_between(g, before->low_gradient, behind->high_gradient))
+        return false;
+    float square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+    float reach = LITTLE_INSIDE * (float)probe->marching->lattice->cell_size / sqrtf(square);
+    float x = at[0] + reach * g[0], y = at[1] + reach * g[1], z = at[2] + reach * g[2];
+    csg_feature_probe_points(probe, &x, &y, &z, 1, NULL,
+                             (float *const[3]){inside[0], inside[1], inside[2]});
+    const float fresh[3] = {inside[0][0], inside[1][0], inside[2][0]};
+    if (!(1.0f - cosine(fresh, g) > LEAST_JUMP))
+        return false;
+    memcpy(g, fresh, sizeof fresh);
+    return true;
+}
+
+/* Segments of a loop stand one after another. */
+static bool correct_vertices(csg_feature_room *room, csg_feature_probe *probe)
+{
+    bool any = false;
+    for (uint32_t i = 0, first = 0; i < room->segment_count; i++) {
+        const csg_segment *s = &room->segments[i];
+        first = room->segments[first].loop == s->loop ? first : i;
+        const csg_segment *start = &room->segments[first];
+        if (i > first && s[-1].side + 1 == s->side)
+            any = correct_vertex(room, &s[-1], s, probe) || any;
+        if (i > first && start->side == 0 && s->side + 1 == room->loops[s->loop].side_count)
+            any = correct_vertex(room, s, start, probe) || any;
+    }
+    return any;
+}
+
+/* Where the surface is curved a segment runs a little inside the solid, and near a crease that it
+ * does not cross, past the place where the other sheet becomes the nearer one: the gradient jumps
+ * away and back again, by far more than it differs between the ends. */
+static void drop_detours(csg_feature_room *room)
+{
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        csg_segment *s = &room->segments[i];
+        float ends = 1.0f - cosine(room->gradient[s->from], room->gradient[s->to]);
+        s->active = s->active && !(ends < LITTLE && s->jump > DETOUR);
+    }
+}
+
+static void find_jumps(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                       csg_feature_probe *probe)
+{
+    collect_loops(m, block, room);
+    for (int step = 0; step < HALVINGS; step++)
+        halve(room, probe);
+}
+
+static void find_creases(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                         csg_feature_probe *probe)
+{
+    find_jumps(m, block, room, probe);
+    if (correct_vertices(room, probe))
+        find_jumps(m, block, room, probe);
+    drop_detours(room);
+    for (uint32_t next = 0, count; next < room->segment_count;) {
+        next = beside_jumps(room, next, &count);
+        locate_creases(room, count, probe);
+    }
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_block *block,
+                      size_t before)
+{
+    if (room->count == before)
+        return true;
+    if (!csg_memory_reserve(memory, (void **)&room->blocks, &room->block_capacity,
+                            room->block_count + 1, sizeof(csg_feature_block)))
+        return false;
+    csg_feature_block *entry = &room->blocks[room->block_count++];
+    *entry =
+        (csg_feature_block){.first = (uint32_t)before, .count = (uint32_t)(room->count - before)};
+    memcpy(entry->at, block->at, sizeof entry->at);
+    return true;
+}
+
+bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+                      csg_memory *memory, float *scratch, size_t scratch_floats)
+{
+    csg_feature_probe probe =
+        csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
+    bool possible = csg_feature_is_possible(&probe);
+    bool has_pairs = csg_feature_has_pairs(block);
+    if (!possible && !has_pairs)
+        return true;
+    room->evaluations +=
+        csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
+    take_gradients(room, &probe);
+    /* before gradients are corrected: that depends on the block, this must not */
+    room->any_joined = has_pairs && csg_feature_pair(room, &probe);
+    if (!possible && !room->any_joined)
+        return true;
+    find_creases(m, block, room, &probe);
+    size_t before = room->count;
+    for (uint32_t i = 0; i < room->loop_count; i++)
+        if (!csg_feature_solve(room, &room->loops[i], &probe, memory))
+            return false;
+    if (!csg_feature_help(room, before, &probe, memory))
+        return false;
+    room->evaluations += probe.evaluations;
+    return end_block(room, memory, block, before);
+}
+
+/* The large arrays are filled before they are read, but for whole vectors of edges. */
+void csg_feature_room_init(csg_feature_room *room)
+{
+    memset(&room->edges, 0, sizeof room->edges);
+    memset(&room->around, 0, sizeof room->around);
+    room->features = NULL;
+    room->blocks = NULL;
+    room->count = room->capacity = room->block_count = room->block_capacity = 0;
+    room->smooth = room->fading = room->evaluations = 0;
+}
+
+void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
+{
+    csg_feature_around_release(&room->around);
+    csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
+    csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
+    room->features = NULL;
+    room->blocks = NULL;
+}

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT
+ * Which features are joined: whether the segments between them can be flipped, and which of two
+ * polygons has which half; polygons for which there is no way become smooth again.
+ */
+#include "mesh/features/join.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mesh/features/cut.h"
+#include "mesh/features/move.h"
+#include "mesh/features/shift.h"
+
+/* Whether triangle (a, b, c) looks out of the sheet with normal n. */
+static bool looks_along(const float *a, const float *b, const float *c, const float *n)
+{
+    double u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (double)b[i] - (double)a[i];
+        v[i] = (double)c[i] - (double)a[i];
+    }
+    return (u[1] * v[2] - u[2] * v[1]) * (double)n[0] + (u[2] * v[0] - u[0] * v[2]) * (double)n[1] +
+               (u[0] * v[1] - u[1] * v[0]) * (double)n[2] >
+           0;
+}
+
+/* Apexes this near to each other are one place: cells. */
+static const double APART = 1e-3;
+
+static bool are_apart(const csg_feature_store *store, const csg_feature *f, const csg_feature *g)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
+    return square >= APART * APART * store->cell_size * store->cell_size;
+}
+
+/* Whether both halves of a flipped segment look the way their sheets do, as they are. */
+static bool flips_plainly(const csg_feature *f, int s, const csg_feature *g, int t)
+{
+    int s1 = (s + 1) % f->side_count;
+    return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
+           looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
+}
+
+/* A triangle across a crease that is not flipped looks out between its two sheets. */
+static bool stays_outward(const csg_feature *f, int s)
+{
+    int s1 = (s + 1) % f->side_count;
+    float n[3];
+    for (int i = 0; i < 3; i++)
+        n[i] = f->normal[f->sheet[s]][i] + f->normal[f->sheet[s1]][i];
+    return looks_along(f->at, f->corner[s], f->corner[s1], n);
+}
+
+/* Gives the feature's flipped sides the halves that the bits of `mask` say, in order. */
+static void share_out(csg_feature_store *store, csg_feature *f, unsigned mask)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        if (!(f->flipped >> s & 1))
+            continue;
+        csg_feature *g = &store->features[f->beyond[s]];
+        uint16_t own = (uint16_t)(1u << s), others = (uint16_t)(1u << f->beyond_side[s]);
+        f->takes_next = (uint16_t)(mask & 1 ? f->takes_next | own : f->takes_next & ~own);
+        g->takes_next = (uint16_t)(mask & 1 ? g->takes_next | others : g->takes_next & ~others);
+        mask >>= 1;
+    }
+}
+
+/* What share_out() would change nothing with. */
+static unsigned shares_of(const csg_feature *f)
+{
+    unsigned mask = 0;
+    for (int s = 0, bit = 0; s < f->side_count; s++)
+        if (f->flipped >> s & 1)
+            mask |= (unsigned)(f->takes_next >> s & 1) << bit++;
+    return mask;
+}
+
+/* Whether the feature and what its neighbours have of the same sheets can be cut. */
+static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables,
+                   const csg_feature *f)
+{
+    uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
+    bool good = csg_feature_cut(store->features, tables, f, triangles);
+    for (int s = 0; s < f->side_count && good; s++)
+        if (f->flipped >> s & 1)
+            good = csg_feature_cuts_at(store->features, tables, &store->features[f->beyond[s]],
+                                       f->beyond_side[s]);
+    return good;
+}
+
+/* Looks for a way to share the halves of its flipped sides out that lets the feature be cut. */
+static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    unsigned before = shares_of(f), end = 1u << __builtin_popcount(f->flipped);
+    if (is_cut(store, tables, f))
+        return true;
+    for (unsigned mask = 0; mask < end; mask++) {
+        share_out(store, f, mask);
+        if (is_cut(store, tables, f))
+            return true;
+    }
+    share_out(store, f, before);
+    return false;
+}
+
+/* Both ask the same question. */
+static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                       int s)
+{
+    csg_feature *g = &store->features[f->beyond[s]];
+    int t = f->beyond_side[s];
+    if (!are_apart(store, f, g))
+        return false;
+    if (!f->takes_next && !g->takes_next && flips_plainly(f, s, g, t))
+        return true;
+    return (csg_feature_cuts_at(store->features, tables, f, s) &&
+            csg_feature_cuts_at(store->features, tables, g, t)) ||
+           find_shares(store, tables, f) || find_shares(store, tables, g);
+}
+
+static bool is_corner(const csg_feature *f)
+{
+    return f->sheet_count > 2;
+}
+
+/* Whether another side before it joins the same two apexes: they would have an edge twice. Polygons
+ * that meet in both segments of one face can. */
+static bool is_joined_already(const csg_feature *f, int s)
+{
+    for (int k = 0; k < s; k++)
+        if (f->flipped >> k & 1 && f->beyond[k] == f->beyond[s])
+            return true;
+    return false;
+}
+
+/* An apex that is not known yet stands in nobody's way. */
+static bool side_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                       int s)
+{
+    if (!(f->flipped >> s & 1))
+        return stays_outward(f, s);
+    if (is_joined_already(f, s))
+        return false;
+    return store->features[f->beyond[s]].unsolved || side_flips(store, tables, f, s);
+}
+
+static void set_bent(csg_feature *f, int s, bool bent)
+{
+    uint16_t bit = (uint16_t)(1u << s);
+    f->bent = (uint16_t)(bent ? f->bent | bit : f->bent & ~bit);
+    f->creased = (uint16_t)(bent ? f->creased | bit : f->creased & ~bit);
+    f->flipped = (uint16_t)(bent ? f->flipped | bit : f->flipped & ~bit);
+    f->takes_next &= f->flipped;
+}
+
+void csg_feature_agree(csg_feature_store *store, csg_feature *f)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        csg_feature *g = f->beyond[s] == CSG_FEATURE_NONE ? NULL : &store->features[f->beyond[s]];
+        bool bent = f->bent >> s & 1;
+        if (g && bent != (g->bent >> f->beyond_side[s] & 1))
+            set_bent(g, f->beyond_side[s], bent);
+    }
+    share_out(store, f, shares_of(f));
+}
+
+/* Flips those sides that the apex reaches across although no crease crosses them, where there is an
+ * apex beyond to join it to. False: that does not help, nothing has changed. */
+static bool bend(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    csg_feature before = *f;
+    for (int s = 0; s < f->side_count; s++) {
+        if (f->creased >> s & 1 || f->beyond[s] == CSG_FEATURE_NONE ||
+            looks_along(f->at, f->corner[s], f->corner[(s + 1) % f->side_count],
+                        f->normal[f->sheet[s]]))
+            continue;
+        const csg_feature *g = &store->features[f->beyond[s]];
+        if (!g->unsolved && !g->bare && !(g->creased >> f->beyond_side[s] & 1))
+            set_bent(f, s, true);
+    }
+    if (f->bent == before.bent)
+        return false;
+    csg_feature_agree(store, f);
+    if (find_shares(store, tables, f))
+        return true;
+    *f = before;
+    csg_feature_agree(store, f);
+    return false;
+}
+
+/* Whether what folds over by itself can be cut. */
+static bool unfolds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    return !f->folded || find_shares(store, tables, f) || bend(store, tables, f);
+}
+
+bool csg_feature_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    if (!unfolds(store, tables, f))
+        return false;
+    for (int s = 0; s < f->side_count; s++)
+        if ((f->creased >> s & 1) && !side_holds(store, tables, f, s))
+            return false;
+    return true;
+}
+
+/* Gives up one of two that cannot be joined (or both), g NULL: the one that has none beyond. */
+static void give_up(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                    csg_feature *g)
+{
+    bool both = !g || is_corner(f) == is_corner(g);
+    if (g && (both || is_corner(f)))
+        csg_feature_demote(store, tables, g);
+    if (both || !is_corner(f))
+        csg_feature_demote(store, tables, f);
+}
+
+/* An apex that was not found yet, from its neighbours; those in its way are looked after first. */
+static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
+                       csg_feature_probe *probe)
+{
+    csg_feature *f = &store->features[index];
+    if (csg_feature_replace(store, tables, index, probe))
+        return true;
+    for (int s = 0; s < f->side_count; s++) {
+        csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
+        if (g && !g->unsolved && !csg_feature_holds(store, tables, g))
+            csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe);
+    }
+    f->tries = 0;
+    return csg_feature_replace(store, tables, index, probe);
+}
+
+size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables,
+                          csg_feature_probe *probe)
+{
+    size_t changed = 0;
+    for (uint32_t i = 0; i < store->count; i++) {
+        csg_feature *f = &store->features[i];
+        if (f->creased && f->unsolved && !solve_late(store, tables, i, probe))
+            csg_feature_demote(store, tables, f);
+    }
+    for (uint32_t i = 0; i < store->count; i++) {
+        csg_feature *f = &store->features[i];
+        if (f->creased && !unfolds(store, tables, f)) {
+            if (!csg_feature_replace(store, tables, i, probe) &&
+                !csg_feature_shift(store, tables, i, CSG_FEATURE_NONE, probe))
+                csg_feature_demote(store, tables, f);
+            changed++;
+        }
+        for (int s = 0; s < f->side_count; s++) {
+            if (!(f->creased >> s & 1) || side_holds(store, tables, f, s))
+                continue;
+            uint32_t other = f->flipped >> s & 1 ? f->beyond[s] : CSG_FEATURE_NONE;
+            changed++;
+            if (!csg_feature_replace(store, tables, i, probe) &&
+                (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&
+                !csg_feature_shift(store, tables, i, other, probe))
+                give_up(store, tables, f,
+                        other == CSG_FEATURE_NONE ? NULL : &store->features[other]);
+        }
+    }
+    return changed;
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT
+ * Which triangles of features reach into which cells, and which of them meet: exactly, in the
+ * floats of the mesh. Most triangles stay within their cell, or go to the apex next door through
+ * the face between both: they can meet only what is in these cells. The rest is entered into every
+ * cell that its box touches, and meets what marching cubes makes there too.
+ */
+#ifndef CSG_MESH_FEATURES_NEAR_H
+#define CSG_MESH_FEATURES_NEAR_H
+
+#include "mesh/features/exact.h"
+#include "mesh/features/features.h"
+
+typedef struct csg_near_triangle {
+    csg_exact_triangle shape; /* vertices: numbers of this search */
+    uint32_t owner[2]; /* features; one twice where it is one's alone, NONE: of a smooth polygon */
+    bool own;          /* of the block at hand */
+    bool far;          /* reaches out of its cell, and not only to the apex next door */
+    bool plain; /* no vertex has moved; with the feature's apex, or none; and with one next door
+                   only if it has a corner in the face between */
+} csg_near_triangle;
+
+/* In the mesh's frame. */
+typedef struct csg_near_box {
+    float low[3], high[3];
+} csg_near_box;
+
+/* One thread's room. */
+typedef struct csg_near_room {
+    csg_edges *edges; /* lent, as is scratch */
+    float *scratch;
+    size_t scratch_floats;
+    csg_near_triangle *triangles; /* at hand */
+    uint64_t *places;             /* cell and triangle, sorted */
+    size_t count, capacity, place_count, place_capacity;
+    uint64_t evaluations;
+} csg_near_room;
+
+typedef struct csg_near {
+    csg_feature_store *store;
+    const csg_marching *marching; /* shift is that of the mesh */
+    const csg_octree *octree;
+    csg_memory *memory;
+    csg_near_box *boxes; /* of all triangles of each feature */
+} csg_near;
+
+/* The boxes of a block's features. */
+void csg_near_measure(const csg_near *near, size_t block);
+/* All triangles that can meet one of the block's; boxes are known. False: out of memory. */
+bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t block);
+
+/* Called for two triangles that meet; false: that is enough. */
+typedef bool csg_near_found(void *user, const csg_near_triangle *s, const csg_near_triangle *t);
+/* What meets of what was collected, at least one of the block's; pairs with a later block's leave
+ * that to the earlier one. False: it was enough. */
+bool csg_near_search(const csg_near *near, csg_near_room *room, size_t block, csg_near_found *found,
+                     void *user);
+
+enum { CSG_NEAR_BLOCKS = 27 };
+
+/* Block k of those around and the block itself; NULL: none with features. */
+const csg_feature_block *csg_near_block(const csg_feature_store *store,
+                                        const csg_feature_block *block, int k);
+/* How far a feature's apex lies outside its cell: cells. */
+double csg_near_excess(const csg_near *near, uint32_t feature);
+void csg_near_room_release(csg_near_room *room, csg_memory *memory);
+
+#endif

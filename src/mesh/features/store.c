@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: MIT
+ * All features of a mesh, block by block in Morton order, and how they hang together: which side of
+ * a polygon leads to which other one, and whether the segment between them is flipped.
+ */
+#include <string.h>
+
+#include "mesh/features/cut.h"
+#include "mesh/features/face.h"
+#include "mesh/features/shift.h"
+#include "mesh/features/smooth.h"
+
+enum { E = CSG_BLOCK_EDGE };
+
+bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
+                           size_t count)
+{
+    if (!count)
+        return true;
+    const csg_feature_block *blocks = room->blocks + first;
+    size_t from = blocks[0].first;
+    size_t features = blocks[count - 1].first + blocks[count - 1].count - from;
+    if (!csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
+                            store->block_count + count, sizeof(csg_feature_block)) ||
+        !csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
+                            store->count + features, sizeof(csg_feature)))
+        return false;
+    memcpy(store->features + store->count, room->features + from, features * sizeof(csg_feature));
+    for (size_t i = 0; i < count; i++) {
+        csg_feature_block entry = blocks[i];
+        entry.first = (uint32_t)(store->count + entry.first - from);
+        store->blocks[store->block_count++] = entry;
+    }
+    store->count += features;
+    return true;
+}
+
+bool csg_feature_store_index(csg_feature_store *store)
+{
+    size_t count = 16;
+    while (count < 2 * store->block_count)
+        count *= 2;
+    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
+    store->slots = csg_memory_alloc(store->memory, count * sizeof(uint32_t));
+    store->slot_count = store->slots ? count : 0;
+    if (!store->slots)
+        return false;
+    memset(store->slots, 0, count * sizeof(uint32_t));
+    for (size_t i = 0; i < store->block_count; i++) {
+        size_t slot = csg_lattice_home_slot(store->blocks[i].at, count);
+        while (store->slots[slot])
+            slot = (slot + 1) & (count - 1);
+        store->slots[slot] = (uint32_t)i + 1;
+    }
+    return true;
+}
+
+const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
+                                                const uint32_t at[3])
+{
+    if (!store->block_count)
+        return NULL;
+    for (size_t slot = csg_lattice_home_slot(at, store->slot_count); store->slots[slot];
+         slot = (slot + 1) & (store->slot_count - 1)) {
+        const csg_feature_block *block = &store->blocks[store->slots[slot] - 1];
+        if (!memcmp(block->at, at, sizeof block->at))
+            return block;
+    }
+    return NULL;
+}
+
+void csg_feature_store_release(csg_feature_store *store)
+{
+    if (!store->memory)
+        return;
+    csg_memory_release(store->memory, store->features, store->capacity * sizeof(csg_feature));
+    csg_memory_release(store->memory, store->blocks,
+                       store->block_capacity * sizeof(csg_feature_block));
+    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
+    csg_memory_release(store->memory, store->moves, store->move_capacity * sizeof *store->moves);
+    *store = (csg_feature_store){0};
+}
+
+/* ---- neighbours --------------------------------------------------------------------------------
+ */
+
+/* The cell beyond a face: moves `at` to its block. False: beyond the lattice. */
+static bool step(uint32_t at[3], uint16_t *cell, int axis, bool up)
+{
+    int c[3] = {*cell & 7, *cell >> 3 & 7, *cell >> 6};
+    c[axis] += up ? 1 : -1;
+    if (c[axis] < 0 && at[axis] == 0)
+        return false;
+    at[axis] += c[axis] < 0 ? UINT32_MAX : c[axis] == E;
+    c[axis] = (c[axis] + E) % E;
+    *cell = (uint16_t)((c[2] * E + c[1]) * E + c[0]);
+    return true;
+}
+
+/* The feature with a side from edge `from` to edge `to` in that cell. */
+static uint32_t feature_with(const csg_feature_store *store, const csg_feature_block *block,
+                             uint16_t cell, uint8_t from, uint8_t to, uint8_t *side)
+{
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        const csg_feature *f = &store->features[i];
+        for (uint8_t s = 0; f->cell == cell && s < f->side_count; s++)
+            if (f->edge[s] == from && f->edge[(s + 1) % f->side_count] == to) {
+                *side = s;
+                return i;
+            }
+    }
+    return CSG_FEATURE_NONE;
+}
+
+/* Smooth from the beginning, in a cell with a joined face. */
+static bool is_given_up(const csg_feature *f)
+{
+    return f->smooth && !f->bare;
+}
+
+static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
+                      const csg_feature_block *block, csg_feature *f, int s)
+{
+    uint8_t from = f->edge[s], to = f->edge[(s + 1) % f->side_count], side = 0;
+    int face = csg_face_between(tables, from, to);
+    uint32_t at[3] = {block->at[0], block->at[1], block->at[2]};
+    uint16_t cell = f->cell;
+    if (face < 0 || !step(at, &cell, face / 2, face % 2))
+        return;
+    const csg_feature_block *beyond = csg_feature_store_find(store, at);
+    if (!beyond)
+        return;
+    uint32_t other = feature_with(store, beyond, cell, csg_edge_beyond(tables, to, face / 2),
+                                  csg_edge_beyond(tables, from, face / 2), &side);
+    if (other == CSG_FEATURE_NONE || is_given_up(f) || is_given_up(&store->features[other]))
+        return;
+    f->beyond[s] = other;
+    f->beyond_side[s] = side;
+    if (f->creased >> s & store->features[other].creased >> side & 1)
+        f->flipped |= (uint16_t)(1u << s);
+}
+
+void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
+{
+    const csg_feature_block *block = &store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        csg_feature *f = &store->features[i];
+        for (int s = 0; s < f->side_count; s++)
+            link_side(store, tables, block, f, s);
+        f->ends = f->creased & ~f->flipped;
+    }
+}
+
+void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t index)
+{
+    const csg_feature_block *block = &store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
+        csg_feature *f = &store->features[i];
+        if (f->creased)
+            csg_feature_cut(store->features, tables, f, f->triangle);
+    }
+}
+
+/* ---- giving up
+ * ------------------------------------------------------------------------------------
+ */
+
+/* Whether what ends in a polygon is a blunt crease. */
+static bool is_fading(const csg_feature *f)
+{
+    float cosine = 0;
+    for (int i = 0; i < 3; i++)
+        cosine += f->normal[0][i] * f->normal[1][i];
+    return f->ends && f->sheet_count == 2 && 1 - cosine < CSG_FEATURE_FADING;
+}
+
+void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+{
+    csg_feature_shift_back(store, tables, f);
+    for (int s = 0; s < f->side_count; s++) {
+        if (f->beyond[s] == CSG_FEATURE_NONE)
+            continue;
+        csg_feature *g = &store->features[f->beyond[s]];
+        bool joined = f->flipped >> s & 1;
+        g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
+        g->flipped &= (uint16_t) ~(1u << f->beyond_side[s]);
+        g->takes_next &= g->flipped;
+        if (joined)
+            csg_feature_cut(store->features, tables, g, g->triangle);
+        f->beyond[s] = CSG_FEATURE_NONE;
+    }
+    if (f->creased & ~f->bent)
+        *(is_fading(f) ? &store->fading : &store->smooth) += 1;
+    f->creased = f->flipped = f->takes_next = f->bent = 0;
+    f->smooth = true;
+    csg_feature_divide(f, tables, 0);
+}
+
+/* ---- triangles ---------------------------------------------------------------------------------
+ */
+
+/* The sheet of the apex beyond side s that lies in this sheet of the feature. */
+static uint8_t sheet_beyond(const csg_feature_store *store, const csg_feature *f, int s,
+                            uint8_t sheet)
+{
+    const csg_feature *g = &store->features[f->beyond[s]];
+    int t = f->beyond_side[s];
+    return g->sheet[f->sheet[s] == sheet ? (t + 1) % g->side_count : t];
+}
+
+void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int index,
+                          csg_fan_corner corners[3])
+{
+    const uint8_t *t = f->triangle[index];
+    int c = 0;
+    while (t[c] >= CSG_FEATURE_BEYOND)
+        c++;
+    uint8_t sheet = f->sheet[t[c]];
+    for (c = 0; c < 3; c++) {
+        int s = t[c] - CSG_FEATURE_BEYOND;
+        if (t[c] == CSG_FEATURE_APEX)
+            corners[c] = (csg_fan_corner){.apex = f, .sheet = sheet};
+        else if (s >= 0)
+            corners[c] = (csg_fan_corner){.apex = &store->features[f->beyond[s]],
+                                          .sheet = sheet_beyond(store, f, s, sheet)};
+        else
+            corners[c] = (csg_fan_corner){.edge = f->edge[t[c]],
+                                          .at = f->moved >> t[c] & 1 ? f->corner[t[c]] : NULL};
+    }
+}

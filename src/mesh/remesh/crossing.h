@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ * Whether new triangles would cross the rest of a mesh, near or far in it.
+ */
+#ifndef CSG_MESH_REMESH_CROSSING_H
+#define CSG_MESH_REMESH_CROSSING_H
+
+#include "mesh/remesh/triangle_tree.h"
+
+/* Triangles to come, and whose place they take. */
+typedef struct csg_crossing_change {
+    const csg_vec3 (*at)[3];
+    const uint32_t (*vertex)[3];
+    size_t count;
+    uint32_t vertices[2];  /* all triangles at these go, CSG_CORNER_NONE: no others */
+    uint32_t triangles[2]; /* and these, the same */
+} csg_crossing_change;
+
+/* Whether an edge goes through a triangle, or comes as near to it as the tree's noise: of the new
+ * ones, or of one of them and one that stays. What they share, a corner or an edge, does not
+ * count. */
+bool csg_crossing_is_made(const csg_triangle_tree *tree, const csg_crossing_change *change);
+
+#endif

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT
+ * Values at any points; see probe.h.
+ */
+#include "mesh/remesh/probe.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "field/dispatch.h"
+#include "field/field.h"
+
+typedef struct csg_probe_room {
+    float x[CSG_PROBE_MOST], y[CSG_PROBE_MOST], z[CSG_PROBE_MOST];
+    float channels[4][CSG_PROBE_MOST];
+    uint32_t which[CSG_PROBE_MOST]; /* points of the tape at hand */
+    const csg_tape_node *nodes[CSG_PROBE_MOST];
+    uint32_t node_count[CSG_PROBE_MOST];
+    uint32_t last[3]; /* the block looked up last, and what was found: neighbours follow */
+    const csg_block *found;
+    bool has_last;
+} csg_probe_room;
+
+bool csg_probe_make(csg_probe *probe, const csg_mesh_work *work)
+{
+    const csgm_field *field = work->field;
+    *probe = (csg_probe){.marching = &work->marching,
+                         .memory = &work->context->memory,
+                         .noise = work->marching.noise,
+                         .scratch_floats = csg_kernel_scratch_floats(field->depth)};
+    /* a little less than the octree's, for rounding */
+    probe->tau = (float)(0.99 * (double)field->tape.lipschitz * work->lattice.cell_size);
+    probe->room = csg_memory_alloc(probe->memory, sizeof *probe->room);
+    probe->scratch = csg_memory_alloc(probe->memory, probe->scratch_floats * sizeof(float));
+    if (probe->room)
+        probe->room->has_last = false;
+    if (probe->room && probe->scratch)
+        return true;
+    csg_probe_release(probe);
+    return false;
+}
+
+void csg_probe_release(csg_probe *probe)
+{
+    if (!probe->memory)
+        return;
+    csg_memory_release(probe->memory, probe->room, sizeof *probe->room);
+    csg_memory_release(probe->memory, probe->scratch, probe->scratch_floats * sizeof(float));
+    *probe = (csg_probe){0};
+}
+
+/* ---- which tape -------------------------------------------------------------------------------
+ */
+
+static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
+{
+    const csg_marching *m = probe->marching;
+    csg_probe_room *room = probe->room;
+    uint32_t cell[3];
+    room->nodes[i] = m->field->tape.nodes;
+    room->node_count[i] = m->field->tape.count;
+    if (!csg_lattice_cell_of(m->lattice, at, cell))
+        return;
+    const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,
+                               cell[2] / CSG_BLOCK_EDGE};
+    if (!room->has_last || memcmp(room->last, place, sizeof place)) {
+        memcpy(room->last, place, sizeof place);
+        room->found = csg_block_index_find(m->index, m->blocks, place);
+        room->has_last = true;
+    }
+    const csg_block *block = room->found;
+    if (!block)
+        return;
+    room->nodes[i] = block->nodes;
+    room->node_count[i] = block->node_count;
+    if (!block->parts)
+        return;
+    unsigned octant = 0;
+    for (unsigned axis = 0; axis < 3; axis++)
+        octant |= (cell[axis] % CSG_BLOCK_EDGE >= CSG_PART_EDGE ? 1u : 0u) << axis;
+    if (block->parts[octant].state == CSG_CELL_SURFACE) {
+        room->nodes[i] = block->parts[octant].nodes;
+        room->node_count[i] = block->parts[octant].node_count;
+    }
+}
+
+/* Gathers the points that share the tape of point `first`; their tapes are then crossed out. */
+static size_t gather(csg_probe_room *room, const float (*at)[3], size_t first, size_t count)
+{
+    const csg_tape_node *nodes = room->nodes[first];
+    size_t n = 0;
+    for (size_t i = first; i < count; i++) {
+        if (room->nodes[i] != nodes)
+            continue;
+        room->nodes[i] = NULL;
+        room->x[n] = at[i][0];
+        room->y[n] = at[i][1];
+        room->z[n] = at[i][2];
+        room->which[n++] = (uint32_t)i;
+    }
+    size_t padded = (n + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
+    for (size_t i = n; i < padded; i++) {
+        room->x[i] = room->x[0];
+        room->y[i] = room->y[0];
+        room->z[i] = room->z[0];
+    }
+    return n;
+}
+
+/* Calls visit once for each tape, with its points gathered. */
+typedef void visit_tape(csg_probe *probe, const csg_tape *tape, size_t count, void *out);
+
+static void each_tape(csg_probe *probe, const float (*at)[3], size_t count, visit_tape *visit,
+                      void *out)
+{
+    csg_probe_room *room = probe->room;
+    csg_tape tape = probe->marching->field->tape;
+    for (size_t i = 0; i < count; i++)
+        choose_tape(probe, at[i], i);
+    for (size_t i = 0; i < count; i++) {
+        if (!room->nodes[i])
+            continue;
+        tape.nodes = room->nodes[i];
+        tape.count = room->node_count[i];
+        visit(probe, &tape, gather(room, at, i, count), out);
+    }
+    probe->evaluations += count;
+}
+
+/* ---- what is asked ----------------------------------------------------------------------------
+ */
+
+static void visit_values(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
+{
+    csg_probe_room *room = probe->room;
+    float *f = out;
+    probe->marching->kernel->values(tape, room->x, room->y, room->z, count, room->channels[0],
+                                    probe->scratch, probe->scratch_floats);
+    for (size_t i = 0; i < count; i++)
+        f[room->which[i]] = room->channels[0][i];
+}
+
+void csg_probe_values(csg_probe *probe, const float (*at)[3], size_t count, float *out)
+{
+    each_tape(probe, at, count, visit_values, out);
+}
+
+static void visit_gradients(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
+{
+    csg_probe_room *room = probe->room;
+    float(*g)[3] = out;
+    probe->marching->kernel->gradients(tape, room->x, room->y, room->z, count, room->channels[0],
+                                       room->channels[1], room->channels[2], probe->scratch,
+                                       probe->scratch_floats);
+    for (size_t i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            g[room->which[i]][c] = room->channels[c][i];
+}
+
+void csg_probe_gradients(csg_probe *probe, const float (*at)[3], size_t count, float (*out)[3])
+{
+    each_tape(probe, at, count, visit_gradients, out);
+}
+
+/* ---- colours and materials --------------------------------------------------------------------
+ */
+
+static float within(float v, float high)
+{
+    return v < 0 ? 0 : v > high ? high : v;
+}
+
+static void visit_colors(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
+{
+    csg_probe_room *room = probe->room;
+    uint8_t(*rgba)[4] = out;
+    float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
+                          room->channels[3]};
+    probe->marching->kernel->colors(tape, room->x, room->y, room->z, count, channels,
+                                    probe->scratch, probe->scratch_floats);
+    for (size_t i = 0; i < count; i++)
+        for (int c = 0; c < 4; c++)
+            rgba[room->which[i]][c] = (uint8_t)within(channels[c][i] * 255.0f + 0.5f, 255);
+}
+
+static void visit_materials(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
+{
+    csg_probe_room *room = probe->room;
+    uint16_t(*pair)[2] = out;
+    float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
+                          room->channels[3]};
+    csg_tape shaded = *tape;
+    shaded.colors = probe->marching->field->materials;
+    if (shaded.colors)
+        probe->marching->kernel->colors(&shaded, room->x, room->y, room->z, count, channels,
+                                        probe->scratch, probe->scratch_floats);
+    for (size_t i = 0; i < count; i++) {
+        float m = shaded.colors ? channels[0][i] : csg_default_material.r;
+        float r = shaded.colors ? channels[1][i] : csg_default_material.g;
+        pair[room->which[i]][0] = (uint16_t)within(m * 10000.0f + 0.5f, 10000);
+        pair[room->which[i]][1] = (uint16_t)within(r * 10000.0f + 0.5f, 10000);
+    }
+}
+
+void csg_probe_looks(csg_probe *probe, const float (*at)[3], size_t count, uint8_t (*colors)[4],
+                     uint16_t (*materials)[2])
+{
+    if (colors)
+        each_tape(probe, at, count, visit_colors, colors);
+    if (materials)
+        each_tape(probe, at, count, visit_materials, materials);
+}

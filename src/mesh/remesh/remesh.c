@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT
+ * Beginning and ending; see remesh.h. Checks against the field are in check.c.
+ */
+#include "mesh/remesh/remesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BATCH = CSG_PROBE_MOST };
+
+static const double CREASE_COS = 0.94;     /* 20 degrees between normals */
+static const double ON_SURFACE = 0.02;     /* distance of a centroid, in longest sides */
+static const double SHARP_TURN_COS = 0.85; /* of a crease at a vertex: a corner beyond it */
+
+/* ---- creases ----------------------------------------------------------------------------------
+ */
+
+typedef struct face {
+    csg_vec3 normal; /* unit */
+    bool flat;       /* on the surface, and no sliver */
+} face;
+
+static face face_of(const csg_remesh *r, uint32_t triangle, float value)
+{
+    csg_vec3 a = csg_remesh_corner(r, 3 * triangle), b = csg_remesh_corner(r, 3 * triangle + 1),
+             c = csg_remesh_corner(r, 3 * triangle + 2);
+    csg_vec3 cross = csg_triangle_cross(a, b, c);
+    double longest = csg_triangle_longest_side((const csg_vec3[3]){a, b, c});
+    double slope = (double)r->probe.marching->field->tape.lipschitz;
+    bool near = fabs((double)value) <= ON_SURFACE * longest * slope + 4 * (double)r->probe.noise;
+    return (face){csg_vec3_normalize(cross), near && csg_triangle_quality(a, b, c) > 0.05};
+}
+
+/* Centroids of the triangles that are there, of at most a batch from `first` on. */
+static size_t centroids_of(const csg_remesh *r, uint32_t first, float (*at)[3], uint32_t *of)
+{
+    size_t n = 0;
+    for (uint32_t t = first; t < r->corners.triangle_count && t - first < BATCH; t++) {
+        if (!csg_corners_is_live(&r->corners, t))
+            continue;
+        csg_vec3 sum = csg_vec3_add(
+            csg_remesh_corner(r, 3 * t),
+            csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
+        csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+        of[n++] = t;
+    }
+    return n;
+}
+
+void csg_remesh_values_at_centroids(csg_remesh *r, float *value)
+{
+    float at[BATCH][3], f[BATCH];
+    uint32_t of[BATCH];
+    for (uint32_t first = 0; first < r->corners.triangle_count; first += BATCH) {
+        size_t n = centroids_of(r, first, at, of);
+        if (n)
+            csg_probe_values(&r->probe, (const float(*)[3])at, n, f);
+        for (size_t i = 0; i < n; i++)
+            value[of[i]] = f[i];
+    }
+}
+
+static int compare_values(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+double csg_remesh_common_value(float *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_values);
+    return count ? (double)values[count - 1 - count / 50] : 0;
+}
+
+/* What the creases at a vertex make it. */
+static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const face *faces)
+{
+    uint32_t first = r->corners.corner[vertex], c = first, creases = 0;
+    csg_vec3 way[2] = {{0, 0, 0}, {0, 0, 0}};
+    do {
+        const face *left = &faces[c / 3];
+        const face *right = &faces[r->corners.across[csg_corner_previous(c)] / 3];
+        if (left->flat && right->flat && csg_vec3_dot(left->normal, right->normal) < CREASE_COS) {
+            csg_vec3 to = csg_remesh_corner(r, csg_corner_next(c));
+            if (creases < 2)
+                way[creases] = csg_vec3_normalize(csg_vec3_sub(to, r->at[vertex]));
+            creases++;
+        }
+        c = csg_corner_swing(&r->corners, c);
+    } while (c != first);
+    if (creases == 0)
+        return CSG_VERTEX_SMOOTH;
+    bool straight = creases == 1 || csg_vec3_dot(way[0], way[1]) < -SHARP_TURN_COS;
+    return creases <= 2 && straight ? CSG_VERTEX_CREASE : CSG_VERTEX_CORNER;
+}
+
+static bool find_creases(csg_remesh *r)
+{
+    size_t count = r->corners.triangle_count;
+    float *value = csg_memory_alloc(r->memory, count * sizeof *value);
+    face *faces = csg_memory_alloc(r->memory, count * sizeof *faces);
+    if (value && faces) {
+        csg_remesh_values_at_centroids(r, value);
+        for (uint32_t t = 0; t < count; t++)
+            faces[t] = face_of(r, t, value[t]);
+        for (uint32_t v = 0; v < r->corners.vertex_count; v++)
+            r->kind[v] =
+                r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, faces);
+    }
+    bool done = value && faces;
+    csg_memory_release(r->memory, value, count * sizeof *value);
+    csg_memory_release(r->memory, faces, count * sizeof *faces);
+    return done;
+}
+
+bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
+{
+    uint32_t apex = csg_corner_previous(corner), other = r->corners.across[apex];
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    if (r->kind[r->corners.vertex[corner]] == CSG_VERTEX_SMOOTH ||
+        r->kind[r->corners.vertex[csg_corner_next(corner)]] == CSG_VERTEX_SMOOTH)
+        return false;
+    csg_vec3 left = csg_vec3_normalize(csg_triangle_cross(a, b, csg_remesh_corner(r, apex)));
+    csg_vec3 right = csg_vec3_normalize(csg_triangle_cross(b, a, csg_remesh_corner(r, other)));
+    return csg_vec3_dot(left, right) < CREASE_COS;
+}
+
+/* ---- beginning ---------------------------------------------------------------------------------
+ */
+
+static void copy_vertices(csg_remesh *r)
+{
+    const csgm_mesh *mesh = r->work->mesh;
+    csg_vec3 shift = r->work->marching.shift;
+    for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
+        const float *p = mesh->positions + 3 * (size_t)v;
+        csg_vec3 at = csg_vec3_make((double)p[0], (double)p[1], (double)p[2]);
+        r->at[v] = csg_vec3_sub(at, shift);
+        if (r->looks && mesh->colors)
+            memcpy(r->looks[v].color, mesh->colors + 4 * (size_t)v, 4);
+        if (r->looks && mesh->materials)
+            memcpy(r->looks[v].material, mesh->materials + 2 * (size_t)v, 2 * sizeof(uint16_t));
+    }
+}
+
+static bool take_arrays(csg_remesh *r)
+{
+    const csgm_mesh *mesh = r->work->mesh;
+    size_t count = r->corners.vertex_count;
+    bool looks = mesh->colors || mesh->materials;
+    r->at = csg_memory_alloc(r->memory, count * sizeof *r->at);
+    r->kind = csg_memory_alloc(r->memory, count);
+    if (looks && (r->looks = csg_memory_alloc(r->memory, count * sizeof *r->looks)))
+        memset(r->looks, 0, count * sizeof *r->looks);
+    return r->at && r->kind && (!looks || r->looks);
+}
+
+csgm_status csg_remesh_begin(csg_remesh *r, csg_mesh_work *work)
+{
+    const csgm_mesh *mesh = work->mesh;
+    *r = (csg_remesh){
+        .work = work, .memory = &work->context->memory, .cell = work->lattice.cell_size};
+    csg_corners_result result = csg_corners_make(&r->corners, r->memory, mesh->indices,
+                                                 mesh->triangle_count, mesh->vertex_count);
+    if (result == CSG_CORNERS_NOT_CLOSED)
+        return CSGM_ERR_INTERNAL;
+    bool done = result == CSG_CORNERS_MADE && take_arrays(r) && csg_probe_make(&r->probe, work);
+    if (done) {
+        copy_vertices(r);
+        done = find_creases(r) && csg_triangle_tree_make(&r->tree, &r->corners, r->at);
+    }
+    if (done)
+        return CSGM_OK;
+    csg_remesh_end(r);
+    return csg_context_no_memory(work->context);
+}
+
+void csg_remesh_end(csg_remesh *r)
+{
+    size_t count = r->corners.vertex_count;
+    csg_memory_release(r->memory, r->at, count * sizeof *r->at);
+    csg_memory_release(r->memory, r->kind, count);
+    csg_memory_release(r->memory, r->looks, count * sizeof *r->looks);
+    csg_probe_release(&r->probe);
+    csg_triangle_tree_release(&r->tree);
+    csg_corners_release(&r->corners);
+    *r = (csg_remesh){0};
+}

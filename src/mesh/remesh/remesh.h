@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT
+ * A finished mesh while it is being changed against its field: connectivity, places in the field's
+ * frame, what kind of vertex each is, and the checks that every change must pass.
+ * reshape/decimate.c collapses edges, reshape/improve.c moves vertices and flips edges,
+ * reshape/tolerance.c decides and writes the result back.
+ */
+#ifndef CSG_MESH_REMESH_REMESH_H
+#define CSG_MESH_REMESH_REMESH_H
+
+#include "mesh/remesh/corners.h"
+#include "mesh/remesh/crossing.h"
+#include "mesh/remesh/probe.h"
+#include "mesh/remesh/triangle.h"
+
+typedef enum csg_vertex_kind {
+    CSG_VERTEX_SMOOTH,
+    CSG_VERTEX_CREASE, /* moves along its crease only */
+    CSG_VERTEX_CORNER  /* stays */
+} csg_vertex_kind;
+
+typedef struct csg_look_at_vertex {
+    uint8_t color[4];
+    uint16_t material[2];
+} csg_look_at_vertex;
+
+typedef struct csg_remesh {
+    csg_mesh_work *work;
+    csg_memory *memory;
+    csg_probe probe;
+    csg_corners corners;
+    csg_triangle_tree tree;    /* of these, kept true by whoever changes them */
+    csg_vec3 *at;              /* per vertex, field frame */
+    uint8_t *kind;             /* per vertex: csg_vertex_kind */
+    csg_look_at_vertex *looks; /* per vertex; NULL: the mesh has neither colours nor materials */
+    double cell;               /* edge of a cell */
+    double error;              /* that changes may make: distance both ways */
+} csg_remesh;
+
+/* Of work->mesh, whose creases are found by angle: where triangles that lie on the surface meet at
+ * 20 degrees or more. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL: not a closed manifold. */
+csgm_status csg_remesh_begin(csg_remesh *remesh, csg_mesh_work *work);
+void csg_remesh_end(csg_remesh *remesh);
+/* The mesh as it is now in place of work->mesh's; gaps in the numbers are closed. split: a vertex
+ * for each sheet at creases and corners. */
+csgm_status csg_remesh_write_back(csg_remesh *remesh, bool normals, bool split);
+
+static inline csg_vec3 csg_remesh_corner(const csg_remesh *remesh, uint32_t c)
+{
+    return remesh->at[remesh->corners.vertex[c]];
+}
+
+/* The field at the centroids of all triangles; out[t] of one that is gone stays as it is. */
+void csg_remesh_values_at_centroids(csg_remesh *remesh, float *out);
+/* What only a fiftieth of the values exceed, 0 of none; they get sorted. */
+double csg_remesh_common_value(float *values, size_t count);
+
+/* Whether the edge that starts at this corner belongs to a crease: both ends do and its triangles
+ * meet at an angle. */
+bool csg_remesh_is_crease(const csg_remesh *remesh, uint32_t corner);
+
+/* The nearest place on the surface, by Newton's steps along the gradient. False: none within
+ * `reach`. */
+bool csg_remesh_project(csg_remesh *remesh, csg_vec3 *at, double reach);
+csg_look_at_vertex csg_remesh_look(csg_remesh *remesh, csg_vec3 at);
+
+/* Whether triangles (a[i], b[i], c[i]) lie within `error` of the surface at evenly spread points: a
+ * step along the normal leads outside, the same step back inside. So a triangle faces outward, and
+ * two sheets that face each other cannot cross: each keeps to its half of the room between them. */
+bool csg_remesh_brackets(csg_remesh *remesh, const csg_vec3 (*triangles)[3], size_t count);
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * A tree of boxes over the triangles of a mesh that is being changed, in the order of their
+ * numbers. Marching cubes numbers them block by block in Morton order, and what replaces a triangle
+ * lies where it was: so the tree stays good without being rebuilt, boxes are only filled in again.
+ */
+#ifndef CSG_MESH_REMESH_TRIANGLE_TREE_H
+#define CSG_MESH_REMESH_TRIANGLE_TREE_H
+
+#include "base/geometry.h"
+#include "mesh/remesh/corners.h"
+
+enum {
+    CSG_TRIANGLES_A_LEAF = 4,
+    CSG_TRIANGLE_TREE_STACK = 64 /* one child waits a level, and there are 31 at most */
+};
+
+typedef struct csg_triangle_box {
+    float min[3], max[3]; /* rounded outwards; min > max: nothing there */
+} csg_triangle_box;
+
+/* Over places that may change; it tells of them as they are. */
+typedef struct csg_triangle_tree {
+    const csg_corners *corners;
+    const csg_vec3 *at;
+    csg_triangle_box *nodes; /* a heap: the children of i are 2 i and 2 i + 1 */
+    size_t leaf_count;       /* a power of two */
+    double noise;            /* of places, rounded to floats as vertices are */
+} csg_triangle_tree;
+
+/* False: out of memory, nothing to release. */
+bool csg_triangle_tree_make(csg_triangle_tree *tree, const csg_corners *corners,
+                            const csg_vec3 *at);
+void csg_triangle_tree_release(csg_triangle_tree *tree);
+
+/* After a triangle has changed, or is gone. */
+void csg_triangle_tree_update(csg_triangle_tree *tree, uint32_t triangle);
+void csg_triangle_tree_update_around(csg_triangle_tree *tree, uint32_t vertex);
+
+/* Behind the last triangle of a leaf. */
+static inline size_t csg_triangle_tree_end(const csg_triangle_tree *tree, size_t leaf)
+{
+    size_t end = (leaf + 1) * CSG_TRIANGLES_A_LEAF;
+    return end < tree->corners->triangle_count ? end : tree->corners->triangle_count;
+}
+
+csg_triangle_box csg_triangle_box_of(const csg_vec3 triangle[3]);
+bool csg_triangle_boxes_overlap(const csg_triangle_box *a, const csg_triangle_box *b);
+void csg_triangle_tree_corners(const csg_triangle_tree *tree, uint32_t triangle, csg_vec3 out[3]);
+
+/* The distance of the nearest triangle, INFINITY where it is `most` or more. triangle may be NULL.
+ * Any thread. */
+double csg_triangle_tree_nearest(const csg_triangle_tree *tree, csg_vec3 at, double most,
+                                 uint32_t *triangle);
+
+#endif

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ * One edge: what its collapse would cost, and whether it may be made. The place of the new vertex
+ * is that of least error, brought back to the surface; at creases one of the edge's ends, which lie
+ * on them.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/reshape/decimate_private.h"
+
+/* Places for the new vertex, the best first. */
+typedef struct proposal {
+    csg_vec3 at[3];
+    bool exact[3]; /* an end of the edge: on the surface already */
+    int count;
+} proposal;
+
+static void propose(proposal *p, csg_vec3 at, bool exact)
+{
+    p->at[p->count] = at;
+    p->exact[p->count++] = exact;
+}
+
+/* Creases are not left, corners do not move. */
+static proposal places_of(const csg_decimation *d, const csg_quadric *q, uint32_t from, uint32_t to)
+{
+    const csg_remesh *r = d->remesh;
+    csg_vec3 a = r->at[from], b = r->at[to];
+    uint8_t kind_a = r->kind[from], kind_b = r->kind[to];
+    proposal p = {.count = 0};
+    if (kind_a == CSG_VERTEX_CORNER && kind_b == CSG_VERTEX_CORNER)
+        return p;
+    if (kind_a != CSG_VERTEX_SMOOTH && kind_b != CSG_VERTEX_SMOOTH &&
+        !csg_remesh_is_crease(r, csg_corners_find_edge(&r->corners, from, to)))
+        return p;
+    bool a_first = csg_quadric_error(q, a) < csg_quadric_error(q, b);
+    if (kind_a != kind_b) {
+        propose(&p, kind_a > kind_b ? a : b, true);
+        return p;
+    }
+    csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5), best;
+    double reach = 2 * csg_vec3_norm(csg_vec3_sub(a, b));
+    if (kind_a == CSG_VERTEX_SMOOTH && csg_quadric_least(q, middle, &best) &&
+        csg_vec3_norm(csg_vec3_sub(best, middle)) <= reach)
+        propose(&p, best, false);
+    propose(&p, a_first ? a : b, true);
+    if (kind_a == CSG_VERTEX_CREASE)
+        propose(&p, a_first ? b : a, true);
+    return p;
+}
+
+double csg_collapse_cost(const csg_decimation *d, uint32_t from, uint32_t to)
+{
+    /* Of two that cost nothing the shorter edge goes first: flat parts thin out evenly. */
+    static const double LENGTH_SHARE = 1e-6;
+    const csg_remesh *r = d->remesh;
+    csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
+    proposal p = places_of(d, &q, from, to);
+    csg_vec3 edge = csg_vec3_sub(r->at[from], r->at[to]);
+    double square = csg_vec3_dot(edge, edge);
+    return p.count ? csg_quadric_error(&q, p.at[0]) + LENGTH_SHARE * square * square : -1;
+}
+
+/* ---- the ring ----------------------------------------------------------------------------------
+ */
+
+static void add_fan(csg_decimation *d, uint32_t vertex, uint32_t other)
+{
+    csg_collapse_room *room = d->room;
+    const csg_remesh *r = d->remesh;
+    const csg_corners *m = &r->corners;
+    uint32_t first = m->corner[vertex], c = first;
+    do {
+        uint32_t v = m->vertex[csg_corner_next(c)], w = m->vertex[csg_corner_previous(c)];
+        if (v != other && w != other) {
+            uint32_t i = room->count++;
+            room->triangle[i] = c / 3;
+            room->vertex[i][0] = vertex;
+            room->vertex[i][1] = v;
+            room->vertex[i][2] = w;
+            for (int k = 0; k < 3; k++)
+                room->before[i][k] = r->at[room->vertex[i][k]];
+        }
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+}
+
+static void find_ring(csg_decimation *d, uint32_t from, uint32_t to, uint32_t corner)
+{
+    csg_collapse_room *room = d->room;
+    const csg_corners *m = &d->remesh->corners;
+    room->count = 0;
+    add_fan(d, from, to);
+    add_fan(d, to, from);
+    room->triangle[room->count] = corner / 3;
+    room->triangle[room->count + 1] = m->across[csg_corner_previous(corner)] / 3;
+    for (uint32_t i = 0; i < room->count; i++)
+        room->vertex[i][0] = to;
+}
+
+static void move_ring(csg_collapse_room *room, csg_vec3 at)
+{
+    for (uint32_t i = 0; i < room->count; i++) {
+        room->after[i][0] = at;
+        room->after[i][1] = room->before[i][1];
+        room->after[i][2] = room->before[i][2];
+    }
+}
+
+/* No triangle turns over, and none becomes a worse sliver than there is, or than is useful. */
+static bool has_shape(const csg_collapse_room *room)
+{
+    static const double USEFUL = 0.004, TURN_COS = 0.1, SOUND = 0.02;
+    double worst = 1;
+    for (uint32_t i = 0; i < room->count; i++) {
+        const csg_vec3 *v = room->before[i];
+        worst = fmin(worst, csg_triangle_quality(v[0], v[1], v[2]));
+    }
+    for (uint32_t i = 0; i < room->count; i++) {
+        const csg_vec3 *v = room->before[i], *w = room->after[i];
+        double after = csg_triangle_quality(w[0], w[1], w[2]);
+        if (!(after >= fmin(worst, USEFUL)))
+            return false;
+        csg_vec3 old = csg_triangle_cross(v[0], v[1], v[2]);
+        csg_vec3 new = csg_triangle_cross(w[0], w[1], w[2]);
+        if (csg_triangle_quality(v[0], v[1], v[2]) > SOUND &&
+            csg_vec3_dot(old, new) < TURN_COS * csg_vec3_norm(old) * csg_vec3_norm(new))
+            return false;
+    }
+    return true;
+}
+
+/* ---- the collapse ------------------------------------------------------------------------------
+ */
+
+static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
+{
+    const csg_collapse_room *room = d->room;
+    const csg_crossing_change change = {.at = (const csg_vec3(*)[3])room->after,
+                                        .vertex = (const uint32_t(*)[3])room->vertex,
+                                        .count = room->count,
+                                        .vertices = {from, to},
+                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
+    return csg_crossing_is_made(&d->remesh->tree, &change);
+}
+
+static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
+                          uint32_t to)
+{
+    csg_remesh *r = d->remesh;
+    *at = p->at[i];
+    if (!p->exact[i] && !csg_remesh_project(r, at, r->cell))
+        return false;
+    move_ring(d->room, *at);
+    if (!has_shape(d->room))
+        return false;
+    if (r->looks && p->exact[i])
+        d->room->look = memcmp(at, &r->at[from], sizeof *at) ? r->looks[to] : r->looks[from];
+    else if (r->looks)
+        d->room->look = csg_remesh_look(r, *at);
+    return csg_decimation_can_hand_over(d, to) &&
+           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count) &&
+           !crosses(d, from, to);
+}
+
+static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t to, csg_vec3 at)
+{
+    csg_remesh *r = d->remesh;
+    csg_decimation_hand_over(d);
+    csg_corners_collapse(&r->corners, corner);
+    r->at[to] = at;
+    csg_triangle_tree_update_around(&r->tree, to);
+    for (uint32_t i = 0; i < 2; i++)
+        csg_triangle_tree_update(&r->tree, d->room->triangle[d->room->count + i]);
+    r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
+    if (r->looks)
+        r->looks[to] = d->room->look;
+    d->quadrics[to] = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
+    d->version[to]++;
+    d->version[from]++;
+}
+
+bool csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
+{
+    csg_remesh *r = d->remesh;
+    uint32_t corner = csg_corners_find_edge(&r->corners, from, to);
+    if (corner == CSG_CORNER_NONE || !csg_corners_can_collapse(&r->corners, corner))
+        return false;
+    csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
+    proposal p = places_of(d, &q, from, to);
+    find_ring(d, from, to, corner);
+    for (int i = 0; i < p.count; i++) {
+        csg_vec3 at;
+        if (place_is_good(d, &p, i, &at, from, to)) {
+            collapse(d, corner, from, to, at);
+            return true;
+        }
+    }
+    return false;
+}

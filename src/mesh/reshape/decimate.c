@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT
+ * The order of collapses; see decimate.h. A queue by cost, then by number, so the result depends on
+ * nothing but the mesh; entries whose ends have changed since are dropped when they come up. What
+ * was refused is tried again once everything else is done, for as long as that is worth while.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/reshape/decimate_private.h"
+
+/* ---- the queue ---------------------------------------------------------------------------------
+ */
+
+static bool is_before(const csg_waiting *a, const csg_waiting *b)
+{
+    if (a->cost != b->cost)
+        return a->cost < b->cost;
+    return a->from != b->from ? a->from < b->from : a->to < b->to;
+}
+
+static bool push(csg_decimation *d, csg_waiting entry)
+{
+    csg_collapse_queue *q = d->queue;
+    if (!csg_memory_reserve(d->remesh->memory, (void **)&q->heap, &q->capacity, q->count + 1,
+                            sizeof entry))
+        return false;
+    size_t i = q->count++;
+    for (; i && is_before(&entry, &q->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        q->heap[i] = q->heap[(i - 1) / 2];
+    q->heap[i] = entry;
+    return true;
+}
+
+static csg_waiting pop(csg_collapse_queue *q)
+{
+    csg_waiting first = q->heap[0], last = q->heap[--q->count];
+    size_t i = 0;
+    for (size_t child = 1; child < q->count; child = 2 * i + 1) {
+        if (child + 1 < q->count && is_before(&q->heap[child + 1], &q->heap[child]))
+            child++;
+        if (!is_before(&q->heap[child], &last))
+            break;
+        q->heap[i] = q->heap[child];
+        i = child;
+    }
+    q->heap[i] = last;
+    return first;
+}
+
+static bool push_edge(csg_decimation *d, uint32_t a, uint32_t b)
+{
+    uint32_t from = a < b ? b : a, to = a < b ? a : b;
+    double cost = csg_collapse_cost(d, from, to);
+    if (cost < 0)
+        return true;
+    return push(d, (csg_waiting){(float)cost, from, to, d->version[from] + d->version[to]});
+}
+
+static bool push_all(csg_decimation *d)
+{
+    const csg_corners *m = &d->remesh->corners;
+    for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
+        if (!csg_corners_is_live(m, c / 3))
+            continue;
+        uint32_t a = m->vertex[c], b = m->vertex[csg_corner_next(c)];
+        if (a < b && !push_edge(d, a, b))
+            return false;
+    }
+    return true;
+}
+
+static bool push_around(csg_decimation *d, uint32_t vertex)
+{
+    const csg_corners *m = &d->remesh->corners;
+    uint32_t first = m->corner[vertex], c = first;
+    do {
+        if (!push_edge(d, vertex, m->vertex[csg_corner_next(c)]))
+            return false;
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+    return true;
+}
+
+/* ---- quadrics ----------------------------------------------------------------------------------
+ */
+
+enum { BATCH = CSG_PROBE_MOST };
+
+/* A triangle on the surface is its own plane. One that cuts off a crease or a tight curve is
+ * replaced by the tangent planes at its corners: those lead back to the crease. */
+static void add_triangle(csg_decimation *d, uint32_t triangle, const csg_vec3 *tangents)
+{
+    csg_remesh *r = d->remesh;
+    csg_vec3 v[3], cross;
+    for (uint32_t k = 0; k < 3; k++)
+        v[k] = csg_remesh_corner(r, 3 * triangle + k);
+    cross = csg_triangle_cross(v[0], v[1], v[2]);
+    double weight = csg_vec3_norm(cross) / 6;
+    csg_vec3 normal = csg_vec3_normalize(cross);
+    csg_quadric sum = {0};
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t vertex = r->corners.vertex[3 * triangle + k];
+        csg_vec3 plane = r->kind[vertex] == CSG_VERTEX_SMOOTH ? tangents[vertex] : normal;
+        if (!(csg_vec3_dot(plane, plane) > 0.5))
+            plane = normal;
+        sum = csg_quadric_add(sum, csg_quadric_of_plane(v[k], plane, weight));
+    }
+    for (uint32_t k = 0; k < 3; k++) {
+        csg_quadric *q = &d->quadrics[r->corners.vertex[3 * triangle + k]];
+        *q = csg_quadric_add(*q, sum);
+    }
+}
+
+/* Unit normals of the field at all vertices, zero at critical points. */
+static void find_tangents(csg_remesh *r, csg_vec3 *out)
+{
+    float at[BATCH][3], g[BATCH][3];
+    for (uint32_t first = 0; first < r->corners.vertex_count; first += BATCH) {
+        uint32_t n = r->corners.vertex_count - first;
+        n = n < BATCH ? n : BATCH;
+        for (uint32_t i = 0; i < n; i++) {
+            csg_vec3 p = r->at[first + i];
+            at[i][0] = (float)p.x, at[i][1] = (float)p.y, at[i][2] = (float)p.z;
+        }
+        csg_probe_gradients(&r->probe, (const float(*)[3])at, n, g);
+        for (uint32_t i = 0; i < n; i++)
+            out[first + i] = csg_vec3_normalize(
+                csg_vec3_make(-(double)g[i][0], -(double)g[i][1], -(double)g[i][2]));
+    }
+}
+
+static bool make_quadrics(csg_decimation *d)
+{
+    csg_remesh *r = d->remesh;
+    size_t count = r->corners.vertex_count;
+    csg_vec3 *tangents = csg_memory_alloc(r->memory, count * sizeof *tangents);
+    if (!tangents)
+        return false;
+    find_tangents(r, tangents);
+    memset(d->quadrics, 0, count * sizeof *d->quadrics);
+    for (uint32_t t = 0; t < r->corners.triangle_count; t++)
+        if (csg_corners_is_live(&r->corners, t))
+            add_triangle(d, t, tangents);
+    csg_memory_release(r->memory, tangents, count * sizeof *tangents);
+    return true;
+}
+
+/* ---- beginning and ending ----------------------------------------------------------------------
+ */
+
+static bool keep_looks(csg_decimation *d)
+{
+    const csg_remesh *r = d->remesh;
+    size_t bytes = r->corners.vertex_count * sizeof *r->looks;
+    if (!r->looks)
+        return true;
+    csg_look_at_vertex *copy = csg_memory_alloc(r->memory, bytes);
+    if (copy)
+        memcpy(copy, r->looks, bytes);
+    d->originals = copy;
+    return copy != NULL;
+}
+
+static bool take_arrays(csg_decimation *d)
+{
+    csg_remesh *r = d->remesh;
+    size_t vertices = r->corners.vertex_count, triangles = r->corners.triangle_count;
+    csg_memory *memory = r->memory;
+    d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
+    d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
+    d->sample_capacity = vertices + triangles + (d->missed ? d->missed->count : 0);
+    d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
+    d->next_sample = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->next_sample);
+    d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
+    d->queue = csg_memory_alloc(memory, sizeof *d->queue);
+    d->room = csg_memory_alloc(memory, sizeof *d->room);
+    if (d->queue)
+        *d->queue = (csg_collapse_queue){0};
+    if (d->room)
+        memset(d->room, 0, sizeof *d->room);
+    if (d->version)
+        memset(d->version, 0, vertices * sizeof *d->version);
+    return d->quadrics && d->version && d->samples && d->next_sample && d->first_sample &&
+           d->queue && d->room && keep_looks(d);
+}
+
+csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed)
+{
+    *d = (csg_decimation){.remesh = remesh, .missed = missed};
+    if (take_arrays(d) && make_quadrics(d) && csg_decimation_make_samples(d))
+        return CSGM_OK;
+    csg_decimation_end(d);
+    return csg_context_no_memory(remesh->work->context);
+}
+
+void csg_decimation_end(csg_decimation *d)
+{
+    if (!d->remesh)
+        return;
+    csg_memory *memory = d->remesh->memory;
+    size_t vertices = d->remesh->corners.vertex_count;
+    size_t triangles = d->remesh->corners.triangle_count;
+    csg_memory_release(memory, d->quadrics, vertices * sizeof *d->quadrics);
+    csg_memory_release(memory, d->version, vertices * sizeof *d->version);
+    csg_memory_release(memory, d->samples, d->sample_capacity * sizeof *d->samples);
+    csg_memory_release(memory, d->next_sample, d->sample_capacity * sizeof *d->next_sample);
+    csg_memory_release(memory, d->first_sample, triangles * sizeof *d->first_sample);
+    csg_memory_release(memory, (void *)d->originals, vertices * sizeof *d->originals);
+    if (d->queue)
+        csg_memory_release(memory, d->queue->heap, d->queue->capacity * sizeof *d->queue->heap);
+    if (d->room)
+        csg_memory_release(memory, d->room->owner, d->room->owner_capacity * sizeof(uint32_t));
+    csg_memory_release(memory, d->queue, sizeof *d->queue);
+    csg_memory_release(memory, d->room, sizeof *d->room);
+    *d = (csg_decimation){0};
+}
+
+/* ---- the loop ----------------------------------------------------------------------------------
+ */
+
+/* Once through the queue. */
+static csgm_status run_queue(csg_decimation *d, uint32_t least)
+{
+    enum { LOOK_UP_EVERY = 256 };
+    csg_remesh *r = d->remesh;
+    for (uint64_t i = 0; d->queue->count && r->corners.live > least; i++) {
+        csg_waiting entry = pop(d->queue);
+        if (r->corners.corner[entry.from] == CSG_CORNER_NONE ||
+            r->corners.corner[entry.to] == CSG_CORNER_NONE ||
+            entry.version != d->version[entry.from] + d->version[entry.to])
+            continue;
+        if (i % LOOK_UP_EVERY == 0 && csg_mesh_should_stop(r->work))
+            return csg_mesh_why_stopped(r->work);
+        d->tried++;
+        if (!csg_collapse_try(d, entry.from, entry.to))
+            continue;
+        d->made++;
+        if (!push_around(d, entry.to))
+            return csg_context_no_memory(r->work->context);
+    }
+    return CSGM_OK;
+}
+
+csgm_status csg_decimate(csg_decimation *d, uint32_t least)
+{
+    enum { MOST_PASSES = 4, WORTH = 20 /* a part of the triangles that a pass must take */ };
+    csg_remesh *r = d->remesh;
+    csgm_status status = CSGM_OK;
+    for (int pass = 0; pass < MOST_PASSES && r->corners.live > least && status == CSGM_OK; pass++) {
+        uint32_t before = r->corners.live;
+        d->queue->count = 0;
+        if (!push_all(d))
+            return csg_context_no_memory(r->work->context);
+        status = run_queue(d, least);
+        if ((uint64_t)(before - r->corners.live) * WORTH < before)
+            break;
+    }
+    return status;
+}

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT
+ * Points of the true surface that watch over a decimation: where each lies, and who answers for it.
+ * So the distance from the surface to the mesh is known at all of them at any time.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/reshape/decimate_private.h"
+
+enum { BATCH = CSG_PROBE_MOST };
+
+/* Colours and materials may be off by this much where a sample meets the mesh. */
+enum { COLOR_STEP = 12, MATERIAL_STEP = 500 };
+
+/* ---- making ------------------------------------------------------------------------------------
+ */
+
+static void add_sample(csg_decimation *d, const float at[3], uint32_t triangle)
+{
+    uint32_t s = d->sample_count++;
+    memcpy(d->samples[s], at, sizeof d->samples[s]);
+    d->next_sample[s] = d->first_sample[triangle];
+    d->first_sample[triangle] = s;
+}
+
+/* Two Newton steps; what is not on the surface then, or has left the triangle's neighbourhood, is
+ * no sample. */
+static void project(csg_decimation *d, float (*at)[3], const uint32_t *triangles, size_t count)
+{
+    enum { STEPS = 2 };
+    csg_remesh *r = d->remesh;
+    float f[BATCH], g[BATCH][3], start[BATCH][3];
+    memcpy(start, at, count * sizeof *at);
+    for (int step = 0; step <= STEPS; step++) {
+        csg_probe_values(&r->probe, (const float(*)[3])at, count, f);
+        if (step == STEPS)
+            break;
+        csg_probe_gradients(&r->probe, (const float(*)[3])at, count, g);
+        for (size_t i = 0; i < count; i++) {
+            float square = g[i][0] * g[i][0] + g[i][1] * g[i][1] + g[i][2] * g[i][2];
+            for (int axis = 0; axis < 3 && square > 1e-6f; axis++)
+                at[i][axis] -= f[i] * g[i][axis] / square;
+        }
+    }
+    float close = 4 * r->probe.noise + (float)(1e-3 * r->error);
+    for (size_t i = 0; i < count; i++) {
+        double x = (double)(at[i][0] - start[i][0]), y = (double)(at[i][1] - start[i][1]),
+               z = (double)(at[i][2] - start[i][2]);
+        if (fabsf(f[i]) <= close && x * x + y * y + z * z <= 0.25 * r->cell * r->cell)
+            add_sample(d, at[i], triangles[i]);
+    }
+}
+
+static void sample_triangles(csg_decimation *d)
+{
+    csg_remesh *r = d->remesh;
+    float at[BATCH][3];
+    uint32_t triangles[BATCH];
+    size_t n = 0;
+    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
+        if (csg_corners_is_live(&r->corners, t)) {
+            csg_vec3 sum = csg_vec3_add(
+                csg_remesh_corner(r, 3 * t),
+                csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
+            at[n][0] = (float)(sum.x / 3);
+            at[n][1] = (float)(sum.y / 3);
+            at[n][2] = (float)(sum.z / 3);
+            triangles[n++] = t;
+        }
+        if (n == BATCH || (n && t + 1 == r->corners.triangle_count)) {
+            project(d, at, triangles, n);
+            n = 0;
+        }
+    }
+}
+
+bool csg_decimation_make_samples(csg_decimation *d)
+{
+    const csg_remesh *r = d->remesh;
+    memset(d->first_sample, 0xFF, r->corners.triangle_count * sizeof *d->first_sample);
+    for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
+        csg_vec3 p = r->at[v];
+        const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
+        add_sample(d, at, r->corners.corner[v] / 3);
+    }
+    d->vertex_samples = d->sample_count;
+    sample_triangles(d);
+    for (size_t i = 0; d->missed && i < d->missed->count; i++)
+        add_sample(d, d->missed->points[i].at, d->missed->points[i].triangle);
+    return true;
+}
+
+/* ---- handing over ------------------------------------------------------------------------------
+ */
+
+static csg_look_at_vertex look_of(const csg_decimation *d, uint32_t vertex, uint32_t kept)
+{
+    return vertex == kept ? d->room->look : d->remesh->looks[vertex];
+}
+
+/* Whether a vertex's sample has the look that the triangle gives it at this place. */
+static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t triangle,
+                        const double weights[3], uint32_t kept)
+{
+    if (!d->originals || sample >= d->vertex_samples)
+        return true;
+    double color[4] = {0}, material[2] = {0};
+    for (int k = 0; k < 3; k++) {
+        csg_look_at_vertex look = look_of(d, d->room->vertex[triangle][k], kept);
+        for (int c = 0; c < 4; c++)
+            color[c] += weights[k] * look.color[c];
+        for (int c = 0; c < 2; c++)
+            material[c] += weights[k] * look.material[c];
+    }
+    const csg_look_at_vertex *own = &d->originals[sample];
+    for (int c = 0; c < 4; c++)
+        if (fabs(color[c] - own->color[c]) > COLOR_STEP)
+            return false;
+    return fabs(material[0] - own->material[0]) <= MATERIAL_STEP &&
+           fabs(material[1] - own->material[1]) <= MATERIAL_STEP;
+}
+
+/* The triangle that answers for a sample from now on, the first that is near enough by far or else
+ * the nearest; NONE: it would be too far away. */
+static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
+{
+    const csg_collapse_room *room = d->room;
+    double most = d->remesh->error * d->remesh->error, least = INFINITY, best[3] = {0, 0, 0};
+    csg_vec3 p = csg_sample_at(d, sample);
+    uint32_t owner = CSG_CORNER_NONE;
+    for (uint32_t i = 0; i < room->count && least > most / 256; i++) {
+        uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
+        double weights[3], square = csg_triangle_nearest(room->after[k], p, weights);
+        if (square < least) {
+            least = square;
+            owner = k;
+            memcpy(best, weights, sizeof best);
+        }
+    }
+    return least <= most && looks_alike(d, sample, owner, best, kept) ? owner : CSG_CORNER_NONE;
+}
+
+bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept)
+{
+    csg_collapse_room *room = d->room;
+    uint32_t hint = 0;
+    room->owner_count = 0;
+    for (uint32_t i = 0; i < room->count + 2; i++)
+        for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
+             s = d->next_sample[s]) {
+            hint = choose_owner(d, s, i < room->count ? i : hint, kept);
+            if (hint == CSG_CORNER_NONE ||
+                !csg_memory_reserve(d->remesh->memory, (void **)&room->owner, &room->owner_capacity,
+                                    room->owner_count + 1, sizeof *room->owner))
+                return false;
+            room->owner[room->owner_count++] = hint;
+        }
+    return true;
+}
+
+void csg_decimation_hand_over(csg_decimation *d)
+{
+    csg_collapse_room *room = d->room;
+    uint32_t chain = CSG_CORNER_NONE, *end = &chain;
+    for (uint32_t i = 0; i < room->count + 2; i++) {
+        *end = d->first_sample[room->triangle[i]];
+        d->first_sample[room->triangle[i]] = CSG_CORNER_NONE;
+        while (*end != CSG_CORNER_NONE)
+            end = &d->next_sample[*end];
+    }
+    for (size_t i = 0; chain != CSG_CORNER_NONE; i++) {
+        uint32_t s = chain, triangle = room->triangle[room->owner[i]];
+        chain = d->next_sample[s];
+        d->next_sample[s] = d->first_sample[triangle];
+        d->first_sample[triangle] = s;
+    }
+}
+
+double csg_decimation_largest_distance(const csg_decimation *d)
+{
+    const csg_remesh *r = d->remesh;
+    double most = 0;
+    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
+        if (!csg_corners_is_live(&r->corners, t))
+            continue;
+        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
+                               csg_remesh_corner(r, 3 * t + 2)};
+        double weights[3];
+        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->next_sample[s])
+            most = fmax(most, csg_triangle_nearest(v, csg_sample_at(d, s), weights));
+    }
+    return sqrt(most);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes within a tolerance: a mesh of equal cells is made, thinned out as far as the error allows
+ * (decimate.h), improved where that is asked for (improve.h), and then held against the field
+ * (distance/check.h). Where the check fails it is done again, more carefully and, if the resolution
+ * is free, more finely.
+ */
+#ifndef CSG_MESH_RESHAPE_TOLERANCE_H
+#define CSG_MESH_RESHAPE_TOLERANCE_H
+
+#include "mesh/work.h"
+
+/* What is wanted of one field's mesh, and what came of it. */
+typedef struct csg_mesh_goal {
+    double error; /* 0: as `share` has it, or nothing is taken away */
+    double share; /* of the triangles that may stay; 0: as few as `error` allows */
+    bool improve;
+    bool chooses;         /* the cell size */
+    csgm_normals normals; /* of the result */
+    double care;          /* of the error: what changes may make, so that the proof has room */
+    double started_s;     /* for the time limit of all tries */
+    uint32_t tries;       /* before this one */
+    bool is_last;
+    /* results */
+    double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
+    double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
+    uint64_t begun, open;
+    uint64_t unfinished; /* stretches of the surface that were too intricate to look through */
+    csg_vec3 place;      /* of what is open, scene units */
+    bool unproven;       /* it would have taken too long: measured only */
+    bool tight;          /* `share` was out of reach */
+} csg_mesh_goal;
+
+static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
+{
+    return options->tolerance > 0 || options->simplify_error > 0 || options->simplify_share > 0 ||
+           options->improve;
+}
+
+/* Thins out and improves work->mesh as work->goal says. */
+csgm_status csg_mesh_reshape(csg_mesh_work *work);
+
+/* csg_mesh_build_one for options that ask for it. */
+csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *field,
+                                    const csgm_mesh_options *options, const csg_mesh_share *share,
+                                    csgm_mesh **out, csgm_mesh_stats *stats);
+
+#endif
