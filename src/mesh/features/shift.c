@@ -168,8 +168,11 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
             continue;
         to[0] = (float)at.x, to[1] = (float)at.y, to[2] = (float)at.z;
         put(&r, to);
-        if (ring_holds(store, tables, &r, normal) && keep(store, f, &r, from, normal))
-            return true;
+        if (ring_holds(store, tables, &r, normal)) {
+            if (keep(store, f, &r, from, normal))
+                return true;
+            probe->around->out_of_memory = true; /* ends the run: another mesh would come out */
+        }
         for (int k = 0; k < AROUND; k++) {
             *r.f[k] = before[k];
             csg_feature_agree(store, r.f[k]);
