@@ -98,9 +98,10 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
         if (csg_op_is_leaf(node->op)) {
             if (leaves->count >= CSG_CONE_MOST)
                 return false;
-            leaves->first[leaves->count++] = leaves->balls.count;
+            leaves->first[leaves->count] = leaves->balls.count;
             if (!csg_cone_add_leaf(&leaves->balls, tape, node, c, radius))
                 return false;
+            leaves->corner[leaves->count++] = leaves->balls.corner;
         } else {
             *is_simple = *is_simple && operator_combines(node);
             out->is_crease |= is_sharp(node);
@@ -109,12 +110,29 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
     return leaves->balls.count > 0;
 }
 
-static double largest_of(const csg_cone_balls *balls)
+/* Of the gradients of all leaves. */
+static double largest_of(const csg_cone_leaves *leaves)
 {
     double most = 0;
-    for (uint32_t i = 0; i < balls->count; i++)
-        most =
-            fmax(most, sqrt(dot(balls->items[i].at, balls->items[i].at)) + balls->items[i].spread);
+    for (uint32_t i = 0; i < leaves->balls.count; i++) {
+        const csg_cone_ball *ball = &leaves->balls.items[i];
+        most = fmax(most, sqrt(dot(ball->at, ball->at)) + ball->spread);
+    }
+    for (uint32_t i = 0; i < leaves->count; i++)
+        most = fmax(most, leaves->corner[i]);
+    return most;
+}
+
+/* What the shares of operators that combine add up to at most: of two at right angles sqrt(2). */
+static double most_shares(const csg_tape *tape)
+{
+    double most = 1;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        bool is_orthogonal = !csg_op_is_leaf(node->op) && node->blend == CSG_BLEND_ORTHOGONAL;
+        for (uint32_t k = 1; is_orthogonal && k < node->arity; k++)
+            most *= 1.41421357;
+    }
     return most;
 }
 
@@ -165,7 +183,6 @@ bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], dou
     out->is_crease |= leaves.balls.has_edges;
     if (!is_simple)
         return find_along(room, tape, c, radius, &leaves, out);
-    out->most =
-        1.73205081 * largest_of(&leaves.balls); /* shares of a corner's faces add up to it */
+    out->most = most_shares(tape) * largest_of(&leaves);
     return csg_cone_find_axis(&leaves.balls, out);
 }

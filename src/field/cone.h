@@ -40,9 +40,13 @@ typedef struct csg_cone_balls {
     csg_cone_ball items[CSG_CONE_MOST];
     uint32_t count;
     bool has_edges; /* of a primitive */
+    double
+        corner; /* of the leaf added last: 0, or how long its gradients may be where faces meet */
 } csg_cone_balls;
 
-/* Adds what holds all gradients of a leaf in the ball. False: no bound, or too many. */
+/* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
+ * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least
+ * 1. False: no bound, or too many. */
 bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                        const float c[3], double radius);
 

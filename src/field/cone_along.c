@@ -55,6 +55,11 @@ static slope_range leaf_range(const csg_cone_leaves *leaves, uint32_t leaf, cons
         r.high = largest_of(r.high, d + b->spread);
         r.most = largest_of(r.most, norm + b->spread);
     }
+    /* where faces meet weights add up to 1 and more: only what all climb is climbed there, too */
+    double corner = leaves->corner[leaf];
+    r.low = r.low < 0 ? least_of(r.low, -corner) : r.low;
+    r.high = r.high > 0 ? largest_of(r.high, corner) : r.high;
+    r.most = largest_of(r.most, corner);
     return r;
 }
 

@@ -10,6 +10,7 @@
 typedef struct csg_cone_leaves {
     csg_cone_balls balls;
     uint32_t first[CSG_CONE_MOST + 1]; /* of each leaf's balls */
+    double corner[CSG_CONE_MOST];      /* of each leaf: csg_cone_balls.corner */
     uint32_t count;                    /* leaves */
 } csg_cone_leaves;
 

@@ -398,6 +398,11 @@ static bool add_placed(local *l, const csg_tape *tape, const csg_tape_node *leaf
     return leaf->op == CSG_OP_FIELD ? add_formula(l, tape) : add_own(l, leaf->op);
 }
 
+static bool has_faces(uint8_t op)
+{
+    return op == CSG_OP_BOX || op == CSG_OP_RECTANGLE || op == CSG_OP_FRUSTUM || op == CSG_OP_SHAPE;
+}
+
 bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                        const float c[3], double radius)
 {
@@ -407,7 +412,11 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
                .rho = radius + (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK]};
     csg_cone_way way;
     uint32_t first = balls->count;
-    if (leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l.rho, &way))
+    balls->corner = 0;
+    if ((leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l.rho, &way)) ||
+        !add_placed(&l, tape, leaf, at))
         return false;
-    return add_placed(&l, tape, leaf, at) && (!leaf->warp || csg_cone_unwarp(&way, balls, first));
+    if (has_faces(leaf->op) && balls->count - first > 1)
+        balls->corner = l.norm; /* in its own frame they are unit vectors */
+    return !leaf->warp || csg_cone_unwarp(&way, balls, first);
 }

@@ -189,6 +189,7 @@ bool csg_cone_unwarp(const csg_cone_way *way, csg_cone_balls *balls, uint32_t fi
             turn_ball(&turn, turn.back, &balls->items[k]);
         }
         balls->has_edges |= turn.is_kinked;
+        balls->corner *= turn.norm * (1 + ROUNDING);
     }
     return true;
 }

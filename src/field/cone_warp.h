@@ -24,7 +24,8 @@ typedef struct csg_cone_way {
  * the ball reaches where a warp is not regular. */
 bool csg_cone_warp(const csg_tape *tape, uint32_t warp, double c[3], double *radius,
                    csg_cone_way *way);
-/* Takes the balls of vectors from number `first` on back. False: too many. */
+/* Takes the balls of vectors from number `first` on back, those of the leaf added last. False: too
+ * many. */
 bool csg_cone_unwarp(const csg_cone_way *way, csg_cone_balls *balls, uint32_t first);
 
 #endif

@@ -165,6 +165,43 @@ static csg_node_id polyhedron(mesh_case *c, csg_random *random)
     return csg_build_shape(&c->builder, shape, NOWHERE);
 }
 
+/* A pyramid far higher than wide, turned and stretched another way along every axis: outside its
+ * tip gradients are longer than those of its faces, and lean further. */
+static csg_node_id needle(mesh_case *c, csg_random *random)
+{
+    csg_triangles t;
+    csg_shape *shape = NULL;
+    csg_triangles_init(&t, &c->context.memory);
+    double r = csg_random_uniform(random, 0.05, 0.4);
+    for (int i = 0; i < 3; i++)
+        assert_true(
+            csg_triangles_add_point(&t, csg_vec3_make(r * cos(2.1 * i), r * sin(2.1 * i), -0.5)));
+    assert_true(csg_triangles_add_point(&t, csg_vec3_make(0, 0, 0.5)));
+    static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    for (int i = 0; i < 4; i++)
+        assert_true(csg_triangles_add(&t, faces[i][0], faces[i][1], faces[i][2]));
+    assert_int_equal(csg_polyhedron_create(&c->context.memory, &t, NULL, &shape), CSGM_OK);
+    csg_triangles_release(&t);
+    csg_node_id node = csg_build_shape(&c->builder, shape, NOWHERE);
+    if (csg_random_uniform(random, 0, 1) < 0.5)
+        node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
+    double u = exp(csg_random_uniform(random, 0, 2.5));
+    csg_affine stretch = csg_affine_scale(csg_vec3_make(u * csg_random_uniform(random, 0.5, 1), u,
+                                                        csg_random_uniform(random, 0.5, 1.5)));
+    return csg_build_transform(&c->builder, &stretch, node, NOWHERE);
+}
+
+/* One minus another, by blends whose bounds need the whole range of slopes, or alone. */
+static csg_node_id needles(mesh_case *c, csg_random *random)
+{
+    csg_node_id a = needle(c, random);
+    if (csg_random_uniform(random, 0, 1) < 0.4)
+        return a;
+    const csg_blend blends[] = {ROUND(0.2), {CSG_BLEND_ORTHOGONAL, 0.3}, SHARP};
+    return joined(c, csg_random_uniform(random, 0, 1) < 0.5 ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION,
+                  blends[(int)csg_random_uniform(random, 0, 2.999)], a, needle(c, random));
+}
+
 static csg_node_id formula(mesh_case *c, csg_random *random)
 {
     csg_formula_step steps[TEST_MOST_STEPS];
@@ -212,6 +249,12 @@ static void cones_of_polyhedra_hold(void **state)
     try_kind("polyhedra", polyhedron, 92, 1700);
 }
 
+static void cones_of_needles_hold(void **state)
+{
+    (void)state;
+    try_kind("needles", needles, 97, 1700);
+}
+
 static void cones_of_formulas_hold(void **state)
 {
     (void)state;
@@ -242,6 +285,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(cones_hold),
         cmocka_unit_test(cones_of_outlines_hold),
         cmocka_unit_test(cones_of_polyhedra_hold),
+        cmocka_unit_test(cones_of_needles_hold),
         cmocka_unit_test(cones_of_formulas_hold),
         cmocka_unit_test(cones_of_warps_hold),
         cmocka_unit_test(cones_of_combinations_hold),

@@ -15,7 +15,8 @@ typedef struct operand {
     double value, doubt; /* at the centre; rounding */
     double low, high;    /* over the triangle */
     csg_cone_balls balls;
-    bool stretched; /* shares may add up to more than 1 */
+    bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
+                       faces' */
     bool faces;     /* gradients between the balls may be as long as these: where faces meet */
 } operand;
 
@@ -340,6 +341,8 @@ static void find_range(const walker *w, const csg_tape_node *node, const float *
     leaf->high = fmax((double)high[0], fmax((double)high[1], (double)high[2]));
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
+    if (leaf->stretched)
+        stray = 2 * fmax(norm_of(balls[0].at), leaf->balls.corner);
     if (!is_concave(node->op)) {
         leaf->low -= stray * w->flat;
         leaf->high += stray * w->flat;
@@ -367,6 +370,8 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
         return false;
     leaf->faces = leaf->balls.count > 1;
+    for (uint32_t i = 0; i < leaf->balls.count; i++) /* else the frame, or a warp, stretches */
+        leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * norm_of(leaf->balls.items[i].at);
     find_range(w, node, low, high, leaf);
     return true;
 }
@@ -442,7 +447,6 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
     if (!walk(&w, low, high))
         return false;
     out->balls = w.stack[0].balls;
-    out->stretched = w.stack[0].stretched;
     find_root_range(&w, out);
     return out->balls.count > 0;
 }

@@ -20,7 +20,6 @@ enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 
 typedef struct csg_gradients {
     csg_cone_balls balls;
-    bool stretched;   /* shares may add up to more than 1: sqrt(3) at a box's corner at most */
     double low, high; /* of the field, over the triangle */
 } csg_gradients;
 
