@@ -138,8 +138,7 @@ static double max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh,
     csgm_status status = CSGM_OK;
     for (uint64_t i = first; i < end; i += step, ++*count) {
         const float *p = mesh->positions + 3 * i;
-        csgm_vec3 at =
-            csg_vec3_add(mesh->origin, csg_vec3_make((double)p[0], (double)p[1], (double)p[2]));
+        csgm_vec3 at = csg_vec3_add(mesh->origin, csg_vec3_from_floats(p));
         double value = fabs(csg_reference_eval(scene, at, &status).value);
         if (status != CSGM_OK || isnan(value))
             return NAN;

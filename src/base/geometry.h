@@ -48,6 +48,11 @@ static inline csg_vec3 csg_vec3_normalize(csg_vec3 a)
     return n > 0 ? csg_vec3_scale(a, 1 / n) : csg_vec3_make(0, 0, 0);
 }
 
+static inline csg_vec3 csg_vec3_from_floats(const float at[3])
+{
+    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
+}
+
 static inline void csg_vec3_to_floats(float out[3], csg_vec3 a)
 {
     out[0] = (float)a.x;

@@ -37,7 +37,7 @@ static void compare_corners(const csg_diff_pair *pair, const csg_diff_match *mat
 static csg_vec3 normal_of(const csg_diff_side *side, uint32_t vertex)
 {
     const float *n = side->view->normals + 3 * (size_t)vertex;
-    csg_vec3 normal = csg_vec3_make((double)n[0], (double)n[1], (double)n[2]);
+    csg_vec3 normal = csg_vec3_from_floats(n);
     return csg_vec3_normalize(csg_diff_turned(side->turn, normal));
 }
 

@@ -12,8 +12,7 @@ enum { VERTICES_PER_ITEM = 1 << 14 };
 csg_vec3 csg_draw_position(const csg_draw *draw, uint32_t vertex)
 {
     const float *p = draw->mesh->positions + 3 * (size_t)vertex;
-    return csg_vec3_add(draw->mesh->origin,
-                        csg_vec3_make((double)p[0], (double)p[1], (double)p[2]));
+    return csg_vec3_add(draw->mesh->origin, csg_vec3_from_floats(p));
 }
 
 static int32_t snap(const csg_draw *draw, double pixels)

@@ -125,8 +125,7 @@ static csgm_status make_cells(csg_layer *layer, csg_picture *picture)
 
 static void set_light(csg_tracer *tracer, const csg_lights *lights, const csg_view *view)
 {
-    csg_vec3 key =
-        csg_vec3_make((double)lights->key[0], (double)lights->key[1], (double)lights->key[2]);
+    csg_vec3 key = csg_vec3_from_floats(lights->key);
     csg_vec3 u = csg_vec3_normalize(csg_vec3_cross(key, view->right));
     csg_vec3 v = csg_vec3_cross(key, u);
     memcpy(tracer->light, lights->key, sizeof tracer->light);
@@ -142,8 +141,7 @@ static csg_box surface_box(const csg_layer *layer)
     csg_box box = csg_box_empty();
     for (size_t i = 0; i < layer->cells.count; i++) {
         const csg_ray_cell *cell = &layer->cells.cells[i];
-        csg_vec3 c = csg_vec3_make((double)cell->center[0], (double)cell->center[1],
-                                   (double)cell->center[2]);
+        csg_vec3 c = csg_vec3_from_floats(cell->center);
         if (cell->is_leaf && cell->has_surface)
             box = csg_box_hull(box, csg_box_grow((csg_box){c, c}, (double)cell->half));
     }

@@ -138,8 +138,7 @@ static csg_vec3 normal_of(const csg_draw *draw, const uint32_t index[3], const c
     csg_vec3 sum = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         const float *n = normals + 3 * (size_t)index[i];
-        sum = csg_vec3_add(
-            sum, csg_vec3_scale(csg_vec3_make((double)n[0], (double)n[1], (double)n[2]), share[i]));
+        sum = csg_vec3_add(sum, csg_vec3_scale(csg_vec3_from_floats(n), share[i]));
     }
     sum = csg_vec3_normalize(sum);
     return csg_vec3_norm(sum) > 0.5 && csg_vec3_dot(sum, flat) > 0 ? sum : flat;

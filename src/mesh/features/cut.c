@@ -21,11 +21,6 @@ typedef struct piece {
     int triangle_count;
 } piece;
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 static void add(piece *q, uint8_t corner)
 {
     const csg_feature *f = q->f;
@@ -33,7 +28,7 @@ static void add(piece *q, uint8_t corner)
                       : corner >= CSG_FEATURE_BEYOND
                           ? q->features[f->beyond[corner - CSG_FEATURE_BEYOND]].at
                           : f->corner[corner];
-    q->at[q->count] = point(at);
+    q->at[q->count] = csg_vec3_from_floats(at);
     q->corner[q->count++] = corner;
 }
 
@@ -96,7 +91,7 @@ static void fan(piece *q)
 static void begin(piece *q, int sheet)
 {
     q->count = 0;
-    q->normal = point(q->f->normal[sheet]);
+    q->normal = csg_vec3_from_floats(q->f->normal[sheet]);
     add(q, CSG_FEATURE_APEX);
 }
 

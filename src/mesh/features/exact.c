@@ -112,7 +112,8 @@ static int exact_turn(const float a[3], const float b[3], const float c[3], int 
 /* Shewchuk's bounds, (7 + 56 e) e and (3 + 16 e) e with e = 2^-53, and a little more. */
 static const double SIDE_ERROR = 8.0 * 0x1p-53, TURN_ERROR = 4.0 * 0x1p-53;
 
-int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
+/* The sign of the volume of a tetrahedron: on which side of (a, b, c) d lies; 0: in its plane. */
+static int orientation(const float a[3], const float b[3], const float c[3], const float d[3])
 {
     double u[3], v[3], w[3], volume = 0, most = 0;
     for (int i = 0; i < 3; i++) {
@@ -219,7 +220,7 @@ static bool pierces(const float *p, const float *q, int above, int below,
         return meets_in_plane(t, p, q);
     int least = 1, most = -1;
     for (int k = 0; k < 3; k++) {
-        int turn = csg_exact_side(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
+        int turn = orientation(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
         least = turn < least ? turn : least;
         most = turn > most ? turn : most;
     }
@@ -228,7 +229,7 @@ static bool pierces(const float *p, const float *q, int above, int below,
 
 static int side_of(const csg_exact_triangle *t, const float *p)
 {
-    return csg_exact_side(t->at[0], t->at[1], t->at[2], p);
+    return orientation(t->at[0], t->at[1], t->at[2], p);
 }
 
 /* ---- two triangles -----------------------------------------------------------------------------
@@ -256,7 +257,7 @@ static bool is_folded(const float *e, const float *f, const float *p, const floa
     for (int axis = 0; axis < 3; axis++)
         if (csg_exact_turn(e, f, p, axis) * csg_exact_turn(e, f, q, axis) < 0)
             return false; /* apart in this view */
-    return csg_exact_side(e, f, p, q) == 0;
+    return orientation(e, f, p, q) == 0;
 }
 
 /* At a vertex of both: does what is opposite to it in one meet the other? */
@@ -322,17 +323,12 @@ bool csg_exact_meet(const csg_exact_triangle *s, const csg_exact_triangle *t)
 /* ---- nearly ------------------------------------------------------------------------------------
  */
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 /* Whether a point lies so near to a triangle. */
 static bool is_near(const csg_exact_triangle *t, const float at[3], double reach)
 {
-    csg_vec3 v[3], p = point(at);
+    csg_vec3 v[3], p = csg_vec3_from_floats(at);
     for (int k = 0; k < 3; k++)
-        v[k] = point(t->at[k]);
+        v[k] = csg_vec3_from_floats(t->at[k]);
     csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
     double norm = csg_vec3_norm(n);
     if (!(fabs(csg_vec3_dot(n, csg_vec3_sub(p, v[0]))) <= reach * norm))
@@ -350,8 +346,10 @@ static bool is_near(const csg_exact_triangle *t, const float at[3], double reach
 static bool pass_near(const float a[3], const float b[3], const float c[3], const float d[3],
                       double reach)
 {
-    csg_vec3 u = csg_vec3_sub(point(b), point(a)), v = csg_vec3_sub(point(d), point(c));
-    csg_vec3 w = csg_vec3_sub(point(c), point(a)), n = csg_vec3_cross(u, v);
+    csg_vec3 u = csg_vec3_sub(csg_vec3_from_floats(b), csg_vec3_from_floats(a)),
+             v = csg_vec3_sub(csg_vec3_from_floats(d), csg_vec3_from_floats(c));
+    csg_vec3 w = csg_vec3_sub(csg_vec3_from_floats(c), csg_vec3_from_floats(a)),
+             n = csg_vec3_cross(u, v);
     double square = csg_vec3_dot(n, n), apart = csg_vec3_dot(w, n);
     double parallel = 1e-12 * csg_vec3_dot(u, u) * csg_vec3_dot(v, v);
     if (!(square > parallel && apart * apart <= reach * reach * square))

@@ -14,8 +14,6 @@ typedef struct csg_exact_triangle {
     uint32_t vertex[3]; /* equal numbers: one vertex of the mesh */
 } csg_exact_triangle;
 
-/* The sign of the volume of a tetrahedron: on which side of (a, b, c) d lies; 0: in its plane. */
-int csg_exact_side(const float a[3], const float b[3], const float c[3], const float d[3]);
 /* Which way (a, b, c) turns, seen along an axis; 0: on a line. */
 int csg_exact_turn(const float a[3], const float b[3], const float c[3], int axis);
 

@@ -13,18 +13,13 @@
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 /* Whether the triangle of the apex and a side looks inwards. */
 static bool pokes_out(const csg_feature *f, int s)
 {
-    csg_vec3 at = point(f->at);
-    csg_vec3 u = csg_vec3_sub(point(f->corner[s]), at);
-    csg_vec3 v = csg_vec3_sub(point(f->corner[(s + 1) % f->side_count]), at);
-    return !(csg_vec3_dot(csg_vec3_cross(u, v), point(f->normal[f->sheet[s]])) > 0);
+    csg_vec3 at = csg_vec3_from_floats(f->at);
+    csg_vec3 u = csg_vec3_sub(csg_vec3_from_floats(f->corner[s]), at);
+    csg_vec3 v = csg_vec3_sub(csg_vec3_from_floats(f->corner[(s + 1) % f->side_count]), at);
+    return !(csg_vec3_dot(csg_vec3_cross(u, v), csg_vec3_from_floats(f->normal[f->sheet[s]])) > 0);
 }
 
 /* The loop of a cell of the block with a side from one edge to another: all but its apex, and which
@@ -91,7 +86,7 @@ static bool place_apex(csg_feature *h, int side, csg_vec3 poking, csg_feature_pr
     csg_vec3 far = {0, 0, 0};
     int others = h->side_count - 2;
     for (int i = 0; i < others; i++)
-        far = csg_vec3_add(far, point(h->corner[(side + 2 + i) % h->side_count]));
+        far = csg_vec3_add(far, csg_vec3_from_floats(h->corner[(side + 2 + i) % h->side_count]));
     csg_vec3 at = csg_vec3_scale(csg_vec3_add(poking, csg_vec3_scale(far, 1.0 / others)), 0.5);
     return csg_feature_place_within(h, at, probe);
 }
@@ -119,7 +114,7 @@ static bool help_side(csg_feature_room *room, size_t first, const csg_feature *f
     if (at[axis] < 0 || at[axis] >= E ||
         !find_loop(room, probe, at, csg_edge_beyond(tables, to, axis),
                    csg_edge_beyond(tables, from, axis), &h, &side) ||
-        is_there(room, first, &h) || !place_apex(&h, side, point(f->at), probe))
+        is_there(room, first, &h) || !place_apex(&h, side, csg_vec3_from_floats(f->at), probe))
         return true;
     if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
                             sizeof(csg_feature)))

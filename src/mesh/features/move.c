@@ -6,11 +6,6 @@
 #include "mesh/features/apex.h"
 #include "mesh/features/join.h"
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 /* The features before and after one on a crease; false for others. */
 static bool neighbours_of(const csg_feature_store *store, const csg_feature *f,
                           const csg_feature *beside[2])
@@ -32,7 +27,7 @@ static void restore(const csg_feature *f, csg_feature_polygon *p, csg_apex *a)
     for (int s = 0; s < p->sides; s++) {
         p->edge[s] = f->edge[s];
         p->sheet[s] = f->sheet[s];
-        p->corner[s] = point(f->corner[s]);
+        p->corner[s] = csg_vec3_from_floats(f->corner[s]);
     }
     csg_feature_find_middles(p);
     for (int k = 0; k < p->sheets; k++)
@@ -46,7 +41,8 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
     const csg_feature *f = &store->features[index], *beside[2];
     if (!neighbours_of(store, f, beside))
         return false;
-    csg_vec3 low = point(beside[0]->at), high = point(beside[1]->at), at = point(f->at);
+    csg_vec3 low = csg_vec3_from_floats(beside[0]->at), high = csg_vec3_from_floats(beside[1]->at),
+             at = csg_vec3_from_floats(f->at);
     if (csg_vec3_dot(csg_vec3_sub(at, low), csg_vec3_sub(high, at)) > 0)
         return false;
     double cell = probe->marching->lattice->cell_size;
@@ -110,7 +106,8 @@ static bool begin_try(const csg_feature *f, const surroundings *q, const csg_fea
     if (f->sheet_count > 2) {
         a->at = csg_vec3_make(0, 0, 0);
         for (int k = 0; k < q->count; k++) {
-            a->at = csg_vec3_add(a->at, csg_vec3_scale(point(q->beside[k]->at), 1.0 / q->count));
+            a->at = csg_vec3_add(
+                a->at, csg_vec3_scale(csg_vec3_from_floats(q->beside[k]->at), 1.0 / q->count));
             borrow_planes(f, q, k, a);
         }
         return n == 0 && q->count > 0;
@@ -121,8 +118,10 @@ static bool begin_try(const csg_feature *f, const surroundings *q, const csg_fea
         return false;
     if (source > 0 && !ends)
         borrow_planes(f, q, source - 1, a);
-    csg_vec3 low = point(q->beside[0]->at);
-    csg_vec3 high = q->count > 1 ? point(q->beside[1]->at) : ends ? point(f->at) : p->middle;
+    csg_vec3 low = csg_vec3_from_floats(q->beside[0]->at);
+    csg_vec3 high = q->count > 1 ? csg_vec3_from_floats(q->beside[1]->at)
+                    : ends       ? csg_vec3_from_floats(f->at)
+                                 : p->middle;
     a->at = csg_vec3_add(low, csg_vec3_scale(csg_vec3_sub(high, low), place[n % PLACES]));
     return true;
 }

@@ -14,11 +14,6 @@
 
 enum { AROUND = 4 };
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 /* The four polygons around a vertex, and which of their corners it is. */
 typedef struct ring {
     csg_feature *f[AROUND];
@@ -84,7 +79,7 @@ static bool looks_out(const csg_feature *f, int corner, csg_vec3 n, double cell)
             continue;
         csg_vec3 at[3], u, v;
         for (int i = 0; i < 3; i++)
-            at[i] = point(f->corner[c[i]]);
+            at[i] = csg_vec3_from_floats(f->corner[c[i]]);
         u = csg_vec3_sub(at[1], at[0]);
         v = csg_vec3_sub(at[2], at[0]);
         if (!(csg_vec3_dot(csg_vec3_cross(u, v), n) > FLAT * cell * cell))
@@ -161,9 +156,10 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
     for (int k = 0; k < AROUND; k++)
         before[k] = *r.f[k];
     memcpy(from, f->corner[corner], sizeof from);
-    csg_vec3 n = point(f->normal[f->sheet[corner]]);
+    csg_vec3 n = csg_vec3_from_floats(f->normal[f->sheet[corner]]);
     for (int i = around * WAYS; i < (around + 1) * WAYS; i++) {
-        csg_vec3 normal = n, at = place_of(i, point(from), point(f->at), n, store->cell_size);
+        csg_vec3 normal = n, at = place_of(i, csg_vec3_from_floats(from),
+                                           csg_vec3_from_floats(f->at), n, store->cell_size);
         if (!to_surface(probe, &at, &normal))
             continue;
         to[0] = (float)at.x, to[1] = (float)at.y, to[2] = (float)at.z;

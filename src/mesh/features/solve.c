@@ -15,11 +15,6 @@ enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS };
 typedef csg_feature_polygon polygon;
 typedef csg_apex apex;
 
-static csg_vec3 point(const float at[3])
-{
-    return csg_vec3_make((double)at[0], (double)at[1], (double)at[2]);
-}
-
 /* Whether all creases that cross a polygon are blunt: one that enters it and is not found where it
  * should leave it fades there: it ends, and smoothly. */
 static bool is_fading(const csg_feature_room *room, const csg_found_loop *loop)
@@ -58,7 +53,7 @@ static bool mark_sheets(const csg_feature_room *room, const csg_found_loop *loop
     int sheet = 0;
     for (int k = 0; k < p->sides; k++) {
         int s = (first + k) % p->sides;
-        p->corner[s] = point(room->slots.at[loop->slot[s]]);
+        p->corner[s] = csg_vec3_from_floats(room->slots.at[loop->slot[s]]);
         p->edge[s] = loop->edge[s];
         p->sheet[s] = (uint8_t)sheet;
         sheet += !creases || (p->creased >> s & 1);
@@ -79,7 +74,7 @@ static void choose_starts(const csg_feature_room *room, const csg_found_loop *lo
     int n = 1;
     for (int s = 0; s < p->sides; s++)
         if (p->creased >> s & 1) {
-            at[n] = point(room->segments[loop->crease[s]].at);
+            at[n] = csg_vec3_from_floats(room->segments[loop->crease[s]].at);
             at[0] = csg_vec3_add(at[0], csg_vec3_scale(at[n++], 0.5));
         }
     for (int k = 0; k < 3; k++)
@@ -163,7 +158,7 @@ static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loo
     csg_apex a = {.planes = {csg_plane_at(0, 0, 0, 0, g[0], g[1], g[2])}};
     csg_apex_place(&p, &a, out);
     for (int s = 0; s < p.sides; s++)
-        p.corner[s] = point(out->corner[s]);
+        p.corner[s] = csg_vec3_from_floats(out->corner[s]);
     csg_feature_find_middles(&p);
     if (csg_feature_place_within(out, p.middle, probe))
         return;

@@ -135,7 +135,7 @@ static void copy_vertices(csg_remesh *r)
     csg_vec3 shift = r->work->marching.shift;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
         const float *p = mesh->positions + 3 * (size_t)v;
-        csg_vec3 at = csg_vec3_make((double)p[0], (double)p[1], (double)p[2]);
+        csg_vec3 at = csg_vec3_from_floats(p);
         r->at[v] = csg_vec3_sub(at, shift);
         if (r->looks && mesh->colors)
             memcpy(r->looks[v].color, mesh->colors + 4 * (size_t)v, 4);

@@ -46,8 +46,7 @@ bool csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {
-    const float *p = d->samples[sample];
-    return csg_vec3_make((double)p[0], (double)p[1], (double)p[2]);
+    return csg_vec3_from_floats(d->samples[sample]);
 }
 
 #endif
