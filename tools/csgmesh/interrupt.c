@@ -7,11 +7,12 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli.h"
 
-static atomic_bool progress_shown;
+static atomic_bool progress_shown, is_ending;
 static _Atomic(const char *) pending_file;
 enum { SLOTS = 64 };
 static _Atomic(const char *) guarded[SLOTS];
@@ -23,9 +24,8 @@ static void say(const char *text)
     }
 }
 
-static void on_signal(int signal_number)
+static void remove_unfinished(void)
 {
-    (void)signal_number;
     const char *path = atomic_load(&pending_file);
     csgm_files_abandon();
     if (path)
@@ -33,6 +33,17 @@ static void on_signal(int signal_number)
     for (int i = 0; i < SLOTS; i++)
         if ((path = atomic_load(&guarded[i])))
             unlink(path);
+}
+
+/* Twice: another thread may be about to open a file whose name is known already. */
+static void on_signal(int signal_number)
+{
+    (void)signal_number;
+    static const struct timespec moment = {.tv_nsec = 5000000};
+    atomic_store(&is_ending, true);
+    remove_unfinished();
+    nanosleep(&moment, NULL);
+    remove_unfinished();
     if (atomic_load(&progress_shown))
         say("\n");
     say("csgmesh: interrupted\n");
@@ -69,6 +80,8 @@ void cli_interrupt_pending_file(const char *path)
 
 int cli_interrupt_guard(const char *path)
 {
+    while (atomic_load(&is_ending))
+        pause(); /* nothing new is begun */
     for (int i = 0; i < SLOTS; i++) {
         const char *none = NULL;
         if (atomic_compare_exchange_strong(&guarded[i], &none, path))
