@@ -15,9 +15,8 @@
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
 
-/* 1 - cos of angles: of 0.6 degrees, below which ends of a segment count as equal; and of 3
- * degrees, the least that makes a crease. */
-static const float LEAST_DIFFERENCE = 5.5e-5f, LEAST_JUMP = 1.37e-3f;
+/* 1 - cos of 0.6 degrees, below which ends of a segment count as equal. */
+static const float LEAST_DIFFERENCE = 5.5e-5f;
 /* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
  * 10 % and below that of 12 degrees. */
 static const float ALIKE = 1.1f, LITTLE = 0.02f;
@@ -43,21 +42,12 @@ static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
             room->gradient[slots->slot[i]][axis] = room->g[axis][i];
 }
 
-static float cosine(const float *a, const float *b)
-{
-    float ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    float aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-    float bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-    float length = sqrtf(aa * bb);
-    return length > 1e-12f ? ab / length : 1.0f; /* a critical point says nothing */
-}
-
 /* ---- segments -------------------------------------------------------------------------------- */
 
 static bool add_segment(csg_feature_room *room, const csg_found_loop *loop, int side)
 {
     uint16_t from = loop->slot[side], to = loop->slot[(side + 1) % loop->side_count];
-    float difference = 1.0f - cosine(room->gradient[from], room->gradient[to]);
+    float difference = 1.0f - csg_feature_cosine(room->gradient[from], room->gradient[to]);
     if (!(difference > LEAST_DIFFERENCE) || room->segment_count == CSG_FEATURE_SEGMENTS)
         return false;
     csg_segment *s = &room->segments[room->segment_count++];
@@ -79,8 +69,8 @@ static float widest_of(const csg_feature_room *room, const csg_found_loop *loop)
     float widest = 1;
     for (int a = 0; a < loop->side_count; a++)
         for (int b = a + 1; b < loop->side_count; b++)
-            widest =
-                fminf(widest, cosine(room->gradient[loop->slot[a]], room->gradient[loop->slot[b]]));
+            widest = fminf(widest, csg_feature_cosine(room->gradient[loop->slot[a]],
+                                                      room->gradient[loop->slot[b]]));
     return widest;
 }
 
@@ -158,10 +148,11 @@ static void halve(csg_feature_room *room, csg_feature_probe *probe)
     for (uint32_t i = 0; i < count; i++) {
         csg_segment *s = &room->segments[room->which[i]];
         const float middle[3] = {g[0][i], g[1][i], g[2][i]};
-        float low = 1.0f - cosine(s->low_gradient, middle);
-        float high = 1.0f - cosine(middle, s->high_gradient);
+        float low = 1.0f - csg_feature_cosine(s->low_gradient, middle);
+        float high = 1.0f - csg_feature_cosine(middle, s->high_gradient);
         float t = 0.5f * (s->low + s->high), kept = fmaxf(low, high);
-        s->active = (kept > ALIKE * fminf(low, high) || kept > LITTLE) && kept > LEAST_JUMP;
+        s->active =
+            (kept > ALIKE * fminf(low, high) || kept > LITTLE) && kept > CSG_FEATURE_LEAST_JUMP;
         s->jump = kept;
         memcpy(low >= high ? s->high_gradient : s->low_gradient, middle, sizeof middle);
         *(low >= high ? &s->high : &s->low) = t;
@@ -215,7 +206,7 @@ static bool is_between(const float *g, const float *a, const float *b)
         u[i] = a[j] * g[k] - a[k] * g[j];
         v[i] = g[j] * b[k] - g[k] * b[j];
     }
-    return cosine(u, v) > 0.999f && cosine(a, b) < cosine(a, g);
+    return csg_feature_cosine(u, v) > 0.999f && csg_feature_cosine(a, b) < csg_feature_cosine(a, g);
 }
 
 /* Both segments at a vertex jump there: it lies on a crease, and its gradient may be neither
@@ -236,7 +227,7 @@ static bool correct_vertex(csg_feature_room *room, const csg_segment *before,
     csg_feature_probe_points(probe, &x, &y, &z, 1, NULL,
                              (float *const[3]){inside[0], inside[1], inside[2]});
     const float fresh[3] = {inside[0][0], inside[1][0], inside[2][0]};
-    if (!(1.0f - cosine(fresh, g) > LEAST_JUMP))
+    if (!(1.0f - csg_feature_cosine(fresh, g) > CSG_FEATURE_LEAST_JUMP))
         return false;
     memcpy(g, fresh, sizeof fresh);
     return true;
@@ -265,7 +256,7 @@ static void drop_detours(csg_feature_room *room)
 {
     for (uint32_t i = 0; i < room->segment_count; i++) {
         csg_segment *s = &room->segments[i];
-        float ends = 1.0f - cosine(room->gradient[s->from], room->gradient[s->to]);
+        float ends = 1.0f - csg_feature_cosine(room->gradient[s->from], room->gradient[s->to]);
         s->active = s->active && !(ends < LITTLE && s->jump > DETOUR);
     }
 }

@@ -75,15 +75,6 @@ bool csg_feature_has_pairs(const csg_block *block)
     return across_x || (others & ((1u << E) - 1));
 }
 
-static float turn(const float *a, const float *b)
-{
-    float ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    float aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-    float bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-    float length = sqrtf(aa * bb);
-    return length > 1e-12f ? 1.0f - ab / length : 0.0f;
-}
-
 static void ask(csg_feature_probe *probe, const float at[3], float *f, float gradient[3])
 {
     csg_feature_probe_points(probe, &at[0], &at[1], &at[2], 1, f,
@@ -94,7 +85,6 @@ static void ask(csg_feature_probe *probe, const float at[3], float *f, float gra
 static bool jumps(const csg_feature_room *room, int from, int to, csg_feature_probe *probe)
 {
     enum { HALVINGS = 10 };
-    static const float LEAST = 1.37e-3f; /* 1 - cos of 3 degrees, as in find.c */
     const float *a = room->slots.at[from], *b = room->slots.at[to];
     float low[3], high[3], middle[3], at[3], left = 0, right = 1;
     memcpy(low, room->gradient[from], sizeof low);
@@ -104,8 +94,9 @@ static bool jumps(const csg_feature_room *room, int from, int to, csg_feature_pr
         for (int axis = 0; axis < 3; axis++)
             at[axis] = a[axis] + t * (b[axis] - a[axis]);
         ask(probe, at, NULL, middle);
-        float before = turn(low, middle), after = turn(middle, high);
-        if (!(fmaxf(before, after) > LEAST))
+        float before = 1.0f - csg_feature_cosine(low, middle);
+        float after = 1.0f - csg_feature_cosine(middle, high);
+        if (!(fmaxf(before, after) > CSG_FEATURE_LEAST_JUMP))
             return false;
         bool first = before >= after;
         memcpy(first ? high : low, middle, sizeof middle);

@@ -5,6 +5,8 @@
 #ifndef CSG_MESH_FEATURES_PROBE_H
 #define CSG_MESH_FEATURES_PROBE_H
 
+#include <math.h>
+
 #include "mesh/features/features.h"
 
 /* Beyond this many nodes the whole tape is too slow to ask or to prune: points outside the block
@@ -26,6 +28,19 @@ typedef struct csg_feature_probe {
 csg_feature_probe csg_feature_probe_of(const csg_marching *marching, const csg_block *block,
                                        csg_feature_around *around, csg_memory *memory,
                                        float *scratch, size_t scratch_floats);
+
+/* 1 - cos of 3 degrees: where gradients differ by less there is no crease. */
+#define CSG_FEATURE_LEAST_JUMP 1.37e-3f
+
+/* Of the angle between two gradients; 1 where one is 0: a critical point says nothing. */
+static inline float csg_feature_cosine(const float *a, const float *b)
+{
+    float ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    float aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    float bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+    float length = sqrtf(aa * bb);
+    return length > 1e-12f ? ab / length : 1.0f;
+}
 
 /* f[i] and g[0..2][i] at count points; f is NaN where the field is not known. f may be NULL. */
 void csg_feature_probe_points(csg_feature_probe *probe, const float *x, const float *y,
