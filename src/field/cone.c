@@ -5,9 +5,10 @@
  */
 #include "field/cone.h"
 
-#include "field/cone_along.h"
-
 #include <math.h>
+
+#include "field/cone_along.h"
+#include "field/point.h"
 
 static double dot(const double a[3], const double b[3])
 {
@@ -147,26 +148,21 @@ static bool try_axis(const csg_pruner *room, const csg_tape *tape, const csg_con
 static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
                        const csg_cone_leaves *leaves, csg_cone *out)
 {
-    float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES] = {{0}};
-    for (int axis = 0; axis < 3; axis++)
-        for (int o = 0; o < CSG_LANES; o++)
-            at[axis][o] = c[axis];
     /* cubes around the ball, which they are given by the balls around them */
     float reach = (float)(radius * 1.7320508 * (1 + 1e-6));
     if (!room)
         return false;
-    out->out_of_memory = !csg_prune_octants(room, tape, at[0], at[1], at[2], reach);
+    out->out_of_memory = !csg_prune_cube(room, tape, c, reach);
     if (out->out_of_memory)
         return false;
-    room->kernel->gradients(tape, at[0], at[1], at[2], 1, g[0], g[1], g[2], room->scratch,
-                            room->scratch_capacity);
-    double w[3] = {(double)g[0][0], (double)g[1][0], (double)g[2][0]}, norm = sqrt(dot(w, w));
+    csg_vec3 w = csg_tape_gradient_at(room->kernel, tape, csg_vec3_from_floats(c), room->scratch,
+                                      room->scratch_capacity);
+    double norm = csg_vec3_norm(w);
     if (csg_cone_find_axis(&leaves->balls, out) && try_axis(room, tape, leaves, out))
         return true;
     if (!(norm > 1e-6))
         return false;
-    for (int k = 0; k < 3; k++)
-        out->axis[k] = w[k] / norm;
+    out->axis[0] = w.x / norm, out->axis[1] = w.y / norm, out->axis[2] = w.z / norm;
     return try_axis(room, tape, leaves, out);
 }
 

@@ -72,6 +72,15 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
     return true;
 }
 
+bool csg_prune_cube(csg_pruner *pruner, const csg_tape *tape, const float center[3], float radius)
+{
+    float c[3][CSG_OCTANTS]; /* all eight alike */
+    for (int axis = 0; axis < 3; axis++)
+        for (int octant = 0; octant < CSG_OCTANTS; octant++)
+            c[axis][octant] = center[axis];
+    return csg_prune_octants(pruner, tape, c[0], c[1], c[2], radius);
+}
+
 static float low_of(const csg_pruner *pruner, uint32_t node, int octant)
 {
     return pruner->low[(size_t)node * CSG_OCTANTS + (size_t)octant];

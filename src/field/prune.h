@@ -50,6 +50,9 @@ void csg_pruner_release(csg_pruner *pruner);
 bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[CSG_OCTANTS],
                        const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius);
 
+/* The same of one cube, as octant 0. */
+bool csg_prune_cube(csg_pruner *pruner, const csg_tape *tape, const float center[3], float radius);
+
 /* What the last call found about one of the cubes. */
 csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
 

@@ -228,12 +228,10 @@ static bool has_wide_cone(csg_certify_worker *w, const csg_certify_cube *cube, d
                           csg_cone *cone)
 {
     csg_tape tape;
-    float c[3][CSG_OCTANTS], reach = (float)(radius * ROOT3 * (1 + 0x1p-20));
-    for (int o = 0; o < CSG_OCTANTS; o++)
-        for (int axis = 0; axis < 3; axis++)
-            c[axis][o] = (float)cube->c[axis];
+    float reach = (float)(radius * ROOT3 * (1 + 0x1p-20));
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
     csg_arena_mark mark = csg_arena_get_mark(&w->tapes);
-    bool done = csg_prune_octants(&w->wide, &w->local_tape, c[0], c[1], c[2], reach);
+    bool done = csg_prune_cube(&w->wide, &w->local_tape, c, reach);
     bool is_here = done && csg_prune_state(&w->wide, 0) == CSG_CELL_SURFACE;
     if (is_here)
         done = csg_prune_shorten(&w->wide, 0, (float)w->local.band, &w->tapes, &tape);
@@ -451,19 +449,15 @@ static bool push(csg_certify_worker *w, const csg_certify_cube *cube)
  * lattice lead further. */
 static bool localize(csg_certify_worker *w, const csg_certify_cube *cube)
 {
-    float c[3][CSG_OCTANTS];
     double h = w->lattice->cell_size, reach = cube->half + LOCAL * h;
-    for (int o = 0; o < CSG_OCTANTS; o++)
-        for (int axis = 0; axis < 3; axis++)
-            c[axis][o] = (float)cube->c[axis];
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
     w->local = w->reach;
     w->local.tape = &w->local_tape;
     for (int axis = 0; axis < 3; axis++) {
         w->local.low[axis] = cube->c[axis] - 0.99 * reach;
         w->local.high[axis] = cube->c[axis] + 0.99 * reach;
     }
-    return csg_prune_octants(&w->plain, w->reach.tape, c[0], c[1], c[2],
-                             (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
+    return csg_prune_cube(&w->plain, w->reach.tape, c, (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
            csg_prune_shorten(&w->plain, 0, (float)w->reach.band, &w->tapes, &w->local_tape);
 }
 

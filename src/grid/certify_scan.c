@@ -23,17 +23,14 @@ typedef struct scan_room {
 static bool prepare(scan_room *room, const csgm_field *field, const csg_lattice *lattice,
                     const double middle[3], csg_tape *tape)
 {
-    float c[3][CSG_OCTANTS];
+    const float c[3] = {(float)middle[0], (float)middle[1], (float)middle[2]};
     double h = lattice->cell_size, span = (double)field->tape.lipschitz * h;
     for (int axis = 0; axis < 3; axis++) {
-        for (int o = 0; o < CSG_OCTANTS; o++)
-            c[axis][o] = (float)middle[axis];
         room->reach.low[axis] = middle[axis] - (AROUND - 2.5) * h;
         room->reach.high[axis] = middle[axis] + (AROUND - 2.5) * h;
     }
     room->reach.tape = tape;
-    return csg_prune_octants(&room->pruner, &field->tape, c[0], c[1], c[2],
-                             (float)(AROUND * h * 1.7321)) &&
+    return csg_prune_cube(&room->pruner, &field->tape, c, (float)(AROUND * h * 1.7321)) &&
            csg_prune_shorten(&room->pruner, 0, (float)(2 * span), &room->tapes, tape);
 }
 

@@ -112,17 +112,14 @@ static uint32_t place(const slice_job *job, slice_room *room, uint32_t x0, uint3
 /* The field's tape without what cannot matter in the tile. False: out of memory. */
 static bool shorten(const slice_job *job, slice_room *room, uint32_t count, csg_tape *out)
 {
-    float c[3][CSG_OCTANTS], radius = 0;
+    float c[3], radius = 0;
     const float *const at[3] = {room->x, room->y, room->z};
     for (int axis = 0; axis < 3; axis++) {
-        float middle = (at[axis][0] + at[axis][count - 1]) / 2;
-        for (int o = 0; o < CSG_OCTANTS; o++)
-            c[axis][o] = middle;
-        radius = fmaxf(radius, fabsf(at[axis][0] - middle));
+        c[axis] = (at[axis][0] + at[axis][count - 1]) / 2;
+        radius = fmaxf(radius, fabsf(at[axis][0] - c[axis]));
     }
     room->intervals += CSG_OCTANTS;
-    return csg_prune_octants(&room->pruner, &job->field->tape, c[0], c[1], c[2],
-                             radius * 1.7320510f) &&
+    return csg_prune_cube(&room->pruner, &job->field->tape, c, radius * 1.7320510f) &&
            csg_prune_shorten(&room->pruner, 0, 1e30f, &room->tapes, out);
 }
 

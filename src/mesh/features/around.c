@@ -4,6 +4,7 @@
 #include "mesh/features/around.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "grid/octree.h"
 
@@ -38,19 +39,14 @@ void csg_feature_around_move(csg_feature_around *around, csg_memory *memory, con
                              const float center[3], float half)
 {
     csg_feature_around_begin(around, memory, m);
-    float c[3][CSG_OCTANTS];
-    for (int axis = 0; axis < 3; axis++) {
-        around->center[axis] = center[axis];
-        for (int i = 0; i < CSG_OCTANTS; i++)
-            c[axis][i] = center[axis];
-    }
+    memcpy(around->center, center, sizeof around->center);
     around->half = half;
     around->tape = m->field->tape;
     csg_arena_release_to(&around->arena, around->empty);
     /* twice the band of the octree, so that what is asked of it lies well inside */
     float band = 2 * m->field->tape.lipschitz * (float)m->lattice->cell_size + 2 * m->noise;
     float radius = 1.7321f * half; /* sqrt(3) */
-    bool done = csg_prune_octants(&around->pruner, &m->field->tape, c[0], c[1], c[2], radius);
+    bool done = csg_prune_cube(&around->pruner, &m->field->tape, center, radius);
     if (done && csg_prune_state(&around->pruner, 0) == CSG_CELL_SURFACE)
         done = csg_prune_shorten(&around->pruner, 0, band, &around->arena, &around->tape);
     if (!done) {
