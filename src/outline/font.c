@@ -5,7 +5,6 @@
  * OpenSCAD's to the last bit. FreeType's memory comes from the budget.
  */
 #include "outline/font.h"
-#include "base/sized_block.h"
 
 #include <ft2build.h>
 #include <hb-ot.h>

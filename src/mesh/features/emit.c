@@ -211,7 +211,7 @@ static void emit_block(emitter *e)
         }
 }
 
-/* Puts vertices of the block that have moved to their places. */
+/* Puts vertices of the block that have moved to their places. A mesh has a handful of them. */
 static void place_moved(const csg_marching *m, const csg_block *block,
                         const csg_feature_store *store, const csg_feature_block *features,
                         const csg_marching_room *room, const csg_marching_output *out)

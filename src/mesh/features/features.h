@@ -7,10 +7,10 @@
  * A crease is found by what the gradient does, not by what made it: where it jumps along a segment
  * however short the rest of it. An apex is the point where the tangent planes meet of the sheets
  * around it, taken ever nearer to it, so it answers to the field itself: edges of primitives, of
- * operators, of polyhedra and of expressions alike (feature_find, feature_solve).
+ * operators, of polyhedra and of expressions alike (find, solve).
  *
  * Whether a polygon has an apex depends on its block alone; flips on two neighbours, so features
- * are kept for the whole mesh, in memory of the length of its creases (feature_store). A polygon
+ * are kept for the whole mesh, in memory of the length of its creases (store). A polygon
  * with an apex has two triangles more than without, flips change no number: blocks can be counted
  * and filled in any order.
  */

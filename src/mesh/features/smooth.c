@@ -33,18 +33,11 @@ static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tab
 /* The square of twice the area. */
 static double area_of(const csg_feature *f, const uint8_t corner[3])
 {
-    const float *a = f->corner[corner[0]], *b = f->corner[corner[1]], *c = f->corner[corner[2]];
-    double u[3], v[3], square = 0;
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - (double)a[i];
-        v[i] = (double)c[i] - (double)a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double n = u[j] * v[k] - u[k] * v[j];
-        square += n * n;
-    }
-    return square;
+    csg_vec3 at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = csg_vec3_from_floats(f->corner[corner[i]]);
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(at[1], at[0]), csg_vec3_sub(at[2], at[0]));
+    return csg_vec3_dot(n, n);
 }
 
 static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_EDGES][3], unsigned count)
