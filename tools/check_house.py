@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 FILE_LINES, FUNCTION_LINES = 700, 80
-FOLDERS = ["src", "include", "tools", "tests", "examples", ".ci"]
+FOLDERS = ["src", "include", "tools", "tests", "docs", ".ci"]
 SKIPPED = {"node_modules", "__pycache__"}
 CODE = (".c", ".h", ".cc")
 MARKED = CODE + (".def", ".py", ".sh", ".js", ".mjs", "meson.build")

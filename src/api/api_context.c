@@ -10,7 +10,7 @@
 
 #include "base/context.h"
 #include "base/pool.h"
-#include "field/dispatch.h"
+#include "field/kernels/dispatch.h"
 
 /* More workers than this never helped, and each costs a stack. */
 enum { THREADS_MOST = 1024 };

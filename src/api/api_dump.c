@@ -3,8 +3,8 @@
  * as stable text.
  */
 #include "field/field.h"
-#include "scene/print.h"
-#include "scene/vm.h"
+#include "scene/formula/vm.h"
+#include "scene/tree/print.h"
 
 static csgm_status dump_tape(csgm_context *context, const csgm_scene *scene, csgm_text_fn *sink,
                              void *user)

@@ -10,11 +10,11 @@
 #include "io/format_table.h"
 #include "io/parts.h"
 #include "io/stream.h"
-#include "mesh/build.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
-#include "scene/parts.h"
+#include "mesh/pipeline/build.h"
 #include "scene/reference.h"
+#include "scene/tree/parts.h"
 
 csgm_mesh_options csgm_mesh_options_default(void)
 {

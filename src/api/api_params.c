@@ -2,8 +2,8 @@
  * Parameters of the public interface: text in, the list of what may be set out.
  */
 #include "api/options.h"
-#include "lang/customizer.h"
 #include "lang/lang.h"
+#include "lang/parameters/customizer.h"
 
 csgm_status csgm_params_parse(csgm_context *context, const char *text, size_t text_length,
                               const char *name, const csgm_scene_options *options,

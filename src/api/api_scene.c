@@ -4,7 +4,7 @@
 #include "api/options.h"
 #include "api/services.h"
 #include "lang/lang.h"
-#include "scene/bounds.h"
+#include "scene/boxes/bounds.h"
 #include "scene/reference.h"
 
 csgm_scene_options csgm_scene_options_default(void)

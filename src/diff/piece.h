@@ -5,7 +5,7 @@
 #ifndef CSG_DIFF_PIECE_H
 #define CSG_DIFF_PIECE_H
 
-#include "shape/tree.h"
+#include "shape/polyhedra/tree.h"
 
 enum { CSG_PIECE_CORNERS = 12, CSG_PIECE_PARTS = 4 };
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * The two meshes of a comparison, made comparable: corners at one place are one point, of both
- * meshes in one numbering and one frame (shape/frame.h); each mesh has its tree of boxes, its
- * figures, and bounds of what rounding does to distances.
+ * meshes in one numbering and one frame (shape/polyhedra/frame.h); each mesh has its tree of boxes,
+ * its figures, and bounds of what rounding does to distances.
  */
 #ifndef CSG_DIFF_SIDE_H
 #define CSG_DIFF_SIDE_H
 
 #include "base/context.h"
-#include "shape/tree.h"
+#include "shape/polyhedra/tree.h"
 
 /* A mesh may be looked at with another axis up. */
 typedef enum csg_diff_turn {

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "field/dispatch.h"
+#include "field/kernels/dispatch.h"
 
 static double finite_or_zero(double value)
 {

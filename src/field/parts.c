@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The parts of a field's scene, each compiled as a field of its own.
  */
-#include "scene/parts.h"
+#include "scene/tree/parts.h"
 
 #include <string.h>
 

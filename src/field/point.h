@@ -5,7 +5,7 @@
 #ifndef CSG_FIELD_POINT_H
 #define CSG_FIELD_POINT_H
 
-#include "field/kernel.h"
+#include "field/kernels/kernel.h"
 
 /* In the tape's frame; scratch as for the kernel's own functions. */
 double csg_tape_value_at(const csg_kernel *kernel, const csg_tape *tape, csg_vec3 at,

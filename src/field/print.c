@@ -8,7 +8,7 @@
 
 static const char *const op_names[CSG_OP_COUNT] = {
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_OP_##NAME] = #name,
-#include "scene/primitives.def"
+#include "scene/primitives/primitives.def"
 #undef CSG_PRIMITIVE
     [CSG_OP_FIELD] = "field",
     [CSG_OP_SHAPE] = "shape",
@@ -25,7 +25,7 @@ static const char *const op_names[CSG_OP_COUNT] = {
 
 static const char *const curve_names[] = {
 #define CSG_FALLOFF(NAME, name, iso, steepest, doc) [CSG_CURVE_##NAME] = #name,
-#include "scene/falloffs.def"
+#include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
     [CSG_CURVE_STEP] = "step",
     [CSG_CURVE_CLAMP] = "clamp",

@@ -17,7 +17,7 @@
 
 typedef enum csg_op {
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_OP_##NAME,
-#include "scene/primitives.def"
+#include "scene/primitives/primitives.def"
 #undef CSG_PRIMITIVE
     CSG_OP_FIELD,
     CSG_OP_SHAPE,
@@ -109,7 +109,7 @@ enum { CSG_BLEND_TURNING = CSG_BLEND_END };
  */
 typedef enum csg_tape_curve {
 #define CSG_FALLOFF(NAME, name, iso, steepest, doc) CSG_CURVE_##NAME,
-#include "scene/falloffs.def"
+#include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
     CSG_CURVE_STEP,
     CSG_CURVE_CLAMP
@@ -166,7 +166,7 @@ enum {
 /* By how much of m the top of N_S is lowered. */
 #define CSG_SCALE_HAIR 1.5e-6
 /* Parameters of EXTERIOR and INTERIOR: as of any operator, then the step and its facts
- * (csg_step_facts; scene/rule.h). */
+ * (csg_step_facts; scene/operators/rule.h). */
 enum {
     CSG_SMOOTH_STEP = CSG_OPERATOR_PARAMETERS,
     CSG_SMOOTH_DEGREE, /* or alpha */
@@ -248,7 +248,7 @@ struct csgm_field {
     size_t part_count;
     uint32_t depth;  /* value slots that an evaluation needs */
     csg_vec3 center; /* of the floats */
-    csg_box bounds;  /* of the solid (scene/bounds.h) */
+    csg_box bounds;  /* of the solid (scene/boxes/bounds.h) */
     uint32_t primitive_count, operator_count;
 };
 

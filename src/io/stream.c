@@ -14,7 +14,7 @@
 
 #include "io/color.h"
 #include "io/file.h"
-#include "io/gltf_layout.h"
+#include "io/gltf/gltf_layout.h"
 
 typedef struct worker {
     uint8_t *bytes;

@@ -13,11 +13,11 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "lang/customizer.h"
-#include "lang/evaluator.h"
-#include "lang/loader.h"
-#include "lang/overrides.h"
-#include "scene/texts.h"
+#include "lang/evaluate/evaluator.h"
+#include "lang/parameters/customizer.h"
+#include "lang/parameters/overrides.h"
+#include "lang/parse/loader.h"
+#include "scene/tree/texts.h"
 
 enum { MAILBOX = 16384 };
 

@@ -6,8 +6,8 @@
 #ifndef CSG_MESH_WORK_H
 #define CSG_MESH_WORK_H
 
-#include "mesh/build.h"
 #include "mesh/features/features.h"
+#include "mesh/pipeline/build.h"
 
 /* A stretch of the octree's frontier, with what comes before it in the numbering. */
 typedef struct csg_slab {

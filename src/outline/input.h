@@ -6,7 +6,7 @@
 #ifndef CSG_OUTLINE_INPUT_H
 #define CSG_OUTLINE_INPUT_H
 
-#include "shape/outline.h"
+#include "shape/plane/outline.h"
 
 /* Largest input, and most points that a reader makes of one: beyond is CSGM_ERR_LIMIT. */
 #define CSG_INPUT_MOST_BYTES ((size_t)64 << 20)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "field/dispatch.h"
+#include "field/kernels/dispatch.h"
 
 enum {
     FIRST_WIDE_LEVEL = 4,
@@ -258,7 +258,7 @@ static bool make_root(build *b, csg_box box)
     csg_vec3 center = csg_box_center(box), size = csg_box_size(box);
     double half = fmax(size.x, fmax(size.y, size.z)) / 2 * (1 + 1e-6) + 1e-30;
     double extent = fmax(fabs(center.x), fmax(fabs(center.y), fabs(center.z))) + 2 * half;
-    out->rounding = (float)(32 * (double)FLT_EPSILON * extent); /* as grid/octree.c */
+    out->rounding = (float)(32 * (double)FLT_EPSILON * extent); /* as grid/octree/octree.c */
     out->cells[0] = (csg_ray_cell){
         .center = {(float)center.x, (float)center.y, (float)center.z},
         .half = (float)half + 2 * out->rounding,

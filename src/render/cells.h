@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Where the surface may be: an octree whose leaves have tapes of their own, for rays to walk
- * through. Two kinds of tapes, both by field/prune.h:
+ * through. Two kinds of tapes, both by field/prune/prune.h:
  *
  *   near  of a leaf. In the leaf's cube it has the field's sign everywhere and its bits next to the
  *         surface; elsewhere it is some field without other zeros: what sphere tracing needs.
@@ -14,7 +14,7 @@
 #define CSG_RENDER_CELLS_H
 
 #include "field/field.h"
-#include "field/prune.h"
+#include "field/prune/prune.h"
 
 typedef struct csg_ray_cell {
     float center[3], half;

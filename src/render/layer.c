@@ -7,8 +7,8 @@
 #include <float.h>
 #include <string.h>
 
-#include "field/dispatch.h"
-#include "scene/bounds.h"
+#include "field/kernels/dispatch.h"
+#include "scene/boxes/bounds.h"
 
 /* ---- bounds ---------------------------------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "scene/lazy.h"
+#include "scene/lazy/lazy.h"
 
 enum { MOST_STEPS = 1000 };
 

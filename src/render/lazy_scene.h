@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A field's picture by the lazy evaluator in double (scene/lazy.h), ray by ray: slow, for counting
- * evaluations as the literature does.
+ * A field's picture by the lazy evaluator in double (scene/lazy/lazy.h), ray by ray: slow, for
+ * counting evaluations as the literature does.
  */
 #ifndef CSG_RENDER_LAZY_SCENE_H
 #define CSG_RENDER_LAZY_SCENE_H

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "field/dispatch.h"
+#include "field/kernels/dispatch.h"
 #include "render/layer.h"
 #include "render/lazy_scene.h"
 

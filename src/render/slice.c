@@ -3,13 +3,13 @@
  * surface drawn thick and iso-lines of f thin, every fifth one stronger. A line's distance from a
  * pixel is the field's difference to it over the slope in the plane, so that lines are as wide
  * everywhere. Each tile drops, before it is drawn, the operands that others hide all over it, which
- * changes no bit (field/prune.h).
+ * changes no bit (field/prune/prune.h).
  */
 #include <string.h>
 
 #include "base/clock.h"
-#include "field/dispatch.h"
-#include "field/prune.h"
+#include "field/kernels/dispatch.h"
+#include "field/prune/prune.h"
 #include "render/job.h"
 
 enum { TILE = 32, POINTS = TILE * TILE, LINES = 20, STRONG_LINE = 5 };

@@ -14,7 +14,7 @@ static const kind_row kinds[] = {
     [CSG_NODE_EMPTY] = {"empty", 0},           [CSG_NODE_FIELD] = {"field", 0},
     [CSG_NODE_SHAPE] = {"shape", 0},
 #define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
-#include "scene/primitives.def"
+#include "scene/primitives/primitives.def"
 #undef CSG_PRIMITIVE
     [CSG_NODE_TRANSFORM] = {"transform", 0},   [CSG_NODE_COLOR] = {"color", 0},
     [CSG_NODE_OFFSET] = {"offset", 1},         [CSG_NODE_WARP] = {"warp", 0},
@@ -44,7 +44,7 @@ typedef struct blend_row {
 static const blend_row blends[CSG_BLEND_COUNT] = {
 #define CSG_BLEND(NAME, name, raw, support, excess, fold, doc)                                     \
     [CSG_BLEND_##NAME] = {#name, raw, support, excess, fold},
-#include "scene/operators.def"
+#include "scene/operators/operators.def"
 #undef CSG_BLEND
 };
 

@@ -5,25 +5,23 @@
  *
  * Field of a node (f > 0 inside):
  *   primitive      its exact signed distance in its own frame
- *   field          its formula (scene/formula.h), Lipschitz constant as stated there
+ *   field          its formula (scene/formula/formula.h), Lipschitz constant as stated there
  *   shape          exact signed distance of explicit geometry (shape/shape.h)
  *   transform M    f(p) = s g(M^-1 p), s = smallest singular value of M: Lipschitz constant kept;
  *                  for similarities this is the exact distance again
  *   color          its child, whatever it says of it (csg_look)
  *   offset         its child plus r
- *   warp           scene/warp.h
+ *   warp           scene/primitives/warp.h
  *   combine        F(children) / K: a formula whose x, y, z are the fields of up to three children,
  *                  K >= 1 a bound on the sum of its partial derivatives' sizes
  *   soft           (F - 1/2) / lambda, F = P(d) in [0, 1] of its child's f (csg_soft): a soft node
- *   operator       scene/operators.def; difference is the intersection of the first child with
- *                  the negated others. One that takes fields (csg_rule, FIELDS) gives a soft node
- *                  again, (G(F1, F2, ...) - 1/2) / lambda
- *   empty          -infinity
- * A flat node's field does not depend on z: a figure of the plane. A soft node's f + 1/2 times its
- * softness lambda is a field F in [0, 1] (before an operator's excess); transforms, colours and
- * warps of soft nodes are soft, and sharp operators with soft operands only.
- * Lipschitz constants: 1, but for formulas and for EXTERIOR and INTERIOR, whose K multiplies their
- * operands' (csg_scene_slopes).
+ *   operator       scene/operators/operators.def; difference is the intersection of the first child
+ * with the negated others. One that takes fields (csg_rule, FIELDS) gives a soft node again, (G(F1,
+ * F2, ...) - 1/2) / lambda empty          -infinity A flat node's field does not depend on z: a
+ * figure of the plane. A soft node's f + 1/2 times its softness lambda is a field F in [0, 1]
+ * (before an operator's excess); transforms, colours and warps of soft nodes are soft, and sharp
+ * operators with soft operands only. Lipschitz constants: 1, but for formulas and for EXTERIOR and
+ * INTERIOR, whose K multiplies their operands' (csg_scene_slopes).
  */
 #ifndef CSG_SCENE_SCENE_H
 #define CSG_SCENE_SCENE_H
@@ -33,9 +31,9 @@
 #include "base/context.h"
 #include "base/geometry.h"
 #include "base/span.h"
-#include "scene/formula.h"
-#include "scene/rule.h"
-#include "scene/warp.h"
+#include "scene/formula/formula.h"
+#include "scene/operators/rule.h"
+#include "scene/primitives/warp.h"
 #include "shape/shape.h"
 
 typedef uint32_t csg_node_id;
@@ -46,7 +44,7 @@ typedef enum csg_node_kind {
     CSG_NODE_FIELD,
     CSG_NODE_SHAPE,
 #define CSG_PRIMITIVE(NAME, name, count, doc) CSG_NODE_##NAME,
-#include "scene/primitives.def"
+#include "scene/primitives/primitives.def"
 #undef CSG_PRIMITIVE
     CSG_NODE_TRANSFORM,
     CSG_NODE_COLOR,

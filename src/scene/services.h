@@ -6,7 +6,7 @@
 #define CSG_SCENE_SERVICES_H
 
 #include "scene/scene.h"
-#include "shape/triangles.h"
+#include "shape/polyhedra/triangles.h"
 
 typedef struct csg_services {
     /* The triangles of a mesh file. On failure `problem` says what is wrong, in one sentence

@@ -9,8 +9,8 @@
 
 #include <stdatomic.h>
 
-#include "shape/outline.h"
-#include "shape/triangles.h"
+#include "shape/plane/outline.h"
+#include "shape/polyhedra/triangles.h"
 
 typedef enum csg_shape_kind { CSG_SHAPE_REGION, CSG_SHAPE_POLYHEDRON } csg_shape_kind;
 

@@ -15,8 +15,8 @@
 
 #include "api/services.h"
 #include "io/formats.h"
-#include "scene/build.h"
-#include "shape/polyhedron.h"
+#include "scene/tree/build.h"
+#include "shape/polyhedra/polyhedron.h"
 
 static int findings;
 static char folder[] = "/tmp/csg-services-XXXXXX";

@@ -14,8 +14,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "scene/bounds.h"
-#include "scene/lazy.h"
+#include "scene/boxes/bounds.h"
+#include "scene/lazy/lazy.h"
 
 typedef struct method {
     const char *name;

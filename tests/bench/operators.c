@@ -11,9 +11,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "field/dispatch.h"
 #include "field/field.h"
-#include "scene/build.h"
+#include "field/kernels/dispatch.h"
+#include "scene/tree/build.h"
 
 enum { EDGE = 128, COUNT = EDGE * EDGE * EDGE, LEAST_ROUNDS = 1, MOST_ROUNDS = 100 };
 

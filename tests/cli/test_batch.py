@@ -161,9 +161,9 @@ class Manifests(BatchTest):
         self.assert_refused(self.run_in("batch", "none.json", "-d", "out"), 2, "none.json", "No such")
 
     def test_the_schema_knows_every_option(self):
-        with open(os.path.join(ROOT, "share/batch.schema.json"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "tools/integrations/batch.schema.json"), encoding="utf-8") as file:
             schema = json.load(file)
-        with open(os.path.join(ROOT, "tools/csgmesh/options.def"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "tools/csgmesh/core/options.def"), encoding="utf-8") as file:
             rows = re.findall(r'OPTION\(\w+,\s*[^,]+,\s*"([^"]+)",\s*(\w+),\s*(?:"[^"]*"|NULL),\s*'
                               r"([A-Z_| ]+),", file.read())
         of_batches = {"format", "parameter-file", "parameter-set", "quiet", "progress", "color",

@@ -5,8 +5,8 @@
 #ifndef TEST_FIELD_SUPPORT_H
 #define TEST_FIELD_SUPPORT_H
 
-#include "field/dispatch.h"
 #include "field/field.h"
+#include "field/kernels/dispatch.h"
 #include "scene/random_scene.h"
 #include "scene/scene_support.h"
 

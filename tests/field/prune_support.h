@@ -6,7 +6,7 @@
 #define TEST_PRUNE_SUPPORT_H
 
 #include "field/field_support.h"
-#include "field/prune.h"
+#include "field/prune/prune.h"
 
 typedef struct cube {
     csg_vec3 center; /* field frame */

@@ -4,8 +4,8 @@
  * that pruning allows; gradients; the Lipschitz constant; ranges over cubes; what they are cut
  * into.
  */
-#include "field/compile_curve.h"
-#include "field/cone_curve.h"
+#include "field/compile/compile_curve.h"
+#include "field/cones/cone_curve.h"
 #include "field/field_support.h"
 #include "scene/random_curve.h"
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "field/field_support.h"
-#include "field/functions.h"
+#include "field/kernels/functions.h"
 #include "scene/random_formula.h"
 
 /* ---- functions ------------------------------------------------------------------------------ */
@@ -104,7 +104,7 @@ static const operation operations[] = {
 #define NAMED_1(name) {#name, value_##name, range_##name},
 #define NAMED_2(name) NAMED_1(name)
 #define CSG_FORMULA_OP(NAME, name, arity) NAMED_##arity(name)
-#include "scene/formula.def"
+#include "scene/formula/formula.def"
 #undef CSG_FORMULA_OP
 };
 

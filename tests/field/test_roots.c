@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/roots.h"
+#include "field/kernels/roots.h"
 #include "field_support.h"
 
 /* Two planes whose values along x have these slopes and meet in a kink; the root lies before it. */

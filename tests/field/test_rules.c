@@ -14,11 +14,11 @@
 
 static const csg_blend_kind kinds[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) CSG_BLEND_##NAME,
-#include "scene/operators.def"
+#include "scene/operators/operators.def"
 };
 static const char *const names[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) #name,
-#include "scene/operators.def"
+#include "scene/operators/operators.def"
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

@@ -2,7 +2,7 @@
  * Any bytes -> the reader of DXF.
  */
 #include "fuzz/fuzz_reader.h"
-#include "outline/dxf.h"
+#include "outline/dxf/dxf.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

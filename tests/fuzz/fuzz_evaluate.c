@@ -8,8 +8,8 @@
 #include "fuzz/fuzz.h"
 #include "lang/lang.h"
 #include "scene/collected_text.h"
-#include "scene/print.h"
 #include "scene/reference.h"
+#include "scene/tree/print.h"
 
 static void check_field(const csgm_scene *scene)
 {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz/fuzz_reader.h"
-#include "outline/font.h"
+#include "outline/letters/font.h"
 
 static void set(csg_font *font, csg_memory *memory, csg_text_direction direction)
 {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "fuzz/fuzz_reader.h"
-#include "outline/heights.h"
+#include "outline/heights/heights.h"
 
 static uint32_t checksum(const uint8_t *data, size_t size)
 {

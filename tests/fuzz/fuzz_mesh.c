@@ -11,7 +11,7 @@
 
 #include "fuzz/fuzz.h"
 #include "io/formats.h"
-#include "io/zip_write.h"
+#include "io/threemf/zip_write.h"
 
 static void check(const csgm_mesh_view *mesh)
 {

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "fuzz/fuzz.h"
-#include "lang/evaluator.h"
-#include "lang/parser.h"
+#include "lang/evaluate/evaluator.h"
+#include "lang/parse/parser.h"
 
 enum { STACK_BYTES = 4 << 20 }; /* of this thread's own, for the parser */
 

@@ -2,7 +2,7 @@
  * Any bytes -> the reader of SVG.
  */
 #include "fuzz/fuzz_reader.h"
-#include "outline/svg.h"
+#include "outline/svg/svg.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -18,6 +18,7 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+INPUTS = os.path.join(HERE, "..", "data", "fuzz")
 ROOT = os.path.join(HERE, "..", "..")
 ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": "detect_leaks=1:allocator_may_return_null=1",
                "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1"}
@@ -57,7 +58,7 @@ def build(folder, targets):
 
 
 def inputs(target):
-    folders = [os.path.join(HERE, kind, target) for kind in ("corpus", "findings")]
+    folders = [os.path.join(INPUTS, kind, target) for kind in ("corpus", "findings")]
     return [folder for folder in folders if os.path.isdir(folder)]
 
 
@@ -88,7 +89,7 @@ def minimise(program, target, work):
     subprocess.run([program, "-merge=1", "-use_counters=0", f"-max_len={LONGEST}", chosen,
                     os.path.join(work, target), *inputs(target)],
                    stderr=subprocess.DEVNULL, env=ENVIRONMENT, check=True)
-    corpus = os.path.join(HERE, "corpus", target)
+    corpus = os.path.join(INPUTS, "corpus", target)
     shutil.rmtree(corpus, ignore_errors=True)
     os.makedirs(corpus)
     total = 0

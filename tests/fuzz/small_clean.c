@@ -3,7 +3,7 @@
  * the readers are what is looked at. The linker's --wrap puts this in the place of
  * csg_polygons_clean.
  */
-#include "shape/polygons.h"
+#include "shape/plane/polygons.h"
 
 enum { MOST_POINTS = 1500 };
 

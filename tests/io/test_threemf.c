@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/zip_write.h"
+#include "io/threemf/zip_write.h"
 
 #define CORE "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 #define MODEL                                                                                      \

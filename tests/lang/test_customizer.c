@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "lang/bench_fixture.h"
-#include "lang/customizer.h"
+#include "lang/parameters/customizer.h"
 #include "text/json.h"
 
 static csgm_params *params;

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "lang/bench_fixture.h"
-#include "scene/print.h"
 #include "scene/reference.h"
+#include "scene/tree/print.h"
 
 static double value_at(csg_vec3 p)
 {

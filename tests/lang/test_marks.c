@@ -13,8 +13,8 @@
 
 #include "lang/bench_fixture.h"
 #include "scene/collected_text.h"
-#include "scene/print.h"
 #include "scene/reference.h"
+#include "scene/tree/print.h"
 
 /* Its field at a point; NAN: nothing is marked so. */
 static double mark_at(csg_scene_mark kind, double x, double y, double z)

@@ -11,11 +11,11 @@
 #include <cmocka.h>
 
 #include "lang/bench_fixture.h"
-#include "scene/build.h"
 #include "scene/collected_text.h"
-#include "scene/print.h"
 #include "scene/random_scene.h"
-#include "shape/polyhedron.h"
+#include "scene/tree/build.h"
+#include "scene/tree/print.h"
+#include "shape/polyhedra/polyhedron.h"
 
 static text print(const csgm_scene *scene)
 {

@@ -14,7 +14,7 @@
 
 #include "failing.h"
 #include "lang/bench_fixture.h"
-#include "scene/bounds.h"
+#include "scene/boxes/bounds.h"
 #include "scene/reference.h"
 
 #define PI 3.14159265358979323846

@@ -6,9 +6,9 @@
 #define TEST_MESH_SUPPORT_H
 
 #include "base/pool.h"
-#include "field/dispatch.h"
-#include "mesh/build.h"
+#include "field/kernels/dispatch.h"
 #include "mesh/inspect.h"
+#include "mesh/pipeline/build.h"
 #include "scene/random_scene.h"
 #include "scene/scene_support.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "grid/certify.h"
+#include "grid/certify/certify.h"
 #include "mesh/mesh_support.h"
 
 static uint32_t pose_count = 8;

@@ -4,11 +4,11 @@
  */
 #include <stdlib.h>
 
-#include "field/cone.h"
+#include "field/cones/cone.h"
 #include "mesh/mesh_support.h"
 #include "scene/random_formula.h"
 #include "scene/star.h"
-#include "shape/polyhedron.h"
+#include "shape/polyhedra/polyhedron.h"
 
 static uint32_t scene_count = 24;
 

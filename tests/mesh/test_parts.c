@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/parts.h"
+#include "scene/tree/parts.h"
 
 static csg_node_id named(mesh_case *c, const char *name, csg_node_id node)
 {

@@ -59,7 +59,7 @@ csg_bytes support_file(const char *name)
     char path[1024];
     csg_bytes bytes;
     csg_problem problem = {""};
-    snprintf(path, sizeof path, "%s/files/%s", support_folder, name);
+    snprintf(path, sizeof path, "%s/%s", support_folder, name);
     assert_int_equal(csg_bytes_read(&memory, path, &bytes, &problem), CSGM_OK);
     return bytes;
 }

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "outline/input.h"
-#include "shape/polygons.h"
+#include "shape/plane/polygons.h"
 
 /* The n-th allocation from now on fails, and all after it; 0 = none. */
 void support_fail_at(size_t n);

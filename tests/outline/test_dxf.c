@@ -7,7 +7,7 @@
 
 #include "outline/outline_support.h"
 
-#include "outline/dxf.h"
+#include "outline/dxf/dxf.h"
 
 #define PI 3.14159265358979323846
 

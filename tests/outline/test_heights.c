@@ -6,7 +6,7 @@
 
 #include "outline/outline_support.h"
 
-#include "outline/heights.h"
+#include "outline/heights/heights.h"
 
 static csg_problem problem;
 

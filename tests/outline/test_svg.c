@@ -7,8 +7,8 @@
 
 #include "outline/outline_support.h"
 
-#include "outline/svg.h"
-#include "outline/svg_path.h"
+#include "outline/svg/svg.h"
+#include "outline/svg/svg_path.h"
 
 #define PI 3.14159265358979323846
 

@@ -11,7 +11,7 @@
 #include "outline/outline_support.h"
 
 #include "base/random.h"
-#include "outline/text.h"
+#include "outline/letters/text.h"
 
 static const char sans[] = "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf";
 static const char dejavu[] = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";

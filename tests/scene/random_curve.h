@@ -6,7 +6,7 @@
 #define TEST_RANDOM_CURVE_H
 
 #include "base/random.h"
-#include "scene/curve.h"
+#include "scene/primitives/curve.h"
 
 /* Control points within about [-1, 1]^3; v has room for four. */
 static inline void test_random_curve(csg_random *random, csg_node_kind kind, double *v)

@@ -5,7 +5,7 @@
 #define TEST_RANDOM_FORMULA_H
 
 #include "base/random.h"
-#include "scene/build.h"
+#include "scene/tree/build.h"
 
 enum { TEST_MOST_STEPS = 512 };
 

@@ -5,7 +5,7 @@
 #define TEST_RANDOM_RULE_H
 
 #include "base/random.h"
-#include "scene/rule.h"
+#include "scene/operators/rule.h"
 
 typedef struct test_step_ranges {
     double least_sigmoid;             /* the largest is 40 */

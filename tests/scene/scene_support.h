@@ -12,9 +12,9 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "scene/bounds.h"
-#include "scene/build.h"
+#include "scene/boxes/bounds.h"
 #include "scene/reference.h"
+#include "scene/tree/build.h"
 
 #define NOWHERE ((csg_span){.source = UINT32_MAX})
 

@@ -5,7 +5,7 @@
 #define TEST_SCENE_STAR_H
 
 #include "scene_support.h"
-#include "shape/region.h"
+#include "shape/plane/region.h"
 
 /* A star of `count` corners, whose radii `radius` gives, with a hole of which corners share
  * heights. */

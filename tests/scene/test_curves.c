@@ -7,7 +7,7 @@
 #include "scene_support.h"
 
 #include "random_curve.h"
-#include "scene/primitive_box.h"
+#include "scene/primitives/primitive_box.h"
 
 #ifndef POINTS
 #define POINTS 100000 /* for each of both kinds; the slow suite has a million */

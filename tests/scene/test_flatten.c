@@ -9,9 +9,9 @@
 #include <stdlib.h>
 
 #include "failing.h"
-#include "scene/flatten.h"
-#include "shape/polygons.h"
-#include "shape/region.h"
+#include "scene/outlines/flatten.h"
+#include "shape/plane/polygons.h"
+#include "shape/plane/region.h"
 
 static csgm_context context;
 static csg_scene_builder builder;

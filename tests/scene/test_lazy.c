@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "random_scene.h"
-#include "scene/lazy_private.h"
+#include "scene/lazy/lazy_private.h"
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
 

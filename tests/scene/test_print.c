@@ -10,7 +10,7 @@
 
 #include "collected_text.h"
 #include "random_scene.h"
-#include "scene/print.h"
+#include "scene/tree/print.h"
 
 static void check_text(csg_node_id root, const char *expected)
 {

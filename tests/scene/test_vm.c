@@ -10,10 +10,10 @@
 
 #include "collected_text.h"
 #include "random_scene.h"
-#include "scene/formulate.h"
+#include "scene/formula/formulate.h"
+#include "scene/formula/vm.h"
 #include "scene/reference.h"
-#include "scene/vm.h"
-#include "shape/polyhedron.h"
+#include "shape/polyhedra/polyhedron.h"
 #include "star.h"
 
 /* A finished formula. */

@@ -13,7 +13,7 @@
 
 #include "base/random.h"
 #include "failing.h"
-#include "shape/outline.h"
+#include "shape/plane/outline.h"
 
 typedef struct failing_memory {
     csg_memory memory;

@@ -5,7 +5,7 @@
 #define CSG_TESTS_SHAPE_SOLID_SUPPORT_H
 
 #include "shape/outline_support.h"
-#include "shape/polyhedron.h"
+#include "shape/polyhedra/polyhedron.h"
 
 /* Triangles and what csg_polyhedron_create makes of them. */
 typedef struct solid_case {

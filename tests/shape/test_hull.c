@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "shape/hull.h"
+#include "shape/polyhedra/hull.h"
 
 enum { MOST = 2000 };
 

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-#include "shape/polygons.h"
+#include "shape/plane/polygons.h"
 
 static csg_memory memory;
 static csg_outline a, b, out;

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "shape/region.h"
+#include "shape/plane/region.h"
 
 static csg_memory memory;
 static csg_outline outline;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "shape/repair.h"
+#include "shape/polyhedra/repair.h"
 
 static csgm_status try_make(solid_case *b)
 {

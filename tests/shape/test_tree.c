@@ -2,8 +2,8 @@
  * The nearest triangle of a tree: the least of all of them, and the same one wherever the search
  * begins; for points beside, within and far from small, large and thin meshes.
  */
+#include "shape/polyhedra/tree.h"
 #include "shape/solid_support.h"
-#include "shape/tree.h"
 
 static csg_vec3 on_lattice(csg_vec3 p)
 {

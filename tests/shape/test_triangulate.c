@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "shape/polygons.h"
-#include "shape/turn.h"
+#include "shape/plane/polygons.h"
+#include "shape/plane/turn.h"
 
 static void add_loop(const double (*points)[2], int count)
 {

@@ -63,7 +63,7 @@ def module_group(name, handler, children):
 
 def modules(group):
     parameters, found = {}, []
-    for macro, fields in calls("src/lang/modules.def"):
+    for macro, fields in calls("src/lang/modules/modules.def"):
         if macro == "CSG_MODULE" and module_group(*fields[:3]) == group:
             found.append(fields)
         if macro == "CSG_PARAMETER":
@@ -82,7 +82,7 @@ def modules(group):
 
 def functions():
     rows = []
-    for _, (name, _, _, _, parameters, doc) in calls("src/lang/functions.def"):
+    for _, (name, _, _, _, parameters, doc) in calls("src/lang/functions/functions.def"):
         rows.append([code(f"{name}({parameters})"), doc])
     return table(["function", "gives"], rows)
 
@@ -100,10 +100,10 @@ INTERVALS = {"CORNERS": "yes", "ANGLES": "without a profile", "TURNS": "without 
 
 def rules(space):
     parameters, rows = {}, []
-    for macro, fields in calls("src/scene/operators.def"):
+    for macro, fields in calls("src/scene/operators/operators.def"):
         if macro == "CSG_RULE_PARAMETER":
             parameters.setdefault(fields[0], []).append(fields[1:])
-    for macro, fields in calls("src/scene/operators.def"):
+    for macro, fields in calls("src/scene/operators/operators.def"):
         if macro != "CSG_RULE" or fields[2] != space or fields[1] == "field_sharp":
             continue
         constant, name, _, fold, interval, _, slope, equal, doc = fields
@@ -118,20 +118,20 @@ def rules(space):
 
 def steps():
     rows = [[code(f"{name}({least} .. {most})"), standard, "yes" if even == "1" else "no", doc]
-            for _, (_, name, standard, least, most, _, even, doc) in calls("src/scene/steps.def")]
+            for _, (_, name, standard, least, most, _, even, doc) in calls("src/scene/operators/steps.def")]
     return table(["step", "default", "order of the operands does not matter", "what it is"], rows)
 
 
 def falloffs():
     rows = [[code(f'"{name}"'), doc.replace("^2", "²").replace("^4", "⁴").replace("^6", "⁶").replace("^3", "³"),
              f"{float(iso):.6f}", f"{float(steepest):.6f}"]
-            for _, (_, name, iso, steepest, doc) in calls("src/scene/falloffs.def")]
+            for _, (_, name, iso, steepest, doc) in calls("src/scene/operators/falloffs.def")]
     return table(["falloff", "P(d)", "1/2 at d =", "steepest"], rows)
 
 
 def unsupported():
     rows = []
-    for path in ("src/lang/unsupported.def", "src/lang/unsupported_functions.def"):
+    for path in ("src/lang/parse/unsupported.def", "src/lang/functions/unsupported_functions.def"):
         for _, (name, instead) in calls(path):
             rows.append([code(name), "" if instead == "NULL" else instead])
     return table(["not there yet", "until then"], rows)

@@ -9,7 +9,7 @@
 
 #include "base/pool.h"
 #include "field/point.h"
-#include "grid/octree.h"
+#include "grid/octree/octree.h"
 #include "mesh/distance/slopes.h"
 
 enum { PIECES = 1 << 11, STACK = 64 };

@@ -8,7 +8,7 @@
 
 #include "base/pool.h"
 #include "field/point.h"
-#include "grid/octree.h"
+#include "grid/octree/octree.h"
 #include "mesh/distance/slopes.h"
 
 /* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */

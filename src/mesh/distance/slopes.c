@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/formulas.h"
+#include "field/kernels/formulas.h"
 #include "field/point.h"
 
 /* What one operand can be in the ball. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The gradients that a field can have in a ball, through its operators: a few balls of vectors
- * whose convex hull holds them all. Leaves give theirs (field/cone.h). A blend mixes its operands'
- * gradients in shares that depend on the operands' difference alone, and that changes within the
- * ball by no more than the gradients allow: so where two surfaces flow into each other the set
- * shrinks with the ball, and what a sharp operator hides there does not take part at all.
+ * whose convex hull holds them all. Leaves give theirs (field/cones/cone.h). A blend mixes its
+ * operands' gradients in shares that depend on the operands' difference alone, and that changes
+ * within the ball by no more than the gradients allow: so where two surfaces flow into each other
+ * the set shrinks with the ball, and what a sharp operator hides there does not take part at all.
  *
  * And the field's range over a triangle in the ball: that of a leaf from its values at the corners
  * and how far its gradients stray, of convex primitives by their tangent planes, then through the
@@ -13,8 +13,8 @@
 #define CSG_MESH_DISTANCE_SLOPES_H
 
 #include "base/geometry.h"
-#include "field/cone.h"
-#include "field/kernel.h"
+#include "field/cones/cone.h"
+#include "field/kernels/kernel.h"
 
 enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "grid/octree.h"
+#include "grid/octree/octree.h"
 
 void csg_feature_around_begin(csg_feature_around *around, csg_memory *memory, const csg_marching *m)
 {

@@ -6,7 +6,7 @@
 #ifndef CSG_MESH_FEATURES_AROUND_H
 #define CSG_MESH_FEATURES_AROUND_H
 
-#include "field/prune.h"
+#include "field/prune/prune.h"
 #include "mesh/marching/marching.h"
 
 /* One thread's. All zero: nothing kept yet. */

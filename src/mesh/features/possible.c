@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-#include "grid/octree.h"
+#include "grid/octree/octree.h"
 
 typedef struct ball {
     float at[3], radius;
@@ -45,7 +45,7 @@ static float to_box_edges(const float *own, const float q[3], int axes)
     return best;
 }
 
-/* The rims, and the tips of cones. own: see frustum_at in field/formulas.h */
+/* The rims, and the tips of cones. own: see frustum_at in field/kernels/formulas.h */
 static float to_frustum_rims(const float *own, const float q[3])
 {
     float rho = sqrtf(q[0] * q[0] + q[1] * q[1]), best = INFINITY;

@@ -5,8 +5,8 @@
 #ifndef CSG_MESH_MARCHING_MARCHING_H
 #define CSG_MESH_MARCHING_MARCHING_H
 
-#include "field/roots.h"
-#include "grid/octree.h"
+#include "field/kernels/roots.h"
+#include "grid/octree/octree.h"
 #include "mesh/marching/tables.h"
 
 /* Which block is where: open addressing on block coordinates. */

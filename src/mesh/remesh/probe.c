@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/dispatch.h"
 #include "field/field.h"
+#include "field/kernels/dispatch.h"
 
 typedef struct csg_probe_room {
     float x[CSG_PROBE_MOST], y[CSG_PROBE_MOST], z[CSG_PROBE_MOST];

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ * A direction for all leaves of a tape; see cone.h. The best one points to the point of the convex
+ * hull of the leaves' gradients that is nearest to zero; Frank and Wolfe's steps come near to it,
+ * and what they find is then checked, so it need not be the best.
+ */
+#include "field/cones/cone.h"
+
+#include <math.h>
+
+#include "field/cones/cone_along.h"
+#include "field/point.h"
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The ball that reaches least far along w, and how far. */
+static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double *reach)
+{
+    uint32_t worst = 0;
+    double norm = sqrt(dot(w, w));
+    *reach = INFINITY;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        double d = dot(w, balls->items[i].at) - norm * balls->items[i].spread;
+        if (d < *reach) {
+            *reach = d;
+            worst = i;
+        }
+    }
+    return worst;
+}
+
+/* w moves towards the vector of the ball that is nearest to the other side. */
+static void step_towards(double w[3], const csg_cone_ball *ball)
+{
+    double point[3], to[3], norm = sqrt(dot(w, w));
+    for (int k = 0; k < 3; k++) {
+        point[k] = ball->at[k] - (norm > 0 ? w[k] / norm : 0) * ball->spread;
+        to[k] = point[k] - w[k];
+    }
+    double square = dot(to, to), share = square > 0 ? -dot(w, to) / square : 0;
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    for (int k = 0; k < 3; k++)
+        w[k] += share * to[k];
+}
+
+bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
+{
+    enum { STEPS = 12 };
+    double w[3] = {0, 0, 0}, best = 0;
+    for (uint32_t i = 0; i < balls->count; i++)
+        for (int k = 0; k < 3; k++)
+            w[k] += balls->items[i].at[k] / balls->count;
+    for (int step = 0; step < STEPS; step++) {
+        double reach, norm = sqrt(dot(w, w));
+        if (!(norm > 1e-6))
+            break;
+        uint32_t worst = worst_of(balls, w, &reach);
+        if (reach / norm > best) {
+            best = reach / norm;
+            for (int k = 0; k < 3; k++)
+                out->axis[k] = w[k] / norm;
+        }
+        if (balls->count == 1)
+            break;
+        step_towards(w, &balls->items[worst]);
+    }
+    out->least = best;
+    return best > 0;
+}
+
+/* Operators whose gradient is such a combination. */
+static bool operator_combines(const csg_tape_node *node)
+{
+    switch (node->op) {
+    case CSG_OP_UNION:
+    case CSG_OP_INTERSECTION:
+    case CSG_OP_ROUND_UNION:
+    case CSG_OP_ROUND_INTERSECTION:
+        return node->blend < CSG_BLEND_COUNT || node->blend == CSG_BLEND_ORTHOGONAL;
+    default:
+        return false;
+    }
+}
+
+static bool is_sharp(const csg_tape_node *node)
+{
+    return node->arity > 1 &&
+           (node->blend == CSG_BLEND_SHARP || node->blend == CSG_BLEND_ORTHOGONAL);
+}
+
+/* Of each leaf; false: one has no bound. */
+static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
+                        csg_cone_leaves *leaves, csg_cone *out, bool *is_simple)
+{
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op)) {
+            if (leaves->count >= CSG_CONE_MOST)
+                return false;
+            leaves->first[leaves->count] = leaves->balls.count;
+            if (!csg_cone_add_leaf(&leaves->balls, tape, node, c, radius))
+                return false;
+            leaves->corner[leaves->count++] = leaves->balls.corner;
+        } else {
+            *is_simple = *is_simple && operator_combines(node);
+            out->is_crease |= is_sharp(node);
+        }
+    }
+    return leaves->balls.count > 0;
+}
+
+/* Of the gradients of all leaves. */
+static double largest_of(const csg_cone_leaves *leaves)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < leaves->balls.count; i++) {
+        const csg_cone_ball *ball = &leaves->balls.items[i];
+        most = fmax(most, sqrt(dot(ball->at, ball->at)) + ball->spread);
+    }
+    for (uint32_t i = 0; i < leaves->count; i++)
+        most = fmax(most, leaves->corner[i]);
+    return most;
+}
+
+/* What the shares of operators that combine add up to at most: of two at right angles sqrt(2). */
+static double most_shares(const csg_tape *tape)
+{
+    double most = 1;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        bool is_orthogonal = !csg_op_is_leaf(node->op) && node->blend == CSG_BLEND_ORTHOGONAL;
+        for (uint32_t k = 1; is_orthogonal && k < node->arity; k++)
+            most *= 1.41421357;
+    }
+    return most;
+}
+
+static bool try_axis(const csg_pruner *room, const csg_tape *tape, const csg_cone_leaves *leaves,
+                     csg_cone *out)
+{
+    return csg_cone_along(tape, leaves, room->low, room->high, out->axis, &out->least, &out->most,
+                          &out->is_crease);
+}
+
+/* Along the direction that suits all leaves, where there is one, or the gradient at the centre. */
+static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
+                       const csg_cone_leaves *leaves, csg_cone *out)
+{
+    /* cubes around the ball, which they are given by the balls around them */
+    float reach = (float)(radius * 1.7320508 * (1 + 1e-6));
+    if (!room)
+        return false;
+    out->out_of_memory = !csg_prune_cube(room, tape, c, reach);
+    if (out->out_of_memory)
+        return false;
+    csg_vec3 w = csg_tape_gradient_at(room->kernel, tape, csg_vec3_from_floats(c), room->scratch,
+                                      room->scratch_capacity);
+    double norm = csg_vec3_norm(w);
+    if (csg_cone_find_axis(&leaves->balls, out) && try_axis(room, tape, leaves, out))
+        return true;
+    if (!(norm > 1e-6))
+        return false;
+    out->axis[0] = w.x / norm, out->axis[1] = w.y / norm, out->axis[2] = w.z / norm;
+    return try_axis(room, tape, leaves, out);
+}
+
+bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
+                   csg_cone *out)
+{
+    csg_cone_leaves leaves;
+    bool is_simple = true;
+    leaves.count = leaves.balls.count = 0;
+    leaves.balls.has_edges = out->is_crease = out->out_of_memory = false;
+    out->most = INFINITY;
+    if (!find_leaves(tape, c, radius, &leaves, out, &is_simple))
+        return false;
+    out->is_crease |= leaves.balls.has_edges;
+    if (!is_simple)
+        return find_along(room, tape, c, radius, &leaves, out);
+    out->most = most_shares(tape) * largest_of(&leaves);
+    return csg_cone_find_axis(&leaves.balls, out);
+}

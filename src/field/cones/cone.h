@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ * Cones of gradients: is there one direction in which the field climbs everywhere in a ball?
+ *
+ * The gradient of a union, intersection or blend is a combination of its operands' gradients with
+ * weights >= 0 that add up to 1 (operators.md 0) or more (orthogonal). So a direction v with
+ * v . g >= m for the gradients g of all leaves of a pruned tape has v . grad f >= m there. Each
+ * leaf states the gradients it can have in the ball: a few balls of vectors, their radius from how
+ * fast the gradient of that primitive can turn (cone_leaf.c). Other operators have bounds of their
+ * own on the climb along a direction (cone_along.c).
+ */
+#ifndef CSG_FIELD_CONE_H
+#define CSG_FIELD_CONE_H
+
+#include "field/prune/prune.h"
+
+typedef struct csg_cone {
+    double axis[3];     /* v, unit length */
+    double least;       /* m > 0 */
+    double most;        /* |grad f| is no larger; INFINITY where there is no cone */
+    bool is_crease;     /* a sharp operator or an edge of a primitive is there */
+    bool out_of_memory; /* so none was found */
+} csg_cone;
+
+/* Over the ball around c, for a tape that is valid there. False: there is none, or none could be
+ * shown. room: for the intervals that some operators need; NULL: these have no bound then. */
+bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
+                   csg_cone *out);
+
+/* ---- cone_leaf.c ------------------------------------------------------------------------------
+ */
+
+enum { CSG_CONE_MOST = 32 };
+
+/* Vectors within `spread` of `at`. */
+typedef struct csg_cone_ball {
+    double at[3], spread;
+} csg_cone_ball;
+
+typedef struct csg_cone_balls {
+    csg_cone_ball items[CSG_CONE_MOST];
+    uint32_t count;
+    bool has_edges; /* of a primitive */
+    double
+        corner; /* of the leaf added last: 0, or how long its gradients may be where faces meet */
+} csg_cone_balls;
+
+/* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
+ * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least
+ * 1. False: no bound, or too many. */
+bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                       const float c[3], double radius);
+
+/* A bound on the largest singular value of a matrix of 3 x 3, row by row. */
+double csg_cone_norm(const float *m);
+
+/* ---- cone.c -----------------------------------------------------------------------------------
+ */
+
+/* Axis and least climb of a cone that holds the balls' convex hull. False: none was found. */
+bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out);
+
+#endif

@@ -1,0 +1,406 @@
+/* SPDX-License-Identifier: MIT
+ * The derivative along one direction v, in ranges, from the leaves up (v . g of each leaf's balls):
+ *
+ *   sharp, blends    shares >= 0 that add up to 1: between the least and the largest operand
+ *   orthogonal       shares add up to 1 at least and sqrt(2) at most
+ *   EXTERIOR,        the partial derivatives add up to 1 (moving both operands by c moves the
+ *   INTERIOR         result by c), and their sizes to K at most
+ *   sums             sums; products x y: y x' + x y'; 1 - (1 - x)(1 - y) likewise
+ *   RICCI, SCALE_SET,  G is homogeneous of degree 1, so its partial derivatives, all >= 0, have
+ *   ARC              G_1 x + G_2 y = G (Euler): they add up to G / max at least, which is 1 and
+ *                    more for a union, and G / min at most
+ *   SOFTEN, N        times the range of the function's slope
+ *   COMBINE          the formula's own derivative in ranges (cone_formula.c)
+ */
+#include "field/cones/cone_along.h"
+
+#include <math.h>
+
+#include "field/cones/cone_formula.h"
+#include "field/kernels/soft_formulas.h"
+#include "field/prune/prune.h"
+
+enum { DEPTH = 64 };
+
+/* Of one operand: its derivative, the size of its gradient, and of a field its value. */
+typedef struct slope_range {
+    double low, high, most;
+    float least_value, largest_value;
+} slope_range;
+
+typedef struct stack {
+    slope_range items[DEPTH];
+    uint32_t top;
+} stack;
+
+static double least_of(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double largest_of(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static slope_range leaf_range(const csg_cone_leaves *leaves, uint32_t leaf, const double axis[3])
+{
+    slope_range r = {.low = INFINITY, .high = -INFINITY};
+    uint32_t end = leaf + 1 < leaves->count ? leaves->first[leaf + 1] : leaves->balls.count;
+    for (uint32_t i = leaves->first[leaf]; i < end; i++) {
+        const csg_cone_ball *b = &leaves->balls.items[i];
+        double d = axis[0] * b->at[0] + axis[1] * b->at[1] + axis[2] * b->at[2];
+        double norm = sqrt(b->at[0] * b->at[0] + b->at[1] * b->at[1] + b->at[2] * b->at[2]);
+        r.low = least_of(r.low, d - b->spread);
+        r.high = largest_of(r.high, d + b->spread);
+        r.most = largest_of(r.most, norm + b->spread);
+    }
+    /* where faces meet weights add up to 1 and more: only what all climb is climbed there, too */
+    double corner = leaves->corner[leaf];
+    r.low = r.low < 0 ? least_of(r.low, -corner) : r.low;
+    r.high = r.high > 0 ? largest_of(r.high, corner) : r.high;
+    r.most = largest_of(r.most, corner);
+    return r;
+}
+
+/* Times what lies in low..high. */
+static slope_range scale_range(slope_range a, double low, double high)
+{
+    double corners[4] = {a.low * low, a.low * high, a.high * low, a.high * high};
+    slope_range r = a;
+    r.low = r.high = corners[0];
+    for (int i = 1; i < 4; i++) {
+        r.low = least_of(r.low, corners[i]);
+        r.high = largest_of(r.high, corners[i]);
+    }
+    r.most = a.most * largest_of(fabs(low), fabs(high));
+    return r;
+}
+
+/* Shares >= 0 that add up to from..to. */
+static slope_range mix(slope_range a, slope_range b, double from, double to)
+{
+    slope_range r = a;
+    double low = least_of(a.low, b.low), high = largest_of(a.high, b.high);
+    r.low = low * (low >= 0 ? from : to);
+    r.high = high * (high >= 0 ? to : from);
+    r.most = largest_of(a.most, b.most) * to;
+    return r;
+}
+
+static slope_range sum(slope_range a, slope_range b)
+{
+    return (slope_range){a.low + b.low, a.high + b.high, a.most + b.most, a.least_value,
+                         a.largest_value};
+}
+
+/* ---- joins ------------------------------------------------------------------------------------
+ */
+
+/* One share in (1 - k) / 2 .. (1 + k) / 2, the other the rest of 1. */
+static slope_range mix_smoothly(slope_range a, slope_range b, double k)
+{
+    double share = (1 + k) / 2;
+    slope_range one = sum(scale_range(a, share, share), scale_range(b, 1 - share, 1 - share));
+    slope_range other = sum(scale_range(a, 1 - share, 1 - share), scale_range(b, share, share));
+    slope_range r = mix(one, other, 1, 1);
+    r.most = largest_of(a.most, b.most) * k;
+    return r;
+}
+
+static slope_range multiply(slope_range a, slope_range b, bool is_union)
+{
+    /* of a union the complements are multiplied */
+    float al = is_union ? 1 - a.largest_value : a.least_value;
+    float ah = is_union ? 1 - a.least_value : a.largest_value;
+    float bl = is_union ? 1 - b.largest_value : b.least_value;
+    float bh = is_union ? 1 - b.least_value : b.largest_value;
+    slope_range r =
+        sum(scale_range(a, (double)bl, (double)bh), scale_range(b, (double)al, (double)ah));
+    r.least_value = is_union ? 1 - ah * bh : al * bl;
+    r.largest_value = is_union ? 1 - al * bl : ah * bh;
+    return r;
+}
+
+/* G at operands x, y. */
+static float homogeneous_at(const csg_tape_node *node, const float *own, float x, float y)
+{
+    bool is_union = node->join == CSG_JOIN_UNION;
+    if (node->join_blend == CSG_BLEND_RICCI)
+        return is_union ? ricci_union(own[CSG_RICCI_EXPONENT], x, y).value
+                        : ricci_intersection(own[CSG_RICCI_EXPONENT], x, y).value;
+    if (node->join_blend == CSG_BLEND_SCALE_SET)
+        return scale(own[CSG_SCALE_R1], own[CSG_SCALE_R2], own[CSG_SCALE_KAPPA], x, y).value;
+    return is_union ? arc_union(own[CSG_ARC_A], own[CSG_ARC_B], x, y).value
+                    : arc_intersection(own[CSG_ARC_A], own[CSG_ARC_B], x, y).value;
+}
+
+static void mix_homogeneous(const csg_tape_node *node, const float *own, slope_range *a,
+                            slope_range b)
+{
+    float low = homogeneous_at(node, own, a->least_value, b.least_value);
+    float high = homogeneous_at(node, own, a->largest_value, b.largest_value);
+    double most = (double)larger(a->largest_value, b.largest_value);
+    double least = (double)smaller(a->least_value, b.least_value);
+    bool grows = node->join == CSG_JOIN_UNION && node->join_blend != CSG_BLEND_SCALE_SET;
+    double from = grows ? 1 : most > 0 ? (double)low / most : 0;
+    double to = grows ? (least > 0 ? (double)high / least : INFINITY) : 1;
+    if (grows) /* each is at most 1 */
+        to = least_of(to, 2);
+    *a = mix(*a, b, from * (1 - 1e-5), to * (1 + 1e-5));
+    a->least_value = low * (1 - 1e-5f);
+    a->largest_value = high * (1 + 1e-5f);
+}
+
+static bool join(const csg_tape *tape, const csg_tape_node *node, slope_range *a, slope_range b)
+{
+    const float *own = tape->parameters + node->join_parameters;
+    switch (node->join_blend) {
+    case CSG_BLEND_ORTHOGONAL:
+        *a = mix(*a, b, 1, 1.41421357);
+        return true;
+    case CSG_BLEND_EXTERIOR:
+    case CSG_BLEND_INTERIOR:
+        *a = mix_smoothly(*a, b, (double)own[CSG_SMOOTH_K]);
+        return true;
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET: {
+        slope_range r = sum(*a, b);
+        r.least_value = a->least_value + b.least_value;
+        r.largest_value = a->largest_value + b.largest_value;
+        *a = r;
+        return true;
+    }
+    case CSG_BLEND_PERLIN:
+        *a = multiply(*a, b, node->join == CSG_JOIN_UNION);
+        return true;
+    case CSG_BLEND_FIELD_SHARP: {
+        bool is_union = node->join == CSG_JOIN_UNION;
+        slope_range r = mix(*a, b, 1, 1);
+        r.least_value = is_union ? larger(a->least_value, b.least_value)
+                                 : smaller(a->least_value, b.least_value);
+        r.largest_value = is_union ? larger(a->largest_value, b.largest_value)
+                                   : smaller(a->largest_value, b.largest_value);
+        *a = r;
+        return true;
+    }
+    case CSG_BLEND_ARC:
+        if (own[CSG_ARC_KNOTS] > 0)
+            return false; /* a profile bends it both ways */
+        mix_homogeneous(node, own, a, b);
+        return true;
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_SCALE_SET:
+        mix_homogeneous(node, own, a, b);
+        return true;
+    default:
+        if (node->join_blend >= CSG_BLEND_COUNT)
+            return false;
+        *a = mix(*a, b, 1, 1);
+        return true;
+    }
+}
+
+/* ---- deliveries -------------------------------------------------------------------------------
+ */
+
+/* Of a function whose slope rises to one place and falls again. */
+typedef struct hump {
+    double from, to;               /* slopes at the ends */
+    double low, high, top, at_top; /* the range of the argument; where the slope is largest */
+} hump;
+
+static void range_of_hump(hump h, double *low, double *high)
+{
+    *low = least_of(h.from, h.to);
+    *high = largest_of(h.from, h.to);
+    if (h.low <= h.top && h.top <= h.high)
+        *high = largest_of(*high, h.at_top);
+}
+
+/* -P'(d) for d in low..high within 0..1. */
+static void slopes_of_falloff(uint8_t curve_kind, float low, float high, double *least,
+                              double *most)
+{
+    hump h = {.low = (double)low, .high = (double)high};
+    switch (curve_kind) {
+#define CSG_FALLOFF(NAME, name, iso, steepest, doc)                                                \
+    case CSG_CURVE_##NAME:                                                                         \
+        h.from = -(double)falloff_##name(low).slope;                                               \
+        h.to = -(double)falloff_##name(high).slope;                                                \
+        h.at_top = (double)(steepest) + 1e-5;                                                      \
+        break;
+#include "scene/operators/falloffs.def"
+#undef CSG_FALLOFF
+    default:
+        break;
+    }
+    /* where P'' is 0 */
+    const double tops[] = {[CSG_CURVE_SEXTIC] = 0.50348,
+                           [CSG_CURVE_CUBIC] = 0.44721,
+                           [CSG_CURVE_QUARTIC] = 0.57735,
+                           [CSG_CURVE_QUADRATIC] = 1};
+    h.top = tops[curve_kind];
+    h.low -= 1e-4;
+    h.high += 1e-4;
+    range_of_hump(h, least, most);
+}
+
+/* dF / dv of SOFTEN for v in low..high. */
+static void slopes_of_soften(const csg_tape_node *node, const float *own, float low, float high,
+                             double *least, double *most)
+{
+    float rate = own[CSG_SOFTEN_RATE], iso = own[CSG_SOFTEN_ISO];
+    if (node->blend == CSG_CURVE_CLAMP) {
+        float from = 0.5f + rate * low, to = 0.5f + rate * high;
+        *least = from > 1e-6f && to < 1 - 1e-6f ? 1 : 0;
+        *most = to >= 0 && from <= 1 ? 1 : 0;
+    } else if (node->blend == CSG_CURVE_STEP) {
+        float from = larger(smaller(rate * low, 1.0f), -1.0f);
+        float to = larger(smaller(rate * high, 1.0f), -1.0f);
+        hump h = {(double)step_cubic(from).slope,
+                  (double)step_cubic(to).slope,
+                  (double)from,
+                  (double)to,
+                  0,
+                  1.125};
+        range_of_hump(h, least, most);
+    } else {
+        float near = larger(smaller(iso - rate * high, 1.0f), 0);
+        float far = larger(smaller(iso - rate * low, 1.0f), 0);
+        slopes_of_falloff(node->blend, near, far, least, most);
+    }
+    *least = largest_of(0, *least - 1e-5) * (double)rate;
+    *most = (*most + 1e-5) * (double)rate;
+}
+
+/* dN / du of a rule for u in low..high. */
+static bool slopes_of_normal(const csg_tape_node *node, const float *own, float low, float high,
+                             double *least, double *most)
+{
+    *least = *most = 1;
+    if (node->blend == CSG_BLEND_TURNING)
+        return false;
+    if (node->blend == CSG_BLEND_SOFT_SET) {
+        hump h = {(double)normalise_sum(low).slope,
+                  (double)normalise_sum(high).slope,
+                  (double)low,
+                  (double)high,
+                  2.0 / 3,
+                  4.0 / 3};
+        range_of_hump(h, least, most);
+    } else if (node->blend == CSG_BLEND_SCALE_SET) {
+        float top = own[CSG_SCALE_TOP], bend = own[CSG_SCALE_BEND];
+        *least = high >= top ? 0 : (double)normalise_scale(top, bend, low).slope;
+        *most =
+            low >= top ? 0 : 1 + 2 * (double)bend * largest_of(0, (double)smaller(high, top) - 0.5);
+    }
+    *least *= 1 - 1e-5;
+    *most *= 1 + 1e-5;
+    return true;
+}
+
+/* The function's slope, the scale, and 0 where a field is cut off. */
+static bool deliver(const csg_tape *tape, const csg_tape_node *node, slope_range *a, float low,
+                    float high)
+{
+    const float *own = tape->parameters + node->parameters;
+    bool softens = node->op == CSG_OP_SOFTEN;
+    const float *delivery = softens ? own : own + CSG_RULE_DELIVER;
+    double least, most, scale = (double)delivery[CSG_DELIVER_SCALE];
+    if (softens)
+        slopes_of_soften(node, own, low, high, &least, &most);
+    else if (!slopes_of_normal(node, own, a->least_value, a->largest_value, &least, &most))
+        return false;
+    if (!softens && delivery[CSG_DELIVER_LOW] == 0 && a->largest_value >= 1)
+        least = 0;
+    *a = scale_range(*a, least, most);
+    *a = scale_range(*a, scale, scale);
+    return true;
+}
+
+static bool combine(const csg_tape *tape, const csg_tape_node *node, const float *low,
+                    const float *high, stack *s, bool *has_edges)
+{
+    const float *own = tape->parameters + node->parameters;
+    const csg_tape_formula *formula = &tape->formulas[(uint32_t)own[CSG_LEAF_OWN_AFFINE]];
+    csg_cone_box at = {{0, 0, 0}, {0, 0, 0}}, seeds[3] = {{{0, 0, 0}, {0, 0, 0}}}, out;
+    const csg_tape_node *child = node - 1;
+    for (uint32_t k = node->arity; k-- > 0; child -= child->size) {
+        const slope_range *operand = &s->items[s->top - node->arity + k];
+        ptrdiff_t place = (child - tape->nodes) * CSG_OCTANTS;
+        float scale = own[CSG_LEAF_FRAME + 4 * k];
+        if (k > 2 || scale < 0)
+            return false;
+        at.low[k] = scale * low[place] - 0x1p-20f * absolute(scale * low[place]);
+        at.high[k] = scale * high[place] + 0x1p-20f * absolute(scale * high[place]);
+        for (int c = 0; c < 3; c++)
+            seeds[k].low[c] = seeds[k].high[c] = 0;
+        float size = scale * (float)operand->most, room = 0x1p-20f * size;
+        seeds[k].low[0] = scale * (float)operand->low - room;
+        seeds[k].high[0] = scale * (float)operand->high + room;
+        seeds[k].low[1] = -size - room;
+        seeds[k].high[1] = size + room;
+    }
+    if (!csg_cone_formula(tape, formula, &at, seeds, &out, has_edges))
+        return false;
+    s->top -= node->arity;
+    slope_range r = {.low = (double)out.low[0],
+                     .high = (double)out.high[0],
+                     .most = largest_of(fabs((double)out.low[1]), fabs((double)out.high[1]))};
+    double sigma = (double)own[CSG_LEAF_SIGMA];
+    s->items[s->top++] = scale_range(r, sigma, sigma);
+    return true;
+}
+
+/* ---- the tape ---------------------------------------------------------------------------------
+ */
+
+static bool run_node(const csg_tape *tape, uint32_t n, const float *low, const float *high,
+                     stack *s, bool *has_edges)
+{
+    const csg_tape_node *node = &tape->nodes[n];
+    if (csg_op_is_round(node->op)) {
+        s->top -= node->arity;
+        slope_range r = s->items[s->top];
+        for (uint32_t k = 1; k < node->arity; k++)
+            r = mix(r, s->items[s->top + k], 1, 1);
+        s->items[s->top++] = r;
+    } else if (node->op == CSG_OP_COMBINE) {
+        if (!combine(tape, node, low, high, s, has_edges))
+            return false;
+    } else if (csg_op_delivers(node->op)) {
+        size_t child = (size_t)(n - 1) * CSG_OCTANTS;
+        if (!deliver(tape, node, &s->items[s->top - 1], low[child], high[child]))
+            return false;
+    }
+    slope_range *made = &s->items[s->top - 1];
+    made->least_value = low[(size_t)n * CSG_OCTANTS];
+    made->largest_value = high[(size_t)n * CSG_OCTANTS];
+    if (!node->join)
+        return true;
+    s->top--;
+    return join(tape, node, &s->items[s->top - 1], s->items[s->top]);
+}
+
+bool csg_cone_along(const csg_tape *tape, const csg_cone_leaves *leaves, const float *low,
+                    const float *high, const double axis[3], double *least, double *most,
+                    bool *has_edges)
+{
+    stack s;
+    uint32_t leaf = 0;
+    s.top = 0;
+    s.items[0] = (slope_range){.low = 0};
+    for (uint32_t n = 0; n < tape->count; n++) {
+        if (csg_op_is_leaf(tape->nodes[n].op)) {
+            if (s.top == DEPTH)
+                return false;
+            s.items[s.top++] = leaf_range(leaves, leaf++, axis);
+        }
+        if (!run_node(tape, n, low, high, &s, has_edges))
+            return false;
+    }
+    *least = s.items[0].low;
+    *most = s.items[0].most;
+    return s.top == 1 && *least > 0;
+}

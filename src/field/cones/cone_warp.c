@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ * A gradient g below a warp w is J^T g above it, J the warp's derivative. In the ball, J is within
+ * `change` of what it is at the centre, row by row:
+ *
+ *   revolve  the row of the radius turns by asin(rho / r); at the axis it is any unit vector
+ *   slice    constant
+ *   twist    rows x and y turn by rate rho, and their part along z, rate times a coordinate of the
+ *            image, changes by rate times how far the image moves
+ *   bend     the row along the circle is radius / s times a unit vector around the line, whose
+ *            derivative is 1 / s^2 in size; the row across turns by asin(rho / s)
+ */
+#include "field/cones/cone_warp.h"
+
+#include <math.h>
+
+#include "field/kernels/functions.h"
+
+/* More than the floats of a warp err. */
+static const double ROUNDING = 1e-5;
+
+static double length_of(double x, double y)
+{
+    return sqrt(x * x + y * y);
+}
+
+/* Of the map of the warp's own coordinates q: rows of J, how they change, and the image. */
+typedef struct passage {
+    double row[3][3], change[3], norm, image[3], kink[3]; /* kink: what its other side lacks of
+                                                             dw / dz */
+    bool is_kinked;
+} passage;
+
+static bool pass_revolve(const double q[3], double rho, passage *p)
+{
+    double r = length_of(q[0], q[1]), s = r > 0 ? rho / r : 1;
+    bool is_clear = s < 0.9;
+    p->row[0][0] = is_clear ? q[0] / r : 0;
+    p->row[0][1] = is_clear ? q[1] / r : 0;
+    p->row[1][2] = 1;
+    p->change[0] = is_clear ? sqrt(2 - 2 * sqrt(1 - s * s)) : 1;
+    p->image[0] = r;
+    p->image[1] = q[2];
+    return true;
+}
+
+static bool pass_slice(const double q[3], passage *p)
+{
+    p->row[0][0] = p->row[1][1] = 1;
+    p->image[0] = q[0];
+    p->image[1] = q[1];
+    return true;
+}
+
+static bool pass_twist(const float *own, const double q[3], double rho, passage *p)
+{
+    double low = (double)own[CSG_TWIST_LOW], high = (double)own[CSG_TWIST_HIGH];
+    double rate = (double)own[CSG_TWIST_RATE], r = length_of(q[0], q[1]) + rho;
+    if (r > (double)own[CSG_TWIST_REACH])
+        return false;
+    double angle = -rate * fmin(fmax(q[2], low), high);
+    double c = (double)wave((float)angle, 1), s = (double)wave((float)angle, 0);
+    double x = c * q[0] - s * q[1], y = s * q[0] + c * q[1];
+    double k = fabs(rate) * r, steep = (k + sqrt(k * k + 4)) / 2;
+    bool turns = q[2] + rho > low && q[2] - rho < high;
+    double turning = turns ? -rate : 0;
+    const double rows[3][3] = {{c, -s, -turning * y}, {s, c, turning * x}, {0, 0, 1}};
+    memcpy(p->row, rows, sizeof rows);
+    p->is_kinked = turns && (q[2] - rho < low || q[2] + rho > high);
+    p->kink[0] = turning * y;
+    p->kink[1] = -turning * x;
+    p->change[0] = p->change[1] = turns ? fabs(rate) * rho * length_of(1, steep) : 0;
+    p->norm = steep;
+    p->image[0] = x;
+    p->image[1] = y;
+    p->image[2] = q[2];
+    return true;
+}
+
+static bool pass_bend(const float *own, const double q[3], double rho, passage *p)
+{
+    double radius = (double)own[CSG_BEND_RADIUS], across = radius - q[2];
+    double s = length_of(q[0], across), least = s - rho;
+    if (!(least > (double)own[CSG_BEND_NEAREST]))
+        return false;
+    double phi = (double)angle_of((float)q[0], (float)across);
+    if (fabs(phi) + 1.6 * rho / s > (double)own[CSG_BEND_ANGLE] - ROUNDING)
+        return false;
+    double sine = q[0] / s, cosine = across / s, around = radius / s;
+    const double rows[3][3] = {{around * cosine, 0, around * sine}, {0, 1, 0}, {-sine, 0, cosine}};
+    memcpy(p->row, rows, sizeof rows);
+    p->change[0] = radius * rho / (least * least);
+    p->change[2] = rho / least;
+    p->norm = fmax(1, radius / least);
+    p->image[0] = radius * phi;
+    p->image[1] = q[1];
+    p->image[2] = radius - s;
+    return true;
+}
+
+static bool pass(const csg_tape_warp *warp, const double q[3], double rho, passage *p)
+{
+    *p = (passage){.norm = 1};
+    switch (warp->kind) {
+    case CSG_WARP_REVOLVE:
+        return pass_revolve(q, rho, p);
+    case CSG_WARP_SLICE:
+        return pass_slice(q, p);
+    case CSG_WARP_TWIST:
+        return pass_twist(warp->own, q, rho, p);
+    case CSG_WARP_BEND:
+        return pass_bend(warp->own, q, rho, p);
+    default:
+        return false;
+    }
+}
+
+/* out = m^T J^T */
+static void transpose_product(const float *m, double row[3][3], double out[3][3])
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++) {
+            out[k][i] = 0;
+            for (int j = 0; j < 3; j++)
+                out[k][i] += (double)m[3 * j + k] * row[i][j];
+        }
+}
+
+static bool send(const csg_tape_warp *warp, double c[3], double *radius, csg_cone_turn *turn)
+{
+    const float *m = warp->frame;
+    double q[3], norm = csg_cone_norm(m);
+    for (int i = 0; i < 3; i++)
+        q[i] = (double)m[9 + i] + (double)m[3 * i] * c[0] + (double)m[3 * i + 1] * c[1] +
+               (double)m[3 * i + 2] * c[2];
+    passage p;
+    if (!pass(warp, q, *radius * norm, &p))
+        return false;
+    transpose_product(m, p.row, turn->back);
+    for (int i = 0; i < 3; i++) {
+        turn->change[i] = (p.change[i] + ROUNDING) * norm;
+        p.row[i][2] += p.kink[i];
+        c[i] = p.image[i];
+    }
+    transpose_product(m, p.row, turn->other);
+    turn->is_kinked = p.is_kinked;
+    turn->norm = p.norm * norm;
+    *radius *= turn->norm * (1 + ROUNDING);
+    return true;
+}
+
+bool csg_cone_warp(const csg_tape *tape, uint32_t warp, double c[3], double *radius,
+                   csg_cone_way *way)
+{
+    const csg_tape_warp *chain[CSG_MOST_WARPS];
+    way->count = 0;
+    for (uint32_t w = warp; w; w = tape->warps[w - 1].outer)
+        chain[way->count++] = &tape->warps[w - 1];
+    for (uint32_t i = 0; i < way->count; i++) /* the outermost first */
+        if (!send(chain[way->count - 1 - i], c, radius, &way->turns[i]))
+            return false;
+    return true;
+}
+
+static void turn_ball(const csg_cone_turn *turn, double matrix[3][3], csg_cone_ball *ball)
+{
+    double at[3], spread = turn->norm * ball->spread;
+    for (int k = 0; k < 3; k++) {
+        at[k] =
+            matrix[k][0] * ball->at[0] + matrix[k][1] * ball->at[1] + matrix[k][2] * ball->at[2];
+        spread += turn->change[k] * (fabs(ball->at[k]) + ball->spread);
+    }
+    memcpy(ball->at, at, sizeof at);
+    ball->spread = spread;
+}
+
+bool csg_cone_unwarp(const csg_cone_way *way, csg_cone_balls *balls, uint32_t first)
+{
+    for (uint32_t i = way->count; i > 0; i--) {
+        csg_cone_turn turn = way->turns[i - 1];
+        uint32_t end = balls->count;
+        for (uint32_t k = first; k < end; k++) {
+            if (turn.is_kinked && balls->count >= CSG_CONE_MOST)
+                return false;
+            if (turn.is_kinked) {
+                csg_cone_ball *other = &balls->items[balls->count++];
+                *other = balls->items[k];
+                turn_ball(&turn, turn.other, other);
+            }
+            turn_ball(&turn, turn.back, &balls->items[k]);
+        }
+        balls->has_edges |= turn.is_kinked;
+        balls->corner *= turn.norm * (1 + ROUNDING);
+    }
+    return true;
+}

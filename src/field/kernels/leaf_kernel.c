@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: MIT
+ * Leaves of a tape over batches of points: primitives by the formulas of formulas.h, expression
+ * fields, shapes, each in its frame and below its warps; and their ranges over cubes. Built once
+ * per instruction set, see kernel.c.
+ */
+#include "field/kernels/leaf_kernel.h"
+
+#include <string.h>
+
+#include "field/kernels/curve_kernel.h"
+#include "field/kernels/formula_kernel.h"
+#include "field/kernels/frames.h"
+#include "field/kernels/soft_formulas.h"
+#include "field/kernels/warp_kernel.h"
+
+/* ---- leaves ---------------------------------------------------------------------------- */
+
+#define EACH_PRIMITIVE(X)                                                                          \
+    X(SPHERE, sphere)                                                                              \
+    X(BOX, box)                                                                                    \
+    X(FRUSTUM, frustum)                                                                            \
+    X(CAPSULE, capsule)                                                                            \
+    X(TORUS, torus)                                                                                \
+    X(ELLIPSOID, ellipsoid)                                                                        \
+    X(PLANE, plane)                                                                                \
+    X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab) X(SUPERELLIPSOID, superellipsoid)
+
+/* Local copies of the parameters: the compiler then knows that no store changes them. */
+#define VALUE_LOOPS(NAME, name)                                                                    \
+    static void name##_values(const csg_tape_node *node, const float *parameters, csg_points p,    \
+                              float *restrict out)                                                 \
+    {                                                                                              \
+        float own[OWN_##NAME], frame[12];                                                          \
+        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
+        point g;                                                                                   \
+        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
+            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++)                                                   \
+                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+        } else {                                                                                   \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
+            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++)                                                   \
+                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+        }                                                                                          \
+    }
+EACH_PRIMITIVE(VALUE_LOOPS)
+
+#define GRADIENT_LOOPS(NAME, name)                                                                 \
+    static void name##_gradients(const csg_tape_node *node, const float *parameters, csg_points p, \
+                                 float *restrict out, float *restrict gx, float *restrict gy,      \
+                                 float *restrict gz)                                               \
+    {                                                                                              \
+        float own[OWN_##NAME], frame[12];                                                          \
+        const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
+        point g;                                                                                   \
+        if (node->frame == CSG_FRAME_OFFSET) {                                                     \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
+            memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++) {                                                 \
+                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                gx[i] = sigma * g.x;                                                               \
+                gy[i] = sigma * g.y;                                                               \
+                gz[i] = sigma * g.z;                                                               \
+            }                                                                                      \
+        } else {                                                                                   \
+            memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
+            memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
+            for (size_t i = 0; i < p.count; i++) {                                                 \
+                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                g = affine_back(frame, g);                                                         \
+                gx[i] = sigma * g.x;                                                               \
+                gy[i] = sigma * g.y;                                                               \
+                gz[i] = sigma * g.z;                                                               \
+            }                                                                                      \
+        }                                                                                          \
+    }
+EACH_PRIMITIVE(GRADIENT_LOOPS)
+
+/* ---- shapes: through the frame, then out of the vector code -----------------------------------
+ */
+
+static inline point in_frame(const csg_tape_node *node, const float *frame, csg_points p, size_t i)
+{
+    return node->frame == CSG_FRAME_OFFSET ? offset_frame(frame, p.x[i], p.y[i], p.z[i])
+                                           : affine_frame(frame, p.x[i], p.y[i], p.z[i]);
+}
+
+static const csg_shape *shape_of(const csg_tape *tape, const csg_tape_node *node)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
+    return tape->shapes[(uint32_t)parameters[own]];
+}
+
+/* p.count <= CSG_BATCH */
+static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    for (size_t i = 0; i < p.count; i++) {
+        point q = in_frame(node, parameters + CSG_LEAF_FRAME, p, i);
+        x[i] = q.x;
+        y[i] = q.y;
+        z[i] = q.z;
+    }
+    csg_shape_values(shape_of(tape, node), x, y, z, p.count, out);
+    for (size_t i = 0; i < p.count; i++)
+        out[i] *= parameters[CSG_LEAF_SIGMA];
+}
+
+static void shape_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                            float *out, float *gx, float *gy, float *gz)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    const float sigma = parameters[CSG_LEAF_SIGMA];
+    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    for (size_t i = 0; i < p.count; i++) {
+        point q = in_frame(node, parameters + CSG_LEAF_FRAME, p, i);
+        x[i] = q.x;
+        y[i] = q.y;
+        z[i] = q.z;
+    }
+    csg_shape_gradients(shape_of(tape, node), x, y, z, p.count, out, gx, gy, gz);
+    for (size_t i = 0; i < p.count; i++) {
+        point g = {gx[i], gy[i], gz[i]};
+        if (node->frame == CSG_FRAME_AFFINE)
+            g = affine_back(parameters + CSG_LEAF_FRAME, g);
+        out[i] *= sigma;
+        gx[i] = sigma * g.x;
+        gy[i] = sigma * g.y;
+        gz[i] = sigma * g.z;
+    }
+}
+
+/* ---- any leaf ----------------------------------------------------------------------------------
+ */
+
+/* In the frame below the warps. */
+static void own_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    switch (node->op) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_OP_##NAME:                                                                            \
+        name##_values(node, parameters, p, out);                                                   \
+        break;
+        EACH_PRIMITIVE(CASE)
+#undef CASE
+    case CSG_OP_QUADRATIC_TUBE:
+    case CSG_OP_CUBIC_TUBE:
+        CSG_THIS_CURVE_KERNEL.values(node, parameters, p, out);
+        break;
+    case CSG_OP_FIELD:
+        CSG_THIS_FORMULA_KERNEL.values(tape, node, p.x, p.y, p.z, p.count, out);
+        break;
+    case CSG_OP_SHAPE:
+        shape_values(tape, node, p, out);
+        break;
+    default: /* EMPTY */
+        for (size_t i = 0; i < p.count; i++)
+            out[i] = parameters[CSG_LEAF_SIGMA] * -INFINITY;
+    }
+}
+
+/* A part of a batch; out may be the batch's own array. */
+static csg_points part_of(csg_points p, size_t from, size_t most)
+{
+    size_t left = p.count - from;
+    return (csg_points){p.x + from, p.y + from, p.z + from, left < most ? left : most};
+}
+
+static void warped_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+{
+    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    memcpy(x, p.x, p.count * sizeof *x);
+    memcpy(y, p.y, p.count * sizeof *y);
+    memcpy(z, p.z, p.count * sizeof *z);
+    CSG_THIS_WARP_KERNEL.points(tape, node->warp, x, y, z, p.count);
+    own_values(tape, node, (csg_points){x, y, z, p.count}, out);
+}
+
+/* Leaves that do more than run a formula over the points: in parts, with room of their own. */
+static int is_indirect(const csg_tape_node *node)
+{
+    return node->warp != 0 || node->op == CSG_OP_SHAPE;
+}
+
+static void leaf_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+{
+    const float raise = tape->parameters[node->parameters + CSG_LEAF_RAISE];
+    if (!is_indirect(node))
+        own_values(tape, node, p, out);
+    for (size_t i = 0; i < p.count && is_indirect(node); i += CSG_BATCH) {
+        csg_points part = part_of(p, i, CSG_BATCH);
+        if (node->warp)
+            warped_values(tape, node, part, out + i);
+        else
+            own_values(tape, node, part, out + i);
+    }
+    if (raise != 0)
+        for (size_t i = 0; i < p.count; i++)
+            out[i] += raise;
+}
+
+static void own_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out,
+                          float *gx, float *gy, float *gz)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    switch (node->op) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_OP_##NAME:                                                                            \
+        name##_gradients(node, parameters, p, out, gx, gy, gz);                                    \
+        break;
+        EACH_PRIMITIVE(CASE)
+#undef CASE
+    case CSG_OP_QUADRATIC_TUBE:
+    case CSG_OP_CUBIC_TUBE:
+        CSG_THIS_CURVE_KERNEL.gradients(node, parameters, p, out, gx, gy, gz);
+        break;
+    case CSG_OP_FIELD:
+        CSG_THIS_FORMULA_KERNEL.gradients(tape, node, p.x, p.y, p.z, p.count, out, gx, gy, gz);
+        break;
+    case CSG_OP_SHAPE:
+        shape_gradients(tape, node, p, out, gx, gy, gz);
+        break;
+    default:
+        own_values(tape, node, p, out);
+        for (size_t i = 0; i < p.count; i++)
+            gx[i] = gy[i] = gz[i] = 0;
+    }
+}
+
+static void warped_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                             float *out, float *gx, float *gy, float *gz)
+{
+    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    memcpy(x, p.x, p.count * sizeof *x);
+    memcpy(y, p.y, p.count * sizeof *y);
+    memcpy(z, p.z, p.count * sizeof *z);
+    CSG_THIS_WARP_KERNEL.points(tape, node->warp, x, y, z, p.count);
+    own_gradients(tape, node, (csg_points){x, y, z, p.count}, out, gx, gy, gz);
+    CSG_THIS_WARP_KERNEL.gradients(tape, node->warp, p.x, p.y, p.z, p.count, gx, gy, gz);
+}
+
+/* Walks for gradients go by batches: p.count <= CSG_BATCH. */
+static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                           float *out, float *gx, float *gy, float *gz)
+{
+    const float raise = tape->parameters[node->parameters + CSG_LEAF_RAISE];
+    if (node->warp)
+        warped_gradients(tape, node, p, out, gx, gy, gz);
+    else
+        own_gradients(tape, node, p, out, gx, gy, gz);
+    if (raise != 0)
+        for (size_t i = 0; i < p.count; i++)
+            out[i] += raise;
+}
+
+/* ---- intervals ------------------------------------------------------------------------------- */
+
+/* Primitives whose value falls with |x|, |y| and |z| in a frame that is not turned: over a cube
+ * they are largest at its point nearest to their centre and smallest at the farthest. */
+static int falls_outwards(const csg_tape_node *node, const float *own)
+{
+    if (node->frame != CSG_FRAME_OFFSET || node->warp)
+        return 0;
+    return node->op == CSG_OP_SPHERE || node->op == CSG_OP_BOX || node->op == CSG_OP_ELLIPSOID ||
+           node->op == CSG_OP_CIRCLE || node->op == CSG_OP_RECTANGLE || node->op == CSG_OP_SLAB ||
+           node->op == CSG_OP_SUPERELLIPSOID ||
+           (node->op == CSG_OP_FRUSTUM && own[7] == 0); /* a cylinder */
+}
+
+/* The coordinates nearest to and farthest from t within `half` of c. */
+static void near_and_far(const float *c, float t, float half, float *near, float *far)
+{
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        float d = c[o] - t, side = sign_of(d);
+        near[o] = t + side * larger(absolute(d) - half, 0);
+        far[o] = t + side * (absolute(d) + half);
+    }
+}
+
+static void falling_interval(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                             float half, float *restrict low, float *restrict high)
+{
+    const float *parameters = tape->parameters + node->parameters, *t = parameters + CSG_LEAF_FRAME;
+    float near[3][CSG_OCTANTS], far[3][CSG_OCTANTS], a[CSG_OCTANTS], b[CSG_OCTANTS];
+    near_and_far(p.x, t[0], half, near[0], far[0]);
+    near_and_far(p.y, t[1], half, near[1], far[1]);
+    near_and_far(p.z, t[2], half, near[2], far[2]);
+    leaf_values(tape, node, (csg_points){near[0], near[1], near[2], CSG_OCTANTS}, a);
+    leaf_values(tape, node, (csg_points){far[0], far[1], far[2], CSG_OCTANTS}, b);
+    float slack = parameters[CSG_LEAF_SLACK];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        low[o] = smaller(a[o], b[o]) - slack;
+        high[o] = larger(a[o], b[o]) + slack;
+    }
+}
+
+static uint32_t formula_index(const csg_tape *tape, const csg_tape_node *node)
+{
+    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
+    return (uint32_t)tape->parameters[node->parameters + (uint32_t)own];
+}
+
+static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                          float radius, float *restrict low, float *restrict high)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    if (node->op == CSG_OP_FIELD && !node->warp) {
+        CSG_THIS_FORMULA_KERNEL.intervals(tape, node, p.x, p.y, p.z, radius, low, high);
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            low[o] += parameters[CSG_LEAF_RAISE];
+            high[o] += parameters[CSG_LEAF_RAISE];
+        }
+        return;
+    }
+    const float half = radius * 0.57735034f; /* of the cube's edge: 1 / sqrt 3, rounded up */
+    if (falls_outwards(node, parameters + CSG_LEAF_OWN_OFFSET)) {
+        falling_interval(tape, node, p, half, low, high);
+        return;
+    }
+    leaf_values(tape, node, p, low);
+    float slope = 1.0f; /* the leaf's Lipschitz constant */
+    if (node->op == CSG_OP_FIELD)
+        slope = larger(tape->formulas[formula_index(tape, node)].lipschitz, 1.0f);
+    float reach = slope * radius * (1.0f + 0x1p-20f) + parameters[CSG_LEAF_SLACK];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        high[o] = low[o] + reach;
+        low[o] = low[o] - reach;
+    }
+}
+
+const csg_leaf_kernel CSG_THIS_LEAF_KERNEL = {
+    .values = leaf_values,
+    .gradients = leaf_gradients,
+    .intervals = leaf_interval,
+};

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ * Warps in float, each map and its derivative written once; built once per instruction set like
+ * kernel.c. Definitions: scene/primitives/warp.c.
+ */
+#include "field/kernels/warp_kernel.h"
+
+#include <string.h>
+
+#include "field/kernels/functions.h"
+
+#define HALF_TURN 3.14159274f
+
+/* Where a point goes, and how: columns of the derivative. */
+typedef struct warped {
+    point at, dx, dy, dz;
+} warped;
+
+static inline point row_point(const float *m, float x, float y, float z)
+{
+    return (point){m[0] * x + m[1] * y + m[2] * z + m[9], m[3] * x + m[4] * y + m[5] * z + m[10],
+                   m[6] * x + m[7] * y + m[8] * z + m[11]};
+}
+
+static inline warped revolve_at(const float *own, point p)
+{
+    float rho = sqrtf(p.x * p.x + p.y * p.y);
+    return (warped){
+        {rho, p.z, 0}, {quotient(p.x, rho), 0, 0}, {quotient(p.y, rho), 0, 0}, {0, 1.0f, 0}};
+}
+
+static inline warped slice_at(const float *own, point p)
+{
+    return (warped){{p.x, p.y, 0}, {1.0f, 0, 0}, {0, 1.0f, 0}, {0, 0, 0}};
+}
+
+static inline warped twist_at(const float *own, point p)
+{
+    float low = own[CSG_TWIST_LOW], high = own[CSG_TWIST_HIGH], reach = own[CSG_TWIST_REACH];
+    float rate = own[CSG_TWIST_RATE];
+    float rho = sqrtf(p.x * p.x + p.y * p.y);
+    int is_far = rho > reach;
+    float inward = is_far ? reach / rho : 1.0f;
+    float angle = -rate * smaller(larger(p.z, low), high);
+    float c = inward * wave(angle, 1), s = inward * wave(angle, 0);
+    float x = c * p.x - s * p.y, y = s * p.x + c * p.y;
+    float turning = (p.z > low) & (p.z < high) ? -rate : 0;
+    float ux = is_far ? x / reach : 0, uy = is_far ? y / reach : 0; /* taken out of the columns */
+    float first = ux * c + uy * s, second = uy * c - ux * s;
+    return (warped){{x, y, p.z},
+                    {c - first * ux, s - first * uy, 0},
+                    {-s - second * ux, c - second * uy, 0},
+                    {-turning * y, turning * x, 1.0f}};
+}
+
+static inline warped bend_at(const float *own, point p)
+{
+    float radius = own[CSG_BEND_RADIUS], nearest = own[CSG_BEND_NEAREST];
+    float most = own[CSG_BEND_ANGLE];
+    float across = radius - p.z, s = sqrtf(p.x * p.x + across * across);
+    float phi = angle_of(p.x, across);
+    float sin_phi = quotient(p.x, s), cos_phi = quotient(across, s);
+    float back = most / (HALF_TURN - most);
+    int is_behind = absolute(phi) > most, is_near = s < nearest;
+    float turned = is_behind ? sign_of(phi) * back * larger(HALF_TURN - absolute(phi), 0) : phi;
+    float slope = is_behind ? -back : 1.0f;
+    float shrink = is_near ? s / nearest : 1.0f;
+    float around = radius * slope * (is_near ? 1.0f / nearest : quotient(1.0f, s));
+    float outward = is_near ? radius * turned / nearest : 0;
+    return (warped){{radius * turned * shrink, p.y, radius - s},
+                    {around * cos_phi + outward * sin_phi, 0, -sin_phi},
+                    {0, 1.0f, 0},
+                    {around * sin_phi - outward * cos_phi, 0, cos_phi}};
+}
+
+/* Local copies of the parameters: the compiler then knows that no store changes them. */
+#define LOOPS(name)                                                                                \
+    static void name##_points(const csg_tape_warp *warp, float *restrict x, float *restrict y,     \
+                              float *restrict z, size_t count)                                     \
+    {                                                                                              \
+        float own[CSG_WARP_PARAMETERS], m[12];                                                     \
+        memcpy(own, warp->own, sizeof own);                                                        \
+        memcpy(m, warp->frame, sizeof m);                                                          \
+        for (size_t i = 0; i < count; i++) {                                                       \
+            point at = name##_at(own, row_point(m, x[i], y[i], z[i])).at;                          \
+            x[i] = at.x;                                                                           \
+            y[i] = at.y;                                                                           \
+            z[i] = at.z;                                                                           \
+        }                                                                                          \
+    }                                                                                              \
+    static void name##_gradients(const csg_tape_warp *warp, const float *restrict x,               \
+                                 const float *restrict y, const float *restrict z, size_t count,   \
+                                 float *restrict gx, float *restrict gy, float *restrict gz)       \
+    {                                                                                              \
+        float own[CSG_WARP_PARAMETERS], m[12];                                                     \
+        memcpy(own, warp->own, sizeof own);                                                        \
+        memcpy(m, warp->frame, sizeof m);                                                          \
+        for (size_t i = 0; i < count; i++) {                                                       \
+            warped w = name##_at(own, row_point(m, x[i], y[i], z[i]));                             \
+            float a = w.dx.x * gx[i] + w.dx.y * gy[i] + w.dx.z * gz[i];                            \
+            float b = w.dy.x * gx[i] + w.dy.y * gy[i] + w.dy.z * gz[i];                            \
+            float c = w.dz.x * gx[i] + w.dz.y * gy[i] + w.dz.z * gz[i];                            \
+            gx[i] = m[0] * a + m[3] * b + m[6] * c;                                                \
+            gy[i] = m[1] * a + m[4] * b + m[7] * c;                                                \
+            gz[i] = m[2] * a + m[5] * b + m[8] * c;                                                \
+        }                                                                                          \
+    }
+#define EACH_WARP(X) X(REVOLVE, revolve) X(SLICE, slice) X(TWIST, twist) X(BEND, bend)
+#define WARP_LOOPS(NAME, name) LOOPS(name)
+EACH_WARP(WARP_LOOPS)
+
+static void warp_points(const csg_tape_warp *warp, float *x, float *y, float *z, size_t count)
+{
+    switch (warp->kind) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_WARP_##NAME:                                                                          \
+        name##_points(warp, x, y, z, count);                                                       \
+        break;
+        EACH_WARP(CASE)
+#undef CASE
+    }
+}
+
+static void warp_gradients(const csg_tape_warp *warp, const float *x, const float *y,
+                           const float *z, size_t count, float *gx, float *gy, float *gz)
+{
+    switch (warp->kind) {
+#define CASE(NAME, name)                                                                           \
+    case CSG_WARP_##NAME:                                                                          \
+        name##_gradients(warp, x, y, z, count, gx, gy, gz);                                        \
+        break;
+        EACH_WARP(CASE)
+#undef CASE
+    }
+}
+
+/* The warps on the way to number `warp`, outermost first; returns how many. */
+static int way_to(const csg_tape *tape, uint32_t warp, const csg_tape_warp *way[CSG_MOST_WARPS])
+{
+    int count = 0;
+    for (uint32_t w = warp; w; w = tape->warps[w - 1].outer)
+        count++;
+    int place = count;
+    for (uint32_t w = warp; w; w = tape->warps[w - 1].outer)
+        way[--place] = &tape->warps[w - 1];
+    return count;
+}
+
+static void points_of_way(const csg_tape *tape, uint32_t warp, float *x, float *y, float *z,
+                          size_t count)
+{
+    const csg_tape_warp *way[CSG_MOST_WARPS];
+    int length = way_to(tape, warp, way);
+    for (int i = 0; i < length; i++)
+        warp_points(way[i], x, y, z, count);
+}
+
+/* From the innermost warp outwards, each at the points as they come to it. */
+static void gradients_of_way(const csg_tape *tape, uint32_t warp, const float *x, const float *y,
+                             const float *z, size_t count, float *gx, float *gy, float *gz)
+{
+    const csg_tape_warp *way[CSG_MOST_WARPS];
+    float px[CSG_BATCH], py[CSG_BATCH], pz[CSG_BATCH];
+    for (int i = way_to(tape, warp, way) - 1; i >= 0; i--) {
+        memcpy(px, x, count * sizeof *px);
+        memcpy(py, y, count * sizeof *py);
+        memcpy(pz, z, count * sizeof *pz);
+        for (int k = 0; k < i; k++)
+            warp_points(way[k], px, py, pz, count);
+        warp_gradients(way[i], px, py, pz, count, gx, gy, gz);
+    }
+}
+
+const csg_warp_kernel CSG_THIS_WARP_KERNEL = {
+    .points = points_of_way,
+    .gradients = gradients_of_way,
+};

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT
+ * Intervals, demands and shorter tapes; see prune.h.
+ */
+#include "field/prune/prune.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "field/prune/prune_fields.h"
+
+void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
+                     float rounding)
+{
+    *pruner = (csg_pruner){.memory = memory, .kernel = kernel, .rounding = rounding};
+}
+
+static void release_arrays(csg_pruner *pruner)
+{
+    size_t n = pruner->capacity;
+    csg_memory_release(pruner->memory, pruner->low, n * CSG_OCTANTS * sizeof(float));
+    csg_memory_release(pruner->memory, pruner->high, n * CSG_OCTANTS * sizeof(float));
+    csg_memory_release(pruner->memory, pruner->dropped, n);
+    csg_memory_release(pruner->memory, pruner->stack, n * sizeof(csg_emitted));
+    csg_memory_release(pruner->memory, pruner->nodes, n * sizeof(csg_tape_node));
+    pruner->low = pruner->high = NULL;
+    pruner->dropped = NULL;
+    pruner->stack = NULL;
+    pruner->nodes = NULL;
+    pruner->capacity = 0;
+}
+
+void csg_pruner_release(csg_pruner *pruner)
+{
+    release_arrays(pruner);
+    csg_memory_release(pruner->memory, pruner->scratch, pruner->scratch_capacity * sizeof(float));
+    pruner->scratch = NULL;
+    pruner->scratch_capacity = 0;
+}
+
+static bool make_room(csg_pruner *pruner, const csg_tape *tape)
+{
+    size_t scratch = csg_kernel_scratch_floats(csg_tape_depth(tape));
+    if (!csg_memory_reserve(pruner->memory, (void **)&pruner->scratch, &pruner->scratch_capacity,
+                            scratch, sizeof(float)))
+        return false;
+    size_t n = tape->count;
+    if (n <= pruner->capacity)
+        return true;
+    release_arrays(pruner);
+    pruner->capacity = n;
+    pruner->low = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
+    pruner->high = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
+    pruner->dropped = csg_memory_alloc(pruner->memory, n);
+    pruner->stack = csg_memory_alloc(pruner->memory, n * sizeof(csg_emitted));
+    pruner->nodes = csg_memory_alloc(pruner->memory, n * sizeof(csg_tape_node));
+    if (pruner->low && pruner->high && pruner->dropped && pruner->stack && pruner->nodes)
+        return true;
+    release_arrays(pruner);
+    return false;
+}
+
+bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[CSG_OCTANTS],
+                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius)
+{
+    if (!make_room(pruner, tape))
+        return false;
+    pruner->tape = tape;
+    pruner->decided = false;
+    pruner->slack = pruner->rounding * tape->steepest;
+    pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding, pruner->low,
+                              pruner->high, pruner->scratch);
+    return true;
+}
+
+bool csg_prune_cube(csg_pruner *pruner, const csg_tape *tape, const float center[3], float radius)
+{
+    float c[3][CSG_OCTANTS]; /* all eight alike */
+    for (int axis = 0; axis < 3; axis++)
+        for (int octant = 0; octant < CSG_OCTANTS; octant++)
+            c[axis][octant] = center[axis];
+    return csg_prune_octants(pruner, tape, c[0], c[1], c[2], radius);
+}
+
+static float low_of(const csg_pruner *pruner, uint32_t node, int octant)
+{
+    return pruner->low[(size_t)node * CSG_OCTANTS + (size_t)octant];
+}
+
+static float high_of(const csg_pruner *pruner, uint32_t node, int octant)
+{
+    return pruner->high[(size_t)node * CSG_OCTANTS + (size_t)octant];
+}
+
+csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant)
+{
+    uint32_t root = pruner->tape->count - 1;
+    if (low_of(pruner, root, octant) > pruner->slack)
+        return CSG_CELL_INSIDE;
+    if (high_of(pruner, root, octant) < -pruner->slack)
+        return CSG_CELL_OUTSIDE;
+    return CSG_CELL_SURFACE;
+}
+
+/* ---- demands --------------------------------------------------------------------------------- */
+
+enum { ALL_OCTANTS = (1 << CSG_OCTANTS) - 1 };
+
+static float *lanes(float *of_nodes, uint32_t node)
+{
+    return of_nodes + (size_t)node * CSG_OCTANTS;
+}
+
+/* The largest lower bound among a union's operands, for each octant, and whose it is. turn = -1
+ * mirrors an intersection. */
+static void find_best(const csg_tape_node *nodes, uint32_t node, float *lower, float turn,
+                      float best[CSG_OCTANTS], uint32_t best_child[CSG_OCTANTS])
+{
+    uint32_t child = node - 1;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        best[o] = -INFINITY;
+        best_child[o] = child;
+    }
+    for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size) {
+        const float *bound = lanes(lower, child);
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            bool more = turn * bound[o] > best[o];
+            best[o] = more ? turn * bound[o] : best[o];
+            best_child[o] = more ? child : best_child[o];
+        }
+    }
+}
+
+/* Bit o is set where the child stays below the threshold in octant o and is not the best. */
+static uint8_t below(const float *reach, float turn, const float threshold[CSG_OCTANTS],
+                     uint32_t child, const uint32_t best_child[CSG_OCTANTS])
+{
+    int drop[CSG_OCTANTS], mask = 0;
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        drop[o] = (turn * reach[o] < threshold[o]) & (child != best_child[o]);
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        mask |= drop[o] << o;
+    return (uint8_t)mask;
+}
+
+/* Of fields combined by a formula any value may matter. */
+static void demand_all(csg_pruner *pruner, uint32_t node)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    uint32_t child = node - 1;
+    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
+        pruner->dropped[child] = pruner->dropped[node];
+        for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(nodes[child].op); o++) {
+            lanes(pruner->low, child)[o] = -INFINITY;
+            lanes(pruner->high, child)[o] = INFINITY;
+        }
+    }
+}
+
+/* The operands of an operator on fields give what it takes, or soften what does. */
+static void demand_fields(csg_pruner *pruner, uint32_t node)
+{
+    const csg_tape_node *op = &pruner->tape->nodes[node];
+    if (op->op != CSG_OP_SOFTEN) {
+        csg_prune_fields(pruner, node);
+        return;
+    }
+    uint32_t child = node - 1;
+    float low, high;
+    csg_soften_demand(pruner->tape, op, &low, &high);
+    pruner->dropped[child] = pruner->dropped[node];
+    for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(pruner->tape->nodes[child].op); o++) {
+        lanes(pruner->low, child)[o] = low;
+        lanes(pruner->high, child)[o] = high;
+    }
+}
+
+/* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
+ * below the largest sibling, by the blend's support. Intersections are the mirror image. The
+ * demand on an operand takes the place of its interval, which nobody needs any more. */
+static void decide_operands(csg_pruner *pruner, uint32_t node, const float *demand_low,
+                            const float *demand_high)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    if (op->op == CSG_OP_COMBINE) {
+        demand_all(pruner, node);
+        return;
+    }
+    if (csg_op_delivers(op->op)) {
+        demand_fields(pruner, node);
+        return;
+    }
+    bool is_union = csg_op_is_union(op->op);
+    /* INTERIOR is not above its larger operand. */
+    bool is_smooth = op->blend == CSG_BLEND_EXTERIOR || op->blend == CSG_BLEND_INTERIOR;
+    float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
+    float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
+    float edge = turn * pruner->tape->parameters[op->parameters + CSG_OPERATOR_N] - pruner->slack;
+    float *lower = is_union ? pruner->low : pruner->high;
+    float *upper = is_union ? pruner->high : pruner->low;
+    uint32_t best_child[CSG_OCTANTS], child = node - 1;
+    find_best(nodes, node, lower, turn, threshold, best_child);
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        float demand = is_union ? demand_low[o] : -demand_high[o];
+        threshold[o] = (demand > threshold[o] ? demand : threshold[o]) - chi - pruner->slack;
+        if (op->blend == CSG_BLEND_ORTHOGONAL) /* at the edge both matter */
+            threshold[o] = fminf(threshold[o], edge);
+    }
+    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
+        uint8_t mask =
+            pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
+        pruner->dropped[child] = mask;
+        pruner->dropped_any |= mask;
+        if (csg_op_is_leaf(nodes[child].op))
+            continue;
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            lanes(pruner->low, child)[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
+            lanes(pruner->high, child)[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
+        }
+    }
+}
+
+/* Marks every node that cannot matter, all octants at once: long tapes are read only twice. */
+static void decide(csg_pruner *pruner, float tau)
+{
+    const csg_tape *tape = pruner->tape;
+    uint32_t root = tape->count - 1;
+    float low[CSG_OCTANTS], high[CSG_OCTANTS];
+    pruner->decided = true;
+    pruner->dropped_any = pruner->dropped[root] = 0;
+    for (int o = 0; o < CSG_OCTANTS; o++) { /* where a field turns there is no Lipschitz constant */
+        low[o] = tape->turns ? -INFINITY : -tau;
+        high[o] = tape->turns ? INFINITY : tau;
+    }
+    for (uint32_t i = tape->count; i > 0;) {
+        uint32_t node = i - 1, size = tape->nodes[node].size;
+        if (pruner->dropped[node] == ALL_OCTANTS) {
+            memset(pruner->dropped + i - size, ALL_OCTANTS, size);
+            i -= size;
+            continue;
+        }
+        if (node == root && !csg_op_is_leaf(tape->nodes[node].op))
+            decide_operands(pruner, node, low, high);
+        else if (!csg_op_is_leaf(tape->nodes[node].op))
+            decide_operands(pruner, node, lanes(pruner->low, node), lanes(pruner->high, node));
+        i--;
+    }
+}
+
+/* ---- the shorter tape ------------------------------------------------------------------------ */
+
+/* Writes an operator over the last `kept` subtrees: its joins and, unless only one is left, itself.
+ */
+static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
+                          uint32_t *count, csg_emitted *stack, uint32_t *top)
+{
+    if (kept == 1 && csg_prune_is_identity(pruner->tape, op))
+        return; /* the operand stands for its operator */
+    csg_tape_node *nodes = pruner->nodes;
+    csg_emitted *first = &stack[*top - kept];
+    for (uint32_t k = 0; k < kept && !csg_op_takes_all(op->op); k++) {
+        csg_tape_node *operand = &nodes[first[k].root];
+        operand->join = CSG_JOIN_NONE;
+        if (k > 0)
+            operand->join = csg_op_is_union(op->op) ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
+        operand->join_blend = op->blend;
+        operand->join_parameters = op->parameters;
+    }
+    csg_tape_node *node = &nodes[*count];
+    *node = *op;
+    node->join = CSG_JOIN_NONE;
+    node->arity = kept;
+    node->size = *count + 1 - first->begin;
+    first->root = (*count)++;
+    *top -= kept - 1;
+}
+
+/* Copies what is not dropped in the octant; returns the new length. */
+static uint32_t emit(csg_pruner *pruner, int octant)
+{
+    const csg_tape *tape = pruner->tape;
+    const uint8_t *dropped = pruner->dropped;
+    csg_emitted *stack = pruner->stack;
+    uint32_t count = 0, top = 0;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (dropped[i] >> octant & 1)
+            continue;
+        if (csg_op_is_leaf(node->op)) {
+            pruner->nodes[count] = *node;
+            pruner->nodes[count].join = CSG_JOIN_NONE;
+            stack[top++] = (csg_emitted){count, count, i};
+            count++;
+            continue;
+        }
+        uint32_t kept = 0, first = i + 1 - node->size;
+        while (kept < top && stack[top - 1 - kept].source >= first)
+            kept++;
+        emit_operator(pruner, node, kept, &count, stack, &top);
+    }
+    return count;
+}
+
+bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out)
+{
+    *out = *pruner->tape;
+    if (out->count == 1)
+        return true;
+    if (!pruner->decided)
+        decide(pruner, tau);
+    if (!(pruner->dropped_any >> octant & 1))
+        return true;
+    uint32_t count = emit(pruner, octant);
+    csg_tape_node *nodes = csg_arena_alloc(arena, count * sizeof *nodes);
+    if (!nodes)
+        return false;
+    memcpy(nodes, pruner->nodes, count * sizeof *nodes);
+    out->nodes = nodes;
+    out->count = count;
+    return true;
+}

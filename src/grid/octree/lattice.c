@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+#include "grid/octree/lattice.h"
+
+#include <math.h>
+
+bool csg_lattice_make(csg_box bounds, csg_vec3 center, double cell_size, uint32_t resolution,
+                      csg_lattice *out)
+{
+    csg_vec3 size = csg_box_size(bounds), middle = csg_box_center(bounds);
+    double sides[3] = {size.x, size.y, size.z};
+    double longest = fmax(sides[0], fmax(sides[1], sides[2]));
+    double h = cell_size > 0 ? cell_size : longest / resolution;
+    if (!(h > 0) || !isfinite(h) || !isfinite(longest))
+        return false;
+    double origin[3] = {middle.x - center.x, middle.y - center.y, middle.z - center.z};
+    for (int axis = 0; axis < 3; axis++) {
+        /* A side of a whole number of cells must not gain one by rounding. */
+        double cells = ceil(sides[axis] / h - 1e-6) + 3;
+        if (!(cells <= CSG_LATTICE_MOST_CELLS))
+            return false;
+        out->cells[axis] = (uint32_t)cells;
+        out->blocks[axis] = (out->cells[axis] + CSG_BLOCK_EDGE - 1) / CSG_BLOCK_EDGE;
+        origin[axis] -= 0.5 * cells * h;
+    }
+    out->origin = csg_vec3_make(origin[0], origin[1], origin[2]);
+    out->cell_size = h;
+    return true;
+}
+
+double csg_lattice_extent(const csg_lattice *lattice)
+{
+    double most = 0;
+    const double origin[3] = {lattice->origin.x, lattice->origin.y, lattice->origin.z};
+    for (int axis = 0; axis < 3; axis++) {
+        double end = origin[axis] + lattice->cells[axis] * lattice->cell_size;
+        most = fmax(most, fmax(fabs(origin[axis]), fabs(end)));
+    }
+    return most;
+}

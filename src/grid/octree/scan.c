@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * Doubtful edges among samples; see scan.h.
+ */
+#include "grid/octree/scan.h"
+
+#include <math.h>
+
+/* Of the sum of |f| at an edge's ends, in spans: 1 for what crosses the edge itself, more for what
+ * passes by it. */
+static const float WIDEST = 1.4f;
+
+/* Whether some value is near enough to zero for any edge. */
+static bool comes_near(const float *f, size_t count, float limit)
+{
+    int near = 0;
+    for (size_t i = 0; i < count; i++)
+        near |= fabsf(f[i]) < limit;
+    return near;
+}
+
+/* How doubtful the edge between b and c is, a and d being the line's next values: by how much they
+ * are larger. 0: not at all. */
+static float doubt_of(float a, float b, float c, float d, float widest)
+{
+    bool same = (a >= 0) == (b >= 0) && (b >= 0) == (c >= 0) && (c >= 0) == (d >= 0);
+    float inner = fabsf(b) + fabsf(c), outer = fabsf(a) + fabsf(d);
+    if (!same || inner > widest || fabsf(a) < 1.1f * fabsf(b) || fabsf(d) < 1.1f * fabsf(c) ||
+        outer < 1.5f * inner)
+        return 0;
+    return 1 - inner / outer;
+}
+
+void csg_scan_values(csg_scan *scan, const float *f, size_t n, const uint32_t first[3])
+{
+    const size_t steps[3] = {1, n, n * n};
+    float widest = WIDEST * scan->span;
+    if (!comes_near(f, n * n * n, widest / 2))
+        return;
+    for (uint8_t axis = 0; axis < 3; axis++) {
+        size_t step = steps[axis], across[2] = {steps[(axis + 1) % 3], steps[(axis + 2) % 3]};
+        for (size_t line = 0; line < n * n; line++) {
+            size_t u = line % n, v = line / n;
+            const float *p = f + u * across[0] + v * across[1];
+            for (size_t i = 1; i + 2 < n; i++) {
+                const float *at = p + i * step;
+                float doubt = doubt_of(*(at - step), at[0], at[step], at[2 * step], widest);
+                scan->count += doubt > 0;
+                if (!(doubt > scan->doubt))
+                    continue;
+                scan->doubt = doubt;
+                scan->axis = axis;
+                scan->is_inside = at[0] >= 0;
+                scan->point[axis] = first[axis] + (uint32_t)i;
+                scan->point[(axis + 1) % 3] = first[(axis + 1) % 3] + (uint32_t)u;
+                scan->point[(axis + 2) % 3] = first[(axis + 2) % 3] + (uint32_t)v;
+            }
+        }
+    }
+}

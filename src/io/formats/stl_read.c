@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: MIT
+ * STL -> mesh. Binary or ASCII is told by content: a file whose size is the one that its count says
+ * is binary, whatever its header; else one that begins with "solid" is text. Corners at the same
+ * place become one vertex. Facet normals are not kept: they say nothing that the corners do not.
+ */
+#include <math.h>
+
+#include "io/text/scan.h"
+
+/* ---- welding: open addressing over the vertices of the builder -------------------- */
+
+typedef struct weld {
+    csg_mesh_builder *builder;
+    uint32_t *slots;   /* vertex + 1, 0 = free */
+    size_t slot_count; /* a power of two, or 0 */
+} weld;
+
+static uint32_t hash_position(const double *p)
+{
+    uint64_t h = 0x9E3779B97F4A7C15u;
+    for (int k = 0; k < 3; k++) {
+        double canonical = p[k] + 0.0; /* -0 and 0 are one place */
+        uint64_t bits;
+        memcpy(&bits, &canonical, sizeof bits);
+        h = (h ^ bits) * 0xBF58476D1CE4E5B9u;
+        h ^= h >> 31;
+    }
+    return (uint32_t)(h ^ h >> 32);
+}
+
+static void insert(weld *w, uint32_t vertex)
+{
+    size_t at = hash_position(w->builder->positions + 3 * (size_t)vertex) & (w->slot_count - 1);
+    while (w->slots[at])
+        at = (at + 1) & (w->slot_count - 1);
+    w->slots[at] = vertex + 1;
+}
+
+static bool grow(weld *w)
+{
+    size_t count = w->slot_count ? 2 * w->slot_count : 1024;
+    csg_memory *memory = &w->builder->context->memory;
+    uint32_t *slots = csg_memory_alloc(memory, count * sizeof *slots);
+    if (!slots) {
+        w->builder->failed = true;
+        return false;
+    }
+    memset(slots, 0, count * sizeof *slots);
+    csg_memory_release(memory, w->slots, w->slot_count * sizeof *slots);
+    w->slots = slots;
+    w->slot_count = count;
+    for (size_t i = 0; i < w->builder->vertex_count; i++)
+        insert(w, (uint32_t)i);
+    return true;
+}
+
+static bool find_or_add(weld *w, const double *p, uint32_t *vertex)
+{
+    csg_mesh_builder *b = w->builder;
+    if (2 * b->vertex_count >= w->slot_count && !grow(w))
+        return false;
+    size_t at = hash_position(p) & (w->slot_count - 1);
+    for (; w->slots[at]; at = (at + 1) & (w->slot_count - 1)) {
+        const double *q = b->positions + 3 * (size_t)(w->slots[at] - 1);
+        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
+            *vertex = w->slots[at] - 1;
+            return true;
+        }
+    }
+    *vertex = (uint32_t)b->vertex_count;
+    if (!csg_builder_vertex(b, p, NULL, NULL))
+        return false;
+    w->slots[at] = *vertex + 1;
+    return true;
+}
+
+static bool add_facet(weld *w, double corners[3][3])
+{
+    uint32_t v[3];
+    for (int c = 0; c < 3; c++)
+        if (!find_or_add(w, corners[c], &v[c]))
+            return false;
+    return csg_builder_triangle(w->builder, v[0], v[1], v[2]);
+}
+
+/* ---- binary ----------------------------------------------------------------------- */
+
+enum { HEADER = 84, FACET = 50 };
+
+static csgm_status read_binary(csg_input *input, weld *w)
+{
+    uint64_t count = csg_load_u32(input->bytes + 80);
+    if (count > (input->size_bytes - HEADER) / FACET)
+        return csg_read_broken(
+            input, 0, "the file ends too soon: it says %llu triangles and has room for %llu",
+            (unsigned long long)count, (unsigned long long)((input->size_bytes - HEADER) / FACET));
+    const uint8_t *at = input->bytes + HEADER;
+    for (uint64_t i = 0; i < count; i++, at += FACET) {
+        double corners[3][3];
+        for (int k = 0; k < 9; k++) {
+            uint32_t bits = csg_load_u32(at + 12 + 4 * k);
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            if (!isfinite(value))
+                return csg_read_broken(
+                    input, 0, "triangle %llu at byte %llu has a coordinate that is not finite",
+                    (unsigned long long)i, (unsigned long long)(at - input->bytes));
+            corners[k / 3][k % 3] = (double)value;
+        }
+        if (!add_facet(w, corners))
+            return CSGM_OK; /* out of memory: csg_builder_finish reports it */
+    }
+    return CSGM_OK;
+}
+
+/* ---- ASCII ------------------------------------------------------------------------ */
+
+static bool next_is(csg_scan *s, const char *expected)
+{
+    const char *word;
+    csg_scan_space(s);
+    size_t length = csg_scan_word(s, &word);
+    return csg_scan_is(word, length, expected);
+}
+
+static bool three_numbers(csg_scan *s, double *values)
+{
+    for (int k = 0; k < 3; k++) {
+        csg_scan_space(s);
+        if (!csg_scan_number(s, &values[k]))
+            return false;
+    }
+    return true;
+}
+
+/* After "facet". */
+static bool read_facet(csg_scan *s, double corners[3][3])
+{
+    double normal[3]; /* may be anything, nan too */
+    if (!next_is(s, "normal") || !three_numbers(s, normal) || !next_is(s, "outer") ||
+        !next_is(s, "loop"))
+        return false;
+    for (int c = 0; c < 3; c++) {
+        if (!next_is(s, "vertex") || !three_numbers(s, corners[c]))
+            return false;
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(corners[c][k]))
+                return false;
+    }
+    return next_is(s, "endloop") && next_is(s, "endfacet");
+}
+
+static csgm_status read_ascii(csg_input *input, weld *w)
+{
+    csg_scan s = csg_scan_start(input);
+    const char *word;
+    double corners[3][3];
+    bool open = false;
+    for (;;) {
+        csg_scan_space(&s);
+        size_t length = csg_scan_word(&s, &word);
+        if (!length)
+            break;
+        if (open && csg_scan_is(word, length, "facet")) {
+            if (!read_facet(&s, corners))
+                return csg_read_broken(input, s.line,
+                                       "this facet is not three vertices of finite "
+                                       "numbers between 'outer loop' and 'endloop'");
+            if (!add_facet(w, corners))
+                return CSGM_OK;
+        } else if (csg_scan_is(word, length, open ? "endsolid" : "solid")) {
+            open = !open;
+            csg_scan_skip_line(&s);
+        } else {
+            return csg_read_broken(input, s.line, "expected '%s'",
+                                   open ? "facet' or 'endsolid" : "solid");
+        }
+    }
+    return open ? csg_read_broken(input, s.line, "the file ends before 'endsolid'") : CSGM_OK;
+}
+
+csgm_status csg_stl_read(csg_input *input, csg_mesh_builder *builder)
+{
+    weld w = {.builder = builder};
+    csgm_status status;
+    uint64_t size = input->size_bytes;
+    bool text = size >= 5 && memcmp(input->bytes, "solid", 5) == 0;
+    if (size >= HEADER &&
+        (!text || size == HEADER + FACET * (uint64_t)csg_load_u32(input->bytes + 80)))
+        status = read_binary(input, &w);
+    else if (text)
+        status = read_ascii(input, &w);
+    else
+        status =
+            csg_read_broken(input, 0, "an STL file begins with 'solid' or has 84 bytes at least");
+    csg_memory_release(&builder->context->memory, w.slots, w.slot_count * sizeof *w.slots);
+    return status;
+}

@@ -1,0 +1,485 @@
+/* SPDX-License-Identifier: MIT
+ * Expressions -> values. A call, let or choice in tail position does not nest: the loop in
+ * csg_evaluate goes on with the new expression and frame, so tail recursion needs no stack.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "lang/evaluate/evaluator.h"
+#include "lang/evaluate/symbolic.h"
+#include "lang/modules/modules.h"
+
+/* ---- calls
+ * ------------------------------------------------------------------------------------------ */
+
+static uint32_t find_parameter(const csg_arguments *parameters, csg_symbol name)
+{
+    uint32_t i = 0;
+    while (i < parameters->count && parameters->items[i].name != name)
+        i++;
+    return i;
+}
+
+static void warn_argument(csg_eval *e, const csg_argument *argument, csg_diag_code code,
+                          const csg_arguments *parameters, csg_symbol callee)
+{
+    const csg_symbols *symbols = &e->program->symbols;
+    const char *name = callee ? csg_symbol_name(symbols, callee) : "the function";
+    if (code == CSG_DIAG_TOO_MANY_ARGUMENTS)
+        csg_eval_report(e, code, argument->where, NULL, "'%s' takes %u argument%s, this is ignored",
+                        name, parameters->count, parameters->count == 1 ? "" : "s");
+    else if (code == CSG_DIAG_DUPLICATE_ARGUMENT)
+        csg_eval_report(e, code, argument->where, NULL, "'%s' gets an argument twice", name);
+    else
+        csg_eval_report(e, code, argument->where, NULL,
+                        "'%s' has no parameter '%s', this is ignored", name,
+                        csg_symbol_name(symbols, argument->name));
+}
+
+static void bind_arguments(csg_eval *e, const csg_arguments *parameters,
+                           const csg_arguments *arguments, csg_frame *frame, csg_frame *caller,
+                           csg_symbol name, csg_list *pending)
+{
+    enum { NAMES_A_STEP = 16 };
+    uint32_t position = 0;
+    e->steps += ((uint64_t)arguments->count + 1) * parameters->count / NAMES_A_STEP;
+    for (uint32_t i = 0; i < arguments->count && !e->stop; i++) {
+        const csg_argument *argument = &arguments->items[i];
+        uint32_t slot = argument->name ? find_parameter(parameters, argument->name) : position++;
+        csg_value value = csg_evaluate(e, argument->value, caller);
+        if (slot < parameters->count) {
+            if (frame->values[slot].kind != CSG_VALUE_UNSET)
+                warn_argument(e, argument, CSG_DIAG_DUPLICATE_ARGUMENT, parameters, name);
+            csg_value_release(&e->heap, frame->values[slot]);
+            frame->values[slot] = value;
+        } else if (argument->name && e->program->symbols.entries[argument->name].special) {
+            csg_list_push(e, pending, csg_value_number(argument->name), argument->where);
+            csg_list_push(e, pending, value, argument->where);
+        } else {
+            csg_value_release(&e->heap, value);
+            warn_argument(e, argument,
+                          argument->name ? CSG_DIAG_UNKNOWN_ARGUMENT : CSG_DIAG_TOO_MANY_ARGUMENTS,
+                          parameters, name);
+        }
+    }
+}
+
+/* A call into a used file: the $variables that the file assigns hold in it. */
+static void push_file_dynamics(csg_eval *e, const csg_frame *home, const csg_frame *caller)
+{
+    if (!home || !home->has_dynamics)
+        return;
+    while (caller && caller->parent)
+        caller = caller->parent;
+    for (uint32_t i = 0; caller != home && i < home->count && !e->stop; i++) {
+        csg_symbol name = home->scope->variables[i].name;
+        if (e->program->symbols.entries[name].special)
+            csg_eval_push_dynamic(e, name, csg_value_retain(home->values[i]));
+    }
+}
+
+csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
+                         const csg_arguments *arguments, csg_frame *home, csg_frame *caller,
+                         csg_symbol name)
+{
+    csg_list pending = {0};
+    csg_frame *frame = csg_frame_create(&e->heap, home, parameters->count);
+    if (!frame) {
+        csg_eval_no_memory(e);
+        return NULL;
+    }
+    frame->names = parameters->items;
+    bind_arguments(e, parameters, arguments, frame, caller, name, &pending);
+    push_file_dynamics(e, home, caller);
+    for (uint32_t i = 0; i < parameters->count && !e->stop; i++)
+        if (frame->values[i].kind == CSG_VALUE_UNSET)
+            frame->values[i] = parameters->items[i].value
+                                   ? csg_evaluate(e, parameters->items[i].value, home)
+                                   : csg_value_undef();
+    for (size_t i = 0; i + 1 < pending.count && !e->stop; i += 2)
+        csg_eval_push_dynamic(e, (csg_symbol)pending.items[i].as.number, pending.items[i + 1]);
+    for (uint32_t i = 0; i < parameters->count && !e->stop; i++)
+        if (e->program->symbols.entries[parameters->items[i].name].special)
+            csg_eval_push_dynamic(e, parameters->items[i].name, csg_value_retain(frame->values[i]));
+    csg_memory_release(e->heap.memory, pending.items, pending.capacity * sizeof *pending.items);
+    return frame;
+}
+
+csg_frame *csg_eval_let(csg_eval *e, const csg_arguments *assignments, csg_frame *parent)
+{
+    csg_frame *frame = csg_frame_create(&e->heap, parent, assignments->count);
+    if (!frame) {
+        csg_eval_no_memory(e);
+        return NULL;
+    }
+    frame->names = assignments->items;
+    for (uint32_t i = 0; i < assignments->count && !e->stop; i++) {
+        csg_symbol name = assignments->items[i].name;
+        csg_value value = csg_evaluate(e, assignments->items[i].value, frame);
+        if (name && e->program->symbols.entries[name].special)
+            csg_eval_push_dynamic(e, name, value);
+        else
+            frame->values[i] = value;
+    }
+    return frame;
+}
+
+/* What a call goes to. */
+typedef struct target {
+    const csg_arguments *parameters;
+    const csg_expression *body;
+    csg_frame *home; /* retained */
+    csg_symbol name;
+    int builtin; /* row, or -1 */
+} target;
+
+static bool to_literal(csg_value value, target *out)
+{
+    if (value.kind != CSG_VALUE_FUNCTION)
+        return false;
+    const csg_function *function = value.as.function;
+    out->parameters = &function->literal->as.call.arguments;
+    out->body = function->literal->as.call.body;
+    out->home = csg_frame_retain(function->frame);
+    return true;
+}
+
+/* A variable that holds a function, in this frame or further out. */
+static bool find_literal(csg_eval *e, csg_symbol name, const csg_frame *frame, target *out)
+{
+    const csg_value *found = csg_eval_lookup(e, name, frame);
+    return found && to_literal(*found, out);
+}
+
+static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *frame, target *out)
+{
+    const csg_expression *callee = call->as.call.callee;
+    const csg_definition *definition;
+    csg_frame *home;
+    char hint[96];
+    *out = (target){.builtin = -1};
+    if (callee->kind != CSG_EXPRESSION_NAME) {
+        csg_value value = csg_evaluate(e, callee, frame);
+        bool found = to_literal(value, out);
+        if (!found)
+            csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->whole,
+                            callee->kind == CSG_EXPRESSION_MEMBER
+                                ? "a function stands in front of its arguments: len(v), not v.len()"
+                            : value.kind == CSG_VALUE_NUMBER ? "a multiplication needs '*'"
+                                                             : NULL,
+                            "only a function can be called, this is %s%s",
+                            value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value));
+        csg_value_release(&e->heap, value);
+        return found;
+    }
+    out->name = callee->as.name;
+    if (e->program->symbols.entries[out->name].variable && find_literal(e, out->name, frame, out))
+        return true; /* as in OpenSCAD, a variable's function goes before a named one */
+    if (csg_eval_find_definition(e, CSG_MEMBER_FUNCTION, out->name, frame, &home, &definition)) {
+        out->parameters = &definition->parameters;
+        out->body = definition->value;
+        out->home = csg_frame_retain(home);
+        return true;
+    }
+    out->builtin = e->program->symbols.entries[out->name].function;
+    if (out->builtin < 0 && !e->stop &&
+        !csg_report_unsupported(e, CSG_MEMBER_FUNCTION, out->name, callee->where))
+        csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->where,
+                        csg_suggest(e, CSG_DIAG_UNKNOWN_FUNCTION, out->name, frame, callee->where,
+                                    hint, sizeof hint),
+                        "there is no function '%s'",
+                        csg_symbol_name(&e->program->symbols, out->name));
+    return out->builtin >= 0;
+}
+
+/* ---- literals, vectors, indices
+ * ------------------------------------------------------------------------ */
+
+enum { BYTES_A_STEP = 64 }; /* that are copied or scanned */
+
+csg_value csg_eval_string(csg_eval *e, const char *text, size_t length)
+{
+    csg_string *made = csg_string_create(&e->heap, text, length);
+    if (!made) {
+        csg_eval_no_memory(e);
+        return csg_value_undef();
+    }
+    return csg_value_object(made, CSG_VALUE_STRING);
+}
+
+static csg_value evaluate_range(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value begin = csg_evaluate(e, x->as.range.begin, frame);
+    csg_value step =
+        x->as.range.step ? csg_evaluate(e, x->as.range.step, frame) : csg_value_number(1);
+    csg_value end = csg_evaluate(e, x->as.range.end, frame);
+    bool numbers = begin.kind == CSG_VALUE_NUMBER && step.kind == CSG_VALUE_NUMBER &&
+                   end.kind == CSG_VALUE_NUMBER;
+    csg_value made = csg_value_undef();
+    if (numbers && !x->as.range.step && begin.as.number > end.as.number) {
+        csg_value swap = begin;
+        csg_eval_report(e, CSG_DIAG_BAD_RANGE, x->where, "a range that counts down is [a : -1 : b]",
+                        "the range begins above its end; it is taken the other way round");
+        begin = end;
+        end = swap;
+    }
+    if (numbers)
+        made = csg_range_create(&e->heap, begin.as.number, step.as.number, end.as.number);
+    if (numbers && made.kind == CSG_VALUE_UNDEF)
+        csg_eval_no_memory(e);
+    csg_value_release(&e->heap, begin);
+    csg_value_release(&e->heap, step);
+    csg_value_release(&e->heap, end);
+    return made;
+}
+
+static csg_value character_at(csg_eval *e, const csg_string *string, double index, csg_span where)
+{
+    if (!(index >= 0) || index >= (double)string->characters)
+        return csg_value_undef();
+    size_t from = (size_t)index, to = from + 1;
+    if (string->characters != string->length) {
+        if (!csg_eval_charge(e, from / BYTES_A_STEP, where))
+            return csg_value_undef();
+        size_t skip = from + 1;
+        for (from = 0; skip > 0; from++)
+            skip -= ((unsigned char)string->text[from] & 0xC0) != 0x80;
+        from--;
+        for (to = from + 1; ((unsigned char)string->text[to] & 0xC0) == 0x80;)
+            to++;
+    }
+    return csg_eval_string(e, string->text + from, to - from);
+}
+
+static csg_value element_at(csg_eval *e, csg_value object, csg_value index, csg_span where)
+{
+    double i = index.kind == CSG_VALUE_NUMBER ? trunc(index.as.number) : -1;
+    if (object.kind == CSG_VALUE_VECTOR && i >= 0 && i < object.as.vector->count)
+        return csg_value_retain(object.as.vector->items[(size_t)i]);
+    if (object.kind == CSG_VALUE_STRING)
+        return character_at(e, object.as.string, i, where);
+    if (object.kind == CSG_VALUE_RANGE && i >= 0 && i < 3) {
+        const csg_range *range = object.as.range;
+        return csg_value_number(i == 0 ? range->begin : i == 1 ? range->step : range->end);
+    }
+    return csg_value_undef();
+}
+
+static csg_value evaluate_member(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value object = csg_evaluate(e, x->as.member.object, frame), result = csg_value_undef();
+    csg_symbol name = x->as.member.name;
+    if (object.kind == CSG_VALUE_VECTOR) {
+        double index = name == e->symbol_x   ? 0
+                       : name == e->symbol_y ? 1
+                       : name == e->symbol_z ? 2
+                                             : -1;
+        result = element_at(e, object, csg_value_number(index), x->where);
+    } else if (object.kind == CSG_VALUE_RANGE) {
+        double index = name == e->symbol_begin  ? 0
+                       : name == e->symbol_step ? 1
+                       : name == e->symbol_end  ? 2
+                                                : -1;
+        result = element_at(e, object, csg_value_number(index), x->where);
+    }
+    csg_value_release(&e->heap, object);
+    return result;
+}
+
+/* ---- operators
+ * --------------------------------------------------------------------------------------------- */
+
+static csg_value evaluate_binary(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value left = csg_evaluate(e, x->as.pair.left, frame);
+    if (x->operation == CSG_TOKEN_AND || x->operation == CSG_TOKEN_OR) {
+        csg_symbolic_refuse(e, left, x->where, "a condition");
+        bool decided = csg_value_is_true(left) == (x->operation == CSG_TOKEN_OR);
+        csg_value_release(&e->heap, left);
+        if (decided || e->stop)
+            return csg_value_boolean(x->operation == CSG_TOKEN_OR);
+        csg_value right = csg_evaluate(e, x->as.pair.right, frame);
+        bool truth = csg_value_is_true(right);
+        csg_value_release(&e->heap, right);
+        return csg_value_boolean(truth);
+    }
+    csg_value right = csg_evaluate(e, x->as.pair.right, frame);
+    csg_value result = csg_eval_binary(e, x, left, right);
+    csg_value_release(&e->heap, left);
+    csg_value_release(&e->heap, right);
+    return result;
+}
+
+static csg_value evaluate_unary(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value operand = csg_evaluate(e, x->as.pair.left, frame);
+    csg_value result = csg_eval_unary(e, x, operand);
+    csg_value_release(&e->heap, operand);
+    return result;
+}
+
+static csg_value evaluate_index(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value object = csg_evaluate(e, x->as.pair.left, frame);
+    csg_value index = csg_evaluate(e, x->as.pair.right, frame);
+    csg_symbolic_refuse(e, index, x->where, "an index");
+    csg_value result = element_at(e, object, index, x->where);
+    csg_value_release(&e->heap, object);
+    csg_value_release(&e->heap, index);
+    return result;
+}
+
+/* Every kind that is not handled in csg_evaluate's loop. */
+static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value made;
+    switch (x->kind) {
+    case CSG_EXPRESSION_NUMBER:
+        return csg_value_number(x->as.number);
+    case CSG_EXPRESSION_BOOLEAN:
+        return csg_value_boolean(x->as.boolean);
+    case CSG_EXPRESSION_STRING:
+        if (!csg_eval_charge(e, x->as.string.length / BYTES_A_STEP, x->where))
+            return csg_value_undef();
+        return csg_eval_string(e, x->as.string.text, x->as.string.length);
+    case CSG_EXPRESSION_NAME:
+        return csg_eval_variable(e, x->as.name, frame, x->where);
+    case CSG_EXPRESSION_UNARY:
+        return evaluate_unary(e, x, frame);
+    case CSG_EXPRESSION_BINARY:
+        return evaluate_binary(e, x, frame);
+    case CSG_EXPRESSION_INDEX:
+        return evaluate_index(e, x, frame);
+    case CSG_EXPRESSION_MEMBER:
+        return evaluate_member(e, x, frame);
+    case CSG_EXPRESSION_VECTOR:
+        return csg_eval_vector(e, x, frame);
+    case CSG_EXPRESSION_RANGE:
+        return evaluate_range(e, x, frame);
+    case CSG_EXPRESSION_FUNCTION:
+        made = csg_function_create(&e->heap, x, frame);
+        if (made.kind == CSG_VALUE_UNDEF)
+            csg_eval_no_memory(e);
+        return made;
+    default:
+        return csg_value_undef();
+    }
+}
+
+/* ---- the loop
+ * --------------------------------------------------------------------------------------------- */
+
+typedef struct position {    /* where an evaluation is */
+    const csg_expression *x; /* NULL: undef */
+    csg_frame *frame;
+    bool owned;  /* the frame is ours to release */
+    bool called; /* a call is on the trace */
+} position;
+
+static void replace_frame(csg_eval *e, position *at, csg_frame *fresh)
+{
+    if (at->owned)
+        csg_frame_release(&e->heap, at->frame);
+    at->frame = fresh;
+    at->owned = fresh != NULL;
+}
+
+/* Steps into a user's function. */
+static void step_into(csg_eval *e, position *at, const target *to)
+{
+    enum { CALL_STEPS = 10 };
+    const csg_expression *call = at->x;
+    at->x = NULL;
+    if (!at->called) {
+        if (!csg_eval_enter(e, call->where))
+            return;
+        csg_eval_push_trace(e, to->name, false, call->where);
+        at->called = true;
+        if (e->stop)
+            return;
+    } else {
+        e->trace[e->trace_count - 1] = (csg_trace_entry){to->name, false, call->where};
+    }
+    csg_frame *fresh =
+        csg_eval_bind(e, to->parameters, &call->as.call.arguments, to->home, at->frame, to->name);
+    replace_frame(e, at, fresh);
+    if (fresh && csg_eval_charge(e, CALL_STEPS, call->where))
+        at->x = to->body;
+}
+
+/* A call of a built-in is finished here (true), one of a user's function is stepped into. */
+static bool evaluate_call(csg_eval *e, position *at, csg_value *result)
+{
+    target to;
+    if (!find_target(e, at->x, at->frame, &to))
+        return true;
+    if (to.builtin >= 0) {
+        *result = csg_builtin_call(e, to.builtin, at->x, at->frame);
+        return true;
+    }
+    csg_frame *home = to.home;
+    step_into(e, at, &to);
+    csg_frame_release(&e->heap, home);
+    return at->x == NULL;
+}
+
+static void choose(csg_eval *e, position *at)
+{
+    csg_value condition = csg_evaluate(e, at->x->as.branch.condition, at->frame);
+    csg_symbolic_refuse(e, condition, at->x->where, "a condition");
+    at->x = csg_value_is_true(condition) ? at->x->as.branch.then : at->x->as.branch.other;
+    csg_value_release(&e->heap, condition);
+}
+
+static void step_over(csg_eval *e, position *at)
+{
+    const csg_expression *x = at->x;
+    if (x->kind == CSG_EXPRESSION_LET)
+        replace_frame(e, at, csg_eval_let(e, &x->as.call.arguments, at->frame));
+    else if (x->kind == CSG_EXPRESSION_ECHO)
+        csg_eval_echo(e, &x->as.call.arguments, at->frame);
+    else
+        csg_eval_assert(e, &x->as.call.arguments, at->frame, x->where);
+    at->x = x->as.call.body;
+}
+
+csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_value result = csg_value_undef();
+    if (x->kind == CSG_EXPRESSION_NUMBER)
+        return csg_value_number(x->as.number);
+    if (!csg_eval_check_stack(e, x->where))
+        return result;
+    position at = {x, frame, false, false};
+    size_t dynamics = e->dynamic_count, trace = e->trace_count;
+    bool done = false;
+    while (!done && at.x && csg_eval_charge(e, 1, at.x->where)) {
+        switch (at.x->kind) {
+        case CSG_EXPRESSION_CONDITIONAL:
+            choose(e, &at);
+            break;
+        case CSG_EXPRESSION_LET:
+        case CSG_EXPRESSION_ASSERT:
+        case CSG_EXPRESSION_ECHO:
+            step_over(e, &at);
+            break;
+        case CSG_EXPRESSION_CALL:
+            done = evaluate_call(e, &at, &result);
+            break;
+        default:
+            result = evaluate_plain(e, at.x, at.frame);
+            done = true;
+            break;
+        }
+    }
+    if (at.owned)
+        csg_frame_release(&e->heap, at.frame);
+    if (e->dynamic_count > dynamics)
+        csg_eval_pop_dynamics(e, dynamics);
+    if (at.called) {
+        csg_eval_leave(e);
+        e->trace_count = trace;
+    }
+    return result;
+}

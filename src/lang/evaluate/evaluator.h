@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT
+ * The evaluator's state and what its parts share. Expressions become values, statements become
+ * scene nodes.
+ *
+ * Failing: what cannot go on (memory, a limit, a failed assertion) sets `stop`; everything then
+ * returns at once, and what it had counted references to goes with the heap. A mistake of the scene
+ * is reported (once a place) and evaluation goes on with undef or the empty solid.
+ */
+#ifndef CSG_LANG_EVALUATOR_H
+#define CSG_LANG_EVALUATOR_H
+
+#include "lang/evaluate/value.h"
+#include "scene/tree/build.h"
+
+/* A solid that waits to be joined with its neighbours. */
+typedef struct csg_part {
+    csg_node_id node;
+    bool wrapped; /* in blend(b): joins with `blend`, whatever its operator says */
+    csg_blend blend;
+    csg_span where; /* of the wrapper */
+} csg_part;
+
+typedef struct csg_dynamic { /* a binding of a $variable */
+    csg_symbol name;
+    uint32_t hidden; /* index + 1 of the binding of the same name below */
+    csg_value value;
+} csg_dynamic;
+
+typedef struct csg_trace_entry {
+    csg_symbol name; /* 0 = a function literal */
+    bool module;
+    csg_span where; /* of the call */
+} csg_trace_entry;
+
+enum { CSG_TWISTER_WORDS = 624 };
+
+typedef struct csg_twister { /* of rands() */
+    uint32_t words[CSG_TWISTER_WORDS];
+    uint32_t next; /* word, CSG_TWISTER_WORDS = twist first */
+} csg_twister;
+
+/* What a modifier stands before. */
+typedef struct csg_mark {
+    csg_node_id node;
+    csg_scene_mark kind;
+} csg_mark;
+
+typedef struct csg_eval {
+    csg_program *program;
+    csgm_context *context;
+    csg_heap heap;
+    csg_scene_builder builder;
+    csg_formula_builder *formula; /* while field() evaluates its function, else NULL */
+    bool refused;                 /* it did what no formula can, and was told so */
+    bool stop;
+    csgm_status status; /* why stopped; SCENE after a reported mistake */
+    uint32_t depth;
+    uint64_t steps, clock_steps; /* done so far, and when the clock was last looked at */
+
+    csg_dynamic *dynamics;
+    size_t dynamic_count, dynamic_capacity;
+    uint32_t *dynamic_heads; /* per symbol: index + 1 of its innermost binding */
+    size_t dynamic_head_count;
+
+    csg_trace_entry *trace; /* calls in progress, outermost first */
+    size_t trace_count, trace_capacity;
+
+    csg_part *parts; /* a stack */
+    size_t part_count, part_capacity;
+
+    csg_frame **file_frames; /* per file, NULL until asked for */
+    uint64_t *reported;      /* places already told about: an open-addressing set */
+    size_t reported_count, reported_slots;
+
+    csg_twister *twister; /* two: of calls without a seed, and with; NULL before the first call */
+
+    struct csg_fonts *fonts; /* of text(); NULL before the first one */
+
+    csg_mark *marks; /* a stack (marks.h) */
+    size_t mark_count, mark_capacity;
+
+    csg_node_id root; /* what a ! modifier chose, or NONE */
+    csg_node_id
+        marked[CSG_MARK_COUNT]; /* after the run, or once there is a root: each mark's solid */
+    csg_symbol symbol_pi, symbol_children_count, symbol_parent_modules, symbol_fn, symbol_round,
+        symbol_x, symbol_y, symbol_z, symbol_begin, symbol_step, symbol_end, symbol_blend, symbol_n,
+        symbol_r, symbol_children, symbol_w;
+} csg_eval;
+
+csgm_status csg_eval_init(csg_eval *e, csg_program *program);
+void csg_eval_reset(csg_eval *e);
+/* Evaluates the program's scene; the root of the result, or NONE when status is not OK. */
+csg_node_id csg_eval_run(csg_eval *e);
+
+/* ---- failing -------------------------------------------------------------------------------- */
+
+/* Reports once a place, with the trace of calls. An error makes the status SCENE. */
+void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
+                     const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* The trace of calls, innermost first, as notes; what repeats itself is counted (call_trace.c). */
+void csg_eval_note_calls(const csg_eval *e);
+/* Was this finding reported before at this place? */
+bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
+void csg_eval_no_memory(csg_eval *e);
+/* Tells of parts that are only operands (scene/tree/parts.h); CSGM_ERR_MEMORY is reported. */
+csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
+void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
+                    const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* Counts steps of work; false: the limit of steps or time is reached. */
+bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where);
+/* Before and after what may take long in one step: reports that the time is up. False: stop. */
+bool csg_eval_check_time(csg_eval *e, csg_span where);
+/* Into a call or a nesting; false: too deep. Pair with csg_eval_leave when true. */
+bool csg_eval_enter(csg_eval *e, csg_span where);
+void csg_eval_leave(csg_eval *e);
+/* Is the C stack used up? Reports. */
+bool csg_eval_check_stack(csg_eval *e, csg_span where);
+void csg_eval_push_trace(csg_eval *e, csg_symbol name, bool module, csg_span where);
+
+/* ---- names ------------------------------------------------------------------------------------
+ */
+
+/* The variable's value; UNDEF and a warning when there is none. */
+csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where);
+/* The same, borrowed; NULL when there is none. */
+const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *frame);
+/* The value of a $variable, borrowed; UNSET when it has none. */
+csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name);
+void csg_eval_push_dynamic(csg_eval *e, csg_symbol name, csg_value value); /* consumed */
+void csg_eval_pop_dynamics(csg_eval *e, size_t count);
+/* Where a module or function is defined: its frame (borrowed) and definition; false = nowhere. */
+bool csg_eval_find_definition(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_frame *frame,
+                              csg_frame **home, const csg_definition **out);
+/* Evaluates a scope's assignments: a new frame, or `parent` retained when it defines nothing.
+ * $variables go to the dynamics: pop them when leaving. NULL: stopped. */
+csg_frame *csg_eval_scope(csg_eval *e, const csg_scope *scope, csg_frame *parent);
+csg_frame *csg_eval_file_frame(csg_eval *e, const csg_file *file);
+
+/* ---- expressions -------------------------------------------------------------------------------
+ */
+
+csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame);
+/* The same, where a call round(r) means the blend. */
+csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame);
+/* The frame of a call: arguments evaluated in `caller`, defaults in `home`; $arguments are pushed
+ * to the dynamics. */
+csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
+                         const csg_arguments *arguments, csg_frame *home, csg_frame *caller,
+                         csg_symbol name);
+/* The frame of let (...): each assignment sees those before it. */
+csg_frame *csg_eval_let(csg_eval *e, const csg_arguments *assignments, csg_frame *frame);
+csg_value csg_eval_unary(csg_eval *e, const csg_expression *x, csg_value operand);
+csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, csg_value right);
+/* Warns that there is no such operation, unless an operand is undef; UNDEF. */
+csg_value csg_eval_no_operation(csg_eval *e, const csg_expression *x, csg_value left,
+                                csg_value right);
+csg_value csg_eval_compare(csg_eval *e, const csg_expression *x, csg_value left, csg_value right);
+bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span where);
+/* False also where the values have no order. */
+bool csg_value_is_less(csg_eval *e, csg_value left, csg_value right, csg_span where);
+csg_value csg_eval_vector(csg_eval *e, const csg_expression *x, csg_frame *frame);
+void csg_eval_echo(csg_eval *e, const csg_arguments *arguments, csg_frame *frame);
+/* False when the assertion failed (reported, evaluation stopped). */
+bool csg_eval_assert(csg_eval *e, const csg_arguments *arguments, csg_frame *frame, csg_span where);
+csg_text
+csg_eval_text(const csg_eval *e); /* an empty one, no longer than the steps that are left */
+/* Pays for a text in steps; false, reported: it is too long, or memory ran out. */
+bool csg_eval_text_done(csg_eval *e, const csg_text *text, csg_span where);
+csg_value csg_eval_text_value(csg_eval *e, csg_text *text, csg_span where); /* consumes the text */
+csg_value csg_eval_string(csg_eval *e, const char *text, size_t length);
+
+/* The elements that `for` sees: of a range, vector or string; undef has none, others are one. */
+typedef struct csg_iteration {
+    csg_value over; /* borrowed */
+    double count, next;
+    size_t offset; /* strings */
+} csg_iteration;
+
+bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, csg_span where);
+bool csg_iteration_next(csg_eval *e, csg_iteration *iteration, csg_value *out, csg_span where);
+
+/* A list under construction. */
+typedef struct csg_list {
+    csg_value *items;
+    size_t count, capacity;
+} csg_list;
+
+void csg_list_push(csg_eval *e, csg_list *list, csg_value element, csg_span where); /* consumed */
+/* Room for `more` elements at once. */
+void csg_list_reserve(csg_eval *e, csg_list *list, double more, csg_span where);
+csg_value csg_list_finish(csg_eval *e, csg_list *list); /* a vector; the list is released */
+
+/* ---- built-in functions
+ * -------------------------------------------------------------------------- */
+
+typedef struct csg_function_call {
+    csg_eval *e;
+    const char *name;
+    csg_span where;
+    const csg_argument *syntax; /* as written: names and places */
+    const csg_value *arguments; /* borrowed */
+    uint32_t count;
+} csg_function_call;
+
+csg_value csg_builtin_call(csg_eval *e, int row, const csg_expression *x, csg_frame *frame);
+void csg_builtins_intern(csg_symbols *symbols, bool *ok);
+/* Warns that an argument cannot be used; UNDEF. */
+csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const char *wanted);
+
+/* "did you mean 'x'?" for an unknown module, function or variable (by the code of the finding), or
+ * NULL. The buffer belongs to the caller. */
+const char *csg_suggest(csg_eval *e, csg_diag_code code, csg_symbol name, csg_frame *frame,
+                        csg_span where, char *buffer, size_t size);
+
+/* ---- statements
+ * ------------------------------------------------------------------------------------ */
+
+/* Runs the statements of a scope that was entered; parts go on the stack. spread: for, if and
+ * children() may leave several parts; else each statement leaves at most one. */
+void csg_run_statements(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool spread);
+/* Enters the scope, runs it, leaves it. */
+void csg_run_scope(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool spread);
+void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread);
+void csg_run_control(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread);
+void csg_push_part(csg_eval *e, csg_part part);
+static inline csg_part csg_part_plain(csg_node_id node)
+{
+    return (csg_part){.node = node};
+}
+/* Joins the parts above `first` into one node and takes them off the stack. Of figures and solids
+ * the first one's dimension rules, unless they may be mixed. */
+csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                           csg_span where);
+csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                                 csg_span where);
+/* Joins them without blend and puts the result on the stack. */
+void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
+/* After every csg_build_*: a failure becomes a finding, and the node EMPTY. */
+csg_node_id csg_check_node(csg_eval *e, csg_node_id node, csg_span where);
+
+#endif

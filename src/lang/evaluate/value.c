@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT
+ * The heap of counted objects; see value.h. Releasing walks a list of the dying instead of
+ * recursing, so that a chain of a million nested vectors costs no stack.
+ */
+#include "lang/evaluate/value.h"
+
+#include <math.h>
+#include <string.h>
+
+void csg_heap_init(csg_heap *heap, csg_memory *memory, uint32_t deepest)
+{
+    *heap = (csg_heap){memory, NULL, deepest};
+}
+
+void csg_heap_reset(csg_heap *heap)
+{
+    while (heap->objects) {
+        csg_object *next = heap->objects->next;
+        csg_memory_release(heap->memory, heap->objects, heap->objects->size_bytes);
+        heap->objects = next;
+    }
+}
+
+static void *create(csg_heap *heap, csg_value_kind kind, size_t size_bytes)
+{
+    csg_object *object = csg_memory_alloc(heap->memory, size_bytes);
+    if (!object)
+        return NULL;
+    *object = (csg_object){NULL, heap->objects, size_bytes, 1, (uint8_t)kind};
+    if (heap->objects)
+        heap->objects->previous = object;
+    heap->objects = object;
+    return object;
+}
+
+static void unlink_object(csg_heap *heap, csg_object *object)
+{
+    if (object->next)
+        object->next->previous = object->previous;
+    if (object->previous)
+        object->previous->next = object->next;
+    else
+        heap->objects = object->next;
+}
+
+/* ---- releasing ------------------------------------------------------------------------------ */
+
+/* Drops one reference; the last one puts the object on the list of the dying. */
+static void drop(csg_heap *heap, csg_object *object, csg_object **dying)
+{
+    if (!object || --object->references > 0)
+        return;
+    unlink_object(heap, object);
+    object->next = *dying;
+    *dying = object;
+}
+
+static void drop_values(csg_heap *heap, const csg_value *values, size_t count, csg_object **dying)
+{
+    for (size_t i = 0; i < count; i++)
+        if (csg_value_is_object(values[i]))
+            drop(heap, values[i].as.object, dying);
+}
+
+static void drop_frame(csg_heap *heap, const csg_frame *frame, csg_object **dying)
+{
+    drop_values(heap, frame->values, frame->count, dying);
+    if (frame->parent)
+        drop(heap, &frame->parent->object, dying);
+    if (frame->children_frame)
+        drop(heap, &frame->children_frame->object, dying);
+}
+
+void csg_object_release(csg_heap *heap, csg_object *object)
+{
+    csg_object *dying = NULL;
+    unlink_object(heap, object);
+    object->next = NULL;
+    for (dying = object; dying;) {
+        object = dying;
+        dying = object->next;
+        if (object->kind == CSG_VALUE_VECTOR) {
+            const csg_vector *vector = (const csg_vector *)object;
+            drop_values(heap, vector->items, vector->count, &dying);
+        } else if (object->kind == CSG_VALUE_FUNCTION) {
+            drop(heap, &((csg_function *)object)->frame->object, &dying);
+        } else if (object->kind == CSG_VALUE_RULE) {
+            csg_function *function = ((csg_rule_value *)object)->function;
+            if (function)
+                drop(heap, &function->object, &dying);
+        } else if (object->kind == CSG_VALUE_FRAME) {
+            drop_frame(heap, (const csg_frame *)object, &dying);
+        }
+        csg_memory_release(heap->memory, object, object->size_bytes);
+    }
+}
+
+/* ---- making ---------------------------------------------------------------------------------- */
+
+csg_string *csg_string_create(csg_heap *heap, const char *text, size_t length)
+{
+    csg_string *made = create(heap, CSG_VALUE_STRING, sizeof *made + length + 1);
+    if (!made)
+        return NULL;
+    if (length)
+        memcpy(made->text, text, length);
+    made->text[length] = '\0';
+    made->length = length;
+    made->characters = 0;
+    for (size_t i = 0; i < length; i++)
+        made->characters += ((unsigned char)text[i] & 0xC0) != 0x80;
+    return made;
+}
+
+csg_vector *csg_vector_create(csg_heap *heap, size_t count)
+{
+    csg_vector *made = create(heap, CSG_VALUE_VECTOR, sizeof *made + count * sizeof *made->items);
+    if (!made)
+        return NULL;
+    made->count = (uint32_t)count;
+    made->depth = 1;
+    for (size_t i = 0; i < count; i++)
+        made->items[i] = csg_value_undef();
+    return made;
+}
+
+csg_value csg_range_create(csg_heap *heap, double begin, double step, double end)
+{
+    csg_range *made = create(heap, CSG_VALUE_RANGE, sizeof *made);
+    if (!made)
+        return csg_value_undef();
+    made->begin = begin;
+    made->step = step;
+    made->end = end;
+    return csg_value_object(made, CSG_VALUE_RANGE);
+}
+
+csg_value csg_rule_value_create(csg_heap *heap, const csg_rule *rule, csg_function *function)
+{
+    csg_rule_value *made = create(heap, CSG_VALUE_RULE, sizeof *made);
+    if (!made)
+        return csg_value_undef();
+    made->rule = *rule;
+    made->function = function;
+    if (function)
+        function->object.references++;
+    return csg_value_object(made, CSG_VALUE_RULE);
+}
+
+csg_value csg_function_create(csg_heap *heap, const csg_expression *literal, csg_frame *frame)
+{
+    csg_function *made = create(heap, CSG_VALUE_FUNCTION, sizeof *made);
+    if (!made)
+        return csg_value_undef();
+    made->literal = literal;
+    made->frame = csg_frame_retain(frame);
+    return csg_value_object(made, CSG_VALUE_FUNCTION);
+}
+
+csg_frame *csg_frame_create(csg_heap *heap, csg_frame *parent, uint32_t count)
+{
+    csg_frame *made = create(heap, CSG_VALUE_FRAME, sizeof *made + count * sizeof *made->values);
+    if (!made)
+        return NULL;
+    made->parent = csg_frame_retain(parent);
+    made->scope = NULL;
+    made->file = NULL;
+    made->children = NULL;
+    made->children_frame = NULL;
+    made->names = NULL;
+    made->has_dynamics = false;
+    made->child_count = (csg_value){.kind = CSG_VALUE_UNSET};
+    made->count = count;
+    for (uint32_t i = 0; i < count; i++)
+        made->values[i] = (csg_value){.kind = CSG_VALUE_UNSET};
+    return made;
+}
+
+/* ---- looking -----------------------------------------------------------------------------------
+ */
+
+bool csg_value_is_true(csg_value value)
+{
+    switch (value.kind) {
+    case CSG_VALUE_NUMBER:
+        return value.as.number != 0;
+    case CSG_VALUE_BOOLEAN:
+        return value.as.boolean;
+    case CSG_VALUE_STRING:
+        return value.as.string->length > 0;
+    case CSG_VALUE_VECTOR:
+        return value.as.vector->count > 0;
+    case CSG_VALUE_UNDEF:
+    case CSG_VALUE_UNSET:
+        return false;
+    default:
+        return true;
+    }
+}
+
+const char *csg_value_kind_name(csg_value value)
+{
+    static const char *const names[] = {"undef",    "number", "bool",   "blend",  "formula",
+                                        "step",     "undef",  "string", "vector", "range",
+                                        "function", "blend",  "undef"};
+    return names[value.kind];
+}
+
+bool csg_value_numbers(csg_value value, size_t count, double *out)
+{
+    if (value.kind != CSG_VALUE_VECTOR || value.as.vector->count != count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        if (value.as.vector->items[i].kind != CSG_VALUE_NUMBER)
+            return false;
+        out[i] = value.as.vector->items[i].as.number;
+    }
+    return true;
+}
+
+double csg_range_count(const csg_range *range)
+{
+    if (isnan(range->begin) || isnan(range->step) || isnan(range->end))
+        return 0;
+    if (isinf(range->step) && isfinite(range->begin) && isfinite(range->end)) {
+        double length = range->end - range->begin;
+        return length == 0 || signbit(length) == signbit(range->step) ? 1 : 0;
+    }
+    if (range->step == 0 || isinf(range->begin) || isinf(range->end))
+        return range->step != 0 && (range->end - range->begin) / range->step < 0 ? 0 : INFINITY;
+    double span = (range->end - range->begin) / range->step;
+    /* One unit in the last place beyond the end counts as the end, as in OpenSCAD: 0.3 / 0.1 < 3.
+     */
+    return span < 0 ? 0 : floor(nextafter(span, INFINITY)) + 1;
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT
+ * Calls of built-in functions: the table, the count of arguments, suggestions for unknown names;
+ * and the functions that make blend values.
+ */
+#include "lang/functions/functions.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "lang/evaluate/symbolic.h"
+#include "lang/modules/modules.h"
+
+typedef struct row {
+    const char *name;
+    csg_function_handler *handler;
+    uint32_t fewest, most;
+    const char *parameters;
+} row;
+
+static const row rows[] = {
+#define CSG_FUNCTION(name, handler, fewest, most, parameters, doc)                                 \
+    {#name, csg_function_##handler, fewest, most, parameters},
+#include "lang/functions/functions.def"
+#undef CSG_FUNCTION
+};
+
+enum { ROW_COUNT = sizeof rows / sizeof *rows };
+
+void csg_builtins_intern(csg_symbols *symbols, bool *ok)
+{
+    for (size_t i = 0; i < ROW_COUNT && *ok; i++) {
+        csg_symbol symbol = csg_symbol_intern(symbols, rows[i].name, strlen(rows[i].name));
+        *ok = symbol != 0;
+        if (symbol)
+            symbols->entries[symbol].function = (int16_t)i;
+    }
+    csg_modules_intern(symbols, ok);
+}
+
+csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const char *wanted)
+{
+    csg_eval_report(call->e, CSG_DIAG_BAD_ARGUMENT,
+                    index < call->count ? call->syntax[index].value->whole : call->where, NULL,
+                    "%s() needs %s, not a %s; it counts as undef", call->name, wanted,
+                    index < call->count ? csg_value_kind_name(call->arguments[index]) : "nothing");
+    return csg_value_undef();
+}
+
+static csg_value call_row(const row *r, const csg_function_call *call)
+{
+    if (call->count < r->fewest || call->count > r->most) {
+        csg_eval_report(call->e, CSG_DIAG_BAD_ARGUMENT, call->where, NULL,
+                        "%s(%s) does not take %u argument%s; it counts as undef", r->name,
+                        r->parameters, call->count, call->count == 1 ? "" : "s");
+        return csg_value_undef();
+    }
+    csg_value result = csg_value_undef();
+    if (call->e->formula && csg_symbolic_call(call, &result))
+        return result;
+    return r->handler(call);
+}
+
+csg_value csg_builtin_call(csg_eval *e, int index, const csg_expression *x, csg_frame *frame)
+{
+    enum { FEW = 6 };
+    csg_value few[FEW], *values = few, result = csg_value_undef();
+    const csg_arguments *arguments = &x->as.call.arguments;
+    size_t bytes = arguments->count * sizeof *values;
+    uint32_t done = 0;
+    if (arguments->count > FEW)
+        values = csg_memory_alloc(e->heap.memory, bytes);
+    if (!values) {
+        csg_eval_no_memory(e);
+        return result;
+    }
+    for (; done < arguments->count && !e->stop; done++)
+        values[done] = csg_evaluate(e, arguments->items[done].value, frame);
+    csg_function_call call = {e, rows[index].name, x->where, arguments->items, values, done};
+    if (!e->stop)
+        result = call_row(&rows[index], &call);
+    while (done > 0)
+        csg_value_release(&e->heap, values[--done]);
+    if (values != few)
+        csg_memory_release(e->heap.memory, values, bytes);
+    return result;
+}
+
+/* ---- blends
+ * ------------------------------------------------------------------------------------------ */
+
+static csg_value make_blend(const csg_function_call *call, csg_blend_kind kind, double n)
+{
+    if (!(n >= 0) || isinf(n)) {
+        csg_eval_report(call->e, CSG_DIAG_OUT_OF_RANGE, call->syntax[0].value->whole, NULL,
+                        "%s() needs a finite number of at least 0, not %g", call->name, n);
+        n = 0;
+    }
+    csg_value made = {.kind = CSG_VALUE_BLEND, .blend = (uint8_t)(n > 0 ? kind : CSG_BLEND_SHARP)};
+    made.as.number = n;
+    return made;
+}
+
+/* The one argument of a blend; NAN after a report. */
+static double blend_number(const csg_function_call *call)
+{
+    if (call->arguments[0].kind == CSG_VALUE_NUMBER)
+        return call->arguments[0].as.number;
+    csg_eval_report(call->e, CSG_DIAG_BAD_BLEND, call->syntax[0].value->whole, NULL,
+                    "%s() needs a number, not a %s", call->name,
+                    csg_value_kind_name(call->arguments[0]));
+    return NAN;
+}
+
+csg_value csg_function_blend(const csg_function_call *call)
+{
+    int kind = CSG_BLEND_COUNT - 1;
+    while (kind > 0 && strcmp(csg_blend_name((csg_blend_kind)kind), call->name) != 0)
+        kind--;
+    double value = blend_number(call);
+    bool raw = call->syntax[0].name == call->e->symbol_n;
+    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
+        return csg_value_undef();
+    if (call->syntax[0].name && !raw && call->syntax[0].name != call->e->symbol_w)
+        csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[0].where, NULL,
+                        "%s() takes the width w or the raw parameter n", call->name);
+    return make_blend(call, (csg_blend_kind)kind,
+                      raw ? value : csg_blend_raw((csg_blend_kind)kind, value));
+}
+
+csg_value csg_function_round(const csg_function_call *call)
+{
+    bool number = call->arguments[0].kind == CSG_VALUE_NUMBER;
+    if (call->syntax[0].name == call->e->symbol_r) {
+        double radius = blend_number(call);
+        return number ? make_blend(call, CSG_BLEND_ROUND, radius) : csg_value_undef();
+    }
+    return number ? csg_value_number(round(call->arguments[0].as.number))
+                  : csg_bad_argument(call, 0, "a number");
+}
+
+/* round(x) with one positional argument, and no function of the scene in its place. */
+static bool is_round_call(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    csg_frame *home;
+    const csg_definition *definition;
+    return x->kind == CSG_EXPRESSION_CALL && x->as.call.callee->kind == CSG_EXPRESSION_NAME &&
+           x->as.call.callee->as.name == e->symbol_round && x->as.call.arguments.count == 1 &&
+           !x->as.call.arguments.items[0].name &&
+           !csg_eval_find_definition(e, CSG_MEMBER_FUNCTION, e->symbol_round, frame, &home,
+                                     &definition);
+}
+
+csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    while (x->kind == CSG_EXPRESSION_CONDITIONAL) {
+        csg_value condition = csg_evaluate(e, x->as.branch.condition, frame);
+        x = csg_value_is_true(condition) ? x->as.branch.then : x->as.branch.other;
+        csg_value_release(&e->heap, condition);
+    }
+    return is_round_call(e, x, frame) ? csg_evaluate(e, x->as.call.arguments.items[0].value, frame)
+                                      : csg_evaluate(e, x, frame);
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ * Numbers: trigonometry in degrees, exact where the result is rational, elementary functions,
+ * vectors.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "lang/functions/functions.h"
+
+/* ---- trigonometry -----------------------------------------------------------------------------
+ */
+
+#define DEGREE 0.017453292519943295
+
+/* Folded to [0, 45] degrees, where the remainder is exact, so that symmetric angles give the same
+ * bits and the sine of 30 degrees is 1/2. */
+static double sine(double degrees)
+{
+    double a = fmod(degrees, 360), sign = 1;
+    if (a < 0) {
+        a = -a;
+        sign = -1;
+    }
+    if (a >= 180) {
+        a -= 180;
+        sign = -sign;
+    }
+    if (a > 90)
+        a = 180 - a;
+    if (a == 0)
+        return 0;
+    if (a == 30)
+        return sign * 0.5;
+    if (a == 45)
+        return sign * 0.70710678118654752440;
+    if (a == 60)
+        return sign * 0.86602540378443864676;
+    return sign * (a < 45 ? sin(a * DEGREE) : cos((90 - a) * DEGREE));
+}
+
+static double cosine(double degrees)
+{
+    double a = fabs(fmod(degrees, 360));
+    return sine(90 - (a > 180 ? 360 - a : a));
+}
+
+static double tangent(double degrees)
+{
+    double a = fmod(degrees, 180);
+    a = a > 90 ? a - 180 : a < -90 ? a + 180 : a; /* [-90, 90] */
+    if (fabs(a) == 90)
+        return fmod(floor(degrees / 180), 2) == 0 ? INFINITY : -INFINITY;
+    if (fabs(a) == 45)
+        return copysign(1, a);
+    return a == 0 ? 0 : sine(a) / cosine(a);
+}
+
+/* A whole number of degrees when that is what the function of it gives back. */
+static double rounded_angle(double radians, double (*function)(double), double value)
+{
+    double degrees = radians / DEGREE, whole = round(degrees);
+    return function(whole) == value ? whole : degrees;
+}
+
+csg_value csg_function_trigonometry(const csg_function_call *call)
+{
+    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
+        return csg_bad_argument(call, 0, "a number");
+    double x = call->arguments[0].as.number;
+    bool inverse = call->name[0] == 'a';
+    switch (call->name[inverse ? 1 : 0]) {
+    case 's':
+        return csg_value_number(inverse ? rounded_angle(asin(x), sine, x) : sine(x));
+    case 'c':
+        return csg_value_number(inverse ? rounded_angle(acos(x), cosine, x) : cosine(x));
+    default:
+        return csg_value_number(inverse ? rounded_angle(atan(x), tangent, x) : tangent(x));
+    }
+}
+
+csg_value csg_function_atan2(const csg_function_call *call)
+{
+    for (uint32_t i = 0; i < 2; i++)
+        if (call->arguments[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "two numbers");
+    double y = call->arguments[0].as.number, x = call->arguments[1].as.number;
+    double degrees = atan2(y, x) / DEGREE, whole = round(degrees);
+    bool exact = fabs(degrees - whole) < 3e-14 * fabs(whole) || y == 0;
+    return csg_value_number(exact ? whole : degrees);
+}
+
+/* ---- elementary --------------------------------------------------------------------------------
+ */
+
+static double sign(double x)
+{
+    return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+csg_value csg_function_number(const csg_function_call *call)
+{
+    static const struct {
+        const char *name;
+        double (*function)(double);
+    } table[] = {{"abs", fabs},  {"sign", sign}, {"floor", floor}, {"ceil", ceil},
+                 {"sqrt", sqrt}, {"exp", exp},   {"ln", log}};
+    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
+        return csg_bad_argument(call, 0, "a number");
+    size_t i = 0;
+    while (strcmp(table[i].name, call->name) != 0)
+        i++;
+    return csg_value_number(table[i].function(call->arguments[0].as.number));
+}
+
+csg_value csg_function_pow(const csg_function_call *call)
+{
+    for (uint32_t i = 0; i < 2; i++)
+        if (call->arguments[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "two numbers");
+    return csg_value_number(pow(call->arguments[0].as.number, call->arguments[1].as.number));
+}
+
+csg_value csg_function_log(const csg_function_call *call)
+{
+    for (uint32_t i = 0; i < call->count; i++)
+        if (call->arguments[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "a number");
+    double x = call->arguments[call->count - 1].as.number;
+    return csg_value_number(call->count == 1 ? log10(x)
+                                             : log(x) / log(call->arguments[0].as.number));
+}
+
+/* Of a list: by the order of values, what has no order does not count. */
+static csg_value extreme_of(const csg_function_call *call, const csg_vector *list, bool smallest)
+{
+    csg_value best = csg_value_undef();
+    for (uint32_t i = 0; i < list->count; i++) {
+        csg_value item = list->items[i];
+        if (i == 0 ||
+            csg_value_is_less(call->e, smallest ? item : best, smallest ? best : item, call->where))
+            best = item;
+    }
+    return csg_value_retain(best);
+}
+
+csg_value csg_function_extreme(const csg_function_call *call)
+{
+    const csg_value *values = call->arguments;
+    bool smallest = strcmp(call->name, "min") == 0;
+    if (!csg_eval_charge(call->e, call->count / 8, call->where))
+        return csg_value_undef();
+    if (call->count == 1 && values[0].kind == CSG_VALUE_VECTOR)
+        return values[0].as.vector->count ? extreme_of(call, values[0].as.vector, smallest)
+                                          : csg_bad_argument(call, 0, "a list of numbers");
+    for (uint32_t i = 0; i < call->count; i++)
+        if (values[i].kind != CSG_VALUE_NUMBER)
+            return csg_bad_argument(call, i, "numbers");
+    double best = values[0].as.number;
+    for (uint32_t i = 1; i < call->count; i++)
+        if (smallest ? values[i].as.number < best : values[i].as.number > best)
+            best = values[i].as.number;
+    return csg_value_number(best);
+}
+
+/* ---- vectors ------------------------------------------------------------------------------------
+ */
+
+static bool is_number_list(csg_value value)
+{
+    if (value.kind != CSG_VALUE_VECTOR)
+        return false;
+    for (uint32_t i = 0; i < value.as.vector->count; i++)
+        if (value.as.vector->items[i].kind != CSG_VALUE_NUMBER)
+            return false;
+    return true;
+}
+
+csg_value csg_function_norm(const csg_function_call *call)
+{
+    if (!is_number_list(call->arguments[0]))
+        return csg_bad_argument(call, 0, "a list of numbers");
+    const csg_vector *vector = call->arguments[0].as.vector;
+    double sum = 0;
+    if (!csg_eval_charge(call->e, vector->count / 8, call->where))
+        return csg_value_undef();
+    for (uint32_t i = 0; i < vector->count; i++)
+        sum += vector->items[i].as.number * vector->items[i].as.number;
+    return csg_value_number(sqrt(sum));
+}
+
+csg_value csg_function_cross(const csg_function_call *call)
+{
+    double a[3], b[3];
+    if (csg_value_numbers(call->arguments[0], 2, a) && csg_value_numbers(call->arguments[1], 2, b))
+        return csg_value_number(a[0] * b[1] - a[1] * b[0]);
+    if (!csg_value_numbers(call->arguments[0], 3, a))
+        return csg_bad_argument(call, 0, "two vectors of 3 (or 2) numbers");
+    if (!csg_value_numbers(call->arguments[1], 3, b))
+        return csg_bad_argument(call, 1, "two vectors of 3 (or 2) numbers");
+    for (uint32_t i = 0; i < 3; i++)
+        if (!isfinite(a[i]) || !isfinite(b[i]))
+            return csg_bad_argument(call, isfinite(a[i]) ? 1 : 0, "finite numbers");
+    csg_vector *made = csg_vector_create(&call->e->heap, 3);
+    if (!made) {
+        csg_eval_no_memory(call->e);
+        return csg_value_undef();
+    }
+    for (int i = 0; i < 3; i++)
+        made->items[i] =
+            csg_value_number(a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+    return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
+csg_value csg_function_dot(const csg_function_call *call)
+{
+    const csg_value *v = call->arguments;
+    for (uint32_t i = 0; i < 2; i++)
+        if (!is_number_list(v[i]) || v[i].as.vector->count != v[0].as.vector->count)
+            return csg_bad_argument(call, i, "two lists of equally many numbers");
+    double sum = 0;
+    if (!csg_eval_charge(call->e, v[0].as.vector->count / 8, call->where))
+        return csg_value_undef();
+    for (uint32_t i = 0; i < v[0].as.vector->count; i++)
+        sum += v[0].as.vector->items[i].as.number * v[1].as.vector->items[i].as.number;
+    return csg_value_number(sum);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * field(): its function is evaluated once, on a point of terms, and what it gives is the formula.
+ * combine() does so with the fields of its children (combine_solid.c).
+ */
+#include <math.h>
+
+#include "lang/evaluate/formula_call.h"
+#include "lang/evaluate/symbolic.h"
+
+static csg_value point_of_terms(csg_eval *e)
+{
+    csg_vector *point = csg_vector_create(&e->heap, 3);
+    bool made = point != NULL;
+    for (uint32_t axis = 0; axis < 3 && made; axis++) {
+        csg_formula_id id = csg_formula_apply(e->formula, CSG_FORMULA_X + axis, 0, 0);
+        point->items[axis] = (csg_value){.kind = CSG_VALUE_TERM, .as.term = id};
+        made = id != CSG_FORMULA_NONE;
+    }
+    if (!made) {
+        csg_eval_no_memory(e);
+        return csg_value_undef();
+    }
+    return csg_value_object(point, CSG_VALUE_VECTOR);
+}
+
+static csg_value coordinate(csg_eval *e, uint32_t axis)
+{
+    csg_formula_id id = csg_formula_apply(e->formula, CSG_FORMULA_X + axis, 0, 0);
+    if (id == CSG_FORMULA_NONE)
+        csg_eval_no_memory(e);
+    return (csg_value){.kind = CSG_VALUE_TERM, .as.term = id};
+}
+
+/* The function's value at the point of terms, or of as many terms as there are operands. */
+static csg_value call_function(csg_module_call *call, const csg_function *function,
+                               uint32_t operands)
+{
+    csg_eval *e = call->e;
+    const csg_arguments *parameters = &function->literal->as.call.arguments;
+    csg_value result = csg_value_undef();
+    csg_frame *frame = csg_frame_create(&e->heap, function->frame, parameters->count);
+    if (!frame) {
+        csg_eval_no_memory(e);
+        return result;
+    }
+    frame->names = parameters->items;
+    for (uint32_t i = 0; i < operands && i < parameters->count; i++)
+        frame->values[i] = coordinate(e, i);
+    if (!operands)
+        frame->values[0] = point_of_terms(e);
+    for (uint32_t i = operands ? operands : 1; i < parameters->count && !e->stop; i++)
+        frame->values[i] = parameters->items[i].value
+                               ? csg_evaluate(e, parameters->items[i].value, function->frame)
+                               : csg_value_undef();
+    if (!e->stop)
+        result = csg_evaluate(e, function->literal->as.call.body, frame);
+    csg_frame_release(&e->heap, frame);
+    return result;
+}
+
+/* The steps of the formula, from the heap's memory; NULL after a report. */
+static csg_formula_step *make_steps(csg_module_call *call, uint32_t index,
+                                    const csg_function *function, uint32_t operands,
+                                    csg_formula_builder *builder, uint32_t *count)
+{
+    csg_eval *e = call->e;
+    csg_value value = call_function(call, function, operands);
+    csg_formula_id result = CSG_FORMULA_NONE;
+    if (value.kind == CSG_VALUE_TERM)
+        result = value.as.term;
+    else if (value.kind == CSG_VALUE_NUMBER && !e->stop)
+        result = csg_formula_constant(builder, value.as.number);
+    else if (!e->stop && !e->refused)
+        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE,
+                           "the function gives %s%s, it must give a number",
+                           value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value));
+    csg_value_release(&e->heap, value);
+    if (result == CSG_FORMULA_NONE || e->stop)
+        return NULL;
+    csg_formula_step *steps = csg_memory_alloc(e->heap.memory, builder->count * sizeof *steps);
+    *count = steps ? csg_formula_collect(builder, result, steps) : 0;
+    if (!*count)
+        csg_eval_no_memory(e);
+    return steps;
+}
+
+bool csg_argument_is_function(const csg_module_call *call, uint32_t index, uint32_t least)
+{
+    csg_value function = call->values[index];
+    return function.kind == CSG_VALUE_FUNCTION &&
+           function.as.function->literal->as.call.arguments.count >= least;
+}
+
+csg_formula_step *csg_formula_of_function(csg_module_call *call, uint32_t index, uint32_t operands,
+                                          uint32_t *count, size_t *bytes)
+{
+    return csg_formula_of_literal(call, index, call->values[index].as.function, operands, count,
+                                  bytes);
+}
+
+csg_formula_step *csg_formula_of_literal(csg_module_call *call, uint32_t index,
+                                         const csg_function *function, uint32_t operands,
+                                         uint32_t *count, size_t *bytes)
+{
+    csg_eval *e = call->e;
+    csg_formula_builder builder;
+    csg_formula_begin(&builder, e->heap.memory);
+    e->formula = &builder;
+    e->refused = false;
+    csg_formula_step *steps = make_steps(call, index, function, operands, &builder, count);
+    e->formula = NULL;
+    *bytes = builder.count * sizeof *steps;
+    csg_formula_end(&builder);
+    return steps;
+}
+
+csg_box csg_argument_box(csg_module_call *call, uint32_t index)
+{
+    csg_box box = csg_box_all();
+    csg_value value = call->values[index];
+    double low[3], high[3];
+    if (!csg_has_argument(call, index) || call->failed)
+        return box;
+    if (value.kind != CSG_VALUE_VECTOR || value.as.vector->count != 2 ||
+        !csg_value_numbers(value.as.vector->items[0], 3, low) ||
+        !csg_value_numbers(value.as.vector->items[1], 3, high)) {
+        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "%s must be [[x, y, z], [x, y, z]]",
+                           call->parameters[index].name);
+        return box;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        if (!call->failed && !(isfinite(low[axis]) && low[axis] < high[axis]))
+            csg_argument_error(call, index, CSG_DIAG_OUT_OF_RANGE,
+                               "the box from %g to %g along %c has nothing inside", low[axis],
+                               high[axis], "xyz"[axis]);
+    return (csg_box){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+csg_node_id csg_module_field(csg_module_call *call)
+{
+    enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN };
+    csg_eval *e = call->e;
+    csg_span where = call->statement->where;
+    if (!csg_argument_is_function(call, FUNCTION, 1))
+        csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
+                           "it needs a function of a point, as function (p) 1 - norm(p)");
+    bool cut = csg_has_argument(call, BOUNDS);
+    csg_box box = csg_argument_box(call, cut ? BOUNDS : DOMAIN);
+    double lipschitz = csg_argument_number(call, LIPSCHITZ, 0, CSG_POSITIVE);
+    csg_node_id node = CSG_NODE_NONE;
+    uint32_t count = 0;
+    size_t bytes = 0;
+    csg_formula_step *steps =
+        call->failed ? NULL : csg_formula_of_function(call, FUNCTION, 0, &count, &bytes);
+    if (steps && count && !call->failed)
+        node = csg_build_field(&e->builder, steps, count, box, cut, lipschitz, where);
+    else if (!e->stop)
+        node = csg_build_empty(&e->builder, where);
+    csg_memory_release(e->heap.memory, steps, bytes);
+    return e->stop ? CSG_NODE_NONE : csg_check_node(e, node, where);
+}

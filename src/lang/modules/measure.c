@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT
+ * What the modules of shapes ask of whole nodes: is the field an exact distance, polygons of a flat
+ * node, triangles and the tight box of a solid.
+ */
+#include <math.h>
+
+#include "base/clock.h"
+#include "lang/modules/pieces.h"
+#include "scene/outlines/flatten.h"
+#include "scene/primitives/curve.h"
+#include "scene/services.h"
+
+/* ---- exact distances ------------------------------------------------------------------------- */
+
+typedef struct exactness { /* of a node on one side of its surface */
+    csg_node_id node;
+    bool outside;
+} exactness;
+
+typedef struct exact_stack {
+    csg_memory *memory;
+    exactness *items;
+    size_t count, capacity;
+} exact_stack;
+
+static bool push(exact_stack *stack, csg_node_id node, bool outside)
+{
+    if (!csg_memory_reserve(stack->memory, (void **)&stack->items, &stack->capacity,
+                            stack->count + 1, sizeof *stack->items))
+        return false;
+    stack->items[stack->count++] = (exactness){node, outside};
+    return true;
+}
+
+/* Of one operator: a union is exact outside, an intersection inside, where its operands are. */
+static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
+{
+    const csg_node *node = &scene->nodes[at.node];
+    bool joins = node->kind == CSG_NODE_UNION && at.outside;
+    bool meets =
+        (node->kind == CSG_NODE_INTERSECTION || node->kind == CSG_NODE_DIFFERENCE) && !at.outside;
+    if (node->kind == CSG_NODE_SHAPE || node->kind == CSG_NODE_EMPTY)
+        return true;
+    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_SUPERELLIPSOID ||
+        node->kind == CSG_NODE_SOFT || node->kind == CSG_NODE_COMBINE)
+        return false;
+    if (node->kind == CSG_NODE_TRANSFORM &&
+        !csg_affine_is_similarity(&scene->transforms[node->payload]))
+        return false;
+    if (node->kind == CSG_NODE_OFFSET && (scene->parameters[node->payload] > 0) != at.outside)
+        return false;
+    if (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind != CSG_WARP_REVOLVE)
+        return false;
+    if (csg_node_is_operator(node->kind) &&
+        !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
+        (node->blend != CSG_BLEND_SHARP || (!joins && !meets)))
+        return false;
+    if (csg_node_is_curve(node->kind) && !at.outside) /* bends back to itself */
+        return false;
+    for (uint32_t i = 0; i < node->child_count; i++) {
+        bool flips = node->kind == CSG_NODE_DIFFERENCE && i > 0;
+        if (!push(stack, csg_scene_children(scene, node)[i], at.outside != flips))
+            return false; /* out of memory: the careful way will say so */
+    }
+    return true;
+}
+
+bool csg_distance_is_exact(const csg_eval *e, csg_node_id node, bool outside)
+{
+    exact_stack stack = {.memory = e->heap.memory};
+    bool exact = push(&stack, node, outside);
+    while (exact && stack.count)
+        exact = look_at(e->builder.scene, stack.items[--stack.count], &stack);
+    csg_memory_release(stack.memory, stack.items, stack.capacity * sizeof *stack.items);
+    return exact;
+}
+
+/* ---- sizes ----------------------------------------------------------------------------------- */
+
+static double longest_side(csg_box box, bool flat)
+{
+    csg_vec3 size = csg_box_size(box);
+    return fmax(fmax(size.x, size.y), flat ? 0 : size.z);
+}
+
+bool csg_finite_size(csg_module_call *call, csg_node_id node, double *out)
+{
+    csg_eval *e = call->e;
+    bool flat = csg_shape_is_flat(e, node);
+    csg_box box = csg_build_box(&e->builder, node);
+    if (e->builder.status != CSGM_OK) {
+        csg_check_node(e, CSG_NODE_NONE, call->statement->where);
+        return false;
+    }
+    *out = longest_side(box, flat);
+    if (isfinite(*out) && !csg_box_is_empty(box))
+        return true;
+    if (csg_box_is_empty(box))
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, call->statement->where, NULL,
+                        "%s() of a solid without a surface is nothing", call->name);
+    else
+        csg_eval_report(e, CSG_DIAG_NOT_EXACT, call->statement->where,
+                        "cut it first, by an intersection with a box",
+                        "%s() of a solid without bounds", call->name);
+    call->failed = true;
+    return false;
+}
+
+/* ---- polygons and triangles ------------------------------------------------------------------ */
+
+csgm_status csg_flat_outline(csg_module_call *call, csg_node_id node, csg_outline *out)
+{
+    const double fine = 1e-5;
+    csg_eval *e = call->e;
+    double size = 1;
+    csg_outline_init(out, e->heap.memory);
+    if (!csg_finite_size(call, node, &size))
+        return e->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
+    if (!csg_eval_check_time(e, call->statement->where))
+        return CSGM_ERR_LIMIT;
+    return csg_flatten(&e->builder, node, fine * size, out);
+}
+
+/* In what is left of the evaluation's time. */
+static csgm_status tessellate_in_time(csg_module_call *call, const csgm_scene *scene,
+                                      uint32_t cells, csg_triangles *out)
+{
+    csg_eval *e = call->e;
+    double whole = e->context->limits.timeout_s, deadline = e->program->deadline_s;
+    if (!csg_eval_check_time(e, call->statement->where))
+        return CSGM_ERR_LIMIT;
+    if (deadline != 0)
+        e->context->limits.timeout_s = fmax(deadline - csg_clock_now_s(), 1e-3);
+    csgm_status status = e->program->services->tessellate(e->context, scene, cells, out);
+    e->context->limits.timeout_s = whole;
+    csg_eval_check_time(e, call->statement->where);
+    return status;
+}
+
+csgm_status csg_solid_triangles(csg_module_call *call, csg_node_id node, csg_triangles *out)
+{
+    enum { CELLS = 160 };
+    csg_eval *e = call->e;
+    csgm_scene *scene = NULL;
+    csg_vec3 size = csg_box_size(csg_build_box(&e->builder, node));
+    csg_triangles_init(out, e->heap.memory);
+    if (!(fmin(size.x, fmin(size.y, size.z)) > 0))
+        return CSGM_OK; /* nothing but a face or an edge that two solids share */
+    if (!e->program->services)
+        return CSGM_ERR_UNSUPPORTED;
+    csgm_status status = csg_build_snapshot(&e->builder, node, &scene);
+    if (status != CSGM_OK)
+        return status;
+    status = tessellate_in_time(call, scene, CELLS, out);
+    csg_scene_destroy(scene);
+    return status;
+}
+
+/* The sides of `rough` (within a cell) that agree with `bound` are exact there. */
+static csg_box snap(csg_box rough, csg_box bound)
+{
+    const double cell = 1.5 / 160;
+    double slack = cell * longest_side(rough, false);
+    double *r = &rough.min.x;
+    const double *b = &bound.min.x;
+    for (int i = 0; i < 6; i++)
+        if (fabs(r[i] - b[i]) < slack)
+            r[i] = b[i];
+    return rough;
+}
+
+static csgm_status box_of_pieces(csg_module_call *call, const csg_pieces *pieces, double size,
+                                 csg_box *out)
+{
+    csg_eval *e = call->e;
+    *out = csg_box_empty();
+    for (size_t i = 0; i < pieces->count; i++) {
+        csg_cloud cloud;
+        csg_cloud_init(&cloud, e->heap.memory);
+        csgm_status status = csg_piece_cloud(call, &pieces->items[i], 1e-7 * size, &cloud);
+        for (size_t k = 0; k < cloud.count && status == CSGM_OK; k++) {
+            csg_box ball = {cloud.balls[k].at, cloud.balls[k].at};
+            *out = csg_box_hull(*out, csg_box_grow(ball, cloud.balls[k].radius));
+        }
+        csg_cloud_release(&cloud);
+        if (status != CSGM_OK)
+            return status;
+    }
+    return CSGM_OK;
+}
+
+csgm_status csg_tight_box(csg_module_call *call, csg_node_id node, csg_box *out)
+{
+    csg_eval *e = call->e;
+    double size = 0;
+    csg_pieces pieces;
+    if (!csg_finite_size(call, node, &size))
+        return e->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
+    csg_box bound = csg_build_box(&e->builder, node);
+    csg_pieces_init(&pieces, e->heap.memory);
+    csgm_status status = csg_pieces_collect(e, node, &pieces) ? CSGM_OK : CSGM_ERR_MEMORY;
+    if (status == CSGM_OK)
+        status = box_of_pieces(call, &pieces, size, out);
+    csg_pieces_release(&pieces);
+    if (status == CSGM_OK)
+        *out = snap(*out, bound);
+    return status;
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT
+ * Built-in modules: the table, their arguments by the table of parameters, and the steps by which
+ * handlers look at them.
+ */
+#ifndef CSG_LANG_MODULES_H
+#define CSG_LANG_MODULES_H
+
+#include "lang/evaluate/evaluator.h"
+
+enum { CSG_MOST_PARAMETERS = 12 };
+
+typedef struct csg_parameter_row {
+    const char *name;
+    const char *range; /* in words, "" = any */
+    const char *doc;
+    int module;
+    bool positional;
+} csg_parameter_row;
+
+/* One call of a built-in module, its arguments in the order of its parameters. */
+typedef struct csg_module_call {
+    csg_eval *e;
+    const char *name;
+    const csg_statement *statement;
+    csg_frame *frame;
+    const csg_parameter_row *parameters;
+    uint32_t parameter_count;
+    csg_value values[CSG_MOST_PARAMETERS]; /* UNDEF when not given */
+    csg_span spans[CSG_MOST_PARAMETERS];
+    bool failed; /* an argument was reported: make the empty solid */
+} csg_module_call;
+
+/* A handler returns its node; NONE when it has put its parts on the stack itself. */
+typedef csg_node_id csg_module_handler(csg_module_call *call);
+
+csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_module_capsule,
+    csg_module_torus, csg_module_ellipsoid, csg_module_plane, csg_module_field,
+    csg_module_translate, csg_module_rotate, csg_module_scale, csg_module_mirror,
+    csg_module_multmatrix, csg_module_color, csg_module_operator, csg_module_blend,
+    csg_module_group, csg_module_circle, csg_module_square, csg_module_polygon, csg_module_text,
+    csg_module_offset, csg_module_projection, csg_module_linear_extrude, csg_module_rotate_extrude,
+    csg_module_polyhedron, csg_module_import, csg_module_surface, csg_module_tube,
+    csg_module_spline, csg_module_periodic, csg_module_hull, csg_module_minkowski,
+    csg_module_resize, csg_module_part, csg_module_material, csg_module_offset3d, csg_module_shell,
+    csg_module_repeat, csg_module_twist, csg_module_bend, csg_module_combine, csg_module_slab,
+    csg_module_extrude, csg_module_warp, csg_module_soft, csg_module_superellipsoid;
+
+void csg_modules_intern(csg_symbols *symbols, bool *ok);
+/* Runs the built-in module of this row: leaves one part. Not for control flow. */
+void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame);
+bool csg_module_is_control(int row);
+/* Reports a name that is known but not supported yet. */
+bool csg_report_unsupported(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_span where);
+
+/* ---- arguments: index = position in modules.def --------------------------------------------- */
+
+typedef enum csg_range_kind {
+    CSG_ANY,
+    CSG_POSITIVE,
+    CSG_NOT_NEGATIVE,
+    CSG_SIZE,         /* above 0, else the solid has nothing inside: only a warning, */
+    CSG_SIZE_OR_POINT /* as real files compute sizes that OpenSCAD takes in silence */
+} csg_range_kind;
+
+bool csg_has_argument(const csg_module_call *call, uint32_t index);
+/* The number given, or `otherwise`; reports what is no number or out of range. */
+double csg_argument_number(csg_module_call *call, uint32_t index, double otherwise,
+                           csg_range_kind range);
+/* The radius of rounded edges, at most half the smallest edge. */
+double csg_argument_rounding(csg_module_call *call, uint32_t index, double smallest_edge);
+bool csg_argument_boolean(const csg_module_call *call, uint32_t index);
+/* [x, y, z] or [x, y] (z = otherwise.z); a single number stands for all three when `spread`. */
+csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 otherwise,
+                             bool spread);
+csg_blend csg_argument_blend(csg_module_call *call, uint32_t index);
+/* The same for a value of kind RULE. */
+csg_blend csg_rule_blend(csg_module_call *call, uint32_t index);
+/* Reports that an argument is out of its range or of the wrong kind. */
+void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* The children, united. */
+csg_node_id csg_module_children(csg_module_call *call);
+
+/* CSS and SVG names, #rgb, #rgba, #rrggbb, #rrggbbaa. */
+bool csg_color_parse(const char *text, size_t length, csg_color *out);
+
+#endif

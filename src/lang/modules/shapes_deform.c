@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT
+ * Modules that change the shape of their children: resize, offset3d, shell, repeat, twist, bend.
+ */
+#include <math.h>
+
+#include "lang/modules/pieces.h"
+
+/* ---- resize ---------------------------------------------------------------------------------- */
+
+/* Which axes keep the proportions. */
+static void read_auto(csg_module_call *call, uint32_t index, bool out[3])
+{
+    csg_value value = call->values[index];
+    for (int i = 0; i < 3; i++) {
+        bool own = value.kind == CSG_VALUE_VECTOR && (uint32_t)i < value.as.vector->count;
+        out[i] = own                              ? csg_value_is_true(value.as.vector->items[i])
+                 : value.kind == CSG_VALUE_VECTOR ? false
+                                                  : csg_value_is_true(value);
+    }
+}
+
+/* Factors that bring `size` to the new one, where that is above 0; the others follow the largest
+ * factor where they are automatic (in OpenSCAD that is the one of the longest new side). */
+static bool factors(csg_module_call *call, const double wanted[3], const bool automatic[3],
+                    const double size[3], int count, double out[3])
+{
+    double largest = -1, follow = 1;
+    for (int i = 0; i < count; i++)
+        if (wanted[i] > largest) {
+            largest = wanted[i];
+            follow = wanted[i] > 0 ? wanted[i] / size[i] : 1;
+        }
+    for (int i = 0; i < 3; i++) {
+        out[i] = i >= count ? 1 : wanted[i] > 0 ? wanted[i] / size[i] : automatic[i] ? follow : 1;
+        if (!(isfinite(out[i]) && out[i] > 0)) {
+            csg_argument_error(call, 0, CSG_DIAG_OUT_OF_RANGE, "the solid has no size along %c",
+                               "xyz"[i]);
+            return false;
+        }
+    }
+    return true;
+}
+
+csg_node_id csg_module_resize(csg_module_call *call)
+{
+    enum { NEW_SIZE, AUTO };
+    csg_eval *e = call->e;
+    csg_vec3 to = csg_argument_vector(call, NEW_SIZE, csg_vec3_make(0, 0, 0), true);
+    bool automatic[3];
+    csg_box box;
+    double scale[3];
+    read_auto(call, AUTO, automatic);
+    csg_node_id node = csg_module_children(call);
+    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || call->failed)
+        return node;
+    csgm_status status = csg_tight_box(call, node, &box);
+    if (status != CSGM_OK)
+        return call->failed ? csg_shape_empty(call)
+                            : csg_shape_failed(call, status, "measure this solid");
+    csg_vec3 size = csg_box_size(box);
+    if (!factors(call, (double[]){to.x, to.y, to.z}, automatic, (double[]){size.x, size.y, size.z},
+                 csg_shape_is_flat(e, node) ? 2 : 3, scale))
+        return csg_shape_empty(call);
+    csg_affine by = csg_affine_scale(csg_vec3_make(scale[0], scale[1], scale[2]));
+    return csg_shape_moved(call, node, &by);
+}
+
+/* ---- offset3d, shell ------------------------------------------------------------------------- */
+
+static csg_node_id grown(csg_module_call *call, csg_node_id node, double by)
+{
+    if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node))
+        return node;
+    return csg_shape_done(call,
+                          csg_build_offset(&call->e->builder, by, node, call->statement->where));
+}
+
+/* Of figures too: there it is what offset() does where their field is a distance. */
+csg_node_id csg_module_offset3d(csg_module_call *call)
+{
+    double r = csg_argument_number(call, 0, 1, CSG_ANY);
+    csg_node_id node = csg_module_children(call);
+    return call->failed ? csg_shape_empty(call) : grown(call, node, r);
+}
+
+csg_node_id csg_module_shell(csg_module_call *call)
+{
+    csg_eval *e = call->e;
+    csg_scene_builder *builder = &e->builder;
+    csg_span where = call->statement->where;
+    double thickness = csg_argument_number(call, 0, 1, CSG_POSITIVE);
+    csg_node_id outer = csg_module_children(call);
+    if (outer == CSG_NODE_NONE || csg_shape_is_empty(e, outer))
+        return outer;
+    if (call->failed)
+        return csg_shape_empty(call);
+    csg_node_id inner =
+        grown(call, csg_shape_done(call, csg_build_copy(builder, outer)), -thickness);
+    if (inner == CSG_NODE_NONE)
+        return inner;
+    return csg_shape_done(call, csg_build_operator(builder, CSG_NODE_DIFFERENCE,
+                                                   (csg_blend){CSG_BLEND_SHARP, 0},
+                                                   (csg_node_id[]){outer, inner}, 2, where));
+}
+
+/* ---- repeat ---------------------------------------------------------------------------------- */
+
+/* Copies along each axis: a number counts along every axis that the cell has. */
+static bool read_counts(csg_module_call *call, uint32_t index, csg_vec3 cell, uint32_t out[3])
+{
+    const double most = 1e6, steps[3] = {cell.x, cell.y, cell.z};
+    csg_value value = call->values[index];
+    double n[3] = {1, 1, 1};
+    if (value.kind == CSG_VALUE_NUMBER)
+        for (int i = 0; i < 3; i++)
+            n[i] = steps[i] != 0 ? value.as.number : 1;
+    else if (csg_has_argument(call, index) && !csg_value_numbers(value, 3, n) &&
+             !csg_value_numbers(value, 2, n)) {
+        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "count must be a number or [x, y, z]");
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (!(n[i] >= 1 && n[i] <= most) || n[i] != floor(n[i])) {
+            csg_argument_error(call, index, CSG_DIAG_OUT_OF_RANGE, "%g copies along %c", n[i],
+                               "xyz"[i]);
+            return false;
+        }
+        out[i] = (uint32_t)n[i];
+    }
+    return true;
+}
+
+static csg_node_id copies(csg_module_call *call, csg_node_id node, csg_vec3 cell,
+                          const uint32_t counts[3], csg_node_id *made)
+{
+    csg_eval *e = call->e;
+    csg_span where = call->statement->where;
+    size_t count = 0;
+    for (uint32_t z = 0; z < counts[2]; z++)
+        for (uint32_t y = 0; y < counts[1]; y++)
+            for (uint32_t x = 0; x < counts[0]; x++) {
+                csg_affine by =
+                    csg_affine_translate(csg_vec3_make(x * cell.x, y * cell.y, z * cell.z));
+                bool last = x + 1 == counts[0] && y + 1 == counts[1] && z + 1 == counts[2];
+                if (!csg_eval_charge(e, 1, where))
+                    return CSG_NODE_NONE;
+                csg_node_id copy =
+                    last ? node : csg_shape_done(call, csg_build_copy(&e->builder, node));
+                made[count] = csg_shape_moved(call, copy, &by);
+                if (made[count++] == CSG_NODE_NONE)
+                    return CSG_NODE_NONE;
+            }
+    return csg_shape_done(call,
+                          csg_build_operator(&e->builder, CSG_NODE_UNION,
+                                             (csg_blend){CSG_BLEND_SHARP, 0}, made, count, where));
+}
+
+csg_node_id csg_module_repeat(csg_module_call *call)
+{
+    enum { CELL, COUNT };
+    csg_eval *e = call->e;
+    uint32_t counts[3];
+    csg_vec3 cell = csg_argument_vector(call, CELL, csg_vec3_make(0, 0, 0), true);
+    bool known = read_counts(call, COUNT, cell, counts);
+    csg_node_id node = csg_module_children(call);
+    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node))
+        return node;
+    if (!known || call->failed)
+        return csg_shape_empty(call);
+    double total = (double)counts[0] * counts[1] * counts[2];
+    if (total > 1e8 || !csg_eval_charge(e, (uint64_t)total, call->statement->where)) {
+        csg_argument_error(call, COUNT, CSG_DIAG_OUT_OF_RANGE, "%g copies are too many", total);
+        return csg_shape_empty(call);
+    }
+    size_t bytes = (size_t)total * sizeof(csg_node_id);
+    csg_node_id *made = csg_memory_alloc(e->heap.memory, bytes);
+    if (!made) {
+        csg_eval_no_memory(e);
+        return CSG_NODE_NONE;
+    }
+    csg_node_id result = copies(call, node, cell, counts, made);
+    csg_memory_release(e->heap.memory, made, bytes);
+    return result;
+}
+
+/* ---- warps ----------------------------------------------------------------------------------- */
+
+static csg_node_id warped(csg_module_call *call, const csg_warp *warp, csg_node_id node)
+{
+    return csg_shape_done(call,
+                          csg_build_warp(&call->e->builder, warp, node, call->statement->where));
+}
+
+csg_node_id csg_module_twist(csg_module_call *call)
+{
+    enum { RATE, LOW, HIGH };
+    csg_eval *e = call->e;
+    double rate = csg_argument_number(call, RATE, 0, CSG_ANY), size;
+    bool between = csg_has_argument(call, LOW) && csg_has_argument(call, HIGH);
+    csg_node_id node = between ? csg_module_children(call) : csg_shape_children(call, false);
+    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || rate == 0 || call->failed)
+        return node;
+    if (!csg_finite_size(call, node, &size))
+        return csg_shape_empty(call);
+    csg_box box = csg_build_box(&e->builder, node);
+    double low = csg_argument_number(call, LOW, box.min.z, CSG_ANY);
+    double high = csg_argument_number(call, HIGH, box.max.z, CSG_ANY);
+    if (!call->failed && !(low < high))
+        csg_argument_error(call, HIGH, CSG_DIAG_OUT_OF_RANGE, "high is %g, low is %g", high, low);
+    if (call->failed)
+        return csg_shape_empty(call);
+    const csg_warp warp = {.kind = CSG_WARP_TWIST, .parameters = {rate, low, high}};
+    return warped(call, &warp, node);
+}
+
+csg_node_id csg_module_bend(csg_module_call *call)
+{
+    double radius = csg_argument_number(call, 0, 1, CSG_POSITIVE);
+    csg_node_id node = csg_shape_children(call, false);
+    if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node) || call->failed)
+        return node;
+    const csg_warp warp = {.kind = CSG_WARP_BEND, .parameters = {radius}};
+    return warped(call, &warp, node);
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT
+ * Flat figures: circle, square, polygon, and offset of what is flat. Where the field of a figure is
+ * no exact distance on the side that an offset needs (inside a union, outside an intersection, or
+ * an offset of an offset), the figure is made polygons first.
+ */
+#include <math.h>
+
+#include "lang/modules/pieces.h"
+#include "lang/modules/shapes.h"
+#include "shape/plane/polygons.h"
+
+csg_node_id csg_module_circle(csg_module_call *call)
+{
+    enum { R, D };
+    csg_eval *e = call->e;
+    double r = csg_argument_radius(call, R, D, 1, CSG_SIZE);
+    if (call->failed)
+        return csg_shape_empty(call);
+    uint32_t facets = csg_facets(e, r);
+    if (facets)
+        return csg_faceted_circle(call, r, facets);
+    return csg_shape_done(
+        call, csg_build_primitive(&e->builder, CSG_NODE_CIRCLE, &r, call->statement->where));
+}
+
+csg_node_id csg_module_square(csg_module_call *call)
+{
+    enum { SIZE, CENTER, ROUND };
+    csg_eval *e = call->e;
+    double size[2] = {1, 1};
+    bool known = csg_argument_pair(call, SIZE, size);
+    double smallest = fmin(size[0], size[1]);
+    if (known && !(smallest > 0))
+        csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
+                           "an edge of length %g makes no figure, it must be above 0", smallest);
+    double round = csg_argument_rounding(call, ROUND, smallest);
+    if (call->failed)
+        return csg_shape_empty(call);
+    const double half[3] = {size[0] / 2, size[1] / 2, round};
+    csg_node_id node = csg_shape_done(
+        call, csg_build_primitive(&e->builder, CSG_NODE_RECTANGLE, half, call->statement->where));
+    if (csg_argument_boolean(call, CENTER))
+        return node;
+    csg_affine by = csg_affine_translate(csg_vec3_make(half[0], half[1], 0));
+    return csg_shape_moved(call, node, &by);
+}
+
+/* ---- polygon --------------------------------------------------------------------------------- */
+
+static bool read_point(csg_module_call *call, uint32_t index, csg_value value, uint32_t number,
+                       csg_vec2 *out)
+{
+    double v[3];
+    bool known = csg_value_numbers(value, 2, v) || csg_value_numbers(value, 3, v);
+    if (known && isfinite(v[0]) && isfinite(v[1])) {
+        *out = (csg_vec2){v[0], v[1]};
+        return true;
+    }
+    csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "%s[%u] is not [x, y]",
+                       call->parameters[index].name, number);
+    return false;
+}
+
+/* One loop: the points with these indices, or all of them. */
+static bool add_path(csg_module_call *call, uint32_t index, csg_vector *points, csg_value path,
+                     bool all, csg_outline *out)
+{
+    uint32_t count = all ? points->count : path.as.vector->count;
+    for (uint32_t i = 0; i < count; i++) {
+        double at = i;
+        csg_vec2 point;
+        if (!all && path.as.vector->items[i].kind == CSG_VALUE_NUMBER)
+            at = trunc(path.as.vector->items[i].as.number);
+        else if (!all)
+            at = NAN;
+        if (!(at >= 0 && at < points->count)) {
+            csg_argument_error(call, index, CSG_DIAG_BAD_POINTS,
+                               "a path names point %g, there are points 0 to %d", at,
+                               (int)points->count - 1);
+            return false;
+        }
+        if (!read_point(call, 0, points->items[(uint32_t)at], (uint32_t)at, &point))
+            return false;
+        if (!csg_outline_add(out, point)) {
+            csg_eval_no_memory(call->e);
+            return false;
+        }
+    }
+    if (!csg_outline_close(out))
+        csg_eval_no_memory(call->e);
+    return true;
+}
+
+static bool add_paths(csg_module_call *call, uint32_t index, csg_vector *points, csg_outline *out)
+{
+    csg_value paths = call->values[index];
+    if (!csg_has_argument(call, index))
+        return add_path(call, index, points, paths, true, out);
+    if (paths.kind != CSG_VALUE_VECTOR) {
+        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "paths must be lists of indices");
+        return false;
+    }
+    const csg_vector *list = paths.as.vector;
+    if (list->count && list->items[0].kind == CSG_VALUE_NUMBER)
+        return add_path(call, index, points, paths, false, out);
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (list->items[i].kind != CSG_VALUE_VECTOR) {
+            csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "paths[%u] is no list of indices",
+                               i);
+            return false;
+        }
+        if (!add_path(call, index, points, list->items[i], false, out))
+            return false;
+    }
+    return true;
+}
+
+/* As the scene says it is clean; a search in what is not at all would be too slow. */
+static csg_node_id clean_region(csg_module_call *call, csg_outline *outline)
+{
+    csgm_status status = csg_polygons_check(outline);
+    if (status == CSGM_OK)
+        return csg_shape_region(call, outline);
+    csg_outline_release(outline);
+    return csg_shape_failed(call, status, "make a figure of this outline");
+}
+
+csg_node_id csg_module_polygon(csg_module_call *call)
+{
+    enum { POINTS, PATHS, CONVEXITY, CLEAN };
+    csg_outline outline;
+    csg_outline_init(&outline, call->e->heap.memory);
+    if (call->values[POINTS].kind != CSG_VALUE_VECTOR)
+        csg_argument_error(call, POINTS, CSG_DIAG_BAD_TYPE, "points must be a list of [x, y]");
+    else
+        add_paths(call, PATHS, call->values[POINTS].as.vector, &outline);
+    bool clean = csg_argument_boolean(call, CLEAN);
+    if (!call->failed && !call->e->stop)
+        return clean ? clean_region(call, &outline) : csg_shape_area(call, &outline, true);
+    csg_outline_release(&outline);
+    return csg_shape_empty(call);
+}
+
+/* ---- offset ---------------------------------------------------------------------------------- */
+
+static csg_node_id offset_polygons(csg_module_call *call, csg_node_id child, double by,
+                                   csg_corner corner, double tolerance)
+{
+    csg_outline outline, grown;
+    csgm_status status = csg_flat_outline(call, child, &outline);
+    if (status == CSGM_OK) {
+        status = csg_polygons_offset(&outline, by, corner, tolerance, &grown);
+        csg_outline_release(&outline);
+    }
+    if (status != CSGM_OK)
+        return csg_shape_failed(call, status, "offset this figure");
+    return csg_shape_region(call, &grown);
+}
+
+/* By r, with round corners. */
+static csg_node_id offset_round(csg_module_call *call, csg_node_id child, double r)
+{
+    csg_eval *e = call->e;
+    uint32_t facets = csg_facets(e, r);
+    if (facets)
+        return offset_polygons(call, child, r, CSG_CORNER_ROUND,
+                               fabs(r) * (1 - csg_cosine_deg(180.0 / facets)));
+    if (!csg_distance_is_exact(e, child, r > 0)) {
+        csg_outline outline;
+        csgm_status status = csg_flat_outline(call, child, &outline);
+        if (status != CSGM_OK)
+            return csg_shape_failed(call, status, "make polygons of this figure");
+        child = csg_shape_region(call, &outline);
+    }
+    if (child == CSG_NODE_NONE || csg_shape_is_empty(e, child))
+        return child;
+    return csg_shape_done(call, csg_build_offset(&e->builder, r, child, call->statement->where));
+}
+
+csg_node_id csg_module_offset(csg_module_call *call)
+{
+    enum { R, DELTA, CHAMFER };
+    bool sharp = csg_has_argument(call, DELTA) && !csg_has_argument(call, R);
+    double by = csg_argument_number(call, sharp ? DELTA : R, 1, CSG_ANY);
+    csg_node_id child = csg_shape_children(call, true);
+    if (call->failed || child == CSG_NODE_NONE || csg_shape_is_empty(call->e, child) || by == 0)
+        return child;
+    if (!sharp)
+        return offset_round(call, child, by);
+    csg_corner corner = csg_argument_boolean(call, CHAMFER) ? CSG_CORNER_CHAMFER : CSG_CORNER_MITER;
+    return offset_polygons(call, child, by, corner, 0);
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ * The abstract syntax tree: what the parser makes and the evaluator walks. All of it lives in one
+ * arena and never changes once parsed. A scope's assignments, functions and modules hold in all of
+ * it wherever they stand, so they are lists of the scope, apart from its statements.
+ */
+#ifndef CSG_LANG_AST_H
+#define CSG_LANG_AST_H
+
+#include "lang/parse/symbols.h"
+#include "text/lexer.h"
+
+typedef enum csg_expression_kind {
+#define CSG_EXPRESSION(NAME, text) CSG_EXPRESSION_##NAME,
+#include "lang/parse/ast.def"
+#undef CSG_EXPRESSION
+} csg_expression_kind;
+
+typedef struct csg_expression csg_expression;
+
+/* An argument of a call, a parameter with its default, an assignment of let and for. */
+typedef struct csg_argument {
+    csg_symbol name;       /* 0 = positional */
+    csg_expression *value; /* NULL = a parameter without default */
+    csg_span where;        /* of the name, or of the value */
+} csg_argument;
+
+typedef struct csg_arguments {
+    csg_argument *items;
+    uint32_t count;
+} csg_arguments;
+
+struct csg_expression {
+    uint8_t kind;      /* csg_expression_kind */
+    uint8_t operation; /* UNARY, BINARY: csg_token_kind */
+    csg_span where;    /* operators: of the operator sign; else of the first token or name */
+    csg_span whole;    /* from its first to its last byte */
+    union {
+        double number;
+        bool boolean;
+        struct {
+            const char *text;
+            size_t length;
+        } string;
+        csg_symbol name;
+        struct {
+            csg_expression *left, *right; /* UNARY: left only; INDEX: right is the index */
+        } pair;
+        struct {
+            csg_expression *object;
+            csg_symbol name;
+        } member;
+        struct {
+            csg_expression *condition, *then, *other; /* IF: other may be NULL */
+        } branch;
+        struct {
+            csg_expression *begin, *step, *end; /* step may be NULL */
+        } range;
+        struct {
+            csg_expression **items;
+            uint32_t count;
+        } list;
+        struct {
+            csg_expression
+                *callee; /* NAME or any expression; LET, ASSERT, ECHO, FUNCTION, FOR: NULL */
+            csg_arguments arguments;
+            csg_expression *body; /* ASSERT and ECHO: NULL = undef */
+        } call;
+        struct {
+            csg_arguments first, next;
+            csg_expression *condition, *body;
+        } loop;
+        csg_expression *inner; /* EACH */
+    } as;
+};
+
+typedef struct csg_scope csg_scope;
+typedef struct csg_file csg_file;
+
+typedef struct csg_assignment {
+    csg_symbol name;
+    csg_expression *value; /* of the last assignment */
+    csg_span where;        /* of the last assignment's name */
+} csg_assignment;
+
+/* A module or a function. */
+typedef struct csg_definition {
+    csg_symbol name;
+    csg_arguments parameters;
+    csg_expression *value; /* functions */
+    csg_scope *body;       /* modules */
+    csg_span where;
+} csg_definition;
+
+typedef enum csg_statement_kind { CSG_STATEMENT_CALL, CSG_STATEMENT_IF } csg_statement_kind;
+
+typedef struct csg_statement {
+    uint8_t kind;
+    bool root, highlight, background; /* the modifiers ! # % */
+    bool childless;                   /* CALL: a ';' stands where children may */
+    csg_span where;                   /* of the name */
+    csg_symbol name;
+    csg_arguments arguments;
+    csg_expression *condition;   /* IF */
+    csg_scope *children, *other; /* IF: then and else, may be NULL; CALL: children, never NULL */
+} csg_statement;
+
+struct csg_scope {
+    uint32_t id;
+    uint32_t variable_count, function_count, module_count, statement_count;
+    csg_assignment *variables; /* in order of first assignment */
+    csg_definition **functions, **modules;
+    csg_statement **statements;
+};
+
+struct csg_file {
+    uint32_t source;
+    csg_scope *scope;
+    csg_file **uses;
+    uint32_t use_count;
+    uint32_t index; /* in csg_program.files */
+};
+
+/* Everything parsed for one scene. */
+typedef struct csg_program {
+    csgm_context *context;
+    csg_arena arena; /* the tree and the texts */
+    csg_sources sources;
+    csg_symbols symbols;
+    csg_members members;
+    csg_file **files; /* files[0] is the scene; the others are used */
+    uint32_t file_count;
+    uint32_t scope_count;
+    const char **dependencies;
+    uint32_t dependency_count;
+    double deadline_s;  /* of the monotonic clock; 0 = none */
+    bool failed_io;     /* a file could not be read */
+    bool exact_facets;  /* $fn, $fa and $fs everywhere, as in OpenSCAD */
+    const char **fonts; /* files behind use <font.ttf> */
+    uint32_t font_count;
+    const csgm_scene_options *options;   /* NULL = defaults */
+    const struct csg_services *services; /* NULL: no meshes, read or made */
+    uintptr_t stack_end; /* lowest address of the stack that parser and evaluator may use */
+} csg_program;
+
+csgm_status csg_program_init(csg_program *program, csgm_context *context);
+void csg_program_reset(csg_program *program);
+
+/* Appends to an array in the arena that doubles when its count reaches a power of two. NULL: no
+ * memory; else the place of the new element. */
+void *csg_arena_push(csg_arena *arena, void **items, uint32_t *count, size_t element_bytes);
+
+#endif

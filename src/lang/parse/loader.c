@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: MIT
+ * include, use and the beginning of parsing; see loader.h and parser.h.
+ * An included file is parsed in place, into the scope where the include stands; a used one is a
+ * file of its own, parsed once however often it is used.
+ */
+#include "lang/parse/loader.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ---- finding -------------------------------------------------------------------------------- */
+
+/* dir (up to length) + "/" + name, when it can be read; NULL otherwise. */
+static const char *try_path(csg_parser *parser, const char *folder, size_t length, const char *name)
+{
+    const char *path = length ? csg_arena_printf(&parser->program->arena, "%.*s%s%s", (int)length,
+                                                 folder, folder[length - 1] == '/' ? "" : "/", name)
+                              : name;
+    if (!path) {
+        csg_parser_no_memory(parser);
+        return NULL;
+    }
+    return csg_source_exists(path) ? path : NULL;
+}
+
+static const char *search_folders(csg_parser *parser, const char *name)
+{
+    const csgm_scene_options *options = parser->options;
+    const char *found = NULL;
+    for (size_t i = 0; !found && i < options->include_dir_count; i++)
+        found = try_path(parser, options->include_dirs[i], strlen(options->include_dirs[i]), name);
+    const char *folder = getenv("CSGMESH_PATH");
+    while (!found && folder && *folder) {
+        size_t length = strcspn(folder, ":");
+        if (length)
+            found = try_path(parser, folder, length, name);
+        folder += length + (folder[length] == ':');
+    }
+    return found;
+}
+
+/* `code` says that it was not found: a font is not missed as a source is. */
+static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code code)
+{
+    const char *name =
+        csg_arena_strndup(&parser->program->arena, parser->text + path.offset + 1, path.length - 2);
+    if (!name) {
+        csg_parser_no_memory(parser);
+        return NULL;
+    }
+    const char *asking = parser->program->sources.items[parser->source].name;
+    const char *slash = strrchr(asking, '/');
+    size_t folder = slash && name[0] != '/' ? (size_t)(slash - asking) + 1 : 0;
+    const char *found = try_path(parser, asking, folder, name);
+    if (!found && name[0] != '/')
+        found = search_folders(parser, name);
+    if (!found && !parser->stop) {
+        csg_source_report(
+            &parser->program->sources, code, path,
+            strchr(name, '\\')
+                ? "folders are separated by '/'"
+                : "looked for beside this file, in each -I folder and in CSGMESH_PATH",
+            "there is no file '%.200s'", name);
+        parser->program->failed_io |= code == CSG_DIAG_INCLUDE_NOT_FOUND;
+    }
+    return found;
+}
+
+/* Does a source on the way from the scene to here come from this file? */
+static bool is_cycle(const csg_parser *parser, const char *path)
+{
+    const csg_sources *sources = &parser->program->sources;
+    for (uint32_t i = parser->source; i < sources->count; i = sources->items[i].from.source)
+        if (csg_source_is_file(&sources->items[i], path))
+            return true;
+    return false;
+}
+
+static void report_cycle(csg_parser *parser, csg_span where, const char *path)
+{
+    csg_source_report(&parser->program->sources, CSG_DIAG_INCLUDE_CYCLE, where, NULL,
+                      "'%.200s' would read itself without end", path);
+}
+
+bool csg_program_depend(csg_program *program, const char *path)
+{
+    for (uint32_t i = 0; i < program->dependency_count; i++)
+        if (strcmp(program->dependencies[i], path) == 0)
+            return true;
+    const char **place = csg_arena_push(&program->arena, (void **)&program->dependencies,
+                                        &program->dependency_count, sizeof path);
+    if (place)
+        *place = path;
+    return place != NULL;
+}
+
+static void add_dependency(csg_parser *parser, const char *path)
+{
+    if (!csg_program_depend(parser->program, path))
+        csg_parser_no_memory(parser);
+}
+
+/* Finds and reads the file of a PATH token. */
+static bool read_asked(csg_parser *parser, csg_span where, bool textual, uint32_t *out)
+{
+    const char *path = find_file(parser, where, CSG_DIAG_INCLUDE_NOT_FOUND);
+    if (!path)
+        return false;
+    if (is_cycle(parser, path)) {
+        report_cycle(parser, where, path);
+        return false;
+    }
+    csg_source_request request = {path, where, textual};
+    csgm_status status = csg_source_read(&parser->program->sources, &request, out);
+    if (status == CSGM_ERR_IO)
+        parser->program->failed_io = true;
+    if (status == CSGM_ERR_MEMORY || status == CSGM_ERR_LIMIT) {
+        parser->stop = true;
+        parser->status = status;
+    }
+    if (status == CSGM_OK)
+        add_dependency(parser, path);
+    return status == CSGM_OK;
+}
+
+/* ---- parsing a source ----------------------------------------------------------------------- */
+
+/* The parser for another text, on behalf of this one. */
+static csg_parser derive(const csg_parser *parser, uint32_t source)
+{
+    csg_parser inner = *parser;
+    inner.source = source;
+    inner.text = parser->program->sources.items[source].text;
+    inner.tokens = (csg_token_array){0};
+    inner.at = 0;
+    return inner;
+}
+
+static void parse_source(csg_parser *inner, csg_scope *scope)
+{
+    csg_memory *memory = &inner->program->context->memory;
+    if (csg_lex(&inner->program->sources, inner->source, &inner->tokens)) {
+        csg_parser_statements(inner, scope);
+    } else {
+        inner->status = csg_context_no_memory(inner->program->context);
+        inner->stop = true;
+    }
+    csg_tokens_release(memory, &inner->tokens);
+}
+
+static void take_outcome(csg_parser *parser, const csg_parser *inner)
+{
+    if (!inner->stop)
+        return;
+    parser->stop = true;
+    parser->status = inner->status;
+    parser->at = parser->tokens.count - 1;
+}
+
+void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path)
+{
+    uint32_t source;
+    if (!csg_parser_enter(parser))
+        return;
+    if (read_asked(parser, path, true, &source)) {
+        csg_parser inner = derive(parser, source);
+        parse_source(&inner, scope);
+        take_outcome(parser, &inner);
+    }
+    csg_parser_leave(parser);
+}
+
+static csg_file *add_file(csg_parser *parser, uint32_t source)
+{
+    csg_program *program = parser->program;
+    csg_file *file = csg_parser_alloc(parser, sizeof *file);
+    csg_scope *scope = file ? csg_parser_scope(parser) : NULL;
+    if (!scope)
+        return NULL;
+    *file = (csg_file){.source = source, .scope = scope, .index = program->file_count};
+    csg_file **place = csg_arena_push(&program->arena, (void **)&program->files,
+                                      &program->file_count, sizeof file);
+    if (!place) {
+        csg_parser_no_memory(parser);
+        return NULL;
+    }
+    *place = file;
+    return file;
+}
+
+static csg_file *find_used(const csg_parser *parser, const char *path)
+{
+    const csg_program *program = parser->program;
+    for (uint32_t i = 1; i < program->file_count; i++)
+        if (csg_source_is_file(&program->sources.items[program->files[i]->source], path))
+            return program->files[i];
+    return NULL;
+}
+
+static csg_file *load_used(csg_parser *parser, csg_span path)
+{
+    uint32_t source;
+    const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
+    if (!found)
+        return NULL;
+    if (is_cycle(parser, found)) {
+        report_cycle(parser, path, found);
+        return NULL;
+    }
+    csg_file *file = find_used(parser, found);
+    if (file || !read_asked(parser, path, false, &source))
+        return file;
+    file = add_file(parser, source);
+    if (!file)
+        return NULL;
+    csg_parser inner = derive(parser, source);
+    inner.file = file;
+    parse_source(&inner, file->scope);
+    take_outcome(parser, &inner);
+    return file;
+}
+
+static bool is_font(const csg_parser *parser, csg_span path)
+{
+    enum { SUFFIX = 5 }; /* ".ttf>" */
+    const char *end = parser->text + path.offset + path.length;
+    return path.length > SUFFIX && (strncasecmp(end - SUFFIX, ".ttf>", SUFFIX) == 0 ||
+                                    strncasecmp(end - SUFFIX, ".otf>", SUFFIX) == 0);
+}
+
+/* text() opens it. */
+static void load_font(csg_parser *parser, csg_span where)
+{
+    csg_program *program = parser->program;
+    const char *path = find_file(parser, where, CSG_DIAG_FONT_NOT_FOUND);
+    if (!path)
+        return;
+    add_dependency(parser, path);
+    const char **place = csg_arena_push(&program->arena, (void **)&program->fonts,
+                                        &program->font_count, sizeof path);
+    if (place)
+        *place = path;
+    else
+        csg_parser_no_memory(parser);
+}
+
+void csg_load_use(csg_parser *parser, csg_span path)
+{
+    if (is_font(parser, path)) {
+        load_font(parser, path);
+        return;
+    }
+    if (!csg_parser_enter(parser))
+        return;
+    csg_file *used = load_used(parser, path);
+    csg_parser_leave(parser);
+    csg_file *self = parser->file;
+    for (uint32_t i = 0; used && i < self->use_count; i++)
+        if (self->uses[i] == used) { /* the last use of a file counts */
+            memmove(self->uses + i, self->uses + i + 1,
+                    (self->use_count - i - 1) * sizeof *self->uses);
+            self->uses[self->use_count - 1] = used;
+            return;
+        }
+    if (!used || parser->stop)
+        return;
+    csg_file **place = csg_arena_push(&parser->program->arena, (void **)&parser->file->uses,
+                                      &parser->file->use_count, sizeof used);
+    if (place)
+        *place = used;
+    else
+        csg_parser_no_memory(parser);
+}
+
+csgm_status csg_parse_program(csg_program *program, uint32_t source,
+                              const csgm_scene_options *options)
+{
+    uint32_t errors = program->context->diags.errors;
+    csg_parser parser = {.program = program, .options = options, .source = source};
+    csg_file *file = add_file(&parser, source);
+    if (file) {
+        csg_parser inner = derive(&parser, source);
+        inner.file = file;
+        parse_source(&inner, file->scope);
+        parser.stop = inner.stop;
+        parser.status = inner.status;
+    }
+    if (parser.stop)
+        return parser.status;
+    if (program->failed_io)
+        return CSGM_ERR_IO;
+    return program->context->diags.errors > errors ? CSGM_ERR_SYNTAX : CSGM_OK;
+}
+
+csg_expression *csg_parse_lone_expression(csg_program *program, uint32_t source)
+{
+    uint32_t errors = program->context->diags.errors;
+    csg_parser parser = {.program = program, .source = source};
+    parser.text = program->sources.items[source].text;
+    csg_expression *made = NULL;
+    if (csg_lex(&program->sources, source, &parser.tokens)) {
+        made = csg_parse_expression(&parser);
+        if (made && csg_parser_peek(&parser) != CSG_TOKEN_END)
+            csg_parser_unexpected(&parser, CSG_DIAG_EXPECTED, "the end of the expression", NULL);
+    } else {
+        csg_context_no_memory(program->context);
+    }
+    csg_tokens_release(&program->context->memory, &parser.tokens);
+    return program->context->diags.errors > errors || parser.stop ? NULL : made;
+}
+
+/* ---- the program ----------------------------------------------------------------------------- */
+
+void csg_program_reset(csg_program *program)
+{
+    csg_sources_reset(&program->sources);
+    csg_symbols_reset(&program->symbols);
+    csg_members_reset(&program->members);
+    csg_arena_reset(&program->arena);
+}

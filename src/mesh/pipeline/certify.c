@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ * What grid/certify/certify.h finds, in the words of the public interface: places in scene units
+ * with the source line of the solid there, and a warning each.
+ */
+#include "mesh/pipeline/certify.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/reference.h"
+#include "scene/tree/texts.h"
+
+enum { WARNINGS_MOST = 4 };
+
+/* Cells whose diagonal is less than this thickness: a ball of it holds a lattice point. */
+static double cell_for(double thickness)
+{
+    return thickness / sqrt(3.0) * 0.98;
+}
+
+static void show_source(const csgm_scene *scene, csg_vec3 at, csgm_diag *diag)
+{
+    csgm_status status = CSGM_OK;
+    csg_node_id leaf = csg_reference_deciding_leaf(scene, at, &status);
+    if (leaf != CSG_NODE_NONE)
+        csg_scene_show_node(scene, leaf, diag);
+}
+
+static void write_hint(const csg_mesh_work *w, const csgm_certify_place *place, char *hint,
+                       size_t size)
+{
+    csg_vec3 sides = csg_box_size(w->bounds);
+    double longest = fmax(sides.x, fmax(sides.y, sides.z));
+    double resolution = place->cell_size > 0 ? ceil(longest / place->cell_size) : INFINITY;
+    if (resolution <= CSG_LATTICE_MOST_CELLS)
+        snprintf(hint, size, "-r %.0f or finer (-s %.3g) has it in the mesh", resolution,
+                 place->cell_size);
+    else
+        snprintf(hint, size, "it is thinner than any lattice: make it thicker, or leave it out");
+}
+
+/* One finding with its place, its source line and what would settle it. */
+static void warn_of_place(const csg_mesh_work *w, const csgm_certify_place *place)
+{
+    char message[320], hint[120], cells[64] = "";
+    csgm_diag diag = {.message = message, .hint = hint};
+    show_source(w->field->scene, place->at, &diag);
+    if (place->cells > 1)
+        snprintf(cells, sizeof cells, ", in %llu cells", (unsigned long long)place->cells);
+    if (place->is_missed) {
+        snprintf(message, sizeof message,
+                 "%s about %.2g thick is not in the mesh: it lies between the lattice's points "
+                 "near (%.6g, %.6g, %.6g)%s",
+                 place->is_gap ? "a gap" : "a part", place->thickness, place->at.x, place->at.y,
+                 place->at.z, cells);
+        write_hint(w, place, hint, sizeof hint);
+    } else {
+        snprintf(message, sizeof message,
+                 "it could not be told whether a part is missing near (%.6g, %.6g, %.6g)%s",
+                 place->at.x, place->at.y, place->at.z, cells);
+        snprintf(hint, sizeof hint, "the field's bounds are loose there: a higher -r helps");
+    }
+    csg_diag_report(&w->context->diags,
+                    place->is_missed ? CSG_DIAG_THIN_PART : CSG_DIAG_NOT_CERTIFIED, diag);
+}
+
+static csgm_certify_place translate(const csg_mesh_work *w, const csg_certify_place *from)
+{
+    csgm_diag diag = {0};
+    csgm_certify_place place = {.is_missed = from->kind == CSG_CELL_MISSED,
+                                .is_gap = from->is_gap,
+                                .at = from->at,
+                                .cells = from->cells};
+    if (place.is_missed) {
+        place.thickness = from->thickness;
+        place.cell_size = cell_for(from->thickness);
+    }
+    show_source(w->field->scene, from->at, &diag);
+    place.source_name = diag.source_name;
+    place.line = diag.line;
+    place.column = diag.column;
+    return place;
+}
+
+/* What is missed, a warning a place; what is unresolved, one for all. */
+static void warn(const csg_mesh_work *w, const csgm_certify *certify)
+{
+    uint32_t missed = 0, unresolved = 0;
+    for (uint32_t i = 0; i < certify->place_count; i++) {
+        const csgm_certify_place *place = &certify->places[i];
+        uint32_t before = place->is_missed ? missed++ : unresolved++;
+        if (before < (place->is_missed ? WARNINGS_MOST : 1))
+            warn_of_place(w, place);
+    }
+}
+
+static csgm_status certify(csg_mesh_work *w)
+{
+    csg_certify_report report;
+    csgm_certify *out = &w->certify;
+    double size = w->options->certify_size;
+    csg_certify_options options = {.size = size > 0 ? size : w->lattice.cell_size / 64,
+                                   .cancelled = csg_mesh_should_stop,
+                                   .user = w};
+    csgm_status status = csg_certify_run(w->context, w->field, &w->lattice, &options, &report);
+    if (status != CSGM_OK)
+        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(w) : status;
+    out->certified = report.cells[CSG_CELL_CERTIFIED];
+    out->crease = report.cells[CSG_CELL_CREASE];
+    out->refined = report.cells[CSG_CELL_REFINED];
+    out->unresolved = w->unresolved_cells = report.cells[CSG_CELL_UNRESOLVED];
+    out->missed = report.cells[CSG_CELL_MISSED];
+    out->thickness = report.promise;
+    out->places_more = report.place_more;
+    for (uint32_t i = 0; i < report.place_count; i++)
+        out->places[out->place_count++] = translate(w, &report.places[i]);
+    warn(w, out);
+    return CSGM_OK;
+}
+
+static csgm_status follow_doubts(csg_mesh_work *w)
+{
+    csg_certify_place place;
+    csgm_status status;
+    if (!csg_certify_doubts(w->context, w->field, &w->lattice, w->octree, &place,
+                            &w->unresolved_cells, &status))
+        return status;
+    csgm_certify_place shown = translate(w, &place);
+    shown.cells = 1; /* the doubts are not all of one part */
+    warn_of_place(w, &shown);
+    return CSGM_OK;
+}
+
+csgm_status csg_mesh_look_for_missed(csg_mesh_work *w)
+{
+    w->certify.is_done = w->options->certify;
+    if (!w->octree)
+        return CSGM_OK;
+    return w->options->certify ? certify(w) : follow_doubts(w);
+}
+
+void csg_mesh_add_certify(csgm_certify *sum, const csgm_certify *part)
+{
+    sum->is_done |= part->is_done;
+    sum->certified += part->certified;
+    sum->crease += part->crease;
+    sum->refined += part->refined;
+    sum->unresolved += part->unresolved;
+    sum->missed += part->missed;
+    sum->thickness = fmax(sum->thickness, part->thickness);
+    sum->places_more += part->places_more;
+    for (uint32_t i = 0; i < part->place_count; i++) {
+        if (sum->place_count < CSGM_CERTIFY_PLACES_MOST)
+            sum->places[sum->place_count++] = part->places[i];
+        else
+            sum->places_more++;
+    }
+}

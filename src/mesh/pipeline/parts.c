@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes of several parts: each part of the field is meshed by itself on one lattice for all, and
+ * their vertices and triangles are put one after the other. A part without a surface is left out.
+ */
+#include <string.h>
+
+#include "base/clock.h"
+#include "mesh/pipeline/certify.h"
+#include "mesh/work.h"
+
+typedef struct assembly {
+    csgm_context *context;
+    const csgm_field *field;
+    csgm_mesh_options options; /* with bounds for all */
+    csg_mesh_share share;
+    csgm_mesh **meshes; /* one a part */
+} assembly;
+
+/* One lattice for all parts: around their bounds, where none are given. A part without end is left
+ * to say so itself. */
+static void choose_bounds(assembly *a)
+{
+    if (!csg_box_is_empty(a->options.bounds))
+        return;
+    csg_box bounds = csg_box_empty();
+    for (size_t i = 0; i < a->field->part_count; i++)
+        bounds = csg_box_hull(bounds, a->field->parts[i].field->bounds);
+    if (csg_box_is_finite(bounds))
+        a->options.bounds = bounds;
+}
+
+static void begin(assembly *a)
+{
+    choose_bounds(a);
+    csg_box bounds = a->options.bounds;
+    a->share.started_s = csg_clock_now_s();
+    a->share.amount = 1.0 / (double)a->field->part_count;
+    if (!csg_box_is_empty(bounds) && csg_box_is_finite(bounds))
+        a->share.origin = csg_mesh_origin(csg_box_center(bounds), bounds);
+    for (size_t i = 0; i < a->field->part_count; i++) {
+        a->share.colors |= csg_mesh_is_colored(a->field->parts[i].field);
+        a->share.materials |= a->field->parts[i].field->has_materials;
+    }
+}
+
+/* Counts add up; the lattice is the same; the tape's mean is weighted. */
+static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
+{
+    double nodes = sum->mean_tape_length * (double)sum->leaf_blocks +
+                   part->mean_tape_length * (double)part->leaf_blocks;
+    sum->octree_s += part->octree_s;
+    sum->mesh_s += part->mesh_s;
+    sum->cell_size = part->cell_size;
+    memcpy(sum->cells, part->cells, sizeof sum->cells);
+    sum->cells_visited += part->cells_visited;
+    sum->pruned_outside += part->pruned_outside;
+    sum->pruned_inside += part->pruned_inside;
+    sum->leaf_blocks += part->leaf_blocks;
+    sum->point_evaluations += part->point_evaluations;
+    sum->gradient_evaluations += part->gradient_evaluations;
+    sum->interval_evaluations += part->interval_evaluations;
+    sum->primitive_evaluations += part->primitive_evaluations;
+    sum->memory_peak_bytes = part->memory_peak_bytes;
+    sum->unresolved_cells += part->unresolved_cells;
+    csg_mesh_add_certify(&sum->certify, &part->certify);
+    sum->feature_vertices += part->feature_vertices;
+    sum->smooth_features += part->smooth_features;
+    sum->fading_features += part->fading_features;
+    if (sum->leaf_blocks)
+        sum->mean_tape_length = nodes / (double)sum->leaf_blocks;
+}
+
+static csgm_status build_all(assembly *a, csgm_mesh_stats *stats)
+{
+    csgm_status status = CSGM_OK;
+    for (size_t i = 0; i < a->field->part_count && status == CSGM_OK; i++) {
+        const csg_field_part *part = &a->field->parts[i];
+        csgm_mesh_stats own = {0};
+        a->share.name = part->name;
+        a->share.before = (double)i * a->share.amount;
+        status = csg_mesh_build_one(a->context, part->field, &a->options, &a->share, &a->meshes[i],
+                                    &own);
+        add_stats(stats, &own);
+    }
+    return status;
+}
+
+/* Copies a part's arrays behind what is there. */
+static void append(csgm_mesh *to, const csgm_mesh *part, uint64_t vertices, uint64_t triangles)
+{
+    size_t count = (size_t)part->vertex_count;
+    memcpy(to->positions + 3 * vertices, part->positions, count * 3 * sizeof(float));
+    if (to->normals)
+        memcpy(to->normals + 3 * vertices, part->normals, count * 3 * sizeof(float));
+    if (to->colors)
+        memcpy(to->colors + 4 * vertices, part->colors, count * 4);
+    if (to->materials)
+        memcpy(to->materials + 2 * vertices, part->materials, count * 2 * sizeof(uint16_t));
+    for (uint64_t i = 0; i < 3 * part->triangle_count; i++)
+        to->indices[3 * triangles + i] = part->indices[i] + (uint32_t)vertices;
+}
+
+/* Parts are given back as soon as they are copied. */
+static csgm_status join(assembly *a, csgm_mesh *mesh)
+{
+    uint64_t vertices = 0, triangles = 0;
+    csgm_status status = CSGM_OK;
+    for (size_t i = 0; i < a->field->part_count && status == CSGM_OK; i++) {
+        csgm_mesh *part = a->meshes[i];
+        if (!part->triangle_count)
+            continue;
+        append(mesh, part, vertices, triangles);
+        status = csg_mesh_add_part(mesh, a->field->parts[i].name, triangles);
+        vertices += part->vertex_count;
+        triangles += part->triangle_count;
+        csg_mesh_destroy(part);
+        a->meshes[i] = NULL;
+    }
+    return status;
+}
+
+static csgm_status assemble(assembly *a, csgm_mesh **out)
+{
+    uint64_t vertices = 0, triangles = 0;
+    csgm_mesh *mesh;
+    for (size_t i = 0; i < a->field->part_count; i++) {
+        vertices += a->meshes[i]->vertex_count;
+        triangles += a->meshes[i]->triangle_count;
+    }
+    if (vertices >= UINT32_MAX) {
+        csg_diag_plain(&a->context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, "lower -r, or raise -s",
+                       "the parts have %llu vertices in all, more than 32 bits can number",
+                       (unsigned long long)vertices);
+        return CSGM_ERR_LIMIT;
+    }
+    csgm_status status =
+        csg_mesh_create(a->context, vertices, triangles, a->options.normals != CSGM_NORMALS_NONE,
+                        a->share.colors && a->options.colors, &mesh);
+    if (status != CSGM_OK)
+        return status;
+    mesh->origin = a->share.origin;
+    mesh->split = a->options.normals == CSGM_NORMALS_CREASE;
+    if (a->share.materials && a->options.colors)
+        status = csg_mesh_add_materials(mesh);
+    if (status == CSGM_OK)
+        status = join(a, mesh);
+    if (status == CSGM_OK)
+        *out = mesh;
+    else
+        csg_mesh_destroy(mesh);
+    return status;
+}
+
+csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options, csgm_mesh **out,
+                                 csgm_mesh_stats *stats)
+{
+    assembly a = {.context = context, .field = field, .options = *options};
+    size_t bytes = field->part_count * sizeof *a.meshes;
+    csgm_mesh_stats ignored;
+    stats = stats ? stats : &ignored;
+    *stats = (csgm_mesh_stats){0};
+    a.meshes = csg_memory_alloc(&context->memory, bytes);
+    if (!a.meshes)
+        return csg_context_no_memory(context);
+    memset(a.meshes, 0, bytes);
+    begin(&a);
+    csgm_status status = build_all(&a, stats);
+    if (status == CSGM_OK)
+        status = assemble(&a, out);
+    for (size_t i = 0; i < field->part_count; i++)
+        csg_mesh_destroy(a.meshes[i]);
+    csg_memory_release(&context->memory, a.meshes, bytes);
+    return status;
+}

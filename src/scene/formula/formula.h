@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * Expression fields: a formula in the coordinates of a point, as a flat array of steps in which
+ * operands come before their users and the last step is the result. The builder folds constants
+ * and makes equal steps one.
+ *
+ * Inside its bounds a formula's field is its value; outside it is the value at the nearest point
+ * of the bounds, so that one Lipschitz constant holds everywhere and nothing is evaluated where it
+ * was not meant to be. Where a formula has no value (NaN) the point is far outside.
+ */
+#ifndef CSG_SCENE_FORMULA_H
+#define CSG_SCENE_FORMULA_H
+
+#include "base/geometry.h"
+#include "base/memory.h"
+
+typedef enum csg_formula_op {
+#define CSG_FORMULA_OP(NAME, name, arity) CSG_FORMULA_##NAME,
+#include "scene/formula/formula.def"
+#undef CSG_FORMULA_OP
+    CSG_FORMULA_OP_COUNT
+} csg_formula_op;
+
+/* One operand; neither a leaf nor two. */
+static inline bool csg_formula_op_is_unary(csg_formula_op op)
+{
+    return op > CSG_FORMULA_Z && op < CSG_FORMULA_ADD;
+}
+/* "sin"; static storage. */
+const char *csg_formula_op_name(csg_formula_op op);
+uint32_t csg_formula_op_arity(csg_formula_op op);
+
+typedef struct csg_formula_step {
+    uint8_t op;      /* csg_formula_op */
+    uint32_t a, b;   /* earlier steps; 0 where the operation has fewer operands */
+    double constant; /* of CONSTANT, else 0 */
+} csg_formula_step;
+
+/* What bounds by intervals say of a function g of x >= 0. */
+typedef struct csg_profile {
+    double slope[2], value[2]; /* least and largest; where nothing is known infinite */
+    double support;            /* g is 0 from there on; INFINITY: not seen to be */
+} csg_profile;
+
+/* A formula of a scene. */
+typedef struct csg_formula {
+    uint32_t first, count; /* into the scene's steps */
+    double lipschitz;
+    csg_box bounds;      /* finite, or all of space */
+    csg_profile profile; /* of a combine node with the blend PROFILE */
+    /* the profile itself is the next formula */
+    uint8_t joins; /* csg_node_kind of the operator that such a node stands for */
+} csg_formula;
+
+/* Values are kept within +- this; it also stands for NaN, with a minus: squares of it are floats.
+ */
+#define CSG_FORMULA_FAR 1e18
+
+enum {
+    CSG_LONGEST_FORMULA = 1 << 16,
+    CSG_FORMULA_SLOTS = 512 /* most values that a formula may need at once, coordinates included */
+};
+
+/* ---- building ----------------------------------------------------------------------------- */
+
+typedef uint32_t csg_formula_id;
+#define CSG_FORMULA_NONE UINT32_MAX
+
+typedef struct csg_formula_builder {
+    csg_memory *memory;
+    csg_formula_step *steps;
+    uint32_t *table; /* open addressing: step + 1 */
+    size_t count, capacity, table_size;
+    size_t most;   /* steps: CSG_LONGEST_FORMULA */
+    bool too_long; /* NONE was returned for CSG_LONGEST_FORMULA, not for memory */
+} csg_formula_builder;
+
+void csg_formula_begin(csg_formula_builder *builder, csg_memory *memory);
+void csg_formula_end(csg_formula_builder *builder);
+/* NONE: out of memory, or too long. Operands must not be NONE. */
+csg_formula_id csg_formula_constant(csg_formula_builder *builder, double value);
+csg_formula_id csg_formula_apply(csg_formula_builder *builder, csg_formula_op op, csg_formula_id a,
+                                 csg_formula_id b);
+/* The steps that the result needs, operands close before their users, into `out` (room for
+ * builder->count); returns how many, 0 when out of memory. */
+uint32_t csg_formula_collect(const csg_formula_builder *builder, csg_formula_id result,
+                             csg_formula_step *out);
+
+/* Values that an evaluation in this order has to keep at once, constants not counted. */
+bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                       uint32_t *out);
+
+/* ---- values and bounds ---------------------------------------------------------------------- */
+
+/* One operation on numbers, in degrees. */
+double csg_formula_value(csg_formula_op op, double a, double b);
+
+typedef struct csg_formula_dual {
+    double value;
+    csg_vec3 gradient;
+} csg_formula_dual;
+
+/* Value and gradient at p (zero at critical points); work: room for formula->count. */
+csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_formula *formula,
+                                      csg_vec3 p, csg_formula_dual *work);
+
+/* A Lipschitz constant on the box by interval arithmetic, as tight as some hundred parts of the
+ * box make it; INFINITY where that finds none. NAN: out of memory. */
+double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                             csg_box box);
+/* An upper bound of the sum of the partial derivatives' sizes anywhere; INFINITY where interval
+ * arithmetic finds none. NAN: out of memory. */
+double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count);
+/* Bounds of the value and of the derivative by x for x in low..high, y = z = 0; infinite where
+ * nothing is known. False: out of memory. */
+bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        double low, double high, double value[2], double slope[2]);
+/* +1, -1 or 0 for each of x, y, z: the formula never falls, never rises, or neither is known (also
+ * without memory). */
+void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        int trends[3]);
+
+#endif

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: MIT
+ * Warps in double; see warp.h and warps.def.
+ */
+#include "scene/primitives/warp.h"
+
+#include <assert.h>
+
+#define PI 3.14159265358979323846
+
+typedef struct warp_row {
+    const char *name;
+    uint32_t given;
+} warp_row;
+
+static const warp_row rows[CSG_WARP_COUNT] = {
+#define CSG_WARP(NAME, name, given, doc) [CSG_WARP_##NAME] = {#name, given},
+#include "scene/primitives/warps.def"
+#undef CSG_WARP
+};
+
+const char *csg_warp_name(csg_warp_kind kind)
+{
+    assert(kind < CSG_WARP_COUNT);
+    return rows[kind].name;
+}
+
+uint32_t csg_warp_given(csg_warp_kind kind)
+{
+    assert(kind < CSG_WARP_COUNT);
+    return rows[kind].given;
+}
+
+static csg_vec3 vec3(double x, double y, double z)
+{
+    return (csg_vec3){x, y, z};
+}
+
+/* ---- settling -------------------------------------------------------------------------------- */
+
+static double farthest_from_axis(csg_box box)
+{
+    double x = fmax(fabs(box.min.x), fabs(box.max.x)), y = fmax(fabs(box.min.y), fabs(box.max.y));
+    return hypot(x, y);
+}
+
+static bool settle_twist(csg_warp *warp, csg_box child, const char **why)
+{
+    double reach = csg_box_is_empty(child) ? 0 : 1.25 * farthest_from_axis(child);
+    *why = "what is twisted must end somewhere";
+    warp->parameters[CSG_TWIST_REACH] = reach;
+    return isfinite(reach);
+}
+
+static bool settle_bend(csg_warp *warp, csg_box child, const char **why)
+{
+    double *v = warp->parameters, radius = v[CSG_BEND_RADIUS];
+    const double most = 170 * PI / 180;
+    if (csg_box_is_empty(child))
+        child = (csg_box){{0, 0, 0}, {0, 0, 0}};
+    double angle = fmax(fabs(child.min.x), fabs(child.max.x)) / radius;
+    v[CSG_BEND_NEAREST] = (radius - child.max.z) / 2;
+    v[CSG_BEND_ANGLE] = fmin((angle + PI) / 2, angle + 0.25);
+    *why = "what is bent must end somewhere";
+    if (!isfinite(angle) || !isfinite(v[CSG_BEND_NEAREST]))
+        return false;
+    *why = "it would go round more than 340 degrees";
+    if (angle > most)
+        return false;
+    *why = "it is so thick that it reaches the line about which it is bent";
+    return v[CSG_BEND_NEAREST] > 1e-3 * radius;
+}
+
+bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    if (warp->kind == CSG_WARP_TWIST)
+        return settle_twist(warp, child, why);
+    return warp->kind != CSG_WARP_BEND || settle_bend(warp, child, why);
+}
+
+/* ---- points ---------------------------------------------------------------------------------- */
+
+static csg_warped revolve(csg_vec3 p)
+{
+    double rho = hypot(p.x, p.y);
+    double cosine = rho > 0 ? p.x / rho : 0, sine = rho > 0 ? p.y / rho : 0;
+    return (csg_warped){vec3(rho, p.z, 0), {vec3(cosine, 0, 0), vec3(sine, 0, 0), vec3(0, 1, 0)}};
+}
+
+static csg_warped twist(const double *v, csg_vec3 p)
+{
+    double low = v[CSG_TWIST_LOW], high = v[CSG_TWIST_HIGH], reach = v[CSG_TWIST_REACH];
+    double rate = v[CSG_TWIST_RATE] * (PI / 180), rho = hypot(p.x, p.y);
+    double inward = rho > reach ? reach / rho : 1;
+    double angle = -rate * fmin(fmax(p.z, low), high), c = cos(angle), s = sin(angle);
+    double x = inward * (c * p.x - s * p.y), y = inward * (s * p.x + c * p.y);
+    double turning = p.z > low && p.z < high ? -rate : 0;
+    csg_warped out = {vec3(x, y, p.z),
+                      {vec3(inward * c, inward * s, 0), vec3(-inward * s, inward * c, 0),
+                       vec3(-turning * y, turning * x, 1)}};
+    if (rho <= reach || rho == 0)
+        return out;
+    for (int i = 0; i < 2; i++) { /* beyond the reach only the part around the axis is left */
+        csg_vec3 away = vec3(x / reach, y / reach, 0), *column = &out.column[i];
+        *column = csg_vec3_sub(*column, csg_vec3_scale(away, csg_vec3_dot(away, *column)));
+    }
+    return out;
+}
+
+static csg_warped bend(const double *v, csg_vec3 p)
+{
+    double radius = v[CSG_BEND_RADIUS], nearest = v[CSG_BEND_NEAREST], most = v[CSG_BEND_ANGLE];
+    double across = radius - p.z, s = hypot(p.x, across), phi = atan2(p.x, across);
+    double sine = s > 0 ? p.x / s : 0, cosine = s > 0 ? across / s : 0;
+    /* Behind the ends the angle runs back to 0, near the line it shrinks. */
+    bool behind = fabs(phi) > most;
+    double back = most / (PI - most),
+           turned = behind ? copysign(back * (PI - fabs(phi)), phi) : phi;
+    double slope = behind ? -back : 1, shrink = s < nearest ? s / nearest : 1;
+    double around = radius * slope * (s > 0 ? shrink / s : 0); /* du along the circle */
+    double outward = s < nearest ? radius * turned / nearest : 0;
+    /* the unit vectors: outward (sine, -cosine), around (cosine, sine) in (x, z) */
+    return (csg_warped){vec3(radius * turned * shrink, p.y, radius - s),
+                        {vec3(around * cosine + outward * sine, 0, -sine), vec3(0, 1, 0),
+                         vec3(around * sine - outward * cosine, 0, cosine)}};
+}
+
+csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p)
+{
+    switch ((csg_warp_kind)warp->kind) {
+    case CSG_WARP_REVOLVE:
+        return revolve(p);
+    case CSG_WARP_SLICE:
+        return (csg_warped){vec3(p.x, p.y, 0), {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 0)}};
+    case CSG_WARP_TWIST:
+        return twist(warp->parameters, p);
+    default:
+        assert(warp->kind == CSG_WARP_BEND);
+        return bend(warp->parameters, p);
+    }
+}
+
+/* ---- the Lipschitz constant -------------------------------------------------------------------
+ * Twist: around the axis, a point's image moves by rho rate for a step along z; the largest
+ * singular value of [[1, k], [0, 1]] is (k + sqrt(k^2 + 4)) / 2. Bend: steps around the line grow
+ * by radius / s; near the line a step outwards moves the image by radius phi / nearest as well. */
+
+static double bend_constant(const double *v)
+{
+    double most = v[CSG_BEND_ANGLE], grow = v[CSG_BEND_RADIUS] / v[CSG_BEND_NEAREST];
+    double around = grow * fmax(1, most / (PI - most)), outward = grow * most;
+    return fmax(around, sqrt(around * around + outward * outward + 1));
+}
+
+double csg_warp_scale(const csg_warp *warp)
+{
+    const double *v = warp->parameters;
+    if (warp->kind == CSG_WARP_TWIST) {
+        double k = fabs(v[CSG_TWIST_RATE]) * (PI / 180) * v[CSG_TWIST_REACH];
+        return 2 / (k + sqrt(k * k + 4));
+    }
+    return warp->kind == CSG_WARP_BEND ? 1 / bend_constant(v) : 1;
+}
+
+/* ---- boxes ------------------------------------------------------------------------------------
+ */
+
+static csg_box ring_box(double radius, double low, double high)
+{
+    return radius < 0 ? csg_box_empty()
+                      : (csg_box){{-radius, -radius, low}, {radius, radius, high}};
+}
+
+static csg_box bend_box(double radius, csg_box child, bool all_round)
+{
+    double nearest = fmax(radius - child.max.z, 0), farthest = fmax(radius - child.min.z, 0);
+    double low = fmax(child.min.x / radius, -PI), high = fmin(child.max.x / radius, PI);
+    low = all_round ? -PI : low;
+    high = all_round ? PI : high;
+    csg_box box = csg_box_empty();
+    double angles[7] = {low, high, -PI, -PI / 2, 0, PI / 2, PI};
+    for (int i = 0; i < 7; i++) {
+        if (angles[i] < low || angles[i] > high)
+            continue;
+        for (int k = 0; k < 2; k++) {
+            double s = k ? farthest : nearest;
+            csg_vec3 p = vec3(s * sin(angles[i]), 0, radius - s * cos(angles[i]));
+            box = csg_box_hull(box, (csg_box){p, p});
+        }
+    }
+    box = csg_box_grow(box, 1e-12 * (radius + farthest));
+    box.min.y = child.min.y;
+    box.max.y = child.max.y;
+    return isfinite(farthest) ? box : csg_box_all();
+}
+
+csg_box csg_warp_box(const csg_warp *warp, csg_box child, bool all_round)
+{
+    if (csg_box_is_empty(child))
+        return child;
+    switch ((csg_warp_kind)warp->kind) {
+    case CSG_WARP_REVOLVE:
+        return ring_box(child.max.x, child.min.y, child.max.y);
+    case CSG_WARP_SLICE:
+        if (child.min.z > 0 || child.max.z < 0)
+            return csg_box_empty();
+        return (csg_box){{child.min.x, child.min.y, -INFINITY},
+                         {child.max.x, child.max.y, INFINITY}};
+    case CSG_WARP_TWIST:
+        return ring_box(farthest_from_axis(child), child.min.z, child.max.z);
+    default:
+        assert(warp->kind == CSG_WARP_BEND);
+        return bend_box(warp->parameters[CSG_BEND_RADIUS], child, all_round);
+    }
+}

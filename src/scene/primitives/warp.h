@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * Warps: maps of space that are not affine. A node below a warp w has its own frame; the warp's
+ * field is f(p) = g(w(p)) / L with the Lipschitz constant L of w, which holds everywhere
+ * (warps.def). Away from the child's solid a warp may have to put points where they do not belong
+ * to stay continuous, so the builder cuts what is outside of the warped solid's box. Definitions in
+ * double: warp.c; in float: field/kernels/warp_kernel.c.
+ */
+#ifndef CSG_SCENE_WARP_H
+#define CSG_SCENE_WARP_H
+
+#include <stdint.h>
+
+#include "base/geometry.h"
+
+typedef enum csg_warp_kind {
+#define CSG_WARP(NAME, name, given, doc) CSG_WARP_##NAME,
+#include "scene/primitives/warps.def"
+#undef CSG_WARP
+    CSG_WARP_COUNT
+} csg_warp_kind;
+
+enum {
+    CSG_WARP_PARAMETERS = 5,
+    CSG_MOST_WARPS = 8 /* one below the other */
+};
+
+/* Parameters: those given, as in warps.def, then those that csg_warp_settle finds. */
+typedef struct csg_warp {
+    uint8_t kind; /* csg_warp_kind */
+    double parameters[CSG_WARP_PARAMETERS];
+} csg_warp;
+
+enum { CSG_TWIST_RATE, CSG_TWIST_LOW, CSG_TWIST_HIGH, CSG_TWIST_REACH };
+enum { CSG_BEND_RADIUS, CSG_BEND_NEAREST, CSG_BEND_ANGLE /* radians */ };
+
+const char *csg_warp_name(csg_warp_kind kind);
+uint32_t csg_warp_given(csg_warp_kind kind);
+
+/* Fills in what depends on the box of the child's solid. False: the warp cannot be done: the box is
+ * infinite or reaches where the map tears; *why says so in one sentence. */
+bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why);
+
+typedef struct csg_warped {
+    csg_vec3 at;        /* w(p) */
+    csg_vec3 column[3]; /* dw / dx, dw / dy, dw / dz; one-sided where w has a kink */
+} csg_warped;
+
+csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p);
+/* 1 / L */
+double csg_warp_scale(const csg_warp *warp);
+/* Contains every p of which w(p) lies in the child's box, and for a bend every p within the angles
+ * of its ends, where the builder cuts; all_round: the rest too. */
+csg_box csg_warp_box(const csg_warp *warp, csg_box child, bool all_round);
+
+#endif

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT
+ * A region of the plane as a field; see region.h. The distance is that to the nearest segment
+ * (region_search.c); the sign is read off that segment where that is safe (region_sign.c), and is
+ * the winding number's otherwise. Only exactly rounded operations: the same bits on every machine.
+ */
+#include "shape/plane/region.h"
+
+#include <string.h>
+
+#include "shape/plane/region_sign.h"
+#include "shape/plane/region_tree.h"
+
+typedef struct region {
+    csg_shape shape;
+    csg_outline outline;
+    csg_segment_tree tree;
+    csg_segment_sides *sides; /* per segment */
+    size_t side_count;
+} region;
+
+/* ---- the field ---------------------------------------------------------------------------- */
+
+typedef struct answer {
+    double value;
+    csg_vec2 gradient;
+} answer;
+
+static bool is_inside(const region *r, csg_side side, double left, double x, double y)
+{
+    switch (side) {
+    case CSG_SIDE_LEFT:
+        return left >= 0;
+    case CSG_SIDE_INSIDE:
+        return true;
+    case CSG_SIDE_OUTSIDE:
+        return false;
+    case CSG_SIDE_ASK:
+        break;
+    }
+    return csg_segment_winding(&r->tree, x, y) > 0;
+}
+
+/* No point is inside of what has no segments; one that is no point (NaN) is nowhere inside. */
+static bool is_nowhere(const region *r, double x, double y)
+{
+    return !(r->tree.segment_count && fabs(x) < 1e150 && fabs(y) < 1e150);
+}
+
+static double value_at(const region *r, double x, double y, csg_nearest *nearest)
+{
+    *nearest = csg_segment_nearest(&r->tree, x, y);
+    csg_segment_place at = csg_segment_locate(&r->tree, nearest->segment, x, y);
+    const csg_segment_sides *sides = &r->sides[nearest->segment];
+    csg_side side = (csg_side)(at.along < 0           ? sides->from
+                               : at.along > at.length ? sides->to
+                                                      : sides->along);
+    double distance = sqrt(nearest->squared);
+    return is_inside(r, side, at.left, x, y) ? distance : -distance;
+}
+
+/* Along the way from the nearest point, but the segment's normal wherever that is meant: there the
+ * way may be too short to have a direction. */
+static answer answer_at(const region *r, double x, double y)
+{
+    csg_nearest nearest;
+    if (is_nowhere(r, x, y))
+        return (answer){.value = -INFINITY};
+    answer a = {.value = value_at(r, x, y, &nearest)};
+    const csg_segment_end *s = &r->tree.ends[nearest.segment];
+    csg_segment_leaf *leaf = &r->tree.leaves[nearest.segment / CSG_SEGMENT_LANES];
+    csg_segment_place at = csg_segment_locate(&r->tree, nearest.segment, x, y);
+    bool is_end = at.along < 0 || at.along > at.length;
+    if (is_end && a.value != 0) {
+        csg_vec2 end = at.along < 0 ? s->from : s->to;
+        a.gradient = (csg_vec2){(x - end.x) / a.value, (y - end.y) / a.value};
+        return a;
+    }
+    double sign = at.left != 0 && (at.left > 0) != (a.value > 0) ? -1 : 1;
+    a.gradient.x = -sign * leaf->uy[nearest.segment % CSG_SEGMENT_LANES];
+    a.gradient.y = sign * leaf->ux[nearest.segment % CSG_SEGMENT_LANES];
+    return a;
+}
+
+static double sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
+{
+    answer a = answer_at((const region *)shape, p.x, p.y);
+    *gradient = csg_vec3_make(a.gradient.x, a.gradient.y, 0);
+    return a.value;
+}
+
+/* Batches come from lattices, where many points differ in z only: what was computed is kept in a
+ * few places, by the bits of x and y, and found again. It is what would be computed again. */
+enum { KEPT = 256, FEW_POINTS = 32, FEW_KEPT = 16 };
+
+typedef struct kept {
+    uint64_t key; /* bits of x and y */
+    float value;
+    bool is_set;
+} kept;
+
+static uint64_t key_of(float x, float y)
+{
+    uint32_t bits[2];
+    memcpy(&bits[0], &x, sizeof x);
+    memcpy(&bits[1], &y, sizeof y);
+    return (uint64_t)bits[1] << 32 | bits[0];
+}
+
+static void values(const csg_shape *shape, const float *x, const float *y, const float *z,
+                   size_t count, float *out)
+{
+    const region *r = (const region *)shape;
+    kept places[KEPT];
+    size_t place_count = count < FEW_POINTS ? FEW_KEPT : KEPT;
+    for (size_t i = 0; i < place_count; i++)
+        places[i].is_set = false;
+    for (size_t i = 0; i < count; i++) {
+        uint64_t key = key_of(x[i], y[i]);
+        kept *place = &places[(key * 0x9E3779B97F4A7C15u >> 48) % place_count];
+        if (!place->is_set || place->key != key) {
+            csg_nearest nearest;
+            double px = (double)x[i], py = (double)y[i];
+            float value = is_nowhere(r, px, py) ? -INFINITY : (float)value_at(r, px, py, &nearest);
+            *place = (kept){key, value, true};
+        }
+        out[i] = place->value;
+    }
+}
+
+static void gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
+                      size_t count, float *out, float *gx, float *gy, float *gz)
+{
+    for (size_t i = 0; i < count; i++) {
+        answer a = answer_at((const region *)shape, (double)x[i], (double)y[i]);
+        out[i] = (float)a.value;
+        gx[i] = (float)a.gradient.x;
+        gy[i] = (float)a.gradient.y;
+        gz[i] = 0;
+    }
+}
+
+/* ---- the shape ---------------------------------------------------------------------------- */
+
+/* FNV-1a, a word at a time, with more mixing. */
+static uint64_t hash_word(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * 0x100000001B3u;
+    return hash ^ hash >> 29;
+}
+
+static uint64_t hash_coordinate(uint64_t hash, double value)
+{
+    uint64_t bits;
+    value += 0; /* one zero only */
+    memcpy(&bits, &value, sizeof bits);
+    return hash_word(hash, bits);
+}
+
+static uint64_t hash(const csg_shape *shape)
+{
+    const csg_outline *outline = &((const region *)shape)->outline;
+    uint64_t h = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < outline->point_count; i++)
+        h = hash_coordinate(hash_coordinate(h, outline->points[i].x), outline->points[i].y);
+    for (size_t loop = 0; loop < outline->loop_count; loop++)
+        h = hash_word(h, outline->ends[loop]);
+    return h;
+}
+
+static void destroy(csg_shape *shape)
+{
+    region *r = (region *)shape;
+    csg_memory *memory = shape->memory;
+    csg_outline_release(&r->outline);
+    csg_segment_tree_release(&r->tree);
+    csg_memory_release(memory, r->sides, r->side_count * sizeof *r->sides);
+    csg_memory_release(memory, r, sizeof *r);
+}
+
+/* ---- normals ------------------------------------------------------------------------------ */
+
+typedef struct taking {
+    const csg_segment_tree *tree;
+    csg_shape_take_normal *take;
+    void *user;
+    uint32_t count;
+} taking;
+
+static bool take_segment(void *user, uint32_t segment)
+{
+    enum { MOST = 256 };
+    taking *t = user;
+    const csg_segment_leaf *leaf = &t->tree->leaves[segment / CSG_SEGMENT_LANES];
+    uint32_t k = segment % CSG_SEGMENT_LANES;
+    return ++t->count <= MOST && t->take(t->user, csg_vec3_make(-leaf->uy[k], leaf->ux[k], 0));
+}
+
+/* Within the ball distances are at most that of c and its radius. */
+static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
+                    void *user)
+{
+    const region *r = (const region *)shape;
+    if (is_nowhere(r, c.x, c.y))
+        return false;
+    double least = sqrt(csg_segment_nearest(&r->tree, c.x, c.y).squared);
+    taking t = {&r->tree, take, user, 0};
+    return csg_segment_within(&r->tree, c.x, c.y, (least + 2 * radius) * (1 + 0x1p-40),
+                              take_segment, &t);
+}
+
+static const csg_shape_operations operations = {destroy, sample, values, gradients, hash, normals};
+
+/* Below that squares do not overflow. */
+static bool is_in_range(const csg_outline *outline)
+{
+    for (size_t i = 0; i < outline->point_count; i++) {
+        if (!(fabs(outline->points[i].x) < 1e150 && fabs(outline->points[i].y) < 1e150))
+            return false;
+    }
+    return true;
+}
+
+static bool fill(region *r, const csg_outline *outline)
+{
+    csg_memory *memory = r->shape.memory;
+    if (!csg_outline_append(&r->outline, outline) ||
+        !csg_segment_tree_init(&r->tree, memory, &r->outline))
+        return false;
+    r->side_count = r->tree.segment_count;
+    if (!r->side_count)
+        return true;
+    r->sides = csg_memory_alloc(memory, r->side_count * sizeof *r->sides);
+    if (!r->sides)
+        return false;
+    csg_region_sides(&r->tree, r->sides);
+    r->shape.box = r->tree.box;
+    r->shape.box.min.z = -INFINITY;
+    r->shape.box.max.z = INFINITY;
+    return true;
+}
+
+csgm_status csg_region_create(csg_memory *memory, const csg_outline *outline, csg_shape **out)
+{
+    if (!is_in_range(outline))
+        return CSGM_ERR_SCENE;
+    region *r = csg_memory_alloc(memory, sizeof *r);
+    if (!r)
+        return CSGM_ERR_MEMORY;
+    *r = (region){.shape = {.kind = CSG_SHAPE_REGION,
+                            .operations = &operations,
+                            .memory = memory,
+                            .references = 1,
+                            .box = csg_box_empty()}};
+    csg_outline_init(&r->outline, memory);
+    r->tree.memory = memory;
+    if (!fill(r, outline)) {
+        destroy(&r->shape);
+        return CSGM_ERR_MEMORY;
+    }
+    *out = &r->shape;
+    return CSGM_OK;
+}
+
+const csg_outline *csg_region_outline(const csg_shape *shape)
+{
+    return &((const region *)shape)->outline;
+}

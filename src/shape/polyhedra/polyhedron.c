@@ -1,0 +1,469 @@
+/* SPDX-License-Identifier: MIT
+ * A polyhedron's field: distance by the tree, sign by the winding number. Of points that follow
+ * each other in a batch most need no ray: where the ball to the nearest triangle around one of them
+ * holds the other, no triangle is between them; along x only the stretch between them is
+ * searched. Winding numbers are exact, so every way gives the same.
+ * Points nearer than LEAST to a triangle are on it as far as anybody can tell; their sign is that
+ * of the lattice point next to them.
+ */
+#include "shape/polyhedra/polyhedron.h"
+
+#include <string.h>
+
+#include "shape/polyhedra/convex.h"
+#include "shape/polyhedra/repair.h"
+#include "shape/polyhedra/tree.h"
+
+typedef struct polyhedron {
+    csg_shape shape;
+    csg_frame frame;
+    csg_triangles mended;
+    csg_tree tree;
+    uint64_t hash;
+    bool is_convex;
+    atomic_uchar
+        *plain; /* per triangle in the tree: whether csg_tree_is_plain, once it was asked */
+} polyhedron;
+
+enum { PLAIN_UNKNOWN, PLAIN_NO, PLAIN_YES };
+
+static const csg_shape_operations OPERATIONS;
+
+static const polyhedron *as_polyhedron(const csg_shape *shape)
+{
+    return (const polyhedron *)shape;
+}
+
+/* ---- field ------------------------------------------------------------------------------------
+ */
+
+typedef struct known_point {
+    csg_vec3 at, cell; /* frame units; on the lattice */
+    double free;       /* no triangle within */
+    int winding;
+    bool is_set;
+} known_point;
+
+/* Goes from point to point. */
+typedef struct walker {
+    const polyhedron *solid;
+    known_point last, row; /* the last point, and the last that did not share a row with its last */
+    uint32_t hint;
+} walker;
+
+typedef struct found {
+    csg_vec3 at; /* frame units */
+    csg_nearest nearest;
+    bool inside;
+} found;
+
+/* More than points and their feet are moved by rounding. */
+static const double LEAST = 0x1p-36;
+
+static bool reaches(const known_point *from, csg_vec3 p)
+{
+    csg_vec3 away = csg_vec3_sub(p, from->at);
+    return from->is_set && from->free > 0 && csg_vec3_dot(away, away) < from->free * from->free;
+}
+
+static bool shares_row(const known_point *from, csg_vec3 cell)
+{
+    return from->is_set && from->cell.y == cell.y && from->cell.z == cell.z;
+}
+
+static bool box_holds(csg_box box, csg_vec3 p)
+{
+    return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
+           p.z >= box.min.z && p.z <= box.max.z;
+}
+
+/* p is in the box. */
+static int find_winding(walker *w, known_point *p)
+{
+    if (reaches(&w->last, p->at) || (w->last.is_set && reaches(p, w->last.at)))
+        return w->last.winding;
+    if (reaches(&w->row, p->at) || (w->row.is_set && reaches(p, w->row.at)))
+        return w->row.winding;
+    if (shares_row(&w->last, p->cell))
+        return w->last.winding + csg_tree_winding_step(&w->solid->tree, p->cell, w->last.cell);
+    return csg_tree_winding(&w->solid->tree, p->cell, NULL);
+}
+
+static bool is_inside(walker *w, csg_vec3 at, double distance)
+{
+    if (!box_holds(w->solid->tree.box, at))
+        return false;
+    known_point p = {.at = at,
+                     .cell = {csg_frame_round(at.x), csg_frame_round(at.y), csg_frame_round(at.z)},
+                     .free = distance * (1 - 0x1p-30) - LEAST,
+                     .is_set = true};
+    p.winding = find_winding(w, &p);
+    if (!shares_row(&w->last, p.cell))
+        w->row = p;
+    w->last = p;
+    return p.winding >= 1;
+}
+
+/* p is in frame units, within 2^60. */
+static found look_up(walker *w, csg_vec3 p)
+{
+    found f = {.at = p, .nearest = csg_tree_nearest(&w->solid->tree, p, w->hint)};
+    w->hint = f.nearest.place;
+    f.inside = is_inside(w, p, sqrt(f.nearest.squared));
+    return f;
+}
+
+/* So far away that the solid is a point; also whatever is not a number. */
+static bool is_far(csg_vec3 p)
+{
+    return !(fabs(p.x) < 0x1p60 && fabs(p.y) < 0x1p60 && fabs(p.z) < 0x1p60);
+}
+
+static double far_value(const polyhedron *solid, csg_vec3 p, csg_vec3 *gradient)
+{
+    double largest = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    csg_vec3 part = csg_vec3_scale(p, 1 / largest);
+    if (!isfinite(largest) || isnan(csg_vec3_dot(part, part))) {
+        *gradient = csg_vec3_make(0, 0, 0);
+        return -INFINITY;
+    }
+    *gradient = csg_vec3_scale(csg_vec3_normalize(part), -1);
+    return -csg_vec3_norm(part) * largest * solid->frame.unscale;
+}
+
+static double signed_distance(const polyhedron *solid, const found *f)
+{
+    double distance = sqrt(f->nearest.squared) * solid->frame.unscale;
+    return f->inside || distance == 0 ? distance : -distance;
+}
+
+/* Of a face: its normal, which is exact however near the point is. Of edges and corners: away from
+ * the foot. On the surface: into the solid. */
+static csg_vec3 gradient_of(const polyhedron *solid, const found *f)
+{
+    const csg_tree_triangle *t = &solid->tree.triangles[f->nearest.place];
+    bool in_face;
+    csg_vec3 foot = csg_triangle_foot(t, f->at, &in_face);
+    csg_vec3 away = csg_vec3_sub(f->at, foot);
+    csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
+    if (f->nearest.squared < LEAST * LEAST)
+        return inward;
+    double sign = f->inside ? 1 : -1;
+    if (in_face)
+        return csg_vec3_scale(inward, sign * csg_vec3_dot(away, inward) < 0 ? -1 : 1);
+    return csg_vec3_scale(csg_vec3_normalize(away), sign);
+}
+
+static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
+{
+    const polyhedron *solid = as_polyhedron(shape);
+    csg_vec3 at = csg_frame_enter(&solid->frame, p), ignored;
+    if (is_far(at))
+        return far_value(solid, at, gradient ? gradient : &ignored);
+    walker w = {.solid = solid};
+    found f = look_up(&w, at);
+    if (gradient)
+        *gradient = gradient_of(solid, &f);
+    return signed_distance(solid, &f);
+}
+
+static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
+{
+    return csg_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
+}
+
+static void polyhedron_values(const csg_shape *shape, const float *x, const float *y,
+                              const float *z, size_t count, float *out)
+{
+    walker w = {.solid = as_polyhedron(shape)};
+    for (size_t i = 0; i < count; i++) {
+        csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), ignored;
+        if (is_far(at)) {
+            out[i] = (float)far_value(w.solid, at, &ignored);
+            continue;
+        }
+        found f = look_up(&w, at);
+        out[i] = (float)signed_distance(w.solid, &f);
+    }
+}
+
+static void polyhedron_gradients(const csg_shape *shape, const float *x, const float *y,
+                                 const float *z, size_t count, float *out, float *gx, float *gy,
+                                 float *gz)
+{
+    walker w = {.solid = as_polyhedron(shape)};
+    for (size_t i = 0; i < count; i++) {
+        csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), gradient;
+        if (is_far(at)) {
+            out[i] = (float)far_value(w.solid, at, &gradient);
+        } else {
+            found f = look_up(&w, at);
+            out[i] = (float)signed_distance(w.solid, &f);
+            gradient = gradient_of(w.solid, &f);
+        }
+        gx[i] = (float)gradient.x;
+        gy[i] = (float)gradient.y;
+        gz[i] = (float)gradient.z;
+    }
+}
+
+/* ---- normals ----------------------------------------------------------------------------------
+ */
+
+/* Threads may find it twice; they find the same. */
+static bool is_plain(const polyhedron *solid, uint32_t place)
+{
+    if (solid->is_convex)
+        return !solid->tree.triangles[place].is_needle;
+    int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
+    if (known == PLAIN_UNKNOWN) {
+        known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
+        atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
+    }
+    return known == PLAIN_YES;
+}
+
+typedef struct taking {
+    const polyhedron *solid;
+    csg_shape_take_normal *take;
+    void *user;
+    uint32_t count;
+} taking;
+
+static bool take_triangle(void *user, uint32_t place)
+{
+    enum { MOST = 256 };
+    taking *t = user;
+    const csg_tree_triangle *triangle = &t->solid->tree.triangles[place];
+    csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(triangle->ac, triangle->ab));
+    return ++t->count <= MOST && t->take(t->user, inward) && is_plain(t->solid, place);
+}
+
+/* Within the ball distances are at most that of c and its radius. */
+static bool polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius,
+                               csg_shape_take_normal *take, void *user)
+{
+    const polyhedron *solid = as_polyhedron(shape);
+    csg_vec3 at = csg_frame_enter(&solid->frame, c);
+    if (is_far(at))
+        return false;
+    double least = sqrt(csg_tree_nearest(&solid->tree, at, 0).squared);
+    double reach = (least + 2 * radius * solid->frame.scale) * (1 + 0x1p-40) + LEAST;
+    taking t = {solid, take, user, 0};
+    return csg_tree_within(&solid->tree, at, reach, take_triangle, &t);
+}
+
+/* ---- making it --------------------------------------------------------------------------------
+ */
+
+static size_t turn_pieces(polyhedron *solid, csg_chain *chain, const bool *turned)
+{
+    size_t count = 0;
+    for (size_t place = 0; place < solid->tree.count; place++) {
+        uint32_t t = solid->tree.triangles[place].index;
+        if (!turned[chain->pieces[t]])
+            continue;
+        csg_tree_turn(&solid->tree, place);
+        uint32_t *corners = chain->triangles.corners[t], corner = corners[1];
+        corners[1] = corners[2];
+        corners[2] = corner;
+        count++;
+    }
+    return count;
+}
+
+/* A place in the tree with a triangle of each piece. */
+static uint32_t *find_places(csg_arena *scratch, const polyhedron *solid, const csg_chain *chain)
+{
+    uint32_t *places = csg_arena_alloc(scratch, chain->piece_count * sizeof *places);
+    for (size_t i = 0; places && i < solid->tree.count; i++)
+        places[chain->pieces[solid->tree.triangles[i].index]] = (uint32_t)i;
+    return places;
+}
+
+/* Pieces with negative volume as keys, the largest first. */
+static size_t list_inverted(const csg_chain *chain, uint64_t *keys)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < chain->piece_count; i++) {
+        if (chain->volumes[i] >= 0)
+            continue;
+        float size = (float)-chain->volumes[i];
+        uint32_t bits;
+        memcpy(&bits, &size, sizeof bits);
+        keys[count++] = (uint64_t)(UINT32_MAX - bits) << 32 | i;
+    }
+    csg_sort_keys(keys, count);
+    return count;
+}
+
+/* A piece that runs inwards is the hole in one around it; where there is none it is a mistake. */
+static bool turn_inverted_pieces(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
+                                 csg_repairs *repairs)
+{
+    enum { MOST = 20000 }; /* rays */
+    uint64_t *keys = csg_arena_alloc(scratch, chain->piece_count * sizeof *keys);
+    bool *turned = csg_arena_calloc(scratch, chain->piece_count, sizeof *turned);
+    uint32_t *places = find_places(scratch, solid, chain);
+    if (!keys || !turned || !places)
+        return false;
+    size_t count = list_inverted(chain, keys);
+    for (size_t i = 0; i < count && i < MOST; i++) {
+        uint32_t piece = (uint32_t)keys[i];
+        csg_tree_filter others = {chain->pieces, turned, piece};
+        csg_vec3 p = solid->tree.triangles[places[piece]].a;
+        turned[piece] = csg_tree_winding(&solid->tree, p, &others) < 1;
+    }
+    if (count)
+        repairs->flipped += turn_pieces(solid, chain, turned);
+    return true;
+}
+
+/* Looks at both sides of some triangles: 1 within and 0 without, or solids overlap. */
+static bool is_overlapping(const polyhedron *solid)
+{
+    enum { SAMPLES = 512 };
+    size_t step = solid->tree.count / SAMPLES + 1;
+    for (size_t i = 0; i < solid->tree.count; i += step) {
+        const csg_tree_triangle *t = &solid->tree.triangles[i];
+        csg_vec3 middle = csg_vec3_add(t->a, csg_vec3_scale(csg_vec3_add(t->ab, t->ac), 1.0 / 3));
+        csg_vec3 out = csg_vec3_scale(csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac)), 0x1p-30);
+        csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
+        for (int k = 0; k < 2; k++) {
+            csg_vec3 cell = {csg_frame_round(at[k].x), csg_frame_round(at[k].y),
+                             csg_frame_round(at[k].z)};
+            if (box_holds(solid->tree.box, cell) &&
+                csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
+                return true;
+        }
+    }
+    return false;
+}
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size_bytes)
+{
+    const uint8_t *at = bytes;
+    for (size_t i = 0; i < size_bytes; i++)
+        hash = (hash ^ at[i]) * 0x100000001B3u; /* FNV-1a */
+    return hash;
+}
+
+static uint64_t hash_triangles(const csg_triangles *triangles)
+{
+    uint64_t hash = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < triangles->point_count; i++)
+        hash = hash_bytes(hash, &triangles->points[i], sizeof *triangles->points);
+    return hash_bytes(hash, triangles->corners, triangles->count * sizeof *triangles->corners);
+}
+
+/* Takes the chain's triangles, back in the units of the file. */
+static void take_triangles(polyhedron *solid, csg_triangles *triangles)
+{
+    csg_box box = csg_box_empty();
+    for (size_t i = 0; i < triangles->point_count; i++)
+        triangles->points[i] = csg_frame_leave(&solid->frame, triangles->points[i]);
+    for (size_t t = 0; t < triangles->count; t++)
+        for (int k = 0; k < 3; k++) {
+            csg_vec3 p = triangles->points[triangles->corners[t][k]];
+            box = csg_box_hull(box, (csg_box){p, p});
+        }
+    solid->mended = *triangles;
+    solid->shape.box = box;
+    solid->hash = hash_triangles(&solid->mended);
+}
+
+/* Fills a shape whose tree is made, or takes the triangles' memory back. */
+static csgm_status finish(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
+                          csg_repairs *repairs)
+{
+    csg_edges edges;
+    if (!turn_inverted_pieces(scratch, solid, chain, repairs) ||
+        !csg_edges_make(scratch, &chain->triangles, &edges))
+        return CSGM_ERR_MEMORY;
+    repairs->overlapping = is_overlapping(solid);
+    solid->is_convex = chain->piece_count == 1 && !repairs->overlapping && !repairs->holes &&
+                       csg_chain_is_convex(&chain->triangles, &edges);
+    solid->plain = csg_memory_alloc(solid->shape.memory, solid->tree.count * sizeof *solid->plain);
+    if (!solid->plain)
+        return CSGM_ERR_MEMORY;
+    for (size_t i = 0; i < solid->tree.count; i++)
+        atomic_init(&solid->plain[i], PLAIN_UNKNOWN);
+    if (!csg_repair_number(scratch, &chain->triangles)) {
+        csg_memory_release(solid->shape.memory, solid->plain,
+                           solid->tree.count * sizeof *solid->plain);
+        return CSGM_ERR_MEMORY;
+    }
+    take_triangles(solid, &chain->triangles);
+    return CSGM_OK;
+}
+
+static csgm_status create(csg_memory *memory, csg_arena *scratch, const csg_triangles *triangles,
+                          csg_repairs *repairs, polyhedron *solid)
+{
+    csg_chain chain;
+    csgm_status status = csg_repair(memory, scratch, triangles, &chain, repairs);
+    if (status != CSGM_OK)
+        return status;
+    *solid = (polyhedron){
+        .shape = {.kind = CSG_SHAPE_POLYHEDRON, .operations = &OPERATIONS, .memory = memory},
+        .frame = chain.frame};
+    atomic_init(&solid->shape.references, 1);
+    status = CSGM_ERR_MEMORY;
+    if (csg_tree_make(memory, scratch, &chain.triangles, &solid->tree)) {
+        status = finish(scratch, solid, &chain, repairs);
+        if (status != CSGM_OK)
+            csg_tree_release(&solid->tree);
+    }
+    if (status != CSGM_OK)
+        csg_triangles_release(&chain.triangles);
+    return status;
+}
+
+csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *triangles,
+                                  csg_repairs *repairs, csg_shape **out)
+{
+    csg_repairs ignored;
+    csg_arena scratch;
+    polyhedron *solid = csg_memory_alloc(memory, sizeof *solid);
+    if (!solid)
+        return CSGM_ERR_MEMORY;
+    csg_arena_init(&scratch, memory);
+    csgm_status status = create(memory, &scratch, triangles, repairs ? repairs : &ignored, solid);
+    csg_arena_reset(&scratch);
+    if (status == CSGM_OK)
+        *out = &solid->shape;
+    else
+        csg_memory_release(memory, solid, sizeof *solid);
+    return status;
+}
+
+static void destroy_polyhedron(csg_shape *shape)
+{
+    polyhedron *solid = (polyhedron *)shape;
+    csg_memory_release(shape->memory, solid->plain, solid->tree.count * sizeof *solid->plain);
+    csg_tree_release(&solid->tree);
+    csg_triangles_release(&solid->mended);
+    csg_memory_release(shape->memory, solid, sizeof *solid);
+}
+
+static uint64_t hash_polyhedron(const csg_shape *shape)
+{
+    return as_polyhedron(shape)->hash;
+}
+
+static const csg_shape_operations OPERATIONS = {.destroy = destroy_polyhedron,
+                                                .sample = sample_polyhedron,
+                                                .values = polyhedron_values,
+                                                .gradients = polyhedron_gradients,
+                                                .hash = hash_polyhedron,
+                                                .normals = polyhedron_normals};
+
+const csg_triangles *csg_polyhedron_triangles(const csg_shape *shape)
+{
+    return &as_polyhedron(shape)->mended;
+}
+
+bool csg_polyhedron_is_convex(const csg_shape *shape)
+{
+    return as_polyhedron(shape)->is_convex;
+}

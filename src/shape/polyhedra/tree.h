@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ * A tree of boxes over a closed chain of triangles, four children a node: the nearest triangle, and
+ * how often a ray crosses the chain. Both are functions of the point alone: the nearest is the
+ * least by distance as computed, then by place, whatever was tried first; crossings are exact, by
+ * determinants of integers with points on edges moved aside by less than anything (Edelsbrunner and
+ * Muecke 1990).
+ */
+#ifndef CSG_SHAPE_TREE_H
+#define CSG_SHAPE_TREE_H
+
+#include "shape/polyhedra/frame.h"
+#include "shape/polyhedra/triangles.h"
+
+typedef struct csg_tree_triangle {
+    csg_vec3 a, ab, ac; /* frame units; ab and ac are exact */
+    uint32_t index;     /* in the chain */
+    uint32_t is_needle; /* so thin that the plane is lost in rounding: its edges stand for it */
+} csg_tree_triangle;
+
+/* Up to four triangles that follow each other, and for each a disc that holds it: what can be said
+ * of its distance in float, for four at once. */
+typedef struct csg_tree_leaf {
+    float center[3][4], normal[3][4], radius[4];
+    uint32_t first, count;
+} csg_tree_leaf;
+
+typedef struct csg_tree_node {
+    float low[3][4], high[3][4]; /* boxes of the children, wider by CSG_TREE_PAD */
+    uint32_t children[4];        /* a node, or CSG_TREE_LEAF | leaf */
+} csg_tree_node;
+
+#define CSG_TREE_PAD 0x1p-22f
+#define CSG_TREE_LEAF 0x80000000u
+
+typedef struct csg_tree {
+    csg_memory *memory;
+    csg_tree_node *nodes; /* the root is the first */
+    csg_tree_leaf *leaves;
+    csg_tree_triangle *triangles;
+    size_t node_count, node_capacity, leaf_count, leaf_capacity, count;
+    csg_box box; /* without pad */
+} csg_tree;
+
+/* The chain is on the lattice and has at least one triangle. False: out of memory. */
+bool csg_tree_make(csg_memory *memory, csg_arena *scratch, const csg_triangles *chain,
+                   csg_tree *out);
+void csg_tree_release(csg_tree *tree);
+/* Turns a triangle over, by its place in the tree. */
+void csg_tree_turn(csg_tree *tree, size_t place);
+
+typedef struct csg_nearest {
+    double squared;  /* distance */
+    uint32_t place;  /* in tree->triangles */
+    uint32_t leaves; /* that were looked into: what the search cost */
+} csg_nearest;
+
+/* p within 2^60 of the frame. hint: a place to begin with, any will do, a near one is quicker. */
+csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
+/* The point of a triangle that is nearest to p. */
+csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *in_face);
+
+/* Triangles that come within `reach` of p, and perhaps a few more; false as soon as `visit` says
+ * so. */
+typedef bool csg_tree_visit(void *user, uint32_t place);
+bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
+                     void *user);
+
+/* Whether a triangle neither crosses nor touches others but where they share corners, is no needle
+ * and has the solid on its inner side only: winding number 1 there and 0 on the other. */
+bool csg_tree_is_plain(const csg_tree *tree, uint32_t place);
+
+/* Chooses which triangles count; NULL: all. */
+typedef struct csg_tree_filter {
+    const uint32_t *pieces; /* per triangle of the chain */
+    const bool *turned;     /* per piece: counts as if turned over */
+    uint32_t without;       /* a piece that does not count */
+} csg_tree_filter;
+
+/* Winding number of a point on the lattice, in the box. */
+int csg_tree_winding(const csg_tree *tree, csg_vec3 p, const csg_tree_filter *filter);
+/* Winding at p less winding at q, which differ in x only. */
+int csg_tree_winding_step(const csg_tree *tree, csg_vec3 p, csg_vec3 q);
+/* Of the line through (y, z) along x: where it crosses the chain, in any order, with the sign by
+ * which the winding number falls there in the direction of x. Points on the lattice. */
+typedef void csg_tree_crossing_fn(void *user, double x, int sign);
+void csg_tree_line_crossings(const csg_tree *tree, double y, double z, csg_tree_crossing_fn *take,
+                             void *user);
+
+#endif

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT
+ * Files of batches; see batch_files.h. Temporaries are named as the library names its own, so that
+ * one sweep finds both.
+ */
+#include "batch/batch_files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/interrupt.h"
+#include "core/textfile.h"
+
+bool batch_make_folders(const char *path, bool whole)
+{
+    char folder[PATH_MAX];
+    size_t length = strlen(path);
+    if (length >= sizeof folder) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    for (size_t i = 1; i <= length; i++) {
+        if (path[i] != '/' && (path[i] || !whole))
+            continue;
+        memcpy(folder, path, i);
+        folder[i] = '\0';
+        if (mkdir(folder, 0777) != 0) {
+            struct stat status; /* a folder that is there, perhaps in one that is read-only */
+            int reason = errno;
+            if (stat(folder, &status) != 0 || !S_ISDIR(status.st_mode)) {
+                errno = reason == EEXIST ? ENOTDIR : reason;
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* ---- writing -------------------------------------------------------------------------- */
+
+/* A file being written under a name of its own, which an interrupt removes. */
+typedef struct temporary {
+    int fd, slot;
+    char name[PATH_MAX];
+} temporary;
+
+static bool open_temporary(temporary *t, const char *target)
+{
+    static atomic_uint counter;
+    const char *slash = strrchr(target, '/');
+    int folder = slash ? (int)(slash + 1 - target) : 0;
+    for (int attempt = 0; attempt < 1000; attempt++) {
+        int length = snprintf(t->name, sizeof t->name, "%.*s.csgmesh-%ld-b%u.tmp", folder, target,
+                              (long)getpid(), atomic_fetch_add(&counter, 1));
+        if (length < 0 || (size_t)length >= sizeof t->name) {
+            errno = ENAMETOOLONG;
+            return false;
+        }
+        t->slot = cli_interrupt_guard(t->name);
+        t->fd = open(t->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (t->fd >= 0)
+            return true;
+        cli_interrupt_release(t->slot);
+        if (errno != EEXIST)
+            return false;
+    }
+    return false;
+}
+
+/* Closes, and gives the file its name if all went well; errno is that of the first failure. */
+static bool finish(temporary *t, bool good, const char *target)
+{
+    int reason = errno;
+    if (close(t->fd) != 0 && good) {
+        good = false;
+        reason = errno;
+    }
+    if (good && rename(t->name, target) != 0) {
+        good = false;
+        reason = errno;
+    }
+    if (!good)
+        unlink(t->name);
+    cli_interrupt_release(t->slot);
+    errno = reason;
+    return good;
+}
+
+bool batch_write_small(const char *path, const char *text, size_t length)
+{
+    temporary t;
+    return open_temporary(&t, path) && finish(&t, cli_write_fully(t.fd, text, length), path);
+}
+
+char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
+{
+    enum { LARGEST = 16 << 20 };
+    struct stat status;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0)
+        return NULL;
+    char *text = NULL;
+    *length = 0;
+    if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && status.st_size <= LARGEST)
+        text = batch_alloc(arena, (size_t)status.st_size + 1);
+    while (text && *length < (size_t)status.st_size) {
+        ssize_t got = read(fd, text + *length, (size_t)status.st_size - *length);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            break;
+        *length += (size_t)got;
+    }
+    close(fd);
+    return text;
+}
+
+static bool pour(int from, int to, batch_digest *digest)
+{
+    char buffer[1 << 16];
+    batch_hasher hasher;
+    batch_hash_begin(&hasher);
+    for (;;) {
+        ssize_t count = read(from, buffer, sizeof buffer);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count < 0)
+            return false;
+        if (count == 0)
+            break;
+        batch_hash_add(&hasher, buffer, (size_t)count);
+        if (!cli_write_fully(to, buffer, (size_t)count))
+            return false;
+    }
+    *digest = batch_hash_end(&hasher);
+    return true;
+}
+
+bool batch_copy(const char *from, const char *to, const batch_digest *digest, bool if_changed,
+                bool sync)
+{
+    temporary t;
+    batch_digest found;
+    if (if_changed && batch_hash_path(to, &found) && batch_digest_equal(&found, digest))
+        return true;
+    int source = open(from, O_RDONLY | O_CLOEXEC);
+    if (source < 0)
+        return false;
+    bool opened = open_temporary(&t, to);
+    bool good = opened && pour(source, t.fd, &found);
+    if (good && !batch_digest_equal(&found, digest)) {
+        good = false;
+        errno = EBADMSG;
+    }
+    good = good && (!sync || fsync(t.fd) == 0);
+    int reason = errno;
+    close(source);
+    errno = reason;
+    return opened && finish(&t, good, to);
+}
+
+/* ---- leftovers ------------------------------------------------------------------------ */
+
+/* ".csgmesh-PID-...tmp" of a process that has ended */
+static bool is_leftover(const char *name)
+{
+    static const char prefix[] = ".csgmesh-", suffix[] = ".tmp";
+    size_t length = strlen(name), least = sizeof prefix + sizeof suffix;
+    if (length < least || strncmp(name, prefix, sizeof prefix - 1) != 0 ||
+        strcmp(name + length - (sizeof suffix - 1), suffix) != 0)
+        return false;
+    char *end;
+    long pid = strtol(name + sizeof prefix - 1, &end, 10);
+    return *end == '-' && pid > 0 && kill((pid_t)pid, 0) != 0 && errno == ESRCH;
+}
+
+void batch_sweep(const char *folder)
+{
+    DIR *directory = opendir(folder);
+    const struct dirent *entry;
+    while (directory && (entry = readdir(directory)))
+        if (is_leftover(entry->d_name))
+            unlinkat(dirfd(directory), entry->d_name, 0);
+    if (directory)
+        closedir(directory);
+}
+
+/* ---- locks ---------------------------------------------------------------------------- */
+
+enum { BYTE_OF_BATCHES = 0, FIRST_BYTE_OF_JOBS = 16 };
+
+static bool set_lock(int fd, int command, short kind, uint64_t at)
+{
+    struct flock lock = {
+        .l_type = kind, .l_whence = SEEK_SET, .l_start = (off_t)at, .l_len = 1, .l_pid = 0};
+    int result;
+    do
+        result = fcntl(fd, command, &lock);
+    while (result != 0 && errno == EINTR);
+    return result == 0 || (errno != EAGAIN && errno != EACCES); /* no locks here: as if it had */
+}
+
+bool batch_locks_open(batch_locks *locks, const char *path)
+{
+    *locks = (batch_locks){.fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
+    if (locks->fd < 0)
+        return false;
+    locks->alone = set_lock(locks->fd, F_OFD_SETLK, F_WRLCK, BYTE_OF_BATCHES);
+    return true;
+}
+
+void batch_locks_share(batch_locks *locks)
+{
+    set_lock(locks->fd, F_OFD_SETLKW, F_RDLCK, BYTE_OF_BATCHES);
+}
+
+void batch_locks_close(batch_locks *locks)
+{
+    if (locks->fd >= 0)
+        close(locks->fd);
+    locks->fd = -1;
+}
+
+static uint64_t byte_of(const batch_digest *id)
+{
+    uint64_t at = 0;
+    for (int i = 0; i < 5; i++)
+        at = at << 8 | id->bytes[i];
+    return FIRST_BYTE_OF_JOBS + at;
+}
+
+bool batch_lock_job(const batch_locks *locks, const batch_digest *id, bool wait)
+{
+    return set_lock(locks->fd, wait ? F_OFD_SETLKW : F_OFD_SETLK, F_WRLCK, byte_of(id));
+}
+
+void batch_unlock_job(const batch_locks *locks, const batch_digest *id)
+{
+    set_lock(locks->fd, F_OFD_SETLK, F_UNLCK, byte_of(id));
+}

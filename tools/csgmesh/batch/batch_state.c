@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT
+ * What is up to date, and what another checkout has made already.
+ *
+ *     DIR/.csgmesh-cache/ID                 the record of a job, by the names of its outputs
+ *     CACHE/KK/KEY/RECORD                   records of jobs with this program, options and scene
+ *     CACHE/objects/DD/DIGEST               outputs, by their bytes
+ *
+ * All of it may be deleted at any time. Files appear whole under names made of their contents or
+ * are replaced whole, and what is read is checked, so that no process needs to wait for another.
+ */
+#include <dirent.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "batch/batch_run.h"
+#include "mesh/depfile.h"
+
+batch_digest batch_job_id(const batch_job *job)
+{
+    batch_hasher hasher;
+    batch_hash_begin(&hasher);
+    for (size_t i = 0; i < job->names.count; i++)
+        batch_hash_text(&hasher, job->names.items[i]);
+    batch_hash_text(&hasher, job->by_part ? job->pattern : "");
+    return batch_hash_end(&hasher);
+}
+
+static const char *record_path(batch_arena *arena, const batch_run *run, const batch_job *job)
+{
+    char name[BATCH_DIGEST_TEXT];
+    batch_digest id = batch_job_id(job);
+    batch_digest_print(&id, name);
+    return batch_join(arena, run->state, name);
+}
+
+/* ---- beside the outputs --------------------------------------------------------------- */
+
+/* Its size and time are those that were noted, or else its bytes are. */
+static bool output_holds(const batch_output *noted)
+{
+    batch_output now = *noted;
+    if (!batch_output_look(&now) || now.bytes != noted->bytes)
+        return false;
+    if (now.changed_s == noted->changed_s && now.changed_ns == noted->changed_ns)
+        return true;
+    return batch_hash_path(now.path, &now.digest) &&
+           batch_digest_equal(&now.digest, &noted->digest);
+}
+
+static bool depfile_is_there(batch_arena *arena, const batch_output *output)
+{
+    struct stat status;
+    return stat(batch_printf(arena, "%s.d", output->path), &status) == 0;
+}
+
+static bool outputs_hold(const batch_run *run, batch_arena *arena, const batch_record *record)
+{
+    for (size_t i = 0; i < record->output_count; i++)
+        if (!output_holds(&record->outputs[i]) ||
+            (run->app->options.depfiles && !depfile_is_there(arena, &record->outputs[i])))
+            return false;
+    return record->output_count > 0;
+}
+
+static void take_outputs(batch_result *result, const batch_record *record)
+{
+    for (size_t i = 0; i < record->output_count; i++) {
+        batch_output *place = batch_push(&result->arena, (void **)&result->outputs,
+                                         &result->output_count, sizeof *place);
+        if (!place)
+            return;
+        *place = record->outputs[i];
+        place->path = batch_strdup(&result->arena, place->path);
+        place->part = place->part ? batch_strdup(&result->arena, place->part) : NULL;
+    }
+}
+
+bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result)
+{
+    batch_arena arena = {0};
+    batch_record record;
+    size_t length;
+    batch_digest key = batch_record_key(job, &run->program);
+    const char *text = batch_hash_available() && !run->app->options.force
+                           ? batch_read_small(&arena, record_path(&arena, run, job), &length)
+                           : NULL;
+    bool current = text && batch_record_parse(&arena, job, run->plan->directory, text, &record) &&
+                   batch_digest_equal(&record.key, &key) &&
+                   batch_record_inputs_hold(&run->memo, &record) &&
+                   outputs_hold(run, &arena, &record) && !arena.failed;
+    if (current) {
+        take_outputs(result, &record);
+        result->outcome = BATCH_UP_TO_DATE;
+    }
+    batch_arena_reset(&arena);
+    return current;
+}
+
+/* ---- the cache ------------------------------------------------------------------------ */
+
+static const char *object_path(batch_arena *arena, const char *cache, const batch_digest *digest)
+{
+    char name[BATCH_DIGEST_TEXT];
+    batch_digest_print(digest, name);
+    return batch_printf(arena, "%s/objects/%.2s/%s", cache, name, name);
+}
+
+/* The folder of all records with this key and this text of the scene; NULL: it cannot be read. */
+static const char *records_folder(batch_arena *arena, batch_run *run, const batch_job *job,
+                                  const batch_digest *key)
+{
+    batch_digest scene, both;
+    batch_hasher hasher;
+    char name[BATCH_DIGEST_TEXT];
+    if (!batch_memo_digest(&run->memo, job->scene, &scene))
+        return NULL;
+    batch_hash_begin(&hasher);
+    batch_hash_add(&hasher, key->bytes, sizeof key->bytes);
+    batch_hash_add(&hasher, scene.bytes, sizeof scene.bytes);
+    both = batch_hash_end(&hasher);
+    batch_digest_print(&both, name);
+    return batch_printf(arena, "%s/%.2s/%s", run->app->options.cache, name, name);
+}
+
+/* Outputs that are not there in the cache, or broken, leave the job to be made. */
+static bool install(batch_run *run, batch_arena *arena, const batch_job *job, batch_record *record)
+{
+    const cli_options *options = &run->app->options;
+    for (size_t i = 0; i < record->output_count; i++) {
+        batch_output *output = &record->outputs[i];
+        const char *object = object_path(arena, options->cache, &output->digest);
+        if (!batch_make_folders(output->path, false) ||
+            !batch_copy(object, output->path, &output->digest, true, !options->no_sync) ||
+            !batch_output_look(output))
+            return false;
+    }
+    return !options->depfiles || batch_write_depfiles(run->app, record, job);
+}
+
+static void write_state(batch_run *run, batch_arena *arena, const batch_job *job,
+                        const batch_record *record)
+{
+    const char *text = batch_record_print(arena, job, record);
+    if (text)
+        batch_write_small(record_path(arena, run, job), text, strlen(text));
+}
+
+static bool try_record(batch_run *run, batch_arena *arena, const batch_job *job, const char *path,
+                       const batch_digest *key, batch_record *record)
+{
+    size_t length;
+    const char *text = batch_read_small(arena, path, &length);
+    return text && batch_record_parse(arena, job, run->plan->directory, text, record) &&
+           batch_digest_equal(&record->key, key) && batch_record_inputs_hold(&run->memo, record) &&
+           record->output_count > 0 && install(run, arena, job, record);
+}
+
+bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result)
+{
+    batch_arena arena = {0};
+    batch_record record;
+    batch_digest key = batch_record_key(job, &run->program);
+    const char *folder =
+        run->app->options.cache && batch_hash_available() && !run->app->options.force
+            ? records_folder(&arena, run, job, &key)
+            : NULL;
+    DIR *directory = folder ? opendir(folder) : NULL;
+    const struct dirent *entry;
+    bool found = false;
+    while (directory && !found && (entry = readdir(directory)))
+        found =
+            entry->d_name[0] != '.' &&
+            try_record(run, &arena, job, batch_join(&arena, folder, entry->d_name), &key, &record);
+    if (directory)
+        closedir(directory);
+    if (found) {
+        take_outputs(result, &record);
+        result->outcome = BATCH_CACHED;
+        write_state(run, &arena, job, &record);
+    }
+    batch_arena_reset(&arena);
+    return found;
+}
+
+static bool store_objects(batch_run *run, batch_arena *arena, const batch_record *record)
+{
+    for (size_t i = 0; i < record->output_count; i++) {
+        const batch_output *output = &record->outputs[i];
+        const char *object = object_path(arena, run->app->options.cache, &output->digest);
+        if (!batch_make_folders(object, false) ||
+            !batch_copy(output->path, object, &output->digest, true, false))
+            return false;
+    }
+    return true;
+}
+
+/* The record's name is made of its inputs: the same in every process that finds the same. */
+static void store(batch_run *run, batch_arena *arena, const batch_job *job,
+                  const batch_record *record)
+{
+    char name[BATCH_DIGEST_TEXT];
+    batch_record timeless = *record;
+    batch_hasher hasher;
+    const char *folder = records_folder(arena, run, job, &record->key);
+    for (size_t i = 0; i < timeless.output_count; i++)
+        timeless.outputs[i].changed_s = timeless.outputs[i].changed_ns = 0;
+    const char *text = batch_record_print(arena, job, &timeless);
+    if (!folder || !text || !store_objects(run, arena, record))
+        return;
+    batch_hash_begin(&hasher);
+    batch_hash_text(&hasher, text);
+    batch_digest digest = batch_hash_end(&hasher);
+    batch_digest_print(&digest, name);
+    const char *path = batch_join(arena, folder, name);
+    if (batch_make_folders(path, false))
+        batch_write_small(path, text, strlen(text));
+}
+
+void batch_note(batch_run *run, const batch_job *job, batch_record *record)
+{
+    batch_arena arena = {0};
+    write_state(run, &arena, job, record);
+    if (run->app->options.cache)
+        store(run, &arena, job, record);
+    batch_arena_reset(&arena);
+}
+
+/* ---- rules for Make and Ninja --------------------------------------------------------- */
+
+bool batch_write_depfiles(cli_app *app, const batch_record *record, const batch_job *job)
+{
+    batch_arena arena = {0};
+    cli_list dependencies = {0};
+    bool good = true;
+    for (size_t i = 0; i < record->input_count; i++)
+        batch_add(&arena, &dependencies, record->inputs[i].path);
+    if (job->parameter_file)
+        batch_add(&arena, &dependencies, job->parameter_file);
+    for (size_t i = 0; i < record->output_count && good; i++) {
+        const char *path = record->outputs[i].path;
+        cli_list targets = {&path, 1};
+        good = cli_depfile_put(app, batch_printf(&arena, "%s.d", path), &targets, &dependencies) ==
+               CLI_DONE;
+    }
+    good = good && !arena.failed;
+    batch_arena_reset(&arena);
+    return good;
+}

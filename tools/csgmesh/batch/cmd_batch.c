@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ * csgmesh batch [MANIFEST | SCENE...] -d DIR: many scenes, in parallel, those up to date left
+ * alone; or the rules with which a build system does the same.
+ */
+#include <stdlib.h>
+
+#include "batch/batch_report.h"
+#include "emit/emit.h"
+
+static int check_usage(cli_app *app)
+{
+    const cli_options *options = &app->options;
+    if (!options->operands.count)
+        return cli_usage_error(app, "as csgmesh batch parts/*.txt -d out",
+                               "no manifest and no scenes given");
+    if (options->keep_going && options->fail_fast)
+        return cli_usage_error(app, NULL, "--keep-going and --fail-fast exclude each other");
+    if (options->given[CLI_OPTION_resolution] && options->given[CLI_OPTION_cell_size])
+        return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
+    if (options->cache && !batch_hash_available())
+        return cli_usage_error(app, "install libb2 and build csgmesh again",
+                               "--cache: this csgmesh was built without libb2");
+    return CLI_DONE;
+}
+
+static int run(cli_app *app, batch_plan *plan)
+{
+    batch_run state = {.app = app, .plan = plan};
+    int status = batch_run_all(&state);
+    if (status == CLI_DONE)
+        status = batch_report_end(&state);
+    for (size_t i = 0; state.results && i < plan->count; i++) {
+        free(state.results[i].messages);
+        batch_arena_reset(&state.results[i].arena);
+    }
+    return status;
+}
+
+int cli_cmd_batch(cli_app *app)
+{
+    batch_plan plan = {0};
+    int status = check_usage(app);
+    if (status == CLI_DONE)
+        status = cli_app_open(app);
+    if (status == CLI_DONE)
+        status = batch_plan_make(app, &plan);
+    if (status == CLI_DONE)
+        status = app->options.emit ? emit_plan(&plan) : run(app, &plan);
+    batch_plan_release(&plan);
+    return status;
+}

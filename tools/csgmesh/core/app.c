@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ * From options to a context and a scene, and from a status to an exit status.
+ */
+#include "core/cli.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/textfile.h"
+
+double cli_now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+int cli_exit_status(csgm_status status)
+{
+    switch (status) {
+    case CSGM_OK:
+        return CLI_DONE;
+    case CSGM_ERR_SYNTAX:
+    case CSGM_ERR_SCENE:
+    case CSGM_ERR_FORMAT:
+        return CLI_INPUT_AT_FAULT;
+    default:
+        return CLI_TROUBLE;
+    }
+}
+
+int cli_usage_error(cli_app *app, const char *hint, const char *format, ...)
+{
+    char message[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    cli_console_say(&app->console, CSGM_ERROR, hint ? hint : "csgmesh --help shows how", "%s",
+                    message);
+    return CLI_TROUBLE;
+}
+
+static csgm_limits limits_from(const cli_options *options)
+{
+    csgm_limits limits = csgm_context_options_default().limits;
+    if (options->given[CLI_OPTION_max_depth])
+        limits.depth = (uint32_t)options->max_depth;
+    if (options->given[CLI_OPTION_max_nodes])
+        limits.scene_nodes = (uint32_t)options->max_nodes;
+    if (options->given[CLI_OPTION_max_memory])
+        limits.memory_bytes = options->max_memory;
+    limits.timeout_s = options->timeout;
+    return limits;
+}
+
+int cli_app_open(cli_app *app)
+{
+    csgm_context_options options = csgm_context_options_default();
+    options.threads = (uint32_t)app->options.threads;
+    options.limits = limits_from(&app->options);
+    options.warnings_as_errors = app->options.warnings == 1;
+    options.on_diag = cli_console_diag;
+    options.on_echo = cli_console_echo;
+    options.user = &app->console;
+    csgm_status status = csgm_context_create(&options, &app->context);
+    if (status != CSGM_OK && !app->console.errors)
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot start: %s",
+                        csgm_status_name(status));
+    return cli_exit_status(status);
+}
+
+/* "radius=50" -> {"radius", "50"}; the name is a copy. */
+static bool split_define(cli_app *app, const char *text, csgm_define *define)
+{
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$0123456789";
+    size_t length = strspn(text, letters);
+    if (length == 0 || text[length] != '=' || (*text >= '0' && *text <= '9')) {
+        cli_usage_error(app, "as -D radius=50 or -D 'label=\"top\"'",
+                        "-D wants NAME=EXPR, not '%s'", text);
+        return false;
+    }
+    define->name = strndup(text, length);
+    define->expression = text + length + 1;
+    if (!define->name)
+        cli_usage_error(app, NULL, "out of memory");
+    return define->name != NULL;
+}
+
+bool cli_app_is_refused(const cli_app *app)
+{
+    return app->options.warnings == 1 && app->console.errors > 0;
+}
+
+/* Where the scene is and what is asked of it. */
+typedef struct request {
+    const char *path;
+    csgm_scene **scene; /* one of both */
+    csgm_params **params;
+} request;
+
+static csgm_status parse(cli_app *app, const request *wanted, const char *text, size_t length,
+                         const csgm_scene_options *options)
+{
+    return wanted->scene
+               ? csgm_scene_parse(app->context, text, length, "-", options, wanted->scene)
+               : csgm_params_parse(app->context, text, length, "-", options, wanted->params);
+}
+
+static csgm_status load(cli_app *app, const request *wanted, const csgm_scene_options *options)
+{
+    if (strcmp(wanted->path, "-") != 0)
+        return wanted->scene
+                   ? csgm_scene_load(app->context, wanted->path, options, wanted->scene)
+                   : csgm_params_load(app->context, wanted->path, options, wanted->params);
+    size_t length;
+    char *text = cli_read_stdin(app, &length);
+    if (!text)
+        return CSGM_ERR_IO;
+    csgm_status status = parse(app, wanted, text, length, options);
+    free(text);
+    return status;
+}
+
+static csgm_status set_parameter_file(cli_app *app, csgm_scene_options *options)
+{
+    options->parameter_file = app->options.parameter_file;
+    options->parameter_set = app->options.parameter_set;
+    if (!options->parameter_file == !options->parameter_set)
+        return CSGM_OK;
+    cli_usage_error(app, "as -p sets.json -P large", "%s is missing",
+                    options->parameter_file ? "-P, which names one of the file's sets,"
+                                            : "-p, the file of parameter sets,");
+    return CSGM_ERR_ARGUMENT;
+}
+
+static csgm_status load_with_options(cli_app *app, const request *wanted)
+{
+    const cli_list *texts = &app->options.defines;
+    csgm_scene_options options = csgm_scene_options_default();
+    csgm_define *defines = calloc(texts->count + 1, sizeof *defines);
+    csgm_status status = defines ? set_parameter_file(app, &options) : CSGM_ERR_MEMORY;
+    for (size_t i = 0; i < texts->count && status == CSGM_OK; i++)
+        if (!split_define(app, texts->items[i], &defines[i]))
+            status = CSGM_ERR_ARGUMENT;
+    options.defines = defines;
+    options.define_count = texts->count;
+    options.include_dirs = app->options.include_dirs.items;
+    options.include_dir_count = app->options.include_dirs.count;
+    options.facets = app->options.facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
+    uint32_t errors = app->console.errors;
+    if (status == CSGM_OK)
+        status = load(app, wanted, &options);
+    if (status != CSGM_OK && status != CSGM_ERR_ARGUMENT && app->console.errors == errors)
+        cli_console_say(&app->console, CSGM_ERROR, "please report it, with the scene",
+                        "%s failed without saying why: %s", wanted->path, csgm_status_name(status));
+    for (size_t i = 0; defines && i < texts->count; i++)
+        free((char *)defines[i].name);
+    free(defines);
+    return status;
+}
+
+csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out)
+{
+    csgm_status status = load_with_options(app, &(request){.path = path, .scene = out});
+    if (status != CSGM_OK || !cli_app_is_refused(app))
+        return status;
+    csgm_scene_destroy(*out);
+    *out = NULL;
+    return CSGM_ERR_SCENE;
+}
+
+csgm_status cli_app_load_params(cli_app *app, const char *path, csgm_params **out)
+{
+    return load_with_options(app, &(request){.path = path, .params = out});
+}
+
+int cli_finish_stdout(cli_app *app, int status)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot write standard output: %s",
+                    errno ? strerror(errno) : "the write failed");
+    return CLI_TROUBLE;
+}

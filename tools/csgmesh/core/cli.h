@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ * What the subcommands share: one run of the program.
+ */
+#ifndef CLI_CLI_H
+#define CLI_CLI_H
+
+#include "core/console.h"
+#include "core/options.h"
+
+/* As diff(1). */
+enum { CLI_DONE = 0, CLI_INPUT_AT_FAULT = 1, CLI_TROUBLE = 2 };
+
+typedef struct cli_app {
+    cli_options options;
+    cli_console console;
+    csgm_context *context; /* from cli_app_open on */
+    double start_s;
+} cli_app;
+
+/* Makes the context from the options. CLI_DONE, or the exit status. */
+int cli_app_open(cli_app *app);
+/* -Werror, and there was one. */
+bool cli_app_is_refused(const cli_app *app);
+/* path "-" is standard input. Failures are reported. */
+csgm_status cli_app_load(cli_app *app, const char *path, csgm_scene **out);
+csgm_status cli_app_load_params(cli_app *app, const char *path, csgm_params **out);
+int cli_exit_status(csgm_status status);
+/* Flushes standard output; reports a failed write of results. */
+int cli_finish_stdout(cli_app *app, int status);
+double cli_now_s(void);
+
+/* "csgmesh: error: ..." with a pointer to the help; returns CLI_TROUBLE. hint may be NULL. */
+__attribute__((format(printf, 3, 4))) int cli_usage_error(cli_app *app, const char *hint,
+                                                          const char *format, ...);
+
+void cli_help(void);
+void cli_help_command(cli_command command);
+
+#define COMMAND(NAME, name, operands, summary, examples) int cli_cmd_##name(cli_app *app);
+#include "core/commands.def"
+#undef COMMAND
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ * Sets of commands, as the rows of options.def name them: MESH | INFO.
+ */
+#ifndef CLI_COMMAND_BITS_H
+#define CLI_COMMAND_BITS_H
+
+#include "core/options.h"
+
+enum {
+#define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,
+#include "core/commands.def"
+#undef COMMAND
+    ANY_SCENE = (1 << CLI_COMMAND_COUNT) - 1,
+    ANY = ANY_SCENE
+};
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * Everything that goes to standard error (or, of a batch's job, into a text that is shown later):
+ * findings of the library, the program's own messages, the scene's echo lines and the progress bar,
+ * as text (with colour) or as JSON lines.
+ */
+#ifndef CLI_CONSOLE_H
+#define CLI_CONSOLE_H
+
+#include <stdio.h>
+
+#include "core/json.h"
+#include "core/options.h"
+
+typedef struct cli_console {
+    FILE *out; /* standard error, but for one of many jobs */
+    bool quiet, color, json, is_terminal;
+    bool mute_notes; /* they belong to a warning that was not shown */
+    uint32_t errors; /* said so far, warnings made errors by -Werror included */
+    int progress;    /* index of --progress: auto, always, never */
+    double stage_start_s;
+    int stage;  /* csgm_stage, -1 before the first */
+    FILE *held; /* --diagnostics=json: a finding that waits for its notes, or NULL */
+    cli_json held_json;
+    bool held_has_notes;
+    char *held_text;
+    size_t held_length;
+} cli_console;
+
+/* Where messages go before the options are known. */
+cli_console cli_console_make(void);
+void cli_console_configure(cli_console *console, const cli_options *options);
+
+/* Writes what still waits. */
+void cli_console_flush(cli_console *console);
+
+/* csgm_diag_fn and csgm_text_fn; user is a cli_console. */
+void cli_console_diag(void *user, const csgm_diag *diag);
+void cli_console_echo(void *user, const char *text, size_t length);
+
+/* One sentence of the program itself. hint may be NULL. */
+__attribute__((format(printf, 4, 5))) void cli_console_say(cli_console *console,
+                                                           csgm_severity severity, const char *hint,
+                                                           const char *format, ...);
+
+/* csgm_monitor.progress; user is a cli_console. */
+void cli_console_progress(void *user, csgm_stage stage, double fraction);
+void cli_console_end_progress(cli_console *console);
+
+#endif

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ * Facts about scenes and meshes; see facts.h.
+ */
+#include "core/facts.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+void cli_facts_scene_json(cli_json *json, const csgm_scene_info *info)
+{
+    cli_json_count(json, "primitives", info->primitive_count);
+    cli_json_count(json, "operators", info->operator_count);
+    cli_json_number(json, "lambda", info->lipschitz);
+    cli_json_box(json, "bounds", info->bounds);
+}
+
+static bool is_closed(const csgm_mesh_check *check)
+{
+    return check->boundary_edges == 0 && check->nonmanifold_edges == 0 &&
+           check->misoriented_edges == 0 && check->nonmanifold_vertices == 0 &&
+           check->degenerate_triangles == 0 && check->index_out_of_range == 0;
+}
+
+void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_mesh_check *check)
+{
+    cli_json_count(json, "vertices", view->vertex_count);
+    cli_json_count(json, "triangles", view->triangle_count);
+    cli_json_count(json, "components", check->components);
+    cli_json_integer(json, "euler", check->euler);
+    if (is_closed(check))
+        cli_json_integer(json, "genus", check->genus);
+    cli_json_count(json, "boundary_edges", check->boundary_edges);
+    cli_json_count(json, "nonmanifold_edges", check->nonmanifold_edges);
+    cli_json_count(json, "misoriented_edges", check->misoriented_edges);
+    cli_json_count(json, "nonmanifold_vertices", check->nonmanifold_vertices);
+    cli_json_number(json, "area", check->area);
+    cli_json_number(json, "volume", check->volume);
+    cli_json_box(json, "bounds", check->bounds);
+}
+
+/* ---- for people ------------------------------------------------------------------------ */
+
+static void print_bounds(csgm_box box)
+{
+    if (box.min.x > box.max.x) {
+        printf("  bounds       none: it is empty\n");
+        return;
+    }
+    csgm_vec3 size = {box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
+    printf("  bounds       %.9g,%.9g,%.9g to %.9g,%.9g,%.9g\n", box.min.x, box.min.y, box.min.z,
+           box.max.x, box.max.y, box.max.z);
+    if (isfinite(size.x + size.y + size.z))
+        printf("  size         %.9g x %.9g x %.9g\n", size.x, size.y, size.z);
+}
+
+void cli_facts_scene_text(const csgm_scene_info *info)
+{
+    printf("  primitives   %" PRIu32 "\n", info->primitive_count);
+    printf("  operators    %" PRIu32 "\n", info->operator_count);
+    printf("  lambda       %.9g\n", info->lipschitz);
+    printf("  colours      %s\n", info->has_colors ? "yes" : "no");
+    print_bounds(info->bounds);
+}
+
+static void print_fault(uint64_t count, const char *what, const char **separator)
+{
+    if (!count)
+        return;
+    printf("%s%" PRIu64 " %s", *separator, count, what);
+    *separator = ", ";
+}
+
+static void print_soundness(const csgm_mesh_check *check)
+{
+    const char *separator = "no: ";
+    printf("  closed       ");
+    if (is_closed(check)) {
+        printf("yes, an oriented 2-manifold\n");
+        return;
+    }
+    print_fault(check->boundary_edges, "boundary edges", &separator);
+    print_fault(check->nonmanifold_edges, "edges used more than twice", &separator);
+    print_fault(check->misoriented_edges, "edges with triangles turned against each other",
+                &separator);
+    print_fault(check->nonmanifold_vertices, "vertices with several fans", &separator);
+    print_fault(check->degenerate_triangles, "degenerate triangles", &separator);
+    print_fault(check->index_out_of_range, "indices out of range", &separator);
+    putchar('\n');
+}
+
+void cli_facts_mesh_text(const csgm_mesh_view *view, const csgm_mesh_check *check)
+{
+    printf("  vertices     %" PRIu64 "%s%s\n", view->vertex_count,
+           view->normals ? ", with normals" : "", view->colors ? ", with colours" : "");
+    printf("  triangles    %" PRIu64 "\n", view->triangle_count);
+    print_bounds(check->bounds);
+    printf("  area         %.9g\n", check->area);
+    printf("  volume       %.9g%s\n", check->volume,
+           check->boundary_edges ? " (of an open mesh)" : "");
+    printf("  components   %" PRIu64 "\n", check->components);
+    printf("  euler        %" PRId64 "\n", check->euler);
+    if (is_closed(check))
+        printf("  genus        %" PRId64 "\n", check->genus);
+    print_soundness(check);
+    printf("  min angle    %.4g degrees\n", check->min_angle_deg);
+    if (check->zero_area_triangles)
+        printf("  zero area    %" PRIu64 " triangles\n", check->zero_area_triangles);
+    if (check->unused_vertices)
+        printf("  unused       %" PRIu64 " vertices\n", check->unused_vertices);
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ * What is known about scenes and meshes, as members of a JSON object or as lines for people.
+ */
+#ifndef CLI_FACTS_H
+#define CLI_FACTS_H
+
+#include "core/json.h"
+
+/* "primitives", "operators", "lambda", "bounds" of the open object. */
+void cli_facts_scene_json(cli_json *json, const csgm_scene_info *info);
+/* "vertices" ... "bounds" of the open object. */
+void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_mesh_check *check);
+
+void cli_facts_scene_text(const csgm_scene_info *info);
+void cli_facts_mesh_text(const csgm_mesh_view *view, const csgm_mesh_check *check);
+
+#endif

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * Scene to mesh; see work.h.
+ */
+#include "core/work.h"
+
+#include "mesh/outputs.h"
+
+int cli_work_check(cli_app *app)
+{
+    if (app->options.given[CLI_OPTION_resolution] && app->options.given[CLI_OPTION_cell_size])
+        return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
+    if (app->options.given[CLI_OPTION_tolerance] && app->options.given[CLI_OPTION_simplify])
+        return cli_usage_error(app, NULL,
+                               "-e and --simplify both say what may be taken away: give one");
+    return CLI_DONE;
+}
+
+int cli_work_load(cli_app *app, cli_work *work, const char *path)
+{
+    csgm_status status = cli_app_load(app, path, &work->scene);
+    if (status == CSGM_OK)
+        work->info = csgm_scene_get_info(work->scene);
+    return cli_exit_status(status);
+}
+
+static csgm_mesh_options mesh_options(cli_app *app)
+{
+    const cli_options *options = &app->options;
+    csgm_mesh_options mesh = csgm_mesh_options_default();
+    if (options->given[CLI_OPTION_bounds])
+        mesh.bounds = options->bounds;
+    if (options->given[CLI_OPTION_resolution])
+        mesh.resolution = (uint32_t)options->resolution;
+    else if (options->given[CLI_OPTION_tolerance])
+        mesh.resolution = 0;
+    mesh.cell_size = options->cell_size;
+    mesh.tolerance = options->tolerance;
+    if (options->simplify.is_share)
+        mesh.simplify_share = options->simplify.value;
+    else
+        mesh.simplify_error = options->simplify.value;
+    mesh.improve = options->improve;
+    mesh.normals = cli_outputs_normals(options);
+    mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
+    mesh.colors = options->colors == 0;
+    mesh.prune = !options->no_prune;
+    mesh.certify = options->certify || options->certify_size > 0;
+    mesh.certify_size = options->certify_size;
+    mesh.monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};
+    return mesh;
+}
+
+static csgm_status compile(cli_app *app, cli_work *work)
+{
+    double begin_s = cli_now_s();
+    csgm_status status = csgm_field_compile(app->context, work->scene, &work->field);
+    work->compile_s = cli_now_s() - begin_s;
+    return status;
+}
+
+int cli_work_mesh(cli_app *app, cli_work *work)
+{
+    csgm_mesh_options options = mesh_options(app);
+    csgm_status status = compile(app, work);
+    if (status == CSGM_OK)
+        status = csgm_mesh_build(app->context, work->field, &options, &work->mesh, &work->stats);
+    cli_console_end_progress(&app->console);
+    if (status == CSGM_OK && cli_app_is_refused(app))
+        status = CSGM_ERR_SCENE;
+    return cli_exit_status(status);
+}
+
+int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
+                       const csgm_write_options *write_options, uint64_t *triangle_count)
+{
+    csgm_mesh_options options = mesh_options(app);
+    uint32_t errors = app->console.errors;
+    uint64_t counts[2] = {0};
+    csgm_status status = compile(app, work);
+    if (status == CSGM_OK)
+        status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
+                                      write_options, counts, &work->stats);
+    cli_console_end_progress(&app->console);
+    *triangle_count = counts[1];
+    if (status != CSGM_OK && app->console.errors == errors)
+        cli_console_say(&app->console, CSGM_ERROR, NULL,
+                        "the mesh has no triangles: nothing was written");
+    return cli_exit_status(status);
+}
+
+void cli_work_release(cli_work *work)
+{
+    csgm_mesh_destroy(work->mesh);
+    csgm_field_destroy(work->field);
+    csgm_scene_destroy(work->scene);
+}

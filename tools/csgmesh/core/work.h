@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ * Scene -> field -> mesh as `mesh` and `info` both do it, with the time each step took.
+ */
+#ifndef CLI_WORK_H
+#define CLI_WORK_H
+
+#include "core/cli.h"
+
+typedef struct cli_work {
+    csgm_scene *scene;
+    csgm_field *field;
+    csgm_mesh *mesh;
+    csgm_scene_info info;
+    csgm_mesh_stats stats;
+    double compile_s;
+} cli_work;
+
+/* Usage faults of -r, -s and --bounds. CLI_DONE or CLI_TROUBLE. */
+int cli_work_check(cli_app *app);
+/* Each returns an exit status; failures are reported. */
+int cli_work_load(cli_app *app, cli_work *work, const char *path);
+int cli_work_mesh(cli_app *app, cli_work *work);
+/* Straight into a file, without the whole mesh in memory where the format allows it; work->mesh
+ * stays NULL. A mesh without triangles writes nothing and is an error. */
+int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
+                       const csgm_write_options *write_options, uint64_t *triangle_count);
+void cli_work_release(cli_work *work);
+
+#endif

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT
+ * Both meshes of a comparison in one frame; see diff_drawing.h. The view is --view, or that of
+ * eight from the corners which faces the largest changes: the sum over triangles of area, distance
+ * and cosine.
+ */
+#include "diff/diff_drawing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/picture_options.h"
+
+csgm_vec3 diff_drawing_vertex(const csgm_mesh_view *view, uint32_t vertex)
+{
+    const float *p = view->positions + 3 * (size_t)vertex;
+    return (csgm_vec3){view->origin.x + (double)p[0], view->origin.y + (double)p[1],
+                       view->origin.z + (double)p[2]};
+}
+
+static void add_to_box(csgm_box *box, const csgm_mesh_view *view)
+{
+    for (uint64_t v = 0; v < view->vertex_count; v++) {
+        csgm_vec3 p = diff_drawing_vertex(view, (uint32_t)v);
+        box->min = (csgm_vec3){fmin(box->min.x, p.x), fmin(box->min.y, p.y), fmin(box->min.z, p.z)};
+        box->max = (csgm_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
+    }
+}
+
+/* ---- B turned -------------------------------------------------------------------------------- */
+
+/* As the comparison did: 1 is y up to z up, 2 the reverse. Normals turn too, but what is drawn
+ * takes them from the triangles. */
+static bool turn(diff_drawing *d, int how)
+{
+    csgm_mesh_view *view = &d->sides[1];
+    if (how == 0 || view->vertex_count == 0)
+        return true;
+    float sign = how == 1 ? -1.0f : 1.0f;
+    d->turned = malloc((size_t)view->vertex_count * 3 * sizeof(float));
+    if (!d->turned)
+        return false;
+    for (uint64_t v = 0; v < view->vertex_count; v++) {
+        const float *from = view->positions + 3 * v;
+        float *to = d->turned + 3 * v;
+        to[0] = from[0];
+        to[1] = sign * from[2];
+        to[2] = -sign * from[1];
+    }
+    view->positions = d->turned;
+    view->normals = NULL;
+    view->origin =
+        (csgm_vec3){view->origin.x, (double)sign * view->origin.z, (double)-sign * view->origin.y};
+    return true;
+}
+
+/* ---- from where ------------------------------------------------------------------------------ */
+
+enum { VIEWS = 8 };
+
+/* Azimuths 35, 305, 125, 215 at an elevation of 25 degrees, then at -25. */
+static csgm_vec3 corner_view(int i)
+{
+    static const double s = 0.57357643635, c = 0.81915204429, level = 0.90630778704,
+                        height = 0.42261826174;
+    const double around[4][2] = {{s, -c}, {-c, -s}, {c, s}, {-s, c}};
+    return (csgm_vec3){level * around[i % 4][0], level * around[i % 4][1],
+                       i < 4 ? height : -height};
+}
+
+static void add_seen(const diff_drawing *d, int side, double seen[VIEWS])
+{
+    const csgm_mesh_view *view = &d->sides[side];
+    const float *distances = d->distances[side];
+    for (uint64_t t = 0; distances && t < view->triangle_count; t++) {
+        const uint32_t *index = view->indices + 3 * t;
+        double moved =
+            (double)distances[index[0]] + (double)distances[index[1]] + (double)distances[index[2]];
+        if (!(moved > 0.05 * d->most))
+            continue;
+        csgm_vec3 a = diff_drawing_vertex(view, index[0]), b = diff_drawing_vertex(view, index[1]),
+                  c = diff_drawing_vertex(view, index[2]);
+        csgm_vec3 u = {b.x - a.x, b.y - a.y, b.z - a.z}, v = {c.x - a.x, c.y - a.y, c.z - a.z};
+        csgm_vec3 n = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+        for (int i = 0; i < VIEWS; i++) {
+            csgm_vec3 to = corner_view(i);
+            seen[i] += moved * fmax(0, n.x * to.x + n.y * to.y + n.z * to.z);
+        }
+    }
+}
+
+/* What --view says. Rounded, so that the last bits of a libm are not seen, and never quite along z,
+ * so that there is an up. */
+static bool chosen_view(cli_app *app, csgm_vec3 *out)
+{
+    const double degree = 0.017453292519943295, grid = 1e9, least = 1e-6;
+    csgm_camera camera = {.azimuth_deg = 0};
+    if (!app->options.view || cli_picture_view(app, &camera) != CLI_DONE)
+        return false;
+    double azimuth = camera.azimuth_deg * degree, elevation = camera.elevation_deg * degree;
+    double level = fmax(round(cos(elevation) * grid) / grid, least);
+    *out = (csgm_vec3){level * round(sin(azimuth) * grid) / grid,
+                       -level * round(cos(azimuth) * grid) / grid,
+                       round(sin(elevation) * grid) / grid};
+    return true;
+}
+
+/* The usual view stays unless another shows clearly more. */
+static csgm_vec3 best_view(const diff_drawing *d)
+{
+    double seen[VIEWS] = {0};
+    int best = 0;
+    add_seen(d, 0, seen);
+    add_seen(d, 1, seen);
+    for (int i = 1; i < VIEWS; i++)
+        if (seen[i] > 1.25 * seen[0] && seen[i] > 1.001 * seen[best])
+            best = i;
+    return corner_view(best);
+}
+
+/* ---- all of it ------------------------------------------------------------------------------- */
+
+bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side sides[2],
+                       diff_drawing *out)
+{
+    const csgm_diff_report *report = csgm_diff_get_report(diff);
+    *out =
+        (diff_drawing){.box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}};
+    for (int i = 0; i < 2; i++) {
+        out->sides[i] = sides[i].view;
+        out->distances[i] = csgm_diff_vertex_distances(diff, i);
+    }
+    if (!turn(out, report->turn)) {
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+        return false;
+    }
+    add_to_box(&out->box, &out->sides[0]);
+    add_to_box(&out->box, &out->sides[1]);
+    if (!(out->box.min.x <= out->box.max.x))
+        out->box = (csgm_box){{0, 0, 0}, {1, 1, 1}};
+    if (isfinite(report->hausdorff_lower) && report->hausdorff_lower > report->precision)
+        out->most = report->hausdorff_lower;
+    if (!chosen_view(app, &out->toward))
+        out->toward = best_view(out);
+    return true;
+}
+
+void diff_drawing_release(diff_drawing *drawing)
+{
+    free(drawing->turned);
+    drawing->turned = NULL;
+}
+
+bool diff_drawing_shows(const diff_drawing *drawing, uint64_t triangle_of_a)
+{
+    const uint32_t *index = drawing->sides[0].indices + 3 * triangle_of_a;
+    const float *distances = drawing->distances[0];
+    if (!distances || !(drawing->most > 0))
+        return false;
+    float largest = fmaxf(distances[index[0]], fmaxf(distances[index[1]], distances[index[2]]));
+    return (double)largest > 0.05 * drawing->most;
+}
+
+/* ---- what is in sight ------------------------------------------------------------------------ */
+
+static csgm_vec3 minus(csgm_vec3 a, csgm_vec3 b)
+{
+    return (csgm_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static csgm_vec3 cross(csgm_vec3 a, csgm_vec3 b)
+{
+    return (csgm_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static double dot(csgm_vec3 a, csgm_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* Moeller and Trumbore 1997; `from` itself lies on a triangle, which does not count. */
+static bool is_between(const csgm_mesh_view *view, uint64_t triangle, csgm_vec3 from, csgm_vec3 way,
+                       double least)
+{
+    const uint32_t *index = view->indices + 3 * triangle;
+    csgm_vec3 a = diff_drawing_vertex(view, index[0]);
+    csgm_vec3 u = minus(diff_drawing_vertex(view, index[1]), a),
+              v = minus(diff_drawing_vertex(view, index[2]), a), s = minus(from, a);
+    csgm_vec3 p = cross(way, v), q = cross(s, u);
+    double scale = dot(u, p), first = dot(s, p) / scale, second = dot(way, q) / scale;
+    return scale != 0 && first >= 0 && second >= 0 && first + second <= 1 &&
+           dot(v, q) / scale > least;
+}
+
+static bool is_seen(const diff_drawing *d, csgm_vec3 place, csgm_vec3 eye)
+{
+    csgm_vec3 way = minus(eye, place), size = minus(d->box.max, d->box.min);
+    double least = 0.004 * sqrt(dot(size, size) / dot(way, way));
+    for (int side = 0; side < 2; side++)
+        for (uint64_t t = 0; t < d->sides[side].triangle_count; t++)
+            if ((side == 1 || diff_drawing_shows(d, t)) &&
+                is_between(&d->sides[side], t, place, way, least))
+                return false;
+    return true;
+}
+
+const csgm_diff_place *diff_drawing_worst_seen(const diff_drawing *drawing,
+                                               const csgm_diff_report *report, csgm_vec3 eye)
+{
+    const csgm_diff_place *best = NULL;
+    for (int i = 0; i < 2; i++)
+        for (uint32_t k = 0; k < report->distance[i].worst_count; k++) {
+            const csgm_diff_place *place = &report->distance[i].worst[k];
+            if (place->distance >= (best ? best->distance * 1.000001 : drawing->most / 2) &&
+                is_seen(drawing, place->at, eye))
+                best = place;
+        }
+    return best;
+}

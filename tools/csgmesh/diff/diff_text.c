@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * A comparison in five lines for people: the verdict, A, B, distances, volumes.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "diff/diff_result.h"
+
+static void add(char *text, size_t size, const char *more)
+{
+    size_t length = strlen(text);
+    snprintf(text + length, size - length, "%s%s", length ? "; " : "", more);
+}
+
+static void explain_distance(const csgm_diff_report *r, char *text, size_t size)
+{
+    char line[160];
+    bool is_counted = r->counted.is_measured;
+    double lower = is_counted ? r->counted.lower : r->hausdorff_lower;
+    snprintf(line, sizeof line, "%.4g apart%s, more than %.4g", lower,
+             is_counted ? " where it counts" : "", r->tolerance);
+    add(text, size, line);
+}
+
+static void explain_topology(const csgm_diff_report *r, char *text, size_t size)
+{
+    const csgm_diff_figures *a = &r->figures[0], *b = &r->figures[1];
+    char line[160];
+    if (a->check.components != b->check.components)
+        snprintf(line, sizeof line, "%" PRIu64 " components became %" PRIu64, a->check.components,
+                 b->check.components);
+    else if (a->is_closed != b->is_closed)
+        snprintf(line, sizeof line, "%s became %s", a->is_closed ? "closed" : "open",
+                 b->is_closed ? "closed" : "open");
+    else
+        snprintf(line, sizeof line, "genus %" PRId64 " became %" PRId64, a->check.genus,
+                 b->check.genus);
+    add(text, size, line);
+}
+
+static void explain_difference(const csgm_diff_report *r, char *text, size_t size)
+{
+    char line[160];
+    if (r->reasons & CSGM_DIFF_REASON_EMPTY)
+        add(text, size, r->figures[0].triangles ? "B is empty" : "A is empty");
+    if (r->reasons & CSGM_DIFF_REASON_DISTANCE)
+        explain_distance(r, text, size);
+    if (r->reasons & CSGM_DIFF_REASON_VOLUME) {
+        snprintf(line, sizeof line, "%.3g %% of the volume differ", 100 * r->volume.ratio);
+        add(text, size, r->volume.is_measured ? line : "volumes of open meshes cannot be compared");
+    }
+    if (r->reasons & CSGM_DIFF_REASON_TOPOLOGY)
+        explain_topology(r, text, size);
+    if (r->reasons & CSGM_DIFF_REASON_NORMALS)
+        add(text, size, "normals differ");
+    if (r->reasons & CSGM_DIFF_REASON_COLORS)
+        add(text, size, "colours differ");
+    if (r->reasons & CSGM_DIFF_REASON_NAMES)
+        add(text, size, "names of parts differ");
+}
+
+void diff_explain(const diff_result *result, char *text, size_t size)
+{
+    const csgm_diff_report *r = &result->report;
+    text[0] = '\0';
+    if (result->outcome == DIFF_ONLY_A || result->outcome == DIFF_ONLY_B)
+        add(text, size, result->outcome == DIFF_ONLY_A ? "only in A" : "only in B");
+    else if (result->outcome == DIFF_FAILED)
+        add(text, size, "could not be compared");
+    else if (r->is_different)
+        explain_difference(r, text, size);
+    else if (r->level == CSGM_DIFF_SAME_BYTES)
+        add(text, size, "the same bytes");
+    else if (r->level == CSGM_DIFF_SAME_TRIANGLES)
+        add(text, size, "the same triangles");
+    else if (isinf(r->tolerance))
+        snprintf(text, size, "volumes within the tolerance, at most %.4g apart",
+                 r->hausdorff_upper);
+    else
+        snprintf(text, size, "at most %.4g apart, tolerance %.4g", r->hausdorff_upper,
+                 r->tolerance);
+}
+
+static void print_figures(const char *name, const csgm_diff_figures *f)
+{
+    const csgm_mesh_check *c = &f->check;
+    csgm_vec3 size = {c->bounds.max.x - c->bounds.min.x, c->bounds.max.y - c->bounds.min.y,
+                      c->bounds.max.z - c->bounds.min.z};
+    printf("  %-9s %" PRIu64 " triangles", name, f->triangles);
+    if (!f->triangles) {
+        printf(": empty\n");
+        return;
+    }
+    printf(", %.6g x %.6g x %.6g, area %.6g, volume %.6g, %" PRIu64 " component%s", size.x, size.y,
+           size.z, c->area, c->volume, c->components, c->components == 1 ? "" : "s");
+    if (f->is_closed && c->nonmanifold_edges == 0)
+        printf(", genus %" PRId64, c->genus);
+    if (!f->is_closed)
+        printf(", open: %" PRIu64 " boundary edges", c->boundary_edges);
+    if (c->nonmanifold_edges)
+        printf(", %" PRIu64 " non-manifold edges", c->nonmanifold_edges);
+    putchar('\n');
+}
+
+static void print_distances(const csgm_diff_report *r)
+{
+    const csgm_diff_distance *worst = &r->distance[r->distance[1].lower > r->distance[0].lower];
+    if (!isfinite(r->hausdorff_lower)) {
+        printf("  distance  none: one of them is empty\n");
+        return;
+    }
+    printf("  distance  max %.6g to %.6g", r->hausdorff_lower, r->hausdorff_upper);
+    if (worst->worst_count)
+        printf(" at %.6g,%.6g,%.6g", worst->worst[0].at.x, worst->worst[0].at.y,
+               worst->worst[0].at.z);
+    for (int i = 0; i < 2; i++)
+        printf("; %s: max %.4g mean %.4g rms %.4g 95%% %.4g 99%% %.4g", i ? "B to A" : "A to B",
+               r->distance[i].lower, r->distance[i].mean, r->distance[i].rms,
+               r->distance[i].percentile_95, r->distance[i].percentile_99);
+    putchar('\n');
+}
+
+static void print_volumes(const csgm_diff_report *r)
+{
+    if (!r->volume.is_measured) {
+        printf("  volume    not compared: a mesh is open\n");
+        return;
+    }
+    printf("  volume    only in A %.6g, only in B %.6g (+- %.2g), %.4g %% of the union\n",
+           r->volume.only_a, r->volume.only_b, r->volume.accuracy, 100 * r->volume.ratio);
+}
+
+static void print_fields(const csgm_diff_report *r)
+{
+    for (int i = 0; i < 2; i++)
+        if (r->field[i].is_measured)
+            printf("  field     %s: max |f| %.6g, mean %.4g; distance of the exact surface %.6g to "
+                   "%.6g (lambda %.4g)\n",
+                   i ? "B to A" : "A to B", r->field[i].max_abs_field, r->field[i].mean_abs_field,
+                   r->field[i].lower, r->field[i].upper, r->field[i].lipschitz);
+}
+
+void diff_print(const diff_result *result, bool with_details)
+{
+    static const char *const verdicts[] = {"same", "different", "different", "different", "failed"};
+    char reason[512];
+    diff_explain(result, reason, sizeof reason);
+    printf("%s: %s%s%s: %s%s\n", verdicts[result->outcome], result->a ? result->a : "",
+           result->a && result->b ? " " : "", result->b ? result->b : "", reason,
+           result->is_updated ? "; A is now B" : "");
+    const csgm_diff_report *r = &result->report;
+    if (!with_details || result->outcome > DIFF_DIFFERENT || r->level == CSGM_DIFF_SAME_BYTES)
+        return;
+    print_figures("A", &r->figures[0]);
+    print_figures("B", &r->figures[1]);
+    print_distances(r);
+    print_volumes(r);
+    print_fields(r);
+}

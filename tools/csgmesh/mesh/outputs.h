@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ * The -o files of one run: their formats, what can be known to fail before any work is done, and
+ * writing them.
+ */
+#ifndef CLI_OUTPUTS_H
+#define CLI_OUTPUTS_H
+
+#include "core/cli.h"
+
+/* The format of output `index`; AUTO when neither its name nor -f says. */
+csgm_format cli_outputs_format(const cli_options *options, size_t index);
+/* Usage, formats of this build, directories that cannot be written. CLI_DONE or CLI_TROUBLE. */
+int cli_outputs_check(cli_app *app, const char *scene_path);
+/* What --normals asks for, given the formats. */
+csgm_normals cli_outputs_normals(const cli_options *options);
+csgm_write_options cli_outputs_options(const cli_options *options);
+int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh);
+
+#endif

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT
+ * csgmesh info FILE...: what is in a mesh file or in a scene. A scene is meshed in memory for its
+ * area, volume and topology.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/facts.h"
+#include "core/work.h"
+
+static int inspect(cli_app *app, const csgm_mesh *mesh, csgm_mesh_view *view,
+                   csgm_mesh_check *check)
+{
+    *view = csgm_mesh_get_view(mesh);
+    return cli_exit_status(csgm_mesh_inspect(app->context, view, check));
+}
+
+static void put_mesh_member(cli_json *json, const csgm_mesh_view *view,
+                            const csgm_mesh_check *check)
+{
+    cli_json_open(json, "mesh", '{');
+    cli_facts_mesh_json(json, view, check);
+    cli_json_number(json, "min_angle_deg", check->min_angle_deg);
+    cli_json_count(json, "unused_vertices", check->unused_vertices);
+    cli_json_count(json, "zero_area_triangles", check->zero_area_triangles);
+    cli_json_bool(json, "normals", view->normals != NULL);
+    cli_json_bool(json, "colors", view->colors != NULL);
+    cli_json_end(json, '}');
+}
+
+static int info_of_mesh(cli_app *app, const char *path, csgm_format format)
+{
+    csgm_mesh *mesh = NULL;
+    csgm_mesh_view view;
+    csgm_mesh_check check;
+    int status = cli_exit_status(csgm_mesh_read(app->context, path, format, &mesh));
+    if (status == CLI_DONE)
+        status = inspect(app, mesh, &view, &check);
+    if (status == CLI_DONE && app->options.json) {
+        cli_json json = cli_json_make(stdout, true);
+        cli_json_begin(&json, '{');
+        cli_json_string(&json, "file", path);
+        cli_json_string(&json, "format", csgm_format_name(format));
+        put_mesh_member(&json, &view, &check);
+        cli_json_end(&json, '}');
+    } else if (status == CLI_DONE) {
+        printf("%s: a mesh (%s)\n", path, csgm_format_name(format));
+        cli_facts_mesh_text(&view, &check);
+    }
+    csgm_mesh_destroy(mesh);
+    return status;
+}
+
+static bool is_finite(csgm_box box)
+{
+    return isfinite(box.min.x + box.min.y + box.min.z + box.max.x + box.max.y + box.max.z);
+}
+
+static void print_scene_json(const char *path, const cli_work *work, const csgm_mesh_view *view,
+                             const csgm_mesh_check *check)
+{
+    const char *file;
+    cli_json json = cli_json_make(stdout, true);
+    cli_json_begin(&json, '{');
+    cli_json_string(&json, "file", path);
+    cli_json_open(&json, "scene", '{');
+    cli_facts_scene_json(&json, &work->info);
+    cli_json_bool(&json, "colors", work->info.has_colors);
+    cli_json_end(&json, '}');
+    cli_json_open(&json, "files", '[');
+    for (size_t i = 0; (file = csgm_scene_dependency(work->scene, i)); i++)
+        cli_json_string(&json, NULL, file);
+    cli_json_end(&json, ']');
+    if (view) {
+        cli_json_number(&json, "cell_size", work->stats.cell_size);
+        put_mesh_member(&json, view, check);
+    }
+    cli_json_end(&json, '}');
+}
+
+static void print_scene_text(const char *path, const cli_work *work, const csgm_mesh_view *view,
+                             const csgm_mesh_check *check)
+{
+    printf("%s: a scene\n", path);
+    cli_facts_scene_text(&work->info);
+    const char *file;
+    for (size_t i = 0; (file = csgm_scene_dependency(work->scene, i)); i++)
+        printf("  %-12s %s\n", i ? "" : "files", file);
+    if (view) {
+        printf("its mesh with cells of %.9g\n", work->stats.cell_size);
+        cli_facts_mesh_text(view, check);
+    }
+}
+
+static int info_of_scene(cli_app *app, const char *path)
+{
+    cli_work work = {0};
+    csgm_mesh_view view;
+    csgm_mesh_check check;
+    bool is_meshed = false;
+    int status = cli_work_load(app, &work, path);
+    if (status == CLI_DONE &&
+        (app->options.given[CLI_OPTION_bounds] ||
+         (is_finite(work.info.bounds) && work.info.bounds.min.x <= work.info.bounds.max.x))) {
+        status = cli_work_mesh(app, &work);
+        is_meshed = status == CLI_DONE;
+    }
+    if (is_meshed)
+        status = inspect(app, work.mesh, &view, &check);
+    if (status == CLI_DONE)
+        (app->options.json ? print_scene_json : print_scene_text)(
+            path, &work, is_meshed ? &view : NULL, is_meshed ? &check : NULL);
+    cli_work_release(&work);
+    return status;
+}
+
+int cli_cmd_info(cli_app *app)
+{
+    const cli_list *operands = &app->options.operands;
+    csgm_format asked = CSGM_FORMAT_AUTO;
+    if (!operands->count)
+        return cli_usage_error(app, "as csgmesh info mug.glb", "no mesh or scene given");
+    if (app->options.format) {
+        asked = csgm_format_from_name(app->options.format);
+        if (asked == CSGM_FORMAT_AUTO)
+            return cli_usage_error(app, NULL, "unknown format '%s'", app->options.format);
+    }
+    int worst = cli_work_check(app);
+    if (worst == CLI_DONE)
+        worst = cli_app_open(app);
+    for (size_t i = 0; app->context && i < operands->count; i++) {
+        const char *path = operands->items[i];
+        csgm_format format = asked ? asked : csgm_format_from_path(path);
+        int status = format ? info_of_mesh(app, path, format) : info_of_scene(app, path);
+        worst = status > worst ? status : worst;
+    }
+    return cli_finish_stdout(app, worst);
+}
