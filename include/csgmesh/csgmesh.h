@@ -43,15 +43,18 @@ extern "C" {
 
 /* ---- vocabulary ------------------------------------------------------------------ */
 
+/* A point or a direction. Points are in scene units. */
 typedef struct csgm_vec3 {
     double x, y, z;
 } csgm_vec3;
 
-/* Axis-aligned; empty when min.x > max.x; a side may be infinite. */
+/* A box along the axes, in scene units: all points between its two corners. It is empty when
+ * min.x > max.x, and a side may be infinite. */
 typedef struct csgm_box {
     csgm_vec3 min, max;
 } csgm_box;
 
+/* What a call that can fail returns. */
 typedef enum csgm_status {
     CSGM_OK = 0,
     CSGM_ERR_ARGUMENT,    /* the caller broke the contract of the call */
@@ -73,9 +76,12 @@ CSGM_API const char *csgm_version(void);
 
 /* ---- diagnostics ----------------------------------------------------------------- */
 
+/* How bad a finding is: a note explains the finding before it, a warning leaves the result usable,
+ * an error means that there is no result. */
 typedef enum csgm_severity { CSGM_NOTE, CSGM_WARNING, CSGM_ERROR } csgm_severity;
 
-/* One finding about one place. Borrowed: valid only during the callback. */
+/* One finding about one place of a text or file: what is wrong, where, and what to do about it. The
+ * struct and its strings are valid only during the callback. */
 typedef struct csgm_diag {
     csgm_severity severity;
     uint16_t code;           /* stable number, printed as E0107; see scenes/README.md */
@@ -89,6 +95,7 @@ typedef struct csgm_diag {
     uint32_t end_line, end_column; /* just behind the last byte covered; 0 = not about text */
 } csgm_diag;
 
+/* Receives each finding as it is made. */
 typedef void csgm_diag_fn(void *user, const csgm_diag *diag);
 
 /* Formats "part.txt:4:9: error E0107: ..." plus the source line, the caret line and the hint,
@@ -96,20 +103,26 @@ typedef void csgm_diag_fn(void *user, const csgm_diag *diag);
  * bytes including it (snprintf rules). */
 CSGM_API size_t csgm_diag_format(const csgm_diag *diag, char *buffer, size_t size);
 
-/* Receives text in pieces: the scene's echo() lines, dumps. Not terminated. */
+/* Receives text in pieces, such as the lines that a scene echoes, or a dump. A piece is not
+ * terminated by a NUL. */
 typedef void csgm_text_fn(void *user, const char *text, size_t length);
 
 /* ---- context: allocator, workers, limits ------------------------------------------ */
 
+/* What all calls share: the allocator, the worker threads, the limits, and where findings go. Make
+ * one at the start of your program and keep it until everything made with it is destroyed. */
 typedef struct csgm_context csgm_context;
 
-/* All zero = malloc/free. Called from any worker thread. */
+/* Where memory comes from. All zero means malloc and free. The functions are called from any worker
+ * thread, so they must be thread safe. */
 typedef struct csgm_allocator {
     void *(*alloc)(void *user, size_t size_bytes); /* aligned for any type; NULL = out of memory */
     void (*release)(void *user, void *memory, size_t size_bytes);
     void *user;
 } csgm_allocator;
 
+/* The instruction set that the vector code runs on. All give the same bits; they differ in speed.
+ */
 typedef enum csgm_isa {
     CSGM_ISA_AUTO,
     CSGM_ISA_SCALAR,
@@ -119,6 +132,8 @@ typedef enum csgm_isa {
     CSGM_ISA_NEON
 } csgm_isa;
 
+/* Budgets that keep a hostile or mistaken scene from exhausting the machine. Reaching one ends the
+ * call with CSGM_ERR_LIMIT (memory: CSGM_ERR_MEMORY) and a finding that names it. */
 typedef struct csgm_limits {
     uint32_t depth;        /* nesting of text, calls and solids; default 10 000 */
     uint32_t scene_nodes;  /* nodes of the evaluated tree; default 4 million */
@@ -128,6 +143,7 @@ typedef struct csgm_limits {
                               build; default 0 = none */
 } csgm_limits;
 
+/* How a context is set up. Start from csgm_context_options_default() and change what you need. */
 typedef struct csgm_context_options {
     uint32_t struct_size; /* set by csgm_context_options_default; do not touch */
     csgm_allocator allocator;
@@ -142,30 +158,37 @@ typedef struct csgm_context_options {
 } csgm_context_options;
 
 CSGM_API csgm_context_options csgm_context_options_default(void);
-/* options NULL = defaults. */
+/* options: NULL means the defaults. */
 CSGM_API csgm_status csgm_context_create(const csgm_context_options *options, csgm_context **out);
 CSGM_API void csgm_context_destroy(csgm_context *context);
-/* Bytes taken from the allocator now and at most so far. */
+/* Bytes that the context holds now; *peak_bytes (may be NULL) is the most that it has held. Memory
+ * of outside libraries that bring their own allocator is not in it. */
 CSGM_API uint64_t csgm_context_memory(const csgm_context *context, uint64_t *peak_bytes);
+/* The number of threads that long calls use, at least 1. */
 CSGM_API uint32_t csgm_context_threads(const csgm_context *context);
 /* "avx512", "avx2", "sse2", "neon" or "scalar"; static storage. */
 CSGM_API const char *csgm_context_isa(const csgm_context *context);
 
 /* ---- scene: the evaluated CSG/blend tree ------------------------------------------ */
 
+/* An evaluated scene: the tree of solids and operators that a text describes. It knows the field's
+ * exact value at every point and never changes. */
 typedef struct csgm_scene csgm_scene;
 
-/* A top-level assignment made from outside, as -D NAME=EXPR: it replaces the scene's own. */
+/* A top-level assignment that is made from outside, as -D NAME=EXPR does on the command line. It
+ * replaces the assignment in the scene's text. */
 typedef struct csgm_define {
     const char *name;       /* "radius" */
     const char *expression; /* in the scene language: "50", "[1, 2]", "\"text\"" */
 } csgm_define;
 
+/* What the special variables $fn, $fa and $fs do to curved solids. */
 typedef enum csgm_facets {
     CSGM_FACETS_ROUND, /* curves are round, but $fn from 3 to 16 makes a polygon, prism, polytope */
     CSGM_FACETS_EXACT  /* $fn, $fa and $fs hold everywhere, as in OpenSCAD */
 } csgm_facets;
 
+/* How a scene's text is read: values from outside, folders of includes, and facets. */
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
     const csgm_define *defines;
@@ -189,6 +212,7 @@ CSGM_API csgm_status csgm_scene_load(csgm_context *context, const char *path,
                                      const csgm_scene_options *options, csgm_scene **out);
 CSGM_API void csgm_scene_destroy(csgm_scene *scene);
 
+/* What is known of a scene without meshing it. Lengths are in scene units. */
 typedef struct csgm_scene_info {
     csgm_box bounds; /* contains the solid (S-bounds); its sides may be infinite, it may be empty */
     uint32_t primitive_count, operator_count;
@@ -219,6 +243,7 @@ CSGM_API uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec
  *     // outer radius              a line of its own above the assignment: the description
  *     radius = 10;                 // [5:0.5:50]  or [max], [a, b], [1:small, 2:large], a step
  */
+/* What kind of value a parameter holds. */
 typedef enum csgm_param_kind {
     CSGM_PARAM_NUMBER,
     CSGM_PARAM_BOOLEAN,
@@ -226,6 +251,7 @@ typedef enum csgm_param_kind {
     CSGM_PARAM_VECTOR /* of numbers, at least one */
 } csgm_param_kind;
 
+/* The value of a parameter: numbers or a text, as its kind says. */
 typedef struct csgm_param_value {
     csgm_param_kind kind;
     const double *numbers; /* NUMBER and BOOLEAN (0 or 1): one */
@@ -233,11 +259,14 @@ typedef struct csgm_param_value {
     const char *text; /* STRING, else NULL */
 } csgm_param_value;
 
+/* One of the values that a comment offers for a parameter, with the label that people see. */
 typedef struct csgm_param_choice {
     const char *label;
     csgm_param_value value; /* NUMBER or STRING */
 } csgm_param_choice;
 
+/* A parameter that a scene offers: its name, value and description, and the range that its comment
+ * allows. Everything is valid until the csgm_params are destroyed. */
 typedef struct csgm_param {
     const char *name;
     const char *section;      /* "Parameters" before the first; "Hidden" is not for people */
@@ -253,6 +282,7 @@ typedef struct csgm_param {
     size_t choice_count;
 } csgm_param;
 
+/* The parameters of one scene, in the order of its text. */
 typedef struct csgm_params csgm_params;
 
 /* Parses the scene, with what it includes; evaluates only what a define computes. Arguments as for
@@ -268,6 +298,8 @@ CSGM_API const csgm_param *csgm_params_get(const csgm_params *params, size_t ind
 
 /* ---- field: the scene compiled to a tape ------------------------------------------ */
 
+/* A scene compiled to a tape, a flat list of operations that the vector code runs: the form in
+ * which a scene is meshed and rendered. */
 typedef struct csgm_field csgm_field;
 
 /* The scene must outlive the field. */
@@ -286,6 +318,7 @@ CSGM_API void csgm_field_eval(const csgm_field *field, const float *x, const flo
 
 /* ---- watching and stopping long calls ---------------------------------------------- */
 
+/* The stages of which a monitor is told. */
 typedef enum csgm_stage {
     CSGM_STAGE_OCTREE,
     CSGM_STAGE_MESH,
@@ -293,7 +326,8 @@ typedef enum csgm_stage {
     CSGM_STAGE_RENDER
 } csgm_stage;
 
-typedef struct csgm_monitor { /* all zero = nobody watches */
+/* Watches a long call and can stop it. All zero means that nobody watches. */
+typedef struct csgm_monitor {
     /* On the calling thread, at most about 20 times a second; a stage's fraction never falls. */
     void (*progress)(void *user, csgm_stage stage, double fraction);
     /* On any worker, about once per block: be quick and thread safe. true = stop. */
@@ -303,23 +337,29 @@ typedef struct csgm_monitor { /* all zero = nobody watches */
 
 /* ---- mesh ------------------------------------------------------------------------- */
 
+/* A triangle mesh in memory. Look at its arrays through csgm_mesh_get_view. */
 typedef struct csgm_mesh csgm_mesh;
 
+/* Which normals a mesh has. A sheet is one of the smooth pieces of surface that meet at a crease.
+ */
 typedef enum csgm_normals {
     CSGM_NORMALS_NONE,
-    CSGM_NORMALS_VERTEX, /* one a vertex: the field's gradient, the mean of the sheets at a crease
-                          */
-    CSGM_NORMALS_CREASE  /* at creases and corners a vertex for each sheet of the surface, one after
-                            the other with bit-equal positions: welded by position the mesh is closed
-                          */
+    CSGM_NORMALS_VERTEX, /* one per vertex: the field's gradient; at a crease, the mean of the
+                            sheets' gradients */
+    CSGM_NORMALS_CREASE  /* at creases and corners there is a vertex for each sheet, one after the
+                            other and with bit-equal positions: the mesh is closed once vertices of
+                            equal position are welded */
 } csgm_normals;
 
+/* Whether sharp edges and corners of the solid are kept. */
 typedef enum csgm_features {
     CSGM_FEATURES_SHARP, /* creases, corners and tips of the solid are edges and vertices of the
                             mesh (extended marching cubes, Kobbelt et al. 2001) */
     CSGM_FEATURES_SMOOTH /* plain marching cubes: they are cut by up to a cell */
 } csgm_features;
 
+/* How a field is meshed: where, how finely, and what is done to the triangles. Lengths are in scene
+ * units. */
 typedef struct csgm_mesh_options {
     uint32_t struct_size; /* set by csgm_mesh_options_default; do not touch */
     csgm_box bounds;      /* what to mesh, the solid is cut and capped there; empty (the default) =
@@ -364,7 +404,8 @@ typedef struct csgm_certify_place {
 
 enum { CSGM_CERTIFY_PLACES_MOST = 16 };
 
-/* docs/certify.md has the promise and its proof. Counts are of cells that the surface touches. */
+/* What csgm_mesh_options.certify found: how many of the cells that the surface touches are proven,
+ * and where they are not. docs/certify.md has the promise and its proof. */
 typedef struct csgm_certify {
     bool is_done;
     uint64_t certified;  /* one smooth sheet: all gradients in it within a cone */
@@ -379,6 +420,8 @@ typedef struct csgm_certify {
     csgm_certify_place places[CSGM_CERTIFY_PLACES_MOST]; /* the missed ones first */
 } csgm_certify;
 
+/* What a mesh build did and found: times in seconds of wall time, counts, and distances in scene
+ * units. */
 typedef struct csgm_mesh_stats {
     /* Wall time of octree, sampling and counting; of roots, normals and triangles. */
     double octree_s, mesh_s;
@@ -414,14 +457,15 @@ CSGM_API csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *fi
                                      csgm_mesh_stats *stats);
 CSGM_API void csgm_mesh_destroy(csgm_mesh *mesh);
 
-/* A stretch of a mesh's triangles that is a thing of its own: a glTF node and mesh, an OBJ object,
- * a 3MF object; other formats hold all parts one after the other. */
+/* A run of a mesh's triangles that is an object of its own: a glTF node and mesh, an OBJ object or
+ * a 3MF object. Other formats hold all parts one after the other. */
 typedef struct csgm_mesh_part {
     const char *name; /* UTF-8; NULL = without a name */
     uint64_t first_triangle, triangle_count;
 } csgm_mesh_part;
 
-/* A borrowed look at a mesh; fill one yourself to write or compare your own arrays. */
+/* The arrays of a mesh, borrowed: they live as long as the mesh. Fill one yourself to write or
+ * compare arrays of your own. */
 typedef struct csgm_mesh_view {
     csgm_vec3 origin; /* position i in scene units = origin + positions[3*i..]; zero unless the
                          solid lies so far out that floats would be too coarse */
@@ -439,7 +483,8 @@ typedef struct csgm_mesh_view {
 
 CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);
 
-/* A closed oriented 2-manifold has zeros in the first block. */
+/* What csgm_mesh_inspect counts and measures. A closed oriented 2-manifold has zeros in the first
+ * block. Lengths, areas and volumes are in scene units, their squares and cubes. */
 typedef struct csgm_mesh_check {
     uint64_t boundary_edges;       /* used once */
     uint64_t nonmanifold_edges;    /* used more than twice */
@@ -492,6 +537,7 @@ CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
 /* For --version, a line a library: what it is for, and its version or that this build lacks it. */
 CSGM_API const char *csgm_build_features(void);
 
+/* The length of one scene unit, as a file says it. */
 typedef enum csgm_unit {
     CSGM_UNIT_NONE,
     CSGM_UNIT_MM,
@@ -500,6 +546,7 @@ typedef enum csgm_unit {
     CSGM_UNIT_IN
 } csgm_unit;
 
+/* How a mesh file is written. A format ignores what it has no place for. */
 typedef struct csgm_write_options {
     uint32_t struct_size;         /* set by csgm_write_options_default; do not touch */
     bool ascii;                   /* PLY and STL as text; default false */
@@ -511,7 +558,7 @@ typedef struct csgm_write_options {
     bool y_up; /* glTF and GLB: one node rotates Z up to glTF's Y up; default true.
                   Other formats keep the scene's axes. */
     bool sync; /* the bytes are on the disk before the file gets its name, so that a power cut
-                  leaves      the old file or the new one; default true */
+                  leaves the old file or the new one; default true */
     bool only_if_changed; /* a file that holds these bytes already is left alone, with its time of
                              change; default false */
     csgm_unit unit; /* what a scene unit is; NONE. glTF and GLB: one node scales it to metres; 3MF:
@@ -552,15 +599,17 @@ CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csg
 
 /* ---- pictures ---------------------------------------------------------------------- */
 
-/* Drawn by the processor alone: no display, no graphics card. The same bytes for any number of
- * threads and any instruction set. */
+/* A picture in memory. It is drawn by the processor alone, without a display or graphics card, and
+ * has the same bytes for any number of threads and any instruction set. */
 typedef struct csgm_image csgm_image;
 
+/* The pixels of an image, borrowed: they live as long as the image. */
 typedef struct csgm_image_view {
     uint32_t width, height;
     const uint8_t *pixels; /* 4 * width * height, rows from the top: sRGB, alpha (not multiplied) */
 } csgm_image_view;
 
+/* The formats that pictures are written in. */
 typedef enum csgm_image_format {
     CSGM_IMAGE_AUTO, /* by the extension */
     CSGM_IMAGE_PNG,
@@ -581,8 +630,10 @@ CSGM_API csgm_status csgm_image_write(csgm_context *context, const csgm_image *i
 CSGM_API csgm_status csgm_image_write_fd(csgm_context *context, const csgm_image *image, int fd,
                                          const char *name, csgm_image_format format);
 
+/* How the camera projects: as the eye sees, or with parallel lines staying parallel. */
 typedef enum csgm_projection { CSGM_PERSPECTIVE, CSGM_ORTHOGRAPHIC } csgm_projection;
 
+/* Where a picture is taken from. Angles are in degrees, lengths in scene units. */
 typedef struct csgm_camera {
     csgm_projection projection; /* default PERSPECTIVE */
     double fov_deg;             /* perspective: vertical angle of view, 1 .. 150; default 30 */
@@ -596,11 +647,13 @@ typedef struct csgm_camera {
     double zoom;   /* makes things so much larger; default 1 */
 } csgm_camera;
 
+/* Which evaluator draws a scene. */
 typedef enum csgm_evaluator {
     CSGM_EVALUATOR_FAST, /* float kernels over batches, tapes pruned for each cell of an octree */
     CSGM_EVALUATOR_LAZY  /* double, point by point, lazy evaluation with S-bounds: for counting */
 } csgm_evaluator;
 
+/* How a picture is drawn: its size, the camera, light, and sections. */
 typedef struct csgm_render_options {
     uint32_t struct_size;   /* set by csgm_render_options_default; do not touch */
     uint32_t width, height; /* pixels, 1 .. 16384 each; default 1280 x 960 */
@@ -631,6 +684,7 @@ typedef struct csgm_render_options {
 
 CSGM_API csgm_render_options csgm_render_options_default(void);
 
+/* What a picture cost: times in seconds of wall time, and counts. */
 typedef struct csgm_render_stats {
     double prepare_s, trace_s; /* wall time of the octree; of the picture */
     uint64_t cells;            /* of the octree: those that the surface may touch */
@@ -655,6 +709,7 @@ CSGM_API csgm_status csgm_render_mesh(csgm_context *context, const csgm_mesh_vie
 
 /* ---- JSON: the reader that this library uses itself ----------------------------------- */
 
+/* What csgm_json_read meets, in the order of the text. */
 typedef enum csgm_json_kind {
     CSGM_JSON_OBJECT, /* '{' */
     CSGM_JSON_ARRAY,  /* '[' */
@@ -705,6 +760,7 @@ typedef enum csgm_diff_reason {
     CSGM_DIFF_REASON_EMPTY = 64    /* one has no triangles, the other has */
 } csgm_diff_reason;
 
+/* What a comparison does not look at. */
 typedef enum csgm_diff_ignored {
     CSGM_DIFF_IGNORE_ORDER = 1, /* of parts; that of vertices and triangles is never looked at */
     CSGM_DIFF_IGNORE_NORMALS = 2,
@@ -714,12 +770,15 @@ typedef enum csgm_diff_ignored {
     CSGM_DIFF_IGNORE_TOPOLOGY = 32
 } csgm_diff_ignored;
 
+/* Whether only added or only removed material counts as a difference. */
 typedef enum csgm_diff_material {
     CSGM_DIFF_ANY_MATERIAL,
     CSGM_DIFF_ADDED, /* only what B has and A has not counts, from 1/1000 of the largest distance */
     CSGM_DIFF_REMOVED /* only what A has and B has not */
 } csgm_diff_material;
 
+/* What a comparison looks at, and when two meshes count as different. Distances are in scene units.
+ */
 typedef struct csgm_diff_options {
     uint32_t struct_size; /* set by csgm_diff_options_default; do not touch */
     /* The larger of both counts; relative to the diagonal of A's bounds. 0: the same up to the
@@ -738,6 +797,7 @@ typedef struct csgm_diff_options {
 
 CSGM_API csgm_diff_options csgm_diff_options_default(void);
 
+/* What is known of one of the two meshes by itself. */
 typedef struct csgm_diff_figures {
     uint64_t vertices, triangles; /* as in the view */
     csgm_mesh_check check;        /* with corners at one place made one vertex */
@@ -746,6 +806,7 @@ typedef struct csgm_diff_figures {
     uint64_t parts;
 } csgm_diff_figures;
 
+/* A point of one surface and the nearest point of the other, in scene units. */
 typedef struct csgm_diff_place {
     csgm_vec3 at, nearest; /* on this surface, on the other */
     double distance;
@@ -753,7 +814,8 @@ typedef struct csgm_diff_place {
 
 enum { CSGM_DIFF_WORST_MOST = 8 };
 
-/* From every point of one surface to the nearest of the other. */
+/* The distances from all points of one surface to the nearest points of the other: the largest
+ * between two proven bounds, and the mean and percentiles of samples. In scene units. */
 typedef struct csgm_diff_distance {
     bool is_measured;
     double lower, upper; /* proven: the maximum lies between; upper is within 1 % of lower unless
@@ -766,6 +828,7 @@ typedef struct csgm_diff_distance {
     double mean, rms, percentile_95, percentile_99;
 } csgm_diff_distance;
 
+/* The volumes that only one of two closed meshes encloses, in cubic scene units. */
 typedef struct csgm_diff_volume {
     bool is_measured; /* both are closed */
     double only_a, only_b, both;
@@ -785,6 +848,7 @@ typedef struct csgm_diff_field {
     uint64_t evaluations;
 } csgm_diff_field;
 
+/* How much normals, colours or names of parts differ where the triangles are the same. */
 typedef struct csgm_diff_attribute {
     bool is_compared;
     double largest; /* normals: degrees; colours: channels 0..255; names: how many differ */
@@ -792,6 +856,8 @@ typedef struct csgm_diff_attribute {
                        more than 1 degree, colours by more than 1 (16) of 255 */
 } csgm_diff_attribute;
 
+/* The whole result of a comparison: the verdict, its reasons, and every figure that was measured.
+ */
 typedef struct csgm_diff_report {
     csgm_diff_level level;
     bool is_different;
@@ -810,6 +876,7 @@ typedef struct csgm_diff_report {
     int turn;       /* how: 1 is (x, y, z) -> (x, -z, y), 2 (x, z, -y); 0: not turned */
 } csgm_diff_report;
 
+/* A finished comparison, which holds the report and the distance of each vertex. */
 typedef struct csgm_diff csgm_diff;
 
 /* The views must stay until the diff is destroyed. Positions must be finite and indices in range:
