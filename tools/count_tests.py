@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Adds up meson's test logs (one JSON object a line) into "N passed, N failed, N skipped".
+"""Adds up meson's test logs (one JSON object per line) into "N passed, N failed, N skipped".
 
 Exit status 1 when a test failed, or when none passed at all.
 """

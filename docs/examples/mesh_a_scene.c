@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The whole way by the C interface: scene text in, PLY file out.
  *
- *   cc mesh_a_scene.c $(pkg-config --cflags --libs csgmesh) -o mesh_a_scene && ./mesh_a_scene
- * out.ply
+ *     cc mesh_a_scene.c $(pkg-config --cflags --libs csgmesh) -o mesh_a_scene
+ *     ./mesh_a_scene out.ply
  */
 #include <csgmesh/csgmesh.h>
 #include <stdio.h>

@@ -657,7 +657,7 @@ typedef enum csgm_evaluator {
 typedef struct csgm_render_options {
     uint32_t struct_size;   /* set by csgm_render_options_default; do not touch */
     uint32_t width, height; /* pixels, 1 .. 16384 each; default 1280 x 960 */
-    uint32_t samples; /* n: n x n rays a pixel where neighbours differ, 1 .. 8; default 3; a mesh
+    uint32_t samples; /* n: n x n rays per pixel where neighbours differ, 1 .. 8; default 3; a mesh
                          is drawn with n x n samples everywhere */
     csgm_camera camera;
     csgm_box frame; /* what the camera is placed by; empty (the default) = what is drawn */

@@ -60,7 +60,7 @@ static double area_of(const csg_piece *piece)
 
 /* Both sides of the plane normal . (p - on) = 0; `above` where it is positive. An empty side has
  * fewer than three corners. Corners very near to the plane count as on it: no splinters. A convex
- * polygon grows by one corner a side at most. */
+ * polygon grows by one corner per side at most. */
 static void split(const csg_piece *piece, csg_vec3 on, csg_vec3 normal, csg_piece *above,
                   csg_piece *below)
 {

@@ -63,7 +63,7 @@ typedef struct csg_draco_encoded {
 } csg_draco_encoded;
 
 /* What to encode: positions finite, at least one triangle, indices in range. Colours are whole
- * numbers of one or two bytes, four a vertex. */
+ * numbers of one or two bytes, four per vertex. */
 typedef struct csg_draco_mesh {
     const float *positions, *normals; /* normals may be NULL */
     const void *colors;               /* NULL, or 4 * vertex_count of color_bytes each */

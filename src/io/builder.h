@@ -9,10 +9,10 @@
 
 typedef struct csg_mesh_builder {
     csgm_context *context;
-    double *positions; /* 3 a vertex */
-    float *normals;    /* 3 a vertex, as long as every vertex so far came with one */
-    uint8_t *colors;   /* 4 a vertex, from the first coloured one on; white before */
-    uint32_t *indices; /* 3 a triangle */
+    double *positions; /* 3 per vertex */
+    float *normals;    /* 3 per vertex, as long as every vertex so far came with one */
+    uint8_t *colors;   /* 4 per vertex, from the first coloured one on; white before */
+    uint32_t *indices; /* 3 per triangle */
     size_t vertex_count, triangle_count;
     size_t position_room, normal_room, color_room, index_room; /* in vertices and triangles */
     csgm_mesh_part *parts; /* names in the arena; counts not yet filled in */

@@ -11,7 +11,7 @@
 #include "base/context.h"
 
 /* *out is written on CSGM_OK only. CSGM_ERR_MEMORY (reported), CSGM_ERR_LIMIT (reported) above
- * 2^32 / 3 triangles. Takes about 36 bytes a triangle while it runs. */
+ * 2^32 / 3 triangles. Takes about 36 bytes per triangle while it runs. */
 csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
                              csgm_mesh_check *out);
 

@@ -19,7 +19,7 @@ typedef struct csg_mesh_run {
     const float *positions, *normals; /* of first_vertex; normals and colors may be NULL */
     const uint8_t *colors;
     const uint32_t *indices; /* of first_triangle; numbers of the whole mesh */
-    const float *corners;    /* of first_triangle: 9 floats a triangle; then nothing of the above */
+    const float *corners; /* of first_triangle: 9 floats per triangle; then nothing of the above */
 } csg_mesh_run;
 
 typedef struct csg_mesh_receiver {

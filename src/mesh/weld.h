@@ -17,7 +17,7 @@ typedef enum csg_weld {
 uint64_t csg_weld_map(csg_memory *memory, const csgm_mesh_view *mesh, csg_weld how, uint32_t *to,
                       bool *failed);
 
-/* The mesh with one vertex a place: normals, colours and materials are the means of the copies'.
+/* The mesh with one vertex per place: normals, colours and materials are the means of the copies'.
  * Reports what fails (memory only). */
 csgm_status csg_weld_runs(csgm_context *context, const csgm_mesh_view *mesh, csgm_mesh **out);
 

@@ -41,7 +41,7 @@ typedef struct csg_ray_cells {
     int wide_level;
     float reach, rounding;
     uint64_t interval_evaluations, primitive_evaluations;
-    csg_arena *arenas; /* of tapes, one a worker */
+    csg_arena *arenas; /* of tapes, one per worker */
     uint32_t worker_count;
 } csg_ray_cells;
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Triangles drawn by a z-buffer. draw.c projects the vertices and sorts the triangles into tiles of
- * the picture; raster.c draws a tile: first which triangle each of n x n samples a pixel sees, then
- * light, once for each triangle of a pixel. Vertices are snapped to 1/256 of a sample and edges
- * tested in integers, so triangles that share an edge leave no gap and cover nothing twice.
+ * the picture; raster.c draws a tile: first which triangle each of n x n samples per pixel sees,
+ * then light, once for each triangle of a pixel. Vertices are snapped to 1/256 of a sample and
+ * edges tested in integers, so triangles that share an edge leave no gap and cover nothing twice.
  */
 #ifndef CSG_RENDER_DRAW_H
 #define CSG_RENDER_DRAW_H
@@ -32,7 +32,7 @@ typedef struct csg_draw {
     uint32_t columns, rows; /* of tiles */
     uint64_t *tile_first;   /* columns * rows + 1: into tile_triangles */
     uint32_t *tile_triangles;
-    struct csg_draw_room **rooms; /* one a worker */
+    struct csg_draw_room **rooms; /* one per worker */
     uint32_t room_count;
 } csg_draw;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Pictures by the lazy evaluator; see lazy_scene.h. Each ray makes plain steps of |f| / lambda from
- * the nearest plane of what the camera frames to the farthest, n x n rays a pixel.
+ * the nearest plane of what the camera frames to the farthest, n x n rays per pixel.
  */
 #include "render/lazy_scene.h"
 
@@ -20,7 +20,7 @@ typedef struct lazy_room {
 typedef struct lazy_job {
     csg_picture *picture;
     csg_lazy *lazy;
-    lazy_room *rooms; /* one a worker */
+    lazy_room *rooms; /* one per worker */
     uint32_t room_count;
     size_t scratch_bytes;
     double lipschitz, farthest; /* farthest: along forward, from the nearest plane */

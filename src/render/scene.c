@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A field's picture: an octree of short tapes (layer.h), then tile by tile one ray a pixel
+ * A field's picture: an octree of short tapes (layer.h), then tile by tile one ray per pixel
  * (tracer.h), light (shade.h), and n x n rays for the pixels that differ from a neighbour. A tile
  * looks one pixel over its border, so that it decides as its neighbours do, whoever draws them.
  * What the scene marks (# and %) is traced by rays of its own and laid over the solid where it is
@@ -31,7 +31,7 @@ typedef struct tile_room {
 typedef struct scene_job {
     csg_picture *picture;
     csg_layer layers[CSG_LAYERS];
-    tile_room **rooms; /* one a worker */
+    tile_room **rooms; /* one per worker */
     uint32_t room_count, columns, rows;
 } scene_job;
 
@@ -171,7 +171,7 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
     }
 }
 
-/* ---- one ray a pixel, and where that is not enough ------------------------------------------- */
+/* ---- one ray per pixel, and where that is not enough ------------------------------------------- */
 
 static void trace_tile(const scene_job *job, tile_room *room, const tile *t)
 {

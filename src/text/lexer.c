@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The lexer; see lexer.h. One pass, one character of look-ahead except for punctuation of two.
- * Broken UTF-8 is reported once a file: an error in code, a warning in strings and in comments,
+ * Broken UTF-8 is reported once per file: an error in code, a warning in strings and in comments,
  * where old files have Latin-1.
  */
 #include "text/lexer.h"

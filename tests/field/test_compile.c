@@ -133,7 +133,7 @@ static void test_depths(void **state)
     }
 }
 
-/* Blends of blends of blends, to the right: a slot a level, no recursion. */
+/* Blends of blends of blends, to the right: a slot per level, no recursion. */
 static void test_deep(void **state)
 {
     enum { LEVELS = 20000 };

@@ -81,7 +81,7 @@ static csgm_mesh *from_arrays(csgm_context *context, const float *positions, uin
     return mesh;
 }
 
-/* Corners numbered by the bits of x, y, z; two triangles a face. */
+/* Corners numbered by the bits of x, y, z; two triangles per face. */
 static const uint32_t cube_indices[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                           2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 

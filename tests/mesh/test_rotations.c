@@ -98,7 +98,7 @@ typedef struct pose {
     csgm_mesh_check check;
     csg_vec3 *at; /* a place each: copies at creases are one */
     bool *is_crease;
-    uint32_t *corner; /* 3 a triangle */
+    uint32_t *corner; /* 3 per triangle */
     size_t vertex_count, triangle_count, crease_count;
     long long crossings; /* pairs of triangles that cross */
     char what[64];

@@ -474,7 +474,7 @@ static void check_many(csg_node_kind kind, csg_blend blend, double most_per_poin
             test_near(value, plain, 1e-14); /* of coordinates up to 40 */
     }
     double per_point = (double)e.counts.total / POINTS;
-    print_message("%s of %d %s: %.1f nodes a point\n", csg_node_kind_name(kind), BALLS,
+    print_message("%s of %d %s: %.1f nodes per point\n", csg_node_kind_name(kind), BALLS,
                   csg_blend_name(blend.kind), per_point);
     assert_true(per_point < most_per_point);
     evaluator_end(&e);

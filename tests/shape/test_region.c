@@ -314,7 +314,7 @@ static void points_are_quick(void **state)
         make_text_like(sizes[k]);
         double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
         double near = nanoseconds_a_point(0.01), wide = nanoseconds_a_point(0.3);
-        print_message("%6d segments: made in %.4f s; %.0f ns a point near, %.0f ns around\n",
+        print_message("%6d segments: made in %.4f s; %.0f ns per point near, %.0f ns around\n",
                       (int)outline.point_count, seconds, near, wide);
         assert_true(near < 10000 && wide < 10000); /* all segments would be far more */
     }

@@ -2,7 +2,7 @@
  * A primitive on its way into the tape: its place, its sizes, its rounding error.
  *
  * A similarity keeps distances, so its scale goes into the primitive's sizes and only a rotation
- * or an offset stays to be done a point; other maps keep the primitive in its own frame and scale
+ * or an offset stays to be done per point; other maps keep the primitive in its own frame and scale
  * its value by the smallest singular value (scene.h).
  */
 #ifndef CSG_FIELD_COMPILE_LEAF_H

@@ -7,7 +7,7 @@
 #include "io/writers.h"
 #include "mesh/weld.h"
 
-/* Vertices of a mesh that is split at creases are written once a place: OBJ numbers positions and
+/* Vertices of a mesh that is split at creases are written once per place: OBJ numbers positions and
  * normals apart. number[i]: the v line of vertex i, NULL where each has its own. */
 static void put_vertices(csg_sink *sink, const csgm_mesh_view *mesh, const uint32_t *number)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Mesh -> STL: triangles with their own corners, binary (80 bytes of header that must not begin
- * with "solid", a count, 50 bytes a triangle) or ASCII. STL holds floats only, so an origin is
+ * with "solid", a count, 50 bytes per triangle) or ASCII. STL holds floats only, so an origin is
  * added and rounded; it has no vertex normals and no colours. Written directly: OpenMesh takes
  * several times as long (README.md).
  */

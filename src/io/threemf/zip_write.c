@@ -50,7 +50,7 @@ struct csg_zip {
     size_t file_count;
     slot slots[MOST_SLOTS];
     size_t slot_count, packed_room;
-    packer *packers; /* one a worker */
+    packer *packers; /* one per worker */
     uint32_t worker_count;
     slot loose; /* text put in small portions */
     uint64_t first_piece;

@@ -4,7 +4,7 @@
  *
  * Failing: what cannot go on (memory, a limit, a failed assertion) sets `stop`; everything then
  * returns at once, and what it had counted references to goes with the heap. A mistake of the scene
- * is reported (once a place) and evaluation goes on with undef or the empty solid.
+ * is reported (once per place) and evaluation goes on with undef or the empty solid.
  */
 #ifndef CSG_LANG_EVALUATOR_H
 #define CSG_LANG_EVALUATOR_H
@@ -94,7 +94,7 @@ csg_node_id csg_eval_run(csg_eval *e);
 
 /* ---- failing -------------------------------------------------------------------------------- */
 
-/* Reports once a place, with the trace of calls. An error makes the status SCENE. */
+/* Reports once per place, with the trace of calls. An error makes the status SCENE. */
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* The trace of calls, innermost first, as notes; what repeats itself is counted (call_trace.c). */

@@ -28,8 +28,8 @@ typedef struct csg_distance_proof {
     bool stopped;     /* it would have taken too long: nothing is known */
 } csg_distance_proof;
 
-/* pending, a byte a triangle: in, whether it is to be looked at; out, whether a piece of it stayed
- * open. CSGM_OK or why it was stopped. */
+/* pending, a byte per triangle: in, whether it is to be looked at; out, whether a piece of it
+ * stayed open. CSGM_OK or why it was stopped. */
 csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
                                csg_distance_proof *out);
 

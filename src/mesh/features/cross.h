@@ -12,7 +12,7 @@
 
 typedef struct csg_feature_cross {
     csg_near near;
-    csg_near_room *rooms; /* one a worker, the caller's */
+    csg_near_room *rooms; /* one per worker, the caller's */
     uint32_t room_count;
     struct csg_cross_state *states; /* one a feature */
     uint8_t *blocks;                /* what is known of each */

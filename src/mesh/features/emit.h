@@ -8,7 +8,7 @@
 #include "mesh/features/features.h"
 
 /* The apexes, behind the block's other vertices; `out` begins with the block's first. split: one
- * vertex a sheet, with the sheet's normal. */
+ * vertex per sheet, with the sheet's normal. */
 void csg_feature_vertices(const csg_marching *marching, const csg_block *block,
                           const csg_feature_store *store, const csg_feature_block *features,
                           bool split, csg_marching_room *room, const csg_marching_output *out,

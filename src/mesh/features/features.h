@@ -67,7 +67,7 @@ typedef struct csg_feature {
     uint8_t shift;    /* how much has been tried of that (shift.h) */
     uint16_t moved;   /* bit s: corner s is not where its lattice edge has it */
     uint8_t moves;    /* of its corners until now */
-    uint32_t vertex;  /* the apex's number; of the first sheet where there is one a sheet */
+    uint32_t vertex;  /* the apex's number; of the first sheet where there is one per sheet */
 } csg_feature;
 
 /* A vertex that has made way for a corner of the solid (shift.h). */

@@ -20,7 +20,7 @@ enum {
 
 typedef struct csg_cell_tables {
     uint8_t count[256];                       /* triangles; bit c of a pattern: corner c inside */
-    uint8_t edge[256][CSG_CELL_MOST_INDICES]; /* three edges a triangle, counter-clockwise
+    uint8_t edge[256][CSG_CELL_MOST_INDICES]; /* three edges per triangle, counter-clockwise
                                                        from outside */
     uint8_t offset[CSG_CELL_EDGES][3];        /* lower point of each edge, relative to the cell */
     /* The polygons that the triangles are cut from: those of a loop follow one another, two fewer

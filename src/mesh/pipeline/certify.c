@@ -84,7 +84,7 @@ static csgm_certify_place translate(const csg_mesh_work *w, const csg_certify_pl
     return place;
 }
 
-/* What is missed, a warning a place; what is unresolved, one for all. */
+/* What is missed, a warning per place; what is unresolved, one for all. */
 static void warn(const csg_mesh_work *w, const csgm_certify *certify)
 {
     uint32_t missed = 0, unresolved = 0;

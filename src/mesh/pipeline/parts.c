@@ -13,7 +13,7 @@ typedef struct assembly {
     const csgm_field *field;
     csgm_mesh_options options; /* with bounds for all */
     csg_mesh_share share;
-    csgm_mesh **meshes; /* one a part */
+    csgm_mesh **meshes; /* one per part */
 } assembly;
 
 /* One lattice for all parts: around their bounds, where none are given. A part without end is left

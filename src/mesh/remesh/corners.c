@@ -77,7 +77,7 @@ static bool match(csg_corners *m, half_edge *edges, const uint32_t *end)
     return true;
 }
 
-/* One corner a vertex; a second fan would leave corners that a walk around it does not meet. */
+/* One corner per vertex; a second fan would leave corners that a walk around it does not meet. */
 static bool find_corners(csg_corners *m, uint32_t *met)
 {
     memset(met, 0, ((size_t)m->vertex_count + 1) * sizeof *met);

@@ -35,7 +35,7 @@ static uint32_t first_of_sheet(const csg_remesh *r, uint32_t vertex)
     return first;
 }
 
-/* Numbers for the corners at a vertex, one a sheet if the mesh is split. */
+/* Numbers for the corners at a vertex, one per sheet if the mesh is split. */
 static void number_vertex(writer *w, uint32_t vertex)
 {
     const csg_remesh *r = w->remesh;

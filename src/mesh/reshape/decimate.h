@@ -12,9 +12,9 @@ typedef struct csg_decimation {
     csg_remesh *remesh;
     struct csg_quadric *quadrics; /* per vertex */
     uint32_t *version;            /* per vertex: grows with each change */
-    /* Points of the true surface: the vertices the mesh began with, then one a triangle, then those
-     * that it may have missed. Each belongs to the triangle that is nearest to it among those that
-     * took its first one's place. */
+    /* Points of the true surface: the vertices the mesh began with, then one per triangle, then
+     * those that it may have missed. Each belongs to the triangle that is nearest to it among those
+     * that took its first one's place. */
     float (*samples)[3];
     uint32_t *next_sample;               /* NONE ends a triangle's list */
     uint32_t *first_sample;              /* per triangle */

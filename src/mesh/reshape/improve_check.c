@@ -102,7 +102,7 @@ bool csg_improve_looks_alike(csg_improver *m, uint32_t vertex, csg_vec3 at,
     if (!r->looks)
         return true;
     *look = csg_remesh_look(r, at);
-    if (!m->thinned) /* a vertex a cell: each has its own, wherever it is */
+    if (!m->thinned) /* a vertex per cell: each has its own, wherever it is */
         return true;
     for (int c = 0; c < 4; c++)
         if (abs(look->color[c] - r->looks[vertex].color[c]) > COLOR_STEP)

@@ -19,7 +19,7 @@ typedef struct csg_heights {
 /* Most values of one field. */
 #define CSG_HEIGHTS_MOST ((size_t)16 << 20)
 
-/* Numbers between blanks, a row a line, the first line at y = 0; lines that begin with # are
+/* Numbers between blanks, a row per line, the first line at y = 0; lines that begin with # are
  * comments, and so is what follows one. CSGM_ERR_FORMAT: what is no number, no rows. */
 csgm_status csg_heights_from_text(csg_memory *memory, const char *text, size_t length,
                                   csg_heights *out, csg_problem *problem);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Strokes as a heap of simple loops: a rectangle a segment, a disc, kite or triangle a corner and
- * cap. What overlaps is left to the union of polygons.h. See polylines.h.
+ * Strokes as a heap of simple loops: a rectangle per segment, a disc, kite or triangle per corner
+ * and cap. What overlaps is left to the union of polygons.h. See polylines.h.
  */
 #include "outline/polylines.h"
 

@@ -94,7 +94,7 @@ static void put_operation(printer *out, uint32_t index)
     put(out, ")");
 }
 
-/* named[] of each step; `uses` and `depth` are work of one uint32_t a step. */
+/* named[] of each step; `uses` and `depth` are work of one uint32_t per step. */
 static void choose_names(printer *out, uint32_t count, uint32_t *uses, uint32_t *depth)
 {
     memset(uses, 0, count * sizeof *uses);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Shapes as formulas, a few dozen steps a side: regions of the plane by the distance to their
+ * Shapes as formulas, a few dozen steps per side: regions of the plane by the distance to their
  * segments and the parity of a ray's crossings; convex polyhedra by their planes, and outside by
  * the distance to their triangles.
  */

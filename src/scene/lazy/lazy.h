@@ -66,7 +66,8 @@ uint64_t csg_lazy_node_count(const csg_lazy *lazy);
 /* The field's Lipschitz constant, for steps of |value| / lambda. */
 double csg_lazy_lipschitz(const csg_lazy *lazy);
 
-/* Bytes of scratch that csg_lazy_eval needs, aligned to 16; one a thread, nothing is kept in it. */
+/* Bytes of scratch that csg_lazy_eval needs, aligned to 16; one per thread, nothing is kept in it.
+ */
 size_t csg_lazy_scratch_bytes(const csg_lazy *lazy);
 /* Value and gradient at p. Where a bound cuts the value, the gradient is the bound's. Adds to
  * *counts unless that is NULL. Cannot fail; any number of threads may evaluate at once. */

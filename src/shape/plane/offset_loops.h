@@ -14,8 +14,8 @@ typedef struct csg_offset_sink {
     void *user;
 } csg_offset_sink;
 
-/* `by` in steps; round corners turn by `turn` radians a point, other corners get one (MITER) or two
- * points. False: the sink had no more room. */
+/* `by` in steps; round corners turn by `turn` radians per point, other corners get one (MITER) or
+ * two points. False: the sink had no more room. */
 bool csg_offset_loops(const csg_clipper_loops *loops, double by, csg_corner corner, double turn,
                       csg_offset_sink sink);
 

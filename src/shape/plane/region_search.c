@@ -3,7 +3,7 @@
  */
 #include "shape/plane/region_tree.h"
 
-/* Four children a level, three of which wait: enough for 4^21 leaves. */
+/* Four children per level, three of which wait: enough for 4^21 leaves. */
 enum { MOST_WAITING = 64 };
 
 static uint32_t cell_along(double at, double low, double per_length, uint32_t count)

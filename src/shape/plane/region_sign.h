@@ -18,7 +18,7 @@ typedef struct csg_segment_sides {
     uint8_t along, from, to; /* csg_side: nearest between the ends; nearest to an end */
 } csg_segment_sides;
 
-/* Fills `sides`, one a segment. */
+/* Fills `sides`, one per segment. */
 void csg_region_sides(const csg_segment_tree *tree, csg_segment_sides *sides);
 
 #endif

@@ -18,7 +18,7 @@ static const size_t POINTS_MOST = 4000000;
 typedef struct hull_run {
     csg_memory *memory;
     qhT *qh;
-    double *coordinates; /* 3 a point, in the frame */
+    double *coordinates; /* 3 per point, in the frame */
     uint32_t *number;    /* per point: its number in the result + 1, 0 = inside */
     size_t count;
     FILE *nowhere;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A tree of boxes over a closed chain of triangles, four children a node: the nearest triangle, and
- * how often a ray crosses the chain. Both are functions of the point alone: the nearest is the
+ * A tree of boxes over a closed chain of triangles, four children per node: the nearest triangle,
+ * and how often a ray crosses the chain. Both are functions of the point alone: the nearest is the
  * least by distance as computed, then by place, whatever was tried first; crossings are exact, by
  * determinants of integers with points on edges moved aside by less than anything (Edelsbrunner and
  * Muecke 1990).

@@ -2,7 +2,7 @@
  * Is a triangle's side clear? A closed chain may cross itself, and shells may overlap; the distance
  * is then that to triangles inside the solid too, on both sides of which the field is positive.
  * Where a triangle crosses nothing, the winding number is one all along each of its sides, so one
- * ray a side tells. What is called crossing here may be a touch, never the other way round.
+ * ray per side tells. What is called crossing here may be a touch, never the other way round.
  */
 #include "shape/polyhedra/tree.h"
 

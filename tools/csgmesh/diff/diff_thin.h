@@ -10,9 +10,9 @@
 typedef struct diff_thin {
     uint32_t vertex_count;
     uint64_t triangle_count;
-    uint16_t *positions; /* 3 a vertex: 0 is the box's lower corner, 65535 its upper */
+    uint16_t *positions; /* 3 per vertex: 0 is the box's lower corner, 65535 its upper */
     uint16_t *heat;      /* 1 a vertex: distance, 65535 is the largest; NULL: not measured */
-    uint8_t *colors;     /* 3 a vertex; NULL: none */
+    uint8_t *colors;     /* 3 per vertex; NULL: none */
     uint32_t *indices;
     double cell; /* vertices were joined within cells of this size; 0: all are there */
 } diff_thin;

@@ -167,7 +167,7 @@ static int read_evaluator(cli_app *app, csgm_render_options *out)
     if (options->given[CLI_OPTION_bounds])
         return cli_usage_error(app, NULL, "--evaluator lazy draws the whole solid: no --bounds");
     if (!options->given[CLI_OPTION_samples])
-        out->samples = 1; /* counts are of one ray a pixel unless asked otherwise */
+        out->samples = 1; /* counts are of one ray per pixel unless asked otherwise */
     return CLI_DONE;
 }
 

@@ -4,7 +4,7 @@
 set -u
 work=${RUNNER_TEMP:-/tmp}
 : >"$work/csgmesh-report.md"
-# shellcheck disable=SC2086 # one word an option, one a scene
+# shellcheck disable=SC2086 # each option and each scene is one word
 "$CSGMESH" batch $MANIFEST -d "$DIRECTORY" --junit "$work/csgmesh-batch.xml" $OPTIONS
 status=$?
 echo "$status" >"$work/csgmesh-mesh-status"
