@@ -18,7 +18,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "field/kernels/formulas.h"
+#include "base/select.h"
 
 /* ---- helpers ------------------------------------------------------------------------------- */
 

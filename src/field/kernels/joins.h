@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-#include "field/kernels/formulas.h"
 #include "field/kernels/kernel.h"
+#include "scene/operators/blends.h"
 
 #define EACH_FOLD(X)                                                                               \
     X(HYPERBOLA, hyperbola)                                                                        \

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The kernels: a tape over batches of points. This file is built once per instruction set (see
  * meson.build); the loops over points are plain C that the compiler turns into vectors, the
- * formulas are in formulas.h, the leaves in leaf_kernel.c, the joins in joins.h and rule_kernel.c.
- * CSG_KERNEL names the build.
+ * formulas are in formulas.h and scene/operators/blends.h, the leaves in leaf_kernel.c, the joins
+ * in joins.h and rule_kernel.c. CSG_KERNEL names the build.
  *
  * Three walks over a tape, all on a stack of slots:
  *   values     a slot is one array
@@ -15,11 +15,11 @@
 #include <string.h>
 
 #include "field/kernels/formula_kernel.h"
-#include "field/kernels/formulas.h"
 #include "field/kernels/joins.h"
 #include "field/kernels/leaf_kernel.h"
 #include "field/kernels/rule_kernel.h"
 #include "field/kernels/smooth_kernel.h"
+#include "scene/operators/blends.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)

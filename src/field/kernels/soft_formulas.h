@@ -10,6 +10,7 @@
 #ifndef CSG_FIELD_SOFT_FORMULAS_H
 #define CSG_FIELD_SOFT_FORMULAS_H
 
+#include "field/kernels/formulas.h"
 #include "field/kernels/functions.h"
 #include "field/tape.h"
 

@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "field/kernels/formulas.h"
 #include "field/kernels/functions.h"
 
 #define HALF_TURN 3.14159274f

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/kernels/formulas.h"
 #include "field/point.h"
+#include "scene/operators/blends.h"
 
 /* What one operand can be in the ball. */
 typedef struct operand {
