@@ -5,73 +5,50 @@
  */
 #include <math.h>
 
+#include "base/table.h"
 #include "io/text/scan.h"
 
-/* ---- welding: open addressing over the vertices of the builder -------------------- */
+/* ---- welding ---------------------------------------------------------------------- */
 
 typedef struct weld {
     csg_mesh_builder *builder;
-    uint32_t *slots;   /* vertex + 1, 0 = free */
-    size_t slot_count; /* a power of two, or 0 */
+    csg_table table; /* of its vertices */
 } weld;
 
-static uint32_t hash_position(const double *p)
+static uint64_t hash_position(const double *p)
 {
-    uint64_t h = 0x9E3779B97F4A7C15u;
+    uint64_t hash = 0;
     for (int k = 0; k < 3; k++) {
         double canonical = p[k] + 0.0; /* -0 and 0 are one place */
         uint64_t bits;
         memcpy(&bits, &canonical, sizeof bits);
-        h = (h ^ bits) * 0xBF58476D1CE4E5B9u;
-        h ^= h >> 31;
+        hash = csg_hash_word(hash, bits);
     }
-    return (uint32_t)(h ^ h >> 32);
+    return hash;
 }
 
-static void insert(weld *w, uint32_t vertex)
+static uint64_t hash_vertex(const void *positions, uint32_t vertex)
 {
-    size_t at = hash_position(w->builder->positions + 3 * (size_t)vertex) & (w->slot_count - 1);
-    while (w->slots[at])
-        at = (at + 1) & (w->slot_count - 1);
-    w->slots[at] = vertex + 1;
-}
-
-static bool grow(weld *w)
-{
-    size_t count = w->slot_count ? 2 * w->slot_count : 1024;
-    csg_memory *memory = &w->builder->context->memory;
-    uint32_t *slots = csg_memory_alloc(memory, count * sizeof *slots);
-    if (!slots) {
-        w->builder->failed = true;
-        return false;
-    }
-    memset(slots, 0, count * sizeof *slots);
-    csg_memory_release(memory, w->slots, w->slot_count * sizeof *slots);
-    w->slots = slots;
-    w->slot_count = count;
-    for (size_t i = 0; i < w->builder->vertex_count; i++)
-        insert(w, (uint32_t)i);
-    return true;
+    return hash_position((const double *)positions + 3 * (size_t)vertex);
 }
 
 static bool find_or_add(weld *w, const double *p, uint32_t *vertex)
 {
     csg_mesh_builder *b = w->builder;
-    if (2 * b->vertex_count >= w->slot_count && !grow(w))
+    if (!csg_table_reserve(&w->table, b->vertex_count + 1, hash_vertex, b->positions)) {
+        b->failed = true;
         return false;
-    size_t at = hash_position(p) & (w->slot_count - 1);
-    for (; w->slots[at]; at = (at + 1) & (w->slot_count - 1)) {
-        const double *q = b->positions + 3 * (size_t)(w->slots[at] - 1);
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
-            *vertex = w->slots[at] - 1;
+    }
+    size_t slot;
+    for (*vertex = csg_table_first(&w->table, hash_position(p), &slot); *vertex != CSG_TABLE_NONE;
+         *vertex = csg_table_next(&w->table, &slot)) {
+        const double *q = b->positions + 3 * (size_t)*vertex;
+        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
             return true;
-        }
     }
     *vertex = (uint32_t)b->vertex_count;
-    if (!csg_builder_vertex(b, p, NULL, NULL))
-        return false;
-    w->slots[at] = *vertex + 1;
-    return true;
+    csg_table_put(&w->table, slot, *vertex);
+    return csg_builder_vertex(b, p, NULL, NULL);
 }
 
 static bool add_facet(weld *w, double corners[3][3])
@@ -181,7 +158,7 @@ static csgm_status read_ascii(csg_input *input, weld *w)
 
 csgm_status csg_stl_read(csg_input *input, csg_mesh_builder *builder)
 {
-    weld w = {.builder = builder};
+    weld w = {.builder = builder, .table = {.memory = &builder->context->memory}};
     csgm_status status;
     uint64_t size = input->size_bytes;
     bool text = size >= 5 && memcmp(input->bytes, "solid", 5) == 0;
@@ -193,6 +170,6 @@ csgm_status csg_stl_read(csg_input *input, csg_mesh_builder *builder)
     else
         status =
             csg_read_broken(input, 0, "an STL file begins with 'solid' or has 84 bytes at least");
-    csg_memory_release(&builder->context->memory, w.slots, w.slot_count * sizeof *w.slots);
+    csg_table_release(&w.table);
     return status;
 }

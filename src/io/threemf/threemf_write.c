@@ -4,6 +4,7 @@
  * corner by corner; with materials, each colour has its metallic and roughness beside it. Text is
  * made and compressed piece by piece, by all threads. Normals are not kept: the format has none.
  */
+#include "base/table.h"
 #include "io/parts.h"
 #include "io/reader.h"
 #include "io/threemf/zip_write.h"
@@ -17,8 +18,9 @@ enum { COLORS_ID = 1, DISPLAY_ID = 2, FIRST_OBJECT_ID = 3 };
 /* The distinct looks (colour, metallic, roughness), and each vertex's among them. */
 typedef struct palette {
     uint64_t *looks;
-    uint32_t *of_vertex, *slots; /* slots: hashed numbers of looks, 0 = free, else 1 + number */
-    size_t look_count, look_room, slot_count;
+    uint32_t *of_vertex;
+    csg_table table; /* of the looks */
+    size_t look_count, look_room;
 } palette;
 
 typedef struct model {
@@ -44,54 +46,43 @@ static uint64_t look_of(const csgm_mesh_view *mesh, uint64_t vertex)
     return roughness << 48 | metallic << 32 | csg_load_u32(color);
 }
 
-static size_t slot_of(const palette *p, uint64_t look)
+static uint64_t hash_look(const void *looks, uint32_t number)
 {
-    size_t at = (size_t)((look * UINT64_C(0x9E3779B97F4A7C15)) >> 20) & (p->slot_count - 1);
-    while (p->slots[at] && p->looks[p->slots[at] - 1] != look)
-        at = (at + 1) & (p->slot_count - 1);
-    return at;
+    return ((const uint64_t *)looks)[number];
 }
 
-/* Twice the slots, or the first ones. */
-static bool grow_slots(palette *p, csg_memory *memory)
+static bool number_look(palette *p, csg_memory *memory, uint64_t look, uint32_t *number)
 {
-    size_t count = p->slot_count ? 2 * p->slot_count : 1024;
-    uint32_t *slots = csg_memory_alloc(memory, count * sizeof *slots);
-    if (!slots)
+    if (!csg_table_reserve(&p->table, p->look_count + 1, hash_look, p->looks) ||
+        !csg_memory_reserve(memory, (void **)&p->looks, &p->look_room, p->look_count + 1,
+                            sizeof *p->looks))
         return false;
-    memset(slots, 0, count * sizeof *slots);
-    csg_memory_release(memory, p->slots, p->slot_count * sizeof *slots);
-    p->slots = slots;
-    p->slot_count = count;
-    for (size_t i = 0; i < p->look_count; i++)
-        p->slots[slot_of(p, p->looks[i])] = (uint32_t)i + 1;
+    size_t slot;
+    *number = csg_table_first(&p->table, look, &slot);
+    while (*number != CSG_TABLE_NONE && p->looks[*number] != look)
+        *number = csg_table_next(&p->table, &slot);
+    if (*number == CSG_TABLE_NONE) {
+        *number = (uint32_t)p->look_count++;
+        p->looks[*number] = look;
+        csg_table_put(&p->table, slot, *number);
+    }
     return true;
 }
 
 static bool collect_looks(palette *p, csg_memory *memory, const csgm_mesh_view *mesh)
 {
+    csg_table_init(&p->table, memory);
     p->of_vertex = csg_memory_alloc(memory, mesh->vertex_count * sizeof *p->of_vertex);
-    for (uint64_t i = 0; p->of_vertex && i < mesh->vertex_count; i++) {
-        uint64_t look = look_of(mesh, i);
-        if (2 * p->look_count >= p->slot_count && !grow_slots(p, memory))
+    for (uint64_t i = 0; p->of_vertex && i < mesh->vertex_count; i++)
+        if (!number_look(p, memory, look_of(mesh, i), &p->of_vertex[i]))
             return false;
-        size_t slot = slot_of(p, look);
-        if (!p->slots[slot]) {
-            if (!csg_memory_reserve(memory, (void **)&p->looks, &p->look_room, p->look_count + 1,
-                                    sizeof *p->looks))
-                return false;
-            p->looks[p->look_count++] = look;
-            p->slots[slot] = (uint32_t)p->look_count;
-        }
-        p->of_vertex[i] = p->slots[slot] - 1;
-    }
     return p->of_vertex != NULL;
 }
 
 static void release_palette(palette *p, csg_memory *memory, uint64_t vertex_count)
 {
     csg_memory_release(memory, p->looks, p->look_room * sizeof *p->looks);
-    csg_memory_release(memory, p->slots, p->slot_count * sizeof *p->slots);
+    csg_table_release(&p->table);
     csg_memory_release(memory, p->of_vertex, vertex_count * sizeof *p->of_vertex);
 }
 

@@ -1,53 +1,26 @@
 /* SPDX-License-Identifier: MIT
- * Interned names and scope members; see symbols.h. Two open-addressing tables at half load.
+ * Interned names and scope members; see symbols.h.
  */
 #include "lang/parse/symbols.h"
 
 #include <string.h>
 
-static uint32_t hash_of(const char *text, size_t length)
-{
-    uint32_t hash = 2166136261u; /* FNV-1a */
-    for (size_t i = 0; i < length; i++)
-        hash = (hash ^ (unsigned char)text[i]) * 16777619u;
-    return hash;
-}
-
 void csg_symbols_init(csg_symbols *symbols, csg_memory *memory, csg_arena *arena)
 {
-    *symbols = (csg_symbols){.memory = memory, .arena = arena};
+    *symbols = (csg_symbols){.memory = memory, .arena = arena, .table = {.memory = memory}};
 }
 
 void csg_symbols_reset(csg_symbols *symbols)
 {
     csg_memory_release(symbols->memory, symbols->entries,
                        symbols->capacity * sizeof *symbols->entries);
-    csg_memory_release(symbols->memory, symbols->slots,
-                       symbols->slot_count * sizeof *symbols->slots);
+    csg_table_release(&symbols->table);
     csg_symbols_init(symbols, symbols->memory, symbols->arena);
 }
 
-static void place(csg_symbols *symbols, csg_symbol symbol)
+static uint64_t hash_symbol(const void *entries, uint32_t symbol)
 {
-    size_t mask = symbols->slot_count - 1, at = symbols->entries[symbol].hash & mask;
-    while (symbols->slots[at])
-        at = (at + 1) & mask;
-    symbols->slots[at] = symbol;
-}
-
-static bool grow_slots(csg_symbols *symbols)
-{
-    size_t count = symbols->slot_count ? symbols->slot_count * 2 : 1024;
-    csg_symbol *slots = csg_memory_alloc(symbols->memory, count * sizeof *slots);
-    if (!slots)
-        return false;
-    memset(slots, 0, count * sizeof *slots);
-    csg_memory_release(symbols->memory, symbols->slots, symbols->slot_count * sizeof *slots);
-    symbols->slots = slots;
-    symbols->slot_count = count;
-    for (size_t i = 1; i < symbols->count; i++)
-        place(symbols, (csg_symbol)i);
-    return true;
+    return ((const csg_symbol_entry *)entries)[symbol].hash;
 }
 
 static csg_symbol append(csg_symbols *symbols, const char *name, size_t length, uint32_t hash)
@@ -73,19 +46,20 @@ static csg_symbol append(csg_symbols *symbols, const char *name, size_t length, 
 
 csg_symbol csg_symbol_intern(csg_symbols *symbols, const char *name, size_t length)
 {
-    uint32_t hash = hash_of(name, length);
-    if (symbols->count * 2 >= symbols->slot_count && !grow_slots(symbols))
+    uint32_t hash = (uint32_t)csg_hash_bytes(CSG_HASH_START, name, length);
+    if (!csg_table_reserve(&symbols->table, symbols->count + 1, hash_symbol, symbols->entries))
         return 0;
-    size_t mask = symbols->slot_count - 1;
-    for (size_t at = hash & mask; symbols->slots[at]; at = (at + 1) & mask) {
-        const csg_symbol_entry *entry = &symbols->entries[symbols->slots[at]];
+    size_t slot;
+    for (csg_symbol symbol = csg_table_first(&symbols->table, hash, &slot);
+         symbol != CSG_TABLE_NONE; symbol = csg_table_next(&symbols->table, &slot)) {
+        const csg_symbol_entry *entry = &symbols->entries[symbol];
         if (entry->hash == hash && entry->length == length &&
             memcmp(entry->name, name, length) == 0)
-            return symbols->slots[at];
+            return symbol;
     }
     csg_symbol symbol = append(symbols, name, length, hash);
     if (symbol)
-        place(symbols, symbol);
+        csg_table_put(&symbols->table, slot, symbol);
     return symbol;
 }
 
@@ -117,62 +91,48 @@ uint32_t csg_edit_distance(const char *a, const char *b, uint32_t most)
 
 void csg_members_init(csg_members *members, csg_memory *memory)
 {
-    *members = (csg_members){.memory = memory};
+    *members = (csg_members){.memory = memory, .table = {.memory = memory}};
 }
 
 void csg_members_reset(csg_members *members)
 {
-    csg_memory_release(members->memory, members->slots,
-                       members->slot_count * sizeof *members->slots);
+    csg_table_release(&members->table);
+    csg_memory_release(members->memory, members->items, members->capacity * sizeof *members->items);
     csg_members_init(members, members->memory);
 }
 
 static uint64_t key_of(uint32_t scope, csg_member_kind kind, csg_symbol name)
 {
-    return ((uint64_t)scope << 32 | (uint64_t)name << 2 | (uint64_t)kind) + 1;
+    return (uint64_t)scope << 32 | (uint64_t)name << 2 | (uint64_t)kind;
 }
 
-static size_t slot_of(const csg_members *members, uint64_t key)
+static uint64_t hash_member(const void *items, uint32_t number)
 {
-    uint64_t hash = key * 0x9E3779B97F4A7C15u;
-    size_t mask = members->slot_count - 1, at = (size_t)(hash >> 32) & mask;
-    while (members->slots[at].key && members->slots[at].key != key)
-        at = (at + 1) & mask;
-    return at;
-}
-
-static bool grow_members(csg_members *members)
-{
-    csg_members grown = {.memory = members->memory, .count = members->count};
-    grown.slot_count = members->slot_count ? members->slot_count * 2 : 256;
-    grown.slots = csg_memory_alloc(members->memory, grown.slot_count * sizeof *grown.slots);
-    if (!grown.slots)
-        return false;
-    memset(grown.slots, 0, grown.slot_count * sizeof *grown.slots);
-    for (size_t i = 0; i < members->slot_count; i++)
-        if (members->slots[i].key)
-            grown.slots[slot_of(&grown, members->slots[i].key)] = members->slots[i];
-    csg_members_reset(members);
-    *members = grown;
-    return true;
+    return ((const csg_member *)items)[number].key;
 }
 
 bool csg_members_add(csg_members *members, uint32_t scope, csg_member_kind kind, csg_symbol name,
                      uint32_t index)
 {
-    if (members->count * 2 >= members->slot_count && !grow_members(members))
+    if (!csg_table_reserve(&members->table, members->count + 1, hash_member, members->items) ||
+        !csg_memory_reserve(members->memory, (void **)&members->items, &members->capacity,
+                            members->count + 1, sizeof *members->items))
         return false;
     uint64_t key = key_of(scope, kind, name);
-    members->slots[slot_of(members, key)] = (csg_member){key, index};
-    members->count++;
+    members->items[members->count] = (csg_member){key, index};
+    csg_table_add(&members->table, key, (uint32_t)members->count++);
     return true;
 }
 
 uint32_t csg_members_find(const csg_members *members, uint32_t scope, csg_member_kind kind,
                           csg_symbol name)
 {
-    if (members->slot_count == 0)
+    if (members->count == 0)
         return UINT32_MAX;
-    const csg_member *member = &members->slots[slot_of(members, key_of(scope, kind, name))];
-    return member->key ? member->index : UINT32_MAX;
+    size_t slot;
+    uint64_t key = key_of(scope, kind, name);
+    uint32_t found = csg_table_first(&members->table, key, &slot);
+    while (found != CSG_TABLE_NONE && members->items[found].key != key)
+        found = csg_table_next(&members->table, &slot);
+    return found != CSG_TABLE_NONE ? members->items[found].index : UINT32_MAX;
 }

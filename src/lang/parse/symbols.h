@@ -5,7 +5,7 @@
 #ifndef CSG_LANG_SYMBOLS_H
 #define CSG_LANG_SYMBOLS_H
 
-#include "base/memory.h"
+#include "base/table.h"
 
 typedef uint32_t csg_symbol; /* 0 = no name */
 
@@ -25,8 +25,7 @@ typedef struct csg_symbols {
     csg_arena *arena;
     csg_symbol_entry *entries; /* entries[0] is the empty name */
     size_t count, capacity;
-    csg_symbol *slots; /* open addressing, 0 = free */
-    size_t slot_count;
+    csg_table table; /* of the entries but for the first */
 } csg_symbols;
 
 void csg_symbols_init(csg_symbols *symbols, csg_memory *memory, csg_arena *arena);
@@ -50,14 +49,15 @@ typedef enum csg_member_kind {
 } csg_member_kind;
 
 typedef struct csg_member {
-    uint64_t key; /* 0 = free */
+    uint64_t key;
     uint32_t index;
 } csg_member;
 
 typedef struct csg_members {
     csg_memory *memory;
-    csg_member *slots;
-    size_t count, slot_count;
+    csg_member *items;
+    size_t count, capacity;
+    csg_table table; /* of the items */
 } csg_members;
 
 void csg_members_init(csg_members *members, csg_memory *memory);

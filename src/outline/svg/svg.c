@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "base/table.h"
 #include "outline/svg/svg_shape.h"
 #include "outline/svg/svg_value.h"
 #include "shape/plane/polygons.h"
@@ -25,8 +26,7 @@ typedef struct drawing {
     csg_xml xml;
     csg_polylines lines; /* of the shape at work */
     csg_outline loops;   /* its area, before it is clean */
-    uint32_t *ids;       /* a hash table of elements, id_mask + 1 places */
-    uint32_t id_mask;
+    csg_table ids;       /* elements */
     size_t visits, depth;
     uint32_t used[MOST_USES]; /* the targets of the uses that are being drawn */
     size_t used_count;
@@ -162,43 +162,27 @@ static void draw_viewport(drawing *d, uint32_t e, const place *p, double width, 
     draw_children(d, e, &inner);
 }
 
-static uint32_t hash_of(const char *id)
+/* The element of this id, or CSG_TABLE_NONE and the slot to put one at. */
+static uint32_t find_id(const drawing *d, const char *id, size_t *slot)
 {
-    uint32_t hash = 2166136261u; /* FNV-1a */
-    for (; *id; id++)
-        hash = (hash ^ (uint8_t)*id) * 16777619u;
-    return hash;
-}
-
-static uint32_t find_id(const drawing *d, const char *id)
-{
-    for (uint32_t slot = hash_of(id); d->ids; slot++) {
-        uint32_t e = d->ids[slot & d->id_mask];
-        if (e == CSG_XML_NONE || strcmp(csg_xml_get(&d->xml, e, "id"), id) == 0)
-            return e;
-    }
-    return CSG_XML_NONE;
+    uint64_t hash = csg_hash_bytes(CSG_HASH_START, id, strlen(id));
+    uint32_t e = csg_table_first(&d->ids, hash, slot);
+    while (e != CSG_TABLE_NONE && strcmp(csg_xml_get(&d->xml, e, "id"), id) != 0)
+        e = csg_table_next(&d->ids, slot);
+    return e;
 }
 
 /* Elements by their ids; of equal ids the first counts. */
 static bool make_ids(drawing *d)
 {
-    size_t size = 16;
-    while (size < 2 * d->xml.count)
-        size *= 2;
-    d->id_mask = (uint32_t)(size - 1);
-    d->ids = csg_memory_alloc(d->xml.memory, size * sizeof *d->ids);
-    if (!d->ids)
+    csg_table_init(&d->ids, d->xml.memory);
+    if (!csg_table_reserve(&d->ids, d->xml.count, NULL, NULL))
         return false;
-    memset(d->ids, 0xff, size * sizeof *d->ids); /* CSG_XML_NONE */
     for (uint32_t e = 0; e < d->xml.count; e++) {
+        size_t slot;
         const char *id = csg_xml_get(&d->xml, e, "id");
-        uint32_t slot = id ? hash_of(id) : 0;
-        if (!id || find_id(d, id) != CSG_XML_NONE)
-            continue;
-        while (d->ids[slot & d->id_mask] != CSG_XML_NONE)
-            slot++;
-        d->ids[slot & d->id_mask] = e;
+        if (id && find_id(d, id, &slot) == CSG_TABLE_NONE)
+            csg_table_put(&d->ids, slot, e);
     }
     return true;
 }
@@ -221,8 +205,9 @@ static void draw_use(drawing *d, uint32_t e, const place *p)
 {
     const csg_xml *xml = &d->xml;
     const char *href = csg_xml_get(xml, e, "href");
-    uint32_t target = href && *href == '#' ? find_id(d, href + 1) : CSG_XML_NONE;
-    if (target == CSG_XML_NONE || is_in_use(d, target, e)) {
+    size_t slot;
+    uint32_t target = href && *href == '#' ? find_id(d, href + 1, &slot) : CSG_TABLE_NONE;
+    if (target == CSG_TABLE_NONE || is_in_use(d, target, e)) {
         d->report->unresolved++;
         return;
     }
@@ -403,8 +388,7 @@ static csgm_status draw_all(drawing *d, csg_memory *memory)
         draw_document(d);
     else
         out_of_memory(d);
-    if (d->ids)
-        csg_memory_release(memory, d->ids, ((size_t)d->id_mask + 1) * sizeof *d->ids);
+    csg_table_release(&d->ids);
     csg_polylines_release(&d->lines);
     csg_outline_release(&d->loops);
     if (d->status == CSGM_ERR_LIMIT)

@@ -30,29 +30,25 @@ uint32_t csg_formula_op_arity(csg_formula_op op)
 
 void csg_formula_begin(csg_formula_builder *builder, csg_memory *memory)
 {
-    *builder = (csg_formula_builder){.memory = memory, .most = CSG_LONGEST_FORMULA};
+    *builder = (csg_formula_builder){
+        .memory = memory, .table = {.memory = memory}, .most = CSG_LONGEST_FORMULA};
 }
 
 void csg_formula_end(csg_formula_builder *builder)
 {
     csg_memory_release(builder->memory, builder->steps, builder->capacity * sizeof *builder->steps);
-    csg_memory_release(builder->memory, builder->table,
-                       builder->table_size * sizeof *builder->table);
-    *builder = (csg_formula_builder){.memory = builder->memory};
+    csg_table_release(&builder->table);
+    *builder = (csg_formula_builder){.memory = builder->memory, .table = builder->table};
 }
 
 /* ---- equal steps are one -------------------------------------------------------------------- */
 
-static uint64_t hash_step(const csg_formula_step *step)
+static uint64_t hash_step(const void *steps, uint32_t number)
 {
-    uint64_t bits, hash = step->op;
+    const csg_formula_step *step = (const csg_formula_step *)steps + number;
+    uint64_t bits;
     memcpy(&bits, &step->constant, sizeof bits);
-    const uint64_t parts[] = {step->a, step->b, bits};
-    for (int i = 0; i < 3; i++) {
-        hash = (hash ^ parts[i]) * 0x9E3779B97F4A7C15u;
-        hash ^= hash >> 29;
-    }
-    return hash;
+    return csg_hash_word(csg_hash_word(csg_hash_word(step->op, step->a), step->b), bits);
 }
 
 static bool same_step(const csg_formula_step *a, const csg_formula_step *b)
@@ -61,40 +57,24 @@ static bool same_step(const csg_formula_step *a, const csg_formula_step *b)
            !memcmp(&a->constant, &b->constant, sizeof a->constant);
 }
 
-/* The table's place of this step, or the free one for it. */
-static uint32_t *find_place(const csg_formula_builder *builder, const csg_formula_step *step)
+/* The number of this step, or CSG_TABLE_NONE and the slot to put one at. */
+static uint32_t find_step(const csg_formula_builder *builder, const csg_formula_step *step,
+                          size_t *slot)
 {
-    size_t mask = builder->table_size - 1, i = hash_step(step) & mask;
-    while (builder->table[i] && !same_step(&builder->steps[builder->table[i] - 1], step))
-        i = (i + 1) & mask;
-    return &builder->table[i];
-}
-
-static bool grow_table(csg_formula_builder *builder)
-{
-    if (2 * (builder->count + 1) <= builder->table_size)
-        return true;
-    csg_formula_builder grown = *builder;
-    grown.table_size = builder->table_size ? 4 * builder->table_size : 256;
-    grown.table = csg_memory_alloc(builder->memory, grown.table_size * sizeof *grown.table);
-    if (!grown.table)
-        return false;
-    memset(grown.table, 0, grown.table_size * sizeof *grown.table);
-    for (size_t i = 0; i < builder->count; i++)
-        *find_place(&grown, &builder->steps[i]) = (uint32_t)i + 1;
-    csg_memory_release(builder->memory, builder->table,
-                       builder->table_size * sizeof *builder->table);
-    *builder = grown;
-    return true;
+    uint32_t known = csg_table_first(&builder->table, hash_step(step, 0), slot);
+    while (known != CSG_TABLE_NONE && !same_step(&builder->steps[known], step))
+        known = csg_table_next(&builder->table, slot);
+    return known;
 }
 
 static csg_formula_id append(csg_formula_builder *builder, csg_formula_step step)
 {
-    if (!grow_table(builder))
+    if (!csg_table_reserve(&builder->table, builder->count + 1, hash_step, builder->steps))
         return CSG_FORMULA_NONE;
-    uint32_t *place = find_place(builder, &step);
-    if (*place)
-        return *place - 1;
+    size_t slot;
+    uint32_t known = find_step(builder, &step, &slot);
+    if (known != CSG_TABLE_NONE)
+        return known;
     if (builder->count >= builder->most) {
         builder->too_long = true;
         return CSG_FORMULA_NONE;
@@ -105,7 +85,8 @@ static csg_formula_id append(csg_formula_builder *builder, csg_formula_step step
         return CSG_FORMULA_NONE;
     builder->steps = steps;
     builder->steps[builder->count] = step;
-    return *place = (uint32_t)++builder->count, *place - 1;
+    csg_table_put(&builder->table, slot, (uint32_t)builder->count);
+    return (uint32_t)builder->count++;
 }
 
 csg_formula_id csg_formula_constant(csg_formula_builder *builder, double value)
@@ -209,9 +190,9 @@ static csg_formula_id apply_binary(csg_formula_builder *builder, csg_formula_op 
                     op == CSG_FORMULA_MAX;
     if (commutes && left)
         return append(builder, mirrored);
-    if (commutes && builder->table_size && *find_place(builder, &mirrored))
-        return *find_place(builder, &mirrored) - 1;
-    return append(builder, step);
+    size_t slot;
+    uint32_t known = commutes ? find_step(builder, &mirrored, &slot) : CSG_TABLE_NONE;
+    return known != CSG_TABLE_NONE ? known : append(builder, step);
 }
 
 csg_formula_id csg_formula_apply(csg_formula_builder *builder, csg_formula_op op, csg_formula_id a,

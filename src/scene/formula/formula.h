@@ -11,7 +11,7 @@
 #define CSG_SCENE_FORMULA_H
 
 #include "base/geometry.h"
-#include "base/memory.h"
+#include "base/table.h"
 
 typedef enum csg_formula_op {
 #define CSG_FORMULA_OP(NAME, name, arity) CSG_FORMULA_##NAME,
@@ -68,8 +68,8 @@ typedef uint32_t csg_formula_id;
 typedef struct csg_formula_builder {
     csg_memory *memory;
     csg_formula_step *steps;
-    uint32_t *table; /* open addressing: step + 1 */
-    size_t count, capacity, table_size;
+    csg_table table; /* of the steps */
+    size_t count, capacity;
     size_t most;   /* steps: CSG_LONGEST_FORMULA */
     bool too_long; /* NONE was returned for CSG_LONGEST_FORMULA, not for memory */
 } csg_formula_builder;

@@ -19,15 +19,16 @@ typedef struct word {
 } word;
 
 typedef struct entry {
-    word name; /* length 0: free */
+    word name;
     csg_term term;
 } entry;
 
 typedef struct reader {
     csg_terms *t;
     csg_vm_problem *problem;
-    entry *names; /* open addressing */
+    entry *names;
     size_t name_count, name_room;
+    csg_table table; /* of the names */
     csgm_status status;
 } reader;
 
@@ -52,43 +53,48 @@ static int shown(word w)
 /* ---- names ------------------------------------------------------------------------------------
  */
 
-static entry *find_name(const reader *r, word name)
+static uint64_t hash_name(const void *names, uint32_t number)
 {
-    uint64_t hash = 0xCBF29CE484222325u;
-    for (size_t i = 0; i < name.length; i++)
-        hash = (hash ^ (unsigned char)name.text[i]) * 0x100000001B3u;
-    size_t mask = r->name_room - 1, i = (hash ^ hash >> 32) & mask;
-    while (r->names[i].name.length && (r->names[i].name.length != name.length ||
-                                       memcmp(r->names[i].name.text, name.text, name.length) != 0))
-        i = (i + 1) & mask;
-    return &r->names[i];
+    const word *name = &((const entry *)names)[number].name;
+    return csg_hash_bytes(CSG_HASH_START, name->text, name->length);
 }
 
-static bool grow_names(reader *r)
+/* The number of this name, or CSG_TABLE_NONE and the slot to put one at. */
+static uint32_t find_name(const reader *r, word name, size_t *slot)
 {
-    if (2 * (r->name_count + 1) <= r->name_room)
-        return true;
-    reader grown = *r;
-    grown.name_room = r->name_room ? 4 * r->name_room : 256;
-    grown.names = csg_memory_alloc(r->t->memory, grown.name_room * sizeof *grown.names);
-    if (!grown.names) {
-        r->status = CSGM_ERR_MEMORY;
-        return false;
+    uint64_t hash = csg_hash_bytes(CSG_HASH_START, name.text, name.length);
+    for (uint32_t i = csg_table_first(&r->table, hash, slot); i != CSG_TABLE_NONE;
+         i = csg_table_next(&r->table, slot)) {
+        word other = r->names[i].name;
+        if (other.length == name.length && memcmp(other.text, name.text, name.length) == 0)
+            return i;
     }
-    memset(grown.names, 0, grown.name_room * sizeof *grown.names);
-    for (size_t i = 0; i < r->name_room; i++)
-        if (r->names[i].name.length)
-            *find_name(&grown, r->names[i].name) = r->names[i];
-    csg_memory_release(r->t->memory, r->names, r->name_room * sizeof *r->names);
-    *r = grown;
-    return true;
+    return CSG_TABLE_NONE;
+}
+
+static void add_name(reader *r, word name, csg_term term)
+{
+    size_t slot;
+    if (!csg_table_reserve(&r->table, r->name_count + 1, hash_name, r->names) ||
+        !csg_memory_reserve(r->t->memory, (void **)&r->names, &r->name_room, r->name_count + 1,
+                            sizeof *r->names)) {
+        r->status = CSGM_ERR_MEMORY;
+        return;
+    }
+    if (find_name(r, name, &slot) != CSG_TABLE_NONE) {
+        fail(r, "a line above is named '%.*s' too", shown(name), name.text);
+        return;
+    }
+    r->names[r->name_count] = (entry){name, term};
+    csg_table_put(&r->table, slot, (uint32_t)r->name_count++);
 }
 
 static csg_term operand(reader *r, word name)
 {
-    const entry *found = r->name_count ? find_name(r, name) : NULL;
-    if (found && found->name.length)
-        return found->term;
+    size_t slot;
+    uint32_t found = r->name_count ? find_name(r, name, &slot) : CSG_TABLE_NONE;
+    if (found != CSG_TABLE_NONE)
+        return r->names[found].term;
     fail(r, "no line above is named '%.*s'", shown(name), name.text);
     return CSG_FORMULA_NONE;
 }
@@ -271,13 +277,7 @@ static void take_line(reader *r, const word *words, size_t count, csg_term *last
             r->status = CSGM_ERR_MEMORY;
         return;
     }
-    if (!grow_names(r))
-        return;
-    entry *place = find_name(r, words[0]);
-    if (place->name.length)
-        fail(r, "a line above is named '%.*s' too", shown(words[0]), words[0].text);
-    *place = (entry){words[0], made};
-    r->name_count++;
+    add_name(r, words[0], made);
     *last = made;
 }
 
@@ -308,7 +308,8 @@ static size_t split(const char *text, size_t length, word *words)
 csgm_status csg_vm_read(csg_terms *terms, const char *text, size_t length, csg_term *result,
                         csg_vm_problem *problem)
 {
-    reader r = {.t = terms, .problem = problem, .status = CSGM_OK};
+    reader r = {
+        .t = terms, .problem = problem, .table = {.memory = terms->memory}, .status = CSGM_OK};
     *problem = (csg_vm_problem){0, ""};
     *result = CSG_FORMULA_NONE;
     for (size_t at = 0; at < length && r.status == CSGM_OK;) {
@@ -321,6 +322,7 @@ csgm_status csg_vm_read(csg_terms *terms, const char *text, size_t length, csg_t
             take_line(&r, words, count, result);
         at += line + 1;
     }
+    csg_table_release(&r.table);
     csg_memory_release(terms->memory, r.names, r.name_room * sizeof *r.names);
     if (r.status != CSGM_OK)
         return r.status;

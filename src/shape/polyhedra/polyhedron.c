@@ -10,6 +10,7 @@
 
 #include <string.h>
 
+#include "base/table.h"
 #include "shape/polyhedra/convex.h"
 #include "shape/polyhedra/repair.h"
 #include "shape/polyhedra/tree.h"
@@ -340,20 +341,12 @@ static bool is_overlapping(const polyhedron *solid)
     return false;
 }
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size_bytes)
-{
-    const uint8_t *at = bytes;
-    for (size_t i = 0; i < size_bytes; i++)
-        hash = (hash ^ at[i]) * 0x100000001B3u; /* FNV-1a */
-    return hash;
-}
-
 static uint64_t hash_triangles(const csg_triangles *triangles)
 {
-    uint64_t hash = 0xCBF29CE484222325u;
+    uint64_t hash = CSG_HASH_START;
     for (size_t i = 0; i < triangles->point_count; i++)
-        hash = hash_bytes(hash, &triangles->points[i], sizeof *triangles->points);
-    return hash_bytes(hash, triangles->corners, triangles->count * sizeof *triangles->corners);
+        hash = csg_hash_bytes(hash, &triangles->points[i], sizeof *triangles->points);
+    return csg_hash_bytes(hash, triangles->corners, triangles->count * sizeof *triangles->corners);
 }
 
 /* Takes the chain's triangles, back in the units of the file. */
