@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * What the language gets from the layers below it (scene/services.h).
+ * What the language gets from the layers below it (lang/services.h).
  */
 #ifndef CSG_API_SERVICES_H
 #define CSG_API_SERVICES_H
 
-#include "scene/services.h"
+#include "lang/services.h"
 
 const csg_services *csg_api_services(void);
 

@@ -12,7 +12,7 @@ typedef struct csg_lang_input {
     const char *text; /* NULL = read path */
     size_t text_length;
     const csgm_scene_options *options;   /* NULL = defaults */
-    const struct csg_services *services; /* scene/services.h; NULL: no meshes, read or made */
+    const struct csg_services *services; /* lang/services.h; NULL: no meshes, read or made */
 } csg_lang_input;
 
 /* Reports what is wrong through context->diags. *out is set only on CSGM_OK. Status: SYNTAX or

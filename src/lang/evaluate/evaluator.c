@@ -384,6 +384,8 @@ static bool intern_symbols(csg_eval *e)
                  {&e->symbol_children_count, "$children"},
                  {&e->symbol_parent_modules, "$parent_modules"},
                  {&e->symbol_fn, "$fn"},
+                 {&e->symbol_fa, "$fa"},
+                 {&e->symbol_fs, "$fs"},
                  {&e->symbol_round, "round"},
                  {&e->symbol_x, "x"},
                  {&e->symbol_y, "y"},

@@ -8,11 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lang/modules/pieces.h"
 #include "lang/parse/loader.h"
+#include "lang/services.h"
 #include "outline/dxf/dxf.h"
 #include "outline/svg/svg.h"
-#include "scene/services.h"
 #include "text/source.h"
 
 /* ---- finding --------------------------------------------------------------------------------- */
@@ -168,11 +167,12 @@ static csgm_status read_dxf(csg_module_call *call, const drawing *d, const csg_b
         origin = csg_argument_vector(call, d->origin, origin, false);
     double scale =
         d->scale == UINT32_MAX ? 1 : csg_argument_number(call, d->scale, 1, CSG_POSITIVE);
+    csg_facet_rule rule = csg_facet_rule_now(call->e);
     const csg_dxf_request request = {.text = bytes->data,
                                      .length = bytes->size,
                                      .tolerance = 0.002,
-                                     .fragments = csg_facets_are_exact(call->e) ? fragments : NULL,
-                                     .fragments_user = call->e,
+                                     .fragments = rule.exact ? fragments : NULL,
+                                     .fragments_user = &rule,
                                      .layer = text_of(call, d->layer),
                                      .origin = {origin.x, origin.y},
                                      .scale = scale,
@@ -268,9 +268,8 @@ static csg_node_id centered(csg_module_call *call, csg_node_id node)
     csg_box box;
     if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node))
         return node;
-    csgm_status status = csg_tight_box(call, node, &box);
-    if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "measure this solid");
+    if (!csg_shape_box(call, node, &box))
+        return csg_shape_empty(call);
     csg_affine by = csg_affine_translate(csg_vec3_scale(csg_box_center(box), -1));
     return csg_shape_moved(call, node, &by);
 }

@@ -8,10 +8,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "lang/services.h"
 #include "shape/plane/crossings.h"
-#include "shape/plane/polygons.h"
-#include "shape/plane/region.h"
-#include "shape/polyhedra/polyhedron.h"
+#include "solid/measure.h"
 
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
@@ -35,65 +34,124 @@ csg_node_id csg_shape_moved(csg_module_call *call, csg_node_id node, const csg_a
                           csg_build_transform(&call->e->builder, by, node, call->statement->where));
 }
 
-csg_node_id csg_shape_failed(csg_module_call *call, csgm_status status, const char *what)
+/* ---- jobs ------------------------------------------------------------------------------------ */
+
+csg_facet_rule csg_facet_rule_now(const csg_eval *e)
+{
+    const csg_symbol names[3] = {e->symbol_fn, e->symbol_fa, e->symbol_fs};
+    double numbers[3] = {0, 12, 2};
+    for (int i = 0; i < 3; i++) {
+        csg_value value = csg_eval_dynamic(e, names[i]);
+        if (value.kind == CSG_VALUE_NUMBER && isfinite(value.as.number))
+            numbers[i] = value.as.number;
+    }
+    return (csg_facet_rule){numbers[0], numbers[1], numbers[2], e->program->exact_facets};
+}
+
+csg_solid_job csg_shape_job(csg_module_call *call)
 {
     csg_eval *e = call->e;
-    if (status == CSGM_ERR_MEMORY)
-        csg_eval_no_memory(e);
-    if (e->stop)
-        return CSG_NODE_NONE;
-    if (call->failed) /* told already */
-        return csg_shape_empty(call);
-    if (status == CSGM_ERR_LIMIT) {
-        csg_eval_report(e, CSG_DIAG_BAD_SHAPE, call->statement->where,
+    uint64_t most = e->context->limits.eval_steps;
+    return (csg_solid_job){.builder = &e->builder,
+                           .memory = e->heap.memory,
+                           .where = call->statement->where,
+                           .tessellate =
+                               e->program->services ? e->program->services->tessellate : NULL,
+                           .most_steps = most > e->steps ? most - e->steps : 0,
+                           .deadline_s = e->program->deadline_s,
+                           .stop = e->stop,
+                           .failed = call->failed};
+}
+
+static void tell_of_failure(csg_module_call *call, const csg_solid_reason *reason)
+{
+    if (reason->status == CSGM_ERR_LIMIT)
+        csg_eval_report(call->e, CSG_DIAG_BAD_SHAPE, call->statement->where,
                         "fewer points, or fewer parts on top of each other, are quicker",
                         "%s(): cannot %s: its outline crosses itself more than %d times, or too "
                         "many of its edges lie side by side",
-                        call->name, what, CSG_MOST_CROSSINGS);
-        return csg_shape_empty(call);
-    }
-    csg_eval_report(e, CSG_DIAG_BAD_SHAPE, call->statement->where,
-                    status == CSGM_ERR_UNSUPPORTED ? "the library for it was missing when this "
-                                                     "program was built: see csgmesh --version"
-                                                   : NULL,
-                    "%s(): cannot %s", call->name, what);
-    return csg_shape_empty(call);
+                        call->name, reason->what, CSG_MOST_CROSSINGS);
+    else
+        csg_eval_report(call->e, CSG_DIAG_BAD_SHAPE, call->statement->where,
+                        reason->status == CSGM_ERR_UNSUPPORTED
+                            ? "the library for it was missing when this "
+                              "program was built: see csgmesh --version"
+                            : NULL,
+                        "%s(): cannot %s", call->name, reason->what);
 }
 
-static csg_node_id nothing(csg_module_call *call, const char *what)
+static void tell_reason(csg_module_call *call, const csg_solid_reason *reason)
 {
-    csg_eval_report(call->e, CSG_DIAG_EMPTY_SHAPE, call->statement->where, NULL, "%s() has no %s",
-                    call->name, what);
-    return csg_shape_empty(call);
+    csg_eval *e = call->e;
+    csg_span where = call->statement->where;
+    switch (reason->fault) {
+    case CSG_SOLID_FAILED:
+        tell_of_failure(call, reason);
+        break;
+    case CSG_SOLID_UNBOUNDED:
+        csg_eval_report(e, CSG_DIAG_NOT_EXACT, where, "cut it first, by an intersection with a box",
+                        "%s() of a solid without bounds", call->name);
+        break;
+    case CSG_SOLID_NO_SURFACE:
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL,
+                        "%s() of a solid without a surface is nothing", call->name);
+        break;
+    case CSG_SOLID_NO_AREA:
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL, "%s() has no area", call->name);
+        break;
+    case CSG_SOLID_NO_VOLUME:
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL,
+                        "%s() has no triangles that enclose anything", call->name);
+        break;
+    case CSG_SOLID_NO_SUM:
+        csg_eval_report(e, CSG_DIAG_NOT_EXACT, where, reason->hint,
+                        "%s(): the sum of %s cannot be computed", call->name, reason->what);
+        break;
+    case CSG_SOLID_CROSSES_AXIS:
+        csg_eval_report(
+            e, CSG_DIAG_CROSSES_AXIS, where, "move it to one side: translate([r, 0])",
+            "%s(): the figure reaches from x = %g to x = %g, over the axis it turns about",
+            call->name, reason->range[0], reason->range[1]);
+        break;
+    case CSG_SOLID_BAD_NODE:
+        csg_eval_report(e, CSG_DIAG_BAD_SOLID, where, NULL, "%s", reason->problem);
+        break;
+    case CSG_SOLID_FAULT_COUNT:
+        break;
+    }
 }
+
+csg_node_id csg_shape_made(csg_module_call *call, const csg_solid_job *job, csg_node_id node)
+{
+    csg_eval *e = call->e;
+    csg_span where = call->statement->where;
+    for (uint32_t i = 0; i < job->reason_count; i++)
+        tell_reason(call, &job->reasons[i]);
+    call->failed = call->failed || job->failed;
+    csg_eval_charge(e, job->steps, where); /* tells what limit the job came to, if one */
+    if (job->stop && job->status == CSGM_ERR_MEMORY)
+        csg_eval_no_memory(e);
+    if (job->stop && !e->stop && e->builder.status != CSGM_OK)
+        csg_check_node(e, CSG_NODE_NONE, where);
+    if (job->stop && !e->stop)
+        csg_eval_check_time(e, where);
+    return e->stop ? CSG_NODE_NONE : node;
+}
+
+/* ---- outlines and triangles ------------------------------------------------------------------ */
 
 csg_node_id csg_shape_region(csg_module_call *call, csg_outline *clean)
 {
-    csg_eval *e = call->e;
-    csg_shape *shape = NULL;
-    size_t loops = clean->loop_count;
-    csgm_status status = loops && csg_eval_check_time(e, call->statement->where)
-                             ? csg_region_create(e->heap.memory, clean, &shape)
-                             : CSGM_OK;
-    csg_outline_release(clean);
-    if (e->stop)
-        return CSG_NODE_NONE;
-    if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "make a region of this outline");
-    if (!shape)
-        return nothing(call, "area");
-    return csg_shape_done(call, csg_build_shape(&e->builder, shape, call->statement->where));
+    csg_solid_job job = csg_shape_job(call);
+    csg_node_id node = csg_solid_region(&job, clean);
+    return csg_shape_made(call, &job, node);
 }
 
 csg_node_id csg_shape_area(csg_module_call *call, csg_outline *outline, bool even_odd)
 {
-    csg_outline clean;
-    csgm_status status =
-        csg_polygons_clean(outline, even_odd ? CSG_FILL_EVEN_ODD : CSG_FILL_NONZERO, &clean);
-    csg_outline_release(outline);
-    if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "make a clean figure of this outline");
-    return csg_shape_region(call, &clean);
+    csg_solid_job job = csg_shape_job(call);
+    csg_node_id node = csg_solid_area(&job, outline, even_odd);
+    return csg_shape_made(call, &job, node);
 }
 
 /* "3 holes filled, 2 triangles turned over". */
@@ -129,26 +187,27 @@ static bool is_mended(const csg_repairs *repairs)
 
 csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, bool told)
 {
-    csg_eval *e = call->e;
-    csg_shape *shape = NULL;
+    csg_solid_job job = csg_shape_job(call);
     csg_repairs repairs = {0};
     char text[256];
-    csgm_status status = !csg_eval_check_time(e, call->statement->where)
-                             ? CSGM_OK
-                             : csg_polyhedron_create(e->heap.memory, triangles, &repairs, &shape);
-    csg_triangles_release(triangles);
-    if (e->stop)
-        return CSG_NODE_NONE;
-    if (status == CSGM_ERR_SCENE)
-        return nothing(call, "triangles that enclose anything");
-    if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "make a solid of these triangles");
-    if (told && is_mended(&repairs)) {
+    csg_node_id node = csg_solid_of_triangles(&job, triangles, &repairs);
+    node = csg_shape_made(call, &job, node);
+    if (told && node != CSG_NODE_NONE && is_mended(&repairs)) {
         describe(&repairs, text, sizeof text);
-        csg_eval_report(e, CSG_DIAG_MENDED, call->statement->where, NULL,
+        csg_eval_report(call->e, CSG_DIAG_MENDED, call->statement->where, NULL,
                         "%s(): the surface was mended: %s", call->name, text);
     }
-    return csg_shape_done(call, csg_build_shape(&e->builder, shape, call->statement->where));
+    return node;
+}
+
+bool csg_shape_box(csg_module_call *call, csg_node_id node, csg_box *out)
+{
+    csg_solid_job job = csg_shape_job(call);
+    csgm_status status = csg_tight_box(&job, node, out);
+    if (status != CSGM_OK)
+        csg_solid_failed(&job, status, "measure this solid");
+    csg_shape_made(call, &job, node);
+    return status == CSGM_OK && !call->e->stop;
 }
 
 /* ---- arguments ------------------------------------------------------------------------------- */

@@ -6,10 +6,18 @@
 #define CSG_LANG_SHAPES_H
 
 #include "lang/modules/modules.h"
-#include "shape/plane/outline.h"
-#include "shape/polyhedra/triangles.h"
+#include "solid/operations.h"
 
-/* ---- nodes (shapes.c) ----------------------------------------------------------------------- */
+/* ---- geometry (solid/) ----------------------------------------------------------------------
+ * A job of that layer for this call, and its end: its reasons become findings, its steps are those
+ * of the evaluation. */
+
+csg_solid_job csg_shape_job(csg_module_call *call);
+csg_node_id csg_shape_made(csg_module_call *call, const csg_solid_job *job, csg_node_id node);
+/* By $fn, $fa, $fs and the scene's options. */
+csg_facet_rule csg_facet_rule_now(const csg_eval *e);
+
+/* ---- nodes ---------------------------------------------------------------------------------- */
 
 /* The node as the module's result: failures are told. */
 csg_node_id csg_shape_done(csg_module_call *call, csg_node_id node);
@@ -21,12 +29,8 @@ csg_node_id csg_shape_region(csg_module_call *call, csg_outline *clean);
 csg_node_id csg_shape_area(csg_module_call *call, csg_outline *outline, bool even_odd);
 /* The solid of the triangles, which are released; `told`: what was mended is a warning. */
 csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, bool told);
-/* A tube along a curve (scene/primitives/curve.h) as a union of capsules within 1e-4 of its largest
- * radius. */
-csg_node_id csg_shape_capsules(csg_module_call *call, csg_node_kind kind, const double *parameters);
-/* A failure of csg_polygons_*, csg_hull and the like. `what` completes "cannot ...". Returns the
- * empty solid. */
-csg_node_id csg_shape_failed(csg_module_call *call, csgm_status status, const char *what);
+/* The tight box of a node; false after a report. */
+bool csg_shape_box(csg_module_call *call, csg_node_id node, csg_box *out);
 /* A radius by itself or as a diameter. */
 double csg_argument_radius(csg_module_call *call, uint32_t r, uint32_t d, double otherwise,
                            csg_range_kind range);
@@ -46,23 +50,5 @@ size_t csg_shape_operands(csg_module_call *call, bool flat, bool each);
 csg_node_id csg_shape_children(csg_module_call *call, bool flat);
 /* A scene that is a figure of the plane becomes a plate of thickness 1, told. */
 csg_node_id csg_shape_of_scene(csg_eval *e, csg_node_id node, csg_span where);
-
-/* ---- facets (facets.c) ---------------------------------------------------------------------- */
-
-/* The value of $fn, $fa or $fs, `otherwise` where it is no number. */
-double csg_special_number(const csg_eval *e, const char *name, double otherwise);
-/* Edges of a circle of this radius by $fn, $fa and $fs, as OpenSCAD counts them. */
-uint32_t csg_fragments(const csg_eval *e, double radius);
-/* The same where facets are asked for ($fn from 3 to 16, or the option for all of them), else 0:
- * round. */
-uint32_t csg_facets(const csg_eval *e, double radius);
-bool csg_facets_are_exact(const csg_eval *e);
-double csg_cosine_deg(double degrees); /* exact for multiples of 90 */
-double csg_sine_deg(double degrees);
-/* Nodes in place of CIRCLE, of a frustum between z = -half and half, of SPHERE. */
-csg_node_id csg_faceted_circle(csg_module_call *call, double radius, uint32_t count);
-csg_node_id csg_faceted_frustum(csg_module_call *call, const double radii[2], double half,
-                                uint32_t count);
-csg_node_id csg_faceted_sphere(csg_module_call *call, double radius, uint32_t count);
 
 #endif

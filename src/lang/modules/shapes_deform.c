@@ -3,7 +3,8 @@
  */
 #include <math.h>
 
-#include "lang/modules/pieces.h"
+#include "lang/modules/shapes.h"
+#include "solid/measure.h"
 
 /* ---- resize ---------------------------------------------------------------------------------- */
 
@@ -53,10 +54,8 @@ csg_node_id csg_module_resize(csg_module_call *call)
     csg_node_id node = csg_module_children(call);
     if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || call->failed)
         return node;
-    csgm_status status = csg_tight_box(call, node, &box);
-    if (status != CSGM_OK)
-        return call->failed ? csg_shape_empty(call)
-                            : csg_shape_failed(call, status, "measure this solid");
+    if (!csg_shape_box(call, node, &box))
+        return csg_shape_empty(call);
     csg_vec3 size = csg_box_size(box);
     if (!factors(call, (double[]){to.x, to.y, to.z}, automatic, (double[]){size.x, size.y, size.z},
                  csg_shape_is_flat(e, node) ? 2 : 3, scale))
@@ -130,31 +129,6 @@ static bool read_counts(csg_module_call *call, uint32_t index, csg_vec3 cell, ui
     return true;
 }
 
-static csg_node_id copies(csg_module_call *call, csg_node_id node, csg_vec3 cell,
-                          const uint32_t counts[3], csg_node_id *made)
-{
-    csg_eval *e = call->e;
-    csg_span where = call->statement->where;
-    size_t count = 0;
-    for (uint32_t z = 0; z < counts[2]; z++)
-        for (uint32_t y = 0; y < counts[1]; y++)
-            for (uint32_t x = 0; x < counts[0]; x++) {
-                csg_affine by =
-                    csg_affine_translate(csg_vec3_make(x * cell.x, y * cell.y, z * cell.z));
-                bool last = x + 1 == counts[0] && y + 1 == counts[1] && z + 1 == counts[2];
-                if (!csg_eval_charge(e, 1, where))
-                    return CSG_NODE_NONE;
-                csg_node_id copy =
-                    last ? node : csg_shape_done(call, csg_build_copy(&e->builder, node));
-                made[count] = csg_shape_moved(call, copy, &by);
-                if (made[count++] == CSG_NODE_NONE)
-                    return CSG_NODE_NONE;
-            }
-    return csg_shape_done(call,
-                          csg_build_operator(&e->builder, CSG_NODE_UNION,
-                                             (csg_blend){CSG_BLEND_SHARP, 0}, made, count, where));
-}
-
 csg_node_id csg_module_repeat(csg_module_call *call)
 {
     enum { CELL, COUNT };
@@ -172,15 +146,8 @@ csg_node_id csg_module_repeat(csg_module_call *call)
         csg_argument_error(call, COUNT, CSG_DIAG_OUT_OF_RANGE, "%g copies are too many", total);
         return csg_shape_empty(call);
     }
-    size_t bytes = (size_t)total * sizeof(csg_node_id);
-    csg_node_id *made = csg_memory_alloc(e->heap.memory, bytes);
-    if (!made) {
-        csg_eval_no_memory(e);
-        return CSG_NODE_NONE;
-    }
-    csg_node_id result = copies(call, node, cell, counts, made);
-    csg_memory_release(e->heap.memory, made, bytes);
-    return result;
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_solid_repeat(&job, node, cell, counts));
 }
 
 /* ---- warps ----------------------------------------------------------------------------------- */
@@ -200,7 +167,10 @@ csg_node_id csg_module_twist(csg_module_call *call)
     csg_node_id node = between ? csg_module_children(call) : csg_shape_children(call, false);
     if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || rate == 0 || call->failed)
         return node;
-    if (!csg_finite_size(call, node, &size))
+    csg_solid_job job = csg_shape_job(call);
+    bool finite = csg_finite_size(&job, node, &size);
+    csg_shape_made(call, &job, node);
+    if (!finite)
         return csg_shape_empty(call);
     csg_box box = csg_build_box(&e->builder, node);
     double low = csg_argument_number(call, LOW, box.min.z, CSG_ANY);

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Flat figures: circle, square, polygon, and offset of what is flat. Where the field of a figure is
- * no exact distance on the side that an offset needs (inside a union, outside an intersection, or
- * an offset of an offset), the figure is made polygons first.
+ * Flat figures: circle, square, polygon, and offset of what is flat.
  */
 #include <math.h>
 
-#include "lang/modules/pieces.h"
 #include "lang/modules/shapes.h"
 #include "shape/plane/polygons.h"
 
@@ -16,9 +13,12 @@ csg_node_id csg_module_circle(csg_module_call *call)
     double r = csg_argument_radius(call, R, D, 1, CSG_SIZE);
     if (call->failed)
         return csg_shape_empty(call);
-    uint32_t facets = csg_facets(e, r);
-    if (facets)
-        return csg_faceted_circle(call, r, facets);
+    const csg_facet_rule rule = csg_facet_rule_now(e);
+    uint32_t facets = csg_facets(&rule, r);
+    if (facets) {
+        csg_solid_job job = csg_shape_job(call);
+        return csg_shape_made(call, &job, csg_faceted_circle(&job, r, facets));
+    }
     return csg_shape_done(
         call, csg_build_primitive(&e->builder, CSG_NODE_CIRCLE, &r, call->statement->where));
 }
@@ -122,7 +122,9 @@ static csg_node_id clean_region(csg_module_call *call, csg_outline *outline)
     if (status == CSGM_OK)
         return csg_shape_region(call, outline);
     csg_outline_release(outline);
-    return csg_shape_failed(call, status, "make a figure of this outline");
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job,
+                          csg_solid_failed(&job, status, "make a figure of this outline"));
 }
 
 csg_node_id csg_module_polygon(csg_module_call *call)
@@ -143,40 +145,6 @@ csg_node_id csg_module_polygon(csg_module_call *call)
 
 /* ---- offset ---------------------------------------------------------------------------------- */
 
-static csg_node_id offset_polygons(csg_module_call *call, csg_node_id child, double by,
-                                   csg_corner corner, double tolerance)
-{
-    csg_outline outline, grown;
-    csgm_status status = csg_flat_outline(call, child, &outline);
-    if (status == CSGM_OK) {
-        status = csg_polygons_offset(&outline, by, corner, tolerance, &grown);
-        csg_outline_release(&outline);
-    }
-    if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "offset this figure");
-    return csg_shape_region(call, &grown);
-}
-
-/* By r, with round corners. */
-static csg_node_id offset_round(csg_module_call *call, csg_node_id child, double r)
-{
-    csg_eval *e = call->e;
-    uint32_t facets = csg_facets(e, r);
-    if (facets)
-        return offset_polygons(call, child, r, CSG_CORNER_ROUND,
-                               fabs(r) * (1 - csg_cosine_deg(180.0 / facets)));
-    if (!csg_distance_is_exact(e, child, r > 0)) {
-        csg_outline outline;
-        csgm_status status = csg_flat_outline(call, child, &outline);
-        if (status != CSGM_OK)
-            return csg_shape_failed(call, status, "make polygons of this figure");
-        child = csg_shape_region(call, &outline);
-    }
-    if (child == CSG_NODE_NONE || csg_shape_is_empty(e, child))
-        return child;
-    return csg_shape_done(call, csg_build_offset(&e->builder, r, child, call->statement->where));
-}
-
 csg_node_id csg_module_offset(csg_module_call *call)
 {
     enum { R, DELTA, CHAMFER };
@@ -185,8 +153,10 @@ csg_node_id csg_module_offset(csg_module_call *call)
     csg_node_id child = csg_shape_children(call, true);
     if (call->failed || child == CSG_NODE_NONE || csg_shape_is_empty(call->e, child) || by == 0)
         return child;
-    if (!sharp)
-        return offset_round(call, child, by);
     csg_corner corner = csg_argument_boolean(call, CHAMFER) ? CSG_CORNER_CHAMFER : CSG_CORNER_MITER;
-    return offset_polygons(call, child, by, corner, 0);
+    const csg_facet_rule rule = csg_facet_rule_now(call->e);
+    csg_solid_job job = csg_shape_job(call);
+    csg_node_id node = sharp ? csg_solid_offset_sharp(&job, child, by, corner, 0)
+                             : csg_solid_offset_round(&job, &rule, child, by);
+    return csg_shape_made(call, &job, node);
 }

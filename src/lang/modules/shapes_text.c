@@ -81,8 +81,9 @@ static csg_text_request read_request(csg_module_call *call)
     if (csg_has_argument(call, DIRECTION))
         request.direction =
             (csg_text_direction)(CSG_TEXT_LTR + choose(call, DIRECTION, directions, 4, 0));
-    if (csg_facets_are_exact(call->e)) /* OpenSCAD's number for a curve of a letter */
-        request.pieces = (int)fmax(csg_fragments(call->e, request.size) / 8 + 1, 2);
+    const csg_facet_rule rule = csg_facet_rule_now(call->e);
+    if (rule.exact) /* OpenSCAD's number for a curve of a letter */
+        request.pieces = (int)fmax(csg_fragments(&rule, request.size) / 8 + 1, 2);
     request.tolerance = request.size * 1e-4;
     return request;
 }

@@ -6,16 +6,6 @@
 
 #include "lang/modules/shapes.h"
 
-static csg_node_id finish(csg_module_call *call, csg_node_id node)
-{
-    return csg_check_node(call->e, node, call->statement->where);
-}
-
-static csg_node_id empty(csg_module_call *call)
-{
-    return finish(call, csg_build_empty(&call->e->builder, call->statement->where));
-}
-
 static csg_node_id primitive(csg_module_call *call, csg_node_kind kind, const double *parameters)
 {
     return csg_build_primitive(&call->e->builder, kind, parameters, call->statement->where);
@@ -24,9 +14,7 @@ static csg_node_id primitive(csg_module_call *call, csg_node_kind kind, const do
 static csg_node_id moved(csg_module_call *call, csg_node_id node, double x, double y, double z)
 {
     csg_affine by = csg_affine_translate(csg_vec3_make(x, y, z));
-    return finish(call, node == CSG_NODE_NONE ? node
-                                              : csg_build_transform(&call->e->builder, &by, node,
-                                                                    call->statement->where));
+    return csg_shape_moved(call, csg_shape_done(call, node), &by);
 }
 
 csg_node_id csg_module_sphere(csg_module_call *call)
@@ -34,10 +22,13 @@ csg_node_id csg_module_sphere(csg_module_call *call)
     enum { R, D };
     double r = csg_argument_radius(call, R, D, 1, CSG_SIZE);
     if (call->failed)
-        return empty(call);
-    uint32_t facets = csg_facets(call->e, r);
-    return facets ? csg_faceted_sphere(call, r, facets)
-                  : finish(call, primitive(call, CSG_NODE_SPHERE, &r));
+        return csg_shape_empty(call);
+    const csg_facet_rule rule = csg_facet_rule_now(call->e);
+    uint32_t facets = csg_facets(&rule, r);
+    if (!facets)
+        return csg_shape_done(call, primitive(call, CSG_NODE_SPHERE, &r));
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_faceted_sphere(&job, r, facets));
 }
 
 csg_node_id csg_module_cube(csg_module_call *call)
@@ -53,10 +44,10 @@ csg_node_id csg_module_cube(csg_module_call *call)
                            "an edge of length %g makes no solid, it must be above 0", smallest);
     double round = csg_argument_rounding(call, ROUND, smallest);
     if (call->failed)
-        return empty(call);
+        return csg_shape_empty(call);
     const double half[4] = {size.x / 2, size.y / 2, size.z / 2, round};
     csg_node_id node = primitive(call, CSG_NODE_BOX, half);
-    return csg_argument_boolean(call, CENTER) ? finish(call, node)
+    return csg_argument_boolean(call, CENTER) ? csg_shape_done(call, node)
                                               : moved(call, node, half[0], half[1], half[2]);
 }
 
@@ -112,10 +103,9 @@ static csg_node_id frustum(csg_module_call *call, const double radii[2], double 
 static csg_node_id faceted(csg_module_call *call, double radii[2], double half, double round,
                            uint32_t facets)
 {
-    csg_node_id node = csg_faceted_frustum(call, radii, half, facets);
-    if (round == 0 || node == CSG_NODE_NONE)
-        return node;
-    return finish(call, csg_build_offset(&call->e->builder, round, node, call->statement->where));
+    csg_solid_job job = csg_shape_job(call);
+    csg_node_id node = csg_faceted_frustum(&job, radii, half, facets);
+    return csg_shape_made(call, &job, csg_solid_grown(&job, node, round));
 }
 
 csg_node_id csg_module_cylinder(csg_module_call *call)
@@ -124,7 +114,8 @@ csg_node_id csg_module_cylinder(csg_module_call *call)
     cylinder_radii(call, radii);
     double round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE), half = h / 2;
     bool grows = csg_argument_boolean(call, CORE);
-    uint32_t facets = grows ? 0 : csg_facets(call->e, fmax(radii[0], radii[1]));
+    const csg_facet_rule rule = csg_facet_rule_now(call->e);
+    uint32_t facets = grows ? 0 : csg_facets(&rule, fmax(radii[0], radii[1]));
     double inner = facets ? csg_cosine_deg(180.0 / facets) : 1;
     radii[0] *= inner; /* rounding moves the faces, which are nearer to the axis than the edges */
     radii[1] *= inner;
@@ -134,12 +125,12 @@ csg_node_id csg_module_cylinder(csg_module_call *call)
     radii[0] /= inner;
     radii[1] /= inner;
     if (call->failed)
-        return empty(call);
+        return csg_shape_empty(call);
     bool pointed = radii[0] > 0 || radii[1] > 0;
     csg_node_id node = facets && pointed ? faceted(call, radii, half, round, facets)
                                          : frustum(call, radii, half, round);
     return csg_argument_boolean(call, CENTER)
-               ? finish(call, node)
+               ? csg_shape_done(call, node)
                : moved(call, node, 0, 0, grows ? h / 2 + round : h / 2);
 }
 
@@ -159,9 +150,9 @@ csg_node_id csg_module_capsule(csg_module_call *call)
         csg_argument_error(call, csg_has_argument(call, RADIUS2) ? RADIUS2 : RADIUS1,
                            CSG_DIAG_OUT_OF_RANGE, "the radii at both ends are 0");
     if (call->failed)
-        return empty(call);
-    return finish(call,
-                  csg_build_capsule(&call->e->builder, p1, p2, r1, r2, call->statement->where));
+        return csg_shape_empty(call);
+    return csg_shape_done(
+        call, csg_build_capsule(&call->e->builder, p1, p2, r1, r2, call->statement->where));
 }
 
 /* The primitive's arc lies on both sides of +x; the language's begins there. */
@@ -174,14 +165,14 @@ csg_node_id csg_module_torus(csg_module_call *call)
     if (!call->failed && (angle == 0 || fabs(angle) > 360))
         csg_argument_error(call, ANGLE, CSG_DIAG_OUT_OF_RANGE, "angle is %g", angle);
     if (call->failed)
-        return empty(call);
+        return csg_shape_empty(call);
     const double parameters[3] = {r, tube, fabs(angle) / 2};
-    csg_node_id node = finish(call, primitive(call, CSG_NODE_TORUS, parameters));
+    csg_node_id node = csg_shape_done(call, primitive(call, CSG_NODE_TORUS, parameters));
     if (fabs(angle) == 360 || csg_argument_boolean(call, MIDDLE) || node == CSG_NODE_NONE)
         return node;
     csg_affine turn = csg_affine_rotate(angle / 2, csg_vec3_make(0, 0, 1));
-    return finish(call,
-                  csg_build_transform(&call->e->builder, &turn, node, call->statement->where));
+    return csg_shape_done(
+        call, csg_build_transform(&call->e->builder, &turn, node, call->statement->where));
 }
 
 csg_node_id csg_module_ellipsoid(csg_module_call *call)
@@ -196,9 +187,9 @@ csg_node_id csg_module_ellipsoid(csg_module_call *call)
         csg_argument_error(call, AXES, CSG_DIAG_OUT_OF_RANGE,
                            "a semi-axis is %g, it must be above 0", smallest);
     if (call->failed)
-        return empty(call);
+        return csg_shape_empty(call);
     const double axes[3] = {r.x, r.y, r.z};
-    return finish(call, primitive(call, CSG_NODE_ELLIPSOID, axes));
+    return csg_shape_done(call, primitive(call, CSG_NODE_ELLIPSOID, axes));
 }
 
 csg_node_id csg_module_plane(csg_module_call *call)
@@ -209,7 +200,7 @@ csg_node_id csg_module_plane(csg_module_call *call)
     if (!call->failed && n.x == 0 && n.y == 0 && n.z == 0)
         csg_argument_error(call, NORMAL, CSG_DIAG_OUT_OF_RANGE, "the normal has no direction");
     if (call->failed)
-        return empty(call);
+        return csg_shape_empty(call);
     const double parameters[4] = {n.x, n.y, n.z, d};
-    return finish(call, primitive(call, CSG_NODE_PLANE, parameters));
+    return csg_shape_done(call, primitive(call, CSG_NODE_PLANE, parameters));
 }

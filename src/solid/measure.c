@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * What the modules of shapes ask of whole nodes: is the field an exact distance, polygons of a flat
+ * What is asked of whole nodes: is the field an exact distance, polygons of a flat
  * node, triangles and the tight box of a solid.
  */
 #include <math.h>
 
 #include "base/clock.h"
-#include "lang/modules/pieces.h"
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/curve.h"
-#include "scene/services.h"
+#include "solid/measure.h"
+#include "solid/pieces.h"
 
 /* ---- exact distances ------------------------------------------------------------------------- */
 
@@ -23,7 +23,7 @@ typedef struct exact_stack {
     size_t count, capacity;
 } exact_stack;
 
-static bool push(exact_stack *stack, csg_node_id node, bool outside)
+static bool add_exactness(exact_stack *stack, csg_node_id node, bool outside)
 {
     if (!csg_memory_reserve(stack->memory, (void **)&stack->items, &stack->capacity,
                             stack->count + 1, sizeof *stack->items))
@@ -59,18 +59,18 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
         return false;
     for (uint32_t i = 0; i < node->child_count; i++) {
         bool flips = node->kind == CSG_NODE_DIFFERENCE && i > 0;
-        if (!push(stack, csg_scene_children(scene, node)[i], at.outside != flips))
+        if (!add_exactness(stack, csg_scene_children(scene, node)[i], at.outside != flips))
             return false; /* out of memory: the careful way will say so */
     }
     return true;
 }
 
-bool csg_distance_is_exact(const csg_eval *e, csg_node_id node, bool outside)
+bool csg_distance_is_exact(const csg_solid_job *job, csg_node_id node, bool outside)
 {
-    exact_stack stack = {.memory = e->heap.memory};
-    bool exact = push(&stack, node, outside);
+    exact_stack stack = {.memory = job->memory};
+    bool exact = add_exactness(&stack, node, outside);
     while (exact && stack.count)
-        exact = look_at(e->builder.scene, stack.items[--stack.count], &stack);
+        exact = look_at(job->builder->scene, stack.items[--stack.count], &stack);
     csg_memory_release(stack.memory, stack.items, stack.capacity * sizeof *stack.items);
     return exact;
 }
@@ -83,75 +83,67 @@ static double longest_side(csg_box box, bool flat)
     return fmax(fmax(size.x, size.y), flat ? 0 : size.z);
 }
 
-bool csg_finite_size(csg_module_call *call, csg_node_id node, double *out)
+bool csg_finite_size(csg_solid_job *job, csg_node_id node, double *out)
 {
-    csg_eval *e = call->e;
-    bool flat = csg_shape_is_flat(e, node);
-    csg_box box = csg_build_box(&e->builder, node);
-    if (e->builder.status != CSGM_OK) {
-        csg_check_node(e, CSG_NODE_NONE, call->statement->where);
+    bool flat = csg_solid_is_flat(job, node);
+    csg_box box = csg_build_box(job->builder, node);
+    if (job->builder->status != CSGM_OK) {
+        csg_solid_done(job, CSG_NODE_NONE);
         return false;
     }
     *out = longest_side(box, flat);
     if (isfinite(*out) && !csg_box_is_empty(box))
         return true;
-    if (csg_box_is_empty(box))
-        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, call->statement->where, NULL,
-                        "%s() of a solid without a surface is nothing", call->name);
-    else
-        csg_eval_report(e, CSG_DIAG_NOT_EXACT, call->statement->where,
-                        "cut it first, by an intersection with a box",
-                        "%s() of a solid without bounds", call->name);
-    call->failed = true;
+    csg_solid_note(job, &(csg_solid_reason){.fault = csg_box_is_empty(box) ? CSG_SOLID_NO_SURFACE
+                                                                           : CSG_SOLID_UNBOUNDED});
+    job->failed = true;
     return false;
 }
 
 /* ---- polygons and triangles ------------------------------------------------------------------ */
 
-csgm_status csg_flat_outline(csg_module_call *call, csg_node_id node, csg_outline *out)
+csgm_status csg_flat_outline(csg_solid_job *job, csg_node_id node, csg_outline *out)
 {
     const double fine = 1e-5;
-    csg_eval *e = call->e;
     double size = 1;
-    csg_outline_init(out, e->heap.memory);
-    if (!csg_finite_size(call, node, &size))
-        return e->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
-    if (!csg_eval_check_time(e, call->statement->where))
+    csg_outline_init(out, job->memory);
+    if (!csg_finite_size(job, node, &size))
+        return job->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
+    if (!csg_solid_check_time(job))
         return CSGM_ERR_LIMIT;
-    return csg_flatten(&e->builder, node, fine * size, out);
+    return csg_flatten(job->builder, node, fine * size, out);
 }
 
 /* In what is left of the evaluation's time. */
-static csgm_status tessellate_in_time(csg_module_call *call, const csgm_scene *scene,
-                                      uint32_t cells, csg_triangles *out)
+static csgm_status tessellate_in_time(csg_solid_job *job, const csgm_scene *scene, uint32_t cells,
+                                      csg_triangles *out)
 {
-    csg_eval *e = call->e;
-    double whole = e->context->limits.timeout_s, deadline = e->program->deadline_s;
-    if (!csg_eval_check_time(e, call->statement->where))
+    csgm_context *context = job->builder->context;
+    double whole = context->limits.timeout_s;
+    if (!csg_solid_check_time(job))
         return CSGM_ERR_LIMIT;
-    if (deadline != 0)
-        e->context->limits.timeout_s = fmax(deadline - csg_clock_now_s(), 1e-3);
-    csgm_status status = e->program->services->tessellate(e->context, scene, cells, out);
-    e->context->limits.timeout_s = whole;
-    csg_eval_check_time(e, call->statement->where);
+    if (job->deadline_s != 0)
+        context->limits.timeout_s = fmax(job->deadline_s - csg_clock_now_s(), 1e-3);
+    csgm_status status = job->tessellate(context, scene, cells, out);
+    context->limits.timeout_s = whole;
+    csg_solid_check_time(job);
     return status;
 }
 
-csgm_status csg_solid_triangles(csg_module_call *call, csg_node_id node, csg_triangles *out)
+csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triangles *out)
 {
     enum { CELLS = 160 };
-    csg_eval *e = call->e;
     csgm_scene *scene = NULL;
-    csg_vec3 size = csg_box_size(csg_build_box(&e->builder, node));
-    csg_triangles_init(out, e->heap.memory);
+    csg_vec3 size = csg_box_size(csg_build_box(job->builder, node));
+    csg_triangles_init(out, job->memory);
     if (!(fmin(size.x, fmin(size.y, size.z)) > 0))
         return CSGM_OK; /* nothing but a face or an edge that two solids share */
-    if (!e->program->services)
+    if (!job->tessellate)
         return CSGM_ERR_UNSUPPORTED;
-    csgm_status status = csg_build_snapshot(&e->builder, node, &scene);
+    csgm_status status = csg_build_snapshot(job->builder, node, &scene);
     if (status != CSGM_OK)
         return status;
-    status = tessellate_in_time(call, scene, CELLS, out);
+    status = tessellate_in_time(job, scene, CELLS, out);
     csg_scene_destroy(scene);
     return status;
 }
@@ -169,15 +161,14 @@ static csg_box snap(csg_box rough, csg_box bound)
     return rough;
 }
 
-static csgm_status box_of_pieces(csg_module_call *call, const csg_pieces *pieces, double size,
+static csgm_status box_of_pieces(csg_solid_job *job, const csg_solid_pieces *pieces, double size,
                                  csg_box *out)
 {
-    csg_eval *e = call->e;
     *out = csg_box_empty();
     for (size_t i = 0; i < pieces->count; i++) {
         csg_cloud cloud;
-        csg_cloud_init(&cloud, e->heap.memory);
-        csgm_status status = csg_piece_cloud(call, &pieces->items[i], 1e-7 * size, &cloud);
+        csg_cloud_init(&cloud, job->memory);
+        csgm_status status = csg_piece_cloud(job, &pieces->items[i], 1e-7 * size, &cloud);
         for (size_t k = 0; k < cloud.count && status == CSGM_OK; k++) {
             csg_box ball = {cloud.balls[k].at, cloud.balls[k].at};
             *out = csg_box_hull(*out, csg_box_grow(ball, cloud.balls[k].radius));
@@ -189,18 +180,18 @@ static csgm_status box_of_pieces(csg_module_call *call, const csg_pieces *pieces
     return CSGM_OK;
 }
 
-csgm_status csg_tight_box(csg_module_call *call, csg_node_id node, csg_box *out)
+csgm_status csg_tight_box(csg_solid_job *job, csg_node_id node, csg_box *out)
 {
-    csg_eval *e = call->e;
     double size = 0;
-    csg_pieces pieces;
-    if (!csg_finite_size(call, node, &size))
-        return e->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
-    csg_box bound = csg_build_box(&e->builder, node);
-    csg_pieces_init(&pieces, e->heap.memory);
-    csgm_status status = csg_pieces_collect(e, node, &pieces) ? CSGM_OK : CSGM_ERR_MEMORY;
+    csg_solid_pieces pieces;
+    if (!csg_finite_size(job, node, &size))
+        return job->stop ? CSGM_ERR_MEMORY : CSGM_ERR_SCENE;
+    csg_box bound = csg_build_box(job->builder, node);
+    csg_pieces_init(&pieces, job->memory);
+    csgm_status status =
+        csg_pieces_collect(job->builder->scene, node, &pieces) ? CSGM_OK : CSGM_ERR_MEMORY;
     if (status == CSGM_OK)
-        status = box_of_pieces(call, &pieces, size, out);
+        status = box_of_pieces(job, &pieces, size, out);
     csg_pieces_release(&pieces);
     if (status == CSGM_OK)
         *out = snap(*out, bound);

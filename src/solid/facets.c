@@ -4,41 +4,25 @@
  * poles.
  */
 #include <math.h>
-#include <string.h>
 
-#include "lang/modules/shapes.h"
+#include "solid/facets.h"
 
-double csg_special_number(const csg_eval *e, const char *name, double otherwise)
-{
-    csg_symbol symbol = csg_symbol_intern(&e->program->symbols, name, strlen(name));
-    csg_value value = csg_eval_dynamic(e, symbol);
-    return value.kind == CSG_VALUE_NUMBER && isfinite(value.as.number) ? value.as.number
-                                                                       : otherwise;
-}
-
-bool csg_facets_are_exact(const csg_eval *e)
-{
-    return e->program->exact_facets;
-}
-
-uint32_t csg_fragments(const csg_eval *e, double radius)
+uint32_t csg_fragments(const csg_facet_rule *rule, double radius)
 {
     const double smallest_circle = 1.0 / 1024 / 1024, least = 0.01, most = 1e6;
-    double fn = csg_special_number(e, "$fn", 0);
     if (fabs(radius) < smallest_circle)
         return 3;
-    if (fn > 0)
-        return (uint32_t)fmin(fmax(fn, 3), most);
-    double by_angle = 360 / fmax(csg_special_number(e, "$fa", 12), least);
-    double by_length = 2 * acos(-1) * fabs(radius) / fmax(csg_special_number(e, "$fs", 2), least);
+    if (rule->fn > 0)
+        return (uint32_t)fmin(fmax(rule->fn, 3), most);
+    double by_angle = 360 / fmax(rule->fa, least);
+    double by_length = 2 * acos(-1) * fabs(radius) / fmax(rule->fs, least);
     return (uint32_t)fmin(ceil(fmax(fmin(by_angle, by_length), 5)), most);
 }
 
-uint32_t csg_facets(const csg_eval *e, double radius)
+uint32_t csg_facets(const csg_facet_rule *rule, double radius)
 {
-    double fn = csg_special_number(e, "$fn", 0);
-    bool few = fn >= 3 && fn <= 16;
-    return few || csg_facets_are_exact(e) ? csg_fragments(e, radius) : 0;
+    bool few = rule->fn >= 3 && rule->fn <= 16;
+    return few || rule->exact ? csg_fragments(rule, radius) : 0;
 }
 
 double csg_cosine_deg(double degrees)
@@ -51,25 +35,25 @@ double csg_sine_deg(double degrees)
     return csg_affine_rotate(degrees, csg_vec3_make(0, 0, 1)).m[1][0];
 }
 
-static csg_outline polygon(csg_module_call *call, double radius, uint32_t count)
+static csg_outline polygon(csg_solid_job *job, double radius, uint32_t count)
 {
     csg_outline outline;
-    csg_outline_init(&outline, call->e->heap.memory);
-    bool ok = csg_eval_charge(call->e, count, call->statement->where);
+    csg_outline_init(&outline, job->memory);
+    bool ok = csg_solid_charge(job, count);
     for (uint32_t i = 0; i < count && ok; i++) {
         double angle = 360.0 * i / count;
         ok = csg_outline_add(
             &outline, (csg_vec2){radius * csg_cosine_deg(angle), radius * csg_sine_deg(angle)});
     }
     if (!ok || !csg_outline_close(&outline))
-        csg_eval_no_memory(call->e);
+        csg_solid_no_memory(job);
     return outline;
 }
 
-csg_node_id csg_faceted_circle(csg_module_call *call, double radius, uint32_t count)
+csg_node_id csg_faceted_circle(csg_solid_job *job, double radius, uint32_t count)
 {
-    csg_outline outline = polygon(call, radius, count);
-    return csg_shape_region(call, &outline);
+    csg_outline outline = polygon(job, radius, count);
+    return csg_solid_region(job, &outline);
 }
 
 /* ---- rings around the z axis ----------------------------------------------------------------- */
@@ -106,20 +90,19 @@ static void add_lid(csg_triangles *triangles, uint32_t ring, uint32_t count, boo
         *ok = csg_triangles_add(triangles, ring, ring + (up ? i : i + 1), ring + (up ? i + 1 : i));
 }
 
-csg_node_id csg_faceted_frustum(csg_module_call *call, const double radii[2], double half,
+csg_node_id csg_faceted_frustum(csg_solid_job *job, const double radii[2], double half,
                                 uint32_t count)
 {
-    csg_eval *e = call->e;
     if (radii[0] == radii[1]) {
-        csg_node_id base = csg_faceted_circle(call, radii[0], count);
+        csg_node_id base = csg_faceted_circle(job, radii[0], count);
         return base == CSG_NODE_NONE
                    ? base
-                   : csg_shape_done(call, csg_build_extrude(&e->builder, base, -half, half,
-                                                            call->statement->where));
+                   : csg_solid_done(job,
+                                    csg_build_extrude(job->builder, base, -half, half, job->where));
     }
     csg_triangles triangles;
-    csg_triangles_init(&triangles, e->heap.memory);
-    bool ok = csg_eval_charge(e, count, call->statement->where);
+    csg_triangles_init(&triangles, job->memory);
+    bool ok = csg_solid_charge(job, count);
     uint32_t below = add_ring(&triangles, radii[0], -half, count, &ok);
     uint32_t above = add_ring(&triangles, radii[1], half, count, &ok);
     add_belt(&triangles, below, radii[0] == 0, above, radii[1] == 0, count, &ok);
@@ -128,17 +111,16 @@ csg_node_id csg_faceted_frustum(csg_module_call *call, const double radii[2], do
     if (radii[1] > 0)
         add_lid(&triangles, above, count, true, &ok);
     if (!ok)
-        csg_eval_no_memory(e);
-    return csg_shape_solid(call, &triangles, false);
+        csg_solid_no_memory(job);
+    return csg_solid_of_triangles(job, &triangles, NULL);
 }
 
-csg_node_id csg_faceted_sphere(csg_module_call *call, double radius, uint32_t count)
+csg_node_id csg_faceted_sphere(csg_solid_job *job, double radius, uint32_t count)
 {
-    csg_eval *e = call->e;
     uint32_t rings = (count + 1) / 2, last = 0;
     csg_triangles triangles;
-    csg_triangles_init(&triangles, e->heap.memory);
-    bool ok = csg_eval_charge(e, (uint64_t)count * rings, call->statement->where);
+    csg_triangles_init(&triangles, job->memory);
+    bool ok = csg_solid_charge(job, (uint64_t)count * rings);
     for (uint32_t i = 0; i < rings && ok; i++) {
         double angle = 180 * (rings - 1 - i + 0.5) / rings; /* from the lowest ring up */
         uint32_t ring = add_ring(&triangles, radius * csg_sine_deg(angle),
@@ -152,6 +134,6 @@ csg_node_id csg_faceted_sphere(csg_module_call *call, double radius, uint32_t co
     if (ok)
         add_lid(&triangles, last, count, true, &ok);
     if (!ok)
-        csg_eval_no_memory(e);
-    return csg_shape_solid(call, &triangles, false);
+        csg_solid_no_memory(job);
+    return csg_solid_of_triangles(job, &triangles, NULL);
 }

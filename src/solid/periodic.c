@@ -10,7 +10,7 @@
  */
 #include <math.h>
 
-#include "lang/modules/shapes.h"
+#include "solid/operations.h"
 
 typedef struct writer { /* of a formula */
     csg_formula_builder builder;
@@ -69,40 +69,37 @@ static csg_formula_id solid(writer *w, csg_formula_id f, double slope, double th
                  apply(w, CSG_FORMULA_ABS, scaled, 0));
 }
 
-static csg_node_id build(csg_module_call *call, writer *w, csg_formula_id f, double lipschitz)
+static csg_node_id build_field(csg_solid_job *job, writer *w, csg_formula_id f, double lipschitz)
 {
-    csg_eval *e = call->e;
     size_t bytes = w->builder.count * sizeof(csg_formula_step);
-    csg_formula_step *steps =
-        f == CSG_FORMULA_NONE ? NULL : csg_memory_alloc(e->heap.memory, bytes);
+    csg_formula_step *steps = f == CSG_FORMULA_NONE ? NULL : csg_memory_alloc(job->memory, bytes);
     uint32_t count = steps ? csg_formula_collect(&w->builder, f, steps) : 0;
     csg_node_id node = CSG_NODE_NONE;
     if (count)
-        node = csg_shape_done(call, csg_build_field(&e->builder, steps, count, csg_box_all(), false,
-                                                    lipschitz, call->statement->where));
+        node = csg_solid_done(job, csg_build_field(job->builder, steps, count, csg_box_all(), false,
+                                                   lipschitz, job->where));
     else
-        csg_eval_no_memory(e);
-    csg_memory_release(e->heap.memory, steps, bytes);
+        csg_solid_no_memory(job);
+    csg_memory_release(job->memory, steps, bytes);
     return node;
 }
 
-csg_node_id csg_module_periodic(csg_module_call *call)
+csg_node_id csg_solid_periodic(csg_solid_job *job, csg_periodic_kind kind, double cell,
+                               double thickness)
 {
-    enum { CELL, THICKNESS };
-    double cell = csg_argument_number(call, CELL, 1, CSG_POSITIVE);
-    double thickness = csg_argument_number(call, THICKNESS, cell / 10, CSG_NOT_NEGATIVE);
-    if (call->failed)
-        return csg_shape_empty(call);
-    char kind = call->name[0];
     /* mean and largest slope of F along one radian; the means by sampling the surfaces */
-    double mean = kind == 'g' ? 1.533 : kind == 's' ? 1.341 : 1.059;
-    double most = sqrt(kind == 'd' ? 1.5 : 3), wave = 2 * acos(-1) / cell;
+    double mean = kind == CSG_PERIODIC_GYROID      ? 1.533
+                  : kind == CSG_PERIODIC_SCHWARZ_P ? 1.341
+                                                   : 1.059;
+    double most = sqrt(kind == CSG_PERIODIC_DIAMOND ? 1.5 : 3), wave = 2 * acos(-1) / cell;
     writer w;
-    csg_formula_begin(&w.builder, call->e->heap.memory);
+    csg_formula_begin(&w.builder, job->memory);
     write_waves(&w, cell);
-    csg_formula_id f = kind == 'g' ? gyroid(&w) : kind == 's' ? schwarz_p(&w) : diamond(&w);
+    csg_formula_id f = kind == CSG_PERIODIC_GYROID      ? gyroid(&w)
+                       : kind == CSG_PERIODIC_SCHWARZ_P ? schwarz_p(&w)
+                                                        : diamond(&w);
     f = f == CSG_FORMULA_NONE ? f : solid(&w, f, mean * wave, thickness);
-    csg_node_id node = build(call, &w, f, most / mean);
+    csg_node_id node = build_field(job, &w, f, most / mean);
     csg_formula_end(&w.builder);
     return node;
 }

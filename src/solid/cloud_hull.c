@@ -5,9 +5,9 @@
  */
 #include <math.h>
 
-#include "lang/modules/pieces.h"
 #include "shape/plane/polygons.h"
 #include "shape/polyhedra/hull.h"
+#include "solid/pieces.h"
 
 /* The radius that all balls have, or -1. */
 static double common_radius(const csg_cloud *cloud)
@@ -89,14 +89,6 @@ static csgm_status hull_triangles(const csg_cloud *cloud, csg_triangles *out)
     return status;
 }
 
-static csg_node_id grown(csg_module_call *call, csg_node_id node, double radius)
-{
-    if (node == CSG_NODE_NONE || call->e->stop || radius == 0)
-        return node;
-    return csg_shape_done(
-        call, csg_build_offset(&call->e->builder, radius, node, call->statement->where));
-}
-
 /* The convex loop as a plate of this half thickness, in the frame of x, y and normal. */
 static bool add_plate(csg_triangles *out, const csg_outline *loop, csg_vec3 origin,
                       const csg_vec3 frame[3], double half)
@@ -121,11 +113,11 @@ static bool add_plate(csg_triangles *out, const csg_outline *loop, csg_vec3 orig
 }
 
 /* Equal balls with centres in a plane: a thin plate around their hull, grown. */
-static csg_node_id hull_in_plane(csg_module_call *call, const csg_cloud *cloud, csg_vec3 origin,
+static csg_node_id hull_in_plane(csg_solid_job *job, const csg_cloud *cloud, csg_vec3 origin,
                                  csg_vec3 x, csg_vec3 normal, double radius)
 {
     const double thin = 1e-6;
-    csg_memory *memory = call->e->heap.memory;
+    csg_memory *memory = job->memory;
     const csg_vec3 frame[3] = {x, csg_vec3_cross(normal, x), normal};
     csg_outline points, hull;
     csg_triangles plate;
@@ -140,79 +132,75 @@ static csg_node_id hull_in_plane(csg_module_call *call, const csg_cloud *cloud, 
         ok && csg_outline_close(&points) ? csg_polygons_hull(&points, &hull) : CSGM_ERR_MEMORY;
     csg_outline_release(&points);
     if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "make this hull");
+        return csg_solid_failed(job, status, "make this hull");
     csg_triangles_init(&plate, memory);
     ok = add_plate(&plate, &hull, origin, frame, thin * radius);
     csg_outline_release(&hull);
     if (ok)
-        return grown(call, csg_shape_solid(call, &plate, false), radius * (1 - thin));
+        return csg_solid_grown(job, csg_solid_of_triangles(job, &plate, NULL), radius * (1 - thin));
     csg_triangles_release(&plate);
-    return csg_shape_failed(call, CSGM_ERR_MEMORY, "");
+    return csg_solid_failed(job, CSGM_ERR_MEMORY, "");
 }
 
-static csg_node_id hull_of_points(csg_module_call *call, const csg_cloud *cloud, double radius)
+static csg_node_id hull_of_points(csg_solid_job *job, const csg_cloud *cloud, double radius)
 {
     csg_triangles triangles;
-    csg_triangles_init(&triangles, call->e->heap.memory);
+    csg_triangles_init(&triangles, job->memory);
     csgm_status status = hull_triangles(cloud, &triangles);
     if (status != CSGM_OK) {
         csg_triangles_release(&triangles);
-        return csg_shape_failed(call, status,
+        return csg_solid_failed(job, status,
                                 status == CSGM_ERR_SCENE
                                     ? "make this hull: its points lie in a plane"
                                     : "make this hull");
     }
-    return grown(call, csg_shape_solid(call, &triangles, false), radius);
+    return csg_solid_grown(job, csg_solid_of_triangles(job, &triangles, NULL), radius);
 }
 
-csg_node_id csg_cloud_hull(csg_module_call *call, const csg_cloud *cloud, double tolerance)
+csg_node_id csg_cloud_hull(csg_solid_job *job, const csg_cloud *cloud, double tolerance)
 {
-    csg_eval *e = call->e;
     csg_vec3 origin, x, normal;
-    csg_span where = call->statement->where;
+    csg_span where = job->where;
     if (!cloud->count)
-        return csg_shape_empty(call);
-    if (!csg_eval_charge(e, cloud->count, where))
+        return csg_solid_empty(job);
+    if (!csg_solid_charge(job, cloud->count))
         return CSG_NODE_NONE;
     double radius = common_radius(cloud);
     int dimensions = span_of(cloud, &origin, &x, &normal);
     if (cloud->count == 2 && (cloud->balls[0].radius > 0 || cloud->balls[1].radius > 0))
-        return csg_shape_done(call, csg_build_capsule(&e->builder, cloud->balls[0].at,
-                                                      cloud->balls[1].at, cloud->balls[0].radius,
-                                                      cloud->balls[1].radius, where));
+        return csg_solid_done(job, csg_build_capsule(job->builder, cloud->balls[0].at,
+                                                     cloud->balls[1].at, cloud->balls[0].radius,
+                                                     cloud->balls[1].radius, where));
     if (radius > 0 && dimensions < 2) {
         csg_vec3 far = cloud->balls[farthest(cloud, origin)].at;
-        return csg_shape_done(call,
-                              csg_build_capsule(&e->builder, origin, far, radius, radius, where));
+        return csg_solid_done(job,
+                              csg_build_capsule(job->builder, origin, far, radius, radius, where));
     }
     if (radius > 0 && dimensions == 2)
-        return hull_in_plane(call, cloud, origin, x, normal, radius);
+        return hull_in_plane(job, cloud, origin, x, normal, radius);
     if (radius >= 0)
-        return hull_of_points(call, cloud, radius);
+        return hull_of_points(job, cloud, radius);
     csg_cloud points;
-    csg_cloud_init(&points, e->heap.memory);
+    csg_cloud_init(&points, job->memory);
     csg_node_id node = CSG_NODE_NONE;
     if (points_of(cloud, tolerance, false, &points))
-        node = hull_of_points(call, &points, 0);
+        node = hull_of_points(job, &points, 0);
     else
-        csg_eval_no_memory(e);
+        csg_solid_no_memory(job);
     csg_cloud_release(&points);
     return node;
 }
 
 /* Discs of one radius on a line: a rectangle with round ends. */
-static csg_node_id stadium(csg_module_call *call, const csg_cloud *cloud, csg_vec3 origin,
-                           csg_vec3 x, double radius)
+static csg_node_id stadium(csg_solid_job *job, const csg_cloud *cloud, csg_vec3 origin, csg_vec3 x,
+                           double radius)
 {
-    csg_eval *e = call->e;
     csg_vec3 far = cloud->balls[farthest(cloud, origin)].at;
     double length = csg_vec3_norm(csg_vec3_sub(far, origin));
     const double sizes[3] = {length / 2 + radius, radius, radius};
-    csg_node_id node = csg_shape_done(
-        call,
-        length > 0
-            ? csg_build_primitive(&e->builder, CSG_NODE_RECTANGLE, sizes, call->statement->where)
-            : csg_build_primitive(&e->builder, CSG_NODE_CIRCLE, &radius, call->statement->where));
+    csg_node_id node = csg_solid_done(
+        job, length > 0 ? csg_build_primitive(job->builder, CSG_NODE_RECTANGLE, sizes, job->where)
+                        : csg_build_primitive(job->builder, CSG_NODE_CIRCLE, &radius, job->where));
     csg_affine place = csg_affine_identity();
     if (length > 0) {
         place.m[0][0] = place.m[1][1] = x.x;
@@ -221,24 +209,23 @@ static csg_node_id stadium(csg_module_call *call, const csg_cloud *cloud, csg_ve
     }
     place.t[0] = (origin.x + far.x) / 2;
     place.t[1] = (origin.y + far.y) / 2;
-    return csg_shape_moved(call, node, &place);
+    return csg_solid_moved(job, node, &place);
 }
 
-csg_node_id csg_cloud_hull_flat(csg_module_call *call, const csg_cloud *cloud, double tolerance)
+csg_node_id csg_cloud_hull_flat(csg_solid_job *job, const csg_cloud *cloud, double tolerance)
 {
-    csg_eval *e = call->e;
     csg_vec3 origin, x, normal;
     if (!cloud->count)
-        return csg_shape_empty(call);
-    if (!csg_eval_charge(e, cloud->count, call->statement->where))
+        return csg_solid_empty(job);
+    if (!csg_solid_charge(job, cloud->count))
         return CSG_NODE_NONE;
     double radius = common_radius(cloud);
     if (radius > 0 && span_of(cloud, &origin, &x, &normal) < 2)
-        return stadium(call, cloud, origin, x, radius);
+        return stadium(job, cloud, origin, x, radius);
     csg_cloud points;
     csg_outline outline, hull;
-    csg_cloud_init(&points, e->heap.memory);
-    csg_outline_init(&outline, e->heap.memory);
+    csg_cloud_init(&points, job->memory);
+    csg_outline_init(&outline, job->memory);
     const csg_cloud *corners = radius >= 0 ? cloud : &points;
     bool ok = radius >= 0 || points_of(cloud, tolerance, true, &points);
     for (size_t i = 0; i < corners->count && ok; i++)
@@ -248,6 +235,6 @@ csg_node_id csg_cloud_hull_flat(csg_module_call *call, const csg_cloud *cloud, d
     csg_cloud_release(&points);
     csg_outline_release(&outline);
     if (status != CSGM_OK)
-        return csg_shape_failed(call, status, "make this hull");
-    return grown(call, csg_shape_region(call, &hull), fmax(radius, 0));
+        return csg_solid_failed(job, status, "make this hull");
+    return csg_solid_grown(job, csg_solid_region(job, &hull), fmax(radius, 0));
 }

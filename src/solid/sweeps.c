@@ -3,12 +3,13 @@
  * the figure itself as a lid at both ends. What lies on one place is welded later
  * (shape/polyhedra/polyhedron.h), so points on the axis and apexes need no care.
  */
-#include "lang/modules/sweeps.h"
+#include "solid/sweeps.h"
 
 #include <math.h>
 
-#include "lang/modules/pieces.h"
 #include "shape/plane/polygons.h"
+#include "solid/facets.h"
+#include "solid/measure.h"
 
 enum { POINT_STEPS = 400 }; /* a point costs its triangles, their mending and their tree */
 
@@ -18,9 +19,9 @@ typedef struct sweeping {
     bool ok;
 } sweeping;
 
-static void begin(sweeping *w, csg_module_call *call)
+static void begin_sweep(sweeping *w, csg_solid_job *job)
 {
-    csg_memory *memory = call->e->heap.memory;
+    csg_memory *memory = job->memory;
     csg_outline_init(&w->outline, memory);
     csg_triangles_init(&w->triangles, memory);
     w->ok = true;
@@ -64,9 +65,9 @@ static void add_belts(sweeping *w, uint32_t below, uint32_t above, bool diagonal
     }
 }
 
-static csgm_status add_lid(sweeping *w, csg_module_call *call, uint32_t ring, bool up)
+static csgm_status add_lid(sweeping *w, csg_solid_job *job, uint32_t ring, bool up)
 {
-    csg_memory *memory = call->e->heap.memory;
+    csg_memory *memory = job->memory;
     uint32_t *indices = NULL;
     size_t count = 0;
     csgm_status status = csg_polygons_triangulate(&w->outline, memory, &indices, &count);
@@ -78,13 +79,13 @@ static csgm_status add_lid(sweeping *w, csg_module_call *call, uint32_t ring, bo
     return status;
 }
 
-static csg_node_id finish(sweeping *w, csg_module_call *call, csgm_status status)
+static csg_node_id close_sweep(sweeping *w, csg_solid_job *job, csgm_status status)
 {
     csg_outline_release(&w->outline);
-    if (w->ok && status == CSGM_OK && !call->e->stop)
-        return csg_shape_solid(call, &w->triangles, false);
+    if (w->ok && status == CSGM_OK && !job->stop)
+        return csg_solid_of_triangles(job, &w->triangles, NULL);
     csg_triangles_release(&w->triangles);
-    return csg_shape_failed(call, w->ok ? status : CSGM_ERR_MEMORY, "make this extrusion");
+    return csg_solid_failed(job, w->ok ? status : CSGM_ERR_MEMORY, "make this extrusion");
 }
 
 /* ---- up -------------------------------------------------------------------------------------- */
@@ -136,12 +137,11 @@ static uint32_t slice_count(const csg_sweep *sweep)
     return sweep->twist == 0 ? 1 : (uint32_t)fmin(ceil(fabs(sweep->twist) / smooth_deg) + 1, most);
 }
 
-csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_sweep *sweep)
+csg_node_id csg_sweep_up(csg_solid_job *job, csg_node_id flat, const csg_sweep *sweep)
 {
-    csg_eval *e = call->e;
     sweeping w;
-    begin(&w, call);
-    csgm_status status = csg_flat_outline(call, flat, &w.outline);
+    begin_sweep(&w, job);
+    csgm_status status = csg_flat_outline(job, flat, &w.outline);
     csg_sweep used = *sweep;
     if (sweep->smooth)
         used.slices = 0; /* what is smooth has as many as it needs */
@@ -151,7 +151,7 @@ csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_swee
         w.ok = divide_edges(&w.outline, fmax(size.x, size.y) / 24);
     }
     points = (uint32_t)w.outline.point_count;
-    if (!csg_eval_charge(e, (uint64_t)points * slices * POINT_STEPS, call->statement->where))
+    if (!csg_solid_charge(job, (uint64_t)points * slices * POINT_STEPS))
         status = CSGM_ERR_MEMORY;
     for (uint32_t i = 0; i <= slices && status == CSGM_OK && w.ok; i++) {
         add_level(&w, sweep, (double)i / slices);
@@ -159,10 +159,10 @@ csg_node_id csg_sweep_up(csg_module_call *call, csg_node_id flat, const csg_swee
             add_belts(&w, (i - 1) * points, i * points, sweep->twist > 0);
     }
     if (status == CSGM_OK)
-        status = add_lid(&w, call, 0, false);
+        status = add_lid(&w, job, 0, false);
     if (status == CSGM_OK && !(sweep->scale[0] == 0 && sweep->scale[1] == 0))
-        status = add_lid(&w, call, slices * points, true);
-    return finish(&w, call, status);
+        status = add_lid(&w, job, slices * points, true);
+    return close_sweep(&w, job, status);
 }
 
 /* ---- around ---------------------------------------------------------------------------------- */
@@ -176,17 +176,17 @@ static void add_meridian(sweeping *w, double angle)
     }
 }
 
-csg_node_id csg_sweep_around(csg_module_call *call, csg_outline *outline, double angle,
-                             double start, uint32_t steps)
+csg_node_id csg_sweep_around(csg_solid_job *job, csg_outline *outline, double angle, double start,
+                             uint32_t steps)
 {
     sweeping w;
     csgm_status status = CSGM_OK;
-    begin(&w, call);
+    begin_sweep(&w, job);
     w.outline = *outline;
     csg_outline_init(outline, w.outline.memory);
     uint32_t points = (uint32_t)w.outline.point_count;
     bool whole = fabs(angle) >= 360;
-    if (!csg_eval_charge(call->e, (uint64_t)points * steps * POINT_STEPS, call->statement->where))
+    if (!csg_solid_charge(job, (uint64_t)points * steps * POINT_STEPS))
         status = CSGM_ERR_MEMORY;
     for (uint32_t i = 0; i < steps + !whole && w.ok && status == CSGM_OK; i++) {
         add_meridian(&w, start + angle * i / steps);
@@ -196,8 +196,8 @@ csg_node_id csg_sweep_around(csg_module_call *call, csg_outline *outline, double
     if (whole && status == CSGM_OK)
         add_belts(&w, 0, (steps - 1) * points, true);
     if (!whole && status == CSGM_OK)
-        status = add_lid(&w, call, 0, true);
+        status = add_lid(&w, job, 0, true);
     if (!whole && status == CSGM_OK)
-        status = add_lid(&w, call, steps * points, false);
-    return finish(&w, call, status);
+        status = add_lid(&w, job, steps * points, false);
+    return close_sweep(&w, job, status);
 }

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * projection(): the cut of solids with the plane z = 0 is a warp; their shadow is put together from
- * the shadows of their pieces. A prism casts its own figure, a convex piece the hull of its
- * corners; of other surfaces the triangles that look up are taken: the edges between those and the
- * rest wind around every point of the shadow, once for each of those triangles above it.
+ * The shadow of a solid on the plane z = 0, put together from the shadows of its pieces. A prism
+ * casts its own figure, a convex piece the hull of its corners; of other surfaces the triangles
+ * that look up are taken: the edges between those and the rest wind around every point of the
+ * shadow, once for each of those triangles above it.
  */
 #include <stdlib.h>
 
-#include "lang/modules/pieces.h"
 #include "shape/plane/polygons.h"
 #include "shape/polyhedra/polyhedron.h"
+#include "solid/measure.h"
+#include "solid/operations.h"
+#include "solid/pieces.h"
 
 /* ---- edges of what looks up -------------------------------------------------------------------
  */
@@ -128,15 +130,14 @@ static bool trace(const shadow *s, uint8_t *used, csg_outline *out)
     return true;
 }
 
-static csg_node_id shadow_of_triangles(csg_module_call *call, const csg_triangles *triangles,
+static csg_node_id shadow_of_triangles(csg_solid_job *job, const csg_triangles *triangles,
                                        const csg_affine *map)
 {
-    csg_eval *e = call->e;
-    csg_memory *memory = e->heap.memory;
+    csg_memory *memory = job->memory;
     shadow s = {.memory = memory, .triangles = triangles, .map = map};
     csg_outline outline;
     csg_outline_init(&outline, memory);
-    bool ok = csg_eval_charge(e, triangles->count, call->statement->where) && collect_edges(&s);
+    bool ok = csg_solid_charge(job, triangles->count) && collect_edges(&s);
     if (ok && s.count)
         cancel(&s);
     size_t bytes = s.count ? s.count : 1;
@@ -147,111 +148,94 @@ static csg_node_id shadow_of_triangles(csg_module_call *call, const csg_triangle
     csg_memory_release(memory, used, bytes);
     csg_memory_release(memory, s.edges, s.capacity * sizeof *s.edges);
     if (ok)
-        return csg_shape_area(call, &outline, false);
+        return csg_solid_area(job, &outline, false);
     csg_outline_release(&outline);
-    csg_eval_no_memory(e);
+    csg_solid_no_memory(job);
     return CSG_NODE_NONE;
 }
 
 /* ---- shadows of pieces ------------------------------------------------------------------------
  */
 
-/* A flat piece where it stands. */
-static csg_node_id placed(csg_module_call *call, const csg_piece *piece)
-{
-    csg_scene_builder *builder = &call->e->builder;
-    csg_node_id node = csg_shape_done(call, csg_build_copy(builder, piece->node));
-    node = csg_shape_moved(call, node, &piece->map);
-    if (node == CSG_NODE_NONE || piece->grow == 0)
-        return node;
-    return csg_shape_done(call,
-                          csg_build_offset(builder, piece->grow, node, call->statement->where));
-}
+typedef struct shadows { /* of the pieces so far */
+    csg_solid_job *job;
+    csg_node_id *nodes;
+    size_t count, capacity;
+} shadows;
 
-static csg_node_id shadow_of_convex(csg_module_call *call, const csg_piece *piece, double size)
+static csg_node_id shadow_of_convex(csg_solid_job *job, const csg_solid_piece *piece, double size)
 {
     const double tolerance = 1e-5;
     csg_cloud cloud;
-    csg_cloud_init(&cloud, call->e->heap.memory);
-    csgm_status status = csg_piece_cloud(call, piece, tolerance * size, &cloud);
+    csg_cloud_init(&cloud, job->memory);
+    csgm_status status = csg_piece_cloud(job, piece, tolerance * size, &cloud);
     for (size_t i = 0; i < cloud.count; i++)
         cloud.balls[i].at.z = 0;
-    csg_node_id node = status == CSGM_OK ? csg_cloud_hull_flat(call, &cloud, tolerance * size)
-                                         : csg_shape_failed(call, status, "project this solid");
+    csg_node_id node = status == CSGM_OK ? csg_cloud_hull_flat(job, &cloud, tolerance * size)
+                                         : csg_solid_failed(job, status, "project this solid");
     csg_cloud_release(&cloud);
     return node;
 }
 
-static csg_node_id shadow_of_other(csg_module_call *call, const csg_piece *piece)
+static csg_node_id shadow_of_other(csg_solid_job *job, const csg_solid_piece *piece)
 {
-    csg_eval *e = call->e;
-    const csgm_scene *scene = e->builder.scene;
+    const csgm_scene *scene = job->builder->scene;
     const csg_node *node = &scene->nodes[piece->node];
     if (node->kind == CSG_NODE_SHAPE && piece->grow == 0)
-        return shadow_of_triangles(call, csg_polyhedron_triangles(scene->shapes[node->payload]),
+        return shadow_of_triangles(job, csg_polyhedron_triangles(scene->shapes[node->payload]),
                                    &piece->map);
     csg_triangles triangles;
-    csg_triangles_init(&triangles, e->heap.memory);
-    csgm_status status = csg_solid_triangles(call, piece->node, &triangles);
-    csg_node_id flat = status == CSGM_OK ? shadow_of_triangles(call, &triangles, &piece->map)
-                                         : csg_shape_failed(call, status, "project this solid");
+    csg_triangles_init(&triangles, job->memory);
+    csgm_status status = csg_solid_triangles(job, piece->node, &triangles);
+    csg_node_id flat = status == CSGM_OK ? shadow_of_triangles(job, &triangles, &piece->map)
+                                         : csg_solid_failed(job, status, "project this solid");
     csg_triangles_release(&triangles);
-    if (flat == CSG_NODE_NONE || piece->grow == 0 || csg_shape_is_empty(e, flat))
-        return flat;
-    return csg_shape_done(call,
-                          csg_build_offset(&e->builder, piece->grow, flat, call->statement->where));
+    return csg_solid_grown(job, flat, piece->grow);
 }
 
-/* Parts on the stack: one for a piece, or those of its figure. */
-static void cast(csg_module_call *call, const csg_piece *piece, double size)
+static void add_shadow(shadows *s, csg_node_id node)
 {
-    csg_eval *e = call->e;
-    csg_pieces figure;
+    csg_solid_job *job = s->job;
+    if (node == CSG_NODE_NONE || job->stop)
+        return;
+    if (csg_memory_reserve(job->memory, (void **)&s->nodes, &s->capacity, s->count + 1,
+                           sizeof node))
+        s->nodes[s->count++] = node;
+    else
+        csg_solid_no_memory(job);
+}
+
+/* One for a piece, or those of its figure. */
+static void cast_piece(shadows *s, const csg_solid_piece *piece, double size)
+{
+    csg_solid_job *job = s->job;
+    csg_solid_pieces figure;
     double heights[2];
-    csg_pieces_init(&figure, e->heap.memory);
-    csg_node_id node = CSG_NODE_NONE;
-    if (csg_piece_prism(e, piece, &figure, heights)) {
-        for (size_t i = 0; i < figure.count && !e->stop; i++) {
-            node = placed(call, &figure.items[i]);
-            if (node != CSG_NODE_NONE)
-                csg_push_part(e, csg_part_plain(node));
-        }
-    } else if (!e->stop) {
-        node = csg_piece_is_convex(e, piece) ? shadow_of_convex(call, piece, size)
-                                             : shadow_of_other(call, piece);
-        if (node != CSG_NODE_NONE)
-            csg_push_part(e, csg_part_plain(node));
+    csg_pieces_init(&figure, job->memory);
+    if (csg_piece_prism(job, piece, &figure, heights)) {
+        for (size_t i = 0; i < figure.count && !job->stop; i++)
+            add_shadow(s, csg_piece_placed(job, &figure.items[i]));
+    } else if (!job->stop) {
+        add_shadow(s, csg_piece_is_convex(job, piece) ? shadow_of_convex(job, piece, size)
+                                                      : shadow_of_other(job, piece));
     }
     csg_pieces_release(&figure);
 }
 
-static csg_node_id shadow_of(csg_module_call *call, csg_node_id solid)
+csg_node_id csg_solid_shadow(csg_solid_job *job, csg_node_id solid)
 {
-    csg_eval *e = call->e;
-    csg_pieces pieces;
+    csg_solid_pieces pieces;
+    shadows s = {.job = job};
     double size;
-    size_t first = e->part_count;
-    if (!csg_finite_size(call, solid, &size))
-        return csg_shape_empty(call);
-    csg_pieces_init(&pieces, e->heap.memory);
-    if (!csg_pieces_collect(e, solid, &pieces))
-        csg_eval_no_memory(e);
-    for (size_t i = 0; i < pieces.count && !e->stop; i++)
-        cast(call, &pieces.items[i], size);
+    if (!csg_finite_size(job, solid, &size))
+        return csg_solid_empty(job);
+    csg_pieces_init(&pieces, job->memory);
+    if (!csg_pieces_collect(job->builder->scene, solid, &pieces))
+        csg_solid_no_memory(job);
+    for (size_t i = 0; i < pieces.count && !job->stop; i++)
+        cast_piece(&s, &pieces.items[i], size);
     csg_pieces_release(&pieces);
-    return csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0},
-                          call->statement->where);
-}
-
-csg_node_id csg_module_projection(csg_module_call *call)
-{
-    enum { CUT };
-    csg_eval *e = call->e;
-    const csg_warp slice = {.kind = CSG_WARP_SLICE};
-    csg_node_id solid = csg_shape_children(call, false);
-    if (solid == CSG_NODE_NONE || e->stop || csg_shape_is_empty(e, solid))
-        return solid;
-    if (!csg_argument_boolean(call, CUT))
-        return shadow_of(call, solid);
-    return csg_shape_done(call, csg_build_warp(&e->builder, &slice, solid, call->statement->where));
+    csg_node_id node = job->stop ? CSG_NODE_NONE : csg_solid_union(job, s.nodes, s.count);
+    csg_memory_release(job->memory, s.nodes, s.capacity * sizeof *s.nodes);
+    return node;
 }

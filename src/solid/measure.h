@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ * What is asked of whole nodes: is the field an exact distance, polygons of a flat node, triangles
+ * and the tight box of a solid.
+ */
+#ifndef CSG_SOLID_MEASURE_H
+#define CSG_SOLID_MEASURE_H
+
+#include "solid/solid.h"
+
+/* Is the field below the node the exact distance outside (or inside) of its solid? */
+bool csg_distance_is_exact(const csg_solid_job *job, csg_node_id node, bool outside);
+/* Clean polygons of a flat node: its own corners, arcs within 1e-5 of its size. */
+csgm_status csg_flat_outline(csg_solid_job *job, csg_node_id node, csg_outline *out);
+/* Triangles on the surface of a solid, by marching cubes. */
+csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triangles *out);
+/* The box of the node's solid, tight where its pieces are known, else within a cell of a
+ * tessellation. */
+csgm_status csg_tight_box(csg_solid_job *job, csg_node_id node, csg_box *out);
+/* Longest side of the node's box; reports and fails where it is infinite. */
+bool csg_finite_size(csg_solid_job *job, csg_node_id node, double *out);
+
+#endif
