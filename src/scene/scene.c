@@ -38,20 +38,16 @@ uint32_t csg_primitive_parameter_count(csg_node_kind kind)
 typedef struct blend_row {
     const char *name;
     double raw, support, excess;
-    bool fold;
+    bool area, fold, smooth, convex;
 } blend_row;
 
 static const blend_row blends[CSG_BLEND_COUNT] = {
-#define CSG_BLEND(NAME, name, raw, support, excess, fold, doc)                                     \
-    [CSG_BLEND_##NAME] = {#name, raw, support, excess, fold},
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    [CSG_BLEND_##NAME] = {#name, raw, support, excess, area, false, smooth, convex},
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
+    [CSG_BLEND_##NAME] = {#name, raw, support, excess, area, true, smooth, convex},
 #include "scene/operators/operators.def"
-#undef CSG_BLEND
 };
-
-static bool has_area(csg_blend_kind kind)
-{
-    return kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL;
-}
 
 const char *csg_blend_name(csg_blend_kind kind)
 {
@@ -84,7 +80,7 @@ double csg_blend_excess(csg_blend blend, uint32_t operands)
         return INFINITY;
     if (blend.kind == CSG_BLEND_ROUND)
         return blend.n * (1 - 1 / sqrt((double)operands));
-    double two = blends[blend.kind].excess * (has_area(blend.kind) ? sqrt(blend.n) : blend.n);
+    double two = blends[blend.kind].excess * (blends[blend.kind].area ? sqrt(blend.n) : blend.n);
     return two * (operands - 1); /* each step of the fold exceeds the one before by that much */
 }
 
@@ -93,11 +89,22 @@ bool csg_blend_is_fold(csg_blend_kind kind)
     return csg_blend_is_rule(kind) ? csg_rule_is_fold(kind) : blends[kind].fold;
 }
 
+bool csg_blend_is_smooth(csg_blend_kind kind)
+{
+    return kind < CSG_BLEND_COUNT && blends[kind].smooth;
+}
+
+bool csg_blend_is_convex(csg_blend_kind kind)
+{
+    return kind < CSG_BLEND_COUNT && blends[kind].convex;
+}
+
 csg_blend csg_blend_scale(csg_blend blend, double factor)
 {
     if (csg_blend_is_rule(blend.kind))
         return blend;
-    blend.n *= has_area(blend.kind) ? factor * factor : factor;
+    bool area = blend.kind < CSG_BLEND_COUNT && blends[blend.kind].area;
+    blend.n *= area ? factor * factor : factor;
     return blend;
 }
 

@@ -80,6 +80,9 @@ double csg_blend_support(csg_blend blend);
 /* Largest value of G - max over `operands` operands; INFINITY for rules (csg_scene_excess). */
 double csg_blend_excess(csg_blend blend, uint32_t operands);
 bool csg_blend_is_fold(csg_blend_kind kind);
+/* smooth and convex of operators.def; false for ORTHOGONAL and for rules. */
+bool csg_blend_is_smooth(csg_blend_kind kind);
+bool csg_blend_is_convex(csg_blend_kind kind);
 /* The blend as a solid scaled by `factor` needs it: areas grow with its square. Rules stay as they
  * are (csg_rule_scale). */
 csg_blend csg_blend_scale(csg_blend blend, double factor);

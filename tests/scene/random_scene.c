@@ -102,7 +102,7 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 {
     if (kind == CSG_BLEND_SHARP)
         return (csg_blend){CSG_BLEND_SHARP, 0};
-    if (kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL)
+    if (isinf(csg_blend_support((csg_blend){kind, 1}))) /* an area */
         return (csg_blend){kind, uniform(random, 0.0005, 0.01)};
     return (csg_blend){kind, csg_blend_raw(kind, uniform(random, 0.03, 0.35))};
 }

@@ -246,6 +246,33 @@ static void test_infinite_operands(void **state)
     }
 }
 
+/* Of f_b' between 0 and the support: what operators.def says of creases and of its growth. */
+static void check_slopes(csg_blend blend)
+{
+    enum { STEPS = 1000 };
+    double support = csg_blend_support(blend), end = isinf(support) ? 50 : support;
+    double value, slope, first, before, least = 0;
+    csg_reference_blend_function(blend.kind, blend.n, 0, &value, &first);
+    before = first;
+    for (int i = 1; i < STEPS; i++) {
+        csg_reference_blend_function(blend.kind, blend.n, end * i / STEPS, &value, &slope);
+        least = fmin(least, slope - before);
+        before = slope;
+    }
+    bool smooth = fabs(first + 0.5) < 1e-12 && fabs(before) < 0.01;
+    assert_int_equal(smooth, csg_blend_is_smooth(blend.kind));
+    assert_int_equal(least >= -1e-12, csg_blend_is_convex(blend.kind));
+}
+
+static void test_slopes(void **state)
+{
+    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_COUNT; kind++)
+        if (csg_blend_is_fold(kind))
+            check_slopes((csg_blend){kind, csg_blend_raw(kind, 0.7)});
+    assert_false(csg_blend_is_smooth(CSG_BLEND_SHARP));
+    assert_false(csg_blend_is_smooth(CSG_BLEND_ORTHOGONAL));
+}
+
 static void test_names_and_widths(void **state)
 {
     assert_string_equal(csg_blend_name(CSG_BLEND_PARABOLA), "parabola");
@@ -256,7 +283,7 @@ static void test_names_and_widths(void **state)
         if (support < infinity)
             test_near(support, 0.7, 1e-15);
         else
-            assert_true(kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL);
+            test_near(csg_blend_raw(kind, 0.7), 0.7, 0);
         assert_int_equal(csg_blend_is_fold(kind), kind != CSG_BLEND_ROUND);
     }
 }
@@ -277,6 +304,7 @@ int main(void)
         cmocka_unit_test(test_round_many_equal),
         cmocka_unit_test(test_round_is_circular),
         cmocka_unit_test(test_infinite_operands),
+        cmocka_unit_test(test_slopes),
         cmocka_unit_test(test_names_and_widths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

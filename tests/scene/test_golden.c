@@ -11,7 +11,10 @@ static const double tolerance = 1e-12;
 /* Blend function k of the papers. */
 static csg_blend_kind blend_of(const char *k)
 {
-    return (csg_blend_kind)(CSG_BLEND_HYPERBOLA + atoi(k) - 1);
+    static const csg_blend_kind functions[] = {CSG_BLEND_HYPERBOLA, CSG_BLEND_RECIPROCAL,
+                                               CSG_BLEND_OVERBLEND, CSG_BLEND_COSINE,
+                                               CSG_BLEND_PARABOLA,  CSG_BLEND_CHAMFER};
+    return functions[atoi(k) - 1];
 }
 
 static void check_function(const row *r)

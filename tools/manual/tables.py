@@ -104,7 +104,7 @@ def rules(space):
         if macro == "CSG_RULE_PARAMETER":
             parameters.setdefault(fields[0], []).append(fields[1:])
     for macro, fields in calls("src/scene/operators/operators.def"):
-        if macro != "CSG_RULE" or fields[2] != space or fields[1] == "field_sharp":
+        if macro != "CSG_RULE" or fields[2] != space:
             continue
         constant, name, _, fold, interval, _, slope, equal, doc = fields
         joins = "from the left" if fold == "1" else "all at once"

@@ -11,11 +11,6 @@
 #include "field/kernels/kernel.h"
 #include "scene/operators/blends.h"
 
-#define EACH_FOLD(X)                                                                               \
-    X(HYPERBOLA, hyperbola)                                                                        \
-    X(RECIPROCAL, reciprocal)                                                                      \
-    X(OVERBLEND, overblend) X(COSINE, cosine) X(PARABOLA, parabola) X(CHAMFER, chamfer)
-
 /* The intersection of a and b, raised by n, whose gradients are at right angles. Away from the edge
  * the smaller one, bit for bit. */
 static inline float orthogonal(float n, float a, float b)
@@ -31,29 +26,35 @@ static void join_values(const csg_tape_node *node, const float *parameters, floa
 {
     const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     const int is_union = node->join == CSG_JOIN_UNION;
-    switch (node->join_blend) {
-#define CASE(NAME, name)                                                                           \
+    switch ((csg_blend_kind)node->join_blend) {
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
     case CSG_BLEND_##NAME:                                                                         \
         if (is_union)                                                                              \
             for (size_t i = 0; i < count; i++)                                                     \
-                a[i] = larger(a[i], b[i]) + blend_##name(n, chi, absolute(a[i] - b[i])).value;     \
+                a[i] = larger(a[i], b[i]) + name##_float(n, chi, absolute(a[i] - b[i])).value;     \
         else                                                                                       \
             for (size_t i = 0; i < count; i++)                                                     \
-                a[i] = smaller(a[i], b[i]) - blend_##name(n, chi, absolute(a[i] - b[i])).value;    \
+                a[i] = smaller(a[i], b[i]) - name##_float(n, chi, absolute(a[i] - b[i])).value;    \
         break;
-        EACH_FOLD(CASE)
-#undef CASE
+#include "scene/operators/operators.def"
     case CSG_BLEND_ORTHOGONAL:
         for (size_t i = 0; i < count; i++)
             a[i] = is_union ? -orthogonal(-n, -a[i], -b[i]) : orthogonal(n, a[i], b[i]);
         break;
-    default: /* SHARP */
+    case CSG_BLEND_SHARP:
         if (is_union)
             for (size_t i = 0; i < count; i++)
                 a[i] = larger(a[i], b[i]);
         else
             for (size_t i = 0; i < count; i++)
                 a[i] = smaller(a[i], b[i]);
+        break;
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ROUND:
+    case CSG_BLEND_END:
+        break; /* joined elsewhere */
     }
 }
 
@@ -65,16 +66,15 @@ static void join_shares(const csg_tape_node *node, const float *parameters, cons
 {
     const float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     const float turn = node->join == CSG_JOIN_UNION ? 1.0f : -1.0f;
-    switch (node->join_blend) {
-#define CASE(NAME, name)                                                                           \
+    switch ((csg_blend_kind)node->join_blend) {
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
     case CSG_BLEND_##NAME:                                                                         \
         for (size_t i = 0; i < count; i++) {                                                       \
-            float slope = blend_##name(n, chi, absolute(a[i] - b[i])).slope;                       \
+            float slope = name##_float(n, chi, absolute(a[i] - b[i])).slope;                       \
             share[i] = turn * a[i] > turn * b[i] ? 1.0f + slope : -slope;                          \
         }                                                                                          \
         break;
-        EACH_FOLD(CASE)
-#undef CASE
+#include "scene/operators/operators.def"
     case CSG_BLEND_ORTHOGONAL:
         for (size_t i = 0; i < count; i++) {
             float u = turn * (a[i] - n), v = turn * (b[i] - n); /* edge where both are positive */
@@ -84,9 +84,16 @@ static void join_shares(const csg_tape_node *node, const float *parameters, cons
             gain[i] = edge ? sum / sqrtf(u * u + v * v) : 1.0f;
         }
         break;
-    default:
+    case CSG_BLEND_SHARP:
         for (size_t i = 0; i < count; i++)
             share[i] = turn * a[i] > turn * b[i] ? 1.0f : 0.0f;
+        break;
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ROUND:
+    case CSG_BLEND_END:
+        break; /* joined elsewhere */
     }
 }
 

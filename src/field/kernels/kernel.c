@@ -12,19 +12,29 @@
  */
 #include "field/kernels/kernel.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "base/select.h"
 #include "field/kernels/formula_kernel.h"
 #include "field/kernels/joins.h"
 #include "field/kernels/leaf_kernel.h"
 #include "field/kernels/rule_kernel.h"
 #include "field/kernels/smooth_kernel.h"
-#include "scene/operators/blends.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
 
-/* ---- the round operator: all operands at once -------------------------------------------- */
+/* ---- the round operator: all operands at once (operators.md 12) -------------------------------------------- */
+
+/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0.
+ */
+static inline float round_excess(float w, float m, float sum, float squares)
+{
+    float mean = sum / m;
+    float rest = w * w - (squares - sum * mean);
+    return larger(w - mean - sqrtf(larger(rest, 0) / m), 0);
+}
 
 /* Operands are f[k * stride + i]. Turns them into gaps u = max - f (in place), and leaves the
  * largest in top and G - max in excess. For intersections f is negated first. work: another

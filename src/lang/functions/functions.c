@@ -27,6 +27,19 @@ static const row rows[] = {
 
 enum { ROW_COUNT = sizeof rows / sizeof *rows };
 
+/* Every blend and rule has a row here by its own name, or it could not be called. */
+enum {
+#define CSG_FUNCTION(name, handler, fewest, most, parameters, doc) FUNCTION_##name,
+#include "lang/functions/functions.def"
+#undef CSG_FUNCTION
+};
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
+    _Static_assert(FUNCTION_##name >= 0, "a row of functions.def");
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    _Static_assert(FUNCTION_##name >= 0, "a row of functions.def");
+#define CSG_RULE_INNER(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)
+#include "scene/operators/operators.def"
+
 void csg_builtins_intern(csg_symbols *symbols, bool *ok)
 {
     for (size_t i = 0; i < ROW_COUNT && *ok; i++) {

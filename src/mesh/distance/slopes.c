@@ -62,29 +62,27 @@ static double rate_of(const walker *w, const operand *a, const operand *b)
 static blended blend_at(uint8_t blend, float n, float chi, double d)
 {
     float x = (float)fabs(d);
-    switch (blend) {
-    case CSG_BLEND_HYPERBOLA:
-        return blend_hyperbola(n, chi, x);
-    case CSG_BLEND_RECIPROCAL:
-        return blend_reciprocal(n, chi, x);
-    case CSG_BLEND_COSINE:
-        return blend_cosine(n, chi, x);
-    case CSG_BLEND_OVERBLEND:
-        return blend_overblend(n, chi, x);
-    case CSG_BLEND_PARABOLA:
-        return blend_parabola(n, chi, x);
-    case CSG_BLEND_CHAMFER:
-        return blend_chamfer(n, chi, x);
-    default:
-        return blend_sharp(n, chi, x);
+    switch ((csg_blend_kind)blend) {
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
+    case CSG_BLEND_##NAME:                                                                         \
+        return name##_float(n, chi, x);
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break; /* the larger one, or nothing that folds */
     }
+    return (blended){0, 0};
 }
 
 /* The share of operand a where a - b = d, of a union. */
 static double share_at(uint8_t blend, float n, float chi, double d)
 {
     float slope = blend_at(blend, n, chi, d).slope;
-    if (blend == CSG_BLEND_OVERBLEND) /* not monotone: anything, once it begins */
+    if (!csg_blend_is_convex(blend)) /* anything, once it begins */
         slope = (float)fabs(d) < chi ? -1.0f : 0;
     return d > 0 ? 1 + (double)slope : -(double)slope;
 }
@@ -98,7 +96,7 @@ static range shares_of(uint8_t blend, float n, float chi, double low, double hig
 {
     static const double ROUNDING = 1e-5;
     range r = {share_at(blend, n, chi, low), share_at(blend, n, chi, high)};
-    if (blend == CSG_BLEND_OVERBLEND && low < (double)chi && high > -(double)chi)
+    if (!csg_blend_is_convex(blend) && low < (double)chi && high > -(double)chi)
         r = (range){0, 1};
     if (r.low >= 1 || r.high <= 0)
         return r;

@@ -122,19 +122,13 @@ static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, bal
     return node->warp || may_have_edges(node->op, own, q, reach, own_band(b, parameters));
 }
 
-static bool is_smooth_blend(uint8_t kind)
-{
-    return kind == CSG_BLEND_ROUND || kind == CSG_BLEND_HYPERBOLA || kind == CSG_BLEND_RECIPROCAL ||
-           kind == CSG_BLEND_OVERBLEND || kind == CSG_BLEND_COSINE || kind == CSG_BLEND_PARABOLA;
-}
-
 /* Takes the blend's width to the band. False: it is not smooth, or finer than a cell. */
 static bool widen(const csg_tape *tape, uint8_t kind, uint32_t at, bool is_union, float cell,
                   band *b)
 {
     float n = tape->parameters[at + CSG_OPERATOR_N];
     float support = tape->parameters[at + CSG_OPERATOR_SUPPORT];
-    if (!is_smooth_blend(kind) || !(n >= cell && support >= cell))
+    if (!csg_blend_is_smooth(kind) || !(n >= cell && support >= cell))
         return false;
     *(is_union ? &b->low : &b->high) += is_union ? -support : support;
     return true;

@@ -3,7 +3,9 @@
  */
 #include "scene/formula/formulate.h"
 
-#define PI 3.14159265358979323846
+#include <assert.h>
+
+#include "scene/operators/blends.h"
 
 static csg_term largest(csg_terms *t, const csg_term *values, size_t count)
 {
@@ -13,39 +15,26 @@ static csg_term largest(csg_terms *t, const csg_term *values, size_t count)
     return most;
 }
 
-/* n (1 + cos a), a in radians from a term of lengths: 2 n sin((pi - a) / 2)^2. */
-static csg_term bulge(csg_terms *t, double n, csg_term x, double offset, double factor)
-{
-    const double degrees = 180 / PI;
-    csg_term half = csg_term_mul_number(t, x, factor / n * degrees / 2);
-    csg_term sine = csg_term_sin(t, csg_term_add_number(t, half, offset * degrees / 2));
-    return csg_term_mul_number(t, csg_term_square(t, sine), 2 * n);
-}
-
 /* What a blend adds to the larger of two that differ by x. */
 static csg_term excess(csg_terms *t, csg_blend blend, csg_term x)
 {
-    double n = blend.n, support = csg_blend_support(blend);
-    if (isfinite(support))
-        x = csg_term_min_number(t, x, support);
+    double n = blend.n, limit = csg_blend_support(blend);
+    if (isfinite(limit))
+        x = csg_term_min_number(t, x, limit);
     switch (blend.kind) {
-    case CSG_BLEND_HYPERBOLA: {
-        csg_term root = csg_term_sqrt(t, csg_term_add_number(t, csg_term_square(t, x), n));
-        return csg_term_div(t, csg_term_number(t, n / 2), csg_term_add(t, root, x));
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
+    case CSG_BLEND_##NAME:                                                                         \
+        return name##_term(t, n, x);
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        assert(!"a binary blend");
     }
-    case CSG_BLEND_RECIPROCAL:
-        return csg_term_div(t, csg_term_number(t, n), csg_term_add_number(t, x, sqrt(2 * n)));
-    case CSG_BLEND_OVERBLEND:
-        return bulge(t, n, x, PI - PI / 6, -1);
-    case CSG_BLEND_COSINE:
-        return bulge(t, n, x, PI / 6, -1);
-    case CSG_BLEND_PARABOLA: {
-        csg_term root = csg_term_sub_number(t, csg_term_mul_number(t, x, 1 / n), 0.25);
-        return csg_term_mul_number(t, csg_term_square(t, root), n);
-    }
-    default: /* CHAMFER */
-        return csg_term_less(t, n, csg_term_mul_number(t, x, 0.5));
-    }
+    return CSG_FORMULA_NONE;
 }
 
 /* Of two, w - d / 2 - sqrt((w^2 - d^2 / 2) / 2), which is 0 where they differ by d = w. */

@@ -1,57 +1,36 @@
 /* SPDX-License-Identifier: MIT
- * Blend functions, binary blends and the n-ary round union in double precision (operators.md 2.1,
- * 2.2, 12). Operands outside the support leave the largest operand as it is, bit for bit.
+ * Binary blends (their functions: blends.h) and the n-ary round union in double precision
+ * (operators.md 2.1, 2.2, 12). Operands outside the support leave the largest operand as it is, bit
+ * for bit.
  */
 #include "scene/reference.h"
 
 #include <assert.h>
 
+#include "scene/operators/blends.h"
 #include "scene/operators/choice.h"
-
-#define PI 3.14159265358979323846
 
 void csg_reference_blend_function(csg_blend_kind kind, double n, double x, double *value,
                                   double *derivative)
 {
-    *value = *derivative = 0;
-    if (!(x < csg_blend_support((csg_blend){kind, n}))) /* NaN too */
-        return;
-    double root, angle, half;
+    csg_blended made = {0, 0};
+    bool blends = x < csg_blend_support((csg_blend){kind, n}); /* not where it is NaN */
     switch (kind) {
-    case CSG_BLEND_HYPERBOLA:
-        root = sqrt(x * x + n);
-        *value = n / (2 * (root + x));
-        *derivative = (x / root - 1) / 2;
+#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
+    case CSG_BLEND_##NAME:                                                                         \
+        made = blends ? name##_double(n, x) : made;                                                \
         break;
-    case CSG_BLEND_RECIPROCAL:
-        root = x + sqrt(2 * n);
-        *value = n / root;
-        *derivative = -n / (root * root);
-        break;
-    case CSG_BLEND_OVERBLEND: /* n + n cos(a) = 2 n sin((pi - a) / 2)^2 keeps its digits at the end
-                               */
-        angle = PI / 6 + x / n;
-        half = sin((PI - angle) / 2);
-        *value = 2 * n * half * half;
-        *derivative = -sin(angle);
-        break;
-    case CSG_BLEND_COSINE:
-        half = (PI / 6 - x / n) / 2;
-        *value = 2 * n * sin(half) * sin(half);
-        *derivative = -sin(2 * half);
-        break;
-    case CSG_BLEND_PARABOLA:
-        root = x / n - 0.25;
-        *value = n * root * root;
-        *derivative = 2 * root;
-        break;
-    case CSG_BLEND_CHAMFER:
-        *value = n - x / 2;
-        *derivative = -0.5;
-        break;
-    default:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
         assert(!"a binary blend");
     }
+    *value = made.value;
+    *derivative = made.slope;
 }
 
 static double fold_union(csg_blend blend, const double *values, double *partials)

@@ -17,7 +17,7 @@
 #include <stdint.h>
 
 typedef enum csg_blend_kind {
-#define CSG_BLEND(NAME, name, raw, support, excess, fold, doc) CSG_BLEND_##NAME,
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc) CSG_BLEND_##NAME,
 #include "scene/operators/operators.def"
     CSG_BLEND_COUNT,
     /* Intersection of fields with gradients at right angles, as of an extrusion's outline and its
