@@ -477,7 +477,7 @@ typedef struct csgm_mesh_view {
     const csgm_mesh_part *parts; /* part_count, all triangles in order; NULL = one without a name */
     uint64_t part_count;
     const uint16_t *materials; /* 2 * vertex_count: metallic and roughness times 10000, or NULL */
-    bool split; /* built with CSGM_NORMALS_CREASE. Formats other than OBJ, glTF and GLB join the
+    bool split; /* built with CSGM_NORMALS_CREASE. Formats without CSGM_KEEPS_CREASES join the
                    vertices of one place again, with the mean of their normals */
 } csgm_mesh_view;
 
@@ -526,13 +526,44 @@ typedef enum csgm_format {
     CSGM_FORMAT_GLB,
     CSGM_FORMAT_DRC, /* bare Draco */
     CSGM_FORMAT_3MF, /* a ZIP package of XML */
+    /* New ones come here. A release may add some, so a program loops from AUTO + 1 and asks each
+     * format what it can do; it does not keep COUNT. */
     CSGM_FORMAT_COUNT
 } csgm_format;
+
+/* What a format can do, as bits. "Keeps" means that what is in the mesh is in the file and comes
+ * back where the format is read. */
+typedef enum csgm_format_trait {
+    CSGM_IS_WRITTEN = 1 << 0,
+    CSGM_IS_READ = 1 << 1,
+    CSGM_IS_STREAMED = 1 << 2,    /* csgm_mesh_build_file fills the file while the mesh is made */
+    CSGM_IS_TEXT = 1 << 3,        /* with any options */
+    CSGM_KEEPS_VERTICES = 1 << 4, /* their number and order; else triangles have their own */
+    CSGM_KEEPS_DOUBLES = 1 << 5,  /* coordinates far from zero, as csgm_mesh_view.origin has them */
+    CSGM_KEEPS_NORMALS = 1 << 6,  /* those of vertices */
+    CSGM_KEEPS_CREASES = 1 << 7,  /* several normals at one point: CSGM_NORMALS_CREASE */
+    CSGM_KEEPS_COLORS = 1 << 8,
+    CSGM_KEEPS_ALPHA = 1 << 9,      /* the opacity of colours */
+    CSGM_KEEPS_NAMES = 1 << 10,     /* parts and what they are called */
+    CSGM_KEEPS_MATERIALS = 1 << 11, /* metallic and roughness */
+    CSGM_NAMES_FILES = 1 << 12,     /* such a file may say that a part of it is in other files */
+    CSGM_HEEDS_ASCII = 1 << 13,     /* the rest are members of csgm_write_options: ascii */
+    CSGM_HEEDS_UP = 1 << 14,        /* y_up */
+    CSGM_HEEDS_UNIT = 1 << 15,
+    CSGM_HEEDS_COMMENT = 1 << 16,
+    CSGM_HEEDS_DRACO = 1 << 17,     /* draco; with it draco_*_bits and draco_level */
+    CSGM_HEEDS_DRACO_BITS = 1 << 18 /* draco_*_bits and draco_level always */
+} csgm_format_trait;
 
 /* AUTO when the extension (or name, e.g. "ply") is unknown. */
 CSGM_API csgm_format csgm_format_from_path(const char *path);
 CSGM_API csgm_format csgm_format_from_name(const char *name);
-CSGM_API const char *csgm_format_name(csgm_format format); /* "ply"; static storage */
+CSGM_API const char *csgm_format_name(csgm_format format);  /* "ply"; static storage */
+CSGM_API const char *csgm_format_title(csgm_format format); /* "glTF": its name in a sentence */
+/* csgm_format_trait bits; 0 for AUTO and for what is no format. */
+CSGM_API uint32_t csgm_format_traits(csgm_format format);
+/* Whether this build writes (or reads) the format: it may be written only, or a library may be
+ * missing. */
 CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
 /* For --version, a line a library: what it is for, and its version or that this build lacks it. */
 CSGM_API const char *csgm_build_features(void);
@@ -581,11 +612,11 @@ CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_v
 /* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe:
  * for a handler that then ends the process with _exit. */
 CSGM_API void csgm_files_abandon(void);
-/* csgm_mesh_build and csgm_mesh_write in one, the same bytes. Binary PLY and plain GLB are filled
- * while the mesh is made, by all threads, in memory of the surface's blocks and not of the mesh;
- * any other format (and a pipe or device) keeps the mesh in memory until it is written. A mesh
- * without triangles writes no file: CSGM_ERR_SCENE, after a warning. counts (vertices, triangles)
- * and stats may be NULL; options NULL = defaults. */
+/* csgm_mesh_build and csgm_mesh_write in one, the same bytes. Binary PLY and STL and plain GLB are
+ * filled while the mesh is made, by all threads, in memory of the surface's blocks and not of the
+ * mesh; any other format (and a pipe or device) keeps the mesh in memory until it is written. A
+ * mesh without triangles writes no file: CSGM_ERR_SCENE, after a warning. counts (vertices,
+ * triangles) and stats may be NULL; options NULL = defaults. */
 CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
                                           const csgm_mesh_options *options, const char *path,
                                           csgm_format format,

@@ -19,6 +19,16 @@ const char *csgm_format_name(csgm_format format)
     return csg_format_name(format);
 }
 
+const char *csgm_format_title(csgm_format format)
+{
+    return csg_format_title(format);
+}
+
+uint32_t csgm_format_traits(csgm_format format)
+{
+    return csg_format_traits(format);
+}
+
 bool csgm_format_available(csgm_format format, bool for_reading)
 {
     return csg_format_available(format, for_reading);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "io/format_table.h"
+#include "io/formats.h"
 #include "io/parts.h"
 #include "io/stream.h"
 #include "mesh/inspect.h"
@@ -98,7 +98,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     csg_mesh_counts made = {0};
     csgm_mesh_options joined = *options;
     if (options->normals == CSGM_NORMALS_CREASE &&
-        !csg_format_keeps_creases(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format))
+        !(csg_format_traits(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format) &
+          CSGM_KEEPS_CREASES))
         joined.normals = CSGM_NORMALS_VERTEX;
     options = &joined;
     bool streams =

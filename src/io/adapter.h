@@ -100,7 +100,7 @@ void csg_draco_release_decoded(csg_draco_decoded *decoded);
 typedef csgm_status csg_gltf_part_fn(void *user, const csg_adapter_part *part,
                                      const double transform[12]);
 /* Brings the bytes of a file named in the document (relative to it, percent signs decoded); they
- * stay valid until csg_gltf_read returns. CSGM_OK or what went wrong. */
+ * stay valid until csg_gltf_parse returns. CSGM_OK or what went wrong. */
 typedef csgm_status csg_gltf_load_fn(void *user, const char *uri, const uint8_t **bytes,
                                      size_t *size_bytes);
 
@@ -114,8 +114,8 @@ typedef struct csg_gltf_calls {
 bool csg_gltf_available(void);
 /* json: the document; bin: the GLB's second chunk or NULL. CSGM_ERR_FORMAT with a sentence, or
  * what a call returned (then error->text may be empty: it was reported there). */
-csgm_status csg_gltf_read(const char *json, size_t json_bytes, const uint8_t *bin, size_t bin_bytes,
-                          const csg_gltf_calls *calls, csg_adapter_error *error);
+csgm_status csg_gltf_parse(const char *json, size_t json_bytes, const uint8_t *bin,
+                           size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error);
 
 /* ---- 3MF packages (package.c: libzip, expat) ---------------------------------------- */
 
@@ -135,7 +135,7 @@ bool csg_package_available(void);
 csgm_status csg_package_open(const uint8_t *bytes, size_t size_bytes, csg_package **out,
                              csg_adapter_error *error);
 void csg_package_close(csg_package *package); /* NULL is a no-op */
-/* One of the package's files, letters of any case. As csg_gltf_read about errors. */
+/* One of the package's files, letters of any case. As csg_gltf_parse about errors. */
 csgm_status csg_package_parse(csg_package *package, const char *name, const csg_xml_calls *calls,
                               csg_adapter_error *error);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The io layer's door: one table of formats {names, extensions, reader, writer}, and writing and
- * reading of whole meshes through it. The csg_format_* functions are the public csgm_format_* ones.
+ * The io layer's door: what can be asked of a format (formats.def has one row each), and writing
+ * and reading of whole meshes. The csg_format_* functions are the public csgm_format_* ones.
  */
 #ifndef CSG_IO_FORMATS_H
 #define CSG_IO_FORMATS_H
@@ -11,6 +11,8 @@
 csgm_format csg_format_from_path(const char *path); /* NULL gives AUTO */
 csgm_format csg_format_from_name(const char *name);
 const char *csg_format_name(csgm_format format);
+const char *csg_format_title(csgm_format format);
+uint32_t csg_format_traits(csgm_format format); /* csgm_format_trait */
 bool csg_format_available(csgm_format format, bool for_reading);
 
 csgm_write_options csg_write_options_default(void);

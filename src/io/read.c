@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "io/format_table.h"
-#include "io/reader.h"
+#include "io/formats.h"
 
 csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *format, ...)
 {
@@ -104,37 +104,6 @@ csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint
     return error == ENOMEM ? csg_context_no_memory(context) : unreadable(context, path, error);
 }
 
-/* ---- which format ----------------------------------------------------------------- */
-
-static bool begins(const uint8_t *data, size_t size, const char *text)
-{
-    size_t length = strlen(text);
-    return size >= length && memcmp(data, text, length) == 0;
-}
-
-/* By the first bytes; binary STL has none of its own, but its size follows from its count. */
-static csgm_format detect(const uint8_t *data, size_t size)
-{
-    if (begins(data, size, "ply\n") || begins(data, size, "ply\r"))
-        return CSGM_FORMAT_PLY;
-    if (begins(data, size, "glTF"))
-        return CSGM_FORMAT_GLB;
-    if (begins(data, size, "DRACO"))
-        return CSGM_FORMAT_DRC;
-    if (size >= 84 && size == 84 + 50 * (uint64_t)csg_load_u32(data + 80))
-        return CSGM_FORMAT_STL;
-    if (begins(data, size, "solid"))
-        return CSGM_FORMAT_STL;
-    if (begins(data, size, "OFF") || begins(data, size, "COFF") || begins(data, size, "NOFF") ||
-        begins(data, size, "CNOFF"))
-        return CSGM_FORMAT_OFF;
-    if (begins(data, size, "PK\3\4"))
-        return CSGM_FORMAT_3MF;
-    if (begins(data, size, "{"))
-        return CSGM_FORMAT_GLTF;
-    return CSGM_FORMAT_AUTO;
-}
-
 /* ---- the door --------------------------------------------------------------------- */
 
 csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_t size_bytes,
@@ -142,17 +111,17 @@ csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_
 {
     if (format == CSGM_FORMAT_AUTO)
         format = csg_format_from_path(path);
-    if (format == CSGM_FORMAT_AUTO)
-        format = detect(data, size_bytes);
-    const csg_format_row *row = csg_format_find(format);
+    const csg_format_row *row = format == CSGM_FORMAT_AUTO ? csg_format_recognise(data, size_bytes)
+                                                           : csg_format_find(format);
     if (!row)
         return csg_format_unknown(context, path);
-    if (!csg_format_available(format, true))
-        return csg_format_no_library(context, path, row->read_library, "reading this format");
+    csgm_status status = csg_format_check(context, path, row, true);
+    if (status)
+        return status;
     csg_input input = {context, path, data, size_bytes};
     csg_mesh_builder builder;
     csg_builder_init(&builder, context);
-    csgm_status status = row->read(&input, &builder);
+    status = row->read(&input, &builder);
     if (!status && builder.too_far)
         status = csg_read_broken(&input, 0, "a coordinate is beyond the range of floats");
     if (!status)

@@ -19,8 +19,9 @@ typedef struct csg_input {
 /* CSGM_OK, or an error already reported; out of memory may be left to the builder. */
 typedef csgm_status csg_read_fn(csg_input *input, csg_mesh_builder *builder);
 
-csg_read_fn csg_obj_read, csg_ply_read, csg_stl_read, csg_off_read, csg_gltf_read_file,
-    csg_drc_read, csg_3mf_read;
+/* One for each row of formats.def; those exist that the row says. */
+#define CSG_FORMAT(ID, name, ...) csg_read_fn csg_##name##_read;
+#include "io/formats.def"
 
 /* Report why the file is refused. line 0 = not a text file: name the byte in the message. */
 csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *format, ...)

@@ -8,6 +8,7 @@
 
 #include "io/file.h"
 #include "io/format_table.h"
+#include "io/formats.h"
 #include "io/parts.h"
 #include "mesh/weld.h"
 
@@ -124,10 +125,10 @@ static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, co
     *row = csg_format_find(format);
     if (!*row)
         return csg_format_unknown(context, file);
-    if (!csg_format_available(format, false))
-        return csg_format_no_library(context, file, (*row)->write_library, "this format");
-    bool is_gltf = format == CSGM_FORMAT_GLB || format == CSGM_FORMAT_GLTF;
-    if (options->draco && is_gltf && !csg_draco_available())
+    status = csg_format_check(context, file, *row, false);
+    if (status)
+        return status;
+    if (options->draco && (*row)->traits & CSGM_HEEDS_DRACO && !csg_draco_available())
         return csg_format_no_library(context, file, "Draco", "compressed glTF");
     return check_mesh(context, mesh, file);
 }
@@ -148,12 +149,12 @@ static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int f
     return status;
 }
 
-/* OBJ and glTF keep a vertex for each sheet at a crease, others join them. */
+/* Formats that keep creases have a vertex for each sheet there, for the others they are joined. */
 static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                const char *name, const csg_format_row *row,
                                const csgm_write_options *options)
 {
-    if (!mesh->split || csg_format_keeps_creases(row->id))
+    if (!mesh->split || row->traits & CSGM_KEEPS_CREASES)
         return fill(context, mesh, fd, name, row, options);
     csgm_mesh *joined;
     csgm_status status = csg_weld_runs(context, mesh, &joined);

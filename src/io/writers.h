@@ -18,8 +18,9 @@
 typedef csgm_status csg_write_fn(csg_sink *sink, const csgm_mesh_view *mesh,
                                  const csgm_write_options *options);
 
-csg_write_fn csg_obj_write, csg_ply_write, csg_stl_write, csg_off_write, csg_gltf_write,
-    csg_glb_write, csg_drc_write, csg_3mf_write;
+/* One for each row of formats.def; those exist that the row says. */
+#define CSG_FORMAT(ID, name, ...) csg_write_fn csg_##name##_write;
+#include "io/formats.def"
 
 /* Vertices and triangles as lines of numbers: ASCII PLY and OFF. */
 void csg_put_text_mesh(csg_sink *sink, const csgm_mesh_view *mesh);

@@ -13,7 +13,6 @@ import unittest
 
 PROGRAM = os.environ["CSGMESH"]
 SCENES = os.environ["CSGMESH_SCENES"]
-FORMATS = ["obj", "ply", "stl", "off", "gltf", "glb", "drc", "3mf"]
 
 BALL = "sphere(r = 1);\n"
 ENDLESS = "for (i = [0 : 99999]) for (j = [0 : 99999]) if (i < 0) sphere(i);\n"

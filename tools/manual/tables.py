@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Keeps the tables of the language manual as the program's own lists say.
+"""Keeps the tables of the manuals, and the lists of formats in other files, as the program's own lists say.
 
-    python3 tools/manual/tables.py            rewrites scenes/README.md between its markers
+    python3 tools/manual/tables.py            rewrites the files
     python3 tools/manual/tables.py --check    exit status 1 when that would change something
 
-In: the .def files of src/lang, src/scene and src/base. A marker pair <!-- begin NAME --> and
-<!-- end NAME --> holds the table that TABLES[NAME] makes.
+In: the .def files of src/lang, src/scene, src/base and src/io. A marker pair <!-- begin NAME --> and
+<!-- end NAME --> in a page of PAGES holds the table that its function makes; LISTS says where formats are
+listed in one line.
 """
 import os
 import re
 import sys
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-MANUAL = os.path.join(ROOT, "scenes", "README.md")
 
 
 def calls(path):
@@ -145,45 +145,91 @@ def diagnostics():
     return table(["code", "severity", "what was found"], rows)
 
 
-TABLES = {
-    "figures": lambda: modules("figures"),
-    "solids": lambda: modules("solids"),
-    "shaping": lambda: modules("shaping"),
-    "transforms": lambda: modules("transforms"),
-    "rules of lengths": lambda: rules("LENGTHS"),
-    "rules of fields": lambda: rules("FIELDS"),
-    "steps": steps,
-    "falloffs": falloffs,
-    "operators": lambda: modules("operators"),
-    "control": lambda: modules("control"),
-    "functions": functions,
-    "unsupported": unsupported,
-    "diagnostics": diagnostics,
+def format_rows():
+    """(name, title, way, traits, remarks) of each mesh format."""
+    for macro, fields in calls("src/io/formats.def"):
+        if macro == "CSG_FORMAT":
+            _, name, title, way, _, _, _, traits, _, remarks = fields
+            yield name, title, way, set(re.findall(r"\w+", traits)), remarks
+
+
+def formats():
+    rows = []
+    for name, title, way, traits, remarks in format_rows():
+        kept = ["yes" if f"CSGM_KEEPS_{what}" in traits else "no" for what in ("NORMALS", "COLORS", "NAMES", "MATERIALS", "DOUBLES")]
+        rows.append([code("." + name), title, {"READ_WRITE": "both", "WRITE_ONLY": "written", "READ_ONLY": "read"}[way],
+                     *kept, remarks])
+    return table(["extension", "", "written, read", "normals", "colours", "parts, names", "materials", "doubles", "remarks"],
+                 rows)
+
+
+def format_names(way="READ_ONLY", between=", "):
+    """The names of the formats, without those of one way."""
+    return between.join(name for name, _, row_way, _, _ in format_rows() if row_way != way)
+
+
+PAGES = {
+    "README.md": {"formats": formats},
+    "scenes/README.md": {
+        "figures": lambda: modules("figures"),
+        "solids": lambda: modules("solids"),
+        "shaping": lambda: modules("shaping"),
+        "transforms": lambda: modules("transforms"),
+        "rules of lengths": lambda: rules("LENGTHS"),
+        "rules of fields": lambda: rules("FIELDS"),
+        "steps": steps,
+        "falloffs": falloffs,
+        "operators": lambda: modules("operators"),
+        "control": lambda: modules("control"),
+        "functions": functions,
+        "unsupported": unsupported,
+        "diagnostics": diagnostics,
+    },
+}
+
+# Files that list the formats in one line: what stands before, between and behind the list.
+LISTS = {
+    "tools/integrations/batch.schema.json": (r'"description": "', ", ", r'; default glb"'),
+    "tools/integrations/make/csgmesh.mk": (r"CSGMESH_FORMATS \?= ", " ", r"$"),
 }
 
 
-def renew(text):
-    for name, make in TABLES.items():
+def renew_page(path, text):
+    for name, make in PAGES[path].items():
         begin, end = f"<!-- begin {name} -->", f"<!-- end {name} -->"
         before, _, rest = text.partition(begin)
         _, found, after = rest.partition(end)
         if not found:
-            sys.exit(f"{MANUAL}: no markers for the table '{name}'")
+            sys.exit(f"{path}: no markers for the table '{name}'")
         text = before + "\n".join([begin] + make() + [end]) + after
     return text
 
 
+def renew_list(path, text):
+    before, between, behind = LISTS[path]
+    pattern = re.compile(f"({before})[a-z0-9, ]+({behind})", re.M)
+    if len(pattern.findall(text)) != 1:
+        sys.exit(f"{path}: not one list of formats")
+    return pattern.sub(lambda found: found.group(1) + format_names(between=between) + found.group(2), text)
+
+
 def main():
-    with open(MANUAL, encoding="utf-8") as file:
-        old = file.read()
-    new = renew(old)
-    if "--check" in sys.argv[1:]:
-        if new != old:
-            print("scenes/README.md is not up to date: run python3 tools/manual/tables.py")
-        return int(new != old)
-    if new != old:
-        with open(MANUAL, "w", encoding="utf-8") as file:
-            file.write(new)
+    stale = []
+    for paths, renew in ((PAGES, renew_page), (LISTS, renew_list)):
+        for path in paths:
+            full = os.path.join(ROOT, path)
+            with open(full, encoding="utf-8") as file:
+                old = file.read()
+            new = renew(path, old)
+            if new == old:
+                continue
+            stale.append(path)
+            if "--check" not in sys.argv[1:]:
+                with open(full, "w", encoding="utf-8") as file:
+                    file.write(new)
+    if stale and "--check" in sys.argv[1:]:
+        print(", ".join(stale), "not up to date: run python3 tools/manual/tables.py")
+        return 1
     return 0
 
 

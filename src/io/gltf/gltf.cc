@@ -662,8 +662,8 @@ bool csg_gltf_available(void)
     return true;
 }
 
-csgm_status csg_gltf_read(const char *json_text, size_t json_bytes, const uint8_t *bin,
-                          size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error)
+csgm_status csg_gltf_parse(const char *json_text, size_t json_bytes, const uint8_t *bin,
+                           size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error)
 {
     try {
         read(json_text, json_bytes, {bin, bin_bytes}, calls);

@@ -196,7 +196,7 @@ static csgm_status split_glb(const csg_input *input, chunks *out)
                      : csg_read_broken(input, 0, "the first chunk of the GLB is not JSON");
 }
 
-csgm_status csg_gltf_read_file(csg_input *input, csg_mesh_builder *builder)
+csgm_status csg_gltf_read(csg_input *input, csg_mesh_builder *builder)
 {
     gltf g = {.input = input, .builder = builder};
     chunks parts = {.json = input->bytes, .json_bytes = input->size_bytes};
@@ -211,8 +211,8 @@ csgm_status csg_gltf_read_file(csg_input *input, csg_mesh_builder *builder)
                             .user = &g,
                             .most_bytes = csg_memory_left(&input->context->memory)};
     csg_adapter_error error = {{0}};
-    csgm_status status = csg_gltf_read((const char *)parts.json, parts.json_bytes, parts.bin,
-                                       parts.bin_bytes, &calls, &error);
+    csgm_status status = csg_gltf_parse((const char *)parts.json, parts.json_bytes, parts.bin,
+                                        parts.bin_bytes, &calls, &error);
     release_files(&g);
     if (!status || !error.text[0])
         return status;
@@ -221,4 +221,9 @@ csgm_status csg_gltf_read_file(csg_input *input, csg_mesh_builder *builder)
     if (status == CSGM_ERR_UNSUPPORTED)
         return csg_read_unsupported(input, "%s", error.text);
     return csg_read_broken(input, 0, "%s", error.text);
+}
+
+csgm_status csg_glb_read(csg_input *input, csg_mesh_builder *builder)
+{
+    return csg_gltf_read(input, builder); /* it looks at the first bytes, not at the name */
 }

@@ -9,8 +9,8 @@ bool csg_gltf_available(void)
     return false;
 }
 
-csgm_status csg_gltf_read(const char *json, size_t json_bytes, const uint8_t *bin, size_t bin_bytes,
-                          const csg_gltf_calls *calls, csg_adapter_error *error)
+csgm_status csg_gltf_parse(const char *json, size_t json_bytes, const uint8_t *bin,
+                           size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error)
 {
     (void)json, (void)json_bytes, (void)bin, (void)bin_bytes, (void)calls, (void)error;
     return CSGM_ERR_UNSUPPORTED;

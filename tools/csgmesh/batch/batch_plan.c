@@ -13,6 +13,7 @@
 
 #include "batch/batch_manifest.h"
 #include "batch/batch_names.h"
+#include "core/format_lists.h"
 #include "mesh/outputs.h"
 
 static const char DEFAULT_NAME[] = "{scene}-{set}.{ext}";
@@ -32,21 +33,14 @@ __attribute__((format(printf, 4, 5))) static int refuse(const batch_plan *plan, 
 
 /* ---- formats and outputs -------------------------------------------------------------- */
 
-static const char *formats_of_this_build(batch_arena *arena)
-{
-    const char *list = "formats:";
-    for (int i = CSGM_FORMAT_AUTO + 1; i < CSGM_FORMAT_COUNT; i++)
-        if (csgm_format_available((csgm_format)i, false))
-            list = batch_printf(arena, "%s %s", list, csgm_format_name((csgm_format)i));
-    return list;
-}
-
 static int check_format(batch_plan *plan, const char *place, const char *name)
 {
     csgm_format format = csgm_format_from_name(name);
     if (format != CSGM_FORMAT_AUTO && csgm_format_available(format, false))
         return CLI_DONE;
-    return refuse(plan, place, formats_of_this_build(&plan->arena),
+    char known[160];
+    cli_formats_of_this_build(known, sizeof known);
+    return refuse(plan, place, known,
                   format == CSGM_FORMAT_AUTO ? "unknown format '%s'" : "this build cannot write %s",
                   name);
 }
@@ -85,9 +79,12 @@ static int name_outputs(batch_plan *plan, batch_job *job, const batch_entry *ent
     int status = CLI_DONE;
     for (size_t i = 0; i < entry->outputs.count && status == CLI_DONE; i++) {
         csgm_format format = csgm_format_from_path(entry->outputs.items[i]);
-        if (format == CSGM_FORMAT_AUTO)
-            return refuse(plan, job->place, formats_of_this_build(arena),
-                          "the name '%.200s' tells no format", entry->outputs.items[i]);
+        if (format == CSGM_FORMAT_AUTO) {
+            char known[160];
+            cli_formats_of_this_build(known, sizeof known);
+            return refuse(plan, job->place, known, "the name '%.200s' tells no format",
+                          entry->outputs.items[i]);
+        }
         status = add_output(plan, job, entry->outputs.items[i], csgm_format_name(format));
     }
     if (entry->outputs.count)

@@ -6,6 +6,7 @@
 
 #include "core/cli.h"
 #include "core/command_bits.h"
+#include "core/format_lists.h"
 
 typedef struct command_help {
     const char *name, *operands, *summary, *examples;
@@ -105,6 +106,8 @@ void cli_help_command(cli_command command)
 
 void cli_help(void)
 {
+    char formats[160];
+    cli_formats_list(formats, sizeof formats, " .", CSGM_IS_WRITTEN);
     printf(
         "csgmesh compiles text scenes of solids and blends to watertight triangle meshes.\n\n"
         "  csgmesh mug.txt -o mug.glb                  a mesh, 128 cells along its longest side\n"
@@ -118,11 +121,12 @@ void cli_help(void)
     printf("  %-6s %-22s %s\n", "help", "[COMMAND]", "all options of a command, with examples");
     printf(
         "\nThe options most used (csgmesh help mesh lists all)\n"
-        "  -o FILE         .obj .ply .stl .off .gltf .glb .drc .3mf; - is standard output\n"
+        "  -o FILE        %s; - is standard output\n"
         "  -r N            cells along the longest side\n"
         "  -s H            or the edge of a cell\n"
         "  -D NAME=EXPR    replace an assignment of the scene (csgmesh params SCENE lists them)\n"
         "  --stats         counts, measures and times as JSON\n"
         "  -q              errors only\n\n"
-        "Exit status: 0 done, 1 the input is at fault, 2 trouble (usage, files, limits).\n");
+        "Exit status: 0 done, 1 the input is at fault, 2 trouble (usage, files, limits).\n",
+        formats);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/format_lists.h"
 #include "diff/diff_folders.h"
 #include "diff/diff_report.h"
 
@@ -66,14 +67,23 @@ static csgm_diff_options diff_options(const cli_options *options, uint32_t ignor
     return diff;
 }
 
+/* What a heat map's file must have: each vertex its own place and colour. */
+enum { HEATMAP_TRAITS = CSGM_IS_WRITTEN | CSGM_KEEPS_VERTICES | CSGM_KEEPS_COLORS };
+
 /* The heat map's format, AUTO when it has none. */
 static csgm_format heatmap_format(const char *path)
 {
     csgm_format format = csgm_format_from_path(path);
-    bool has_colors = format == CSGM_FORMAT_PLY || format == CSGM_FORMAT_OBJ ||
-                      format == CSGM_FORMAT_OFF || format == CSGM_FORMAT_GLTF ||
-                      format == CSGM_FORMAT_GLB;
-    return has_colors ? format : CSGM_FORMAT_AUTO;
+    bool holds_it = (csgm_format_traits(format) & HEATMAP_TRAITS) == HEATMAP_TRAITS;
+    return holds_it ? format : CSGM_FORMAT_AUTO;
+}
+
+static int refuse_heatmap(cli_app *app, const char *path)
+{
+    char hint[160], known[128];
+    cli_formats_list(known, sizeof known, " .", HEATMAP_TRAITS);
+    snprintf(hint, sizeof hint, "formats that can:%s", known);
+    return cli_usage_error(app, hint, "%s cannot hold a heat map", path);
 }
 
 static int check_usage(cli_app *app)
@@ -88,8 +98,7 @@ static int check_usage(cli_app *app)
         if (strcmp(paths[i], "-") == 0)
             return cli_usage_error(app, NULL, "diff reads files, not standard input");
     if (o->diff_heatmap && heatmap_format(o->diff_heatmap) == CSGM_FORMAT_AUTO)
-        return cli_usage_error(app, "use .glb, .gltf, .ply, .obj or .off",
-                               "%s cannot hold a heat map", o->diff_heatmap);
+        return refuse_heatmap(app, o->diff_heatmap);
     if (o->diff_heatmap && diff_is_folder(paths[0]))
         return cli_usage_error(app, NULL, "--heatmap wants two files, not folders");
     if (diff_report_check(app) != CLI_DONE)
@@ -105,18 +114,12 @@ static int check_usage(cli_app *app)
 /* What a format cannot hold is no difference. */
 static uint32_t ignored_by_format(csgm_format format)
 {
-    switch (format) {
-    case CSGM_FORMAT_STL:
-        return CSGM_DIFF_IGNORE_NORMALS | CSGM_DIFF_IGNORE_COLORS | CSGM_DIFF_IGNORE_NAMES;
-    case CSGM_FORMAT_3MF:
-        return CSGM_DIFF_IGNORE_NORMALS;
-    case CSGM_FORMAT_PLY:
-    case CSGM_FORMAT_OFF:
-    case CSGM_FORMAT_DRC:
-        return CSGM_DIFF_IGNORE_NAMES;
-    default:
+    uint32_t traits = csgm_format_traits(format);
+    if (format == CSGM_FORMAT_AUTO) /* a scene */
         return 0;
-    }
+    return (traits & CSGM_KEEPS_NORMALS ? 0 : CSGM_DIFF_IGNORE_NORMALS) |
+           (traits & CSGM_KEEPS_COLORS ? 0 : CSGM_DIFF_IGNORE_COLORS) |
+           (traits & CSGM_KEEPS_NAMES ? 0 : CSGM_DIFF_IGNORE_NAMES);
 }
 
 /* One size is a multiple of the other: the units may differ. */

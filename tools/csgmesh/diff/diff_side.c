@@ -65,8 +65,8 @@ bool diff_same_bytes(const char *a, const char *b)
 {
     struct stat left, right;
     csgm_format format = csgm_format_from_path(a);
-    /* a glTF may name other files beside it */
-    if (format == CSGM_FORMAT_AUTO || format == CSGM_FORMAT_GLTF ||
+    /* files that name others beside them may differ there */
+    if (format == CSGM_FORMAT_AUTO || csgm_format_traits(format) & CSGM_NAMES_FILES ||
         format != csgm_format_from_path(b) || stat(a, &left) != 0 || stat(b, &right) != 0 ||
         !S_ISREG(left.st_mode) || !S_ISREG(right.st_mode) || left.st_size != right.st_size)
         return false;
@@ -124,7 +124,7 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
     if (diff_path_is_nothing(path_a) || diff_path_is_nothing(path_b))
         return cli_usage_error(app, NULL, "--update wants two files");
     make_folders(path_a);
-    if (format == csgm_format_from_path(path_b) && format != CSGM_FORMAT_GLTF)
+    if (format == csgm_format_from_path(path_b) && !(csgm_format_traits(format) & CSGM_NAMES_FILES))
         return copy_file(app, path_b, path_a);
     if (format == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, NULL, "%s is a scene, which no mesh can be written to", path_a);

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/format_lists.h"
+
 csgm_format cli_outputs_format(const cli_options *options, size_t index)
 {
     csgm_format named = csgm_format_from_path(options->outputs.items[index]);
@@ -16,50 +18,41 @@ csgm_format cli_outputs_format(const cli_options *options, size_t index)
     return asked ? csgm_format_from_name(options->format) : named;
 }
 
-static bool is_gltf(csgm_format format)
-{
-    return format == CSGM_FORMAT_GLTF || format == CSGM_FORMAT_GLB;
-}
-
-static void formats_of_this_build(char *buffer, size_t size)
-{
-    size_t length = (size_t)snprintf(buffer, size, "formats:");
-    for (int format = CSGM_FORMAT_AUTO + 1; format < CSGM_FORMAT_COUNT; format++)
-        if (csgm_format_available((csgm_format)format, false) && length < size)
-            length += (size_t)snprintf(buffer + length, size - length, " %s",
-                                       csgm_format_name((csgm_format)format));
-}
-
 /* Nothing to write to: say what to add. */
 static int refuse_no_output(cli_app *app, const char *scene_path)
 {
     const char *slash = strrchr(scene_path, '/');
-    const char *name = slash ? slash + 1 : scene_path;
+    const char *name = strcmp(scene_path, "-") == 0 ? "part" : slash ? slash + 1 : scene_path;
     const char *dot = strrchr(name, '.');
-    char hint[160];
+    char hint[256], known[160];
     int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
-    if (strcmp(name, "-") == 0)
-        snprintf(hint, sizeof hint, "add -o part.glb (or .stl .ply .obj .off .gltf .drc .3mf)");
-    else
-        snprintf(hint, sizeof hint, "add -o %.*s.glb (or .stl .ply .obj .off .gltf .drc .3mf)",
-                 stem < 80 ? stem : 80, name);
+    cli_formats_list(known, sizeof known, " .", CSGM_IS_WRITTEN);
+    snprintf(hint, sizeof hint, "add -o %.*s.glb (formats:%s)", stem < 80 ? stem : 80, name, known);
     return cli_usage_error(app, hint, "no output file");
+}
+
+/* Why no file of this format can be written, on the console. */
+static int refuse_format(cli_app *app, const char *known, csgm_format format, const char *path)
+{
+    if (csgm_format_traits(format) & CSGM_IS_WRITTEN)
+        return cli_usage_error(app, known, "this build cannot write %s (%s)",
+                               csgm_format_name(format), path);
+    return cli_usage_error(app, known, "csgmesh reads %s files and cannot write them (%s)",
+                           csgm_format_title(format), path);
 }
 
 static int check_format(cli_app *app, size_t index)
 {
     const char *path = app->options.outputs.items[index];
     csgm_format format = cli_outputs_format(&app->options, index);
-    char known[128];
-    formats_of_this_build(known, sizeof known);
+    char known[160];
+    cli_formats_of_this_build(known, sizeof known);
     if (format == CSGM_FORMAT_AUTO && strcmp(path, "-") == 0)
         return cli_usage_error(app, known, "standard output needs a format: add -f glb");
     if (format == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, known, "the name '%s' tells no format", path);
-    if (!csgm_format_available(format, false))
-        return cli_usage_error(app, known, "this build cannot write %s (%s)",
-                               csgm_format_name(format), path);
-    return CLI_DONE;
+    return csgm_format_available(format, false) ? CLI_DONE
+                                                : refuse_format(app, known, format, path);
 }
 
 static int refuse_path(cli_app *app, const char *path, int reason)
@@ -113,34 +106,34 @@ enum { AUTO, VERTEX, CREASE, NONE };
 static void warn_without_effect(cli_app *app)
 {
     const cli_options *options = &app->options;
-    bool gltf = false, draco = false, text = false, unit = false, crease = false;
-    for (size_t i = 0; i < options->outputs.count; i++) {
-        csgm_format format = cli_outputs_format(options, i);
-        gltf = gltf || is_gltf(format);
-        crease = crease || is_gltf(format) || format == CSGM_FORMAT_OBJ;
-        unit = unit || is_gltf(format) || format == CSGM_FORMAT_3MF;
-        draco = draco || format == CSGM_FORMAT_DRC || (options->draco && is_gltf(format));
-        text = text || format == CSGM_FORMAT_PLY || format == CSGM_FORMAT_STL;
-    }
-    const struct {
+    static const struct {
         cli_option_id id;
-        bool has_effect;
-        const char *name, *wanted;
+        const char *name;
+        uint32_t heeded_by; /* formats with one of these traits */
     } rows[] = {
-        {CLI_OPTION_ascii, text, "ascii", "PLY or STL"},
-        {CLI_OPTION_up, gltf, "up", "glTF or GLB"},
-        {CLI_OPTION_unit, unit, "unit", "glTF, GLB or 3MF"},
-        {CLI_OPTION_draco, gltf, "draco", "glTF or GLB"},
-        {CLI_OPTION_draco_bits, draco, "draco-bits", "Draco (.drc, or --draco with .glb)"},
-        {CLI_OPTION_draco_level, draco, "draco-level", "Draco (.drc, or --draco with .glb)"},
+        {CLI_OPTION_ascii, "--ascii", CSGM_HEEDS_ASCII},
+        {CLI_OPTION_up, "--up", CSGM_HEEDS_UP},
+        {CLI_OPTION_unit, "--unit", CSGM_HEEDS_UNIT},
+        {CLI_OPTION_draco, "--draco", CSGM_HEEDS_DRACO},
+        {CLI_OPTION_draco_bits, "--draco-bits", CSGM_HEEDS_DRACO_BITS},
+        {CLI_OPTION_draco_level, "--draco-level", CSGM_HEEDS_DRACO_BITS},
     };
-    if (options->normals == CREASE && !crease)
+    uint32_t traits = 0; /* of all outputs together */
+    char wanted[160];
+    for (size_t i = 0; i < options->outputs.count; i++)
+        traits |= csgm_format_traits(cli_outputs_format(options, i));
+    if (options->draco && traits & CSGM_HEEDS_DRACO)
+        traits |= CSGM_HEEDS_DRACO_BITS;
+    if (options->normals == CREASE && !(traits & CSGM_KEEPS_CREASES))
         cli_console_say(&app->console, CSGM_WARNING, NULL,
-                        "--normals crease has no effect: no output is OBJ, glTF or GLB");
+                        "--normals crease has no effect: no output is %s",
+                        cli_formats_in_words(wanted, sizeof wanted, CSGM_KEEPS_CREASES));
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (options->given[rows[i].id] && !rows[i].has_effect)
-            cli_console_say(&app->console, CSGM_WARNING, NULL,
-                            "--%s has no effect: no output is %s", rows[i].name, rows[i].wanted);
+        if (options->given[rows[i].id] && !(traits & rows[i].heeded_by))
+            cli_console_say(
+                &app->console, CSGM_WARNING, NULL, "%s has no effect: no output is %s%s",
+                rows[i].name, cli_formats_in_words(wanted, sizeof wanted, rows[i].heeded_by),
+                rows[i].heeded_by == CSGM_HEEDS_DRACO_BITS ? " (.drc, or --draco with .glb)" : "");
 }
 
 int cli_outputs_check(cli_app *app, const char *scene_path)
@@ -148,8 +141,8 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
     const cli_options *options = &app->options;
     int status = CLI_DONE;
     if (options->format && csgm_format_from_name(options->format) == CSGM_FORMAT_AUTO) {
-        char known[128];
-        formats_of_this_build(known, sizeof known);
+        char known[160];
+        cli_formats_of_this_build(known, sizeof known);
         return cli_usage_error(app, known, "unknown format '%s'", options->format);
     }
     if (!options->outputs.count && !options->stats)
@@ -171,11 +164,9 @@ csgm_normals cli_outputs_normals(const cli_options *options)
         return options->normals == VERTEX   ? CSGM_NORMALS_VERTEX
                : options->normals == CREASE ? CSGM_NORMALS_CREASE
                                             : CSGM_NORMALS_NONE;
-    for (size_t i = 0; i < options->outputs.count; i++) {
-        csgm_format format = cli_outputs_format(options, i);
-        if (format == CSGM_FORMAT_OBJ || is_gltf(format))
+    for (size_t i = 0; i < options->outputs.count; i++)
+        if (csgm_format_traits(cli_outputs_format(options, i)) & CSGM_KEEPS_CREASES)
             return CSGM_NORMALS_CREASE;
-    }
     return CSGM_NORMALS_VERTEX;
 }
 
