@@ -12,7 +12,7 @@
 #include "io/stream.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
-#include "mesh/pipeline/build.h"
+#include "mesh/pipeline/parts.h"
 #include "scene/reference.h"
 #include "scene/tree/parts.h"
 

@@ -11,7 +11,7 @@
 
 #include "field/field.h"
 #include "io/formats.h"
-#include "mesh/pipeline/build.h"
+#include "mesh/pipeline/parts.h"
 
 /* The first error, as a sentence. */
 typedef struct catcher {

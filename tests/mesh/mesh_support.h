@@ -8,7 +8,7 @@
 #include "base/pool.h"
 #include "field/kernels/dispatch.h"
 #include "mesh/inspect.h"
-#include "mesh/pipeline/build.h"
+#include "mesh/pipeline/parts.h"
 #include "scene/random_scene.h"
 #include "scene/scene_support.h"
 

@@ -256,7 +256,7 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
     const csg_tape *whole = &p->remesh->probe.marching->field->tape;
     if (settle_eight(p, &p->settlers[worker], whole, p->pieces + first,
                      count < CSG_OCTANTS ? count : CSG_OCTANTS, 0))
-        return !csg_mesh_should_stop(p->remesh->work);
+        return !csg_mesh_should_stop(p->remesh->watch);
     atomic_store(&p->out_of_memory, true);
     return false;
 }
@@ -266,13 +266,13 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
 
 static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof *out)
 {
-    csg_mesh_work *w = p->remesh->work;
+    const csg_remesh *r = p->remesh;
     size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
-    bool done = csg_pool_run(w->context->pool, groups, settle_group, NULL, p);
+    bool done = csg_pool_run(r->context->pool, groups, settle_group, NULL, p);
     if (atomic_load(&p->out_of_memory))
-        return csg_context_no_memory(w->context);
+        return csg_context_no_memory(r->context);
     if (!done)
-        return csg_mesh_why_stopped(w);
+        return csg_mesh_why_stopped(r->watch);
     for (size_t i = 0; i < p->count; i++) {
         if (!p->pieces[i].open)
             continue;
@@ -321,10 +321,10 @@ static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *pending,
 
 static bool begin(proof *p)
 {
-    const csg_mesh_work *w = p->remesh->work;
+    const csg_remesh *r = p->remesh;
     csg_memory *memory = p->remesh->memory;
-    p->settler_count = csg_pool_threads(w->context->pool);
-    p->scratch_floats = csg_kernel_scratch_floats(w->field->depth);
+    p->settler_count = csg_pool_threads(r->context->pool);
+    p->scratch_floats = csg_kernel_scratch_floats(r->marching->field->depth);
     p->pieces = csg_memory_alloc(memory, PIECES * sizeof *p->pieces);
     p->settlers = csg_memory_alloc(memory, p->settler_count * sizeof *p->settlers);
     if (!p->pieces || !p->settlers)
@@ -333,7 +333,8 @@ static bool begin(proof *p)
     for (size_t i = 0; i < p->settler_count; i++) {
         settler *s = &p->settlers[i];
         *s = (settler){0};
-        csg_pruner_init(&s->pruner, memory, w->marching.kernel, csg_octree_rounding(&w->lattice));
+        csg_pruner_init(&s->pruner, memory, r->marching->kernel,
+                        csg_octree_rounding(r->marching->lattice));
         csg_arena_init(&s->arena, memory);
         s->scratch = csg_memory_alloc(memory, p->scratch_floats * sizeof(float));
         done = done && s->scratch;
@@ -358,7 +359,7 @@ csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *
 {
     proof p = {.remesh = remesh, .error = error};
     *out = (csg_distance_proof){0};
-    csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->work->context);
+    csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->context);
     const csg_corners *m = &remesh->corners;
     for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
         if (csg_corners_is_live(m, t) && pending[t]) {

@@ -221,7 +221,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
     walk *w = user;
     size_t item = w->again ? w->again[index] : index;
     worker *s = &w->workers[worker_index];
-    const csg_lattice *lattice = &w->remesh->work->lattice;
+    const csg_lattice *lattice = w->remesh->marching->lattice;
     uint32_t at[3];
     cube whole = {.half = CSG_BLOCK_EDGE * lattice->cell_size,
                   .around = AROUND_CELLS * lattice->cell_size,
@@ -238,7 +238,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
         atomic_store(&w->out_of_memory, true);
         return false;
     }
-    return !csg_mesh_should_stop(w->remesh->work);
+    return !csg_mesh_should_stop(w->remesh->watch);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------------
@@ -247,8 +247,8 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
 static bool begin(walk *w)
 {
     const csg_remesh *r = w->remesh;
-    w->worker_count = csg_pool_threads(r->work->context->pool);
-    w->scratch_floats = csg_kernel_scratch_floats(r->work->field->depth);
+    w->worker_count = csg_pool_threads(r->context->pool);
+    w->scratch_floats = csg_kernel_scratch_floats(r->marching->field->depth);
     w->segment_count = csg_octree_frontier_count(w->octree);
     w->most_cubes = ALL_CUBES / (w->segment_count + 1);
     w->most_cubes = w->most_cubes < LEAST_CUBES  ? LEAST_CUBES
@@ -260,8 +260,8 @@ static bool begin(walk *w)
     for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
         worker *s = &w->workers[i];
         *s = (worker){0};
-        csg_pruner_init(&s->pruner, r->memory, r->work->marching.kernel,
-                        csg_octree_rounding(&r->work->lattice));
+        csg_pruner_init(&s->pruner, r->memory, r->marching->kernel,
+                        csg_octree_rounding(r->marching->lattice));
         csg_arena_init(&s->arena, r->memory);
         s->scratch = csg_memory_alloc(r->memory, w->scratch_floats * sizeof(float));
         done = done && s->scratch;
@@ -300,8 +300,7 @@ static bool look_again(walk *w)
     w->most_cubes = ALL_CUBES / (count + 1);
     if (w->most_cubes > AGAIN_CUBES)
         w->most_cubes = AGAIN_CUBES;
-    bool done =
-        !count || csg_pool_run(w->remesh->work->context->pool, count, look_at_cube, NULL, w);
+    bool done = !count || csg_pool_run(w->remesh->context->pool, count, look_at_cube, NULL, w);
     csg_memory_release(memory, w->again, bytes);
     w->again = NULL;
     return done;
@@ -330,30 +329,28 @@ static bool join(const walk *w, csg_missed *out)
 
 csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
 {
-    csg_mesh_work *work = r->work;
+    const csg_marching *m = r->marching;
     walk w = {.remesh = r,
               .error = error,
               .least = fmax(0.25 * error, 1e-4 * r->cell),
-              .lipschitz = (double)work->field->tape.lipschitz};
+              .lipschitz = (double)m->field->tape.lipschitz};
     *out = (csg_missed){0};
     const csg_octree_options options = {.prune = true,
                                         .margin = 2 * AROUND_CELLS * r->cell,
                                         .cancelled = csg_mesh_should_stop,
-                                        .user = work};
-    csgm_status status =
-        csg_octree_create(work->context, work->field, &work->lattice, &options, &w.octree);
+                                        .user = r->watch};
+    csgm_status status = csg_octree_create(r->context, m->field, m->lattice, &options, &w.octree);
     if (status != CSGM_OK)
-        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(work) : status;
+        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch) : status;
     bool begun = begin(&w);
-    bool done = begun &&
-                csg_pool_run(work->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
+    bool done = begun && csg_pool_run(r->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
                 look_again(&w);
     if (done)
         done = join(&w, out);
-    else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(work))
-        status = csg_mesh_why_stopped(work);
+    else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(r->watch))
+        status = csg_mesh_why_stopped(r->watch);
     if (!done && status == CSGM_OK)
-        status = csg_context_no_memory(work->context);
+        status = csg_context_no_memory(r->context);
     end(&w);
     if (status != CSGM_OK)
         csg_missed_release(out, r->memory);

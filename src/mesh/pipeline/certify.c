@@ -28,10 +28,10 @@ static void show_source(const csgm_scene *scene, csg_vec3 at, csgm_diag *diag)
         csg_scene_show_node(scene, leaf, diag);
 }
 
-static void write_hint(const csg_mesh_work *w, const csgm_certify_place *place, char *hint,
+static void write_hint(const csg_mesh_input *in, const csgm_certify_place *place, char *hint,
                        size_t size)
 {
-    csg_vec3 sides = csg_box_size(w->bounds);
+    csg_vec3 sides = csg_box_size(in->bounds);
     double longest = fmax(sides.x, fmax(sides.y, sides.z));
     double resolution = place->cell_size > 0 ? ceil(longest / place->cell_size) : INFINITY;
     if (resolution <= CSG_LATTICE_MOST_CELLS)
@@ -42,11 +42,11 @@ static void write_hint(const csg_mesh_work *w, const csgm_certify_place *place, 
 }
 
 /* One finding with its place, its source line and what would settle it. */
-static void warn_of_place(const csg_mesh_work *w, const csgm_certify_place *place)
+static void warn_of_place(const csg_mesh_input *in, const csgm_certify_place *place)
 {
     char message[320], hint[120], cells[64] = "";
     csgm_diag diag = {.message = message, .hint = hint};
-    show_source(w->field->scene, place->at, &diag);
+    show_source(in->field->scene, place->at, &diag);
     if (place->cells > 1)
         snprintf(cells, sizeof cells, ", in %llu cells", (unsigned long long)place->cells);
     if (place->is_missed) {
@@ -55,18 +55,18 @@ static void warn_of_place(const csg_mesh_work *w, const csgm_certify_place *plac
                  "near (%.6g, %.6g, %.6g)%s",
                  place->is_gap ? "a gap" : "a part", place->thickness, place->at.x, place->at.y,
                  place->at.z, cells);
-        write_hint(w, place, hint, sizeof hint);
+        write_hint(in, place, hint, sizeof hint);
     } else {
         snprintf(message, sizeof message,
                  "it could not be told whether a part is missing near (%.6g, %.6g, %.6g)%s",
                  place->at.x, place->at.y, place->at.z, cells);
         snprintf(hint, sizeof hint, "the field's bounds are loose there: a higher -r helps");
     }
-    csg_diag_report(&w->context->diags,
+    csg_diag_report(&in->context->diags,
                     place->is_missed ? CSG_DIAG_THIN_PART : CSG_DIAG_NOT_CERTIFIED, diag);
 }
 
-static csgm_certify_place translate(const csg_mesh_work *w, const csg_certify_place *from)
+static csgm_certify_place translate(const csg_mesh_input *in, const csg_certify_place *from)
 {
     csgm_diag diag = {0};
     csgm_certify_place place = {.is_missed = from->kind == CSG_CELL_MISSED,
@@ -77,7 +77,7 @@ static csgm_certify_place translate(const csg_mesh_work *w, const csg_certify_pl
         place.thickness = from->thickness;
         place.cell_size = cell_for(from->thickness);
     }
-    show_source(w->field->scene, from->at, &diag);
+    show_source(in->field->scene, from->at, &diag);
     place.source_name = diag.source_name;
     place.line = diag.line;
     place.column = diag.column;
@@ -85,60 +85,62 @@ static csgm_certify_place translate(const csg_mesh_work *w, const csg_certify_pl
 }
 
 /* What is missed, a warning per place; what is unresolved, one for all. */
-static void warn(const csg_mesh_work *w, const csgm_certify *certify)
+static void warn_of_places(const csg_mesh_input *in, const csgm_certify *certify)
 {
     uint32_t missed = 0, unresolved = 0;
     for (uint32_t i = 0; i < certify->place_count; i++) {
         const csgm_certify_place *place = &certify->places[i];
         uint32_t before = place->is_missed ? missed++ : unresolved++;
         if (before < (place->is_missed ? WARNINGS_MOST : 1))
-            warn_of_place(w, place);
+            warn_of_place(in, place);
     }
 }
 
-static csgm_status certify(csg_mesh_work *w)
+static csgm_status certify(const csg_mesh_input *in, csg_mesh_watch *watch, csg_mesh_doubts *doubts)
 {
     csg_certify_report report;
-    csgm_certify *out = &w->certify;
-    double size = w->options->certify_size;
-    csg_certify_options options = {.size = size > 0 ? size : w->lattice.cell_size / 64,
+    csgm_certify *out = &doubts->certify;
+    double size = in->options->certify_size;
+    csg_certify_options options = {.size = size > 0 ? size : in->lattice.cell_size / 64,
                                    .cancelled = csg_mesh_should_stop,
-                                   .user = w};
-    csgm_status status = csg_certify_run(w->context, w->field, &w->lattice, &options, &report);
+                                   .user = watch};
+    csgm_status status = csg_certify_run(in->context, in->field, &in->lattice, &options, &report);
     if (status != CSGM_OK)
-        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(w) : status;
+        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : status;
     out->certified = report.cells[CSG_CELL_CERTIFIED];
     out->crease = report.cells[CSG_CELL_CREASE];
     out->refined = report.cells[CSG_CELL_REFINED];
-    out->unresolved = w->unresolved_cells = report.cells[CSG_CELL_UNRESOLVED];
+    out->unresolved = doubts->unresolved_cells = report.cells[CSG_CELL_UNRESOLVED];
     out->missed = report.cells[CSG_CELL_MISSED];
     out->thickness = report.promise;
     out->places_more = report.place_more;
     for (uint32_t i = 0; i < report.place_count; i++)
-        out->places[out->place_count++] = translate(w, &report.places[i]);
-    warn(w, out);
+        out->places[out->place_count++] = translate(in, &report.places[i]);
+    warn_of_places(in, out);
     return CSGM_OK;
 }
 
-static csgm_status follow_doubts(csg_mesh_work *w)
+static csgm_status follow_doubts(const csg_mesh_input *in, csg_octree *octree,
+                                 csg_mesh_doubts *doubts)
 {
     csg_certify_place place;
     csgm_status status;
-    if (!csg_certify_doubts(w->context, w->field, &w->lattice, w->octree, &place,
-                            &w->unresolved_cells, &status))
+    if (!csg_certify_doubts(in->context, in->field, &in->lattice, octree, &place,
+                            &doubts->unresolved_cells, &status))
         return status;
-    csgm_certify_place shown = translate(w, &place);
+    csgm_certify_place shown = translate(in, &place);
     shown.cells = 1; /* the doubts are not all of one part */
-    warn_of_place(w, &shown);
+    warn_of_place(in, &shown);
     return CSGM_OK;
 }
 
-csgm_status csg_mesh_look_for_missed(csg_mesh_work *w)
+csgm_status csg_mesh_look_for_missed(const csg_mesh_input *in, csg_octree *octree,
+                                     csg_mesh_watch *watch, csg_mesh_doubts *doubts)
 {
-    w->certify.is_done = w->options->certify;
-    if (!w->octree)
+    doubts->certify.is_done = in->options->certify;
+    if (!octree)
         return CSGM_OK;
-    return w->options->certify ? certify(w) : follow_doubts(w);
+    return in->options->certify ? certify(in, watch, doubts) : follow_doubts(in, octree, doubts);
 }
 
 void csg_mesh_add_certify(csgm_certify *sum, const csgm_certify *part)

@@ -5,11 +5,18 @@
 #define CSG_MESH_CERTIFY_H
 
 #include "grid/certify/certify.h"
-#include "mesh/work.h"
+#include "mesh/pipeline/input.h"
+#include "mesh/watch.h"
 
-/* After the octree was made and sampled: certifies, or follows the doubts of its scan; warns and
- * fills the report of `work`. CSGM_OK, or why it stopped (reported). */
-csgm_status csg_mesh_look_for_missed(csg_mesh_work *work);
+typedef struct csg_mesh_doubts {
+    csgm_certify certify;
+    uint64_t unresolved_cells;
+} csg_mesh_doubts;
+
+/* After the octree was made and sampled (NULL: there was nothing to mesh): certifies, or follows
+ * the doubts of its scan; warns. CSGM_OK, or why it stopped (reported). */
+csgm_status csg_mesh_look_for_missed(const csg_mesh_input *input, csg_octree *octree,
+                                     csg_mesh_watch *watch, csg_mesh_doubts *doubts);
 /* The reports of parts as one. */
 void csg_mesh_add_certify(csgm_certify *sum, const csgm_certify *part);
 

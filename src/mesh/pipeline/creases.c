@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The stage of the pipeline that finds sharp features (features/features.h): between sampling and
- * numbering of a slab's blocks. In a slab that is sampled again they are known.
+ * Finding features in parallel, then settling them; see creases.h.
  */
+#include "mesh/pipeline/creases.h"
+
 #include <string.h>
 
 #include "base/pool.h"
@@ -9,7 +10,6 @@
 #include "mesh/features/cross.h"
 #include "mesh/features/join.h"
 #include "mesh/features/move.h"
-#include "mesh/work.h"
 
 /* What one item of the parallel loop has found, in the room of one worker. */
 typedef struct csg_found_item {
@@ -19,71 +19,70 @@ typedef struct csg_found_item {
 
 static bool find_item(void *user, uint32_t worker_index, size_t item)
 {
-    csg_mesh_work *w = user;
-    if (csg_mesh_should_stop(w))
+    csg_mesh_creases *c = user;
+    if (csg_mesh_should_stop(c->watch))
         return false;
-    csg_mesh_worker *self = &w->workers[worker_index];
-    found_item *found = &w->found[item];
+    csg_mesh_worker *self = &c->workers->each[worker_index];
+    found_item *found = &c->found[item];
     *found = (found_item){.worker = worker_index, .first = self->features->block_count};
-    size_t end = (item + 1) * CSG_BLOCKS_PER_ITEM;
-    for (size_t i = item * CSG_BLOCKS_PER_ITEM; i < end && i < w->block_count; i++)
-        if (!csg_feature_find(&w->marching, w->blocks[i], self->features, &w->context->memory,
-                              self->scratch, w->scratch_floats) ||
-            self->features->around.out_of_memory) {
-            atomic_store(&w->out_of_memory, true);
-            return false;
-        }
+    size_t end = csg_mesh_item_end(&c->blocks, item);
+    for (size_t i = item * CSG_BLOCKS_PER_ITEM; i < end; i++)
+        if (!csg_feature_find(&c->workers->marching, c->blocks.block[i], self->features,
+                              &c->watch->context->memory, self->scratch,
+                              c->workers->scratch_floats) ||
+            self->features->around.out_of_memory)
+            return csg_mesh_stop_without_memory(c->watch);
     found->count = self->features->block_count - found->first;
     return true;
 }
 
-static void empty_rooms(csg_mesh_work *w)
+static void empty_rooms(csg_mesh_creases *c)
 {
-    for (uint32_t i = 0; i < w->worker_count; i++) {
-        csg_feature_room *room = w->workers[i].features;
-        w->features.smooth += room->smooth;
-        w->features.fading += room->fading;
-        w->workers[i].point_evaluations += room->evaluations;
+    for (uint32_t i = 0; i < c->workers->count; i++) {
+        csg_feature_room *room = c->workers->each[i].features;
+        c->store.smooth += room->smooth;
+        c->store.fading += room->fading;
+        c->workers->each[i].point_evaluations += room->evaluations;
         room->count = room->block_count = 0;
         room->smooth = room->fading = room->evaluations = 0;
     }
 }
 
 /* Joined in the order of the items, whoever did them. */
-static bool collect(csg_mesh_work *w, size_t items)
+static bool collect(csg_mesh_creases *c, size_t items)
 {
     bool done = true;
     for (size_t i = 0; i < items && done; i++) {
-        const found_item *found = &w->found[i];
-        done = csg_feature_store_add(&w->features, w->workers[found->worker].features, found->first,
-                                     found->count);
+        const found_item *found = &c->found[i];
+        done = csg_feature_store_add(&c->store, c->workers->each[found->worker].features,
+                                     found->first, found->count);
     }
-    empty_rooms(w);
+    empty_rooms(c);
     return done;
 }
 
 /* Two triangles a feature more than without; in a cell with a joined face all loops are features,
  * and others than before. */
-static uint32_t triangles_of(const csg_mesh_work *w, const csg_feature *f, uint32_t count)
+static uint32_t triangles_of(const csg_mesh_creases *c, const csg_feature *f, uint32_t count)
 {
     uint32_t triangles = 0;
     for (uint32_t k = 0; k < count; k++) {
         triangles += f[k].joined ? f[k].side_count : 2u;
         if (f[k].joined && (k == 0 || f[k].cell != f[k - 1].cell))
-            triangles -= w->tables.count[f[k].pattern];
+            triangles -= c->workers->tables.count[f[k].pattern];
     }
     return triangles;
 }
 
-static void count_vertices(csg_mesh_work *w, size_t first_block)
+static void count_vertices(csg_mesh_creases *c, size_t first_block)
 {
-    csg_feature_store *store = &w->features;
+    csg_feature_store *store = &c->store;
     for (size_t i = first_block; i < store->block_count; i++) {
         csg_feature_block *block = &store->blocks[i];
         block->vertices = block->count;
-        for (uint32_t k = 0; w->split && k < block->count; k++)
+        for (uint32_t k = 0; c->split && k < block->count; k++)
             block->vertices += store->features[block->first + k].sheet_count - 1u;
-        block->triangles = triangles_of(w, store->features + block->first, block->count);
+        block->triangles = triangles_of(c, store->features + block->first, block->count);
     }
 }
 
@@ -93,62 +92,63 @@ static void add_counts(csg_block *block, const csg_feature_block *features)
     block->triangle_count += features->triangles;
 }
 
-static void look_up(csg_mesh_work *w)
+static void add_known(csg_mesh_creases *c)
 {
-    for (size_t i = 0; i < w->block_count; i++) {
-        const csg_feature_block *features = csg_feature_store_find(&w->features, w->blocks[i]->at);
+    for (size_t i = 0; i < c->blocks.count; i++) {
+        const csg_feature_block *features =
+            csg_feature_store_find(&c->store, c->blocks.block[i]->at);
         if (features)
-            add_counts(w->blocks[i], features);
+            add_counts(c->blocks.block[i], features);
     }
 }
 
 /* Blocks at hand and blocks with features are both in Morton order. */
-static void merge(csg_mesh_work *w, size_t first_block)
+static void add_to_blocks(csg_mesh_creases *c, size_t first_block)
 {
-    const csg_feature_store *store = &w->features;
+    const csg_feature_store *store = &c->store;
     size_t next = first_block;
-    for (size_t i = 0; i < w->block_count && next < store->block_count; i++)
-        if (!memcmp(w->blocks[i]->at, store->blocks[next].at, sizeof w->blocks[i]->at))
-            add_counts(w->blocks[i], &store->blocks[next++]);
+    for (size_t i = 0; i < c->blocks.count && next < store->block_count; i++)
+        if (!memcmp(c->blocks.block[i]->at, store->blocks[next].at, sizeof c->blocks.block[i]->at))
+            add_counts(c->blocks.block[i], &store->blocks[next++]);
 }
 
-csgm_status csg_mesh_find_features(csg_mesh_work *w)
+csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 {
-    if (w->options->features != CSGM_FEATURES_SHARP)
+    if (!c->sharp)
         return CSGM_OK;
-    if (w->features.slots) { /* all were found before */
-        look_up(w);
+    c->blocks = blocks;
+    if (c->store.slots) { /* all were found before */
+        add_known(c);
         return CSGM_OK;
     }
-    csg_memory *memory = &w->context->memory;
-    size_t items = csg_mesh_item_count(w), first_block = w->features.block_count;
-    w->features.memory = memory;
-    w->features.cell_size = w->lattice.cell_size;
-    w->found = csg_memory_alloc(memory, (items + !items) * sizeof(found_item));
-    if (!w->found)
-        return csg_context_no_memory(w->context);
-    memset(w->found, 0, items * sizeof(found_item));
-    bool done = csg_pool_run(w->context->pool, items, find_item, NULL, w);
-    if (done && !collect(w, items)) {
-        atomic_store(&w->out_of_memory, true);
-        done = false;
-    }
-    csg_memory_release(memory, w->found, (items + !items) * sizeof(found_item));
-    w->found = NULL;
+    csgm_context *context = c->watch->context;
+    size_t items = csg_mesh_item_count(&blocks), first_block = c->store.block_count;
+    size_t bytes = (items + !items) * sizeof(found_item);
+    c->store.memory = &context->memory;
+    c->store.cell_size = c->workers->marching.lattice->cell_size;
+    c->found = csg_memory_alloc(&context->memory, bytes);
+    if (!c->found)
+        return csg_context_no_memory(context);
+    memset(c->found, 0, bytes);
+    bool done = csg_pool_run(context->pool, items, find_item, NULL, c);
+    if (done && !collect(c, items))
+        done = csg_mesh_stop_without_memory(c->watch);
+    csg_memory_release(&context->memory, c->found, bytes);
+    c->found = NULL;
     if (!done)
-        return csg_mesh_why_stopped(w);
-    count_vertices(w, first_block);
-    merge(w, first_block);
+        return csg_mesh_why_stopped(c->watch);
+    count_vertices(c, first_block);
+    add_to_blocks(c, first_block);
     return CSGM_OK;
 }
 
-void csg_mesh_number_features(csg_mesh_work *w)
+void csg_mesh_number_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 {
-    csg_feature_store *store = &w->features;
-    if (w->options->features != CSGM_FEATURES_SHARP || store->slots)
+    csg_feature_store *store = &c->store;
+    if (!c->sharp || store->slots)
         return;
-    for (size_t i = 0; i < w->block_count && store->numbered < store->block_count; i++) {
-        const csg_block *block = w->blocks[i];
+    for (size_t i = 0; i < blocks.count && store->numbered < store->block_count; i++) {
+        const csg_block *block = blocks.block[i];
         const csg_feature_block *features = &store->blocks[store->numbered];
         if (memcmp(block->at, features->at, sizeof block->at) != 0)
             continue;
@@ -156,7 +156,7 @@ void csg_mesh_number_features(csg_mesh_work *w)
         for (uint32_t k = 0; k < features->count; k++) {
             csg_feature *f = &store->features[features->first + k];
             f->vertex = vertex;
-            vertex += w->split ? f->sheet_count : 1u;
+            vertex += c->split ? f->sheet_count : 1u;
         }
         store->numbered++;
     }
@@ -170,32 +170,32 @@ enum { FEATURES_PER_QUESTION = 1024, BLOCKS_PER_QUESTION = 64 };
 
 static bool link_item(void *user, uint32_t worker, size_t item)
 {
-    csg_mesh_work *w = user;
+    csg_mesh_creases *c = user;
     (void)worker;
-    csg_feature_link(&w->features, &w->tables, item);
+    csg_feature_link(&c->store, &c->workers->tables, item);
     return true;
 }
 
 static bool flip_item(void *user, uint32_t worker, size_t item)
 {
-    csg_mesh_work *w = user;
+    csg_mesh_creases *c = user;
     (void)worker;
-    csg_feature_flip(&w->features, &w->tables, item);
+    csg_feature_flip(&c->store, &c->workers->tables, item);
     return true;
 }
 
 /* Apexes out of order between their neighbours, in the order of the features, so that the outcome
  * does not depend on threads: there are few. Each sees where those before it have gone. */
-static bool order_features(csg_mesh_work *w, csg_feature_probe *probe)
+static bool order_features(csg_mesh_creases *c, csg_feature_probe *probe)
 {
     enum { ROUNDS = 3 };
-    csg_feature_store *store = &w->features;
+    csg_feature_store *store = &c->store;
     size_t moved = 1;
     for (int round = 0; round < ROUNDS && moved; round++) {
         moved = 0;
         for (uint32_t i = 0; i < store->count; i++) {
             csg_feature fresh;
-            if (i % FEATURES_PER_QUESTION == 0 && csg_mesh_should_stop(w))
+            if (i % FEATURES_PER_QUESTION == 0 && csg_mesh_should_stop(c->watch))
                 return false;
             if (!csg_feature_move(store, i, probe, &fresh))
                 continue;
@@ -209,109 +209,102 @@ static bool order_features(csg_mesh_work *w, csg_feature_probe *probe)
 /* ---- where features meet -----------------------------------------------------------------------
  */
 
-typedef struct crossing_work {
-    csg_mesh_work *w;
+typedef struct uncrossing {
+    csg_mesh_creases *creases;
     csg_feature_probe *probe;
     csg_feature_cross cross;
-} crossing_work;
+} uncrossing;
 
 static bool look_item(void *user, uint32_t worker, size_t item)
 {
-    crossing_work *c = user;
+    uncrossing *u = user;
     (void)worker;
-    csg_feature_cross_look(&c->cross, item);
+    csg_feature_cross_look(&u->cross, item);
     return true;
 }
 
 static bool test_item(void *user, uint32_t worker, size_t item)
 {
-    crossing_work *c = user;
-    if (item % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(c->w))
+    uncrossing *u = user;
+    csg_mesh_watch *watch = u->creases->watch;
+    if (item % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(watch))
         return false;
-    if (csg_feature_cross_test(&c->cross, worker, item))
-        return true;
-    atomic_store(&c->w->out_of_memory, true);
-    return false;
+    return csg_feature_cross_test(&u->cross, worker, item) || csg_mesh_stop_without_memory(watch);
 }
 
 /* Until nothing folds over and nothing meets anything else: in the end all are smooth. */
-static bool settle_rounds(crossing_work *c)
+static bool settle_rounds(uncrossing *u)
 {
-    csg_mesh_work *w = c->w;
-    csg_feature_store *store = &w->features;
+    csg_mesh_creases *c = u->creases;
+    csg_pool *pool = c->watch->context->pool;
     for (size_t changed = 1; changed;) {
-        while (csg_feature_settle(store, &w->tables, c->probe))
-            if (csg_mesh_should_stop(w))
+        while (csg_feature_settle(&c->store, &c->workers->tables, u->probe))
+            if (csg_mesh_should_stop(c->watch))
                 return false;
-        csg_pool_run(w->context->pool, store->block_count, flip_item, NULL, w);
-        csg_pool_run(w->context->pool, store->block_count, look_item, NULL, c);
-        csg_feature_cross_wake(&c->cross);
-        if (!csg_pool_run(w->context->pool, store->block_count, test_item, NULL, c))
+        csg_pool_run(pool, c->store.block_count, flip_item, NULL, c);
+        csg_pool_run(pool, c->store.block_count, look_item, NULL, u);
+        csg_feature_cross_wake(&u->cross);
+        if (!csg_pool_run(pool, c->store.block_count, test_item, NULL, u))
             return false;
-        if (!csg_feature_cross_mend(&c->cross, &changed)) {
-            atomic_store(&w->out_of_memory, true);
-            return false;
-        }
+        if (!csg_feature_cross_mend(&u->cross, &changed))
+            return csg_mesh_stop_without_memory(c->watch);
     }
     return true;
 }
 
 /* False: asked to stop, or out of memory. */
-static bool uncross_features(csg_mesh_work *w, csg_feature_probe *probe)
+static bool uncross_features(csg_mesh_creases *c, const csg_octree *octree,
+                             csg_feature_probe *probe)
 {
-    csg_memory *memory = &w->context->memory;
-    size_t bytes = w->worker_count * sizeof(csg_near_room);
-    crossing_work c = {.w = w,
-                       .probe = probe,
-                       .cross = {.near = {.store = &w->features,
-                                          .marching = &w->marching,
-                                          .octree = w->octree,
-                                          .memory = memory},
-                                 .rooms = csg_memory_alloc(memory, bytes),
-                                 .room_count = w->worker_count}};
-    if (!c.cross.rooms) {
-        atomic_store(&w->out_of_memory, true);
-        return false;
-    }
-    for (uint32_t i = 0; i < w->worker_count; i++)
-        c.cross.rooms[i] = (csg_near_room){.edges = &w->workers[i].room->edges,
-                                           .scratch = w->workers[i].scratch,
-                                           .scratch_floats = w->scratch_floats};
-    bool done = csg_feature_cross_begin(&c.cross);
-    if (!done)
-        atomic_store(&w->out_of_memory, true);
-    done = done && settle_rounds(&c);
-    for (uint32_t i = 0; i < w->worker_count; i++)
-        w->workers[i].point_evaluations += c.cross.rooms[i].evaluations;
-    csg_feature_cross_end(&c.cross);
-    csg_memory_release(memory, c.cross.rooms, bytes);
+    csg_memory *memory = c->store.memory;
+    csg_mesh_workers *workers = c->workers;
+    size_t bytes = workers->count * sizeof(csg_near_room);
+    uncrossing u = {.creases = c,
+                    .probe = probe,
+                    .cross = {.near = {.store = &c->store,
+                                       .marching = &workers->marching,
+                                       .octree = octree,
+                                       .memory = memory},
+                              .rooms = csg_memory_alloc(memory, bytes),
+                              .room_count = workers->count}};
+    if (!u.cross.rooms)
+        return csg_mesh_stop_without_memory(c->watch);
+    for (uint32_t i = 0; i < workers->count; i++)
+        u.cross.rooms[i] = (csg_near_room){.edges = &workers->each[i].room->edges,
+                                           .scratch = workers->each[i].scratch,
+                                           .scratch_floats = workers->scratch_floats};
+    bool done = csg_feature_cross_begin(&u.cross) || csg_mesh_stop_without_memory(c->watch);
+    done = done && settle_rounds(&u);
+    for (uint32_t i = 0; i < workers->count; i++)
+        workers->each[i].point_evaluations += u.cross.rooms[i].evaluations;
+    csg_feature_cross_end(&u.cross);
+    csg_memory_release(memory, u.cross.rooms, bytes);
     return done;
 }
 
-/* False: asked to stop, or out of memory. */
-static bool settle_features(csg_mesh_work *w)
+csgm_status csg_mesh_settle_features(csg_mesh_creases *c, const csg_octree *octree)
 {
-    csg_feature_probe probe =
-        csg_feature_probe_of(&w->marching, NULL, &w->workers[0].features->around,
-                             &w->context->memory, w->workers[0].scratch, w->scratch_floats);
-    bool done = order_features(w, &probe) && uncross_features(w, &probe);
-    w->workers[0].point_evaluations += probe.evaluations;
-    if (w->workers[0].features->around.out_of_memory) {
-        atomic_store(&w->out_of_memory, true);
-        return false;
-    }
-    return done;
-}
-
-csgm_status csg_mesh_link_features(csg_mesh_work *w)
-{
-    if (w->options->features != CSGM_FEATURES_SHARP || !w->octree)
+    if (!c->sharp || !octree)
         return CSGM_OK;
-    csg_mesh_worker *self = &w->workers[0];
-    if (!csg_feature_store_index(&w->features) ||
-        !csg_feature_add_bare(&w->features, &w->marching, w->octree, &self->room->edges,
-                              self->scratch, w->scratch_floats, &self->point_evaluations))
-        return csg_context_no_memory(w->context);
-    csg_pool_run(w->context->pool, w->features.block_count, link_item, NULL, w);
-    return settle_features(w) ? CSGM_OK : csg_mesh_why_stopped(w);
+    csgm_context *context = c->watch->context;
+    csg_mesh_workers *workers = c->workers;
+    csg_mesh_worker *self = &workers->each[0];
+    if (!csg_feature_store_index(&c->store) ||
+        !csg_feature_add_bare(&c->store, &workers->marching, octree, &self->room->edges,
+                              self->scratch, workers->scratch_floats, &self->point_evaluations))
+        return csg_context_no_memory(context);
+    csg_pool_run(context->pool, c->store.block_count, link_item, NULL, c);
+    csg_feature_around *around = &self->features->around;
+    csg_feature_probe probe = csg_feature_probe_of(
+        &workers->marching, NULL, around, &context->memory, self->scratch, workers->scratch_floats);
+    bool done = order_features(c, &probe) && uncross_features(c, octree, &probe);
+    self->point_evaluations += probe.evaluations;
+    if (around->out_of_memory)
+        done = csg_mesh_stop_without_memory(c->watch);
+    return done ? CSGM_OK : csg_mesh_why_stopped(c->watch);
+}
+
+void csg_mesh_creases_release(csg_mesh_creases *c)
+{
+    csg_feature_store_release(&c->store);
 }

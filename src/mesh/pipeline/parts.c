@@ -1,12 +1,25 @@
 /* SPDX-License-Identifier: MIT
- * Meshes of several parts: each part of the field is meshed by itself on one lattice for all, and
- * their vertices and triangles are put one after the other. A part without a surface is left out.
+ * Meshes of any field; see parts.h. Of several parts each part of the field is meshed by itself on
+ * one lattice for all, and their vertices and triangles are put one after the other. A part without
+ * a surface is left out.
  */
+#include "mesh/pipeline/parts.h"
+
 #include <string.h>
 
 #include "base/clock.h"
 #include "mesh/pipeline/certify.h"
-#include "mesh/work.h"
+#include "mesh/pipeline/tries.h"
+
+/* A field without parts. */
+static csgm_status build_part(csgm_context *context, const csgm_field *field,
+                              const csgm_mesh_options *options, const csg_mesh_share *share,
+                              csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    return csg_mesh_is_reshaped(options)
+               ? csg_mesh_build_tries(context, field, options, share, out, stats)
+               : csg_mesh_build_field(context, field, options, share, NULL, out, stats);
+}
 
 typedef struct assembly {
     csgm_context *context;
@@ -78,8 +91,7 @@ static csgm_status build_all(assembly *a, csgm_mesh_stats *stats)
         csgm_mesh_stats own = {0};
         a->share.name = part->name;
         a->share.before = (double)i * a->share.amount;
-        status = csg_mesh_build_one(a->context, part->field, &a->options, &a->share, &a->meshes[i],
-                                    &own);
+        status = build_part(a->context, part->field, &a->options, &a->share, &a->meshes[i], &own);
         add_stats(stats, &own);
     }
     return status;
@@ -101,7 +113,7 @@ static void append(csgm_mesh *to, const csgm_mesh *part, uint64_t vertices, uint
 }
 
 /* Parts are given back as soon as they are copied. */
-static csgm_status join(assembly *a, csgm_mesh *mesh)
+static csgm_status append_parts(assembly *a, csgm_mesh *mesh)
 {
     uint64_t vertices = 0, triangles = 0;
     csgm_status status = CSGM_OK;
@@ -143,7 +155,7 @@ static csgm_status assemble(assembly *a, csgm_mesh **out)
     if (a->share.materials && a->options.colors)
         status = csg_mesh_add_materials(mesh);
     if (status == CSGM_OK)
-        status = join(a, mesh);
+        status = append_parts(a, mesh);
     if (status == CSGM_OK)
         *out = mesh;
     else
@@ -151,9 +163,9 @@ static csgm_status assemble(assembly *a, csgm_mesh **out)
     return status;
 }
 
-csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
-                                 const csgm_mesh_options *options, csgm_mesh **out,
-                                 csgm_mesh_stats *stats)
+static csgm_status build_parts(csgm_context *context, const csgm_field *field,
+                               const csgm_mesh_options *options, csgm_mesh **out,
+                               csgm_mesh_stats *stats)
 {
     assembly a = {.context = context, .field = field, .options = *options};
     size_t bytes = field->part_count * sizeof *a.meshes;
@@ -172,4 +184,18 @@ csgm_status csg_mesh_build_parts(csgm_context *context, const csgm_field *field,
         csg_mesh_destroy(a.meshes[i]);
     csg_memory_release(&context->memory, a.meshes, bytes);
     return status;
+}
+
+csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
+                           const csgm_mesh_options *options, csgm_mesh **out,
+                           csgm_mesh_stats *stats)
+{
+    return field->part_count ? build_parts(context, field, options, out, stats)
+                             : build_part(context, field, options, NULL, out, stats);
+}
+
+bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *options)
+{
+    return !field->part_count && !(field->has_materials && options->colors) &&
+           !csg_mesh_is_reshaped(options);
 }

@@ -34,7 +34,7 @@ csg_look_at_vertex csg_remesh_look(csg_remesh *r, csg_vec3 at)
     uint8_t color[1][4] = {{0, 0, 0, 0}};
     uint16_t material[1][2] = {{0, 0}};
     csg_vec3_to_floats(place[0], at);
-    const csgm_mesh *mesh = r->work->mesh;
+    const csgm_mesh *mesh = r->mesh;
     csg_probe_looks(&r->probe, (const float(*)[3])place, 1, mesh->colors ? color : NULL,
                     mesh->materials ? material : NULL);
     return (csg_look_at_vertex){{color[0][0], color[0][1], color[0][2], color[0][3]},

@@ -20,15 +20,15 @@ typedef struct csg_probe_room {
     bool has_last;
 } csg_probe_room;
 
-bool csg_probe_make(csg_probe *probe, const csg_mesh_work *work)
+bool csg_probe_make(csg_probe *probe, const csg_marching *marching, csg_memory *memory)
 {
-    const csgm_field *field = work->field;
-    *probe = (csg_probe){.marching = &work->marching,
-                         .memory = &work->context->memory,
-                         .noise = work->marching.noise,
+    const csgm_field *field = marching->field;
+    *probe = (csg_probe){.marching = marching,
+                         .memory = memory,
+                         .noise = marching->noise,
                          .scratch_floats = csg_kernel_scratch_floats(field->depth)};
     /* a little less than the octree's, for rounding */
-    probe->tau = (float)(0.99 * (double)field->tape.lipschitz * work->lattice.cell_size);
+    probe->tau = (float)(0.99 * (double)field->tape.lipschitz * marching->lattice->cell_size);
     probe->room = csg_memory_alloc(probe->memory, sizeof *probe->room);
     probe->scratch = csg_memory_alloc(probe->memory, probe->scratch_floats * sizeof(float));
     if (probe->room)

@@ -7,7 +7,7 @@
 #ifndef CSG_MESH_REMESH_PROBE_H
 #define CSG_MESH_REMESH_PROBE_H
 
-#include "mesh/work.h"
+#include "mesh/marching/marching.h"
 
 enum { CSG_PROBE_MOST = 1024 /* points of one call */ };
 
@@ -22,8 +22,8 @@ typedef struct csg_probe {
     uint64_t evaluations;
 } csg_probe;
 
-/* The work has its blocks and their index at hand. False: out of memory, nothing to release. */
-bool csg_probe_make(csg_probe *probe, const csg_mesh_work *work);
+/* marching has its blocks and their index at hand. False: out of memory, nothing to release. */
+bool csg_probe_make(csg_probe *probe, const csg_marching *marching, csg_memory *memory);
 void csg_probe_release(csg_probe *probe);
 
 /* Up to CSG_PROBE_MOST points. */

@@ -131,8 +131,8 @@ bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
 
 static void copy_vertices(csg_remesh *r)
 {
-    const csgm_mesh *mesh = r->work->mesh;
-    csg_vec3 shift = r->work->marching.shift;
+    const csgm_mesh *mesh = r->mesh;
+    csg_vec3 shift = r->marching->shift;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
         const float *p = mesh->positions + 3 * (size_t)v;
         csg_vec3 at = csg_vec3_from_floats(p);
@@ -146,7 +146,7 @@ static void copy_vertices(csg_remesh *r)
 
 static bool take_arrays(csg_remesh *r)
 {
-    const csgm_mesh *mesh = r->work->mesh;
+    const csgm_mesh *mesh = r->mesh;
     size_t count = r->corners.vertex_count;
     bool looks = mesh->colors || mesh->materials;
     r->at = csg_memory_alloc(r->memory, count * sizeof *r->at);
@@ -156,16 +156,22 @@ static bool take_arrays(csg_remesh *r)
     return r->at && r->kind && (!looks || r->looks);
 }
 
-csgm_status csg_remesh_begin(csg_remesh *r, csg_mesh_work *work)
+csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching *marching,
+                             csg_mesh_watch *watch)
 {
-    const csgm_mesh *mesh = work->mesh;
-    *r = (csg_remesh){
-        .work = work, .memory = &work->context->memory, .cell = work->lattice.cell_size};
+    csgm_context *context = watch->context;
+    *r = (csg_remesh){.context = context,
+                      .memory = &context->memory,
+                      .watch = watch,
+                      .marching = marching,
+                      .mesh = mesh,
+                      .cell = marching->lattice->cell_size};
     csg_corners_result result = csg_corners_make(&r->corners, r->memory, mesh->indices,
                                                  mesh->triangle_count, mesh->vertex_count);
     if (result == CSG_CORNERS_NOT_CLOSED)
         return CSGM_ERR_INTERNAL;
-    bool done = result == CSG_CORNERS_MADE && take_arrays(r) && csg_probe_make(&r->probe, work);
+    bool done = result == CSG_CORNERS_MADE && take_arrays(r) &&
+                csg_probe_make(&r->probe, marching, r->memory);
     if (done) {
         copy_vertices(r);
         done = find_creases(r) && csg_triangle_tree_make(&r->tree, &r->corners, r->at);
@@ -173,7 +179,7 @@ csgm_status csg_remesh_begin(csg_remesh *r, csg_mesh_work *work)
     if (done)
         return CSGM_OK;
     csg_remesh_end(r);
-    return csg_context_no_memory(work->context);
+    return csg_context_no_memory(context);
 }
 
 void csg_remesh_end(csg_remesh *r)

@@ -7,10 +7,12 @@
 #ifndef CSG_MESH_REMESH_REMESH_H
 #define CSG_MESH_REMESH_REMESH_H
 
+#include "mesh/mesh.h"
 #include "mesh/remesh/corners.h"
 #include "mesh/remesh/crossing.h"
 #include "mesh/remesh/probe.h"
 #include "mesh/remesh/triangle.h"
+#include "mesh/watch.h"
 
 typedef enum csg_vertex_kind {
     CSG_VERTEX_SMOOTH,
@@ -24,8 +26,12 @@ typedef struct csg_look_at_vertex {
 } csg_look_at_vertex;
 
 typedef struct csg_remesh {
-    csg_mesh_work *work;
-    csg_memory *memory;
+    csgm_context *context;
+    csg_memory *memory; /* the context's */
+    csg_mesh_watch *watch;
+    const csg_marching *marching;
+    csgm_mesh
+        *mesh; /* the arrays it was made of; csg_remesh_write_back puts others in their place */
     csg_probe probe;
     csg_corners corners;
     csg_triangle_tree tree;    /* of these, kept true by whoever changes them */
@@ -36,12 +42,14 @@ typedef struct csg_remesh {
     double error;              /* that changes may make: distance both ways */
 } csg_remesh;
 
-/* Of work->mesh, whose creases are found by angle: where triangles that lie on the surface meet at
- * 20 degrees or more. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL: not a closed manifold. */
-csgm_status csg_remesh_begin(csg_remesh *remesh, csg_mesh_work *work);
+/* Of a mesh, whose creases are found by angle: where triangles that lie on the surface meet at 20
+ * degrees or more. marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or
+ * CSGM_ERR_INTERNAL: not a closed manifold. */
+csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, const csg_marching *marching,
+                             csg_mesh_watch *watch);
 void csg_remesh_end(csg_remesh *remesh);
-/* The mesh as it is now in place of work->mesh's; gaps in the numbers are closed. split: a vertex
- * for each sheet at creases and corners. */
+/* The mesh as it is now as new arrays in place of remesh->mesh, which is destroyed; gaps in the
+ * numbers are closed. split: a vertex for each sheet at creases and corners. */
 csgm_status csg_remesh_write_back(csg_remesh *remesh, bool normals, bool split);
 
 static inline csg_vec3 csg_remesh_corner(const csg_remesh *remesh, uint32_t c)

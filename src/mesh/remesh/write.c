@@ -119,7 +119,7 @@ static void write_vertex(writer *w, uint32_t from, size_t to)
 {
     csg_remesh *r = w->remesh;
     csgm_mesh *mesh = w->mesh;
-    csg_vec3 at = csg_vec3_add(r->at[from], r->work->marching.shift);
+    csg_vec3 at = csg_vec3_add(r->at[from], r->marching->shift);
     mesh->positions[3 * to] = (float)at.x + 0.0f;
     mesh->positions[3 * to + 1] = (float)at.y + 0.0f;
     mesh->positions[3 * to + 2] = (float)at.z + 0.0f;
@@ -152,7 +152,7 @@ static void fill(writer *w)
 
 static csgm_status create(writer *w, const csgm_mesh *old, bool normals)
 {
-    csgm_context *context = w->remesh->work->context;
+    csgm_context *context = w->remesh->context;
     csgm_status status = csg_mesh_create(context, w->count, w->remesh->corners.live, normals,
                                          old->colors != NULL, &w->mesh);
     if (status == CSGM_OK && old->materials) {
@@ -167,24 +167,21 @@ static csgm_status create(writer *w, const csgm_mesh *old, bool normals)
 
 csgm_status csg_remesh_write_back(csg_remesh *r, bool normals, bool split)
 {
-    csg_mesh_work *work = r->work;
     const csg_corners *m = &r->corners;
     writer w = {.remesh = r, .split = split};
     size_t bytes = 3 * (size_t)m->triangle_count * sizeof *w.number;
     w.number = csg_memory_alloc(r->memory, bytes);
     if (!w.number)
-        return csg_context_no_memory(work->context);
+        return csg_context_no_memory(r->context);
     for (uint32_t v = 0; v < m->vertex_count; v++)
         if (m->corner[v] != CSG_CORNER_NONE)
             number_vertex(&w, v);
-    csgm_status status = create(&w, work->mesh, normals);
+    csgm_status status = create(&w, r->mesh, normals);
     if (status == CSGM_OK) {
         fill(&w);
         w.mesh->split = split;
-        csg_mesh_destroy(work->mesh);
-        work->mesh = w.mesh;
-        work->counts.vertex_count = w.count;
-        work->counts.triangle_count = m->live;
+        csg_mesh_destroy(r->mesh);
+        r->mesh = w.mesh;
     }
     csg_memory_release(r->memory, w.number, bytes);
     return status;

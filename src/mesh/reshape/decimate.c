@@ -190,7 +190,7 @@ csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const cs
     if (take_arrays(d) && make_quadrics(d) && csg_decimation_make_samples(d))
         return CSGM_OK;
     csg_decimation_end(d);
-    return csg_context_no_memory(remesh->work->context);
+    return csg_context_no_memory(remesh->context);
 }
 
 void csg_decimation_end(csg_decimation *d)
@@ -229,14 +229,14 @@ static csgm_status run_queue(csg_decimation *d, uint32_t least)
             r->corners.corner[entry.to] == CSG_CORNER_NONE ||
             entry.version != d->version[entry.from] + d->version[entry.to])
             continue;
-        if (i % LOOK_UP_EVERY == 0 && csg_mesh_should_stop(r->work))
-            return csg_mesh_why_stopped(r->work);
+        if (i % LOOK_UP_EVERY == 0 && csg_mesh_should_stop(r->watch))
+            return csg_mesh_why_stopped(r->watch);
         d->tried++;
         if (!csg_collapse_try(d, entry.from, entry.to))
             continue;
         d->made++;
         if (!push_around(d, entry.to))
-            return csg_context_no_memory(r->work->context);
+            return csg_context_no_memory(r->context);
     }
     return CSGM_OK;
 }
@@ -250,7 +250,7 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
         uint32_t before = r->corners.live;
         d->queue->count = 0;
         if (!push_all(d))
-            return csg_context_no_memory(r->work->context);
+            return csg_context_no_memory(r->context);
         status = run_queue(d, least);
         if ((uint64_t)(before - r->corners.live) * WORTH < before)
             break;

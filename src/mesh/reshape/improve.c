@@ -211,13 +211,13 @@ static uint64_t move_all(csg_improver *m, double enough)
 static csgm_status run_passes(csg_improver *m)
 {
     enum { PASSES = 8, SMOOTHING = 3 };
-    csg_mesh_work *w = m->remesh->work;
+    csg_mesh_watch *watch = m->remesh->watch;
     for (int pass = 0; pass < PASSES; pass++) {
         uint64_t changes = collapse_all(m);
         changes += flip_all(m);
         changes += move_all(m, pass < SMOOTHING ? 0.55 : GOOD);
-        if (csg_mesh_should_stop(w))
-            return csg_mesh_why_stopped(w);
+        if (csg_mesh_should_stop(watch))
+            return csg_mesh_why_stopped(watch);
         if (!changes)
             break;
     }
@@ -226,13 +226,12 @@ static csgm_status run_passes(csg_improver *m)
 
 csgm_status csg_improve(csg_remesh *r, bool thinned)
 {
-    csg_mesh_work *w = r->work;
     csg_improver *m = csg_memory_alloc(r->memory, sizeof *m);
     if (!m)
-        return csg_context_no_memory(w->context);
+        return csg_context_no_memory(r->context);
     m->remesh = r;
     m->thinned = thinned;
-    csgm_status status = csg_improver_measure(m) ? CSGM_OK : csg_context_no_memory(w->context);
+    csgm_status status = csg_improver_measure(m) ? CSGM_OK : csg_context_no_memory(r->context);
     if (status == CSGM_OK)
         status = run_passes(m);
     csg_memory_release(r->memory, m, sizeof *m);

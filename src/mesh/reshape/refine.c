@@ -121,7 +121,7 @@ csgm_status csg_refine_until_near(csg_remesh *r, double error, csg_distance_proo
     size_t count = r->corners.triangle_count;
     refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
     if (!f.pending)
-        return csg_context_no_memory(r->work->context);
+        return csg_context_no_memory(r->context);
     memset(f.pending, 1, count);
     csgm_status status = csg_check_distance(r, error, f.pending, out);
     for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;

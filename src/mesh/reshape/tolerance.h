@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Meshes within a tolerance: a mesh of equal cells is made, thinned out as far as the error allows
- * (decimate.h), improved where that is asked for (improve.h), and then held against the field
- * (distance/check.h). Where the check fails it is done again, more carefully and, if the resolution
- * is free, more finely.
+ * A mesh of equal cells towards a goal: it is thinned out as far as the error allows (decimate.h),
+ * improved where that is asked for (improve.h), and then held against the field (distance/check.h).
+ * Where the check fails the goal asks for another try (pipeline/tries.h), more carefully and, if
+ * the resolution is free, more finely.
  */
 #ifndef CSG_MESH_RESHAPE_TOLERANCE_H
 #define CSG_MESH_RESHAPE_TOLERANCE_H
 
-#include "mesh/work.h"
+#include "mesh/remesh/remesh.h"
 
 /* What is wanted of one field's mesh, and what came of it. */
 typedef struct csg_mesh_goal {
@@ -30,18 +30,9 @@ typedef struct csg_mesh_goal {
     bool tight;          /* `share` was out of reach */
 } csg_mesh_goal;
 
-static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
-{
-    return options->tolerance > 0 || options->simplify_error > 0 || options->simplify_share > 0 ||
-           options->improve;
-}
-
-/* Thins out and improves work->mesh as work->goal says. */
-csgm_status csg_mesh_reshape(csg_mesh_work *work);
-
-/* csg_mesh_build_one for options that ask for it. */
-csgm_status csg_mesh_build_reshaped(csgm_context *context, const csgm_field *field,
-                                    const csgm_mesh_options *options, const csg_mesh_share *share,
-                                    csgm_mesh **out, csgm_mesh_stats *stats);
+/* Thins out and improves *mesh as the goal says, as marching made it; its blocks are at hand. *mesh
+ * is then another one, unless the goal asks for another try. */
+csgm_status csg_mesh_reshape(csg_mesh_goal *goal, csgm_mesh **mesh, const csg_marching *marching,
+                             csg_mesh_watch *watch);
 
 #endif

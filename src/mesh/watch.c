@@ -1,14 +1,27 @@
 /* SPDX-License-Identifier: MIT
- * Progress, cancelling and the time limit of a mesh build.
+ * Progress, cancelling and the time limit; see watch.h.
  */
+#include "mesh/watch.h"
+
 #include "base/clock.h"
-#include "mesh/work.h"
+
+void csg_mesh_watch_begin(csg_mesh_watch *w, csgm_context *context, const csgm_monitor *monitor,
+                          double limit_from_s)
+{
+    w->context = context;
+    w->monitor = monitor;
+    w->started_s = csg_clock_now_s();
+    w->stage = CSGM_STAGE_OCTREE;
+    w->stage_share = 1;
+    if (context->limits.timeout_s > 0)
+        w->deadline_s =
+            (limit_from_s > 0 ? limit_from_s : w->started_s) + context->limits.timeout_s;
+}
 
 bool csg_mesh_should_stop(void *user)
 {
-    csg_mesh_work *w = user;
-    const csgm_monitor *monitor = &w->options->monitor;
-    if (monitor->cancelled && monitor->cancelled(monitor->user))
+    csg_mesh_watch *w = user;
+    if (w->monitor->cancelled && w->monitor->cancelled(w->monitor->user))
         return true;
     if (w->deadline_s > 0 && csg_clock_now_s() > w->deadline_s) {
         atomic_store(&w->timed_out, true);
@@ -17,11 +30,17 @@ bool csg_mesh_should_stop(void *user)
     return false;
 }
 
+bool csg_mesh_stop_without_memory(csg_mesh_watch *w)
+{
+    atomic_store(&w->out_of_memory, true);
+    return false;
+}
+
 void csg_mesh_report_progress(void *user, double fraction)
 {
     enum { REPORTS_PER_SECOND = 20 };
-    csg_mesh_work *w = user;
-    const csgm_monitor *monitor = &w->options->monitor;
+    csg_mesh_watch *w = user;
+    const csgm_monitor *monitor = w->monitor;
     if (!monitor->progress)
         return;
     double now = csg_clock_now_s();
@@ -29,22 +48,16 @@ void csg_mesh_report_progress(void *user, double fraction)
         return;
     w->last_report_s = now;
     fraction = w->stage_done + w->stage_share * fraction;
-    if (!w->share) {
+    if (!w->is_part) {
         monitor->progress(monitor->user, w->stage, fraction);
         return;
     }
     /* parts alternate between the stages: a half each of what is told as one */
     fraction = (fraction + (w->stage == CSGM_STAGE_OCTREE ? 0 : 1)) / 2;
-    monitor->progress(monitor->user, CSGM_STAGE_MESH,
-                      w->share->before + w->share->amount * fraction);
+    monitor->progress(monitor->user, CSGM_STAGE_MESH, w->part_before + w->part_amount * fraction);
 }
 
-void csg_mesh_poll(void *user, size_t done, size_t count)
-{
-    csg_mesh_report_progress(user, (double)done / (double)count);
-}
-
-csgm_status csg_mesh_why_stopped(csg_mesh_work *w)
+csgm_status csg_mesh_why_stopped(csg_mesh_watch *w)
 {
     if (atomic_load(&w->out_of_memory))
         return csg_context_no_memory(w->context);

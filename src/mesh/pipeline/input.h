@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ * What a mesh is made of: a field, the box it is meshed in, and the lattice of it.
+ */
+#ifndef CSG_MESH_PIPELINE_INPUT_H
+#define CSG_MESH_PIPELINE_INPUT_H
+
+#include "field/field.h"
+#include "grid/octree/lattice.h"
+
+/* What the parts of one mesh have in common, and where in the whole one of them stands. */
+typedef struct csg_mesh_share {
+    const char *name; /* NULL = the part without a name */
+    bool colors, materials;
+    csg_vec3 origin;
+    double started_s;      /* for the time limit */
+    double before, amount; /* of the work: fractions */
+} csg_mesh_share;
+
+typedef struct csg_mesh_input {
+    csgm_context *context;
+    const csgm_mesh_options *options;
+    const csg_mesh_share *share; /* NULL = the mesh has one part */
+    const csgm_field *field; /* as it is meshed: cut by the bounds where it reaches out of them */
+    csgm_field *clipped;     /* owned: that field, NULL when the bounds cut nothing */
+    csg_box bounds;          /* empty: there is nothing to mesh, and no lattice */
+    csg_lattice lattice;
+} csg_mesh_input;
+
+/* Chooses bounds and lattice; context, options, share and field are set. Reports what fails. */
+csgm_status csg_mesh_input_complete(csg_mesh_input *input);
+void csg_mesh_input_release(csg_mesh_input *input);
+
+/* Where the floats of a mesh in these bounds have their zero. */
+csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds);
+static inline csg_vec3 csg_mesh_origin_of(const csg_mesh_input *input)
+{
+    return input->share ? input->share->origin
+                        : csg_mesh_origin(input->field->center, input->bounds);
+}
+
+static inline bool csg_mesh_is_colored(const csgm_field *field)
+{
+    return field->has_colors && field->color_count > 1;
+}
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * Blocks in slabs: stretches of the octree's frontier whose blocks are in memory at one time.
+ * Ordinarily there is one. Where the memory limit asks for several, each is sampled twice: once to
+ * count, once, from the last to the first, to make its triangles; between them only the rim blocks
+ * that earlier slabs refer to (the halo) are kept. The mesh is the same for any number of slabs.
+ */
+#ifndef CSG_MESH_PIPELINE_SLABS_H
+#define CSG_MESH_PIPELINE_SLABS_H
+
+#include "mesh/pipeline/creases.h"
+
+/* A stretch of the octree's frontier, with what comes before it in the numbering. */
+typedef struct csg_slab {
+    size_t first_cell, end_cell;
+    uint64_t vertices, triangles;
+} csg_slab;
+
+/* Blocks of slabs already made that slabs still to be made touch from below. */
+typedef struct csg_halo {
+    csg_arena arena;
+    csg_block **blocks;
+    size_t count, capacity;
+} csg_halo;
+
+typedef struct csg_mesh_slabs {
+    /* taken: whose features are counted with the blocks; workers->marching is told the blocks */
+    csg_mesh_watch *watch;
+    csg_mesh_workers *workers;
+    csg_mesh_creases *creases;
+    /* made */
+    csg_octree *octree; /* NULL when there is nothing to mesh */
+    csg_slab *slabs;
+    size_t count;
+    csg_mesh_blocks at_hand; /* of one slab */
+    uint64_t vertex_count, triangle_count;
+    csg_halo halo, old_halo;
+    csg_block **reachable; /* the slab's blocks and the halo's, where there are several slabs */
+    size_t reachable_capacity;
+    csg_block_index index;
+} csg_mesh_slabs;
+
+/* The octree of the input's lattice. */
+csgm_status csg_mesh_walk_octree(csg_mesh_slabs *slabs, const csg_mesh_input *input);
+/* Divides the frontier so that a slab's blocks fit into the memory limit, counts every slab with
+ * its features and numbers its blocks; leaves the last one's blocks at hand. */
+csgm_status csg_mesh_count_slabs(csg_mesh_slabs *slabs);
+/* Has the blocks of slab i at hand, numbered, and all that their cells refer to in the index of
+ * workers->marching. To be taken from the last to the first: a block's upper neighbours come after
+ * it in Morton order, so their numbers are known by then. */
+csgm_status csg_mesh_take_slab(csg_mesh_slabs *slabs, size_t i);
+/* After slab i is made: keeps what the slabs before it refer to. */
+csgm_status csg_mesh_leave_slab(csg_mesh_slabs *slabs, size_t i);
+void csg_mesh_slabs_release(csg_mesh_slabs *slabs);
+
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ * Which resolution, how often, and what is said at the end; see tries.h.
+ */
+#include "mesh/pipeline/tries.h"
+
+#include <math.h>
+
+#include "base/clock.h"
+
+static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
+{
+    if (goal->open)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
+                       chooses ? "raise the tolerance"
+                               : "raise -r, or give -e alone: it chooses the resolution",
+                       "at %llu places the mesh could not be shown to be within %g of the surface, "
+                       "first at %g,%g,%g",
+                       (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
+                       goal->place.z);
+    if (goal->error > 0 && goal->measured > goal->error)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise -r, or the tolerance",
+                       "a place of the surface is %g from the mesh, more than %g", goal->measured,
+                       goal->error);
+    if (goal->unproven)
+        csg_diag_plain(
+            &context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise the tolerance",
+            "the distance of the mesh is %g as measured; to prove it below %g would take "
+            "too long",
+            goal->measured, goal->allowed);
+    if (goal->unfinished)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise the tolerance",
+                       "%llu stretches of the surface are too intricate to look for parts in them "
+                       "that the mesh misses",
+                       (unsigned long long)goal->unfinished);
+    if (goal->tight)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, NULL,
+                       "fewer triangles were asked for than the shape allows");
+}
+
+static void fill_stats(csgm_mesh_stats *stats, const csg_mesh_goal *goal)
+{
+    stats->reshape_s = goal->reshape_s;
+    stats->triangles_before = goal->begun;
+    if (!(goal->error > 0) && !(goal->share > 0))
+        return;
+    stats->is_measured = true;
+    stats->max_distance_bound = goal->bound;
+    stats->max_distance_measured = goal->measured;
+    stats->distance_allowed = goal->allowed;
+    stats->open_places = goal->open;
+}
+
+static double longest_side(const csgm_field *field, const csgm_mesh_options *options)
+{
+    csg_box box = csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
+    csg_vec3 size = csg_box_size(box);
+    return fmax(size.x, fmax(size.y, size.z));
+}
+
+csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options, const csg_mesh_share *share,
+                                 csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    enum { MOST_TRIES = 6, FIRST_CELLS = 64, MOST_CELLS = 768 };
+    csgm_mesh_options base = *options;
+    csg_mesh_goal goal = {
+        .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,
+        .share = options->simplify_share,
+        .improve = options->improve,
+        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0),
+        .normals = options->normals,
+        .care = 0.85,
+        .started_s = csg_clock_now_s()};
+    base.normals = CSGM_NORMALS_NONE;
+    if (goal.chooses)
+        base.resolution = FIRST_CELLS;
+    double least = longest_side(field, options) / MOST_CELLS;
+    bool was_open = false; /* once more, with more care: what is open then stays so */
+    csgm_status status;
+    for (;; goal.tries++) {
+        goal.is_last = goal.tries + 1 >= MOST_TRIES || was_open ||
+                       (goal.chooses && base.cell_size > 0 && base.cell_size <= least) ||
+                       (!goal.chooses && goal.tries + 1 >= 2);
+        goal.cell_size = 0;
+        status = csg_mesh_build_field(context, field, &base, share, &goal, out, stats);
+        if (status != CSGM_OK || !(goal.cell_size > 0))
+            break;
+        csg_mesh_destroy(*out);
+        was_open = goal.open > 0;
+        if (was_open)
+            goal.care *= 0.8;
+        goal.open = 0;
+        base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
+    }
+    if (status != CSGM_OK)
+        return status;
+    report_misses(context, &goal, goal.chooses);
+    if (stats)
+        fill_stats(stats, &goal);
+    return CSGM_OK;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes that are reshaped: tries, of one lattice each, until one is within the tolerance.
+ */
+#ifndef CSG_MESH_PIPELINE_TRIES_H
+#define CSG_MESH_PIPELINE_TRIES_H
+
+#include "mesh/pipeline/build.h"
+
+static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
+{
+    return options->tolerance > 0 || options->simplify_error > 0 || options->simplify_share > 0 ||
+           options->improve;
+}
+
+/* csg_mesh_build_field for options that ask for it. */
+csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options, const csg_mesh_share *share,
+                                 csgm_mesh **out, csgm_mesh_stats *stats);
+
+#endif
