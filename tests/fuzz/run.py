@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Fuzzes with libFuzzer (the parser, the evaluator, the readers of drawings...), from the committed inputs on.
 
-Usage: run.py [--seconds N] [--build FOLDER] [--work FOLDER] [--minimise] [TARGET ...]
+Usage: run.py [--seconds N] [--seed N] [--build FOLDER] [--work FOLDER] [--minimise] [TARGET ...]
 
 Builds a clang build of its own in FOLDER. --work keeps what the runs find between calls; findings stay
 there as crash-*, timeout-*, leak-*: mend them and put them in findings/TARGET. --minimise makes
@@ -38,10 +38,10 @@ def can_fuzz():
 
 
 def known_targets(folder):
-    """What fuzz_*.c the build makes, by their names."""
+    """Paths of the fuzz_* that the build makes, by their names."""
     rules = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], check=True,
                            capture_output=True, text=True).stdout
-    return sorted(set(re.findall(r"^tests/fuzz/fuzz_(\w+):", rules, flags=re.M)))
+    return {name: path for path, name in re.findall(r"^(tests/\w+/fuzz_(\w+)):", rules, flags=re.M)}
 
 
 def build(folder, targets):
@@ -51,10 +51,10 @@ def build(folder, targets):
                         "-Db_sanitize=address,undefined", "-Doptimization=2", "-Ddebug=true",
                         "-Db_ndebug=false"], check=True, stdout=subprocess.DEVNULL,
                        env={**os.environ, "CC": "clang", "CXX": "clang++"})
-    targets = targets or known_targets(folder)
-    subprocess.run(["ninja", "-C", folder, *[f"tests/fuzz/fuzz_{t}" for t in targets]], check=True,
-                   stdout=subprocess.DEVNULL)
-    return targets
+    paths = known_targets(folder)
+    chosen = {name: paths[name] for name in sorted(targets or paths)}
+    subprocess.run(["ninja", "-C", folder, *chosen.values()], check=True, stdout=subprocess.DEVNULL)
+    return {name: os.path.abspath(os.path.join(folder, path)) for name, path in chosen.items()}
 
 
 def inputs(target):
@@ -62,13 +62,13 @@ def inputs(target):
     return [folder for folder in folders if os.path.isdir(folder)]
 
 
-def fuzz(program, target, work, seconds):
+def fuzz(program, target, work, options):
     corpus = os.path.join(work, target)
     os.makedirs(corpus, exist_ok=True)
     log = os.path.join(work, target + ".log")
     with open(log, "wb") as file:
         result = subprocess.run(
-            [program, f"-max_total_time={seconds}", "-timeout=10", "-rss_limit_mb=2000",
+            [program, f"-max_total_time={options.seconds}", f"-seed={options.seed}", "-timeout=10", "-rss_limit_mb=2000",
              "-print_final_stats=1", "-dict=" + os.path.join(HERE, "scene.dict"),
              "-artifact_prefix=" + work + os.sep, corpus, *inputs(target)],
             stdout=file, stderr=subprocess.STDOUT, env=ENVIRONMENT, check=False)
@@ -103,6 +103,7 @@ def minimise(program, target, work):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=0, help="of libFuzzer; 0 is another one each time")
     parser.add_argument("--build", default=os.path.join(ROOT, "build-fuzz"))
     parser.add_argument("--work")
     parser.add_argument("--minimise", action="store_true")
@@ -116,12 +117,11 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         work = os.path.abspath(options.work or temporary)
         os.makedirs(work, exist_ok=True)
-        for target in targets:
-            program = os.path.abspath(os.path.join(options.build, "tests", "fuzz", "fuzz_" + target))
+        for target, program in targets.items():
             if options.minimise:
                 minimise(program, target, work)
             else:
-                good = fuzz(program, target, work, options.seconds) and good
+                good = fuzz(program, target, work, options) and good
     sys.exit(0 if good else 1)
 
 

@@ -18,6 +18,15 @@ def scenes():
     return sorted(path for path in paths if not Expectations(path).of("error"))
 
 
+def chosen_scenes(words):
+    """Of the words `STEP` every STEP-th scene, of `--of N` the N-th, counted round and round."""
+    every = scenes()
+    assert len(every) >= 60, "where are the scenes?"
+    if words and words[0] == "--of":
+        return [every[int(words[1]) % len(every)]]
+    return every[::int(words[0]) if words else 1]
+
+
 def mesh(program, scene, out, *arguments, env=None):
     """Hash of the file that `program` writes to `out`; to standard output where `out` is "-"."""
     expect = Expectations(scene)

@@ -6,7 +6,7 @@ kept in goldens.csv, so the quick run needs csgmesh only; it has a coarser latti
 match. --fine: a fine lattice, volume and area within 0.5 %, bounds within a cell. --exact: with
 --facets=exact, so that all solids are polyhedra, and volumes within 1e-4. --openscad: the goldens
 are what the installed OpenSCAD makes (exit status 77, a skip, where none is installed). --write:
-goldens.csv is written anew. More arguments are the names of the scenes to run.
+goldens.csv is written anew. --every N: of every N-th scene. More arguments are the names of the scenes to run.
 
 Marching cubes cut off sharp edges, which takes about a quarter of a cell of area from each unit of
 their length, and leave crumbs of a very acute one. So what differs at one resolution is tried at the
@@ -214,7 +214,12 @@ def check_openscad(chosen, write):
 
 
 def main(arguments):
-    chosen = [a for a in arguments if not a.startswith("-")] or names()
+    step = 1
+    if "--every" in arguments:
+        place = arguments.index("--every")
+        step = int(arguments[place + 1])
+        arguments = arguments[:place] + arguments[place + 2:]
+    chosen = [a for a in arguments if not a.startswith("-")] or names()[::step]
     if "--openscad" in arguments or "--write" in arguments:
         return check_openscad(chosen, "--write" in arguments)
     limits = {"--fine": FINE, "--exact": EXACT}
