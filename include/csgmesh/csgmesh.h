@@ -203,6 +203,14 @@ typedef struct csgm_scene_options {
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);
 
+/* The folders in which include, use and import look for what does not stand beside the file that
+ * asks, in their order: include_dirs, those of the environment variables CSGMESH_PATH and
+ * OPENSCADPATH (colons between), and OpenSCAD's folders of libraries. Writes the name of folder
+ * `index` into buffer, at most size bytes with the terminator, and returns its length (snprintf
+ * rules); 0 = there are not so many. A folder may not exist. options may be NULL. */
+CSGM_API size_t csgm_scene_folder(const csgm_scene_options *options, size_t index, char *buffer,
+                                  size_t size);
+
 /* text: UTF-8, text_length bytes, may hold NULs (an error with a place). name: for diagnostics
  * and, where it has a folder, for relative includes. options NULL = defaults. */
 CSGM_API csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t text_length,

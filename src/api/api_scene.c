@@ -6,6 +6,7 @@
 #include "lang/lang.h"
 #include "scene/boxes/bounds.h"
 #include "scene/reference.h"
+#include "text/folders.h"
 
 csgm_scene_options csgm_scene_options_default(void)
 {
@@ -76,6 +77,11 @@ csgm_scene_info csgm_scene_get_info(const csgm_scene *scene)
         info.operator_count += csg_node_is_operator(kind);
     }
     return info;
+}
+
+size_t csgm_scene_folder(const csgm_scene_options *options, size_t index, char *buffer, size_t size)
+{
+    return csg_folder_name(options, index, buffer, size);
 }
 
 const char *csgm_scene_dependency(const csgm_scene *scene, size_t index)

@@ -58,7 +58,6 @@ SCENES = {
     "a million braces": ("} " * 1000000, "E0110", "E0110"),
     "open brackets": ("x = " + "[" * 1000000, "E0903", "E0903"),
     "an include of itself": ("include <scene.txt>\n", "E0123", "E0123"),
-    "a use of itself": ("use <scene.txt>\n", "E0123", "E0123"),
     "an include of a device": ("include </dev/zero>\n", "E0121", "E0121"),
     "an include of a folder": ("include </>\n", ("E0121", "E0122"), ("E0121", "E0122")),
     "an include of a pipe": ("include <pipe>\n", "E0121", "E0121"),

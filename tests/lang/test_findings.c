@@ -215,6 +215,23 @@ static void folders_are_searched_in_order(void **state)
     assert_int_equal(bench_load(&b, path_of("main.txt"), &options), CSGM_OK);
     unsetenv("CSGMESH_PATH");
     assert_string_equal(b.echo, "\"inc\"\n\"env\"\n");
+    setenv("OPENSCADPATH", text, 1);
+    assert_int_equal(bench_load(&b, path_of("main.txt"), &options), CSGM_OK);
+    unsetenv("OPENSCADPATH");
+    mkdir(path_of(".local"), 0700);
+    mkdir(path_of(".local/share"), 0700);
+    mkdir(path_of(".local/share/OpenSCAD"), 0700);
+    mkdir(path_of(".local/share/OpenSCAD/libraries"), 0700);
+    write_text(".local/share/OpenSCAD/libraries/only_home.txt", "echo(\"home\");");
+    write_text("at_home.txt", "include <only_home.txt>\nsphere(1);");
+    const char *home = getenv("HOME");
+    char kept[1024];
+    snprintf(kept, sizeof kept, "%s", home ? home : "");
+    snprintf(text, sizeof text, "%s", path_of("."));
+    setenv("HOME", text, 1);
+    assert_int_equal(bench_load(&b, path_of("at_home.txt"), NULL), CSGM_OK);
+    assert_string_equal(b.echo, "\"home\"\n");
+    setenv("HOME", kept, 1);
     assert_int_equal(bench_load(&b, path_of("main.txt"), NULL), CSGM_ERR_IO);
     assert_true(bench_has(&b, 122));
 }
@@ -223,7 +240,7 @@ static void cycles_are_told_with_their_way(void **state)
 {
     (void)state;
     write_text("x.txt", "include <y.txt>\n");
-    write_text("y.txt", "use <x.txt>\n");
+    write_text("y.txt", "include <x.txt>\n");
     assert_int_not_equal(bench_load(&b, path_of("x.txt"), NULL), CSGM_OK);
     assert_true(bench_has(&b, 123));
     assert_non_null(strstr(b.text, "note: included from here"));

@@ -25,7 +25,12 @@ static const row rows[] = {
 #undef CSG_FUNCTION
 };
 
-enum { ROW_COUNT = sizeof rows / sizeof *rows };
+enum row_index {
+#define CSG_FUNCTION(name, handler, fewest, most, parameters, doc) ROW_##name,
+#include "lang/functions/functions.def"
+#undef CSG_FUNCTION
+    ROW_COUNT
+};
 
 /* Every blend and rule has a row here by its own name, or it could not be called. */
 enum {
@@ -74,6 +79,17 @@ static csg_value call_row(const row *r, const csg_function_call *call)
     return r->handler(call);
 }
 
+/* is_undef(name) asks whether there is such a variable, so a name that nobody knows is no finding.
+ */
+static csg_value evaluate_argument(csg_eval *e, int index, const csg_expression *x,
+                                   csg_frame *frame)
+{
+    bool is_asked = index == ROW_is_undef && x->kind == CSG_EXPRESSION_NAME;
+    if (is_asked && !csg_eval_lookup(e, x->as.name, frame))
+        return x->as.name == e->symbol_pi ? csg_value_number(1) : csg_value_undef();
+    return csg_evaluate(e, x, frame);
+}
+
 csg_value csg_builtin_call(csg_eval *e, int index, const csg_expression *x, csg_frame *frame)
 {
     enum { FEW = 6 };
@@ -88,7 +104,7 @@ csg_value csg_builtin_call(csg_eval *e, int index, const csg_expression *x, csg_
         return result;
     }
     for (; done < arguments->count && !e->stop; done++)
-        values[done] = csg_evaluate(e, arguments->items[done].value, frame);
+        values[done] = evaluate_argument(e, index, arguments->items[done].value, frame);
     csg_function_call call = {e, rows[index].name, x->where, arguments->items, values, done};
     if (!e->stop)
         result = call_row(&rows[index], &call);

@@ -12,47 +12,55 @@
 
 #define DEGREE 0.017453292519943295
 
-/* Folded to [0, 45] degrees, where the remainder is exact, so that symmetric angles give the same
- * bits and the sine of 30 degrees is 1/2. */
+/* An angle reduced to one period as OpenSCAD does it: by whole periods taken off at once. Libraries
+ * rely on what rounding leaves there: 1.4e-14 degrees beside -90 are 270 exactly, with a cosine of
+ * 0. */
+static double reduced(double degrees, double period)
+{
+    bool is_reduced = degrees >= 0 && degrees < period;
+    return is_reduced ? degrees : degrees - period * floor(degrees / period);
+}
+
+/* Of an angle in [0, 90], by the function that is exact there: exact at 0, 30, 45, 60 and 90. */
+static double sine_of_quarter(double a)
+{
+    if (a == 30)
+        return 0.5;
+    if (a == 45)
+        return 0.70710678118654752440;
+    if (a == 60)
+        return 0.86602540378443864676;
+    return a < 45 ? sin(a * DEGREE) : cos((90 - a) * DEGREE);
+}
+
 static double sine(double degrees)
 {
-    double a = fmod(degrees, 360), sign = 1;
-    if (a < 0) {
-        a = -a;
-        sign = -1;
-    }
-    if (a >= 180) {
-        a -= 180;
-        sign = -sign;
-    }
-    if (a > 90)
-        a = 180 - a;
-    if (a == 0)
-        return 0;
-    if (a == 30)
-        return sign * 0.5;
-    if (a == 45)
-        return sign * 0.70710678118654752440;
-    if (a == 60)
-        return sign * 0.86602540378443864676;
-    return sign * (a < 45 ? sin(a * DEGREE) : cos((90 - a) * DEGREE));
+    double a = reduced(degrees, 360);
+    bool below = a >= 180;
+    a -= below ? 180 : 0;
+    double value = sine_of_quarter(a > 90 ? 180 - a : a);
+    return below && value != 0 ? -value : value;
 }
 
 static double cosine(double degrees)
 {
-    double a = fabs(fmod(degrees, 360));
-    return sine(90 - (a > 180 ? 360 - a : a));
+    double a = reduced(degrees, 360);
+    bool below = a >= 180;
+    a -= below ? 180 : 0;
+    bool turned = a > 90;
+    double value = sine_of_quarter(90 - (turned ? 180 - a : a));
+    return below != turned && value != 0 ? -value : value;
 }
 
 static double tangent(double degrees)
 {
-    double a = fmod(degrees, 180);
-    a = a > 90 ? a - 180 : a < -90 ? a + 180 : a; /* [-90, 90] */
-    if (fabs(a) == 90)
+    double a = reduced(degrees, 180);
+    if (a == 90)
         return fmod(floor(degrees / 180), 2) == 0 ? INFINITY : -INFINITY;
-    if (fabs(a) == 45)
-        return copysign(1, a);
-    return a == 0 ? 0 : sine(a) / cosine(a);
+    bool below = a > 90;
+    a = below ? 180 - a : a;
+    double value = a == 45 ? 1 : a == 0 ? 0 : sine_of_quarter(a) / sine_of_quarter(90 - a);
+    return below ? -value : value;
 }
 
 /* A whole number of degrees when that is what the function of it gives back. */

@@ -5,13 +5,13 @@
 #include "lang/modules/imports.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "lang/parse/loader.h"
 #include "lang/services.h"
 #include "outline/dxf/dxf.h"
 #include "outline/svg/svg.h"
+#include "text/folders.h"
 #include "text/source.h"
 
 /* ---- finding --------------------------------------------------------------------------------- */
@@ -32,22 +32,18 @@ static const char *try_path(csg_module_call *call, const char *folder, size_t le
 static const char *search(csg_module_call *call, const char *name, csg_span asking)
 {
     const csg_program *program = call->e->program;
-    const csgm_scene_options *options = program->options;
     const char *from = program->sources.items[asking.source].name;
     const char *slash = strrchr(from, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - from) + 1 : 0;
     const char *found = try_path(call, from, folder, name);
     if (name[0] == '/')
         return found;
-    for (size_t i = 0; !found && options && i < options->include_dir_count; i++)
-        found = try_path(call, options->include_dirs[i], strlen(options->include_dirs[i]), name);
-    const char *list = getenv("CSGMESH_PATH");
-    while (!found && list && *list) {
-        size_t length = strcspn(list, ":");
-        if (length)
-            found = try_path(call, list, length, name);
-        list += length + (list[length] == ':');
-    }
+    char where[4096];
+    size_t length = 0;
+    for (size_t i = 0;
+         !found && (length = csg_folder_name(program->options, i, where, sizeof where)) > 0; i++)
+        if (length < sizeof where)
+            found = try_path(call, where, length, name);
     return found;
 }
 
@@ -72,8 +68,7 @@ const char *csg_import_find(csg_module_call *call, uint32_t index)
         return e->stop ? NULL : found;
     }
     if (!e->stop)
-        csg_eval_report(e, CSG_DIAG_IMPORT_NOT_FOUND, call->spans[index],
-                        "looked for beside this file, in each -I folder and in CSGMESH_PATH",
+        csg_eval_report(e, CSG_DIAG_IMPORT_NOT_FOUND, call->spans[index], CSG_FOLDERS_IN_WORDS,
                         "%s(): there is no file '%.200s'", call->name, name.as.string->text);
     call->failed = true;
     return NULL;

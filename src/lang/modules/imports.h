@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Files that shapes come from: found beside the file that asks, then in each -I folder and in
- * CSGMESH_PATH, and counted among the scene's dependencies.
+ * Files that shapes come from: found beside the file that asks, then in
+ * the folders of text/folders.h, and counted among the scene's dependencies.
  */
 #ifndef CSG_LANG_IMPORTS_H
 #define CSG_LANG_IMPORTS_H

@@ -5,9 +5,10 @@
  */
 #include "lang/parse/loader.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "text/folders.h"
 
 /* ---- finding -------------------------------------------------------------------------------- */
 
@@ -26,17 +27,13 @@ static const char *try_path(csg_parser *parser, const char *folder, size_t lengt
 
 static const char *search_folders(csg_parser *parser, const char *name)
 {
-    const csgm_scene_options *options = parser->options;
+    char folder[4096];
     const char *found = NULL;
-    for (size_t i = 0; !found && i < options->include_dir_count; i++)
-        found = try_path(parser, options->include_dirs[i], strlen(options->include_dirs[i]), name);
-    const char *folder = getenv("CSGMESH_PATH");
-    while (!found && folder && *folder) {
-        size_t length = strcspn(folder, ":");
-        if (length)
+    size_t length = 0;
+    for (size_t i = 0;
+         !found && (length = csg_folder_name(parser->options, i, folder, sizeof folder)) > 0; i++)
+        if (length < sizeof folder)
             found = try_path(parser, folder, length, name);
-        folder += length + (folder[length] == ':');
-    }
     return found;
 }
 
@@ -56,24 +53,26 @@ static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code co
     if (!found && name[0] != '/')
         found = search_folders(parser, name);
     if (!found && !parser->stop) {
-        csg_source_report(
-            &parser->program->sources, code, path,
-            strchr(name, '\\')
-                ? "folders are separated by '/'"
-                : "looked for beside this file, in each -I folder and in CSGMESH_PATH",
-            "there is no file '%.200s'", name);
+        csg_source_report(&parser->program->sources, code, path,
+                          strchr(name, '\\') ? "folders are separated by '/'"
+                                             : CSG_FOLDERS_IN_WORDS,
+                          "there is no file '%.200s'", name);
         parser->program->failed_io |= code == CSG_DIAG_INCLUDE_NOT_FOUND;
     }
     return found;
 }
 
-/* Does a source on the way from the scene to here come from this file? */
-static bool is_cycle(const csg_parser *parser, const char *path)
+/* Does the text that is being read stand in this file, by way of includes? Only that has no end: a
+ * file that is used is parsed once, so files may use each other in circles. */
+static bool includes_itself(const csg_parser *parser, const char *path)
 {
     const csg_sources *sources = &parser->program->sources;
-    for (uint32_t i = parser->source; i < sources->count; i = sources->items[i].from.source)
+    for (uint32_t i = parser->source; i < sources->count; i = sources->items[i].from.source) {
         if (csg_source_is_file(&sources->items[i], path))
             return true;
+        if (!sources->items[i].textual)
+            return false;
+    }
     return false;
 }
 
@@ -101,13 +100,11 @@ static void add_dependency(csg_parser *parser, const char *path)
         csg_parser_no_memory(parser);
 }
 
-/* Finds and reads the file of a PATH token. */
-static bool read_asked(csg_parser *parser, csg_span where, bool textual, uint32_t *out)
+/* Reads the file that was found for a PATH token. */
+static bool read_found(csg_parser *parser, const char *path, csg_span where, bool textual,
+                       uint32_t *out)
 {
-    const char *path = find_file(parser, where, CSG_DIAG_INCLUDE_NOT_FOUND);
-    if (!path)
-        return false;
-    if (is_cycle(parser, path)) {
+    if (textual && includes_itself(parser, path)) {
         report_cycle(parser, where, path);
         return false;
     }
@@ -163,7 +160,8 @@ void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path)
     uint32_t source;
     if (!csg_parser_enter(parser))
         return;
-    if (read_asked(parser, path, true, &source)) {
+    const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
+    if (found && read_found(parser, found, path, true, &source)) {
         csg_parser inner = derive(parser, source);
         parse_source(&inner, scope);
         take_outcome(parser, &inner);
@@ -192,7 +190,7 @@ static csg_file *add_file(csg_parser *parser, uint32_t source)
 static csg_file *find_used(const csg_parser *parser, const char *path)
 {
     const csg_program *program = parser->program;
-    for (uint32_t i = 1; i < program->file_count; i++)
+    for (uint32_t i = 0; i < program->file_count; i++)
         if (csg_source_is_file(&program->sources.items[program->files[i]->source], path))
             return program->files[i];
     return NULL;
@@ -204,12 +202,8 @@ static csg_file *load_used(csg_parser *parser, csg_span path)
     const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
     if (!found)
         return NULL;
-    if (is_cycle(parser, found)) {
-        report_cycle(parser, path, found);
-        return NULL;
-    }
     csg_file *file = find_used(parser, found);
-    if (file || !read_asked(parser, path, false, &source))
+    if (file || !read_found(parser, found, path, false, &source))
         return file;
     file = add_file(parser, source);
     if (!file)

@@ -37,21 +37,16 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
 
 /* ---- names of files ------------------------------------------------------------------- */
 
-/* The folders of -I, then those of CSGMESH_PATH; NULL past the end. */
+/* The folders in which a job's scene looks for files, in their order; NULL past the end. */
 static const char *search_folder(batch_arena *arena, const batch_job *job, size_t index)
 {
     const cli_list *given = &job->settings.include_dirs;
-    if (index < given->count)
-        return given->items[index];
-    index -= given->count;
-    const char *path = getenv("CSGMESH_PATH");
-    while (path && *path) {
-        size_t length = strcspn(path, ":");
-        if (length && index-- == 0)
-            return batch_strndup(arena, path, length);
-        path += length + (path[length] == ':');
-    }
-    return NULL;
+    csgm_scene_options options = csgm_scene_options_default();
+    options.include_dirs = (const char *const *)given->items;
+    options.include_dir_count = given->count;
+    char folder[4096];
+    size_t length = csgm_scene_folder(&options, index, folder, sizeof folder);
+    return length > 0 && length < sizeof folder ? batch_strndup(arena, folder, length) : NULL;
 }
 
 /* "lib/a.txt" of "parts/lib/a.txt" in "parts"; NULL: it is not below the folder. */

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ * The order of folders; see folders.h: those of the options, those of the environment, then the
+ * ones where people who use OpenSCAD keep their libraries.
+ */
+#include "text/folders.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Folder `*index` of a list with colons between; counts *index down by what it has. */
+static const char *folder_of_list(const char *list, size_t *index, size_t *length)
+{
+    while (list && *list) {
+        *length = strcspn(list, ":");
+        if (*length && (*index)-- == 0)
+            return list;
+        list += *length + (list[*length] == ':');
+    }
+    return NULL;
+}
+
+size_t csg_folder_name(const csgm_scene_options *options, size_t index, char *buffer, size_t size)
+{
+    static const char *const lists[] = {"CSGMESH_PATH", "OPENSCADPATH"};
+#ifdef __APPLE__
+    static const char at_home[] = "Documents/OpenSCAD/libraries";
+    static const char for_all[] = "/Applications/OpenSCAD.app/Contents/Resources/libraries";
+#else
+    static const char at_home[] = ".local/share/OpenSCAD/libraries";
+    static const char for_all[] = "/usr/share/openscad/libraries";
+#endif
+    size_t given = options ? options->include_dir_count : 0, length = 0;
+    if (index < given)
+        return (size_t)snprintf(buffer, size, "%s", options->include_dirs[index]);
+    index -= given;
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        const char *folder = folder_of_list(getenv(lists[i]), &index, &length);
+        if (folder)
+            return (size_t)snprintf(buffer, size, "%.*s", (int)length, folder);
+    }
+    const char *home = getenv("HOME");
+    if (home && *home && index-- == 0)
+        return (size_t)snprintf(buffer, size, "%s/%s", home, at_home);
+    return index == 0 ? (size_t)snprintf(buffer, size, "%s", for_all) : 0;
+}
