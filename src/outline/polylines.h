@@ -31,12 +31,16 @@ void csg_polylines_transform(csg_polylines *lines, size_t first_line, const csg_
 /* ---- strokes ------------------------------------------------------------------------- */
 
 typedef enum csg_cap { CSG_CAP_BUTT, CSG_CAP_ROUND, CSG_CAP_SQUARE } csg_cap;
-typedef enum csg_join { CSG_JOIN_MITER, CSG_JOIN_ROUND, CSG_JOIN_BEVEL } csg_join;
+typedef enum csg_line_join {
+    CSG_LINE_JOIN_MITER,
+    CSG_LINE_JOIN_ROUND,
+    CSG_LINE_JOIN_BEVEL
+} csg_line_join;
 
 typedef struct csg_stroke {
     double width;
     csg_cap cap;
-    csg_join join;
+    csg_line_join join;
     double miter_limit; /* of SVG: longer miters are bevelled */
     double tolerance;
 } csg_stroke;

@@ -229,7 +229,7 @@ static bool is_alike(const compiler *c, const task *above, bool is_union)
 }
 
 /* The last node written completes a child of this operator. */
-static void join(compiler *c, task *group)
+static void mark_join(compiler *c, task *group)
 {
     csg_tape_node *node = &c->nodes[c->node_count - 1];
     if (group->written && group->blend.kind != CSG_BLEND_ROUND && !group->combines) {
@@ -296,7 +296,7 @@ static bool write_curve(compiler *c, const csg_node *node, const frame *f, task 
         if (!write_leaf(c, &l, f->color, f->warp))
             return false;
         if (!alike || i + 1 < count)
-            join(c, alike ? above : &own);
+            mark_join(c, alike ? above : &own);
     }
     return alike || write_operator(c, &own);
 }
@@ -440,7 +440,7 @@ static void join_child(compiler *c, task *group)
 {
     if (!is_group(c, group))
         return; /* nothing above but nodes of one child */
-    join(c, group);
+    mark_join(c, group);
 }
 
 static bool end_task(compiler *c)

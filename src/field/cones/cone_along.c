@@ -152,7 +152,8 @@ static void mix_homogeneous(const csg_tape_node *node, const float *own, slope_r
     a->largest_value = high * (1 + 1e-5f);
 }
 
-static bool join(const csg_tape *tape, const csg_tape_node *node, slope_range *a, slope_range b)
+static bool join_slopes(const csg_tape *tape, const csg_tape_node *node, slope_range *a,
+                        slope_range b)
 {
     const float *own = tape->parameters + node->join_parameters;
     switch (node->join_blend) {
@@ -380,7 +381,7 @@ static bool run_node(const csg_tape *tape, uint32_t n, const float *low, const f
     if (!node->join)
         return true;
     s->top--;
-    return join(tape, node, &s->items[s->top - 1], s->items[s->top]);
+    return join_slopes(tape, node, &s->items[s->top - 1], s->items[s->top]);
 }
 
 bool csg_cone_along(const csg_tape *tape, const csg_cone_leaves *leaves, const float *low,

@@ -303,8 +303,8 @@ static void search_cubic_varying(const float *own, group *g)
 /* ---- leaves -------------------------------------------------------------------------------- */
 
 /* Finds the nearest balls of the points from `from` on; how many. */
-static size_t run(const csg_tape_node *node, const float *parameters, csg_points p, size_t from,
-                  group *g)
+static size_t find_nearest_balls(const csg_tape_node *node, const float *parameters, csg_points p,
+                                 size_t from, group *g)
 {
     float frame[12] = {0};
     int offset = node->frame == CSG_FRAME_OFFSET;
@@ -332,7 +332,7 @@ static void curve_values(const csg_tape_node *node, const float *parameters, csg
     group g;
     const float sigma = parameters[CSG_LEAF_SIGMA];
     for (size_t from = 0; from < p.count; from += g.count) {
-        run(node, parameters, p, from, &g);
+        find_nearest_balls(node, parameters, p, from, &g);
         for (size_t i = 0; i < g.count; i++)
             out[from + i] = sigma * g.value[i];
     }
@@ -344,7 +344,7 @@ static void curve_gradients(const csg_tape_node *node, const float *parameters, 
     group g;
     const float sigma = parameters[CSG_LEAF_SIGMA];
     for (size_t from = 0; from < p.count; from += g.count) {
-        run(node, parameters, p, from, &g);
+        find_nearest_balls(node, parameters, p, from, &g);
         for (size_t i = 0; i < g.count; i++) {
             point way = {g.gx[i], g.gy[i], g.gz[i]};
             if (node->frame == CSG_FRAME_AFFINE)

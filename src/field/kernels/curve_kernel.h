@@ -5,7 +5,7 @@
 #ifndef CSG_FIELD_CURVE_KERNEL_H
 #define CSG_FIELD_CURVE_KERNEL_H
 
-#include "field/kernels/leaf_kernel.h"
+#include "field/kernels/batch.h"
 
 typedef struct csg_curve_kernel {
     void (*values)(const csg_tape_node *node, const float *parameters, csg_points p, float *out);

@@ -8,7 +8,6 @@
 #include "field/kernels/formula_kernel.h"
 
 #include "field/kernels/functions.h"
-#include "field/kernels/kernel.h"
 
 enum {
     VALUE_FLOATS = 16384, /* CSG_FORMULA_SLOTS chunks of CSG_LANES at least */

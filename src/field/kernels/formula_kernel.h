@@ -5,7 +5,7 @@
 #ifndef CSG_FIELD_FORMULA_KERNEL_H
 #define CSG_FIELD_FORMULA_KERNEL_H
 
-#include "field/kernels/kernel.h"
+#include "field/kernels/batch.h"
 
 typedef struct csg_formula_kernel {
     /* count: a multiple of CSG_OCTANTS. */

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#include "field/kernels/kernel.h"
+#include "field/kernels/batch.h"
 #include "scene/operators/blends.h"
 
 /* The intersection of a and b, raised by n, whose gradients are at right angles. Away from the edge

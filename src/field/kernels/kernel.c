@@ -158,8 +158,8 @@ static void combine_values(const csg_tape *tape, const csg_tape_node *node, slot
 }
 
 /* a = a op b */
-static inline void join(const csg_tape_node *node, const float *parameters, float *a,
-                        const float *b, size_t count)
+static inline void join_siblings(const csg_tape_node *node, const float *parameters, float *a,
+                                 const float *b, size_t count)
 {
     if (is_of_fields(node->join_blend))
         CSG_THIS_RULE_KERNEL.join(node, parameters, a, b, count);
@@ -189,8 +189,8 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
         }
         if (node->join) {
             top--;
-            join(node, tape->parameters + node->join_parameters, slot(s, top - 1), slot(s, top),
-                 p.count);
+            join_siblings(node, tape->parameters + node->join_parameters, slot(s, top - 1),
+                          slot(s, top), p.count);
         }
     }
 }
@@ -375,7 +375,7 @@ static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, s
     if (node->join_blend == CSG_BLEND_ORTHOGONAL)
         for (int c = 0; c < wanted.gradients; c++)
             stretch(channel(s, depth, index, c), gain, count);
-    join(node, parameters, a, b, count);
+    join_siblings(node, parameters, a, b, count);
 }
 
 /* Inlined for each plan: with few points the loops over channels are what takes time. */
@@ -564,7 +564,7 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
 static void join_alone(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,
                        size_t count)
 {
-    join(node, tape->parameters + node->join_parameters, a, b, count);
+    join_siblings(node, tape->parameters + node->join_parameters, a, b, count);
 }
 
 const csg_kernel CSG_THIS_KERNEL = {

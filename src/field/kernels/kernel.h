@@ -5,13 +5,7 @@
 #ifndef CSG_FIELD_KERNEL_H
 #define CSG_FIELD_KERNEL_H
 
-#include "field/tape.h"
-
-enum {
-    CSG_BATCH = 256, /* points a slot holds at most */
-    CSG_LANES = 16,  /* counts are rounded up to this: arrays must have room for it */
-    CSG_OCTANTS = 8
-};
+#include "field/kernels/batch.h"
 
 /* Arrays of one batch that a walk over a tape of this depth needs: values, up to four channels, and
  * the round operator's work (its operands again and six more). */
@@ -65,8 +59,6 @@ typedef struct csg_kernel {
 /* ---- inside the builds: names that end in the build's own ---------------------------------- */
 
 #ifdef CSG_KERNEL
-#define CSG_CONCATENATE_(a, b) a##b
-#define CSG_CONCATENATE(a, b) CSG_CONCATENATE_(a, b)
 #define CSG_THIS_KERNEL CSG_CONCATENATE(csg_kernel_, CSG_KERNEL)
 #define CSG_THIS_ROOTS CSG_CONCATENATE(csg_roots_, CSG_KERNEL)
 

@@ -5,12 +5,7 @@
 #ifndef CSG_FIELD_LEAF_KERNEL_H
 #define CSG_FIELD_LEAF_KERNEL_H
 
-#include "field/kernels/kernel.h"
-
-typedef struct csg_points {
-    const float *x, *y, *z;
-    size_t count; /* a multiple of CSG_OCTANTS */
-} csg_points;
+#include "field/kernels/batch.h"
 
 typedef struct csg_leaf_kernel {
     void (*values)(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out);

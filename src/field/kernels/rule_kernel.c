@@ -320,8 +320,8 @@ static void profile(const float *parameters, const float *restrict x, const floa
     }
 }
 
-static void join(const csg_tape_node *node, const float *parameters, float *a, const float *b,
-                 size_t count)
+static void join_fields(const csg_tape_node *node, const float *parameters, float *a,
+                        const float *b, size_t count)
 {
     float factor[CSG_BATCH], slope[CSG_BATCH];
     bool shaped = has_profile(node, parameters);
@@ -477,8 +477,8 @@ static void join_intervals(const csg_tape_node *node, const float *parameters, f
     } else if (has_profile(node, parameters) && parameters[CSG_ARC_MONOTONE] == 0) {
         shaped_intervals(node, parameters, a_low, a_high, b_low, b_high);
     } else {
-        join(node, parameters, a_low, b_low, CSG_OCTANTS);
-        join(node, parameters, a_high, b_high, CSG_OCTANTS);
+        join_fields(node, parameters, a_low, b_low, CSG_OCTANTS);
+        join_fields(node, parameters, a_high, b_high, CSG_OCTANTS);
     }
     if (!is_exact(node, parameters))
         widen(a_low, a_high, INFINITY);
@@ -487,7 +487,7 @@ static void join_intervals(const csg_tape_node *node, const float *parameters, f
 const csg_rule_kernel CSG_THIS_RULE_KERNEL = {
     .deliver = deliver,
     .deliver_intervals = deliver_intervals,
-    .join = join,
+    .join = join_fields,
     .partials = partials,
     .shares = shares,
     .turn = turn,

@@ -6,7 +6,7 @@
 #ifndef CSG_FIELD_RULE_KERNEL_H
 #define CSG_FIELD_RULE_KERNEL_H
 
-#include "field/kernels/kernel.h"
+#include "field/kernels/batch.h"
 
 typedef struct csg_rule_kernel {
     /* In place, of a SOFTEN node or of an operator on fields (its children joined): what it

@@ -5,7 +5,7 @@
 #ifndef CSG_FIELD_SMOOTH_KERNEL_H
 #define CSG_FIELD_SMOOTH_KERNEL_H
 
-#include "field/kernels/kernel.h"
+#include "field/kernels/batch.h"
 
 /* As the functions of joins.h; count <= CSG_BATCH. A share may lie outside of 0..1. */
 typedef struct csg_smooth_kernel {

@@ -5,7 +5,7 @@
 #ifndef CSG_FIELD_WARP_KERNEL_H
 #define CSG_FIELD_WARP_KERNEL_H
 
-#include "field/kernels/kernel.h"
+#include "field/kernels/batch.h"
 
 /* A warp's parameters in float, angles in radians. */
 void csg_warp_pack(const csg_warp *warp, float own[CSG_WARP_PARAMETERS]);

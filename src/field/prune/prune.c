@@ -161,7 +161,8 @@ static void demand_fields(csg_pruner *pruner, uint32_t node)
 {
     const csg_tape_node *op = &pruner->tape->nodes[node];
     if (op->op != CSG_OP_SOFTEN) {
-        csg_prune_fields(pruner, node);
+        csg_field_ranges ranges = {pruner->tape, pruner->low, pruner->high, pruner->dropped};
+        pruner->dropped_any |= csg_prune_fields(ranges, node);
         return;
     }
     uint32_t child = node - 1;

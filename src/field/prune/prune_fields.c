@@ -12,10 +12,10 @@ typedef struct bounds {
     float low, high;
 } bounds;
 
-static bounds bounds_of(const csg_pruner *pruner, uint32_t node, int octant)
+static bounds bounds_of(const csg_field_ranges *ranges, uint32_t node, int octant)
 {
     size_t at = (size_t)node * CSG_OCTANTS + (size_t)octant;
-    return (bounds){pruner->low[at], pruner->high[at]};
+    return (bounds){ranges->low[at], ranges->high[at]};
 }
 
 /* ---- of any number of operands ------------------------------------------------------------------
@@ -41,13 +41,13 @@ static bool is_neutral(const csg_tape_node *op, bounds b)
 }
 
 /* Of the largest fields' lower ends the highest (mirrored for an intersection). */
-static float best_of(const csg_pruner *pruner, uint32_t node, int octant, float turn)
+static float best_of(const csg_field_ranges *ranges, uint32_t node, int octant, float turn)
 {
-    const csg_tape_node *nodes = pruner->tape->nodes;
+    const csg_tape_node *nodes = ranges->tape->nodes;
     float best = -INFINITY;
     uint32_t child = node - 1;
     for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size) {
-        bounds b = bounds_of(pruner, child, octant);
+        bounds b = bounds_of(ranges, child, octant);
         best = fmaxf(best, turn > 0 ? b.low : -b.high);
     }
     return best;
@@ -110,46 +110,49 @@ static int drop_of_two(const csg_tape_node *op, const float *p, bounds x, bounds
 /* ---- all of them -------------------------------------------------------------------------------
  */
 
-static void drop(csg_pruner *pruner, uint32_t node, int octant)
+static void drop(const csg_field_ranges *ranges, uint32_t node, int octant)
 {
-    pruner->dropped[node] |= (uint8_t)(1 << octant);
-    pruner->dropped_any |= (uint8_t)(1 << octant);
+    ranges->dropped[node] |= (uint8_t)(1 << octant);
 }
 
-static void drop_operands(csg_pruner *pruner, uint32_t node, int octant)
+/* Whether any was dropped. */
+static bool drop_operands(const csg_field_ranges *ranges, uint32_t node, int octant)
 {
-    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
-    const float *p = pruner->tape->parameters + op->parameters;
+    const csg_tape_node *nodes = ranges->tape->nodes, *op = &nodes[node];
+    const float *p = ranges->tape->parameters + op->parameters;
     uint32_t last = node - 1;
     if (op->arity == 2) {
         uint32_t first = last - nodes[last].size;
         int which =
-            drop_of_two(op, p, bounds_of(pruner, first, octant), bounds_of(pruner, last, octant));
+            drop_of_two(op, p, bounds_of(ranges, first, octant), bounds_of(ranges, last, octant));
         if (which != NEITHER) {
-            drop(pruner, which == DROP_X ? first : last, octant);
-            return;
+            drop(ranges, which == DROP_X ? first : last, octant);
+            return true;
         }
     }
-    float best = best_of(pruner, node, octant, op->op == CSG_OP_RULE_UNION ? 1.0f : -1.0f);
+    float best = best_of(ranges, node, octant, op->op == CSG_OP_RULE_UNION ? 1.0f : -1.0f);
     uint32_t child = last, left = op->arity;
     for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
-        bounds b = bounds_of(pruner, child, octant);
+        bounds b = bounds_of(ranges, child, octant);
         if (left > 1 && (is_neutral(op, b) || is_beaten(op, b, best))) {
-            drop(pruner, child, octant);
+            drop(ranges, child, octant);
             left--;
         }
     }
+    return left < op->arity;
 }
 
-void csg_prune_fields(csg_pruner *pruner, uint32_t node)
+uint8_t csg_prune_fields(csg_field_ranges ranges, uint32_t node)
 {
-    const csg_tape_node *nodes = pruner->tape->nodes;
+    const csg_tape_node *nodes = ranges.tape->nodes;
     uint32_t child = node - 1;
+    uint8_t any = 0;
     for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size)
-        pruner->dropped[child] = pruner->dropped[node];
+        ranges.dropped[child] = ranges.dropped[node];
     for (int octant = 0; octant < CSG_OCTANTS && nodes[node].arity > 1; octant++)
-        if (!(pruner->dropped[node] >> octant & 1))
-            drop_operands(pruner, node, octant);
+        if (!(ranges.dropped[node] >> octant & 1) && drop_operands(&ranges, node, octant))
+            any |= (uint8_t)(1 << octant);
+    return any;
 }
 
 void csg_soften_demand(const csg_tape *tape, const csg_tape_node *node, float *low, float *high)

@@ -9,12 +9,21 @@
 #ifndef CSG_FIELD_PRUNE_FIELDS_H
 #define CSG_FIELD_PRUNE_FIELDS_H
 
-#include "field/prune/prune.h"
+#include "field/kernels/batch.h"
 
 /* Whether the operator gives a lone operand back as it is, bit for bit. */
 bool csg_prune_is_identity(const csg_tape *tape, const csg_tape_node *op);
-/* Marks operands of node, which takes fields, as dropped; sets pruner->dropped_any. */
-void csg_prune_fields(csg_pruner *pruner, uint32_t node);
+/* A tape's nodes over eight cubes: ranges of their values, and a bit per cube where they may be
+ * left out. */
+typedef struct csg_field_ranges {
+    const csg_tape *tape;
+    const float *low, *high; /* CSG_OCTANTS per node */
+    uint8_t *dropped;        /* per node */
+} csg_field_ranges;
+
+/* Marks operands of node, which takes fields, as dropped; where anything was dropped, a bit per
+ * cube. */
+uint8_t csg_prune_fields(csg_field_ranges ranges, uint32_t node);
 /* The values of its child that a SOFTEN node tells apart. */
 void csg_soften_demand(const csg_tape *tape, const csg_tape_node *node, float *low, float *high);
 

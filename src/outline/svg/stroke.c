@@ -59,7 +59,7 @@ static bool add_join(const csg_stroke *stroke, csg_vec2 before, csg_vec2 corner,
                      csg_outline *out)
 {
     double half = stroke->width / 2;
-    if (stroke->join == CSG_JOIN_ROUND)
+    if (stroke->join == CSG_LINE_JOIN_ROUND)
         return add_disc(stroke, corner, out);
     csg_vec2 in = unit(minus(corner, before)), away = unit(minus(after, corner));
     double turn = in.x * away.y - in.y * away.x, outer = turn > 0 ? -half : half;
@@ -67,7 +67,7 @@ static bool add_join(const csg_stroke *stroke, csg_vec2 before, csg_vec2 corner,
     csg_vec2 a = along(corner, left_of(in), outer), b = along(corner, left_of(away), outer);
     /* 1 / sin(half the angle between the segments), squared */
     double miter = 2 / fmax(1 + cosine, 1e-12);
-    if (stroke->join == CSG_JOIN_BEVEL || miter > stroke->miter_limit * stroke->miter_limit) {
+    if (stroke->join == CSG_LINE_JOIN_BEVEL || miter > stroke->miter_limit * stroke->miter_limit) {
         csg_vec2 corners[3] = {corner, a, b};
         return add_loop(out, corners, 3);
     }

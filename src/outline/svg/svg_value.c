@@ -246,9 +246,9 @@ void csg_svg_style_apply(const csg_xml *xml, uint32_t element, csg_svg_style *st
                                                : CSG_CAP_BUTT;
     piece join = property(xml, element, "stroke-linejoin");
     if (join.length && !piece_is(join, "inherit"))
-        style->join = piece_is(join, "round")   ? CSG_JOIN_ROUND
-                      : piece_is(join, "bevel") ? CSG_JOIN_BEVEL
-                                                : CSG_JOIN_MITER;
+        style->join = piece_is(join, "round")   ? CSG_LINE_JOIN_ROUND
+                      : piece_is(join, "bevel") ? CSG_LINE_JOIN_BEVEL
+                                                : CSG_LINE_JOIN_MITER;
 }
 
 bool csg_svg_property_is(const csg_xml *xml, uint32_t element, const char *name, const char *value)

@@ -38,7 +38,7 @@ typedef struct csg_svg_style {
     bool fill_none, stroke_none, even_odd;
     double stroke_width;
     csg_cap cap;
-    csg_join join;
+    csg_line_join join;
     double miter_limit;
 } csg_svg_style;
 
