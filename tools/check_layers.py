@@ -15,6 +15,7 @@ PARTS = {
     "shape": ["plane", "polyhedra"],
     "outline": ["letters", "svg", "dxf", "heights"],
     "scene": ["formula", "primitives", "operators", "boxes", "tree", "lazy", "outlines"],
+    "lang": ["parse", "evaluate", "functions", "modules", "parameters"],
     "field": ["kernels", "prune", "compile", "cones"],
     "grid": ["octree", "certify"],
     "mesh": ["marching", "features", "remesh", "distance", "reshape", "pipeline"],

@@ -13,10 +13,10 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "lang/evaluate/evaluator.h"
+#include "lang/modules/modules.h"
 #include "lang/parameters/customizer.h"
 #include "lang/parameters/overrides.h"
-#include "lang/parse/loader.h"
+#include "lang/parse/parser.h"
 #include "scene/tree/texts.h"
 
 enum { MAILBOX = 16384 };
@@ -49,16 +49,17 @@ typedef struct compilation {
 /* ---- compiling
  * --------------------------------------------------------------------------------------- */
 
-csgm_status csg_program_init(csg_program *program, csgm_context *context)
+static const csg_builtins builtins = {.call_function = csg_functions_call,
+                                      .run_module = csg_modules_run};
+
+static csgm_status intern_builtins(csg_program *program)
 {
     bool ok = true;
-    *program = (csg_program){.context = context};
-    csg_arena_init(&program->arena, &context->memory);
-    csg_sources_init(&program->sources, context, &program->arena);
-    csg_symbols_init(&program->symbols, &context->memory, &program->arena);
-    csg_members_init(&program->members, &context->memory);
-    csg_builtins_intern(&program->symbols, &ok);
-    return ok ? CSGM_OK : csg_context_no_memory(context);
+    csg_functions_intern(&program->symbols, &ok);
+    csg_modules_intern(&program->symbols, &ok);
+    csg_unsupported_intern(&program->symbols, &ok);
+    program->builtins = &builtins;
+    return ok ? CSGM_OK : csg_context_no_memory(program->context);
 }
 
 static csgm_status open_source(csg_program *program, const csg_lang_input *input, uint32_t *source)
@@ -178,7 +179,8 @@ static void compile(compilation *c)
     csg_program program;
     uint32_t errors = c->context->diags.errors;
     char here;
-    c->status = csg_program_init(&program, c->context);
+    csg_program_init(&program, c->context);
+    c->status = intern_builtins(&program);
     if (c->context->limits.timeout_s > 0)
         program.deadline_s = csg_clock_now_s() + c->context->limits.timeout_s;
     program.options = &c->options;
@@ -220,7 +222,7 @@ static void relay_diag(void *user, const csgm_diag *diag)
 }
 
 /* Mutex held; there is room or will be. */
-static void post(relay *r, const char *text, size_t length)
+static void post_echo(relay *r, const char *text, size_t length)
 {
     while (r->mail_length + sizeof length + length > MAILBOX)
         pthread_cond_wait(&r->changed, &r->mutex);
@@ -236,7 +238,7 @@ static void relay_echo(void *user, const char *text, size_t length)
     compilation *c = user;
     pthread_mutex_lock(&c->relay.mutex);
     if (length <= MAILBOX / 4) {
-        post(&c->relay, text, length);
+        post_echo(&c->relay, text, length);
     } else {
         c->relay.text = text;
         c->relay.text_length = length;
@@ -331,7 +333,7 @@ static bool start(compilation *c, pthread_t *thread)
     return started;
 }
 
-static void run(compilation *c)
+static void compile_on_thread(compilation *c)
 {
     csgm_context *context = c->context;
     pthread_t thread;
@@ -375,7 +377,7 @@ static csgm_status compile_with(compilation *c)
     c->on_echo = context->on_echo;
     c->echo_user = context->user;
     uint32_t dropped = context->diags.dropped;
-    run(c);
+    compile_on_thread(c);
     if (context->diags.dropped > dropped)
         csg_diag_count_dropped(&context->diags, context->diags.dropped - dropped);
     return c->status;

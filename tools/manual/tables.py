@@ -51,12 +51,12 @@ SHAPING = {"linear_extrude", "rotate_extrude", "offset", "projection", "hull", "
            "offset3d", "shell", "repeat", "twist", "bend", "extrude", "warp"}
 
 
-def module_group(name, handler, children):
-    if handler == "control":
+def module_group(macro, name, handler, children):
+    if macro == "CSG_CONTROL":
         return "control"
     if handler in ("operator", "blend", "group", "combine", "soft"):
         return "operators"
-    if children == "1":
+    if children != "0":
         return "shaping" if name in SHAPING else "transforms"
     return "figures" if name in FIGURES else "solids"
 
@@ -64,7 +64,7 @@ def module_group(name, handler, children):
 def modules(group):
     parameters, found = {}, []
     for macro, fields in calls("src/lang/modules/modules.def"):
-        if macro == "CSG_MODULE" and module_group(*fields[:3]) == group:
+        if macro in ("CSG_MODULE", "CSG_CONTROL") and module_group(macro, *fields[:3]) == group:
             found.append(fields)
         if macro == "CSG_PARAMETER":
             parameters.setdefault(fields[0], []).append(fields[1:])
@@ -131,7 +131,7 @@ def falloffs():
 
 def unsupported():
     rows = []
-    for path in ("src/lang/parse/unsupported.def", "src/lang/functions/unsupported_functions.def"):
+    for path in ("src/lang/evaluate/unsupported_modules.def", "src/lang/evaluate/unsupported_functions.def"):
         for _, (name, instead) in calls(path):
             rows.append([code(name), "" if instead == "NULL" else instead])
     return table(["not there yet", "until then"], rows)

@@ -6,9 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "lang/evaluate/evaluator.h"
+#include "lang/evaluate/builtins.h"
 #include "lang/evaluate/symbolic.h"
-#include "lang/modules/modules.h"
 
 /* ---- calls
  * ------------------------------------------------------------------------------------------ */
@@ -184,7 +183,7 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
     }
     out->builtin = e->program->symbols.entries[out->name].function;
     if (out->builtin < 0 && !e->stop &&
-        !csg_report_unsupported(e, CSG_MEMBER_FUNCTION, out->name, callee->where))
+        !csg_unsupported_report(e, CSG_MEMBER_FUNCTION, out->name, callee->where))
         csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_FUNCTION, out->name, frame, callee->where,
                                     hint, sizeof hint),
@@ -415,7 +414,7 @@ static bool evaluate_call(csg_eval *e, position *at, csg_value *result)
     if (!find_target(e, at->x, at->frame, &to))
         return true;
     if (to.builtin >= 0) {
-        *result = csg_builtin_call(e, to.builtin, at->x, at->frame);
+        *result = e->program->builtins->call_function(e, to.builtin, at->x, at->frame);
         return true;
     }
     csg_frame *home = to.home;

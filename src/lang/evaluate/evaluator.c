@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "lang/parse/loader.h"
 #include "outline/letters/text.h"
 
 /* ---- findings ----------------------------------------------------------------------------------
@@ -140,7 +139,7 @@ bool csg_eval_check_time(csg_eval *e, csg_span where)
 bool csg_eval_check_stack(csg_eval *e, csg_span where)
 {
     char here = 0;
-    if (csg_stack_has_room(e->program->stack_end, &here))
+    if (csg_program_has_stack(e->program, &here))
         return true;
     csg_eval_limit(e, CSG_DIAG_TOO_DEEP, where, NULL,
                    "calls and expressions are nested too deeply");

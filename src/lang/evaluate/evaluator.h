@@ -102,8 +102,6 @@ void csg_eval_note_calls(const csg_eval *e);
 /* Was this finding reported before at this place? */
 bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
 void csg_eval_no_memory(csg_eval *e);
-/* Tells of parts that are only operands (scene/tree/parts.h); CSGM_ERR_MEMORY is reported. */
-csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
 void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Counts steps of work; false: the limit of steps or time is reached. */
@@ -140,8 +138,6 @@ csg_frame *csg_eval_file_frame(csg_eval *e, const csg_file *file);
  */
 
 csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame);
-/* The same, where a call round(r) means the blend. */
-csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame);
 /* The frame of a call: arguments evaluated in `caller`, defaults in `home`; $arguments are pushed
  * to the dynamics. */
 csg_frame *csg_eval_bind(csg_eval *e, const csg_arguments *parameters,
@@ -190,23 +186,6 @@ void csg_list_push(csg_eval *e, csg_list *list, csg_value element, csg_span wher
 void csg_list_reserve(csg_eval *e, csg_list *list, double more, csg_span where);
 csg_value csg_list_finish(csg_eval *e, csg_list *list); /* a vector; the list is released */
 
-/* ---- built-in functions
- * -------------------------------------------------------------------------- */
-
-typedef struct csg_function_call {
-    csg_eval *e;
-    const char *name;
-    csg_span where;
-    const csg_argument *syntax; /* as written: names and places */
-    const csg_value *arguments; /* borrowed */
-    uint32_t count;
-} csg_function_call;
-
-csg_value csg_builtin_call(csg_eval *e, int row, const csg_expression *x, csg_frame *frame);
-void csg_builtins_intern(csg_symbols *symbols, bool *ok);
-/* Warns that an argument cannot be used; UNDEF. */
-csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const char *wanted);
-
 /* "did you mean 'x'?" for an unknown module, function or variable (by the code of the finding), or
  * NULL. The buffer belongs to the caller. */
 const char *csg_suggest(csg_eval *e, csg_diag_code code, csg_symbol name, csg_frame *frame,
@@ -221,7 +200,6 @@ void csg_run_statements(csg_eval *e, const csg_scope *scope, csg_frame *frame, b
 /* Enters the scope, runs it, leaves it. */
 void csg_run_scope(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool spread);
 void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread);
-void csg_run_control(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread);
 void csg_push_part(csg_eval *e, csg_part part);
 static inline csg_part csg_part_plain(csg_node_id node)
 {
@@ -235,6 +213,13 @@ csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, 
                                  csg_span where);
 /* Joins them without blend and puts the result on the stack. */
 void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
+/* Of the parts above `first`, takes those of the other dimension off; how many. Empty solids go
+ * with either. */
+size_t csg_parts_drop_unlike(csg_eval *e, size_t first, bool flat);
+/* The same by the first part's dimension; warns of the others. */
+void csg_parts_keep_alike(csg_eval *e, size_t first, csg_span where);
+bool csg_eval_is_empty(const csg_eval *e, csg_node_id node);
+bool csg_eval_is_flat(const csg_eval *e, csg_node_id node); /* false for the empty solid */
 /* After every csg_build_*: a failure becomes a finding, and the node EMPTY. */
 csg_node_id csg_check_node(csg_eval *e, csg_node_id node, csg_span where);
 

@@ -3,14 +3,12 @@
  */
 #include "lang/evaluate/marks.h"
 
-#include "lang/modules/shapes.h"
-
 /* What is in the solid as well is copied: the builder changes nodes that it moves. */
 void csg_marks_add(csg_eval *e, size_t first_part, csg_scene_mark kind, csg_span where)
 {
     for (size_t i = first_part; i < e->part_count && !e->stop; i++) {
         csg_node_id node = e->parts[i].node;
-        if (csg_shape_is_empty(e, node))
+        if (csg_eval_is_empty(e, node))
             continue;
         if (kind == CSG_MARK_HIGHLIGHT)
             node = csg_check_node(e, csg_build_copy(&e->builder, node), where);
@@ -46,7 +44,7 @@ static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool fl
         return CSG_NODE_NONE;
     }
     for (size_t i = first; i < e->mark_count; i++)
-        if (e->marks[i].kind == kind && csg_shape_is_flat(e, e->marks[i].node) == flat)
+        if (e->marks[i].kind == kind && csg_eval_is_flat(e, e->marks[i].node) == flat)
             nodes[count++] = e->marks[i].node;
     csg_node_id node = join(e, nodes, count, where);
     csg_memory_release(&e->context->memory, nodes, bytes);

@@ -1,134 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Statements -> parts -> nodes. Each statement leaves its solids as parts on a stack; the operator
- * around it joins what lies above its mark.
+ * Statements -> parts: each leaves its solids on a stack (parts.c).
  */
 #include <stdio.h>
 #include <string.h>
 
+#include "lang/evaluate/builtins.h"
 #include "lang/evaluate/marks.h"
-#include "lang/modules/shapes.h"
-
-/* ---- parts -------------------------------------------------------------------------------------
- */
-
-void csg_push_part(csg_eval *e, csg_part part)
-{
-    if (e->stop)
-        return;
-    if (csg_memory_reserve(&e->context->memory, (void **)&e->parts, &e->part_capacity,
-                           e->part_count + 1, sizeof *e->parts))
-        e->parts[e->part_count++] = part;
-    else
-        csg_eval_no_memory(e);
-}
-
-/* The builder's first failure is sticky; a bad solid is told and built on without it. */
-csg_node_id csg_check_node(csg_eval *e, csg_node_id node, csg_span where)
-{
-    csg_scene_builder *builder = &e->builder;
-    if (node != CSG_NODE_NONE || e->stop)
-        return node;
-    if (builder->status == CSGM_ERR_MEMORY) {
-        csg_eval_no_memory(e);
-    } else if (builder->status == CSGM_ERR_LIMIT) {
-        csg_eval_limit(e, CSG_DIAG_TOO_MANY_NODES, where, "raise the limit with --max-nodes", "%s",
-                       builder->problem);
-    } else {
-        csg_eval_report(e, CSG_DIAG_BAD_SOLID, where, NULL, "%s", builder->problem);
-        builder->status = CSGM_OK;
-        builder->problem[0] = '\0';
-        node = csg_build_empty(builder, where);
-        if (node == CSG_NODE_NONE)
-            csg_eval_no_memory(e);
-    }
-    return node;
-}
-
-/* Moves the nodes of plain parts to the front, in order; the number of them. */
-static size_t gather(csg_part *parts, size_t count, csg_node_id *out)
-{
-    size_t plain = 0;
-    for (size_t i = 0; i < count; i++)
-        if (!parts[i].wrapped || i == 0)
-            out[plain++] = parts[i].node;
-    return plain;
-}
-
-static csg_node_id join_wrapped(csg_eval *e, csg_part *parts, size_t count, csg_node_id node,
-                                csg_node_kind kind, csg_span where)
-{
-    for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++) {
-        if (!parts[i].wrapped)
-            continue;
-        csg_node_id pair[2] = {node, parts[i].node};
-        node = csg_check_node(
-            e, csg_build_operator(&e->builder, kind, parts[i].blend, pair, 2, where), where);
-    }
-    return node;
-}
-
-/* The first part is what the others join. In a union or intersection a first part that is wrapped
- * goes behind the first that is not, so that its blend is used. */
-static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node_kind kind)
-{
-    size_t i = 0;
-    if (count == 0 || !parts[0].wrapped)
-        return;
-    if (kind == CSG_NODE_DIFFERENCE || count == 1) {
-        csg_eval_report(
-            e, CSG_DIAG_UNUSED_BLEND, parts[0].where, NULL,
-            count == 1 ? "there is nothing that this blend() could join with"
-                       : "the first child of a difference joins nothing, its blend() is not used");
-        return;
-    }
-    while (i < count && parts[i].wrapped)
-        i++;
-    if (i < count) {
-        csg_part plain = parts[i];
-        memmove(parts + 1, parts, i * sizeof *parts);
-        parts[0] = plain;
-    }
-}
-
-csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
-                           csg_span where)
-{
-    if (!e->stop)
-        csg_shape_keep_alike(e, first, where);
-    return csg_join_mixed_parts(e, first, kind, blend, where);
-}
-
-csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
-                                 csg_span where)
-{
-    if (e->stop)
-        return CSG_NODE_NONE;
-    size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
-    csg_part *parts = count ? e->parts + first : NULL;
-    put_plain_first(e, parts, count, kind);
-    csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
-    if (children) {
-        size_t plain = gather(parts, count, children);
-        node = csg_check_node(
-            e, csg_build_operator(&e->builder, kind, blend, children, plain, where), where);
-        node = join_wrapped(e, parts, count, node, kind, where);
-    } else {
-        csg_eval_no_memory(e);
-    }
-    csg_memory_release(&e->context->memory, children, bytes);
-    e->part_count = first;
-    return node;
-}
-
-void csg_join_as_part(csg_eval *e, size_t first, csg_span where)
-{
-    if (e->part_count == first + 1)
-        return;
-    csg_node_id node =
-        csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, where);
-    if (node != CSG_NODE_NONE)
-        csg_push_part(e, csg_part_plain(node));
-}
 
 /* ---- modules of the scene
  * --------------------------------------------------------------------------- */
@@ -179,7 +56,7 @@ static void run_module(csg_eval *e, const csg_definition *module, csg_frame *hom
 static void run_unknown(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     char hint[96];
-    if (!csg_report_unsupported(e, CSG_MEMBER_MODULE, statement->name, statement->where))
+    if (!csg_unsupported_report(e, CSG_MEMBER_MODULE, statement->name, statement->where))
         csg_eval_report(e, CSG_DIAG_UNKNOWN_MODULE, statement->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_MODULE, statement->name, frame,
                                     statement->where, hint, sizeof hint),
@@ -203,10 +80,7 @@ static void run_call(csg_eval *e, const csg_statement *statement, csg_frame *fra
     } else if (!csg_eval_enter(e, statement->where)) {
         return;
     } else {
-        if (csg_module_is_control(row))
-            csg_run_control(e, statement, frame, spread);
-        else
-            csg_run_builtin(e, row, statement, frame);
+        e->program->builtins->run_module(e, row, statement, frame, spread);
         csg_eval_leave(e);
     }
 }
@@ -278,6 +152,16 @@ void csg_run_scope(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool s
     csg_eval_pop_dynamics(e, dynamics);
 }
 
+/* A scene that is a figure of the plane becomes a plate of thickness 1, told. */
+static csg_node_id thicken_scene(csg_eval *e, csg_node_id node, csg_span where)
+{
+    if (node == CSG_NODE_NONE || e->stop || !csg_eval_is_flat(e, node))
+        return node;
+    csg_eval_report(e, CSG_DIAG_FLAT_SCENE, where, "linear_extrude(height) gives it one",
+                    "the scene is a flat figure: it gets a thickness of 1");
+    return csg_check_node(e, csg_build_extrude(&e->builder, node, -0.5, 0.5, where), where);
+}
+
 csg_node_id csg_eval_run(csg_eval *e)
 {
     const csg_file *scene = e->program->files[0];
@@ -288,5 +172,5 @@ csg_node_id csg_eval_run(csg_eval *e)
     csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, whole);
     if (e->root == CSG_NODE_NONE)
         csg_marks_take(e, 0, whole, e->marked);
-    return csg_shape_of_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
+    return thicken_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
 }

@@ -6,7 +6,7 @@
 #ifndef CSG_LANG_SYMBOLIC_H
 #define CSG_LANG_SYMBOLIC_H
 
-#include "lang/evaluate/evaluator.h"
+#include "lang/evaluate/builtins.h"
 
 static inline bool csg_value_is_scalar(csg_value value)
 {

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "lang/evaluate/symbolic.h"
-#include "lang/modules/modules.h"
 
 typedef struct row {
     const char *name;
@@ -45,7 +44,7 @@ enum {
 #define CSG_RULE_INNER(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)
 #include "scene/operators/operators.def"
 
-void csg_builtins_intern(csg_symbols *symbols, bool *ok)
+void csg_functions_intern(csg_symbols *symbols, bool *ok)
 {
     for (size_t i = 0; i < ROW_COUNT && *ok; i++) {
         csg_symbol symbol = csg_symbol_intern(symbols, rows[i].name, strlen(rows[i].name));
@@ -53,16 +52,6 @@ void csg_builtins_intern(csg_symbols *symbols, bool *ok)
         if (symbol)
             symbols->entries[symbol].function = (int16_t)i;
     }
-    csg_modules_intern(symbols, ok);
-}
-
-csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const char *wanted)
-{
-    csg_eval_report(call->e, CSG_DIAG_BAD_ARGUMENT,
-                    index < call->count ? call->syntax[index].value->whole : call->where, NULL,
-                    "%s() needs %s, not a %s; it counts as undef", call->name, wanted,
-                    index < call->count ? csg_value_kind_name(call->arguments[index]) : "nothing");
-    return csg_value_undef();
 }
 
 static csg_value call_row(const row *r, const csg_function_call *call)
@@ -90,7 +79,7 @@ static csg_value evaluate_argument(csg_eval *e, int index, const csg_expression 
     return csg_evaluate(e, x, frame);
 }
 
-csg_value csg_builtin_call(csg_eval *e, int index, const csg_expression *x, csg_frame *frame)
+csg_value csg_functions_call(csg_eval *e, int index, const csg_expression *x, csg_frame *frame)
 {
     enum { FEW = 6 };
     csg_value few[FEW], *values = few, result = csg_value_undef();

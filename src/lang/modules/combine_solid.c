@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * combine(): its function is evaluated once, on terms that stand for the fields of its children.
  */
-#include "lang/evaluate/formula_call.h"
+#include "lang/modules/formula_call.h"
 #include "lang/modules/shapes.h"
 #include "scene/operators/combine.h"
 
@@ -22,7 +22,7 @@ static uint32_t take_operands(csg_module_call *call, csg_node_id operands[CSG_CO
         if (part.wrapped)
             csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, part.where, NULL,
                             "combine() joins by its function, this blend() is not used");
-        if (csg_shape_is_empty(e, part.node)) {
+        if (csg_eval_is_empty(e, part.node)) {
             csg_eval_report(e, CSG_DIAG_BAD_SOLID, where, NULL,
                             "combine(): child %zu is empty, it has no field", i + 1);
             fits = false;
@@ -52,7 +52,7 @@ static csg_node_id combined(csg_module_call *call, const csg_node_id *operands, 
     csg_node_id node = csg_shape_done(
         call, csg_build_combine(&e->builder, steps, step_count, slope, operands, count, where));
     csg_memory_release(e->heap.memory, steps, bytes);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || !csg_has_argument(call, BOUNDS))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node) || !csg_has_argument(call, BOUNDS))
         return node;
     return csg_shape_done(call, csg_build_cut(&e->builder, node, box, where));
 }

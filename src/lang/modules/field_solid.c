@@ -4,8 +4,8 @@
  */
 #include <math.h>
 
-#include "lang/evaluate/formula_call.h"
 #include "lang/evaluate/symbolic.h"
+#include "lang/modules/formula_call.h"
 
 static csg_value point_of_terms(csg_eval *e)
 {

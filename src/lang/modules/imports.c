@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "lang/parse/loader.h"
 #include "lang/services.h"
 #include "outline/dxf/dxf.h"
 #include "outline/svg/svg.h"
@@ -261,7 +260,7 @@ static csg_node_id import_mesh(csg_module_call *call, uint32_t file, const char 
 static csg_node_id centered(csg_module_call *call, csg_node_id node)
 {
     csg_box box;
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(call->e, node))
         return node;
     if (!csg_shape_box(call, node, &box))
         return csg_shape_empty(call);

@@ -5,7 +5,7 @@
 #ifndef CSG_LANG_MODULES_H
 #define CSG_LANG_MODULES_H
 
-#include "lang/evaluate/evaluator.h"
+#include "lang/functions/functions.h"
 
 enum { CSG_MOST_PARAMETERS = 12 };
 
@@ -33,24 +33,19 @@ typedef struct csg_module_call {
 /* A handler returns its node; NONE when it has put its parts on the stack itself. */
 typedef csg_node_id csg_module_handler(csg_module_call *call);
 
-csg_module_handler csg_module_sphere, csg_module_cube, csg_module_cylinder, csg_module_capsule,
-    csg_module_torus, csg_module_ellipsoid, csg_module_plane, csg_module_field,
-    csg_module_translate, csg_module_rotate, csg_module_scale, csg_module_mirror,
-    csg_module_multmatrix, csg_module_color, csg_module_operator, csg_module_blend,
-    csg_module_group, csg_module_circle, csg_module_square, csg_module_polygon, csg_module_text,
-    csg_module_offset, csg_module_projection, csg_module_linear_extrude, csg_module_rotate_extrude,
-    csg_module_polyhedron, csg_module_import, csg_module_surface, csg_module_tube,
-    csg_module_spline, csg_module_periodic, csg_module_hull, csg_module_minkowski,
-    csg_module_resize, csg_module_part, csg_module_material, csg_module_offset3d, csg_module_shell,
-    csg_module_repeat, csg_module_twist, csg_module_bend, csg_module_combine, csg_module_slab,
-    csg_module_extrude, csg_module_warp, csg_module_soft, csg_module_superellipsoid;
+/* Control flow looks at its arguments itself. False: it leaves no part of its own. */
+typedef bool csg_control_handler(csg_eval *e, const csg_statement *statement, csg_frame *frame);
+
+#define CSG_MODULE(name, handler, children, doc) csg_module_handler csg_module_##handler;
+#define CSG_CONTROL(name, handler, children, doc) csg_control_handler csg_control_##handler;
+#include "lang/modules/modules.def"
 
 void csg_modules_intern(csg_symbols *symbols, bool *ok);
-/* Runs the built-in module of this row: leaves one part. Not for control flow. */
-void csg_run_builtin(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame);
-bool csg_module_is_control(int row);
-/* Reports a name that is known but not supported yet. */
-bool csg_report_unsupported(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_span where);
+/* Runs the module of this row: its parts go on the stack, several only where they may spread. */
+void csg_modules_run(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame,
+                     bool spread);
+/* Tells of parts that are only operands (scene/tree/parts.h); CSGM_ERR_MEMORY is reported. */
+csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
 
 /* ---- arguments: index = position in modules.def --------------------------------------------- */
 

@@ -23,7 +23,7 @@ csg_node_id csg_module_extrude(csg_module_call *call)
     double half = csg_argument_number(call, HALF, 1, CSG_POSITIVE);
     double middle = csg_argument_number(call, MIDDLE, 0, CSG_ANY);
     csg_node_id node = csg_shape_children(call, true);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node))
         return node;
     if (call->failed)
         return csg_shape_empty(call);
@@ -57,7 +57,7 @@ csg_node_id csg_module_warp(csg_module_call *call)
         csg_argument_error(call, PARAMETERS, CSG_DIAG_BAD_TYPE, "a %s has %u numbers",
                            csg_warp_name(kind), given);
     csg_node_id node = csg_module_children(call);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node))
         return node;
     if (call->failed)
         return csg_shape_empty(call);

@@ -244,46 +244,6 @@ bool csg_argument_pair(csg_module_call *call, uint32_t index, double out[2])
 
 /* ---- children -------------------------------------------------------------------------------- */
 
-bool csg_shape_is_empty(const csg_eval *e, csg_node_id node)
-{
-    return e->builder.scene->nodes[node].kind == CSG_NODE_EMPTY;
-}
-
-bool csg_shape_is_flat(const csg_eval *e, csg_node_id node)
-{
-    return !csg_shape_is_empty(e, node) && csg_build_is_flat(&e->builder, node);
-}
-
-/* Takes the parts of the other dimension off; how many. Empty solids go with either. */
-static size_t drop_unlike(csg_eval *e, size_t first, bool flat)
-{
-    size_t kept = first, count = e->part_count;
-    for (size_t i = first; i < count; i++)
-        if (csg_shape_is_empty(e, e->parts[i].node) ||
-            csg_shape_is_flat(e, e->parts[i].node) == flat)
-            e->parts[kept++] = e->parts[i];
-    e->part_count = kept;
-    return count - kept;
-}
-
-void csg_shape_keep_alike(csg_eval *e, size_t first, csg_span where)
-{
-    size_t i = first;
-    while (i < e->part_count && csg_shape_is_empty(e, e->parts[i].node))
-        i++;
-    if (e->stop || i == e->part_count)
-        return;
-    bool flat = csg_shape_is_flat(e, e->parts[i].node);
-    size_t dropped = drop_unlike(e, first, flat);
-    if (dropped)
-        csg_eval_report(e, CSG_DIAG_MIXED_DIMENSIONS, where,
-                        flat ? "linear_extrude makes a solid of a figure"
-                             : "projection makes a figure of a solid",
-                        "%s and %s side by side: the first rules, %zu %s left out",
-                        flat ? "a flat figure" : "a solid", flat ? "solids" : "flat figures",
-                        dropped, dropped == 1 ? "operand is" : "operands are");
-}
-
 static void tell_of_unlike(csg_module_call *call, bool flat, size_t dropped, size_t left)
 {
     const char *hint = flat ? "projection() makes a figure of a solid"
@@ -306,7 +266,7 @@ size_t csg_shape_operands(csg_module_call *call, bool flat, bool each)
     csg_run_scope(e, call->statement->children, call->frame, !each);
     if (e->stop)
         return first;
-    size_t dropped = drop_unlike(e, first, flat);
+    size_t dropped = csg_parts_drop_unlike(e, first, flat);
     if (dropped)
         tell_of_unlike(call, flat, dropped, e->part_count - first);
     return first;
@@ -317,13 +277,4 @@ csg_node_id csg_shape_children(csg_module_call *call, bool flat)
     size_t first = csg_shape_operands(call, flat, false);
     return csg_join_parts(call->e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0},
                           call->statement->where);
-}
-
-csg_node_id csg_shape_of_scene(csg_eval *e, csg_node_id node, csg_span where)
-{
-    if (node == CSG_NODE_NONE || e->stop || !csg_shape_is_flat(e, node))
-        return node;
-    csg_eval_report(e, CSG_DIAG_FLAT_SCENE, where, "linear_extrude(height) gives it one",
-                    "the scene is a flat figure: it gets a thickness of 1");
-    return csg_check_node(e, csg_build_extrude(&e->builder, node, -0.5, 0.5, where), where);
 }

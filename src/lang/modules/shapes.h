@@ -39,16 +39,10 @@ bool csg_argument_pair(csg_module_call *call, uint32_t index, double out[2]);
 
 /* ---- children: flat figures or solids ------------------------------------------------------- */
 
-bool csg_shape_is_empty(const csg_eval *e, csg_node_id node);
-bool csg_shape_is_flat(const csg_eval *e, csg_node_id node); /* false for the empty solid */
-/* Of the parts above `first`, keeps those of the first one's dimension; warns of the others. */
-void csg_shape_keep_alike(csg_eval *e, size_t first, csg_span where);
 /* Runs the children and leaves on the stack those that are flat (or solid), each statement's as one
  * part when `each`; tells of the others. The mark below them. */
 size_t csg_shape_operands(csg_module_call *call, bool flat, bool each);
 /* The same, united; EMPTY when there are none. */
 csg_node_id csg_shape_children(csg_module_call *call, bool flat);
-/* A scene that is a figure of the plane becomes a plate of thickness 1, told. */
-csg_node_id csg_shape_of_scene(csg_eval *e, csg_node_id node, csg_span where);
 
 #endif

@@ -52,13 +52,13 @@ csg_node_id csg_module_resize(csg_module_call *call)
     double scale[3];
     read_auto(call, AUTO, automatic);
     csg_node_id node = csg_module_children(call);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || call->failed)
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node) || call->failed)
         return node;
     if (!csg_shape_box(call, node, &box))
         return csg_shape_empty(call);
     csg_vec3 size = csg_box_size(box);
     if (!factors(call, (double[]){to.x, to.y, to.z}, automatic, (double[]){size.x, size.y, size.z},
-                 csg_shape_is_flat(e, node) ? 2 : 3, scale))
+                 csg_eval_is_flat(e, node) ? 2 : 3, scale))
         return csg_shape_empty(call);
     csg_affine by = csg_affine_scale(csg_vec3_make(scale[0], scale[1], scale[2]));
     return csg_shape_moved(call, node, &by);
@@ -68,7 +68,7 @@ csg_node_id csg_module_resize(csg_module_call *call)
 
 static csg_node_id grown(csg_module_call *call, csg_node_id node, double by)
 {
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(call->e, node))
         return node;
     return csg_shape_done(call,
                           csg_build_offset(&call->e->builder, by, node, call->statement->where));
@@ -89,7 +89,7 @@ csg_node_id csg_module_shell(csg_module_call *call)
     csg_span where = call->statement->where;
     double thickness = csg_argument_number(call, 0, 1, CSG_POSITIVE);
     csg_node_id outer = csg_module_children(call);
-    if (outer == CSG_NODE_NONE || csg_shape_is_empty(e, outer))
+    if (outer == CSG_NODE_NONE || csg_eval_is_empty(e, outer))
         return outer;
     if (call->failed)
         return csg_shape_empty(call);
@@ -137,7 +137,7 @@ csg_node_id csg_module_repeat(csg_module_call *call)
     csg_vec3 cell = csg_argument_vector(call, CELL, csg_vec3_make(0, 0, 0), true);
     bool known = read_counts(call, COUNT, cell, counts);
     csg_node_id node = csg_module_children(call);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node))
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node))
         return node;
     if (!known || call->failed)
         return csg_shape_empty(call);
@@ -165,7 +165,7 @@ csg_node_id csg_module_twist(csg_module_call *call)
     double rate = csg_argument_number(call, RATE, 0, CSG_ANY), size;
     bool between = csg_has_argument(call, LOW) && csg_has_argument(call, HIGH);
     csg_node_id node = between ? csg_module_children(call) : csg_shape_children(call, false);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(e, node) || rate == 0 || call->failed)
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node) || rate == 0 || call->failed)
         return node;
     csg_solid_job job = csg_shape_job(call);
     bool finite = csg_finite_size(&job, node, &size);
@@ -187,7 +187,7 @@ csg_node_id csg_module_bend(csg_module_call *call)
 {
     double radius = csg_argument_number(call, 0, 1, CSG_POSITIVE);
     csg_node_id node = csg_shape_children(call, false);
-    if (node == CSG_NODE_NONE || csg_shape_is_empty(call->e, node) || call->failed)
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(call->e, node) || call->failed)
         return node;
     const csg_warp warp = {.kind = CSG_WARP_BEND, .parameters = {radius}};
     return warped(call, &warp, node);

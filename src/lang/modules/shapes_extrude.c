@@ -54,7 +54,7 @@ csg_node_id csg_module_linear_extrude(csg_module_call *call)
     straight s = read_straight(call);
     bool old = call->values[HEIGHT].kind == CSG_VALUE_STRING;
     csg_node_id flat = figure(call, old ? HEIGHT : FILE_NAME, LAYER, ORIGIN);
-    if (flat == CSG_NODE_NONE || e->stop || csg_shape_is_empty(e, flat))
+    if (flat == CSG_NODE_NONE || e->stop || csg_eval_is_empty(e, flat))
         return flat;
     if (call->failed)
         return csg_shape_empty(call);
@@ -85,7 +85,7 @@ csg_node_id csg_module_rotate_extrude(csg_module_call *call)
         angle = 360;
     double start = csg_argument_number(call, START, angle == 360 ? 180 : 0, CSG_ANY);
     csg_node_id flat = figure(call, FILE_OF_FIGURE, ITS_LAYER, ITS_ORIGIN);
-    if (flat == CSG_NODE_NONE || e->stop || csg_shape_is_empty(e, flat))
+    if (flat == CSG_NODE_NONE || e->stop || csg_eval_is_empty(e, flat))
         return flat;
     if (!call->failed && angle == 0)
         csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, call->statement->where, NULL,

@@ -151,7 +151,7 @@ csg_node_id csg_module_offset(csg_module_call *call)
     bool sharp = csg_has_argument(call, DELTA) && !csg_has_argument(call, R);
     double by = csg_argument_number(call, sharp ? DELTA : R, 1, CSG_ANY);
     csg_node_id child = csg_shape_children(call, true);
-    if (call->failed || child == CSG_NODE_NONE || csg_shape_is_empty(call->e, child) || by == 0)
+    if (call->failed || child == CSG_NODE_NONE || csg_eval_is_empty(call->e, child) || by == 0)
         return child;
     csg_corner corner = csg_argument_boolean(call, CHAMFER) ? CSG_CORNER_CHAMFER : CSG_CORNER_MITER;
     const csg_facet_rule rule = csg_facet_rule_now(call->e);

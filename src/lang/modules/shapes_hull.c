@@ -22,7 +22,7 @@ csg_node_id csg_module_minkowski(csg_module_call *call)
     csg_run_scope(e, call->statement->children, call->frame, false);
     if (e->stop)
         return CSG_NODE_NONE;
-    csg_shape_keep_alike(e, first, call->statement->where);
+    csg_parts_keep_alike(e, first, call->statement->where);
     if (e->part_count == first)
         return csg_shape_empty(call);
     csg_solid_job job = csg_shape_job(call);
@@ -40,7 +40,7 @@ csg_node_id csg_module_projection(csg_module_call *call)
     csg_eval *e = call->e;
     const csg_warp slice = {.kind = CSG_WARP_SLICE};
     csg_node_id solid = csg_shape_children(call, false);
-    if (solid == CSG_NODE_NONE || e->stop || csg_shape_is_empty(e, solid))
+    if (solid == CSG_NODE_NONE || e->stop || csg_eval_is_empty(e, solid))
         return solid;
     if (csg_argument_boolean(call, CUT))
         return csg_shape_done(call,

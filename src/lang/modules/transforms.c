@@ -38,10 +38,10 @@ static csg_node_id transformed(csg_module_call *call, const csg_affine *by)
     csg_marks_move(e, first_mark, by, call->statement->where);
     if (call->failed || children == CSG_NODE_NONE || e->stop)
         return children;
-    bool flat = csg_shape_is_flat(e, children);
+    bool flat = csg_eval_is_flat(e, children);
     if (flat && !keep_plane(call, &map))
         return csg_shape_empty(call);
-    if (!flat && csg_affine_determinant(map) == 0 && !csg_shape_is_empty(e, children)) {
+    if (!flat && csg_affine_determinant(map) == 0 && !csg_eval_is_empty(e, children)) {
         csg_argument_error(call, 0, CSG_DIAG_SINGULAR, "%s, nothing is left",
                            call->name[0] == 's' ? "a factor of 0 flattens the solid"
                                                 : "this matrix flattens the solid");

@@ -3,9 +3,9 @@
  */
 #include "lang/parameters/overrides.h"
 
-#include <stdio.h>
 #include <string.h>
 
+#include "lang/parameters/assignments.h"
 #include "lang/parameters/parameter_set.h"
 #include "lang/parse/parser.h"
 
@@ -19,41 +19,6 @@ static bool is_name(const char *text)
             return false;
     }
     return i > (text[0] == '$');
-}
-
-csg_assignment *csg_override_find(csg_program *program, csg_symbol name)
-{
-    csg_scope *scope = program->files[0]->scope;
-    uint32_t known = csg_members_find(&program->members, scope->id, CSG_MEMBER_VARIABLE, name);
-    return known == UINT32_MAX ? NULL : &scope->variables[known];
-}
-
-bool csg_override_variable(csg_program *program, csg_symbol name, csg_expression *value)
-{
-    csg_assignment *known = csg_override_find(program, name);
-    if (known)
-        *known = (csg_assignment){name, value, value->whole};
-    return known != NULL;
-}
-
-const char *csg_override_suggest(const csg_program *program, const char *name, char *buffer,
-                                 size_t size)
-{
-    const csg_scope *scope = program->files[0]->scope;
-    size_t length = strlen(name);
-    const char *best = NULL;
-    uint32_t least = length <= 2 ? 1 : length <= 5 ? 2 : 3;
-    for (uint32_t i = 0; i < scope->variable_count && least > 0; i++) {
-        const char *other = csg_symbol_name(&program->symbols, scope->variables[i].name);
-        uint32_t distance = csg_edit_distance(name, other, least);
-        if (distance > least || distance == 0)
-            continue;
-        best = other;
-        least = distance - 1;
-    }
-    if (best)
-        snprintf(buffer, size, "did you mean '%s'?", best);
-    return best ? buffer : NULL;
 }
 
 static bool add_assignment(csg_program *program, csg_assignment made)
@@ -73,12 +38,12 @@ static csgm_status define(csg_program *program, csg_symbol name, csg_expression 
     const csg_symbol_entry *entry = &program->symbols.entries[name];
     csg_assignment made = {name, value, value->whole};
     char hint[120];
-    if (csg_override_variable(program, name, value))
+    if (csg_assignment_replace(program, name, value))
         return CSGM_OK;
     if (!entry->special)
         csg_diag_plain(
             &program->context->diags, CSG_DIAG_UNKNOWN_DEFINE, NULL,
-            csg_override_suggest(program, entry->name, hint, sizeof hint),
+            csg_assignment_suggest(program, entry->name, hint, sizeof hint),
             "the scene assigns no variable '%s' at its top level, -D has nothing to replace",
             entry->name);
     return add_assignment(program, made) ? CSGM_OK : csg_context_no_memory(program->context);

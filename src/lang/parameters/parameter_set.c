@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lang/parameters/assignments.h"
 #include "lang/parameters/customizer.h"
-#include "lang/parameters/overrides.h"
 #include "lang/parse/parser.h"
 #include "text/json.h"
 
@@ -241,7 +241,7 @@ static void warn_unknown(const reader *r, const char *file, const char *name)
 {
     char hint[120];
     csg_diag_plain(&r->program->context->diags, CSG_DIAG_UNKNOWN_PARAMETER, file,
-                   csg_override_suggest(r->program, name, hint, sizeof hint),
+                   csg_assignment_suggest(r->program, name, hint, sizeof hint),
                    "the scene assigns no variable '%.60s' of the parameter set '%.60s'", name,
                    r->wanted);
 }
@@ -312,7 +312,7 @@ static csgm_status apply_member(const reader *r, const char *file, const member 
     csg_symbol name = csg_symbol_intern(&program->symbols, m->name, strlen(m->name));
     if (!name)
         return csg_context_no_memory(program->context);
-    csg_assignment *known = csg_override_find(program, name);
+    csg_assignment *known = csg_assignment_find(program, name);
     if (!known) {
         warn_unknown(r, file, m->name);
         return CSGM_OK;
@@ -330,7 +330,7 @@ static csgm_status apply_member(const reader *r, const char *file, const member 
              m->kind != CSG_JSON_OBJECT)
         value = parse_value(r, file, m, kind);
     if (value)
-        csg_override_variable(program, name, value);
+        csg_assignment_replace(program, name, value);
     else if (program->context->diags.errors > errors)
         return CSGM_ERR_SYNTAX;
     else if (kind < 0)

@@ -139,11 +139,21 @@ typedef struct csg_program {
     uint32_t font_count;
     const csgm_scene_options *options;   /* NULL = defaults */
     const struct csg_services *services; /* NULL: no meshes, read or made */
+    const struct csg_builtins *builtins; /* evaluate/builtins.h */
     uintptr_t stack_end; /* lowest address of the stack that parser and evaluator may use */
 } csg_program;
 
-csgm_status csg_program_init(csg_program *program, csgm_context *context);
+void csg_program_init(csg_program *program, csgm_context *context);
 void csg_program_reset(csg_program *program);
+/* Counts a file among the scene's dependencies, once; `path` stays valid as long as the program.
+ * False without memory. */
+bool csg_program_depend(csg_program *program, const char *path);
+/* Is there room on the stack between `here` (the address of a local) and its end? */
+static inline bool csg_program_has_stack(const csg_program *program, const void *here)
+{
+    enum { MARGIN = 64 << 10 }; /* for the deepest calls below a check */
+    return (uintptr_t)here > program->stack_end + MARGIN;
+}
 
 /* Appends to an array in the arena that doubles when its count reaches a power of two. NULL: no
  * memory; else the place of the new element. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * include, use and the beginning of parsing; see loader.h and parser.h.
+ * include, use and the scene itself; see loader.h.
  * An included file is parsed in place, into the scope where the include stands; a used one is a
  * file of its own, parsed once however often it is used.
  */
@@ -80,18 +80,6 @@ static void report_cycle(csg_parser *parser, csg_span where, const char *path)
 {
     csg_source_report(&parser->program->sources, CSG_DIAG_INCLUDE_CYCLE, where, NULL,
                       "'%.200s' would read itself without end", path);
-}
-
-bool csg_program_depend(csg_program *program, const char *path)
-{
-    for (uint32_t i = 0; i < program->dependency_count; i++)
-        if (strcmp(program->dependencies[i], path) == 0)
-            return true;
-    const char **place = csg_arena_push(&program->arena, (void **)&program->dependencies,
-                                        &program->dependency_count, sizeof path);
-    if (place)
-        *place = path;
-    return place != NULL;
 }
 
 static void add_dependency(csg_parser *parser, const char *path)
@@ -267,49 +255,14 @@ void csg_load_use(csg_parser *parser, csg_span path)
         csg_parser_no_memory(parser);
 }
 
-csgm_status csg_parse_program(csg_program *program, uint32_t source,
-                              const csgm_scene_options *options)
+void csg_load_scene(csg_parser *parser)
 {
-    uint32_t errors = program->context->diags.errors;
-    csg_parser parser = {.program = program, .options = options, .source = source};
-    csg_file *file = add_file(&parser, source);
-    if (file) {
-        csg_parser inner = derive(&parser, source);
-        inner.file = file;
-        parse_source(&inner, file->scope);
-        parser.stop = inner.stop;
-        parser.status = inner.status;
-    }
-    if (parser.stop)
-        return parser.status;
-    if (program->failed_io)
-        return CSGM_ERR_IO;
-    return program->context->diags.errors > errors ? CSGM_ERR_SYNTAX : CSGM_OK;
-}
-
-csg_expression *csg_parse_lone_expression(csg_program *program, uint32_t source)
-{
-    uint32_t errors = program->context->diags.errors;
-    csg_parser parser = {.program = program, .source = source};
-    parser.text = program->sources.items[source].text;
-    csg_expression *made = NULL;
-    if (csg_lex(&program->sources, source, &parser.tokens)) {
-        made = csg_parse_expression(&parser);
-        if (made && csg_parser_peek(&parser) != CSG_TOKEN_END)
-            csg_parser_unexpected(&parser, CSG_DIAG_EXPECTED, "the end of the expression", NULL);
-    } else {
-        csg_context_no_memory(program->context);
-    }
-    csg_tokens_release(&program->context->memory, &parser.tokens);
-    return program->context->diags.errors > errors || parser.stop ? NULL : made;
-}
-
-/* ---- the program ----------------------------------------------------------------------------- */
-
-void csg_program_reset(csg_program *program)
-{
-    csg_sources_reset(&program->sources);
-    csg_symbols_reset(&program->symbols);
-    csg_members_reset(&program->members);
-    csg_arena_reset(&program->arena);
+    csg_file *file = add_file(parser, parser->source);
+    if (!file)
+        return;
+    csg_parser inner = derive(parser, parser->source);
+    inner.file = file;
+    parse_source(&inner, file->scope);
+    parser->stop = inner.stop;
+    parser->status = inner.status;
 }

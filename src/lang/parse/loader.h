@@ -12,20 +12,7 @@ void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path);
 /* Parses the file on its own (once) and adds it to the parser's file's uses. */
 void csg_load_use(csg_parser *parser, csg_span path);
 
-/* Counts a file among the scene's dependencies, once; `path` stays valid as long as the program.
- * False without memory. */
-bool csg_program_depend(csg_program *program, const char *path);
-
-/* A new scope; NULL stops the parser. */
-csg_scope *csg_parser_scope(csg_parser *parser);
-/* All statements of the current source. */
-void csg_parser_statements(csg_parser *parser, csg_scope *scope);
-
-/* Is there room on the stack between `here` (the address of a local) and its end? */
-static inline bool csg_stack_has_room(uintptr_t stack_end, const void *here)
-{
-    enum { MARGIN = 64 << 10 }; /* for the deepest calls below a check */
-    return (uintptr_t)here > stack_end + MARGIN;
-}
+/* Parses the parser's source as the scene, into files[0] of the program. */
+void csg_load_scene(csg_parser *parser);
 
 #endif

@@ -3,6 +3,8 @@
  * rest of the statement is skipped: to a ';' or past a block at the same depth of braces, or up to
  * a keyword that begins a statement at the start of a line.
  */
+#include "lang/parse/parser.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -140,7 +142,7 @@ bool csg_parser_enter(csg_parser *parser)
     if (parser->stop)
         return false;
     if (parser->depth < parser->program->context->limits.depth &&
-        csg_stack_has_room(parser->program->stack_end, &here)) {
+        csg_program_has_stack(parser->program, &here)) {
         parser->depth++;
         return true;
     }
@@ -620,4 +622,36 @@ void csg_parser_statements(csg_parser *parser, csg_scope *scope)
         }
         parse_or_skip(parser, scope);
     }
+}
+
+/* ---- whole programs and lone expressions ----------------------------------------------------- */
+
+csgm_status csg_parse_program(csg_program *program, uint32_t source,
+                              const csgm_scene_options *options)
+{
+    uint32_t errors = program->context->diags.errors;
+    csg_parser parser = {.program = program, .options = options, .source = source};
+    csg_load_scene(&parser);
+    if (parser.stop)
+        return parser.status;
+    if (program->failed_io)
+        return CSGM_ERR_IO;
+    return program->context->diags.errors > errors ? CSGM_ERR_SYNTAX : CSGM_OK;
+}
+
+csg_expression *csg_parse_lone_expression(csg_program *program, uint32_t source)
+{
+    uint32_t errors = program->context->diags.errors;
+    csg_parser parser = {.program = program, .source = source};
+    parser.text = program->sources.items[source].text;
+    csg_expression *made = NULL;
+    if (csg_lex(&program->sources, source, &parser.tokens)) {
+        made = csg_parse_expression(&parser);
+        if (made && csg_parser_peek(&parser) != CSG_TOKEN_END)
+            csg_parser_unexpected(&parser, CSG_DIAG_EXPECTED, "the end of the expression", NULL);
+    } else {
+        csg_context_no_memory(program->context);
+    }
+    csg_tokens_release(&program->context->memory, &parser.tokens);
+    return program->context->diags.errors > errors || parser.stop ? NULL : made;
 }

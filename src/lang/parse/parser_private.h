@@ -4,7 +4,7 @@
 #ifndef CSG_LANG_PARSER_PRIVATE_H
 #define CSG_LANG_PARSER_PRIVATE_H
 
-#include "lang/parse/parser.h"
+#include "lang/parse/ast.h"
 
 typedef struct csg_parser {
     csg_program *program;
@@ -57,5 +57,10 @@ bool csg_parse_arguments(csg_parser *parser, csg_arguments *out);
 /* Of a let and the like: the first assignment of a name holds, the others are told and dropped. */
 void csg_parser_drop_doubles(csg_parser *parser, csg_arguments *assignments);
 bool csg_parse_parameters(csg_parser *parser, csg_arguments *out);
+
+/* A new scope; NULL stops the parser. */
+csg_scope *csg_parser_scope(csg_parser *parser);
+/* All statements of the current source. */
+void csg_parser_statements(csg_parser *parser, csg_scope *scope);
 
 #endif

@@ -2,9 +2,8 @@
  * Control flow among statements: for, intersection_for, let, echo, assert, children.
  */
 #include <math.h>
-#include <string.h>
 
-#include "lang/evaluate/evaluator.h"
+#include "lang/modules/modules.h"
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
 
@@ -56,14 +55,15 @@ static void run_for(csg_eval *e, const looping *l, uint32_t k, csg_frame *frame)
     csg_value_release(&e->heap, over);
 }
 
-static void for_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+bool csg_control_for(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     const looping l = {statement, false};
     if (statement->arguments.count)
         run_for(e, &l, 0, frame);
+    return true;
 }
 
-static void intersection_for(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+bool csg_control_intersection_for(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     const looping l = {statement, true};
     size_t first = e->part_count;
@@ -72,12 +72,13 @@ static void intersection_for(csg_eval *e, const csg_statement *statement, csg_fr
     csg_node_id node = csg_join_parts(e, first, CSG_NODE_INTERSECTION, sharp, statement->where);
     if (node != CSG_NODE_NONE)
         csg_push_part(e, csg_part_plain(node));
+    return true;
 }
 
 /* ---- let, echo, assert
  * -------------------------------------------------------------------------------- */
 
-static void let(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+bool csg_control_let(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     size_t dynamics = e->dynamic_count;
     csg_frame *inner = csg_eval_let(e, &statement->arguments, frame);
@@ -85,18 +86,21 @@ static void let(csg_eval *e, const csg_statement *statement, csg_frame *frame)
         csg_run_scope(e, statement->children, inner, true);
     csg_frame_release(&e->heap, inner);
     csg_eval_pop_dynamics(e, dynamics);
+    return true;
 }
 
-static void echo(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+bool csg_control_echo(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     csg_eval_echo(e, &statement->arguments, frame);
     csg_run_scope(e, statement->children, frame, true);
+    return statement->children->statement_count > 0;
 }
 
-static void assertion(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+bool csg_control_assert(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     if (csg_eval_assert(e, &statement->arguments, frame, statement->where))
         csg_run_scope(e, statement->children, frame, true);
+    return statement->children->statement_count > 0;
 }
 
 /* ---- children
@@ -158,7 +162,7 @@ static void run_family(csg_eval *e, family *f, csg_value index, bool all)
     csg_eval_pop_dynamics(e, dynamics);
 }
 
-static void children(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool one)
+static void run_children(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool one)
 {
     const csg_frame *module = frame;
     while (module && !module->children)
@@ -189,30 +193,14 @@ static void children(csg_eval *e, const csg_statement *statement, csg_frame *fra
     csg_eval_pop_dynamics(e, dynamics);
 }
 
-/* ---- entry
- * --------------------------------------------------------------------------------------------------
- */
-
-void csg_run_control(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread)
+bool csg_control_children(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
-    const char *name = csg_symbol_name(&e->program->symbols, statement->name);
-    size_t first = e->part_count;
-    bool quiet = false; /* prints or checks: no part of its own */
-    if (strcmp(name, "for") == 0) {
-        for_statement(e, statement, frame);
-    } else if (strcmp(name, "intersection_for") == 0) {
-        intersection_for(e, statement, frame);
-    } else if (strcmp(name, "echo") == 0 || strcmp(name, "assert") == 0) {
-        quiet = statement->children->statement_count == 0;
-        if (name[0] == 'e')
-            echo(e, statement, frame);
-        else
-            assertion(e, statement, frame);
-    } else if (strncmp(name, "child", 5) == 0) {
-        children(e, statement, frame, name[5] == '\0');
-    } else {
-        let(e, statement, frame);
-    }
-    if (!spread && !quiet && !e->stop)
-        csg_join_as_part(e, first, statement->where);
+    run_children(e, statement, frame, false);
+    return true;
+}
+
+bool csg_control_child(csg_eval *e, const csg_statement *statement, csg_frame *frame)
+{
+    run_children(e, statement, frame, true);
+    return true;
 }

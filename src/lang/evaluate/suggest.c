@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "lang/modules/modules.h"
+#include "lang/evaluate/evaluator.h"
 #include "lang/parse/hints.h"
 
 typedef struct search {

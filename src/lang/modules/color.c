@@ -13,7 +13,7 @@ static const struct {
 } colors[] = {
     {"transparent", 0},
 #define CSG_COLOR(name, rgb) {#name, rgb},
-#include "lang/evaluate/colors.def"
+#include "lang/modules/colors.def"
 #undef CSG_COLOR
 };
 

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ * Names that are not supported yet, and arguments that cannot be used; see builtins.h.
+ */
+#include "lang/evaluate/builtins.h"
+
+#include <string.h>
+
+typedef struct unsupported_row {
+    const char *name, *hint;
+} unsupported_row;
+
+static const unsupported_row unsupported_modules[] =
+    {
+#define CSG_UNSUPPORTED(name, hint) {#name, hint},
+#include "lang/evaluate/unsupported_modules.def"
+#undef CSG_UNSUPPORTED
+},
+                             unsupported_functions[] = {
+#define CSG_UNSUPPORTED(name, hint) {#name, hint},
+#include "lang/evaluate/unsupported_functions.def"
+#undef CSG_UNSUPPORTED
+};
+
+void csg_unsupported_intern(csg_symbols *symbols, bool *ok)
+{
+    enum {
+        MODULES = sizeof unsupported_modules / sizeof *unsupported_modules,
+        FUNCTIONS = sizeof unsupported_functions / sizeof *unsupported_functions
+    };
+    for (size_t i = 0; i < MODULES + FUNCTIONS && *ok; i++) {
+        bool module = i < MODULES;
+        size_t row = module ? i : i - MODULES;
+        const char *name = module ? unsupported_modules[row].name : unsupported_functions[row].name;
+        csg_symbol symbol = csg_symbol_intern(symbols, name, strlen(name));
+        csg_symbol_entry *entry = &symbols->entries[symbol];
+        *ok = symbol != 0;
+        if (symbol)
+            *(module ? &entry->unsupported : &entry->unsupported_function) = (int16_t)row;
+    }
+}
+
+bool csg_unsupported_report(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_span where)
+{
+    const csg_symbol_entry *entry = &e->program->symbols.entries[name];
+    bool module = kind == CSG_MEMBER_MODULE;
+    int row = module ? entry->unsupported : entry->unsupported_function;
+    if (row < 0)
+        return false;
+    csg_eval_report(e, CSG_DIAG_NOT_SUPPORTED, where,
+                    module ? unsupported_modules[row].hint : unsupported_functions[row].hint,
+                    "%s() is not supported yet", entry->name);
+    return true;
+}
+
+csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const char *wanted)
+{
+    csg_eval_report(call->e, CSG_DIAG_BAD_ARGUMENT,
+                    index < call->count ? call->syntax[index].value->whole : call->where, NULL,
+                    "%s() needs %s, not a %s; it counts as undef", call->name, wanted,
+                    index < call->count ? csg_value_kind_name(call->arguments[index]) : "nothing");
+    return csg_value_undef();
+}

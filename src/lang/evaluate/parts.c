@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ * Parts -> nodes. Each statement leaves its solids as parts on a stack; the operator around it
+ * joins what lies above its mark. As in OpenSCAD the first part's dimension rules among those of
+ * one operation; the others are left out with a warning.
+ */
+#include <string.h>
+
+#include "lang/evaluate/evaluator.h"
+
+void csg_push_part(csg_eval *e, csg_part part)
+{
+    if (e->stop)
+        return;
+    if (csg_memory_reserve(&e->context->memory, (void **)&e->parts, &e->part_capacity,
+                           e->part_count + 1, sizeof *e->parts))
+        e->parts[e->part_count++] = part;
+    else
+        csg_eval_no_memory(e);
+}
+
+/* The builder's first failure is sticky; a bad solid is told and built on without it. */
+csg_node_id csg_check_node(csg_eval *e, csg_node_id node, csg_span where)
+{
+    csg_scene_builder *builder = &e->builder;
+    if (node != CSG_NODE_NONE || e->stop)
+        return node;
+    if (builder->status == CSGM_ERR_MEMORY) {
+        csg_eval_no_memory(e);
+    } else if (builder->status == CSGM_ERR_LIMIT) {
+        csg_eval_limit(e, CSG_DIAG_TOO_MANY_NODES, where, "raise the limit with --max-nodes", "%s",
+                       builder->problem);
+    } else {
+        csg_eval_report(e, CSG_DIAG_BAD_SOLID, where, NULL, "%s", builder->problem);
+        builder->status = CSGM_OK;
+        builder->problem[0] = '\0';
+        node = csg_build_empty(builder, where);
+        if (node == CSG_NODE_NONE)
+            csg_eval_no_memory(e);
+    }
+    return node;
+}
+
+/* Moves the nodes of plain parts to the front, in order; the number of them. */
+static size_t gather(csg_part *parts, size_t count, csg_node_id *out)
+{
+    size_t plain = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!parts[i].wrapped || i == 0)
+            out[plain++] = parts[i].node;
+    return plain;
+}
+
+static csg_node_id join_wrapped(csg_eval *e, csg_part *parts, size_t count, csg_node_id node,
+                                csg_node_kind kind, csg_span where)
+{
+    for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++) {
+        if (!parts[i].wrapped)
+            continue;
+        csg_node_id pair[2] = {node, parts[i].node};
+        node = csg_check_node(
+            e, csg_build_operator(&e->builder, kind, parts[i].blend, pair, 2, where), where);
+    }
+    return node;
+}
+
+/* The first part is what the others join. In a union or intersection a first part that is wrapped
+ * goes behind the first that is not, so that its blend is used. */
+static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node_kind kind)
+{
+    size_t i = 0;
+    if (count == 0 || !parts[0].wrapped)
+        return;
+    if (kind == CSG_NODE_DIFFERENCE || count == 1) {
+        csg_eval_report(
+            e, CSG_DIAG_UNUSED_BLEND, parts[0].where, NULL,
+            count == 1 ? "there is nothing that this blend() could join with"
+                       : "the first child of a difference joins nothing, its blend() is not used");
+        return;
+    }
+    while (i < count && parts[i].wrapped)
+        i++;
+    if (i < count) {
+        csg_part plain = parts[i];
+        memmove(parts + 1, parts, i * sizeof *parts);
+        parts[0] = plain;
+    }
+}
+
+csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                           csg_span where)
+{
+    if (!e->stop)
+        csg_parts_keep_alike(e, first, where);
+    return csg_join_mixed_parts(e, first, kind, blend, where);
+}
+
+csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                                 csg_span where)
+{
+    if (e->stop)
+        return CSG_NODE_NONE;
+    size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
+    csg_part *parts = count ? e->parts + first : NULL;
+    put_plain_first(e, parts, count, kind);
+    csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
+    if (children) {
+        size_t plain = gather(parts, count, children);
+        node = csg_check_node(
+            e, csg_build_operator(&e->builder, kind, blend, children, plain, where), where);
+        node = join_wrapped(e, parts, count, node, kind, where);
+    } else {
+        csg_eval_no_memory(e);
+    }
+    csg_memory_release(&e->context->memory, children, bytes);
+    e->part_count = first;
+    return node;
+}
+
+void csg_join_as_part(csg_eval *e, size_t first, csg_span where)
+{
+    if (e->part_count == first + 1)
+        return;
+    csg_node_id node =
+        csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, where);
+    if (node != CSG_NODE_NONE)
+        csg_push_part(e, csg_part_plain(node));
+}
+
+/* ---- figures and solids ---------------------------------------------------------------------- */
+
+bool csg_eval_is_empty(const csg_eval *e, csg_node_id node)
+{
+    return e->builder.scene->nodes[node].kind == CSG_NODE_EMPTY;
+}
+
+bool csg_eval_is_flat(const csg_eval *e, csg_node_id node)
+{
+    return !csg_eval_is_empty(e, node) && csg_build_is_flat(&e->builder, node);
+}
+
+size_t csg_parts_drop_unlike(csg_eval *e, size_t first, bool flat)
+{
+    size_t kept = first, count = e->part_count;
+    for (size_t i = first; i < count; i++)
+        if (csg_eval_is_empty(e, e->parts[i].node) || csg_eval_is_flat(e, e->parts[i].node) == flat)
+            e->parts[kept++] = e->parts[i];
+    e->part_count = kept;
+    return count - kept;
+}
+
+void csg_parts_keep_alike(csg_eval *e, size_t first, csg_span where)
+{
+    size_t i = first;
+    while (i < e->part_count && csg_eval_is_empty(e, e->parts[i].node))
+        i++;
+    if (e->stop || i == e->part_count)
+        return;
+    bool flat = csg_eval_is_flat(e, e->parts[i].node);
+    size_t dropped = csg_parts_drop_unlike(e, first, flat);
+    if (dropped)
+        csg_eval_report(e, CSG_DIAG_MIXED_DIMENSIONS, where,
+                        flat ? "linear_extrude makes a solid of a figure"
+                             : "projection makes a figure of a solid",
+                        "%s and %s side by side: the first rules, %zu %s left out",
+                        flat ? "a flat figure" : "a solid", flat ? "solids" : "flat figures",
+                        dropped, dropped == 1 ? "operand is" : "operands are");
+}
