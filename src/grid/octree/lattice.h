@@ -48,12 +48,10 @@ static inline bool csg_lattice_cell_of(const csg_lattice *lattice, const float a
     return true;
 }
 
-/* Where open addressing of blocks by their coordinates begins; slot_count is a power of two. */
-static inline size_t csg_lattice_home_slot(const uint32_t block[3], size_t slot_count)
+/* A hash for tables of blocks by their coordinates. */
+static inline uint64_t csg_lattice_hash(const uint32_t block[3])
 {
-    uint64_t key = (uint64_t)block[0] | (uint64_t)block[1] << 21 | (uint64_t)block[2] << 42;
-    key *= 0x9E3779B97F4A7C15u; /* Fibonacci hashing: the high bits are well mixed */
-    return (size_t)(key >> 20) & (slot_count - 1);
+    return (uint64_t)block[0] | (uint64_t)block[1] << 21 | (uint64_t)block[2] << 42;
 }
 
 /* Largest absolute coordinate of a lattice point in the field's frame. */

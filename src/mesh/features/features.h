@@ -92,8 +92,7 @@ typedef struct csg_feature_store {
     csg_feature *features;
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
-    uint32_t *slots; /* block + 1, 0 = free */
-    size_t slot_count;
+    csg_table index; /* of the blocks; no slots before it is made */
     csg_feature_moved *moves;
     size_t move_count, move_capacity;
     size_t bare; /* of the features, those without an apex */

@@ -36,21 +36,12 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
 
 bool csg_feature_store_index(csg_feature_store *store)
 {
-    size_t count = 16;
-    while (count < 2 * store->block_count)
-        count *= 2;
-    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
-    store->slots = csg_memory_alloc(store->memory, count * sizeof(uint32_t));
-    store->slot_count = store->slots ? count : 0;
-    if (!store->slots)
+    csg_table_release(&store->index);
+    csg_table_init(&store->index, store->memory);
+    if (!csg_table_reserve(&store->index, store->block_count + 1, NULL, NULL))
         return false;
-    memset(store->slots, 0, count * sizeof(uint32_t));
-    for (size_t i = 0; i < store->block_count; i++) {
-        size_t slot = csg_lattice_home_slot(store->blocks[i].at, count);
-        while (store->slots[slot])
-            slot = (slot + 1) & (count - 1);
-        store->slots[slot] = (uint32_t)i + 1;
-    }
+    for (size_t i = 0; i < store->block_count; i++)
+        csg_table_add(&store->index, csg_lattice_hash(store->blocks[i].at), (uint32_t)i);
     return true;
 }
 
@@ -59,13 +50,12 @@ const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
 {
     if (!store->block_count)
         return NULL;
-    for (size_t slot = csg_lattice_home_slot(at, store->slot_count); store->slots[slot];
-         slot = (slot + 1) & (store->slot_count - 1)) {
-        const csg_feature_block *block = &store->blocks[store->slots[slot] - 1];
-        if (!memcmp(block->at, at, sizeof block->at))
-            return block;
-    }
-    return NULL;
+    size_t slot;
+    uint32_t found = csg_table_first(&store->index, csg_lattice_hash(at), &slot);
+    while (found != CSG_TABLE_NONE &&
+           memcmp(store->blocks[found].at, at, sizeof store->blocks[found].at) != 0)
+        found = csg_table_next(&store->index, &slot);
+    return found != CSG_TABLE_NONE ? &store->blocks[found] : NULL;
 }
 
 void csg_feature_store_release(csg_feature_store *store)
@@ -75,7 +65,7 @@ void csg_feature_store_release(csg_feature_store *store)
     csg_memory_release(store->memory, store->features, store->capacity * sizeof(csg_feature));
     csg_memory_release(store->memory, store->blocks,
                        store->block_capacity * sizeof(csg_feature_block));
-    csg_memory_release(store->memory, store->slots, store->slot_count * sizeof(uint32_t));
+    csg_table_release(&store->index);
     csg_memory_release(store->memory, store->moves, store->move_capacity * sizeof *store->moves);
     *store = (csg_feature_store){0};
 }

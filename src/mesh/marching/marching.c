@@ -13,42 +13,25 @@ enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 /* ---- finding blocks ---------------------------------------------------------------------------
  */
 
-bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block *const *blocks,
+bool csg_block_index_make(csg_table *index, csg_memory *memory, csg_block *const *blocks,
                           size_t count)
 {
-    *index = (csg_block_index){.memory = memory, .slot_count = 16};
-    while (index->slot_count < 2 * count)
-        index->slot_count *= 2;
-    index->slots = csg_memory_alloc(memory, index->slot_count * sizeof(uint32_t));
-    if (!index->slots)
+    csg_table_init(index, memory);
+    if (!csg_table_reserve(index, count + 1, NULL, NULL))
         return false;
-    memset(index->slots, 0, index->slot_count * sizeof(uint32_t));
-    for (size_t i = 0; i < count; i++) {
-        size_t slot = csg_lattice_home_slot(blocks[i]->at, index->slot_count);
-        while (index->slots[slot])
-            slot = (slot + 1) & (index->slot_count - 1);
-        index->slots[slot] = (uint32_t)i + 1;
-    }
+    for (size_t i = 0; i < count; i++)
+        csg_table_add(index, csg_lattice_hash(blocks[i]->at), (uint32_t)i);
     return true;
 }
 
-void csg_block_index_release(csg_block_index *index)
-{
-    if (index->memory)
-        csg_memory_release(index->memory, index->slots, index->slot_count * sizeof(uint32_t));
-    *index = (csg_block_index){0};
-}
-
-const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
+const csg_block *csg_block_index_find(const csg_table *index, csg_block *const *blocks,
                                       const uint32_t at[3])
 {
-    for (size_t slot = csg_lattice_home_slot(at, index->slot_count); index->slots[slot];
-         slot = (slot + 1) & (index->slot_count - 1)) {
-        const csg_block *block = blocks[index->slots[slot] - 1];
-        if (!memcmp(block->at, at, sizeof block->at))
-            return block;
-    }
-    return NULL;
+    size_t slot;
+    uint32_t found = csg_table_first(index, csg_lattice_hash(at), &slot);
+    while (found != CSG_TABLE_NONE && memcmp(blocks[found]->at, at, sizeof blocks[found]->at) != 0)
+        found = csg_table_next(index, &slot);
+    return found != CSG_TABLE_NONE ? blocks[found] : NULL;
 }
 
 /* ---- cells ----------------------------------------------------------------------------------- */

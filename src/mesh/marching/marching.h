@@ -5,22 +5,16 @@
 #ifndef CSG_MESH_MARCHING_MARCHING_H
 #define CSG_MESH_MARCHING_MARCHING_H
 
+#include "base/table.h"
 #include "field/kernels/roots.h"
 #include "grid/octree/octree.h"
 #include "mesh/marching/tables.h"
 
-/* Which block is where: open addressing on block coordinates. */
-typedef struct csg_block_index {
-    csg_memory *memory;
-    uint32_t *slots;   /* block number + 1, 0 = free */
-    size_t slot_count; /* power of two */
-} csg_block_index;
-
-bool csg_block_index_make(csg_block_index *index, csg_memory *memory, csg_block *const *blocks,
+/* Which block is where: an index of `blocks`. */
+bool csg_block_index_make(csg_table *index, csg_memory *memory, csg_block *const *blocks,
                           size_t count);
-void csg_block_index_release(csg_block_index *index);
 /* NULL where there is none. */
-const csg_block *csg_block_index_find(const csg_block_index *index, csg_block *const *blocks,
+const csg_block *csg_block_index_find(const csg_table *index, csg_block *const *blocks,
                                       const uint32_t at[3]);
 
 /* The tables with each edge as the place of its vertex in csg_marching_room.vertex, relative to the
@@ -90,7 +84,7 @@ typedef struct csg_marching {
     const csg_cell_tables *tables;
     const csg_marching_places *places;
     csg_block *const *blocks;
-    const csg_block_index *index;
+    const csg_table *index;
     csg_vec3 shift;     /* field frame -> relative to the mesh's origin */
     float noise;        /* of the field's values: rounding */
     float unit;         /* in the last place of the mesh's largest coordinates */

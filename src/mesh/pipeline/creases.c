@@ -117,7 +117,7 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
     if (!c->sharp)
         return CSGM_OK;
     c->blocks = blocks;
-    if (c->store.slots) { /* all were found before */
+    if (c->store.index.slots) { /* all were found before */
         add_known(c);
         return CSGM_OK;
     }
@@ -145,7 +145,7 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 void csg_mesh_number_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 {
     csg_feature_store *store = &c->store;
-    if (!c->sharp || store->slots)
+    if (!c->sharp || store->index.slots)
         return;
     for (size_t i = 0; i < blocks.count && store->numbered < store->block_count; i++) {
         const csg_block *block = blocks.block[i];

@@ -182,7 +182,7 @@ static csgm_status index_blocks(csg_mesh_slabs *s)
                s->halo.count * sizeof(csg_block *));
         s->workers->marching.blocks = s->reachable;
     }
-    csg_block_index_release(&s->index);
+    csg_table_release(&s->index);
     if (csg_block_index_make(&s->index, memory, s->workers->marching.blocks, count))
         return CSGM_OK;
     return csg_context_no_memory(s->watch->context);
@@ -219,6 +219,6 @@ void csg_mesh_slabs_release(csg_mesh_slabs *s)
     release_halo(memory, &s->old_halo);
     csg_memory_release(memory, s->reachable, s->reachable_capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
-    csg_block_index_release(&s->index);
+    csg_table_release(&s->index);
     csg_octree_destroy(s->octree);
 }

@@ -36,7 +36,7 @@ typedef struct csg_mesh_slabs {
     csg_halo halo, old_halo;
     csg_block **reachable; /* the slab's blocks and the halo's, where there are several slabs */
     size_t reachable_capacity;
-    csg_block_index index;
+    csg_table index;
 } csg_mesh_slabs;
 
 /* The octree of the input's lattice. */
