@@ -47,7 +47,7 @@ need_core_packages() {
     fi
     need_packages gcc g++ meson ninja-build pkg-config:pkgconf libopenmesh-dev libdraco-dev \
         libpolyclipping-dev libexpat1-dev libzip-dev zlib1g-dev libpng-dev libfreetype-dev libharfbuzz-dev \
-        libfontconfig-dev fonts-liberation fonts-dejavu-core \
+        libfribidi-dev libfontconfig-dev fonts-liberation fonts-dejavu-core \
         libtinygltf-dev nlohmann-json3-dev libqhull-dev libb2-dev "$@"
 }
 

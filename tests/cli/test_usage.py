@@ -38,7 +38,7 @@ class Help(cli.CliTest):
         self.assert_status(result, 0)
         first, *features = result.stdout.decode().splitlines()
         self.assertRegex(first, r"^csgmesh \d+\.\d+\.\d+ \((avx512|avx2|sse2|neon|scalar)\)$")
-        for library in ("Clipper", "Qhull", "FreeType", "fontconfig", "libpng", "Draco", "tinygltf",
+        for library in ("Clipper", "Qhull", "FreeType", "FriBidi", "fontconfig", "libpng", "Draco", "tinygltf",
                         "libzip", "nlohmann-json"):
             lines = [line for line in features if library in line]
             self.assertEqual(len(lines), 1, features)

@@ -2,8 +2,7 @@
  * Text -> an outline, as text() of OpenSCAD 2021.01 sets it: a capital letter of size 10 is about
  * 10 high (an em is size * 100 / 72), and letters stand at 1000 / 1024 of the font's distances.
  * Beyond OpenSCAD: characters that the font lacks are taken from other fonts, scripts are set in
- * their own runs, those from right to left in their order (without the whole of UAX #9: one level
- * of embedding, by the first strong character).
+ * their own runs, those from right to left in their order (UAX #9, see bidi.h).
  */
 #ifndef CSG_OUTLINE_TEXT_H
 #define CSG_OUTLINE_TEXT_H

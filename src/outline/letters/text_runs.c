@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * Runs of text; see text_runs.h. Directions are those of the Unicode bidirectional algorithm for
- * texts without explicit marks: a level for the text, one for runs against it, one for digits in
- * runs from right to left; then its rule L2.
+ * Runs of text; see text_runs.h. Levels are those of the Unicode bidirectional algorithm (bidi.h);
+ * fonts and scripts divide its runs, and its rule L2 puts them in order.
  */
 #include "outline/letters/text_runs.h"
 
 #include <string.h>
 
+#include "outline/letters/bidi.h"
 #include "text/utf8.h"
 
 typedef struct character {
@@ -60,59 +60,23 @@ static void set_scripts(maker *m)
     }
 }
 
-/* What a character says of directions: L, R, a number in R, or nothing by itself. */
-enum { NEUTRAL, LEFTWARDS_NUMBER, TO_RIGHT, TO_LEFT };
-
-static int direction_of(const maker *m, size_t i, int before)
-{
-    uint32_t c = m->out->characters[i];
-    csg_character_kind kind = csg_character_kind_of(c);
-    if (kind == CSG_CHARACTER_DIGIT)
-        return before == TO_LEFT || before == LEFTWARDS_NUMBER ? LEFTWARDS_NUMBER : TO_RIGHT;
-    if (kind == CSG_CHARACTER_MARK || kind == CSG_CHARACTER_INVISIBLE)
-        return before;
-    if (!csg_script_of_name(m->request->script) && !csg_character_script(c))
-        return NEUTRAL;
-    return csg_script_is_rtl(m->traits[i].script) ? TO_LEFT : TO_RIGHT;
-}
-
-/* Rules N1 and N2 of UAX #9: between two of one direction of that one, else of the whole's. */
-static void settle_neutrals(maker *m, int base)
-{
-    size_t count = m->out->character_count;
-    int before = base;
-    for (size_t i = 0; i < count;) {
-        size_t end = i;
-        while (end < count && m->traits[end].level == NEUTRAL)
-            end++;
-        int after = end < count ? m->traits[end].level : base;
-        after = after == LEFTWARDS_NUMBER ? TO_LEFT : after;
-        for (; i < end; i++)
-            m->traits[i].level = before == after ? before : base;
-        if (i < count)
-            before = m->traits[i].level == LEFTWARDS_NUMBER ? TO_LEFT : m->traits[i].level;
-        i++;
-    }
-}
-
-static void set_levels(maker *m)
+/* A direction that was asked for is that of all characters, as in OpenSCAD. */
+static csgm_status set_levels(maker *m)
 {
     size_t count = m->out->character_count;
     csg_text_direction asked = m->request->direction;
-    bool leftwards = asked == CSG_TEXT_RTL || (asked == CSG_TEXT_AUTO && count > 0 &&
-                                               csg_script_is_rtl(m->traits[0].script));
-    int base = leftwards ? TO_LEFT : TO_RIGHT, before = base;
-    for (size_t i = 0; i < count; i++) {
-        int own = direction_of(m, i, before);
-        m->traits[i].level = own;
-        before = own == NEUTRAL ? before : own;
-    }
-    settle_neutrals(m, base);
-    for (size_t i = 0; i < count; i++) {
-        int own = m->traits[i].level;
-        int level = own == TO_LEFT ? 1 : own == LEFTWARDS_NUMBER || leftwards ? 2 : 0;
-        m->traits[i].level = asked == CSG_TEXT_AUTO ? level : leftwards;
-    }
+    uint32_t script = csg_script_of_name(m->request->script);
+    csg_bidi_base base = csg_script_is_rtl(script) ? CSG_BIDI_RTL : CSG_BIDI_BY_TEXT;
+    int *levels = csg_arena_calloc(&m->out->arena, count + 1, sizeof *levels);
+    if (!levels)
+        return CSGM_ERR_MEMORY;
+    csgm_status status = CSGM_OK;
+    if (asked == CSG_TEXT_AUTO)
+        status = csg_bidi_levels(&m->out->arena, m->out->characters, count, base, levels,
+                                 &m->report->problem);
+    for (size_t i = 0; i < count; i++)
+        m->traits[i].level = asked == CSG_TEXT_AUTO ? levels[i] : asked == CSG_TEXT_RTL;
+    return status;
 }
 
 /* ---- fonts ---------------------------------------------------------------------------------- */
@@ -215,7 +179,10 @@ static void order_runs(csg_text_runs *out, csg_text_direction direction)
         reverse(out->runs, out->run_count);
     if (out->vertical)
         return;
-    for (int level = 2; level >= 1; level--)
+    int highest = 0;
+    for (size_t i = 0; i < out->run_count; i++)
+        highest = out->runs[i].level > highest ? out->runs[i].level : highest;
+    for (int level = highest; level >= 1; level--)
         for (size_t i = 0; i < out->run_count;) {
             size_t end = i;
             while (end < out->run_count && out->runs[end].level >= level)
@@ -253,9 +220,10 @@ csgm_status csg_text_runs_make(csg_fonts *fonts, const csg_text_request *request
         status = CSGM_ERR_MEMORY;
     if (status == CSGM_OK) {
         set_scripts(&m);
-        set_levels(&m);
-        status = set_fonts(&m);
+        status = set_levels(&m);
     }
+    if (status == CSGM_OK)
+        status = set_fonts(&m);
     if (status == CSGM_OK && !make_runs(&m))
         status = CSGM_ERR_MEMORY;
     if (status == CSGM_OK)
