@@ -436,7 +436,7 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
 
 /* ---- the block ------------------------------------------------------------------------------ */
 
-static bool push(csg_certify_worker *w, const csg_certify_cube *cube)
+static bool stack_cube(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     if (!csg_memory_reserve(&w->context->memory, (void **)&w->stack, &w->stack_capacity,
                             w->stack_count + 1, sizeof *w->stack))
@@ -497,7 +497,7 @@ static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
                 child.cell |= (uint32_t)floor((child.c[axis] - from) / h) << (3 * axis);
             }
         }
-        if (!push(w, &child))
+        if (!stack_cube(w, &child))
             return false;
     }
     for (size_t i = first; i < w->stack_count; i++)
@@ -554,7 +554,7 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
         root.c[axis] = (double)csg_lattice_coordinate(
             w->lattice, axis, at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
     w->stack_count = 0;
-    bool done = push(w, &root);
+    bool done = stack_cube(w, &root);
     while (done && w->stack_count) {
         csg_certify_cube cube = w->stack[--w->stack_count];
         csg_arena_release_to(&w->tapes, cube.mark); /* what its elder siblings' parts needed */

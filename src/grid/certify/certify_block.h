@@ -5,8 +5,9 @@
 #ifndef CSG_GRID_CERTIFY_BLOCK_H
 #define CSG_GRID_CERTIFY_BLOCK_H
 
-#include "grid/certify/certify.h"
+#include "grid/certify/cell_kind.h"
 #include "grid/certify/certify_reach.h"
+#include "grid/octree/octree.h"
 
 enum {
     CSG_CERTIFY_MARGIN = 7, /* cells around a block where its tape is valid */

@@ -13,7 +13,7 @@ typedef struct point_batch {
     float x[MOST_POINTS], y[MOST_POINTS], z[MOST_POINTS], f[MOST_POINTS];
 } point_batch;
 
-static void put(point_batch *p, int i, csg_vec3 at)
+static void set_point(point_batch *p, int i, csg_vec3 at)
 {
     p->x[i] = (float)at.x, p->y[i] = (float)at.y, p->z[i] = (float)at.z;
 }
@@ -77,7 +77,7 @@ static uint32_t signs_around(csg_beads *b, const uint32_t at[3], const int (*ste
     for (int i = 0; i < count; i++) {
         uint32_t to[3];
         beside(at, step[i], to);
-        put(&p, i, place_of(b, to));
+        set_point(&p, i, place_of(b, to));
         inner |= (uint32_t)is_inner(b, to) << i;
     }
     ask(b, &p, (size_t)count);
@@ -101,7 +101,7 @@ static bool keeps_sign(csg_beads *b, const uint32_t from[3], const uint32_t to[3
     double length = csg_vec3_norm(way), t = 0, least = 1e-3 * b->lattice->cell_size;
     while (t < length && b->left > 0) {
         point_batch p;
-        put(&p, 0, csg_vec3_add(a, csg_vec3_scale(way, t / length)));
+        set_point(&p, 0, csg_vec3_add(a, csg_vec3_scale(way, t / length)));
         ask(b, &p, 1);
         double step = 0.9 * (double)(sign ? p.f[0] : -p.f[0]) / (double)b->tape->lipschitz;
         if (!(step > least))
@@ -143,7 +143,7 @@ static void find_roots(csg_beads *b, const step_table *t, const uint32_t at[3], 
         point_batch p;
         for (int i = 0; i < AXES; i++) {
             root[i] = csg_vec3_scale(csg_vec3_add(from[i], to[i]), 0.5);
-            put(&p, i, root[i]);
+            set_point(&p, i, root[i]);
         }
         ask(b, &p, AXES);
         for (int i = 0; i < AXES; i++)
@@ -156,7 +156,7 @@ static void find_normals(csg_beads *b, const csg_vec3 root[AXES], csg_vec3 norma
     point_batch p;
     float g[3][CSG_LANES];
     for (int i = 0; i < CSG_LANES; i++)
-        put(&p, i, root[i < AXES ? i : 0]);
+        set_point(&p, i, root[i < AXES ? i : 0]);
     b->kernel->gradients(b->tape, p.x, p.y, p.z, AXES, g[0], g[1], g[2], b->scratch,
                          b->scratch_floats);
     b->evaluations += AXES;
@@ -187,7 +187,7 @@ static bool is_of_tip(csg_beads *b, const uint32_t at[3], const csg_vec3 root[AX
     for (int i = 0; i < AXES; i++)
         most = fmax(most, fabs(csg_vec3_dot(n[i], csg_vec3_sub(root[i], x))));
     point_batch p;
-    put(&p, 0, x);
+    set_point(&p, 0, x);
     ask(b, &p, 1);
     return most <= near && fabs((double)p.f[0]) <= near * (double)b->tape->lipschitz;
 }

@@ -306,7 +306,7 @@ static bool look_again(walk *w)
     return done;
 }
 
-static bool join(const walk *w, csg_missed *out)
+static bool gather_segments(const walk *w, csg_missed *out)
 {
     for (size_t i = 0; i < w->segment_count; i++) {
         const segment *s = &w->segments[i];
@@ -346,7 +346,7 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
     bool done = begun && csg_pool_run(r->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
                 look_again(&w);
     if (done)
-        done = join(&w, out);
+        done = gather_segments(&w, out);
     else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(r->watch))
         status = csg_mesh_why_stopped(r->watch);
     if (!done && status == CSGM_OK)

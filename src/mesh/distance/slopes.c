@@ -107,7 +107,8 @@ static range shares_of(uint8_t blend, float n, float chi, double low, double hig
 /* ---- mixing ------------------------------------------------------------------------------------
  */
 
-static bool put(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b, double share)
+static bool add_mixture(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b,
+                        double share)
 {
     if (balls->count >= CSG_CONE_MOST)
         return false;
@@ -124,8 +125,8 @@ static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_co
 {
     static const double NARROW = 0.3;
     if (r.high - r.low > NARROW)
-        return put(balls, a, b, r.low) && put(balls, a, b, r.high);
-    if (!put(balls, a, b, 0.5 * (r.low + r.high)))
+        return add_mixture(balls, a, b, r.low) && add_mixture(balls, a, b, r.high);
+    if (!add_mixture(balls, a, b, 0.5 * (r.low + r.high)))
         return false;
     balls->items[balls->count - 1].spread += 0.5 * (r.high - r.low) * apart(a, b);
     return true;

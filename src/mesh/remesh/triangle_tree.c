@@ -33,7 +33,7 @@ csg_triangle_box csg_triangle_box_of(const csg_vec3 v[3])
     return box;
 }
 
-static csg_triangle_box join(const csg_triangle_box *a, const csg_triangle_box *b)
+static csg_triangle_box box_around(const csg_triangle_box *a, const csg_triangle_box *b)
 {
     csg_triangle_box box;
     for (int k = 0; k < 3; k++) {
@@ -84,7 +84,7 @@ bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, co
     for (size_t i = 0; i < t->leaf_count; i++)
         t->nodes[t->leaf_count + i] = box_of_leaf(t, i);
     for (size_t i = t->leaf_count - 1; i; i--)
-        t->nodes[i] = join(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
+        t->nodes[i] = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
     const csg_triangle_box *all = &t->nodes[1];
     for (int k = 0; k < 3 && all->max[k] >= all->min[k]; k++)
         t->noise = fmax(t->noise, ROUNDING * ((double)all->max[k] - (double)all->min[k]));
@@ -103,7 +103,7 @@ void csg_triangle_tree_update(csg_triangle_tree *t, uint32_t triangle)
     size_t i = t->leaf_count + triangle / CSG_TRIANGLES_A_LEAF;
     t->nodes[i] = box_of_leaf(t, triangle / CSG_TRIANGLES_A_LEAF);
     for (i /= 2; i; i /= 2) {
-        csg_triangle_box box = join(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
+        csg_triangle_box box = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
         if (!memcmp(&box, &t->nodes[i], sizeof box))
             return;
         t->nodes[i] = box;

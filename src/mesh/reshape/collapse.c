@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/reshape/decimate_private.h"
+#include "mesh/reshape/decimation.h"
 
 /* Places for the new vertex, the best first. */
 typedef struct proposal {

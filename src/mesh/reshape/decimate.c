@@ -3,10 +3,10 @@
  * nothing but the mesh; entries whose ends have changed since are dropped when they come up. What
  * was refused is tried again once everything else is done, for as long as that is worth while.
  */
+#include "mesh/reshape/decimate.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "mesh/reshape/decimate_private.h"
 
 /* ---- the queue ---------------------------------------------------------------------------------
  */
@@ -18,7 +18,7 @@ static bool is_before(const csg_waiting *a, const csg_waiting *b)
     return a->from != b->from ? a->from < b->from : a->to < b->to;
 }
 
-static bool push(csg_decimation *d, csg_waiting entry)
+static bool add_waiting(csg_decimation *d, csg_waiting entry)
 {
     csg_collapse_queue *q = d->queue;
     if (!csg_memory_reserve(d->remesh->memory, (void **)&q->heap, &q->capacity, q->count + 1,
@@ -31,7 +31,7 @@ static bool push(csg_decimation *d, csg_waiting entry)
     return true;
 }
 
-static csg_waiting pop(csg_collapse_queue *q)
+static csg_waiting take_cheapest(csg_collapse_queue *q)
 {
     csg_waiting first = q->heap[0], last = q->heap[--q->count];
     size_t i = 0;
@@ -47,34 +47,34 @@ static csg_waiting pop(csg_collapse_queue *q)
     return first;
 }
 
-static bool push_edge(csg_decimation *d, uint32_t a, uint32_t b)
+static bool add_edge(csg_decimation *d, uint32_t a, uint32_t b)
 {
     uint32_t from = a < b ? b : a, to = a < b ? a : b;
     double cost = csg_collapse_cost(d, from, to);
     if (cost < 0)
         return true;
-    return push(d, (csg_waiting){(float)cost, from, to, d->version[from] + d->version[to]});
+    return add_waiting(d, (csg_waiting){(float)cost, from, to, d->version[from] + d->version[to]});
 }
 
-static bool push_all(csg_decimation *d)
+static bool add_all_edges(csg_decimation *d)
 {
     const csg_corners *m = &d->remesh->corners;
     for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
         if (!csg_corners_is_live(m, c / 3))
             continue;
         uint32_t a = m->vertex[c], b = m->vertex[csg_corner_next(c)];
-        if (a < b && !push_edge(d, a, b))
+        if (a < b && !add_edge(d, a, b))
             return false;
     }
     return true;
 }
 
-static bool push_around(csg_decimation *d, uint32_t vertex)
+static bool add_edges_around(csg_decimation *d, uint32_t vertex)
 {
     const csg_corners *m = &d->remesh->corners;
     uint32_t first = m->corner[vertex], c = first;
     do {
-        if (!push_edge(d, vertex, m->vertex[csg_corner_next(c)]))
+        if (!add_edge(d, vertex, m->vertex[csg_corner_next(c)]))
             return false;
         c = csg_corner_swing(m, c);
     } while (c != first);
@@ -219,12 +219,12 @@ void csg_decimation_end(csg_decimation *d)
  */
 
 /* Once through the queue. */
-static csgm_status run_queue(csg_decimation *d, uint32_t least)
+static csgm_status collapse_waiting(csg_decimation *d, uint32_t least)
 {
     enum { LOOK_UP_EVERY = 256 };
     csg_remesh *r = d->remesh;
     for (uint64_t i = 0; d->queue->count && r->corners.live > least; i++) {
-        csg_waiting entry = pop(d->queue);
+        csg_waiting entry = take_cheapest(d->queue);
         if (r->corners.corner[entry.from] == CSG_CORNER_NONE ||
             r->corners.corner[entry.to] == CSG_CORNER_NONE ||
             entry.version != d->version[entry.from] + d->version[entry.to])
@@ -235,7 +235,7 @@ static csgm_status run_queue(csg_decimation *d, uint32_t least)
         if (!csg_collapse_try(d, entry.from, entry.to))
             continue;
         d->made++;
-        if (!push_around(d, entry.to))
+        if (!add_edges_around(d, entry.to))
             return csg_context_no_memory(r->context);
     }
     return CSGM_OK;
@@ -249,9 +249,9 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     for (int pass = 0; pass < MOST_PASSES && r->corners.live > least && status == CSGM_OK; pass++) {
         uint32_t before = r->corners.live;
         d->queue->count = 0;
-        if (!push_all(d))
+        if (!add_all_edges(d))
             return csg_context_no_memory(r->context);
-        status = run_queue(d, least);
+        status = collapse_waiting(d, least);
         if ((uint64_t)(before - r->corners.live) * WORTH < before)
             break;
     }

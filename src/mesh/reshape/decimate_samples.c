@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/reshape/decimate_private.h"
+#include "mesh/reshape/decimate.h"
 
 enum { BATCH = CSG_PROBE_MOST };
 

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "mesh/reshape/improve_private.h"
+#include "mesh/reshape/improver.h"
 
 /* Sines of angles: what is better than that, 25 degrees, may get worse as long as it stays so. */
 static const double GOOD = 0.42, BAD = 0.36;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * What a change of improving must pass; see improve_private.h.
+ * What a change of improving must pass; see improver.h.
  */
 #include <math.h>
 #include <stdlib.h>
 
-#include "mesh/reshape/improve_private.h"
+#include "mesh/reshape/improver.h"
 
 /* ---- shape ------------------------------------------------------------------------------------
  */

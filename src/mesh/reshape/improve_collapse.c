@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "mesh/reshape/improve_private.h"
+#include "mesh/reshape/improver.h"
 
 /* Places for the vertex that stays, the best first. */
 typedef struct choices {

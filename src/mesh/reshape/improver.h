@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Shared by the files of improving: improve.c (passes, moving, flipping), improve_collapse.c,
- * improve_check.c (what every change must pass).
+ * A mesh while its triangles are made better: what improve.c (passes, moving, flipping),
+ * improve_collapse.c and improve_check.c (what every change must pass) share.
  */
-#ifndef CSG_MESH_RESHAPE_IMPROVE_PRIVATE_H
-#define CSG_MESH_RESHAPE_IMPROVE_PRIVATE_H
+#ifndef CSG_MESH_RESHAPE_IMPROVER_H
+#define CSG_MESH_RESHAPE_IMPROVER_H
 
-#include "mesh/reshape/improve.h"
+#include "mesh/remesh/remesh.h"
 
 enum { CSG_PATCH_MOST = CSG_CORNERS_MOST_VALENCE };
 

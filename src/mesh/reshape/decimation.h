@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Shared by the files of decimation: decimate.c (order and loop), decimate_samples.c (points of the
- * surface), collapse.c (one edge).
+ * A mesh while it is thinned out: what decimate.c (order and loop), decimate_samples.c (points of
+ * the surface) and collapse.c (one edge) share.
  */
-#ifndef CSG_MESH_RESHAPE_DECIMATE_PRIVATE_H
-#define CSG_MESH_RESHAPE_DECIMATE_PRIVATE_H
+#ifndef CSG_MESH_RESHAPE_DECIMATION_H
+#define CSG_MESH_RESHAPE_DECIMATION_H
 
-#include "mesh/reshape/decimate.h"
+#include "mesh/distance/missed.h"
 #include "mesh/reshape/quadric.h"
 
 /* A collapse waiting for its turn. */
@@ -33,6 +33,25 @@ typedef struct csg_collapse_room {
                         them, as an index into triangle */
     size_t owner_count, owner_capacity;
 } csg_collapse_room;
+
+typedef struct csg_decimation {
+    csg_remesh *remesh;
+    csg_quadric *quadrics; /* per vertex */
+    uint32_t *version;     /* per vertex: grows with each change */
+    /* Points of the true surface: the vertices the mesh began with, then one per triangle, then
+     * those that it may have missed. Each belongs to the triangle that is nearest to it among those
+     * that took its first one's place. */
+    float (*samples)[3];
+    uint32_t *next_sample;               /* NONE ends a triangle's list */
+    uint32_t *first_sample;              /* per triangle */
+    const csg_look_at_vertex *originals; /* of the vertices' samples; NULL as remesh->looks */
+    const csg_missed *missed;            /* may be NULL */
+    uint32_t sample_count, vertex_samples;
+    size_t sample_capacity;
+    csg_collapse_queue *queue;
+    csg_collapse_room *room;
+    uint64_t tried, made;
+} csg_decimation;
 
 bool csg_decimation_make_samples(csg_decimation *d);
 /* Whether the samples of room->triangle are near enough to room->after, and who takes which. */
