@@ -296,8 +296,9 @@ const apex *csg_apexes_choose(const polygon *p, const apex *apexes, csg_feature_
             continue;
         first = first ? first : &apexes[k];
         csg_apex_place(p, &apexes[k], out);
-        out->folded = !csg_feature_cut(NULL, m->tables, out, out->triangle);
-        if (!out->folded)
+        bool looks_out = csg_feature_cut(NULL, m->tables, out, out->triangle);
+        csg_feature_enter(out, looks_out ? CSG_FEATURE_SOLVED : CSG_FEATURE_FOLDED);
+        if (looks_out)
             return &apexes[k];
     }
     if (first && first != &apexes[p->start_count - 1])

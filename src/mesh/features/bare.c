@@ -115,7 +115,7 @@ static bool list_places(adding *a)
         const csg_feature_block *block = &store->blocks[b];
         for (uint32_t i = block->first; i < block->first + block->count; i++) {
             const csg_feature *f = &store->features[i];
-            if (!f->unsolved && f->sheet_count > 2 && !list_corner(a, block, f))
+            if (f->state != CSG_FEATURE_UNSOLVED && f->sheet_count > 2 && !list_corner(a, block, f))
                 return false;
         }
     }
@@ -165,9 +165,8 @@ static bool make_feature(const csg_cell_tables *tables, const csg_feature_cell *
                            .loop = (uint8_t)loop,
                            .cell = cell,
                            .side_count = tables->loop_sides[found->pattern][loop],
-                           .sheet_count = 1,
-                           .smooth = true,
-                           .bare = true};
+                           .sheet_count = 1};
+        csg_feature_enter(f, CSG_FEATURE_BARE);
         for (int s = 0; s < f->side_count; s++) {
             f->edge[s] = tables->loop_edge[found->pattern][loop][s];
             f->beyond[s] = CSG_FEATURE_NONE;

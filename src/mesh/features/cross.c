@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "mesh/features/demote.h"
 #include "mesh/features/shift.h"
 #include "mesh/features/smooth.h"
 
@@ -107,7 +108,8 @@ static uint32_t victim_of(const csg_feature_cross *cross, const uint32_t owners[
     uint32_t victim = CSG_FEATURE_NONE;
     double most = -1;
     for (int k = 0; k < 4; k++) {
-        if (owners[k] == CSG_FEATURE_NONE || cross->near.store->features[owners[k]].smooth)
+        if (owners[k] == CSG_FEATURE_NONE ||
+            csg_feature_is_plain(&cross->near.store->features[owners[k]]))
             continue;
         double excess = csg_near_excess(&cross->near, owners[k]);
         if (excess > most) {

@@ -111,7 +111,7 @@ void csg_feature_vertices(const csg_marching *m, const csg_block *block,
     uint32_t v = block->vertex_count - features->vertices;
     for (uint32_t i = features->first; i < features->first + features->count; i++) {
         const csg_feature *f = &store->features[i];
-        if (f->bare)
+        if (f->state == CSG_FEATURE_BARE)
             continue;
         if (out->colors || out->materials)
             paint(m, block, f, split, v, room, out, scratch, scratch_floats);

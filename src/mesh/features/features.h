@@ -30,44 +30,64 @@ enum {
 
 #define CSG_FEATURE_NONE UINT32_MAX
 
+/* What is known of a polygon's apex. README.md has the transitions; csg_feature_enter makes them.
+ */
+typedef enum csg_feature_state {
+    CSG_FEATURE_NEW,      /* nothing yet */
+    CSG_FEATURE_UNSOLVED, /* a crease crosses it, and no apex was found by the polygon alone */
+    CSG_FEATURE_FOLDED,   /* it has an apex, but its own fan folds over: one beyond must help */
+    CSG_FEATURE_SOLVED,   /* it has an apex, and its own fan looks out */
+    CSG_FEATURE_BARE,     /* it has none: the triangles of marching cubes, two less */
+    CSG_FEATURE_GIVEN_UP  /* the same, with a vertex in one of its triangles where the apex was */
+} csg_feature_state;
+
 /* 1 - cos of 12 degrees: a crease that ends and is as blunt as this there has faded. */
 #define CSG_FEATURE_FADING 0.0219f
 
+/* A polygon of marching cubes that a crease, a corner or a tip runs through, or that such a one
+ * next door needs. */
 typedef struct csg_feature {
-    float at[3];                              /* the apex, field frame */
-    float corner[CSG_FEATURE_MOST_SIDES][3];  /* of the polygon, field frame */
-    float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet at the apex: unit, outward */
-    uint32_t beyond[CSG_FEATURE_MOST_SIDES];  /* the feature beyond each side, or NONE */
+    /* The polygon, as find.c and bare.c have it; but for corners that make way it stays. */
+    uint16_t cell;   /* (8 z + y) 8 + x */
+    uint8_t pattern; /* of the cell */
+    uint8_t joined;  /* its faces whose inside corners are joined: csg_cell_loops_of */
+    uint8_t loop;    /* of the pattern, joined */
+    uint8_t side_count;
+    uint8_t edge[CSG_FEATURE_MOST_SIDES];    /* the cell's crossed edges, counter-clockwise from
+                                                outside; side s leads from edge s to edge s + 1 */
+    float corner[CSG_FEATURE_MOST_SIDES][3]; /* field frame */
+
+    /* Its sheets: what lies between creases (solve.c). */
+    uint8_t sheet_count;
+    uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
+    uint16_t creased;                      /* bit s: a crease crosses side s, or it is bent */
+
+    /* The apex, and how the polygon is cut (apex.c, move.c, cut.c). */
+    csg_feature_state state;
+    uint8_t tries;                            /* to find another place */
+    float at[3];                              /* field frame */
+    float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet there: unit, outward */
+    uint32_t vertex; /* its number; of the first sheet where there is one per sheet */
+    /* As many as sides: of corners of the polygon, CSG_FEATURE_APEX, or CSG_FEATURE_BEYOND + s: the
+     * apex beyond side s. The first that is a corner of the polygon lies in the triangle's sheet.
+     */
+    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
+
+    /* Who lies beyond, and who is joined (store.c, join.c). */
+    uint32_t beyond[CSG_FEATURE_MOST_SIDES]; /* the feature beyond each side, or NONE */
     uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
-    uint16_t flipped; /* bit s: side s */
+    uint16_t flipped; /* bit s: side s is: both apexes are joined by an edge in its place */
     /* Of the two triangles at a flipped side each feature has one: bit s: that at the side's end,
      * corner s + 1, otherwise that at corner s. */
     uint16_t takes_next;
-    uint8_t edge[CSG_FEATURE_MOST_SIDES];  /* the cell's crossed edges, counter-clockwise from
-                                              outside; side s leads from edge s to edge s + 1 */
-    uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
-    /* As many as sides: of corners of the polygon, CSG_FEATURE_APEX, or CSG_FEATURE_BEYOND + s: the
-     * apex beyond side s. The first that is a corner of
-     * the polygon lies in the triangle's sheet. */
-    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
-    uint8_t side_count, sheet_count;
-    bool folded;      /* its own fan folds over: an apex beyond must help */
-    bool unsolved;    /* no apex was found by the polygon alone */
-    uint8_t tries;    /* to find another place */
-    uint8_t pattern;  /* of the cell */
-    uint8_t joined;   /* its faces whose inside corners are joined: csg_cell_loops_of */
-    uint8_t loop;     /* of the pattern, joined */
-    uint16_t cell;    /* (8 z + y) 8 + x */
-    uint16_t creased; /* bit s: a crease crosses side s, or it is bent */
-    uint16_t bent;    /* bit s: both ends are in one sheet, but an apex reaches across */
-    bool ends;        /* a crease ends here: the polygon beyond a creased side has none */
-    bool smooth;      /* given up: csg_feature_demote */
-    bool bare;        /* without an apex, and smooth: the triangles of marching cubes, two less */
-    bool made_way;    /* a vertex has moved for it */
-    uint8_t shift;    /* how much has been tried of that (shift.h) */
-    uint16_t moved;   /* bit s: corner s is not where its lattice edge has it */
-    uint8_t moves;    /* of its corners until now */
-    uint32_t vertex;  /* the apex's number; of the first sheet where there is one per sheet */
+    uint16_t bent; /* bit s: both ends are in one sheet, but an apex reaches across */
+    bool ends;     /* a crease ends here: the polygon beyond a creased side has none */
+
+    /* Vertices that have made way (shift.c). */
+    bool made_way;  /* one has for this feature */
+    uint8_t shift;  /* how much has been tried of that */
+    uint16_t moved; /* bit s: corner s is not where its lattice edge has it */
+    uint8_t moves;  /* of its corners until now */
 } csg_feature;
 
 /* A vertex that has made way for a corner of the solid (shift.h). */
@@ -101,6 +121,16 @@ typedef struct csg_feature_store {
     uint64_t smooth; /* polygons that a crease crosses and that stay as they were */
     uint64_t fading; /* the same, where all their creases are blunt and end */
 } csg_feature_store;
+
+/* Whether README.md's table has a transition; one that it has not is a mistake here (asserted). */
+bool csg_feature_may_enter(csg_feature_state from, csg_feature_state to);
+void csg_feature_enter(csg_feature *feature, csg_feature_state state);
+
+/* Made of the triangles of marching cubes; for good. */
+static inline bool csg_feature_is_plain(const csg_feature *feature)
+{
+    return feature->state == CSG_FEATURE_BARE || feature->state == CSG_FEATURE_GIVEN_UP;
+}
 
 /* ---- finding ------------------------------------------------------------------------------- */
 
@@ -161,10 +191,6 @@ bool csg_feature_store_index(csg_feature_store *store);
 /* Who lies beyond each side; where a crease crosses it, it is to be flipped. Any thread; writes one
  * block alone. */
 void csg_feature_link(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
-/* The polygon is as plain marching cubes makes it, but for a vertex in one of its triangles where
- * the apex was: the numbers of everything stay. */
-void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
-                        csg_feature *feature);
 /* The triangles, once all are linked, in their places and settled. As csg_feature_link. */
 void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, size_t block);
 const csg_feature_block *csg_feature_store_find(const csg_feature_store *store,
@@ -184,7 +210,7 @@ typedef struct csg_fan_corner {
 /* As many as its polygon has sides; without an apex two less. */
 static inline int csg_feature_triangle_count(const csg_feature *feature)
 {
-    return feature->side_count - (feature->bare ? 2 : 0);
+    return feature->side_count - (feature->state == CSG_FEATURE_BARE ? 2 : 0);
 }
 
 /* Triangle `index` of a feature. */

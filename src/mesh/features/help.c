@@ -76,8 +76,11 @@ bool csg_feature_place_within(csg_feature *h, csg_vec3 at, csg_feature_probe *pr
             h->normal[0][i] = (float)(-(double)g[i][0] / length) + 0.0f;
         at = csg_vec3_sub(at, csg_vec3_scale(n, (double)f / square));
     }
-    return fabs((double)f) <= 1e-4 * cell + 4 * (double)probe->marching->noise &&
-           csg_feature_cut(NULL, probe->marching->tables, h, h->triangle);
+    if (!(fabs((double)f) <= 1e-4 * cell + 4 * (double)probe->marching->noise) ||
+        !csg_feature_cut(NULL, probe->marching->tables, h, h->triangle))
+        return false;
+    csg_feature_enter(h, CSG_FEATURE_SOLVED);
+    return true;
 }
 
 /* Between the apex that pokes in and the corners away from it. */
@@ -146,7 +149,7 @@ bool csg_feature_help(csg_feature_room *room, size_t first, csg_feature_probe *p
     size_t end = room->count;
     for (size_t i = first; i < end; i++) {
         csg_feature f = room->features[i]; /* a copy: the array may move */
-        for (int s = 0; f.folded && !f.unsolved && s < f.side_count; s++)
+        for (int s = 0; f.state == CSG_FEATURE_FOLDED && s < f.side_count; s++)
             if (!(f.creased >> s & 1) && pokes_out(&f, s) &&
                 !help_side(room, first, &f, s, probe, memory))
                 return false;

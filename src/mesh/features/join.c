@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Which features are joined: whether the segments between them can be flipped, and which of two
- * polygons has which half; polygons for which there is no way become smooth again.
+ * polygons has which half.
  */
 #include "mesh/features/join.h"
 
@@ -8,8 +8,6 @@
 #include <string.h>
 
 #include "mesh/features/cut.h"
-#include "mesh/features/move.h"
-#include "mesh/features/shift.h"
 
 /* Whether triangle (a, b, c) looks out of the sheet with normal n. */
 static bool looks_along(const float *a, const float *b, const float *c, const float *n)
@@ -120,11 +118,6 @@ static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, 
            find_shares(store, tables, f) || find_shares(store, tables, g);
 }
 
-static bool is_corner(const csg_feature *f)
-{
-    return f->sheet_count > 2;
-}
-
 /* Whether another side before it joins the same two apexes: they would have an edge twice. Polygons
  * that meet in both segments of one face can. */
 static bool is_joined_already(const csg_feature *f, int s)
@@ -135,15 +128,15 @@ static bool is_joined_already(const csg_feature *f, int s)
     return false;
 }
 
-/* An apex that is not known yet stands in nobody's way. */
-static bool side_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
-                       int s)
+bool csg_feature_side_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
+                            int s)
 {
     if (!(f->flipped >> s & 1))
         return stays_outward(f, s);
     if (is_joined_already(f, s))
         return false;
-    return store->features[f->beyond[s]].unsolved || side_flips(store, tables, f, s);
+    return store->features[f->beyond[s]].state == CSG_FEATURE_UNSOLVED ||
+           side_flips(store, tables, f, s);
 }
 
 static void set_bent(csg_feature *f, int s, bool bent)
@@ -177,7 +170,8 @@ static bool bend(csg_feature_store *store, const csg_cell_tables *tables, csg_fe
                         f->normal[f->sheet[s]]))
             continue;
         const csg_feature *g = &store->features[f->beyond[s]];
-        if (!g->unsolved && !g->bare && !(g->creased >> f->beyond_side[s] & 1))
+        if (g->state != CSG_FEATURE_UNSOLVED && g->state != CSG_FEATURE_BARE &&
+            !(g->creased >> f->beyond_side[s] & 1))
             set_bent(f, s, true);
     }
     if (f->bent == before.bent)
@@ -190,77 +184,18 @@ static bool bend(csg_feature_store *store, const csg_cell_tables *tables, csg_fe
     return false;
 }
 
-/* Whether what folds over by itself can be cut. */
-static bool unfolds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
+bool csg_feature_unfolds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
-    return !f->folded || find_shares(store, tables, f) || bend(store, tables, f);
+    return f->state != CSG_FEATURE_FOLDED || find_shares(store, tables, f) ||
+           bend(store, tables, f);
 }
 
 bool csg_feature_holds(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
-    if (!unfolds(store, tables, f))
+    if (!csg_feature_unfolds(store, tables, f))
         return false;
     for (int s = 0; s < f->side_count; s++)
-        if ((f->creased >> s & 1) && !side_holds(store, tables, f, s))
+        if ((f->creased >> s & 1) && !csg_feature_side_holds(store, tables, f, s))
             return false;
     return true;
-}
-
-/* Gives up one of two that cannot be joined (or both), g NULL: the one that has none beyond. */
-static void give_up(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
-                    csg_feature *g)
-{
-    bool both = !g || is_corner(f) == is_corner(g);
-    if (g && (both || is_corner(f)))
-        csg_feature_demote(store, tables, g);
-    if (both || !is_corner(f))
-        csg_feature_demote(store, tables, f);
-}
-
-/* An apex that was not found yet, from its neighbours; those in its way are looked after first. */
-static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
-                       csg_feature_probe *probe)
-{
-    csg_feature *f = &store->features[index];
-    if (csg_feature_replace(store, tables, index, probe))
-        return true;
-    for (int s = 0; s < f->side_count; s++) {
-        csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
-        if (g && !g->unsolved && !csg_feature_holds(store, tables, g))
-            csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe);
-    }
-    f->tries = 0;
-    return csg_feature_replace(store, tables, index, probe);
-}
-
-size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables,
-                          csg_feature_probe *probe)
-{
-    size_t changed = 0;
-    for (uint32_t i = 0; i < store->count; i++) {
-        csg_feature *f = &store->features[i];
-        if (f->creased && f->unsolved && !solve_late(store, tables, i, probe))
-            csg_feature_demote(store, tables, f);
-    }
-    for (uint32_t i = 0; i < store->count; i++) {
-        csg_feature *f = &store->features[i];
-        if (f->creased && !unfolds(store, tables, f)) {
-            if (!csg_feature_replace(store, tables, i, probe) &&
-                !csg_feature_shift(store, tables, i, CSG_FEATURE_NONE, probe))
-                csg_feature_demote(store, tables, f);
-            changed++;
-        }
-        for (int s = 0; s < f->side_count; s++) {
-            if (!(f->creased >> s & 1) || side_holds(store, tables, f, s))
-                continue;
-            uint32_t other = f->flipped >> s & 1 ? f->beyond[s] : CSG_FEATURE_NONE;
-            changed++;
-            if (!csg_feature_replace(store, tables, i, probe) &&
-                (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&
-                !csg_feature_shift(store, tables, i, other, probe))
-                give_up(store, tables, f,
-                        other == CSG_FEATURE_NONE ? NULL : &store->features[other]);
-        }
-    }
-    return changed;
 }

@@ -14,9 +14,12 @@ bool csg_feature_holds(csg_feature_store *store, const csg_cell_tables *tables,
 /* Makes the neighbours' shares of flipped segments fit those of the feature. */
 void csg_feature_agree(csg_feature_store *store, csg_feature *feature);
 
-/* Looks for another place for features that do not hold, and makes those smooth again that have
- * none; how many changed. To be called until there are none; not in parallel. */
-size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables,
-                          csg_feature_probe *probe);
+/* The parts of that: whether what folds over by itself can be cut after all, and whether the
+ * feature can be joined to the one beyond a creased side, or ends there without folding over. An
+ * apex that is not known yet stands in nobody's way. */
+bool csg_feature_unfolds(csg_feature_store *store, const csg_cell_tables *tables,
+                         csg_feature *feature);
+bool csg_feature_side_holds(csg_feature_store *store, const csg_cell_tables *tables,
+                            csg_feature *feature, int side);
 
 #endif

@@ -54,8 +54,10 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
     csg_apexes_improve(&p, &a, cell, probe);
     *out = *f;
     out->flipped = 0; /* the fan itself must look out */
-    bool found = csg_apexes_choose(&p, &a, probe, out) && !out->folded;
+    bool found = csg_apexes_choose(&p, &a, probe, out) && out->state == CSG_FEATURE_SOLVED;
     out->flipped = f->flipped;
+    if (f->state == CSG_FEATURE_UNSOLVED)
+        out->state = f->state; /* it is a likely place, no more */
     return found;
 }
 
@@ -78,7 +80,7 @@ static surroundings look_beside(const csg_feature_store *store, const csg_featur
         const csg_feature *g = &store->features[f->beyond[s]];
         q.beside[q.count] = g;
         q.side[q.count] = s;
-        q.count += !g->unsolved;
+        q.count += g->state != CSG_FEATURE_UNSOLVED;
     }
     return q;
 }
@@ -150,13 +152,12 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
         f->flipped = 0;
         bool found = csg_apexes_choose(&p, &a, probe, f) != NULL;
         f->flipped = before.flipped;
-        f->unsolved = false;
         csg_feature_agree(store, f);
         if (found && csg_feature_holds(store, tables, f))
             return true;
-        if (found && before.unsolved && n == 0) {
+        if (found && before.state == CSG_FEATURE_UNSOLVED && n == 0) {
             best = *f;
-            best.unsolved = true;
+            best.state = before.state;
         }
     }
     *f = best;

@@ -152,7 +152,7 @@ static bool is_joined(const csg_feature_room *room, const face *f, csg_feature_p
 }
 
 /* To the cells on both sides, as far as they are the block's. */
-static void join(csg_feature_room *room, const face *f)
+static void mark_joined(csg_feature_room *room, const face *f)
 {
     for (int side = 0; side < 2; side++) { /* of the cell */
         int at[3] = {f->at[0], f->at[1], f->at[2]};
@@ -174,7 +174,7 @@ bool csg_feature_pair(csg_feature_room *room, csg_feature_probe *probe)
                     face f = {axis, {__builtin_ctz(rest), j, k}};
                     if (!is_joined(room, &f, probe))
                         continue;
-                    join(room, &f);
+                    mark_joined(room, &f);
                     any = true;
                 }
     return any;

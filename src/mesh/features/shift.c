@@ -26,7 +26,7 @@ static bool find_ring(csg_feature_store *store, csg_feature *f, int corner, ring
     for (int k = 0; k < AROUND; k++) {
         r->f[k] = f;
         r->corner[k] = corner;
-        if ((f->smooth && !f->bare) || f->moved >> corner & 1 ||
+        if (f->state == CSG_FEATURE_GIVEN_UP || f->moved >> corner & 1 ||
             f->beyond[corner] == CSG_FEATURE_NONE)
             return false;
         int side = f->beyond_side[corner];
@@ -36,7 +36,7 @@ static bool find_ring(csg_feature_store *store, csg_feature *f, int corner, ring
     return f == r->f[0] && corner == r->corner[0];
 }
 
-static void put(const ring *r, const float at[3])
+static void place_vertex(const ring *r, const float at[3])
 {
     for (int k = 0; k < AROUND; k++)
         memcpy(r->f[k]->corner[r->corner[k]], at, 3 * sizeof *at);
@@ -93,14 +93,15 @@ static bool ring_holds(csg_feature_store *store, const csg_cell_tables *tables, 
 {
     uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
     for (int k = 0; k < AROUND; k++) /* what is quick first */
-        if (r->f[k]->bare && !looks_out(r->f[k], r->corner[k], normal, store->cell_size))
+        if (r->f[k]->state == CSG_FEATURE_BARE &&
+            !looks_out(r->f[k], r->corner[k], normal, store->cell_size))
             return false;
     for (int k = 0; k < AROUND; k++) {
         csg_feature *f = r->f[k];
-        bool good = f->bare || f->unsolved ? true
-                    : f->creased           ? csg_feature_holds(store, tables, f)
-                                           : csg_feature_cut(store->features, tables, f, triangles);
-        if (!good)
+        if (f->state == CSG_FEATURE_BARE || f->state == CSG_FEATURE_UNSOLVED)
+            continue;
+        if (f->creased ? !csg_feature_holds(store, tables, f)
+                       : !csg_feature_cut(store->features, tables, f, triangles))
             return false;
     }
     return true;
@@ -163,7 +164,7 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
         if (!to_surface(probe, &at, &normal))
             continue;
         to[0] = (float)at.x, to[1] = (float)at.y, to[2] = (float)at.z;
-        put(&r, to);
+        place_vertex(&r, to);
         if (ring_holds(store, tables, &r, normal)) {
             if (keep(store, f, &r, from, normal))
                 return true;
@@ -180,7 +181,7 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
 static bool shift_ring(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
                        int around, csg_feature_probe *probe)
 {
-    if (!f->creased || f->unsolved || f->shift > around)
+    if (!f->creased || f->state == CSG_FEATURE_UNSOLVED || f->shift > around)
         return false;
     f->shift = (uint8_t)(around + 1);
     bool done = false;
@@ -208,7 +209,7 @@ static void put_back(csg_feature_store *store, const csg_cell_tables *tables, cs
         memcpy(f->corner[m->corner[k]], m->from, sizeof m->from);
         f->moved &= (uint16_t) ~(1u << m->corner[k]);
         f->moves++;
-        if (f->smooth && !f->bare)
+        if (f->state == CSG_FEATURE_GIVEN_UP)
             csg_feature_divide(f, tables, 0);
     }
     m->back = true;

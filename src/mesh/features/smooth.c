@@ -95,11 +95,11 @@ static bool fan_within(csg_feature *f, unsigned attempt)
 bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned attempt)
 {
     enum { MOST_CUT = 7 };
-    if (f->side_count > MOST_CUT && !f->bare)
+    if (f->side_count > MOST_CUT && f->state != CSG_FEATURE_BARE)
         return fan_within(f, attempt);
     uint8_t corner[CSG_CELL_EDGES][3], (*to)[3] = f->triangle;
     unsigned count = plain_triangles(f, tables, corner);
-    if (f->bare || attempt / count >= WEIGHT_COUNT)
+    if (f->state == CSG_FEATURE_BARE || attempt / count >= WEIGHT_COUNT)
         return false;
     unsigned divided = attempt ? attempt % count : largest_of(f, corner, count);
     const uint8_t *d = corner[divided];

@@ -143,7 +143,7 @@ static void leave_unsolved(const csg_feature_room *room, const csg_found_loop *l
     apex a = {.at = p->start[0]};
     first_planes(room, loop, p, &a);
     csg_apex_place(p, &a, out);
-    out->folded = out->unsolved = true;
+    csg_feature_enter(out, CSG_FEATURE_UNSOLVED);
 }
 
 /* In a cell with a joined face every loop is a feature: without a crease, with an apex within its
@@ -162,8 +162,8 @@ static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loo
     csg_feature_find_middles(&p);
     if (csg_feature_place_within(out, p.middle, probe))
         return;
+    csg_feature_enter(out, CSG_FEATURE_GIVEN_UP);
     csg_feature_divide(out, probe->marching->tables, 0);
-    out->smooth = true;
 }
 
 bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
@@ -180,7 +180,7 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
         return true;
     bool found = good && (crossed || loop->wide) && solve_polygon(room, loop, &p, probe, out);
     /* nobody beyond could help a tip: it is for the polygon there to reach */
-    bool solved = found && (p.creased || !out->folded);
+    bool solved = found && (p.creased || out->state == CSG_FEATURE_SOLVED);
     bool fades = is_fading(room, loop);
     bool creased = p.creased && !fades;
     if (good && creased && !solved)

@@ -6,8 +6,7 @@
 
 #include "mesh/features/cut.h"
 #include "mesh/features/face.h"
-#include "mesh/features/shift.h"
-#include "mesh/features/smooth.h"
+#include "mesh/features/features.h"
 
 enum { E = CSG_BLOCK_EDGE };
 
@@ -101,12 +100,6 @@ static uint32_t feature_with(const csg_feature_store *store, const csg_feature_b
     return CSG_FEATURE_NONE;
 }
 
-/* Smooth from the beginning, in a cell with a joined face. */
-static bool is_given_up(const csg_feature *f)
-{
-    return f->smooth && !f->bare;
-}
-
 static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
                       const csg_feature_block *block, csg_feature *f, int s)
 {
@@ -121,7 +114,8 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
         return;
     uint32_t other = feature_with(store, beyond, cell, csg_edge_beyond(tables, to, face / 2),
                                   csg_edge_beyond(tables, from, face / 2), &side);
-    if (other == CSG_FEATURE_NONE || is_given_up(f) || is_given_up(&store->features[other]))
+    if (other == CSG_FEATURE_NONE || f->state == CSG_FEATURE_GIVEN_UP ||
+        store->features[other].state == CSG_FEATURE_GIVEN_UP) /* in a cell with a joined face */
         return;
     f->beyond[s] = other;
     f->beyond_side[s] = side;
@@ -148,41 +142,6 @@ void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, s
         if (f->creased)
             csg_feature_cut(store->features, tables, f, f->triangle);
     }
-}
-
-/* ---- giving up
- * ------------------------------------------------------------------------------------
- */
-
-/* Whether what ends in a polygon is a blunt crease. */
-static bool is_fading(const csg_feature *f)
-{
-    float cosine = 0;
-    for (int i = 0; i < 3; i++)
-        cosine += f->normal[0][i] * f->normal[1][i];
-    return f->ends && f->sheet_count == 2 && 1 - cosine < CSG_FEATURE_FADING;
-}
-
-void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
-{
-    csg_feature_shift_back(store, tables, f);
-    for (int s = 0; s < f->side_count; s++) {
-        if (f->beyond[s] == CSG_FEATURE_NONE)
-            continue;
-        csg_feature *g = &store->features[f->beyond[s]];
-        bool joined = f->flipped >> s & 1;
-        g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
-        g->flipped &= (uint16_t) ~(1u << f->beyond_side[s]);
-        g->takes_next &= g->flipped;
-        if (joined)
-            csg_feature_cut(store->features, tables, g, g->triangle);
-        f->beyond[s] = CSG_FEATURE_NONE;
-    }
-    if (f->creased & ~f->bent)
-        *(is_fading(f) ? &store->fading : &store->smooth) += 1;
-    f->creased = f->flipped = f->takes_next = f->bent = 0;
-    f->smooth = true;
-    csg_feature_divide(f, tables, 0);
 }
 
 /* ---- triangles ---------------------------------------------------------------------------------

@@ -8,8 +8,8 @@
 #include "base/pool.h"
 #include "mesh/features/bare.h"
 #include "mesh/features/cross.h"
-#include "mesh/features/join.h"
 #include "mesh/features/move.h"
+#include "mesh/features/settle.h"
 
 /* What one item of the parallel loop has found, in the room of one worker. */
 typedef struct csg_found_item {
