@@ -10,6 +10,10 @@
 
 #include "csgmesh/csgmesh.h"
 
+typedef struct csg_vec2 {
+    double x, y;
+} csg_vec2;
+
 typedef csgm_vec3 csg_vec3;
 typedef csgm_box csg_box;
 

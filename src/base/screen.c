@@ -4,6 +4,8 @@
  */
 #include "base/screen.h"
 
+#include "base/utf8.h"
+
 typedef struct range {
     uint32_t first, last;
 } range;
@@ -35,30 +37,9 @@ static bool is_in(const range *ranges, size_t count, uint32_t c)
 
 #define IS_IN(ranges, c) is_in(ranges, sizeof(ranges) / sizeof *(ranges), c)
 
-/* Bytes of the character, 0 when it is not well formed. */
-static uint32_t decode(const unsigned char *text, size_t length, uint32_t *out)
-{
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    uint32_t bytes = text[0] < 0x80                      ? 1
-                     : text[0] >= 0xC2 && text[0] < 0xE0 ? 2
-                     : (text[0] & 0xF0) == 0xE0          ? 3
-                     : text[0] >= 0xF0 && text[0] < 0xF5 ? 4
-                                                         : 0;
-    if (bytes == 0 || bytes > length)
-        return 0;
-    *out = bytes == 1 ? text[0] : text[0] & (0x7Fu >> bytes);
-    for (uint32_t i = 1; i < bytes; i++) {
-        if ((text[i] & 0xC0) != 0x80)
-            return 0;
-        *out = *out << 6 | (text[i] & 0x3F);
-    }
-    bool surrogate = *out >= 0xD800 && *out <= 0xDFFF;
-    return *out < least[bytes] || *out > 0x10FFFF || surrogate ? 0 : bytes;
-}
-
 csg_screen_cell csg_screen_cell_at(const char *text, size_t length)
 {
-    uint32_t c, bytes = decode((const unsigned char *)text, length, &c);
+    uint32_t c, bytes = (uint32_t)csg_utf8_decode(text, length, &c);
     if (bytes == 0)
         return (csg_screen_cell){1, 1, false};
     if ((c < 0x20 && c != '\t') || (c >= 0x7F && c < 0xA0) || IS_IN(turning, c))

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/utf8.h"
+#include "base/utf8.h"
 
 typedef enum place { IN_CODE, IN_STRING, IN_COMMENT } place;
 

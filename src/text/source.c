@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "text/utf8.h"
+#include "base/utf8.h"
 
 enum {
     LARGEST_TEXT = 64 << 20, /* bytes of one file */

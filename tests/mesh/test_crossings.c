@@ -6,6 +6,7 @@
  * Arguments: how many scenes (default 30), the first one's seed (default 0). "-v" behind them: goes
  * on after a crossing and tells of each.
  */
+#include "base/orient.h"
 #include "mesh/features/exact.h"
 #include "mesh/mesh_support.h"
 #include "mesh/self_intersections.h"
@@ -83,7 +84,7 @@ static bool has_area(const csg_exact_triangle *t)
 {
     bool any = false;
     for (int axis = 0; axis < 3; axis++)
-        any = any || csg_exact_turn(t->at[0], t->at[1], t->at[2], axis);
+        any = any || csg_orient_along(t->at[0], t->at[1], t->at[2], axis);
     return any;
 }
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "base/orient.h"
 #include "shape/plane/polygons.h"
-#include "shape/plane/turn.h"
 
 static void add_loop(const double (*points)[2], int count)
 {
@@ -32,26 +32,6 @@ static size_t triangulate(double slack)
     return count / 3;
 }
 
-/* ---- which way points turn ---------------------------------------------------------------- */
-
-static void turns_are_exact(void **state)
-{
-    csg_random random = {3};
-    for (int i = 0; i < 100000; i++) {
-        int64_t v[6];
-        for (int k = 0; k < 6; k++)
-            v[k] = (int64_t)csg_random_below(&random, 1u << 30) - (1 << 29);
-        if (i % 2) { /* nearly on a line */
-            v[4] = v[0] + 2 * (v[2] - v[0]) + csg_random_below(&random, 2);
-            v[5] = v[1] + 2 * (v[3] - v[1]);
-        }
-        int64_t det = (v[2] - v[0]) * (v[5] - v[1]) - (v[3] - v[1]) * (v[4] - v[0]);
-        csg_vec2 a = {(double)v[0], (double)v[1]}, b = {(double)v[2], (double)v[3]},
-                 c = {(double)v[4], (double)v[5]};
-        assert_int_equal(csg_turn(a, b, c), (det > 0) - (det < 0));
-    }
-}
-
 /* ---- hull --------------------------------------------------------------------------------- */
 
 static void hulls_hold_all_points(void **state)
@@ -71,8 +51,9 @@ static void hulls_hold_all_points(void **state)
             for (size_t i = 0; i < hull.point_count; i++) {
                 csg_vec2 a = hull.points[i], b = hull.points[(i + 1) % hull.point_count];
                 for (size_t j = 0; j < outline.point_count; j++)
-                    assert_true(csg_turn(a, b, outline.points[j]) >= 0);
-                assert_int_equal(csg_turn(a, b, hull.points[(i + 2) % hull.point_count]), 1);
+                    assert_true(csg_orient_plane(a, b, outline.points[j]) >= 0);
+                assert_int_equal(csg_orient_plane(a, b, hull.points[(i + 2) % hull.point_count]),
+                                 1);
             }
         }
         assert_true(hull.loop_count || round % 2);
@@ -247,7 +228,6 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
-        TEST(turns_are_exact),
         TEST(hulls_hold_all_points),
         TEST(hulls_of_lines_are_empty),
         TEST(nothing_has_no_triangles),

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
+#include "base/utf8.h"
 #include "text/lexer.h"
-#include "text/utf8.h"
 
 static csgm_context context;
 static csg_arena arena;

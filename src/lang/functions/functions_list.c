@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "lang/functions/functions.h"
-#include "text/utf8.h"
 
 csg_value csg_function_len(const csg_function_call *call)
 {

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "lang/functions/functions.h"
-#include "text/utf8.h"
 
 /* ---- lookup -----------------------------------------------------------------------------------
  */

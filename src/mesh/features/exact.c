@@ -1,147 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Exact signs, and what follows from them; see exact.h.
+ * What follows from exact signs; see exact.h.
  */
 #include "mesh/features/exact.h"
 
-#include <math.h>
-
-#include "base/geometry.h"
-
-/* ---- sums that lose nothing --------------------------------------------------------------------
- */
-
-enum { MOST_TERMS = 256 };
-
-/* Terms that do not overlap, the largest last. */
-typedef struct sum {
-    double term[MOST_TERMS];
-    int count;
-} sum;
-
-/* a + b = *high + *low (Knuth) */
-static void add_two(double a, double b, double *high, double *low)
-{
-    *high = a + b;
-    double of_b = *high - a, of_a = *high - of_b;
-    *low = (a - of_a) + (b - of_b);
-}
-
-static void add(sum *s, double x)
-{
-    int count = 0;
-    for (int i = 0; i < s->count; i++) {
-        double low;
-        add_two(x, s->term[i], &x, &low);
-        if (low != 0)
-            s->term[count++] = low;
-    }
-    if (x != 0 || !count)
-        s->term[count++] = x;
-    s->count = count;
-}
-
-static int sign_of(double x)
-{
-    return (x > 0) - (x < 0);
-}
-
-/* Of a sum: its largest term outweighs the rest. */
-static int sign_of_sum(const sum *s)
-{
-    return s->count ? sign_of(s->term[s->count - 1]) : 0;
-}
-
-/* a - b = [0] + [1] */
-static void subtract(float a, float b, double out[2])
-{
-    add_two((double)a, -(double)b, &out[0], &out[1]);
-}
-
-/* Adds sign * a * b * c, each of two terms; fma(x, y, -x y) is what x y has lost. */
-static void add_product(sum *s, double sign, const double a[2], const double b[2],
-                        const double c[2])
-{
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++) {
-            double ab = a[i] * b[j], lost = fma(a[i], b[j], -ab);
-            for (int k = 0; k < 2 && ab != 0; k++) {
-                double high = ab * c[k], low = lost * c[k];
-                if (c[k] == 0)
-                    continue;
-                add(s, sign * high);
-                add(s, sign * fma(ab, c[k], -high));
-                add(s, sign * low);
-                add(s, sign * fma(lost, c[k], -low));
-            }
-        }
-}
-
-static int exact_side(const float a[3], const float b[3], const float c[3], const float d[3])
-{
-    double u[3][2], v[3][2], w[3][2];
-    for (int i = 0; i < 3; i++) {
-        subtract(b[i], a[i], u[i]);
-        subtract(c[i], a[i], v[i]);
-        subtract(d[i], a[i], w[i]);
-    }
-    sum s = {.count = 0};
-    for (int i = 0; i < 3; i++) {
-        add_product(&s, 1, u[i], v[(i + 1) % 3], w[(i + 2) % 3]);
-        add_product(&s, -1, u[i], v[(i + 2) % 3], w[(i + 1) % 3]);
-    }
-    return sign_of_sum(&s);
-}
-
-static int exact_turn(const float a[3], const float b[3], const float c[3], int i, int j)
-{
-    static const double one[2] = {1, 0};
-    double u[2][2], v[2][2];
-    subtract(b[i], a[i], u[0]);
-    subtract(b[j], a[j], u[1]);
-    subtract(c[i], a[i], v[0]);
-    subtract(c[j], a[j], v[1]);
-    sum s = {.count = 0};
-    add_product(&s, 1, u[0], v[1], one);
-    add_product(&s, -1, u[1], v[0], one);
-    return sign_of_sum(&s);
-}
-
-/* ---- signs in double, where they are certain ---------------------------------------------------
- */
-
-/* Shewchuk's bounds, (7 + 56 e) e and (3 + 16 e) e with e = 2^-53, and a little more. */
-static const double SIDE_ERROR = 8.0 * 0x1p-53, TURN_ERROR = 4.0 * 0x1p-53;
-
-/* The sign of the volume of a tetrahedron: on which side of (a, b, c) d lies; 0: in its plane. */
-static int orientation(const float a[3], const float b[3], const float c[3], const float d[3])
-{
-    double u[3], v[3], w[3], volume = 0, most = 0;
-    for (int i = 0; i < 3; i++) {
-        u[i] = (double)b[i] - (double)a[i];
-        v[i] = (double)c[i] - (double)a[i];
-        w[i] = (double)d[i] - (double)a[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-        double x = v[j] * w[k], y = v[k] * w[j];
-        volume += u[i] * (x - y);
-        most += fabs(u[i]) * (fabs(x) + fabs(y));
-    }
-    if (fabs(volume) > SIDE_ERROR * most)
-        return sign_of(volume);
-    return most > 0 ? exact_side(a, b, c, d) : 0;
-}
-
-int csg_exact_turn(const float a[3], const float b[3], const float c[3], int axis)
-{
-    int i = axis == 2 ? 0 : axis + 1, j = i == 2 ? 0 : i + 1;
-    double x = ((double)b[i] - (double)a[i]) * ((double)c[j] - (double)a[j]);
-    double y = ((double)b[j] - (double)a[j]) * ((double)c[i] - (double)a[i]);
-    double most = fabs(x) + fabs(y);
-    if (fabs(x - y) > TURN_ERROR * most)
-        return sign_of(x - y);
-    return most > 0 ? exact_turn(a, b, c, i, j) : 0;
-}
+#include "base/orient.h"
 
 /* ---- in one plane ------------------------------------------------------------------------------
  */
@@ -157,7 +19,7 @@ static int axis_of(const csg_exact_triangle *t)
                    ((double)t->at[2][j] - (double)t->at[0][j]);
         double y = ((double)t->at[1][j] - (double)t->at[0][j]) *
                    ((double)t->at[2][i] - (double)t->at[0][i]);
-        if (fabs(x - y) > most && csg_exact_turn(t->at[0], t->at[1], t->at[2], axis)) {
+        if (fabs(x - y) > most && csg_orient_along(t->at[0], t->at[1], t->at[2], axis)) {
             most = fabs(x - y);
             best = axis;
         }
@@ -167,7 +29,7 @@ static int axis_of(const csg_exact_triangle *t)
 
 static bool is_on_segment(const float *a, const float *b, const float *p, int axis)
 {
-    if (csg_exact_turn(a, b, p, axis))
+    if (csg_orient_along(a, b, p, axis))
         return false;
     for (int i = 0; i < 3; i++)
         if (i != axis && !(fminf(a[i], b[i]) <= p[i] && p[i] <= fmaxf(a[i], b[i])))
@@ -177,8 +39,8 @@ static bool is_on_segment(const float *a, const float *b, const float *p, int ax
 
 static bool segments_meet(const float *a, const float *b, const float *c, const float *d, int axis)
 {
-    int to_c = csg_exact_turn(a, b, c, axis), to_d = csg_exact_turn(a, b, d, axis);
-    int to_a = csg_exact_turn(c, d, a, axis), to_b = csg_exact_turn(c, d, b, axis);
+    int to_c = csg_orient_along(a, b, c, axis), to_d = csg_orient_along(a, b, d, axis);
+    int to_a = csg_orient_along(c, d, a, axis), to_b = csg_orient_along(c, d, b, axis);
     return (to_c * to_d < 0 && to_a * to_b < 0) || is_on_segment(a, b, c, axis) ||
            is_on_segment(a, b, d, axis) || is_on_segment(c, d, a, axis) ||
            is_on_segment(c, d, b, axis);
@@ -189,7 +51,7 @@ static bool is_within(const csg_exact_triangle *t, const float *p, int axis)
 {
     int least = 1, most = -1;
     for (int k = 0; k < 3; k++) {
-        int turn = csg_exact_turn(t->at[k], t->at[(k + 1) % 3], p, axis);
+        int turn = csg_orient_along(t->at[k], t->at[(k + 1) % 3], p, axis);
         least = turn < least ? turn : least;
         most = turn > most ? turn : most;
     }
@@ -220,7 +82,7 @@ static bool pierces(const float *p, const float *q, int above, int below,
         return meets_in_plane(t, p, q);
     int least = 1, most = -1;
     for (int k = 0; k < 3; k++) {
-        int turn = orientation(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
+        int turn = csg_orient_space(p, q, t->at[k], t->at[k == 2 ? 0 : k + 1]);
         least = turn < least ? turn : least;
         most = turn > most ? turn : most;
     }
@@ -229,7 +91,7 @@ static bool pierces(const float *p, const float *q, int above, int below,
 
 static int side_of(const csg_exact_triangle *t, const float *p)
 {
-    return orientation(t->at[0], t->at[1], t->at[2], p);
+    return csg_orient_space(t->at[0], t->at[1], t->at[2], p);
 }
 
 /* ---- two triangles -----------------------------------------------------------------------------
@@ -255,9 +117,9 @@ static bool boxes_apart(const csg_exact_triangle *s, const csg_exact_triangle *t
 static bool is_folded(const float *e, const float *f, const float *p, const float *q)
 {
     for (int axis = 0; axis < 3; axis++)
-        if (csg_exact_turn(e, f, p, axis) * csg_exact_turn(e, f, q, axis) < 0)
+        if (csg_orient_along(e, f, p, axis) * csg_orient_along(e, f, q, axis) < 0)
             return false; /* apart in this view */
-    return orientation(e, f, p, q) == 0;
+    return csg_orient_space(e, f, p, q) == 0;
 }
 
 /* At a vertex of both: does what is opposite to it in one meet the other? */

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
+#include "base/utf8.h"
 #include "outline/letters/bidi.h"
-#include "text/utf8.h"
 
 typedef struct character {
     csg_font *font;

@@ -10,10 +10,6 @@
 #include "base/geometry.h"
 #include "base/memory.h"
 
-typedef struct csg_vec2 {
-    double x, y;
-} csg_vec2;
-
 typedef struct csg_outline {
     csg_memory *memory;
     csg_vec2 *points; /* all loops, one after the other; the last point is not the first again */

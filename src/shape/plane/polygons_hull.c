@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/orient.h"
 #include "shape/plane/polygons.h"
-#include "shape/plane/turn.h"
 
 static int compare_points(const void *left, const void *right)
 {
@@ -17,8 +17,8 @@ static int compare_points(const void *left, const void *right)
 static void extend(csg_outline *chain, size_t from, csg_vec2 point)
 {
     while (chain->point_count >= from + 2 &&
-           csg_turn(chain->points[chain->point_count - 2], chain->points[chain->point_count - 1],
-                    point) <= 0)
+           csg_orient_plane(chain->points[chain->point_count - 2],
+                            chain->points[chain->point_count - 1], point) <= 0)
         chain->point_count--;
     chain->points[chain->point_count++] = point;
 }

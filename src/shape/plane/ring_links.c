@@ -42,14 +42,14 @@ static void link_loop(csg_rings *rings, size_t first, size_t end)
 /* Whether, turning clockwise from the direction of `from`, one finds p before q. */
 static bool comes_before(csg_vec2 at, csg_vec2 from, csg_vec2 p, csg_vec2 q)
 {
-    int turn_p = csg_turn(at, from, p), turn_q = csg_turn(at, from, q);
+    int turn_p = csg_orient_plane(at, from, p), turn_q = csg_orient_plane(at, from, q);
     bool late_p = turn_p > 0, late_q = turn_q > 0; /* by more than half a turn */
     double along_p = (p.x - at.x) * (from.x - at.x) + (p.y - at.y) * (from.y - at.y);
     double along_q = (q.x - at.x) * (from.x - at.x) + (q.y - at.y) * (from.y - at.y);
     /* straight back is half a turn, straight on a whole one: nothing lies between */
     int class_p = turn_p ? (late_p ? 2 : 0) : along_p < 0 ? 1 : 3;
     int class_q = turn_q ? (late_q ? 2 : 0) : along_q < 0 ? 1 : 3;
-    return class_p != class_q ? class_p < class_q : csg_turn(at, p, q) < 0;
+    return class_p != class_q ? class_p < class_q : csg_orient_plane(at, p, q) < 0;
 }
 
 /* The corner among group[from...] whose way out is the first for what comes in at `in`. */

@@ -3,8 +3,9 @@
  *
  * A ray from the hole's leftmost corner to the left first meets an edge that goes down. From the
  * corner one sees an end of that edge, or else some corner in the triangle of corner, meeting point
- * and end: the one whose direction is nearest to the ray's. All questions are asked of csg_turn.
- * Where holes are joined from left to right, what the ray meets is joined already.
+ * and end: the one whose direction is nearest to the ray's. All questions are asked of
+ * csg_orient_plane. Where holes are joined from left to right, what the ray meets is joined
+ * already.
  */
 #include "shape/plane/rings.h"
 
@@ -18,9 +19,9 @@ bool csg_ring_sees(const csg_rings *rings, uint32_t corner, csg_vec2 q)
     const csg_ring_corner *c = &rings->corners[corner];
     csg_vec2 before = csg_ring_at(rings, c->previous), at = csg_ring_at(rings, corner),
              after = csg_ring_at(rings, c->next);
-    if (csg_turn(before, at, after) >= 0)
-        return csg_turn(at, after, q) > 0 && csg_turn(at, q, before) > 0;
-    return !(csg_turn(at, before, q) >= 0 && csg_turn(at, q, after) >= 0);
+    if (csg_orient_plane(before, at, after) >= 0)
+        return csg_orient_plane(at, after, q) > 0 && csg_orient_plane(at, q, before) > 0;
+    return !(csg_orient_plane(at, before, q) >= 0 && csg_orient_plane(at, q, after) >= 0);
 }
 
 /* The corner where the edge begins that the ray from `from` to the left meets first. */
@@ -33,7 +34,7 @@ static uint32_t first_met(const csg_rings *rings, csg_vec2 from)
         if (!c->is_joined)
             continue;
         csg_vec2 p = csg_ring_at(rings, i), q = csg_ring_at(rings, c->next);
-        if (!(p.y > q.y && p.y >= from.y && from.y >= q.y) || csg_turn(p, q, from) < 0)
+        if (!(p.y > q.y && p.y >= from.y && from.y >= q.y) || csg_orient_plane(p, q, from) < 0)
             continue;
         double x = p.x + (from.y - p.y) / (q.y - p.y) * (q.x - p.x);
         if (x > best_x || best == CSG_CORNER_NONE) {
@@ -53,7 +54,8 @@ typedef struct view {       /* from a hole's corner */
 static bool is_in_triangle(const view *v, csg_vec2 end, csg_vec2 r)
 {
     double up = v->side * (r.y - v->from.y);
-    return up >= 0 && csg_turn(v->p, v->q, r) >= 0 && v->side * csg_turn(v->from, end, r) >= 0;
+    return up >= 0 && csg_orient_plane(v->p, v->q, r) >= 0 &&
+           v->side * csg_orient_plane(v->from, end, r) >= 0;
 }
 
 static bool sees(const csg_rings *rings, const view *v, uint32_t corner)
@@ -70,7 +72,7 @@ static double distance_to(const view *v, csg_vec2 r)
 /* Whether r is nearer in direction to the ray, or nearer in the same direction, than `best`. */
 static bool is_nearer(const view *v, csg_vec2 best, csg_vec2 r, bool also_same)
 {
-    int turn = v->side * csg_turn(v->from, best, r);
+    int turn = v->side * csg_orient_plane(v->from, best, r);
     double gain = distance_to(v, best) - distance_to(v, r);
     return turn > 0 || (turn == 0 && (gain > 0 || (gain == 0 && also_same)));
 }

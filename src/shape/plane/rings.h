@@ -5,8 +5,8 @@
 #ifndef CSG_SHAPE_RINGS_H
 #define CSG_SHAPE_RINGS_H
 
+#include "base/orient.h"
 #include "shape/plane/outline.h"
-#include "shape/plane/turn.h"
 
 #define CSG_CORNER_NONE UINT32_MAX
 

@@ -75,8 +75,8 @@ static uint32_t *cell_of(const cells *g, csg_vec2 p)
 static int turn_at(const csg_rings *rings, uint32_t i)
 {
     const csg_ring_corner *c = &rings->corners[i];
-    return csg_turn(csg_ring_at(rings, c->previous), csg_ring_at(rings, i),
-                    csg_ring_at(rings, c->next));
+    return csg_orient_plane(csg_ring_at(rings, c->previous), csg_ring_at(rings, i),
+                            csg_ring_at(rings, c->next));
 }
 
 /* Marks the ring's blockers; its box and its number of corners. */
@@ -138,7 +138,8 @@ static bool leads_into(const csg_rings *rings, uint32_t r, const csg_vec2 *ear)
     const csg_ring_corner *c = &rings->corners[r];
     csg_vec2 ways[2] = {csg_ring_at(rings, c->previous), csg_ring_at(rings, c->next)};
     for (int k = 0; k < 2; k++) {
-        if (csg_turn(ear[1], ear[2], ways[k]) > 0 && csg_turn(ear[1], ways[k], ear[0]) > 0)
+        if (csg_orient_plane(ear[1], ear[2], ways[k]) > 0 &&
+            csg_orient_plane(ear[1], ways[k], ear[0]) > 0)
             return true;
     }
     return false;
@@ -152,8 +153,9 @@ static bool is_blocked_by(const csg_rings *rings, uint32_t r, const csg_vec2 *ea
     if (is_same(p, ear[1]))
         return leads_into(rings, r, ear);
     int inside = kind == PROPER ? 0 : 1;
-    return csg_turn(ear[0], ear[1], p) >= inside && csg_turn(ear[1], ear[2], p) >= inside &&
-           csg_turn(ear[2], ear[0], p) >= inside;
+    return csg_orient_plane(ear[0], ear[1], p) >= inside &&
+           csg_orient_plane(ear[1], ear[2], p) >= inside &&
+           csg_orient_plane(ear[2], ear[0], p) >= inside;
 }
 
 static bool is_blocked(cutter *c, uint32_t tip, const csg_vec2 *ear, ear_kind kind)
@@ -189,7 +191,8 @@ static bool is_spike(const csg_rings *rings, uint32_t tip)
     const csg_ring_corner *corner = &rings->corners[tip];
     csg_vec2 a = csg_ring_at(rings, corner->previous), b = csg_ring_at(rings, tip),
              c = csg_ring_at(rings, corner->next);
-    return csg_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) >= 0;
+    return csg_orient_plane(a, b, c) == 0 &&
+           (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) >= 0;
 }
 
 static bool is_ear(cutter *c, uint32_t tip, ear_kind kind)

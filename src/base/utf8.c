@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * UTF-8 decoding and encoding; see utf8.h. Pure functions of bytes.
  */
-#include "text/utf8.h"
+#include "base/utf8.h"
 
 static bool is_character(uint32_t c)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * UTF-8, one character at a time (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
  */
-#ifndef CSG_TEXT_UTF8_H
-#define CSG_TEXT_UTF8_H
+#ifndef CSG_BASE_UTF8_H
+#define CSG_BASE_UTF8_H
 
 #include <stdbool.h>
 #include <stddef.h>
