@@ -7,9 +7,8 @@
 #include "field/field.h"
 
 static const char *const op_names[CSG_OP_COUNT] = {
-#define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_OP_##NAME] = #name,
+#define CSG_PRIMITIVE(NAME, name, ...) [CSG_OP_##NAME] = #name,
 #include "scene/primitives/primitives.def"
-#undef CSG_PRIMITIVE
     [CSG_OP_FIELD] = "field",
     [CSG_OP_SHAPE] = "shape",
     [CSG_OP_UNION] = "union",

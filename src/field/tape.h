@@ -13,12 +13,11 @@
 #ifndef CSG_FIELD_TAPE_H
 #define CSG_FIELD_TAPE_H
 
-#include "scene/scene.h"
+#include "scene/primitives/primitive.h"
 
 typedef enum csg_op {
-#define CSG_PRIMITIVE(NAME, name, count, doc) CSG_OP_##NAME,
+#define CSG_PRIMITIVE(NAME, ...) CSG_OP_##NAME,
 #include "scene/primitives/primitives.def"
-#undef CSG_PRIMITIVE
     CSG_OP_FIELD,
     CSG_OP_SHAPE,
     CSG_OP_UNION, /* sharp or folded: the joins of its children did the work */
@@ -33,6 +32,24 @@ typedef enum csg_op {
     CSG_OP_COUNT
 } csg_op;
 
+/* Operators of the tape begin with the primitives, in the order of nodes. */
+static inline bool csg_op_is_primitive(uint8_t op)
+{
+    return op < CSG_OP_FIELD;
+}
+static inline csg_node_kind csg_op_node_kind(uint8_t op)
+{
+    return (csg_node_kind)(CSG_NODE_FIRST_PRIMITIVE + op);
+}
+static inline uint8_t csg_op_of_primitive(csg_node_kind kind)
+{
+    return (uint8_t)(kind - CSG_NODE_FIRST_PRIMITIVE);
+}
+/* Whether this is a leaf whose primitive has the trait. */
+static inline bool csg_op_has(uint8_t op, unsigned trait)
+{
+    return csg_op_is_primitive(op) && csg_primitive_of(csg_op_node_kind(op))->traits & trait;
+}
 static inline bool csg_op_is_leaf(uint8_t op)
 {
     return op < CSG_OP_UNION || op == CSG_OP_EMPTY;
@@ -66,16 +83,13 @@ static inline bool csg_op_delivers(uint8_t op)
 /* How a node's value merges with the value of its elder siblings. */
 typedef enum csg_join { CSG_JOIN_NONE, CSG_JOIN_UNION, CSG_JOIN_INTERSECTION } csg_join;
 
-/* Where a leaf's own frame is: q = p - t, or q = m p + t. */
-typedef enum csg_frame { CSG_FRAME_OFFSET, CSG_FRAME_AFFINE } csg_frame;
-
 typedef struct csg_tape_node {
     uint8_t op;    /* csg_op */
     uint8_t join;  /* csg_join */
     uint8_t blend; /* operators: csg_blend_kind of the operator; copied to children's joins. SOFTEN:
                       csg_tape_curve */
     uint8_t join_blend;
-    uint8_t frame;            /* leaves: csg_frame */
+    uint8_t frame;            /* leaves: csg_leaf_frame */
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */
     uint32_t join_parameters; /* into the parameters, of the operator that joins */

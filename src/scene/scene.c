@@ -13,9 +13,8 @@ typedef struct kind_row {
 static const kind_row kinds[] = {
     [CSG_NODE_EMPTY] = {"empty", 0},           [CSG_NODE_FIELD] = {"field", 0},
     [CSG_NODE_SHAPE] = {"shape", 0},
-#define CSG_PRIMITIVE(NAME, name, count, doc) [CSG_NODE_##NAME] = {#name, count},
+#define CSG_PRIMITIVE(NAME, name, count, ...) [CSG_NODE_##NAME] = {#name, count},
 #include "scene/primitives/primitives.def"
-#undef CSG_PRIMITIVE
     [CSG_NODE_TRANSFORM] = {"transform", 0},   [CSG_NODE_COLOR] = {"color", 0},
     [CSG_NODE_OFFSET] = {"offset", 1},         [CSG_NODE_WARP] = {"warp", 0},
     [CSG_NODE_COMBINE] = {"combine", 0},       [CSG_NODE_SOFT] = {"soft", CSG_SOFT_PARAMETERS},

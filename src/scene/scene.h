@@ -43,9 +43,8 @@ typedef enum csg_node_kind {
     CSG_NODE_EMPTY,
     CSG_NODE_FIELD,
     CSG_NODE_SHAPE,
-#define CSG_PRIMITIVE(NAME, name, count, doc) CSG_NODE_##NAME,
+#define CSG_PRIMITIVE(NAME, ...) CSG_NODE_##NAME,
 #include "scene/primitives/primitives.def"
-#undef CSG_PRIMITIVE
     CSG_NODE_TRANSFORM,
     CSG_NODE_COLOR,
     CSG_NODE_OFFSET,
@@ -57,6 +56,13 @@ typedef enum csg_node_kind {
     CSG_NODE_DIFFERENCE
 } csg_node_kind;
 
+#define CSG_NODE_FIRST_PRIMITIVE ((csg_node_kind)(CSG_NODE_SHAPE + 1))
+
+/* A row of primitives.def. */
+static inline bool csg_node_is_named_primitive(csg_node_kind kind)
+{
+    return kind >= CSG_NODE_FIRST_PRIMITIVE && kind < CSG_NODE_TRANSFORM;
+}
 /* A leaf that is a solid: a field or a shape too. */
 static inline bool csg_node_is_primitive(csg_node_kind kind)
 {

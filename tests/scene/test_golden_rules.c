@@ -5,6 +5,8 @@
  */
 #include "golden_rows.h"
 
+#include "scene/primitives/superellipsoid.h"
+
 static const double tolerance = 1e-12;
 
 static double golden_number(const char *text)

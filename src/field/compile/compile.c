@@ -10,8 +10,8 @@
 #include "field/compile/compile_rule.h"
 #include "field/field.h"
 #include "field/kernels/dispatch.h"
-#include "field/kernels/formulas.h"
 #include "field/kernels/warp_kernel.h"
+#include "scene/primitives/point.h"
 
 /* What a node inherits from its ancestors. */
 typedef struct frame {
@@ -620,12 +620,9 @@ static bool keep_formulas(compiler *c)
 static bool write_clip(compiler *c, csg_box box)
 {
     csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
-    csg_leaf l = {.op = CSG_OP_BOX,
-                  .frame = CSG_FRAME_OFFSET,
-                  .sigma = 1,
-                  .own = {half.x, half.y, half.z, 0},
-                  .own_count = OWN_BOX,
-                  .magnitude = csg_vec3_norm(half)};
+    const csg_affine centre = csg_affine_identity();
+    csg_leaf l = {0};
+    csg_leaf_primitive(&l, &centre, 1, false, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0});
     const float sharp[CSG_OPERATOR_PARAMETERS] = {[CSG_OPERATOR_N] = 1};
     uint32_t parameters;
     if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) ||

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/kernels/formulas.h"
+#include "scene/primitives/tube.h"
 
 /* ---- gentle pieces ------------------------------------------------------------------------- */
 
@@ -122,19 +122,19 @@ void csg_curve_pack(csg_leaf *l, const csg_curve *piece, const csg_affine *place
         l->to_own.t[2] -= middle.z;
     }
     for (int i = 1; i < CSG_CURVE_MOST; i++) {
-        own[CURVE_FIRST + 3 * i - 3] = q[i].x;
-        own[CURVE_FIRST + 3 * i - 2] = q[i].y;
-        own[CURVE_FIRST + 3 * i - 1] = q[i].z;
+        own[CSG_TUBE_FIRST + 3 * i - 3] = q[i].x;
+        own[CSG_TUBE_FIRST + 3 * i - 2] = q[i].y;
+        own[CSG_TUBE_FIRST + 3 * i - 1] = q[i].z;
     }
     for (int i = 0; i < CSG_CURVE_MOST; i++)
-        own[CURVE_RADII + i] = powers[i][CSG_CURVE_RADIUS] * k;
+        own[CSG_TUBE_RADII + i] = powers[i][CSG_CURVE_RADIUS] * k;
     /* Q . Q' */
-    own[CURVE_PRODUCTS] = csg_vec3_dot(q[1], q[1]);
-    own[CURVE_PRODUCTS + 1] = 3 * csg_vec3_dot(q[1], q[2]);
-    own[CURVE_PRODUCTS + 2] = 2 * csg_vec3_dot(q[2], q[2]) + 4 * csg_vec3_dot(q[1], q[3]);
-    own[CURVE_PRODUCTS + 3] = 5 * csg_vec3_dot(q[2], q[3]);
-    own[CURVE_PRODUCTS + 4] = 3 * csg_vec3_dot(q[3], q[3]);
-    own[CURVE_VARIES] = csg_curve_only_radius(piece) == 0;
-    l->own_count = OWN_CUBIC_TUBE;
+    own[CSG_TUBE_PRODUCTS] = csg_vec3_dot(q[1], q[1]);
+    own[CSG_TUBE_PRODUCTS + 1] = 3 * csg_vec3_dot(q[1], q[2]);
+    own[CSG_TUBE_PRODUCTS + 2] = 2 * csg_vec3_dot(q[2], q[2]) + 4 * csg_vec3_dot(q[1], q[3]);
+    own[CSG_TUBE_PRODUCTS + 3] = 5 * csg_vec3_dot(q[2], q[3]);
+    own[CSG_TUBE_PRODUCTS + 4] = 3 * csg_vec3_dot(q[3], q[3]);
+    own[CSG_TUBE_VARIES] = csg_curve_only_radius(piece) == 0;
+    l->own_count = CSG_TUBE_OWN;
     l->magnitude = (size + radius) * k;
 }

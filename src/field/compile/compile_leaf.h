@@ -10,18 +10,7 @@
 
 #include "field/tape.h"
 
-enum { CSG_LEAF_MOST_OWN = 19, CSG_LEAF_MOST_PARAMETERS = CSG_LEAF_OWN_AFFINE + CSG_LEAF_MOST_OWN };
-
-typedef struct csg_leaf {
-    uint8_t op;
-    csg_frame frame;
-    double sigma, raise;
-    csg_affine to_own; /* field frame -> own frame; OFFSET: q = p - offset */
-    csg_vec3 offset;
-    double own[CSG_LEAF_MOST_OWN];
-    int own_count;
-    double magnitude; /* largest length that takes part in its arithmetic */
-} csg_leaf;
+enum { CSG_LEAF_MOST_PARAMETERS = CSG_LEAF_OWN_AFFINE + CSG_LEAF_MOST_OWN };
 
 /* Frame and offset of a leaf whose own frame lies at `place` (relative to the field's centre). */
 void csg_leaf_place(csg_leaf *leaf, const csg_affine *place);

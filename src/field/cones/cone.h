@@ -12,6 +12,7 @@
 #define CSG_FIELD_CONE_H
 
 #include "field/prune/prune.h"
+#include "scene/primitives/cone_ball.h"
 
 typedef struct csg_cone {
     double axis[3];     /* v, unit length */
@@ -28,21 +29,6 @@ bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], dou
 
 /* ---- cone_leaf.c ------------------------------------------------------------------------------
  */
-
-enum { CSG_CONE_MOST = 32 };
-
-/* Vectors within `spread` of `at`. */
-typedef struct csg_cone_ball {
-    double at[3], spread;
-} csg_cone_ball;
-
-typedef struct csg_cone_balls {
-    csg_cone_ball items[CSG_CONE_MOST];
-    uint32_t count;
-    bool has_edges; /* of a primitive */
-    double
-        corner; /* of the leaf added last: 0, or how long its gradients may be where faces meet */
-} csg_cone_balls;
 
 /* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
  * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least

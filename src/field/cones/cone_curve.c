@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "field/kernels/formulas.h"
+#include "scene/primitives/tube.h"
 
 enum { MOST = 64, DEEPEST = 14, SAMPLES = 17 };
 
@@ -33,9 +33,9 @@ static curve curve_of(const float *own, const double q[3])
     curve c = {.speed = 0};
     for (int i = 0; i < 4; i++) {
         double square = 0;
-        c.r[i] = (double)own[CURVE_RADII + i];
+        c.r[i] = (double)own[CSG_TUBE_RADII + i];
         for (int k = 0; k < 3; k++) {
-            c.q[k][i] = i ? (double)own[CURVE_FIRST + 3 * (i - 1) + k] : -q[k];
+            c.q[k][i] = i ? (double)own[CSG_TUBE_FIRST + 3 * (i - 1) + k] : -q[k];
             square += c.q[k][i] * c.q[k][i];
         }
         c.speed += i * sqrt(square);

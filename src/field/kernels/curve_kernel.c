@@ -37,36 +37,37 @@ typedef struct group {
 /* Coordinate k of Q, of Q' and of Q''. */
 INLINE float at(const float *own, int degree, int k, float s)
 {
-    float top = degree == 3 ? own[CURVE_FIRST + 3 + k] + s * own[CURVE_FIRST + 6 + k]
-                            : own[CURVE_FIRST + 3 + k];
-    return s * (own[CURVE_FIRST + k] + s * top);
+    float top = degree == 3 ? own[CSG_TUBE_FIRST + 3 + k] + s * own[CSG_TUBE_FIRST + 6 + k]
+                            : own[CSG_TUBE_FIRST + 3 + k];
+    return s * (own[CSG_TUBE_FIRST + k] + s * top);
 }
 INLINE float first_at(const float *own, int degree, int k, float s)
 {
-    float top = degree == 3 ? 2.0f * own[CURVE_FIRST + 3 + k] + 3.0f * s * own[CURVE_FIRST + 6 + k]
-                            : 2.0f * own[CURVE_FIRST + 3 + k];
-    return own[CURVE_FIRST + k] + s * top;
+    float top = degree == 3
+                    ? 2.0f * own[CSG_TUBE_FIRST + 3 + k] + 3.0f * s * own[CSG_TUBE_FIRST + 6 + k]
+                    : 2.0f * own[CSG_TUBE_FIRST + 3 + k];
+    return own[CSG_TUBE_FIRST + k] + s * top;
 }
 INLINE float second_at(const float *own, int degree, int k, float s)
 {
-    return degree == 3 ? 2.0f * own[CURVE_FIRST + 3 + k] + 6.0f * s * own[CURVE_FIRST + 6 + k]
-                       : 2.0f * own[CURVE_FIRST + 3 + k];
+    return degree == 3 ? 2.0f * own[CSG_TUBE_FIRST + 3 + k] + 6.0f * s * own[CSG_TUBE_FIRST + 6 + k]
+                       : 2.0f * own[CSG_TUBE_FIRST + 3 + k];
 }
 
 /* r, r' and r'' */
 INLINE float radius_at(const float *own, int degree, float s)
 {
-    const float *r = own + CURVE_RADII;
+    const float *r = own + CSG_TUBE_RADII;
     return r[0] + s * (r[1] + s * (degree == 3 ? r[2] + s * r[3] : r[2]));
 }
 INLINE float radius_first(const float *own, int degree, float s)
 {
-    const float *r = own + CURVE_RADII;
+    const float *r = own + CSG_TUBE_RADII;
     return r[1] + s * (degree == 3 ? 2.0f * r[2] + 3.0f * s * r[3] : 2.0f * r[2]);
 }
 INLINE float radius_second(const float *own, int degree, float s)
 {
-    const float *r = own + CURVE_RADII;
+    const float *r = own + CSG_TUBE_RADII;
     return degree == 3 ? 2.0f * r[2] + 6.0f * s * r[3] : 2.0f * r[2];
 }
 
@@ -74,7 +75,7 @@ INLINE float radius_second(const float *own, int degree, float s)
 INLINE float climb_constant(const float *own, int degree, float a, float b, float c, float s,
                             float *slope)
 {
-    const float *k = own + CURVE_PRODUCTS; /* of s, s^2, ... */
+    const float *k = own + CSG_TUBE_PRODUCTS; /* of s, s^2, ... */
     float top = degree == 3 ? k[2] + s * (k[3] + s * k[4]) : k[2];
     float steep = degree == 3 ? 3.0f * k[2] + s * (4.0f * k[3] + 5.0f * s * k[4]) : 3.0f * k[2];
     *slope = b + s * (2.0f * c + s * steep);
@@ -104,7 +105,7 @@ INLINE float climb(const float *own, int degree, int varies, float a, float b, f
 
 INLINE void prepare(const float *own, int degree, int varies, group *g)
 {
-    const float *q = own + CURVE_FIRST, *k = own + CURVE_PRODUCTS;
+    const float *q = own + CSG_TUBE_FIRST, *k = own + CSG_TUBE_PRODUCTS;
     for (size_t i = 0; i < g->count; i++) {
         float x = g->x[i], y = g->y[i], z = g->z[i];
         float third = degree == 3 ? 3.0f * (x * q[6] + y * q[7] + z * q[8]) : 0;
@@ -265,8 +266,7 @@ INLINE void take_ball(const float *own, int degree, group *g, const float *at_s)
 INLINE void search(const float *parameters, int degree, int varies, group *g)
 {
     const size_t count = g->count;
-    float other = 0,
-          own[OWN_CUBIC_TUBE]; /* a copy: the compiler then knows that nothing writes it */
+    float other = 0, own[CSG_TUBE_OWN]; /* a copy: the compiler then knows that nothing writes it */
     memcpy(own, parameters, sizeof own);
     prepare(own, degree, varies, g);
     bracket(own, degree, varies, g);
@@ -318,7 +318,7 @@ static size_t find_nearest_balls(const csg_tape_node *node, const float *paramet
         g->y[i] = q.y;
         g->z[i] = q.z;
     }
-    int varies = own[CURVE_VARIES] != 0;
+    int varies = own[CSG_TUBE_VARIES] != 0;
     if (node->op == CSG_OP_CUBIC_TUBE)
         (varies ? search_cubic_varying : search_cubic)(own, g);
     else

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Points into a leaf's own frame and gradients back, for the kernels (csg_frame in tape.h).
+ * Points into a leaf's own frame and gradients back, for the kernels (csg_leaf_frame).
  */
 #ifndef CSG_FIELD_FRAMES_H
 #define CSG_FIELD_FRAMES_H
 
-#include "field/kernels/formulas.h"
+#include "scene/primitives/point.h"
 
 static inline point offset_frame(const float *t, float x, float y, float z)
 {

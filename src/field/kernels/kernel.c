@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The kernels: a tape over batches of points. This file is built once per instruction set (see
  * meson.build); the loops over points are plain C that the compiler turns into vectors, the
- * formulas are in formulas.h and scene/operators/blends.h, the leaves in leaf_kernel.c, the joins
- * in joins.h and rule_kernel.c. CSG_KERNEL names the build.
+ * formulas are in scene/primitives and scene/operators/blends.h, the leaves in leaf_kernel.c, the
+ * joins in joins.h and rule_kernel.c. CSG_KERNEL names the build.
  *
  * Three walks over a tape, all on a stack of slots:
  *   values     a slot is one array

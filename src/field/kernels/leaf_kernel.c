@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Leaves of a tape over batches of points: primitives by the formulas of formulas.h, expression
- * fields, shapes, each in its frame and below its warps; and their ranges over cubes. Built once
- * per instruction set, see kernel.c.
+ * Leaves of a tape over batches of points: primitives by the formulas in their own files
+ * (scene/primitives), expression fields, shapes, each in its frame and below its warps; and their
+ * ranges over cubes. Built once per instruction set, see kernel.c.
  */
 #include "field/kernels/leaf_kernel.h"
 
@@ -12,54 +12,50 @@
 #include "field/kernels/frames.h"
 #include "field/kernels/soft_formulas.h"
 #include "field/kernels/warp_kernel.h"
+#include "scene/primitives/every_primitive.h"
 
 /* ---- leaves ---------------------------------------------------------------------------- */
-
-#define EACH_PRIMITIVE(X)                                                                          \
-    X(SPHERE, sphere)                                                                              \
-    X(BOX, box)                                                                                    \
-    X(FRUSTUM, frustum)                                                                            \
-    X(CAPSULE, capsule)                                                                            \
-    X(TORUS, torus)                                                                                \
-    X(ELLIPSOID, ellipsoid)                                                                        \
-    X(PLANE, plane)                                                                                \
-    X(CIRCLE, circle) X(RECTANGLE, rectangle) X(SLAB, slab) X(SUPERELLIPSOID, superellipsoid)
 
 /* Local copies of the parameters: the compiler then knows that no store changes them. */
 #define VALUE_LOOPS(NAME, name)                                                                    \
     static void name##_values(const csg_tape_node *node, const float *parameters, csg_points p,    \
                               float *restrict out)                                                 \
     {                                                                                              \
-        float own[OWN_##NAME], frame[12];                                                          \
+        float own[CSG_##NAME##_OWN], frame[12];                                                    \
         const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
         point g;                                                                                   \
         if (node->frame == CSG_FRAME_OFFSET) {                                                     \
             memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
             memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
             for (size_t i = 0; i < p.count; i++)                                                   \
-                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                out[i] = sigma *                                                                   \
+                         csg_##name##_value(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g); \
         } else {                                                                                   \
             memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
             memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
             for (size_t i = 0; i < p.count; i++)                                                   \
-                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                out[i] = sigma *                                                                   \
+                         csg_##name##_value(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g); \
         }                                                                                          \
     }
-EACH_PRIMITIVE(VALUE_LOOPS)
+#define CSG_PRIMITIVE(NAME, name, ...) VALUE_LOOPS(NAME, name)
+#define CSG_CURVE_PRIMITIVE(...)
+#include "scene/primitives/primitives.def"
 
 #define GRADIENT_LOOPS(NAME, name)                                                                 \
     static void name##_gradients(const csg_tape_node *node, const float *parameters, csg_points p, \
                                  float *restrict out, float *restrict gx, float *restrict gy,      \
                                  float *restrict gz)                                               \
     {                                                                                              \
-        float own[OWN_##NAME], frame[12];                                                          \
+        float own[CSG_##NAME##_OWN], frame[12];                                                    \
         const float sigma = parameters[CSG_LEAF_SIGMA];                                            \
         point g;                                                                                   \
         if (node->frame == CSG_FRAME_OFFSET) {                                                     \
             memcpy(frame, parameters + CSG_LEAF_FRAME, 3 * sizeof(float));                         \
             memcpy(own, parameters + CSG_LEAF_OWN_OFFSET, sizeof own);                             \
             for (size_t i = 0; i < p.count; i++) {                                                 \
-                out[i] = sigma * name##_at(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                out[i] = sigma *                                                                   \
+                         csg_##name##_value(own, offset_frame(frame, p.x[i], p.y[i], p.z[i]), &g); \
                 gx[i] = sigma * g.x;                                                               \
                 gy[i] = sigma * g.y;                                                               \
                 gz[i] = sigma * g.z;                                                               \
@@ -68,7 +64,8 @@ EACH_PRIMITIVE(VALUE_LOOPS)
             memcpy(frame, parameters + CSG_LEAF_FRAME, sizeof frame);                              \
             memcpy(own, parameters + CSG_LEAF_OWN_AFFINE, sizeof own);                             \
             for (size_t i = 0; i < p.count; i++) {                                                 \
-                out[i] = sigma * name##_at(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g);  \
+                out[i] = sigma *                                                                   \
+                         csg_##name##_value(own, affine_frame(frame, p.x[i], p.y[i], p.z[i]), &g); \
                 g = affine_back(frame, g);                                                         \
                 gx[i] = sigma * g.x;                                                               \
                 gy[i] = sigma * g.y;                                                               \
@@ -76,7 +73,9 @@ EACH_PRIMITIVE(VALUE_LOOPS)
             }                                                                                      \
         }                                                                                          \
     }
-EACH_PRIMITIVE(GRADIENT_LOOPS)
+#define CSG_PRIMITIVE(NAME, name, ...) GRADIENT_LOOPS(NAME, name)
+#define CSG_CURVE_PRIMITIVE(...)
+#include "scene/primitives/primitives.def"
 
 /* ---- shapes: through the frame, then out of the vector code -----------------------------------
  */
@@ -142,16 +141,15 @@ static void own_values(const csg_tape *tape, const csg_tape_node *node, csg_poin
 {
     const float *parameters = tape->parameters + node->parameters;
     switch (node->op) {
-#define CASE(NAME, name)                                                                           \
+#define CSG_PRIMITIVE(NAME, name, ...)                                                             \
     case CSG_OP_##NAME:                                                                            \
         name##_values(node, parameters, p, out);                                                   \
         break;
-        EACH_PRIMITIVE(CASE)
-#undef CASE
-    case CSG_OP_QUADRATIC_TUBE:
-    case CSG_OP_CUBIC_TUBE:
-        CSG_THIS_CURVE_KERNEL.values(node, parameters, p, out);
+#define CSG_CURVE_PRIMITIVE(NAME, ...)                                                             \
+    case CSG_OP_##NAME:                                                                            \
+        CSG_THIS_CURVE_KERNEL.values(node, parameters, p, out);                                    \
         break;
+#include "scene/primitives/primitives.def"
     case CSG_OP_FIELD:
         CSG_THIS_FORMULA_KERNEL.values(tape, node, p.x, p.y, p.z, p.count, out);
         break;
@@ -209,16 +207,15 @@ static void own_gradients(const csg_tape *tape, const csg_tape_node *node, csg_p
 {
     const float *parameters = tape->parameters + node->parameters;
     switch (node->op) {
-#define CASE(NAME, name)                                                                           \
+#define CSG_PRIMITIVE(NAME, name, ...)                                                             \
     case CSG_OP_##NAME:                                                                            \
         name##_gradients(node, parameters, p, out, gx, gy, gz);                                    \
         break;
-        EACH_PRIMITIVE(CASE)
-#undef CASE
-    case CSG_OP_QUADRATIC_TUBE:
-    case CSG_OP_CUBIC_TUBE:
-        CSG_THIS_CURVE_KERNEL.gradients(node, parameters, p, out, gx, gy, gz);
+#define CSG_CURVE_PRIMITIVE(NAME, ...)                                                             \
+    case CSG_OP_##NAME:                                                                            \
+        CSG_THIS_CURVE_KERNEL.gradients(node, parameters, p, out, gx, gy, gz);                     \
         break;
+#include "scene/primitives/primitives.def"
     case CSG_OP_FIELD:
         CSG_THIS_FORMULA_KERNEL.gradients(tape, node, p.x, p.y, p.z, p.count, out, gx, gy, gz);
         break;
@@ -266,10 +263,14 @@ static int falls_outwards(const csg_tape_node *node, const float *own)
 {
     if (node->frame != CSG_FRAME_OFFSET || node->warp)
         return 0;
-    return node->op == CSG_OP_SPHERE || node->op == CSG_OP_BOX || node->op == CSG_OP_ELLIPSOID ||
-           node->op == CSG_OP_CIRCLE || node->op == CSG_OP_RECTANGLE || node->op == CSG_OP_SLAB ||
-           node->op == CSG_OP_SUPERELLIPSOID ||
-           (node->op == CSG_OP_FRUSTUM && own[7] == 0); /* a cylinder */
+    switch (node->op) {
+#define CSG_PRIMITIVE(NAME, name, ...)                                                             \
+    case CSG_OP_##NAME:                                                                            \
+        return csg_##name##_falls_outwards(own);
+#define CSG_CURVE_PRIMITIVE(...)
+#include "scene/primitives/primitives.def"
+    }
+    return 0; /* curves, fields, shapes */
 }
 
 /* The coordinates nearest to and farthest from t within `half` of c. */

@@ -10,9 +10,9 @@
 #ifndef CSG_FIELD_SOFT_FORMULAS_H
 #define CSG_FIELD_SOFT_FORMULAS_H
 
-#include "field/kernels/formulas.h"
 #include "field/kernels/functions.h"
 #include "field/tape.h"
+#include "scene/primitives/point.h"
 
 /* Else gcc may call the longer ones, and a loop with a call is no vector loop. */
 #define INLINED __attribute__((always_inline)) static inline
@@ -99,8 +99,8 @@ INLINED mixture ricci_intersection(float n, float x, float y)
 /* ---- super-ellipsoids (4) ---------------------------------------------------------------------
  */
 
-/* (1 - d) / L by the gauge d, the same sum of powers twice. own: a, b, c, q, p, 1 / L */
-static inline float superellipsoid_at(const float *own, point at, point *g)
+/* (1 - d) / L by the gauge d, the same sum of powers twice (scene/primitives/superellipsoid.h). */
+static inline float csg_superellipsoid_value(const float *own, point at, point *g)
 {
     float x = absolute(at.x) / own[0], y = absolute(at.y) / own[1], z = absolute(at.z) / own[2];
     mixture flat = ricci_union(own[3], x, y), d = ricci_union(own[4], flat.value, z);

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-#include "field/kernels/formulas.h"
 #include "field/kernels/functions.h"
+#include "scene/primitives/point.h"
 
 #define HALF_TURN 3.14159274f
 

@@ -297,20 +297,7 @@ static bool join_round(walker *w, const csg_tape_node *node)
 /* Signed distances to convex sets are concave, wherever they are asked. */
 static bool is_concave(uint8_t op)
 {
-    switch (op) {
-    case CSG_OP_SPHERE:
-    case CSG_OP_BOX:
-    case CSG_OP_FRUSTUM:
-    case CSG_OP_CAPSULE:
-    case CSG_OP_ELLIPSOID:
-    case CSG_OP_PLANE:
-    case CSG_OP_CIRCLE:
-    case CSG_OP_RECTANGLE:
-    case CSG_OP_SLAB:
-        return true;
-    default:
-        return false;
-    }
+    return csg_op_has(op, CSG_TRAIT_CONVEX);
 }
 
 /* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a

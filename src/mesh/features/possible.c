@@ -20,11 +20,6 @@ typedef struct ball {
     float at[3], radius;
 } ball;
 
-/* The values that matter of an operand, from `low` to `high`. */
-typedef struct band {
-    float low, high;
-} band;
-
 static void to_own(const csg_tape_node *node, const float *frame, const float at[3], float q[3])
 {
     for (int i = 0; i < 3; i++)
@@ -33,84 +28,22 @@ static void to_own(const csg_tape_node *node, const float *frame, const float at
                                                      frame[3 * i + 2] * at[2] + frame[9 + i];
 }
 
-/* Distance from the nearest edge of a box with half sizes own[0..]: of two coordinates at once. */
-static float to_box_edges(const float *own, const float q[3], int axes)
-{
-    float d[3] = {0, 0, 0}, best = INFINITY;
-    for (int i = 0; i < axes; i++)
-        d[i] = fabsf(fabsf(q[i]) - own[i]);
-    for (int i = 0; i < axes; i++)
-        for (int j = i + 1; j < axes; j++)
-            best = fminf(best, sqrtf(d[i] * d[i] + d[j] * d[j]));
-    return best;
-}
-
-/* The rims, and the tips of cones. own: see frustum_at in field/kernels/formulas.h */
-static float to_frustum_rims(const float *own, const float q[3])
-{
-    float rho = sqrtf(q[0] * q[0] + q[1] * q[1]), best = INFINITY;
-    for (int side = -1; side <= 1; side += 2) {
-        float over = rho - (own[1] + (float)side * own[7]), along = q[2] - (float)side * own[2];
-        best = fminf(best, sqrtf(over * over + along * along));
-    }
-    return best;
-}
-
-static bool meets(band b, float low, float high)
-{
-    return b.low <= high && b.high >= low;
-}
-
 /* b in the leaf's own values: f = sigma own + raise. */
-static band own_band(band b, const float *parameters)
+static csg_band own_band(csg_band b, const float *parameters)
 {
     float sigma = parameters[CSG_LEAF_SIGMA], raise = parameters[CSG_LEAF_RAISE];
     float low = (b.low - raise) / sigma, high = (b.high - raise) / sigma;
-    return sigma > 0 ? (band){low, high} : (band){high, low};
+    return sigma > 0 ? (csg_band){low, high} : (csg_band){high, low};
 }
 
-/* Values at the places where a round leaf is not smooth, which are none of its surface: centres,
- * core curves, the axis through a ring. */
-static bool may_be_pointed(uint8_t op, const float *own, band b)
+/* Of a leaf that is no primitive, a field or a shape, nothing is known. */
+static bool may_crease(uint8_t op, const float *own, const float q[3], float reach, csg_band b)
 {
-    switch (op) {
-    case CSG_OP_PLANE:
-        return false;
-    case CSG_OP_SPHERE:
-    case CSG_OP_CIRCLE:
-        return meets(b, own[0], own[0]);
-    case CSG_OP_SLAB:
-        return meets(b, own[0], INFINITY);
-    case CSG_OP_TORUS: /* an arc has more such places outside */
-        return meets(b, own[1], own[1]) || meets(b, -INFINITY, own[1] - own[0]) ||
-               (own[2] > -1 && b.low < 0);
-    case CSG_OP_CAPSULE:
-        return meets(b, fminf(own[2], own[2] + own[3]), INFINITY);
-    case CSG_OP_ELLIPSOID: { /* inside, from the smallest radius of curvature on */
-        float least = fminf(own[0], fminf(own[1], own[2]));
-        return meets(b, least * least / fmaxf(own[0], fmaxf(own[1], own[2])), INFINITY);
-    }
-    default:
-        return true;
-    }
+    return !csg_op_is_primitive(op) ||
+           csg_primitive_of(csg_op_node_kind(op))->may_crease(own, q, reach, b);
 }
 
-/* Edges within `reach` of q; behind them, inside, folds go on from there to the middle. */
-static bool may_have_edges(uint8_t op, const float *own, const float q[3], float reach, band b)
-{
-    switch (op) {
-    case CSG_OP_BOX:
-        return b.high > own[3] || to_box_edges(own, q, 3) <= reach + 2 * own[3];
-    case CSG_OP_RECTANGLE:
-        return b.high > own[2] || to_box_edges(own, q, 2) <= reach + 2 * own[2];
-    case CSG_OP_FRUSTUM:
-        return b.high > own[6] || to_frustum_rims(own, q) <= reach + 2 * own[6];
-    default:
-        return may_be_pointed(op, own, b);
-    }
-}
-
-static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, ball at, band b)
+static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, ball at, csg_band b)
 {
     const float *parameters = tape->parameters + node->parameters;
     bool offset = node->frame == CSG_FRAME_OFFSET;
@@ -119,12 +52,12 @@ static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, bal
     float stretch = offset ? 1.0f : 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
     float reach = 1.01f * at.radius * fmaxf(stretch, 1.0f), q[3];
     to_own(node, parameters + CSG_LEAF_FRAME, at.at, q);
-    return node->warp || may_have_edges(node->op, own, q, reach, own_band(b, parameters));
+    return node->warp || may_crease(node->op, own, q, reach, own_band(b, parameters));
 }
 
 /* Takes the blend's width to the band. False: it is not smooth, or finer than a cell. */
 static bool widen(const csg_tape *tape, uint8_t kind, uint32_t at, bool is_union, float cell,
-                  band *b)
+                  csg_band *b)
 {
     float n = tape->parameters[at + CSG_OPERATOR_N];
     float support = tape->parameters[at + CSG_OPERATOR_SUPPORT];
@@ -136,7 +69,7 @@ static bool widen(const csg_tape *tape, uint8_t kind, uint32_t at, bool is_union
 
 /* False: something in the tape may be sharp. Else the widest band any leaf can have. */
 static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count, float cell,
-                      band *b)
+                      csg_band *b)
 {
     for (uint32_t i = 0; i < count; i++) {
         const csg_tape_node *node = &nodes[i];
@@ -155,7 +88,7 @@ static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t
 static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
                             ball at, float cell)
 {
-    band b = {0, 0};
+    csg_band b = {0, 0};
     if (!find_band(tape, nodes, count, cell, &b))
         return true;
     for (uint32_t i = 0; i < count; i++)

@@ -53,14 +53,14 @@ static point_terms twisted(csg_terms *t, const double *v, const csg_term *p)
 static point_terms bent(csg_terms *t, const double *v, const csg_term *p)
 {
     double radius = v[CSG_BEND_RADIUS], most = v[CSG_BEND_ANGLE];
-    csg_term across = csg_term_less(t, radius, p[2]), s = csg_term_norm2(t, p[0], across);
+    csg_term across = csg_term_number_sub(t, radius, p[2]), s = csg_term_norm2(t, p[0], across);
     csg_term phi = csg_term_mul_number(t, csg_term_atan2(t, p[0], across), PI / 180);
-    csg_term bound =
-        csg_term_mul_number(t, csg_term_less(t, PI, csg_term_abs(t, phi)), most / (PI - most));
+    csg_term bound = csg_term_mul_number(t, csg_term_number_sub(t, PI, csg_term_abs(t, phi)),
+                                         most / (PI - most));
     csg_term turned = csg_term_max(t, csg_term_min(t, phi, bound), csg_term_neg(t, bound));
     csg_term shrink = csg_term_min_number(t, csg_term_mul_number(t, s, 1 / v[CSG_BEND_NEAREST]), 1);
     csg_term along = csg_term_mul_number(t, csg_term_mul(t, turned, shrink), radius);
-    return (point_terms){{along, p[1], csg_term_less(t, radius, s)}};
+    return (point_terms){{along, p[1], csg_term_number_sub(t, radius, s)}};
 }
 
 static point_terms warped(csg_terms *t, const csg_warp *warp, const csg_term *p)

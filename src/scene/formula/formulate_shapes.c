@@ -36,7 +36,7 @@ static csg_term crossing(csg_terms *t, csg_vec2 a, csg_vec2 b, const csg_term p[
     csg_term y =
         csg_term_mul_number(t, csg_term_sub_number(t, p[1], a.y), (b.x - a.x) / (b.y - a.y));
     csg_term right = csg_term_step(t, csg_term_sub(t, csg_term_add_number(t, y, a.x), p[0]));
-    return csg_term_less(t, 1, csg_term_mul_number(t, csg_term_mul(t, height, right), 2));
+    return csg_term_number_sub(t, 1, csg_term_mul_number(t, csg_term_mul(t, height, right), 2));
 }
 
 static csg_term region(csg_terms *t, const csg_outline *outline, const csg_term p[3])

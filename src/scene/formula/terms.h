@@ -33,9 +33,9 @@ static inline csg_term csg_term_of(csg_terms *t, csg_formula_op op, csg_term a, 
     {                                                                                              \
         return csg_term_of(t, CSG_FORMULA_##OP, a, b);                                             \
     }                                                                                              \
-    static inline csg_term csg_term_##name##_number(csg_terms *t, csg_term a, double b)            \
+    static inline csg_term csg_term_##name##_number(csg_terms *t, csg_term a, double number)       \
     {                                                                                              \
-        return csg_term_of(t, CSG_FORMULA_##OP, a, csg_term_number(t, b));                         \
+        return csg_term_of(t, CSG_FORMULA_##OP, a, csg_term_number(t, number));                    \
     }
 CSG_TERM_UNARY(neg, NEG)
 CSG_TERM_UNARY(abs, ABS)
@@ -54,10 +54,10 @@ CSG_TERM_BINARY(pow, POW)
 #undef CSG_TERM_UNARY
 #undef CSG_TERM_BINARY
 
-/* b - a for a number b */
-static inline csg_term csg_term_less(csg_terms *t, double b, csg_term a)
+/* number - a */
+static inline csg_term csg_term_number_sub(csg_terms *t, double number, csg_term a)
 {
-    return csg_term_sub(t, csg_term_number(t, b), a);
+    return csg_term_sub(t, csg_term_number(t, number), a);
 }
 static inline csg_term csg_term_square(csg_terms *t, csg_term a)
 {

@@ -117,7 +117,7 @@ static csg_term is_set(csg_terms *t, csg_term a, csg_term b)
 
 static csg_term not(csg_terms * t, csg_term a, csg_term b)
 {
-    return csg_term_less(t, 1, is_set(t, a, b));
+    return csg_term_number_sub(t, 1, is_set(t, a, b));
 }
 
 static csg_term both(csg_terms *t, csg_term a, csg_term b)

@@ -165,7 +165,7 @@ static inline blended chamfer_float(float n, float chi, float x)
 }
 static inline csg_term chamfer_term(csg_terms *t, double n, csg_term x)
 {
-    return csg_term_less(t, n, csg_term_mul_number(t, x, 0.5));
+    return csg_term_number_sub(t, n, csg_term_mul_number(t, x, 0.5));
 }
 
 #endif

@@ -43,9 +43,10 @@ static csg_term round_pair(csg_terms *t, double w, const csg_term values[2])
     csg_term d = csg_term_abs(t, csg_term_sub(t, values[0], values[1]));
     d = csg_term_min_number(t, d, w);
     csg_term under =
-        csg_term_less(t, w * w / 2, csg_term_mul_number(t, csg_term_square(t, d), 0.25));
+        csg_term_number_sub(t, w * w / 2, csg_term_mul_number(t, csg_term_square(t, d), 0.25));
     csg_term root = csg_term_sqrt(t, under);
-    csg_term excess = csg_term_sub(t, csg_term_less(t, w, csg_term_mul_number(t, d, 0.5)), root);
+    csg_term excess =
+        csg_term_sub(t, csg_term_number_sub(t, w, csg_term_mul_number(t, d, 0.5)), root);
     return csg_term_add(t, largest(t, values, 2), excess);
 }
 

@@ -151,9 +151,6 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
 double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values, size_t count,
                       double cosine, double *partials);
 
-/* Lipschitz constant of a superellipsoid's gauge (SUPERELLIPSOID in primitives.def). */
-double csg_gauge_slope(const double *parameters);
-
 /* What G can be for operands in low..high (operators.md 7.2, 7.3, 5.5, 6.7; else the corners), as
  * csg_rule_apply; cosines: range of the cosine; partials: room. Rounding is not widened. */
 void csg_rule_enclose(const csg_rule *rule, bool is_union, const double *low, const double *high,

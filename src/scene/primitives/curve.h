@@ -7,7 +7,7 @@
 #ifndef CSG_SCENE_CURVE_H
 #define CSG_SCENE_CURVE_H
 
-#include "scene/scene.h"
+#include "scene/primitives/primitive.h"
 
 enum { CSG_CURVE_MOST = 4, CSG_CURVE_AXES = 4, CSG_CURVE_RADIUS = 3 };
 
@@ -18,7 +18,7 @@ typedef struct csg_curve {
 
 static inline bool csg_node_is_curve(csg_node_kind kind)
 {
-    return kind == CSG_NODE_QUADRATIC_TUBE || kind == CSG_NODE_CUBIC_TUBE;
+    return csg_primitive_has(kind, CSG_TRAIT_CURVE);
 }
 
 /* kind: of a curve; parameters as in primitives.def, which are those of `at`, one after the other.

@@ -7,9 +7,6 @@
 
 #include "scene/scene.h"
 
-/* Largest n . p over the solid {f >= 0}; INFINITY where it is unbounded. n need not be unit. */
-double csg_primitive_support(csg_node_kind kind, const double *parameters, csg_vec3 n);
-
 /* Box of the image under `map` of {f >= -level}. */
 csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const csg_affine *map,
                           double level);

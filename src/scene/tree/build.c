@@ -4,6 +4,7 @@
  * blends become chains); nested n-ary operators are flattened when the scene is sealed (seal.c).
  */
 #include "scene/tree/build.h"
+#include "scene/primitives/primitive.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
 
@@ -173,11 +174,10 @@ csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where)
 csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
                                 const double *parameters, csg_span where)
 {
-    enum { MOST_PARAMETERS = 16 };
-    double values[MOST_PARAMETERS] = {0};
+    double values[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
     if (builder->status != CSGM_OK)
         return CSG_NODE_NONE;
-    bool known = csg_node_is_primitive(kind) && kind != CSG_NODE_FIELD && kind != CSG_NODE_SHAPE;
+    bool known = csg_node_is_named_primitive(kind);
     uint32_t count = known ? csg_primitive_parameter_count(kind) : 0;
     for (uint32_t i = 0; i < count; i++)
         values[i] = parameters[i];
@@ -187,7 +187,7 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
     csgm_scene *scene = builder->scene;
     csg_node node = {
         .kind = (uint8_t)kind, .payload = (uint32_t)scene->parameter_count, .where = where};
-    if (kind == CSG_NODE_CIRCLE || kind == CSG_NODE_RECTANGLE)
+    if (csg_primitive_has(kind, CSG_TRAIT_FLAT))
         node.flags = CSG_FLAG_FLAT;
     memcpy(scene->parameters + scene->parameter_count, values, count * sizeof *values);
     scene->parameter_count += count;

@@ -255,25 +255,9 @@ static double height_of(const csgm_scene *scene, csg_node_id id)
 {
     double scale;
     const csg_node *node = undressed(scene, id, &scale);
-    const double *v = scene->parameters + node->payload;
-    csg_curve curve;
-    switch ((csg_node_kind)node->kind) {
-    case CSG_NODE_SPHERE:
-    case CSG_NODE_CIRCLE:
-        return scale * v[0];
-    case CSG_NODE_CAPSULE:
-        return v[1] == v[2] ? scale * v[1] : 0;
-    case CSG_NODE_TORUS:
-        return scale * v[1];
-    case CSG_NODE_QUADRATIC_TUBE:
-    case CSG_NODE_CUBIC_TUBE:
-        curve = csg_curve_make(node->kind, v);
-        return scale * csg_curve_only_radius(&curve);
-    case CSG_NODE_SUPERELLIPSOID:
-        return scale / v[5];
-    default:
+    if (!csg_node_is_named_primitive(node->kind))
         return 0;
-    }
+    return scale * csg_primitive_of(node->kind)->depth(csg_scene_parameters(scene, node));
 }
 
 /* Tubes are sharp unions of such leaves. */

@@ -7,10 +7,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "scene/primitives/curve.h"
+#include "scene/primitives/primitive.h"
 
-/* Larger lengths leave no room for the squares and ratios that the formulas need. */
-#define LARGEST_LENGTH 1e15
 /* A map whose smallest stretch is below this part of its largest is as good as singular. */
 #define SMALLEST_STRETCH 1e-13
 
@@ -25,174 +23,46 @@ void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *
     va_end(arguments);
 }
 
+/* Hands on what has been refused. */
+static bool is_fine(csg_scene_builder *builder, bool fine, const csg_refusal *refusal)
+{
+    if (!fine)
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s", refusal->text);
+    return builder->status == CSGM_OK;
+}
+
 static bool check_range(csg_scene_builder *builder, double value, const char *what)
 {
-    if (!isfinite(value))
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is not a finite number", what);
-    else if (fabs(value) > LARGEST_LENGTH)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is larger than %g", what, LARGEST_LENGTH);
-    return builder->status == CSGM_OK;
+    csg_refusal refusal = {0};
+    return is_fine(builder, csg_check_range(&refusal, value, what), &refusal);
 }
 
 static bool check_positive(csg_scene_builder *builder, double value, const char *what)
 {
-    if (!check_range(builder, value, what))
-        return false;
-    if (value <= 0)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s must be positive", what);
-    else if (value < CSG_SMALLEST_LENGTH)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s is smaller than %g", what, CSG_SMALLEST_LENGTH);
-    return builder->status == CSGM_OK;
+    csg_refusal refusal = {0};
+    return is_fine(builder, csg_check_positive(&refusal, value, what), &refusal);
 }
 
 static bool check_not_negative(csg_scene_builder *builder, double value, const char *what)
 {
-    if (!check_range(builder, value, what))
-        return false;
-    if (value < 0)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "%s must not be negative", what);
-    return builder->status == CSGM_OK;
+    csg_refusal refusal = {0};
+    return is_fine(builder, csg_check_not_negative(&refusal, value, what), &refusal);
 }
 
 static bool check_radii(csg_scene_builder *builder, double r1, double r2)
 {
-    if (!check_not_negative(builder, r1, "the radius") ||
-        !check_not_negative(builder, r2, "the radius"))
-        return false;
-    if (fmax(r1, r2) < CSG_SMALLEST_LENGTH)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "one of the two radii must be positive");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_box(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the size") || !check_positive(builder, v[1], "the size") ||
-        !check_positive(builder, v[2], "the size") ||
-        !check_not_negative(builder, v[3], "the rounding radius"))
-        return false;
-    if (v[3] > fmin(v[0], fmin(v[1], v[2])))
-        csg_check_fail(builder, CSGM_ERR_SCENE,
-                       "the rounding radius is more than half the smallest side");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_capsule(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the length") || !check_radii(builder, v[1], v[2]))
-        return false;
-    if (fabs(v[1] - v[2]) >= v[0])
-        csg_check_fail(builder, CSGM_ERR_SCENE, "one end of the capsule swallows the other");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_torus(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the radius") ||
-        !check_positive(builder, v[1], "the tube radius"))
-        return false;
-    if (!(v[2] > 0 && v[2] <= 180))
-        csg_check_fail(builder, CSGM_ERR_SCENE,
-                       "the angle must be above 0 and at most 360 degrees");
-    return builder->status == CSGM_OK;
-}
-
-static bool check_rectangle(csg_scene_builder *builder, const double *v)
-{
-    if (!check_positive(builder, v[0], "the size") || !check_positive(builder, v[1], "the size") ||
-        !check_not_negative(builder, v[2], "the rounding radius"))
-        return false;
-    if (v[2] > fmin(v[0], v[1]))
-        csg_check_fail(builder, CSGM_ERR_SCENE,
-                       "the rounding radius is more than half the smallest side");
-    return builder->status == CSGM_OK;
-}
-
-/* A normal that is of unit length already, to the last bits, is left alone: printing and parsing
- * a scene again must not move its planes. */
-static bool check_plane(csg_scene_builder *builder, double *v)
-{
-    for (int i = 0; i < 3; i++)
-        if (!check_range(builder, v[i], "the normal"))
-            return false;
-    if (!check_range(builder, v[3], "the distance"))
-        return false;
-    double length = csg_vec3_norm(csg_vec3_make(v[0], v[1], v[2]));
-    if (length < CSG_SMALLEST_LENGTH) {
-        csg_check_fail(builder, CSGM_ERR_SCENE, "the normal must not be zero");
-        return false;
-    }
-    if (fabs(length - 1) > 1e-15)
-        for (int i = 0; i < 3; i++)
-            v[i] /= length;
-    return true;
-}
-
-static bool check_superellipsoid(csg_scene_builder *builder, double *v)
-{
-    const double most = 64;
-    for (int i = 0; i < 3; i++)
-        if (!check_positive(builder, v[i], "the semi-axis"))
-            return false;
-    for (int i = 3; i < 5; i++)
-        if (!(v[i] >= 1 && v[i] <= most)) {
-            csg_check_fail(builder, CSGM_ERR_SCENE, "an exponent must be 1 to %g, not %g", most,
-                           v[i]);
-            return false;
-        }
-    v[5] = csg_gauge_slope(v);
-    return true;
-}
-
-static bool check_tube(csg_scene_builder *builder, csg_node_kind kind, const double *v)
-{
-    double most = 0;
-    for (uint32_t i = 0; i < csg_primitive_parameter_count(kind); i++) {
-        bool is_radius = i % CSG_CURVE_AXES == CSG_CURVE_RADIUS;
-        if (!(is_radius ? check_not_negative(builder, v[i], "the radius")
-                        : check_range(builder, v[i], "a control point")))
-            return false;
-        most = is_radius ? fmax(most, v[i]) : most;
-    }
-    if (most < CSG_SMALLEST_LENGTH)
-        csg_check_fail(builder, CSGM_ERR_SCENE, "one of the radii must be positive");
-    return builder->status == CSGM_OK;
+    csg_refusal refusal = {0};
+    return is_fine(builder, csg_check_radii(&refusal, r1, r2), &refusal);
 }
 
 bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
 {
-    switch (kind) {
-    case CSG_NODE_SPHERE:
-        return check_positive(builder, v[0], "the radius");
-    case CSG_NODE_BOX:
-        return check_box(builder, v);
-    case CSG_NODE_FRUSTUM:
-        return check_radii(builder, v[0], v[1]) && check_positive(builder, v[2], "the height") &&
-               check_not_negative(builder, v[3], "the rounding radius");
-    case CSG_NODE_CAPSULE:
-        return check_capsule(builder, v);
-    case CSG_NODE_TORUS:
-        return check_torus(builder, v);
-    case CSG_NODE_ELLIPSOID:
-        return check_positive(builder, v[0], "the semi-axis") &&
-               check_positive(builder, v[1], "the semi-axis") &&
-               check_positive(builder, v[2], "the semi-axis");
-    case CSG_NODE_PLANE:
-        return check_plane(builder, v);
-    case CSG_NODE_CIRCLE:
-        return check_positive(builder, v[0], "the radius");
-    case CSG_NODE_RECTANGLE:
-        return check_rectangle(builder, v);
-    case CSG_NODE_SLAB:
-        return check_positive(builder, v[0], "the height");
-    case CSG_NODE_SUPERELLIPSOID:
-        return check_superellipsoid(builder, v);
-    case CSG_NODE_QUADRATIC_TUBE:
-    case CSG_NODE_CUBIC_TUBE:
-        return check_tube(builder, kind, v);
-    default:
+    csg_refusal refusal = {0};
+    if (!csg_node_is_named_primitive(kind))
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such primitive");
-        return false;
-    }
+    else if (!csg_primitive_of(kind)->check(&refusal, v))
+        csg_check_fail(builder, CSGM_ERR_SCENE, "%s", refusal.text);
+    return builder->status == CSGM_OK;
 }
 
 /* Operands come first, constants are finite. */

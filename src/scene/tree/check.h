@@ -4,10 +4,8 @@
 #ifndef CSG_SCENE_CHECK_H
 #define CSG_SCENE_CHECK_H
 
+#include "scene/primitives/sizes.h"
 #include "scene/tree/build.h"
-
-/* Smaller sizes are refused, smaller blends are sharp. */
-#define CSG_SMALLEST_LENGTH 1e-15
 
 /* The first failure stays. */
 void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *format, ...)

@@ -5,51 +5,18 @@
 
 #include <stdio.h>
 
+#include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
 
 /* ---- primitives --------------------------------------------------------------------------- */
 
-typedef struct primitive_text {
-    const char *whole;
-    const char *otherwise; /* where the last parameter is one that `whole` cannot say; or NULL */
-    double usual;          /* that last parameter where `whole` says all */
-} primitive_text;
-
-/* $a to $p: the parameters (primitives.def), $A to $D: twice that. A rounded frustum is printed by
- * the sizes of its core, since those of its outside would come back with other last bits. */
-static const primitive_text primitives[] = {
-    [CSG_NODE_SPHERE] = {"sphere(r = $a)", NULL, 0},
-    [CSG_NODE_BOX] = {"cube(size = [$A, $B, $C], center = true)",
-                      "cube(size = [$A, $B, $C], center = true, round = $d)", 0},
-    [CSG_NODE_FRUSTUM] = {"cylinder(h = $C, r1 = $a, r2 = $b, center = true)",
-                          "cylinder(h = $C, r1 = $a, r2 = $b, center = true, round = $d, core = "
-                          "true)",
-                          0},
-    [CSG_NODE_CAPSULE] = {"capsule(p1 = [0, 0, 0], p2 = [0, 0, $a], r1 = $b, r2 = $c)", NULL, 0},
-    [CSG_NODE_TORUS] = {"torus(r = $a, tube = $b)",
-                        "torus(r = $a, tube = $b, angle = $C, center = true)", 180},
-    [CSG_NODE_ELLIPSOID] = {"ellipsoid(r = [$a, $b, $c])", NULL, 0},
-    [CSG_NODE_PLANE] = {"plane(normal = [$a, $b, $c], d = $d)", NULL, 0},
-    [CSG_NODE_CIRCLE] = {"circle(r = $a)", NULL, 0},
-    [CSG_NODE_RECTANGLE] = {"square(size = [$A, $B], center = true)",
-                            "square(size = [$A, $B], center = true, round = $c)", 0},
-    [CSG_NODE_SLAB] = {"slab(h = $a)", NULL, 0},
-    [CSG_NODE_SUPERELLIPSOID] = {"superellipsoid(r = [$a, $b, $c], exponents = [$d, $e])", NULL, 0},
-    [CSG_NODE_QUADRATIC_TUBE] = {"tube(points = [[$a, $b, $c], [$e, $f, $g], [$i, $j, $k]], "
-                                 "r = [$d, $h, $l], degree = 2)",
-                                 NULL, 0},
-    [CSG_NODE_CUBIC_TUBE] = {"tube(points = [[$a, $b, $c], [$e, $f, $g], [$i, $j, $k], "
-                             "[$m, $n, $o]], r = [$d, $h, $l, $p], degree = 3)",
-                             NULL, 0},
-};
-
 static void put_primitive(const csg_printer *out, const csg_node *node)
 {
     const double *v = csg_scene_parameters(out->scene, node);
-    const primitive_text *row = &primitives[node->kind];
-    double last = v[csg_primitive_parameter_count(node->kind) - 1];
-    const char *text = row->otherwise && last != row->usual ? row->otherwise : row->whole;
+    const csg_primitive *row = csg_primitive_of(node->kind);
+    double last = v[row->parameter_count - 1];
+    const char *text = row->call_otherwise && last != row->usual ? row->call_otherwise : row->call;
     for (; *text; text++) {
         if (*text != '$') {
             out->sink(out->user, text, 1);
