@@ -3,7 +3,7 @@
  */
 #include <math.h>
 
-#include "scene/primitives/curve.h"
+#include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
 #include "solid/facets.h"
 #include "solid/measure.h"
@@ -33,8 +33,9 @@ bool csg_cloud_add(csg_cloud *cloud, csg_vec3 at, double radius)
 
 typedef struct clouding {
     const csg_solid_piece *piece;
-    csg_cloud local;          /* in the piece's own frame, before its grow */
-    double tolerance, factor; /* factor 0: balls become ellipsoids */
+    csg_cloud local; /* in the piece's own frame, before its grow */
+    csg_vec3 axes;   /* by which the balls are stretched in it */
+    double tolerance;
     bool ok;
 } clouding;
 
@@ -66,24 +67,24 @@ static void add_ring(clouding *c, double radius, double z, double ball)
     }
 }
 
-static void add_torus(clouding *c, const double *p)
+/* Of what a primitive says of itself (csg_ball_sink); user: the clouding. */
+static void take_ball(void *user, csg_vec3 at, double radius)
 {
-    if (p[2] >= 180) {
-        add_ring(c, p[0], 0, p[1]);
-        return;
-    }
-    uint32_t count = ring_count(p[0] * csg_map_stretch(&c->piece->map), c->tolerance);
-    for (uint32_t i = 0; i <= count && c->ok; i++) {
-        double angle = p[2] * (2.0 * i / count - 1);
-        add_ball(c, p[0] * csg_cosine_deg(angle), p[0] * csg_sine_deg(angle), 0, p[1]);
-    }
+    add_ball(user, at.x, at.y, at.z, radius);
 }
 
-static void add_box(clouding *c, const double *half, double ball, bool flat)
+static void take_arc(void *user, double radius, double z, double half_deg, double ball)
 {
-    for (int i = 0; i < (flat ? 4 : 8); i++)
-        add_ball(c, (i & 1 ? 1 : -1) * (half[0] - ball), (i & 2 ? 1 : -1) * (half[1] - ball),
-                 flat ? 0 : (i & 4 ? 1 : -1) * (half[2] - ball), ball);
+    clouding *c = user;
+    if (half_deg >= 180) {
+        add_ring(c, radius, z, ball);
+        return;
+    }
+    uint32_t count = ring_count(radius * csg_map_stretch(&c->piece->map), c->tolerance);
+    for (uint32_t i = 0; i <= count && c->ok; i++) {
+        double angle = half_deg * (2.0 * i / count - 1);
+        add_ball(c, radius * csg_cosine_deg(angle), radius * csg_sine_deg(angle), z, ball);
+    }
 }
 
 static void add_shape(clouding *c, const csg_shape *shape)
@@ -99,59 +100,20 @@ static void add_shape(clouding *c, const csg_shape *shape)
         add_ball(c, outline->points[i].x, outline->points[i].y, 0, 0);
 }
 
-/* Chords of the balls between which a tube differs from their hull by less than the tolerance. */
-static void add_curve(clouding *c, csg_node_kind kind, const double *p)
-{
-    const double most = 4000;
-    csg_curve curve = csg_curve_make(kind, p);
-    double within = c->tolerance / csg_map_stretch(&c->piece->map);
-    uint32_t chords = (uint32_t)fmin(csg_curve_chords(&curve, within), most);
-    for (uint32_t i = 0; i <= chords; i++) {
-        double at[CSG_CURVE_AXES];
-        csg_curve_at(&curve, (double)i / chords, at);
-        add_ball(c, at[0], at[1], at[2], at[CSG_CURVE_RADIUS]);
-    }
-}
-
 /* The balls of leaves; false where there is no such cloud. */
 static bool add_leaf(clouding *c, const csgm_scene *scene, const csg_node *node)
 {
-    const double *p = scene->parameters + node->payload;
-    switch (node->kind) {
-    case CSG_NODE_SPHERE:
-    case CSG_NODE_CIRCLE:
-        add_ball(c, 0, 0, 0, p[0]);
-        return true;
-    case CSG_NODE_BOX:
-        add_box(c, p, p[3], false);
-        return true;
-    case CSG_NODE_RECTANGLE:
-        add_box(c, p, p[2], true);
-        return true;
-    case CSG_NODE_FRUSTUM:
-        add_ring(c, p[0], -p[2], p[3]);
-        add_ring(c, p[1], p[2], p[3]);
-        return true;
-    case CSG_NODE_CAPSULE:
-        add_ball(c, 0, 0, 0, p[1]);
-        add_ball(c, 0, 0, p[0], p[2]);
-        return true;
-    case CSG_NODE_TORUS:
-        add_torus(c, p);
-        return true;
-    case CSG_NODE_QUADRATIC_TUBE:
-    case CSG_NODE_CUBIC_TUBE:
-        add_curve(c, node->kind, p);
-        return true;
-    case CSG_NODE_ELLIPSOID:
-        add_ball(c, 0, 0, 0, 1);
-        return true;
-    case CSG_NODE_SHAPE:
+    if (node->kind == CSG_NODE_SHAPE) {
         add_shape(c, scene->shapes[node->payload]);
         return true;
-    default:
-        return false;
     }
+    if (!csg_node_is_named_primitive(node->kind))
+        return false;
+    csg_ball_sink sink = {c, take_ball, take_arc, c->tolerance / csg_map_stretch(&c->piece->map),
+                          c->axes};
+    bool has = csg_primitive_of(node->kind)->balls(&sink, csg_scene_parameters(scene, node));
+    c->axes = sink.axes;
+    return has;
 }
 
 /* ---- balls under the piece's map ------------------------------------------------------------- */
@@ -233,11 +195,11 @@ static bool has_balls(const csg_cloud *cloud)
     return false;
 }
 
-static csgm_status place(clouding *c, bool flat, bool ellipsoid, const double *axes, csg_cloud *out)
+static csgm_status place(clouding *c, bool flat, csg_cloud *out)
 {
     csg_affine map = flat ? csg_map_of_plane(c->piece->map) : c->piece->map;
-    if (ellipsoid)
-        map = csg_affine_multiply(map, csg_affine_scale(csg_vec3_make(axes[0], axes[1], axes[2])));
+    if (c->axes.x != 1 || c->axes.y != 1 || c->axes.z != 1)
+        map = csg_affine_multiply(map, csg_affine_scale(c->axes));
     double factor = csg_map_factor(&map), grow = c->piece->grow;
     if (factor == 0 && has_balls(&c->local))
         return c->ok && spread(&c->local, &map, grow, c->tolerance, flat, out) ? CSGM_OK
@@ -328,7 +290,7 @@ csgm_status csg_piece_cloud(csg_solid_job *job, const csg_solid_piece *piece, do
     const csgm_scene *scene = job->builder->scene;
     const csg_node node = scene->nodes[piece->node];
     bool flat = csg_build_is_flat(job->builder, piece->node);
-    clouding c = {.piece = piece, .tolerance = tolerance, .ok = true};
+    clouding c = {.piece = piece, .axes = {1, 1, 1}, .tolerance = tolerance, .ok = true};
     csgm_status status = CSGM_OK;
     csg_cloud_init(&c.local, out->memory);
     if (csg_piece_is_extrusion(&node))
@@ -339,11 +301,8 @@ csgm_status csg_piece_cloud(csg_solid_job *job, const csg_solid_piece *piece, do
         status = tessellated_cloud(job, &c, flat);
     if (!c.ok)
         status = CSGM_ERR_MEMORY;
-    const double axes[3] = {1, 1, 1};
-    bool ellipsoid = node.kind == CSG_NODE_ELLIPSOID;
-    if (status == CSGM_OK) /* the tessellation may have moved the arrays */
-        status = place(&c, flat, ellipsoid,
-                       ellipsoid ? job->builder->scene->parameters + node.payload : axes, out);
+    if (status == CSGM_OK)
+        status = place(&c, flat, out);
     csg_cloud_release(&c.local);
     return status;
 }

@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "scene/outlines/flatten.h"
-#include "scene/primitives/curve.h"
+#include "scene/primitives/primitive.h"
 #include "solid/measure.h"
 #include "solid/pieces.h"
 
@@ -41,8 +41,10 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
         (node->kind == CSG_NODE_INTERSECTION || node->kind == CSG_NODE_DIFFERENCE) && !at.outside;
     if (node->kind == CSG_NODE_SHAPE || node->kind == CSG_NODE_EMPTY)
         return true;
-    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_SUPERELLIPSOID ||
-        node->kind == CSG_NODE_SOFT || node->kind == CSG_NODE_COMBINE)
+    if (csg_node_is_named_primitive(node->kind))
+        return csg_primitive_has(node->kind, at.outside ? CSG_TRAIT_OUTSIDE : CSG_TRAIT_INSIDE);
+    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_SOFT ||
+        node->kind == CSG_NODE_COMBINE)
         return false;
     if (node->kind == CSG_NODE_TRANSFORM &&
         !csg_affine_is_similarity(&scene->transforms[node->payload]))
@@ -54,8 +56,6 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
     if (csg_node_is_operator(node->kind) &&
         !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
         (node->blend != CSG_BLEND_SHARP || (!joins && !meets)))
-        return false;
-    if (csg_node_is_curve(node->kind) && !at.outside) /* bends back to itself */
         return false;
     for (uint32_t i = 0; i < node->child_count; i++) {
         bool flips = node->kind == CSG_NODE_DIFFERENCE && i > 0;

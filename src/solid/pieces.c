@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
 
@@ -195,32 +196,25 @@ bool csg_piece_is_convex(const csg_solid_job *job, const csg_solid_piece *piece)
     const csg_node *node = &scene->nodes[piece->node];
     csg_solid_piece inner = *piece;
     csg_solid_pieces figure;
-    switch (node->kind) {
-    case CSG_NODE_SPHERE:
-    case CSG_NODE_CIRCLE:
-    case CSG_NODE_BOX:
-    case CSG_NODE_RECTANGLE:
-    case CSG_NODE_FRUSTUM:
-    case CSG_NODE_CAPSULE:
-    case CSG_NODE_ELLIPSOID:
-        return true;
-    case CSG_NODE_SHAPE: {
+    /* what is no distance gives no cloud: a tessellation stands for it, which need not be convex */
+    const unsigned wanted = CSG_TRAIT_CONVEX | CSG_TRAIT_BOUNDED | CSG_TRAIT_OUTSIDE;
+    if (csg_node_is_named_primitive(node->kind))
+        return (csg_primitive_of(node->kind)->traits & wanted) == wanted;
+    if (node->kind == CSG_NODE_SHAPE) {
         const csg_shape *shape = scene->shapes[node->payload];
         return shape->kind == CSG_SHAPE_POLYHEDRON ? csg_polyhedron_is_convex(shape)
                                                    : is_convex_region(csg_region_outline(shape));
     }
-    default:
-        if (!csg_piece_is_extrusion(node))
-            return false;
-        inner.node = csg_scene_children(scene, node)[0];
-        csg_pieces_init(&figure, job->memory);
-        bool convex = csg_pieces_collect(job->builder->scene, inner.node, &figure) &&
-                      figure.count == 1 &&
-                      scene->nodes[figure.items[0].node].kind != CSG_NODE_INTERSECTION &&
-                      csg_piece_is_convex(job, &figure.items[0]);
-        csg_pieces_release(&figure);
-        return convex;
-    }
+    if (!csg_piece_is_extrusion(node))
+        return false;
+    inner.node = csg_scene_children(scene, node)[0];
+    csg_pieces_init(&figure, job->memory);
+    bool convex = csg_pieces_collect(job->builder->scene, inner.node, &figure) &&
+                  figure.count == 1 &&
+                  scene->nodes[figure.items[0].node].kind != CSG_NODE_INTERSECTION &&
+                  csg_piece_is_convex(job, &figure.items[0]);
+    csg_pieces_release(&figure);
+    return convex;
 }
 
 bool csg_piece_ball(const csgm_scene *scene, const csg_solid_piece *piece, csg_ball *out)

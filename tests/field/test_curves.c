@@ -10,7 +10,7 @@
 #include "field/compile/compile_curve.h"
 #include "field/cones/cone_curve.h"
 #include "field/field_support.h"
-#include "scene/random_curve.h"
+#include "scene/primitives/primitive.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -173,7 +173,7 @@ static void check_kind(csg_node_kind kind)
     for (int i = 0; i < point_count / AT_A_CURVE; i++) {
         double v[CSG_CURVE_MOST * CSG_CURVE_AXES];
         test_subject s;
-        test_random_curve(&random, kind, v);
+        csg_primitive_of(kind)->example(&random, v);
         csg_affine place = any_place(&random, i % 4);
         test_subject_begin(&s);
         csg_node_id node = csg_build_primitive(&s.builder, kind, v, NOWHERE);

@@ -274,7 +274,7 @@ static void test_each_rule(void **state)
 
 static csg_node_id random_operand(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
+    csg_node_kind kind = test_random_solid_kind(random);
     bool super = csg_random_below(random, 8) == 0;
     double v[6] = {uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6),
                    uniform(random, 1, 5),     uniform(random, 1, 5),     1};

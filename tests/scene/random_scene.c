@@ -4,9 +4,10 @@
  */
 #include "random_scene.h"
 
-#include "random_curve.h"
+#include <string.h>
 
 #include "random_rule.h"
+#include "scene/primitives/primitive.h"
 
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
 
@@ -44,58 +45,30 @@ csg_affine test_random_affine(csg_random *random, double low, double high, doubl
     return a;
 }
 
-static void random_plane(csg_random *random, double *v)
-{
-    csg_vec3 n = random_direction(random);
-    if (chance(random, 0.3))
-        n = (csg_vec3[]){{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}[csg_random_below(random, 3)];
-    v[0] = n.x;
-    v[1] = n.y;
-    v[2] = n.z;
-    v[3] = uniform(random, -0.3, 0.5);
-}
-
 void test_random_parameters(csg_random *random, csg_node_kind kind, double *v)
 {
-    for (int i = 0; i < 4; i++)
-        v[i] = uniform(random, 0.15, 0.7);
-    switch (kind) {
-    case CSG_NODE_SUPERELLIPSOID:
-        v[3] = uniform(random, 1, 6);
-        v[4] = chance(random, 0.5) ? v[3] : uniform(random, 1, 6);
-        v[5] = 0;
-        break;
-    case CSG_NODE_BOX:
-        v[3] = chance(random, 0.5) ? 0 : uniform(random, 0, fmin(v[0], fmin(v[1], v[2])));
-        break;
-    case CSG_NODE_FRUSTUM:
-        v[csg_random_below(random, 2)] *= chance(random, 0.3) ? 0 : 1; /* pointed */
-        v[1] = chance(random, 0.3) && v[0] > 0 ? v[0] : v[1];          /* straight */
-        v[3] = chance(random, 0.5) ? 0 : uniform(random, 0, 0.2);
-        break;
-    case CSG_NODE_CAPSULE:
-        v[0] = fabs(v[1] - v[2]) + uniform(random, 0.05, 1);
-        break;
-    case CSG_NODE_TORUS:
-        v[1] = uniform(random, 0.05, 0.35);
-        v[2] = chance(random, 0.4) ? 180 : uniform(random, 5, 180);
-        break;
-    case CSG_NODE_PLANE:
-        random_plane(random, v);
-        break;
-    default:
-        break;
-    }
+    csg_primitive_of(kind)->example(random, v);
 }
 
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
                                   csg_node_kind kind, double *parameters)
 {
-    double v[6] = {0};
+    double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
     test_random_parameters(random, kind, v);
-    for (int i = 0; parameters && i < (kind == CSG_NODE_SUPERELLIPSOID ? 6 : 4); i++)
-        parameters[i] = v[i];
+    if (parameters)
+        memcpy(parameters, v, csg_primitive_parameter_count(kind) * sizeof *v);
     return csg_build_primitive(builder, kind, v, nowhere);
+}
+
+csg_node_kind test_random_solid_kind(csg_random *random)
+{
+    csg_node_kind kinds[32];
+    const unsigned wanted = CSG_TRAIT_BOUNDED | CSG_TRAIT_EXACT;
+    uint32_t count = 0;
+    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+        if ((csg_primitive_of(kind)->traits & (wanted | CSG_TRAIT_FLAT)) == wanted)
+            kinds[count++] = kind;
+    return kinds[csg_random_below(random, count)];
 }
 
 csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
@@ -178,16 +151,14 @@ bool test_random_curves = false;
 
 static csg_node_id random_tube(csg_scene_builder *builder, csg_random *random)
 {
-    double v[CSG_CURVE_MOST * CSG_CURVE_AXES];
     csg_node_kind kind = chance(random, 0.3) ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
-    test_random_curve(random, kind, v);
-    return csg_build_primitive(builder, kind, v, nowhere);
+    return test_random_primitive(builder, random, kind, NULL);
 }
 
 /* A bounded primitive somewhere, one in eight of them cut by a half-space. */
 static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
+    csg_node_kind kind = test_random_solid_kind(random);
     bool shaped = test_random_shapes && chance(random, 0.25);
     if (test_random_rules && chance(random, 0.1))
         kind = CSG_NODE_SUPERELLIPSOID;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Seeded random scenes for property tests: every primitive (partial tori and planes too), every
- * operator, every blend with widths that matter, unequal scales, sometimes colours. The solids are
- * finite, most of them lie within about [-2, 2]^3; a few are empty.
+ * Seeded random scenes for property tests: every primitive (primitives.def; partial tori too),
+ * every operator, every blend with widths that matter, unequal scales, sometimes colours. The
+ * solids are finite, most of them lie within about [-2, 2]^3; a few are empty.
  */
 #ifndef TEST_RANDOM_SCENE_H
 #define TEST_RANDOM_SCENE_H
@@ -30,8 +30,10 @@ csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
 /* One such solid, finite, not placed. */
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
 
-/* A primitive of this kind with random parameters (sizes 0.1 to 0.8), not placed; its parameters
- * are also copied to `parameters` (room for 6) unless that is NULL. */
+/* One of the bounded solids that are exact distances. */
+csg_node_kind test_random_solid_kind(csg_random *random);
+/* A primitive of this kind with random parameters (its example), not placed; they are also copied
+ * to `parameters` (room for CSG_PRIMITIVE_MOST_PARAMETERS) unless that is NULL. */
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
                                   csg_node_kind kind, double *parameters);
 void test_random_parameters(csg_random *random, csg_node_kind kind, double *parameters);

@@ -72,7 +72,7 @@ static csg_warp random_twist(csg_random *random)
 
 static csg_node_id solid(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 6);
+    csg_node_kind kind = test_random_solid_kind(random);
     return test_random_primitive(builder, random, kind, NULL);
 }
 

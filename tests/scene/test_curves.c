@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Tubes along Bezier curves, seeded random ones of every temper (random_curve.h), in double: the
+ * Tubes along Bezier curves, seeded random ones of every temper, in double: the
  * nearest ball against many balls along the curve, which are never larger and nearly as large;
  * inside and outside; Lipschitz constant 1; gradients of unit length against central differences;
  * boxes that contain and touch.
@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 
-#include "random_curve.h"
+#include "scene/primitives/curve.h"
 #include "scene/primitives/primitive_box.h"
 
 /* tools/soak has many more, of other seeds. */
@@ -99,7 +99,7 @@ static void check_kind(csg_node_kind kind)
     static chain balls;
     for (int i = 0; i < point_count / AT_A_CURVE; i++) {
         double v[CSG_CURVE_MOST * CSG_CURVE_AXES];
-        test_random_curve(&random, kind, v);
+        csg_primitive_of(kind)->example(&random, v);
         csg_curve curve = csg_curve_make(kind, v);
         fill_chain(&curve, &balls);
         check_box(kind, v, &balls);
@@ -136,7 +136,7 @@ static void test_same_curve(void **state)
     csg_random random = {4100 + seed_of_run};
     for (int i = 0; i < 300; i++) {
         double v[CSG_CURVE_MOST * CSG_CURVE_AXES], up[CSG_CURVE_MOST * CSG_CURVE_AXES];
-        test_random_curve(&random, CSG_NODE_QUADRATIC_TUBE, v);
+        csg_primitive_of(CSG_NODE_QUADRATIC_TUBE)->example(&random, v);
         for (int k = 0; k < 4; k++) {
             up[k] = v[k];
             up[4 + k] = v[k] / 3 + v[4 + k] * 2 / 3;

@@ -5,7 +5,7 @@
  */
 #include "golden_rows.h"
 
-#include "scene/primitives/superellipsoid.h"
+#include "scene/primitives/primitive.h"
 
 static const double tolerance = 1e-12;
 
@@ -117,7 +117,8 @@ static void check_falloff(const row *r)
 static void check_gauge(const row *r)
 {
     double v[6] = {0.7, 1.1, 0.4, number(r->fields[2]), number(r->fields[1]), 1};
-    v[5] = csg_gauge_slope(v);
+    csg_refusal refusal = {0};
+    assert_true(csg_primitive_of(CSG_NODE_SUPERELLIPSOID)->check(&refusal, v)); /* finds v[5] */
     csg_sample sample = csg_reference_primitive(CSG_NODE_SUPERELLIPSOID, v, point(r->fields[3]));
     test_near(1 - v[5] * sample.value, number(r->fields[4]), tolerance);
     test_near_vec3(csg_vec3_scale(sample.gradient, -v[5]), point(r->fields[5]), tolerance);

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * Every primitive, with seeded random parameters, against a membership test that shares nothing
- * with its distance formula: sign, distance to points of the surface found by bisection along rays,
- * and the foot point p - f grad f on the surface. Also |f(p) - f(q)| <= |p - q| and gradients
- * against central differences.
+ * Every primitive of primitives.def, with the random parameters that are its example: distance and
+ * support function say the same solid, |f(p) - f(q)| <= |p - q|, gradients against central
+ * differences. Some of them also against a membership test that shares nothing with the distance
+ * formula: sign, distance to points of the surface found by bisection along rays, and the foot
+ * point p - f grad f on the surface.
  */
 #include "scene_support.h"
 
 #include "random_scene.h"
+#include "scene/primitives/primitive.h"
 
 enum { SETS = 5, SURFACE_POINTS = 2000, QUERIES = 60 };
 
@@ -174,8 +176,46 @@ static void check_distance(csg_node_kind kind)
 
 static void test_distance(void **state)
 {
-    for (csg_node_kind kind = CSG_NODE_SPHERE; kind < CSG_NODE_PLANE; kind++)
-        check_distance(kind);
+    const csg_node_kind known[] = {CSG_NODE_SPHERE,  CSG_NODE_BOX,   CSG_NODE_FRUSTUM,
+                                   CSG_NODE_CAPSULE, CSG_NODE_TORUS, CSG_NODE_ELLIPSOID};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        check_distance(known[i]);
+}
+
+/* ---- against the support function --------------------------------------------------------------
+ * With h(n) the largest n . x over a convex solid, its signed distance is the least h(n) - n . p
+ * over all unit vectors n, inside and outside, and minus the gradient is the n that decides. Of any
+ * solid no point that is inside is beyond h(n).
+ */
+
+static void check_support(csg_node_kind kind, const double *v, csg_vec3 p, csg_vec3 n)
+{
+    const csg_primitive *primitive = csg_primitive_of(kind);
+    bool is_convex = primitive->traits & CSG_TRAIT_CONVEX && primitive->traits & CSG_TRAIT_OUTSIDE;
+    csg_sample s = csg_reference_primitive(kind, v, p);
+    double least = primitive->support(v, n) - csg_vec3_dot(n, p);
+    assert_true(!(s.value >= 0) || least >= -1e-12);
+    if (!is_convex)
+        return;
+    assert_true(s.value <= least + 1e-12);
+    if (fabs(csg_vec3_norm(s.gradient) - 1) > 1e-9)
+        return; /* several places are as near */
+    csg_vec3 out = csg_vec3_scale(s.gradient, -1);
+    test_near(s.value, primitive->support(v, out) - csg_vec3_dot(out, p), 1e-9);
+}
+
+static void test_support(void **state)
+{
+    csg_random random = {150};
+    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+        for (int set = 0; set < 200; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            csg_refusal refusal = {0};
+            test_random_parameters(&random, kind, v);
+            assert_true(csg_primitive_of(kind)->check(&refusal, v));
+            for (int i = 0; i < 100; i++)
+                check_support(kind, v, test_point(&random, 1.5), test_direction(&random));
+        }
 }
 
 static void test_plane(void **state)
@@ -198,11 +238,14 @@ static void check_pair(csg_node_kind kind, const double *v, csg_vec3 p, csg_vec3
 
 static void test_lipschitz(void **state)
 {
-    for (csg_node_kind kind = CSG_NODE_SPHERE; kind <= CSG_NODE_PLANE; kind++) {
+    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++) {
+        bool is_curve = csg_primitive_has(kind, CSG_TRAIT_CURVE); /* costly */
         csg_random random = {200 + (uint64_t)kind};
-        for (int set = 0; set < 200; set++) {
-            double v[4];
+        for (int set = 0; set < (is_curve ? 20 : 200); set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            csg_refusal refusal = {0};
             test_random_parameters(&random, kind, v);
+            assert_true(csg_primitive_of(kind)->check(&refusal, v));
             for (int i = 0; i < 200; i++) {
                 csg_vec3 p = test_point(&random, 1.5), q = test_point(&random, 1.5);
                 check_pair(kind, v, p, q);
@@ -243,12 +286,16 @@ static bool check_gradient(csg_node_kind kind, const double *v, csg_vec3 p)
 
 static void test_gradient(void **state)
 {
-    for (csg_node_kind kind = CSG_NODE_SPHERE; kind <= CSG_NODE_PLANE; kind++) {
+    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++) {
         csg_random random = {300 + (uint64_t)kind};
         int checked = 0;
+        if (csg_primitive_has(kind, CSG_TRAIT_CURVE))
+            continue; /* test_curves.c */
         for (int i = 0; i < 4000; i++) {
-            double v[4];
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            csg_refusal refusal = {0};
             test_random_parameters(&random, kind, v);
+            assert_true(csg_primitive_of(kind)->check(&refusal, v));
             checked += check_gradient(kind, v, test_point(&random, 1.5));
         }
         assert_true(checked > 3900);
@@ -345,11 +392,11 @@ static void test_ellipsoid_extreme(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_distance),          cmocka_unit_test(test_plane),
-        cmocka_unit_test(test_lipschitz),         cmocka_unit_test(test_gradient),
-        cmocka_unit_test(test_critical_points),   cmocka_unit_test(test_pointed_cone),
-        cmocka_unit_test(test_torus_arc),         cmocka_unit_test(test_ellipsoid_medial),
-        cmocka_unit_test(test_ellipsoid_extreme),
+        cmocka_unit_test(test_distance),         cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_support),          cmocka_unit_test(test_lipschitz),
+        cmocka_unit_test(test_gradient),         cmocka_unit_test(test_critical_points),
+        cmocka_unit_test(test_pointed_cone),     cmocka_unit_test(test_torus_arc),
+        cmocka_unit_test(test_ellipsoid_medial), cmocka_unit_test(test_ellipsoid_extreme),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

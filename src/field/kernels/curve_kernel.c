@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "field/kernels/frames.h"
+#include "scene/primitives/tube.h"
 
 enum { LANES = 64, PARTS = 5, STEPS = 4 };
 

@@ -66,13 +66,13 @@ static inline void csg_plane_example(csg_random *random, double *v)
     const double axes[3][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
     csg_example_sizes(random, v);
     double length;
-    do {
+    do { /* in a ball */
         for (int i = 0; i < 3; i++)
             v[i] = csg_random_uniform(random, -1, 1);
         length = csg_vec3_norm(csg_vec3_make(v[0], v[1], v[2]));
     } while (!(length > 0.1 && length < 1));
     for (int i = 0; i < 3; i++)
-        v[i] = v[i] / length;
+        v[i] *= 1 / length;
     if (csg_example_chance(random, 0.3))
         memcpy(v, axes[csg_random_below(random, 3)], sizeof axes[0]);
     v[3] = csg_random_uniform(random, -0.3, 0.5);

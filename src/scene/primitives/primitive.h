@@ -18,7 +18,7 @@ enum {
     CSG_TRAIT_FLAT = 1,     /* the field does not depend on z */
     CSG_TRAIT_BOUNDED = 2,  /* the solid is, or the figure of the plane */
     CSG_TRAIT_CONVEX = 4,   /* the solid is, and so the field is concave */
-    CSG_TRAIT_INSIDE = 8,   /* the field is the exact distance inside */
+    CSG_TRAIT_INSIDE = 8,   /* the field is the exact distance inside: not where curves bend back */
     CSG_TRAIT_OUTSIDE = 16, /* and outside: {f >= -level} is the solid grown by a ball */
     CSG_TRAIT_EXACT = CSG_TRAIT_INSIDE | CSG_TRAIT_OUTSIDE,
     CSG_TRAIT_BALL = 32,   /* turned about the origin it stays as it is */
