@@ -20,7 +20,7 @@ extern bool test_random_shapes;
  * leaves superellipsoids. Off at first, too. */
 extern bool test_random_rules;
 
-/* Whether one in eight leaves is a tube along a Bezier curve (random_curve.h). Off at first, too.
+/* Whether one in eight leaves is a tube along a Bezier curve. Off at first, too.
  */
 extern bool test_random_curves;
 
