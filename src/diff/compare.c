@@ -84,11 +84,11 @@ static void set_first_place(comparison *c, const csg_diff_maximum *search, csgm_
     bool in_face;
     if (!search->is_found)
         return;
-    csg_nearest nearest = csg_tree_nearest(&other->tree, search->at, 0);
+    csg_triangle_hit nearest = csg_tree_nearest(&other->tree, search->at, 0);
     csg_vec3 foot = csg_triangle_foot(&other->tree.triangles[nearest.place], search->at, &in_face);
-    out->worst[0] =
-        (csgm_diff_place){csg_frame_leave(&c->pair.frame, search->at),
-                          csg_frame_leave(&c->pair.frame, foot), to_scene(c, search->lower)};
+    out->worst[0] = (csgm_diff_place){csg_triangle_frame_leave(&c->pair.frame, search->at),
+                                      csg_triangle_frame_leave(&c->pair.frame, foot),
+                                      to_scene(c, search->lower)};
     out->worst_count = 1;
 }
 

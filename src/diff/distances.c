@@ -48,7 +48,7 @@ static double distance_from(const csg_tree *tree, csg_vec3 p, last_search *last,
     *place = last->place;
     if (between <= CLOSE * last->distance)
         return last->distance - between;
-    csg_nearest nearest = csg_tree_nearest(tree, p, last->place);
+    csg_triangle_hit nearest = csg_tree_nearest(tree, p, last->place);
     *last = (last_search){p, sqrt(nearest.squared), nearest.place, nearest.leaves >= COSTLY};
     *place = last->place;
     return last->distance;
@@ -313,7 +313,7 @@ static bool is_apart(const csg_diff_pair *pair, const csgm_diff_distance *out, c
                      double apart)
 {
     for (uint32_t i = 0; i < out->worst_count; i++) {
-        csg_vec3 away = csg_vec3_sub(at, csg_frame_enter(&pair->frame, out->worst[i].at));
+        csg_vec3 away = csg_vec3_sub(at, csg_triangle_frame_enter(&pair->frame, out->worst[i].at));
         if (csg_vec3_dot(away, away) < apart * apart)
             return false;
     }
@@ -344,8 +344,8 @@ void csg_diff_find_worst(const csg_diff_pair *pair, int from, csgm_diff_distance
             return;
         csg_vec3 at = pair->points[best];
         csg_vec3 foot = foot_of(&pair->sides[1 - from].tree, side->nearest[best], at);
-        out->worst[out->worst_count++] =
-            (csgm_diff_place){csg_frame_leave(&pair->frame, at),
-                              csg_frame_leave(&pair->frame, foot), least * pair->frame.unscale};
+        out->worst[out->worst_count++] = (csgm_diff_place){
+            csg_triangle_frame_leave(&pair->frame, at),
+            csg_triangle_frame_leave(&pair->frame, foot), least * pair->frame.unscale};
     }
 }

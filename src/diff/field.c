@@ -42,7 +42,7 @@ typedef struct field_work {
 
 static csg_vec3 to_scene(const field_work *w, csg_vec3 p)
 {
-    return csg_diff_turned(w->back, csg_frame_leave(&w->pair->frame, p));
+    return csg_diff_turned(w->back, csg_triangle_frame_leave(&w->pair->frame, p));
 }
 
 static csg_vec3 from_scene(const field_work *w, csg_vec3 p)

@@ -159,9 +159,9 @@ static void take_lower(const engine *e, outcome *out, double distance, csg_vec3 
     out->is_found = true;
 }
 
-static csg_nearest look_up(const engine *e, csg_vec3 p, uint32_t hint)
+static csg_triangle_hit look_up(const engine *e, csg_vec3 p, uint32_t hint)
 {
-    csg_nearest nearest = csg_tree_nearest(&e->other->tree, p, hint);
+    csg_triangle_hit nearest = csg_tree_nearest(&e->other->tree, p, hint);
     nearest.squared = sqrt(nearest.squared);
     return nearest;
 }
@@ -195,7 +195,7 @@ static void work_on(const engine *e, outcome *out, csg_piece piece, csg_piece *s
                     uint32_t *depth)
 {
     csg_vec3 center = csg_piece_center(&piece);
-    csg_nearest nearest = look_up(e, center, piece.hint);
+    csg_triangle_hit nearest = look_up(e, center, piece.hint);
     const csg_tree_triangle *t = &e->other->tree.triangles[nearest.place];
     double radius = csg_piece_radius(&piece, center);
     uint32_t worst = 0;

@@ -174,7 +174,8 @@ static csg_box box_of_side(const csg_diff_pair *pair, const csg_diff_side *side)
 
 static csg_vec3 rounded(csg_vec3 p)
 {
-    return csg_vec3_make(csg_frame_round(p.x), csg_frame_round(p.y), csg_frame_round(p.z));
+    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
+                         csg_triangle_frame_round(p.z));
 }
 
 static double largest_coordinate(csg_box box)
@@ -189,15 +190,15 @@ static void enter_frame(csg_diff_pair *pair)
 {
     pair->box =
         csg_box_hull(box_of_side(pair, &pair->sides[0]), box_of_side(pair, &pair->sides[1]));
-    pair->frame = (csg_frame){{0, 0, 0}, 1, 1};
+    pair->frame = (csg_triangle_frame){{0, 0, 0}, 1, 1};
     if (csg_box_is_empty(pair->box))
         return;
-    if (!csg_frame_make(pair->box, &pair->frame))
+    if (!csg_triangle_frame_make(pair->box, &pair->frame))
         pair->frame.center = csg_box_center(pair->box); /* all at one place */
     bool is_exact = true;
     for (size_t i = 0; i < pair->point_count; i++) {
-        csg_vec3 p = rounded(csg_frame_enter(&pair->frame, pair->points[i]));
-        csg_vec3 back = csg_frame_leave(&pair->frame, p);
+        csg_vec3 p = rounded(csg_triangle_frame_enter(&pair->frame, pair->points[i]));
+        csg_vec3 back = csg_triangle_frame_leave(&pair->frame, p);
         is_exact = is_exact && memcmp(&back, &pair->points[i], sizeof back) == 0;
         pair->points[i] = p;
     }

@@ -40,7 +40,7 @@ typedef struct csg_diff_pair {
     csg_arena arena;        /* of what both share */
     csg_vec3 *points;       /* scene units until the frame is known, then frame units */
     size_t point_count;
-    csg_frame frame;
+    csg_triangle_frame frame;
     csg_box box;      /* of both, scene units */
     double precision; /* frame units: csgm_diff_report.precision */
     const csgm_monitor *monitor;

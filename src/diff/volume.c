@@ -100,7 +100,7 @@ static double fraction(uint64_t index, uint64_t factor)
 
 static double place_in(double low, double high, size_t cell, size_t cells, double within)
 {
-    return csg_frame_round(low + (high - low) * (((double)cell + within) / (double)cells));
+    return csg_triangle_frame_round(low + (high - low) * (((double)cell + within) / (double)cells));
 }
 
 static lengths cast(const casting *c, events *list, size_t row, size_t column)

@@ -247,7 +247,7 @@ static void relay_echo(void *user, const char *text, size_t length)
     pthread_mutex_unlock(&c->relay.mutex);
 }
 
-static void *work(void *argument)
+static void *compile_in_worker(void *argument)
 {
     compilation *c = argument;
     compile(c);
@@ -317,7 +317,7 @@ static void serve(compilation *c)
 }
 
 /* The largest stack that the system gives; false when it gives no thread. */
-static bool start(compilation *c, pthread_t *thread)
+static bool start_worker(compilation *c, pthread_t *thread)
 {
     static const size_t sizes[] = {(size_t)512 << 20, (size_t)64 << 20, (size_t)8 << 20};
     bool started = false;
@@ -327,7 +327,7 @@ static bool start(compilation *c, pthread_t *thread)
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes && !started; i++) {
         c->stack_bytes = sizes[i] - ((size_t)64 << 10);
         started = pthread_attr_setstacksize(&attributes, sizes[i]) == 0 &&
-                  pthread_create(thread, &attributes, work, c) == 0;
+                  pthread_create(thread, &attributes, compile_in_worker, c) == 0;
     }
     pthread_attr_destroy(&attributes);
     return started;
@@ -350,7 +350,7 @@ static void compile_on_thread(compilation *c)
     }
     context->on_echo = c->on_echo ? relay_echo : NULL;
     context->user = c;
-    bool started = start(c, &thread);
+    bool started = start_worker(c, &thread);
     if (started) {
         serve(c);
         pthread_join(thread, NULL);

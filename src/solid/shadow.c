@@ -114,7 +114,7 @@ static size_t edge_from(const shadow *s, const uint8_t *used, uint32_t point)
 }
 
 /* As many edges end at a point as begin there, so every walk closes. */
-static bool trace(const shadow *s, uint8_t *used, csg_outline *out)
+static bool trace_loops(const shadow *s, uint8_t *used, csg_outline *out)
 {
     for (size_t first = 0; first < s->count; first++) {
         for (size_t at = first; at < s->count && !used[at];
@@ -144,7 +144,7 @@ static csg_node_id shadow_of_triangles(csg_solid_job *job, const csg_triangles *
     uint8_t *used = ok ? csg_memory_alloc(memory, bytes) : NULL;
     for (size_t i = 0; used && i < bytes; i++)
         used[i] = 0;
-    ok = used && trace(&s, used, &outline);
+    ok = used && trace_loops(&s, used, &outline);
     csg_memory_release(memory, used, bytes);
     csg_memory_release(memory, s.edges, s.capacity * sizeof *s.edges);
     if (ok)

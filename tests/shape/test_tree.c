@@ -7,7 +7,8 @@
 
 static csg_vec3 on_lattice(csg_vec3 p)
 {
-    return csg_vec3_make(csg_frame_round(p.x), csg_frame_round(p.y), csg_frame_round(p.z));
+    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
+                         csg_triangle_frame_round(p.z));
 }
 
 static double squared_to(const csg_tree *tree, uint32_t place, csg_vec3 p)
@@ -19,7 +20,7 @@ static double squared_to(const csg_tree *tree, uint32_t place, csg_vec3 p)
 
 static void check(const csg_tree *tree, csg_vec3 p, csg_random *random)
 {
-    csg_nearest found = csg_tree_nearest(tree, p, 0);
+    csg_triangle_hit found = csg_tree_nearest(tree, p, 0);
     /* the foot is rounded as p is */
     double error = 1e-14 * (1 + csg_vec3_norm(p)) * sqrt(found.squared) + 1e-10 * found.squared;
     assert_true(fabs(squared_to(tree, found.place, p) - found.squared) <= error);
@@ -27,7 +28,7 @@ static void check(const csg_tree *tree, csg_vec3 p, csg_random *random)
         assert_true(squared_to(tree, place, p) >= found.squared - error);
     for (int i = 0; i < 3; i++) {
         uint32_t hint = csg_random_below(random, (uint32_t)tree->count);
-        csg_nearest again = csg_tree_nearest(tree, p, hint);
+        csg_triangle_hit again = csg_tree_nearest(tree, p, hint);
         assert_true(again.squared == found.squared && again.place == found.place);
     }
 }

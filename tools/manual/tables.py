@@ -54,7 +54,7 @@ SHAPING = {"linear_extrude", "rotate_extrude", "offset", "projection", "hull", "
 def module_group(macro, name, handler, children):
     if macro == "CSG_CONTROL":
         return "control"
-    if handler in ("operator", "blend", "group", "combine", "soft"):
+    if handler in ("union", "intersection", "difference", "blend", "group", "combine", "soft"):
         return "operators"
     if children != "0":
         return "shaping" if name in SHAPING else "transforms"

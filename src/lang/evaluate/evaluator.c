@@ -276,8 +276,8 @@ static const csg_definition *find_in_scope(const csg_eval *e, const csg_scope *s
     return index == UINT32_MAX ? NULL : module ? scope->modules[index] : scope->functions[index];
 }
 
-static bool find_in_used(csg_eval *e, csg_member_kind kind, csg_symbol name, const csg_file *file,
-                         csg_frame **home, const csg_definition **out)
+static bool find_in_used(csg_eval *e, csg_member_kind kind, csg_symbol name,
+                         const csg_program_file *file, csg_frame **home, const csg_definition **out)
 {
     for (uint32_t i = file->use_count; i > 0; i--) { /* the last one goes before */
         *out = find_in_scope(e, file->uses[i - 1]->scope, kind, name);
@@ -347,7 +347,7 @@ csg_frame *csg_eval_scope(csg_eval *e, const csg_scope *scope, csg_frame *parent
     return frame;
 }
 
-csg_frame *csg_eval_file_frame(csg_eval *e, const csg_file *file)
+csg_frame *csg_eval_file_frame(csg_eval *e, const csg_program_file *file)
 {
     csg_frame **frame = &e->file_frames[file->index];
     if (*frame)

@@ -13,12 +13,12 @@
 #include "scene/tree/build.h"
 
 /* A solid that waits to be joined with its neighbours. */
-typedef struct csg_part {
+typedef struct csg_eval_part {
     csg_node_id node;
     bool wrapped; /* in blend(b): joins with `blend`, whatever its operator says */
     csg_blend blend;
     csg_span where; /* of the wrapper */
-} csg_part;
+} csg_eval_part;
 
 typedef struct csg_dynamic { /* a binding of a $variable */
     csg_symbol name;
@@ -65,7 +65,7 @@ typedef struct csg_eval {
     csg_trace_entry *trace; /* calls in progress, outermost first */
     size_t trace_count, trace_capacity;
 
-    csg_part *parts; /* a stack */
+    csg_eval_part *parts; /* a stack */
     size_t part_count, part_capacity;
 
     csg_frame **file_frames; /* per file, NULL until asked for */
@@ -132,7 +132,7 @@ bool csg_eval_find_definition(csg_eval *e, csg_member_kind kind, csg_symbol name
 /* Evaluates a scope's assignments: a new frame, or `parent` retained when it defines nothing.
  * $variables go to the dynamics: pop them when leaving. NULL: stopped. */
 csg_frame *csg_eval_scope(csg_eval *e, const csg_scope *scope, csg_frame *parent);
-csg_frame *csg_eval_file_frame(csg_eval *e, const csg_file *file);
+csg_frame *csg_eval_file_frame(csg_eval *e, const csg_program_file *file);
 
 /* ---- expressions -------------------------------------------------------------------------------
  */
@@ -200,10 +200,10 @@ void csg_run_statements(csg_eval *e, const csg_scope *scope, csg_frame *frame, b
 /* Enters the scope, runs it, leaves it. */
 void csg_run_scope(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool spread);
 void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread);
-void csg_push_part(csg_eval *e, csg_part part);
-static inline csg_part csg_part_plain(csg_node_id node)
+void csg_push_part(csg_eval *e, csg_eval_part part);
+static inline csg_eval_part csg_part_plain(csg_node_id node)
 {
-    return (csg_part){.node = node};
+    return (csg_eval_part){.node = node};
 }
 /* Joins the parts above `first` into one node and takes them off the stack. Of figures and solids
  * the first one's dimension rules, unless they may be mixed. */

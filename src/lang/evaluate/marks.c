@@ -23,7 +23,7 @@ void csg_marks_add(csg_eval *e, size_t first_part, csg_scene_mark kind, csg_span
 }
 
 /* NONE of none. */
-static csg_node_id join(csg_eval *e, const csg_node_id *nodes, size_t count, csg_span where)
+static csg_node_id unite_nodes(csg_eval *e, const csg_node_id *nodes, size_t count, csg_span where)
 {
     const csg_blend sharp = {CSG_BLEND_SHARP, 0};
     if (count < 2)
@@ -46,7 +46,7 @@ static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool fl
     for (size_t i = first; i < e->mark_count; i++)
         if (e->marks[i].kind == kind && csg_eval_is_flat(e, e->marks[i].node) == flat)
             nodes[count++] = e->marks[i].node;
-    csg_node_id node = join(e, nodes, count, where);
+    csg_node_id node = unite_nodes(e, nodes, count, where);
     csg_memory_release(&e->context->memory, nodes, bytes);
     return node;
 }
@@ -82,7 +82,7 @@ void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[C
         if (both[0] == CSG_NODE_NONE || both[1] == CSG_NODE_NONE)
             out[kind] = both[0] != CSG_NODE_NONE ? both[0] : both[1];
         else
-            out[kind] = join(e, both, 2, where);
+            out[kind] = unite_nodes(e, both, 2, where);
     }
     e->mark_count = first;
 }

@@ -53,7 +53,7 @@ static csg_vector *make_vector(csg_eval *e, const csg_expression *x, size_t coun
  */
 
 /* Recursion goes as deep as vectors nest: csg_vector.depth bounds it. */
-static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+static csg_value add_values(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
 {
     if (csg_value_is_scalar(left) && csg_value_is_scalar(right))
         return scalars(e, x, left, right);
@@ -63,7 +63,7 @@ static csg_value add(csg_eval *e, const csg_expression *x, csg_value left, csg_v
     size_t count = a->count < b->count ? a->count : b->count;
     csg_vector *made = make_vector(e, x, count);
     for (size_t i = 0; made && i < count && !e->stop; i++)
-        csg_vector_set(made, i, add(e, x, a->items[i], b->items[i]));
+        csg_vector_set(made, i, add_values(e, x, a->items[i], b->items[i]));
     return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
 }
 
@@ -244,7 +244,7 @@ csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, 
         return csg_eval_compare(e, x, left, right);
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
-        return add(e, x, left, right);
+        return add_values(e, x, left, right);
     case CSG_TOKEN_STAR:
     case CSG_TOKEN_SLASH:
         return both ? scalars(e, x, left, right) : multiply(e, x, left, right);

@@ -7,7 +7,7 @@
 
 #include "lang/evaluate/evaluator.h"
 
-void csg_push_part(csg_eval *e, csg_part part)
+void csg_push_part(csg_eval *e, csg_eval_part part)
 {
     if (e->stop)
         return;
@@ -41,7 +41,7 @@ csg_node_id csg_check_node(csg_eval *e, csg_node_id node, csg_span where)
 }
 
 /* Moves the nodes of plain parts to the front, in order; the number of them. */
-static size_t gather(csg_part *parts, size_t count, csg_node_id *out)
+static size_t gather(csg_eval_part *parts, size_t count, csg_node_id *out)
 {
     size_t plain = 0;
     for (size_t i = 0; i < count; i++)
@@ -50,7 +50,7 @@ static size_t gather(csg_part *parts, size_t count, csg_node_id *out)
     return plain;
 }
 
-static csg_node_id join_wrapped(csg_eval *e, csg_part *parts, size_t count, csg_node_id node,
+static csg_node_id join_wrapped(csg_eval *e, csg_eval_part *parts, size_t count, csg_node_id node,
                                 csg_node_kind kind, csg_span where)
 {
     for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++) {
@@ -65,7 +65,7 @@ static csg_node_id join_wrapped(csg_eval *e, csg_part *parts, size_t count, csg_
 
 /* The first part is what the others join. In a union or intersection a first part that is wrapped
  * goes behind the first that is not, so that its blend is used. */
-static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node_kind kind)
+static void put_plain_first(csg_eval *e, csg_eval_part *parts, size_t count, csg_node_kind kind)
 {
     size_t i = 0;
     if (count == 0 || !parts[0].wrapped)
@@ -80,7 +80,7 @@ static void put_plain_first(csg_eval *e, csg_part *parts, size_t count, csg_node
     while (i < count && parts[i].wrapped)
         i++;
     if (i < count) {
-        csg_part plain = parts[i];
+        csg_eval_part plain = parts[i];
         memmove(parts + 1, parts, i * sizeof *parts);
         parts[0] = plain;
     }
@@ -100,7 +100,7 @@ csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, 
     if (e->stop)
         return CSG_NODE_NONE;
     size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
-    csg_part *parts = count ? e->parts + first : NULL;
+    csg_eval_part *parts = count ? e->parts + first : NULL;
     put_plain_first(e, parts, count, kind);
     csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
     if (children) {

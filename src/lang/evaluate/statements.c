@@ -164,7 +164,7 @@ static csg_node_id thicken_scene(csg_eval *e, csg_node_id node, csg_span where)
 
 csg_node_id csg_eval_run(csg_eval *e)
 {
-    const csg_file *scene = e->program->files[0];
+    const csg_program_file *scene = e->program->files[0];
     csg_span whole = {scene->source, 0, 1};
     csg_frame *frame = csg_eval_file_frame(e, scene);
     if (frame && !e->stop)

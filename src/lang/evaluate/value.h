@@ -96,13 +96,13 @@ struct csg_rule_value {
 struct csg_frame {
     csg_object object;
     csg_frame *parent;
-    const csg_scope *scope;    /* of a scope's frame: its variables, functions, modules */
-    const csg_file *file;      /* of a file's outermost frame */
-    const csg_scope *children; /* of a module's call: what stands under it */
-    csg_frame *children_frame; /* and where */
-    csg_value child_count;     /* $children, UNSET outside of a module's call */
-    const csg_argument *names; /* of a call's or let's frame */
-    bool has_dynamics;         /* of a used file's frame: it assigns $variables */
+    const csg_scope *scope;       /* of a scope's frame: its variables, functions, modules */
+    const csg_program_file *file; /* of a file's outermost frame */
+    const csg_scope *children;    /* of a module's call: what stands under it */
+    csg_frame *children_frame;    /* and where */
+    csg_value child_count;        /* $children, UNSET outside of a module's call */
+    const csg_argument *names;    /* of a call's or let's frame */
+    bool has_dynamics;            /* of a used file's frame: it assigns $variables */
     uint32_t count;
     csg_value values[];
 };

@@ -90,38 +90,33 @@ csg_value csg_function_ord(const csg_function_call *call)
 /* ---- kinds and the rest
  * --------------------------------------------------------------------------------- */
 
-csg_value csg_function_is(const csg_function_call *call)
+static csg_value is_of_kind(const csg_function_call *call, csg_value_kind kind)
 {
-    static const struct {
-        const char *name;
-        csg_value_kind kind;
-    } table[] = {{"is_undef", CSG_VALUE_UNDEF},  {"is_num", CSG_VALUE_NUMBER},
-                 {"is_bool", CSG_VALUE_BOOLEAN}, {"is_string", CSG_VALUE_STRING},
-                 {"is_list", CSG_VALUE_VECTOR},  {"is_function", CSG_VALUE_FUNCTION},
-                 {"is_blend", CSG_VALUE_BLEND}};
     csg_value value = call->arguments[0];
-    size_t i = 0;
-    while (strcmp(table[i].name, call->name) != 0)
-        i++;
     if (value.kind == CSG_VALUE_RULE)
-        return csg_value_boolean(table[i].kind == CSG_VALUE_BLEND);
-    return csg_value_boolean(value.kind == table[i].kind &&
+        return csg_value_boolean(kind == CSG_VALUE_BLEND);
+    return csg_value_boolean(value.kind == kind &&
                              !(value.kind == CSG_VALUE_NUMBER && isnan(value.as.number)));
 }
+
+#define ASKS_KIND(name, kind)                                                                      \
+    csg_value csg_function_##name(const csg_function_call *call)                                   \
+    {                                                                                              \
+        return is_of_kind(call, kind);                                                             \
+    }
+
+ASKS_KIND(is_undef, CSG_VALUE_UNDEF)
+ASKS_KIND(is_num, CSG_VALUE_NUMBER)
+ASKS_KIND(is_bool, CSG_VALUE_BOOLEAN)
+ASKS_KIND(is_string, CSG_VALUE_STRING)
+ASKS_KIND(is_list, CSG_VALUE_VECTOR)
+ASKS_KIND(is_function, CSG_VALUE_FUNCTION)
+ASKS_KIND(is_blend, CSG_VALUE_BLEND)
 
 /* Files ask for the level of the language, not of this program: that of OpenSCAD 2021.01. */
 csg_value csg_function_version(const csg_function_call *call)
 {
     static const double level[] = {2021, 1, 0};
-    double asked[3] = {0};
-    if (strcmp(call->name, "version_num") == 0) {
-        if (call->count == 0)
-            return csg_value_number(20210100);
-        if (!csg_value_numbers(call->arguments[0], 3, asked) &&
-            !csg_value_numbers(call->arguments[0], 2, asked))
-            return csg_bad_argument(call, 0, "a version such as [2021, 1, 0]");
-        return csg_value_number(asked[0] * 10000 + asked[1] * 100 + asked[2]);
-    }
     csg_vector *made = csg_vector_create(&call->e->heap, 3);
     if (!made) {
         csg_eval_no_memory(call->e);
@@ -130,6 +125,17 @@ csg_value csg_function_version(const csg_function_call *call)
     for (size_t i = 0; i < 3; i++)
         made->items[i] = csg_value_number(level[i]);
     return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
+csg_value csg_function_version_num(const csg_function_call *call)
+{
+    double asked[3] = {0};
+    if (call->count == 0)
+        return csg_value_number(20210100);
+    if (!csg_value_numbers(call->arguments[0], 3, asked) &&
+        !csg_value_numbers(call->arguments[0], 2, asked))
+        return csg_bad_argument(call, 0, "a version such as [2021, 1, 0]");
+    return csg_value_number(asked[0] * 10000 + asked[1] * 100 + asked[2]);
 }
 
 csg_value csg_function_parent_module(const csg_function_call *call)

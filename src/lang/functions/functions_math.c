@@ -3,7 +3,6 @@
  * vectors.
  */
 #include <math.h>
-#include <string.h>
 
 #include "lang/functions/functions.h"
 
@@ -70,20 +69,19 @@ static double rounded_angle(double radians, double (*function)(double), double v
     return function(whole) == value ? whole : degrees;
 }
 
-csg_value csg_function_trigonometry(const csg_function_call *call)
+static double arc_sine(double x)
 {
-    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
-        return csg_bad_argument(call, 0, "a number");
-    double x = call->arguments[0].as.number;
-    bool inverse = call->name[0] == 'a';
-    switch (call->name[inverse ? 1 : 0]) {
-    case 's':
-        return csg_value_number(inverse ? rounded_angle(asin(x), sine, x) : sine(x));
-    case 'c':
-        return csg_value_number(inverse ? rounded_angle(acos(x), cosine, x) : cosine(x));
-    default:
-        return csg_value_number(inverse ? rounded_angle(atan(x), tangent, x) : tangent(x));
-    }
+    return rounded_angle(asin(x), sine, x);
+}
+
+static double arc_cosine(double x)
+{
+    return rounded_angle(acos(x), cosine, x);
+}
+
+static double arc_tangent(double x)
+{
+    return rounded_angle(atan(x), tangent, x);
 }
 
 csg_value csg_function_atan2(const csg_function_call *call)
@@ -105,20 +103,28 @@ static double sign(double x)
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-csg_value csg_function_number(const csg_function_call *call)
-{
-    static const struct {
-        const char *name;
-        double (*function)(double);
-    } table[] = {{"abs", fabs},  {"sign", sign}, {"floor", floor}, {"ceil", ceil},
-                 {"sqrt", sqrt}, {"exp", exp},   {"ln", log}};
-    if (call->arguments[0].kind != CSG_VALUE_NUMBER)
-        return csg_bad_argument(call, 0, "a number");
-    size_t i = 0;
-    while (strcmp(table[i].name, call->name) != 0)
-        i++;
-    return csg_value_number(table[i].function(call->arguments[0].as.number));
-}
+/* Functions of one number. */
+#define OF_NUMBER(name, function)                                                                  \
+    csg_value csg_function_##name(const csg_function_call *call)                                   \
+    {                                                                                              \
+        if (call->arguments[0].kind != CSG_VALUE_NUMBER)                                           \
+            return csg_bad_argument(call, 0, "a number");                                          \
+        return csg_value_number(function(call->arguments[0].as.number));                           \
+    }
+
+OF_NUMBER(sin, sine)
+OF_NUMBER(cos, cosine)
+OF_NUMBER(tan, tangent)
+OF_NUMBER(asin, arc_sine)
+OF_NUMBER(acos, arc_cosine)
+OF_NUMBER(atan, arc_tangent)
+OF_NUMBER(abs, fabs)
+OF_NUMBER(sign, sign)
+OF_NUMBER(floor, floor)
+OF_NUMBER(ceil, ceil)
+OF_NUMBER(sqrt, sqrt)
+OF_NUMBER(exp, exp)
+OF_NUMBER(ln, log)
 
 csg_value csg_function_pow(const csg_function_call *call)
 {
@@ -151,10 +157,9 @@ static csg_value extreme_of(const csg_function_call *call, const csg_vector *lis
     return csg_value_retain(best);
 }
 
-csg_value csg_function_extreme(const csg_function_call *call)
+static csg_value extreme(const csg_function_call *call, bool smallest)
 {
     const csg_value *values = call->arguments;
-    bool smallest = strcmp(call->name, "min") == 0;
     if (!csg_eval_charge(call->e, call->count / 8, call->where))
         return csg_value_undef();
     if (call->count == 1 && values[0].kind == CSG_VALUE_VECTOR)
@@ -168,6 +173,16 @@ csg_value csg_function_extreme(const csg_function_call *call)
         if (smallest ? values[i].as.number < best : values[i].as.number > best)
             best = values[i].as.number;
     return csg_value_number(best);
+}
+
+csg_value csg_function_min(const csg_function_call *call)
+{
+    return extreme(call, true);
+}
+
+csg_value csg_function_max(const csg_function_call *call)
+{
+    return extreme(call, false);
 }
 
 /* ---- vectors ------------------------------------------------------------------------------------

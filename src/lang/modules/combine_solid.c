@@ -17,7 +17,7 @@ static uint32_t take_operands(csg_module_call *call, csg_node_id operands[CSG_CO
     size_t count = e->stop ? 0 : e->part_count - first;
     bool fits = count >= 1 && count <= CSG_COMBINE_MOST;
     for (size_t i = 0; fits && i < count; i++) {
-        csg_part part = e->parts[first + i];
+        csg_eval_part part = e->parts[first + i];
         operands[i] = part.node;
         if (part.wrapped)
             csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, part.where, NULL,

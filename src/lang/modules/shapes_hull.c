@@ -49,16 +49,28 @@ csg_node_id csg_module_projection(csg_module_call *call)
     return csg_shape_made(call, &job, csg_solid_shadow(&job, solid));
 }
 
-csg_node_id csg_module_periodic(csg_module_call *call)
+static csg_node_id periodic_wall(csg_module_call *call, csg_periodic_kind kind)
 {
     enum { CELL, THICKNESS };
     double cell = csg_argument_number(call, CELL, 1, CSG_POSITIVE);
     double thickness = csg_argument_number(call, THICKNESS, cell / 10, CSG_NOT_NEGATIVE);
     if (call->failed)
         return csg_shape_empty(call);
-    csg_periodic_kind kind = call->name[0] == 'g'   ? CSG_PERIODIC_GYROID
-                             : call->name[0] == 's' ? CSG_PERIODIC_SCHWARZ_P
-                                                    : CSG_PERIODIC_DIAMOND;
     csg_solid_job job = csg_shape_job(call);
     return csg_shape_made(call, &job, csg_solid_periodic(&job, kind, cell, thickness));
+}
+
+csg_node_id csg_module_gyroid(csg_module_call *call)
+{
+    return periodic_wall(call, CSG_PERIODIC_GYROID);
+}
+
+csg_node_id csg_module_schwarz_p(csg_module_call *call)
+{
+    return periodic_wall(call, CSG_PERIODIC_SCHWARZ_P);
+}
+
+csg_node_id csg_module_diamond(csg_module_call *call)
+{
+    return periodic_wall(call, CSG_PERIODIC_DIAMOND);
 }

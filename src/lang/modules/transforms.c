@@ -192,12 +192,9 @@ csg_node_id csg_module_color(csg_module_call *call)
 /* ---- operators
  * -------------------------------------------------------------------------------------------- */
 
-csg_node_id csg_module_operator(csg_module_call *call)
+static csg_node_id joined_children(csg_module_call *call, csg_node_kind kind)
 {
     csg_eval *e = call->e;
-    csg_node_kind kind = call->name[0] == 'u'   ? CSG_NODE_UNION
-                         : call->name[0] == 'i' ? CSG_NODE_INTERSECTION
-                                                : CSG_NODE_DIFFERENCE;
     csg_blend blend = csg_argument_blend(call, 0);
     bool mixed = csg_argument_boolean(call, 1);
     size_t first = e->part_count;
@@ -212,10 +209,25 @@ csg_node_id csg_module_operator(csg_module_call *call)
                  : csg_join_parts(e, first, kind, blend, call->statement->where);
 }
 
+csg_node_id csg_module_union(csg_module_call *call)
+{
+    return joined_children(call, CSG_NODE_UNION);
+}
+
+csg_node_id csg_module_intersection(csg_module_call *call)
+{
+    return joined_children(call, CSG_NODE_INTERSECTION);
+}
+
+csg_node_id csg_module_difference(csg_module_call *call)
+{
+    return joined_children(call, CSG_NODE_DIFFERENCE);
+}
+
 csg_node_id csg_module_blend(csg_module_call *call)
 {
     csg_eval *e = call->e;
-    csg_part part = {.wrapped = true, .where = call->statement->where};
+    csg_eval_part part = {.wrapped = true, .where = call->statement->where};
     part.blend = csg_argument_blend(call, 0);
     part.node = csg_module_children(call);
     if (part.node != CSG_NODE_NONE)

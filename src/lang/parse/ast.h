@@ -74,7 +74,7 @@ struct csg_expression {
 };
 
 typedef struct csg_scope csg_scope;
-typedef struct csg_file csg_file;
+typedef struct csg_program_file csg_program_file;
 
 typedef struct csg_assignment {
     csg_symbol name;
@@ -112,10 +112,10 @@ struct csg_scope {
     csg_statement **statements;
 };
 
-struct csg_file {
+struct csg_program_file {
     uint32_t source;
     csg_scope *scope;
-    csg_file **uses;
+    csg_program_file **uses;
     uint32_t use_count;
     uint32_t index; /* in csg_program.files */
 };
@@ -127,7 +127,7 @@ typedef struct csg_program {
     csg_sources sources;
     csg_symbols symbols;
     csg_members members;
-    csg_file **files; /* files[0] is the scene; the others are used */
+    csg_program_file **files; /* files[0] is the scene; the others are used */
     uint32_t file_count;
     uint32_t scope_count;
     const char **dependencies;

@@ -157,16 +157,16 @@ void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path)
     csg_parser_leave(parser);
 }
 
-static csg_file *add_file(csg_parser *parser, uint32_t source)
+static csg_program_file *add_file(csg_parser *parser, uint32_t source)
 {
     csg_program *program = parser->program;
-    csg_file *file = csg_parser_alloc(parser, sizeof *file);
+    csg_program_file *file = csg_parser_alloc(parser, sizeof *file);
     csg_scope *scope = file ? csg_parser_scope(parser) : NULL;
     if (!scope)
         return NULL;
-    *file = (csg_file){.source = source, .scope = scope, .index = program->file_count};
-    csg_file **place = csg_arena_push(&program->arena, (void **)&program->files,
-                                      &program->file_count, sizeof file);
+    *file = (csg_program_file){.source = source, .scope = scope, .index = program->file_count};
+    csg_program_file **place = csg_arena_push(&program->arena, (void **)&program->files,
+                                              &program->file_count, sizeof file);
     if (!place) {
         csg_parser_no_memory(parser);
         return NULL;
@@ -175,7 +175,7 @@ static csg_file *add_file(csg_parser *parser, uint32_t source)
     return file;
 }
 
-static csg_file *find_used(const csg_parser *parser, const char *path)
+static csg_program_file *find_used(const csg_parser *parser, const char *path)
 {
     const csg_program *program = parser->program;
     for (uint32_t i = 0; i < program->file_count; i++)
@@ -184,13 +184,13 @@ static csg_file *find_used(const csg_parser *parser, const char *path)
     return NULL;
 }
 
-static csg_file *load_used(csg_parser *parser, csg_span path)
+static csg_program_file *load_used(csg_parser *parser, csg_span path)
 {
     uint32_t source;
     const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
     if (!found)
         return NULL;
-    csg_file *file = find_used(parser, found);
+    csg_program_file *file = find_used(parser, found);
     if (file || !read_found(parser, found, path, false, &source))
         return file;
     file = add_file(parser, source);
@@ -235,9 +235,9 @@ void csg_load_use(csg_parser *parser, csg_span path)
     }
     if (!csg_parser_enter(parser))
         return;
-    csg_file *used = load_used(parser, path);
+    csg_program_file *used = load_used(parser, path);
     csg_parser_leave(parser);
-    csg_file *self = parser->file;
+    csg_program_file *self = parser->file;
     for (uint32_t i = 0; used && i < self->use_count; i++)
         if (self->uses[i] == used) { /* the last use of a file counts */
             memmove(self->uses + i, self->uses + i + 1,
@@ -247,8 +247,8 @@ void csg_load_use(csg_parser *parser, csg_span path)
         }
     if (!used || parser->stop)
         return;
-    csg_file **place = csg_arena_push(&parser->program->arena, (void **)&parser->file->uses,
-                                      &parser->file->use_count, sizeof used);
+    csg_program_file **place = csg_arena_push(&parser->program->arena, (void **)&parser->file->uses,
+                                              &parser->file->use_count, sizeof used);
     if (place)
         *place = used;
     else
@@ -257,7 +257,7 @@ void csg_load_use(csg_parser *parser, csg_span path)
 
 void csg_load_scene(csg_parser *parser)
 {
-    csg_file *file = add_file(parser, parser->source);
+    csg_program_file *file = add_file(parser, parser->source);
     if (!file)
         return;
     csg_parser inner = derive(parser, parser->source);

@@ -8,7 +8,7 @@
 static csg_expression *parse_unary(csg_parser *parser);
 static csg_expression *parse_element(csg_parser *parser);
 
-static csg_expression *make(csg_parser *parser, csg_expression_kind kind, csg_span where)
+static csg_expression *make_expression(csg_parser *parser, csg_expression_kind kind, csg_span where)
 {
     csg_expression *made = csg_parser_alloc(parser, sizeof *made);
     if (made) {
@@ -19,7 +19,7 @@ static csg_expression *make(csg_parser *parser, csg_expression_kind kind, csg_sp
     return made;
 }
 
-static csg_expression *finish(csg_parser *parser, csg_expression *made, csg_span from)
+static csg_expression *end_expression(csg_parser *parser, csg_expression *made, csg_span from)
 {
     made->whole = csg_parser_since(parser, from);
     return made;
@@ -176,7 +176,7 @@ static bool begins_expression(csg_token_kind kind)
 static csg_expression *parse_prefixed(csg_parser *parser, csg_expression_kind kind, bool element)
 {
     csg_span from = csg_parser_span(parser);
-    csg_expression *made = make(parser, kind, from);
+    csg_expression *made = make_expression(parser, kind, from);
     csg_parser_next(parser);
     if (!made || !csg_parse_arguments(parser, &made->as.call.arguments))
         return NULL;
@@ -184,20 +184,20 @@ static csg_expression *parse_prefixed(csg_parser *parser, csg_expression_kind ki
         csg_parser_drop_doubles(parser, &made->as.call.arguments);
     bool optional = kind == CSG_EXPRESSION_ASSERT || kind == CSG_EXPRESSION_ECHO;
     if (optional && !begins_expression(csg_parser_peek(parser)))
-        return finish(parser, made, from);
+        return end_expression(parser, made, from);
     made->as.call.body = element ? parse_element(parser) : csg_parse_expression(parser);
-    return made->as.call.body ? finish(parser, made, from) : NULL;
+    return made->as.call.body ? end_expression(parser, made, from) : NULL;
 }
 
 static csg_expression *parse_function(csg_parser *parser)
 {
     csg_span from = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_FUNCTION, from);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_FUNCTION, from);
     csg_parser_next(parser);
     if (!made || !csg_parse_parameters(parser, &made->as.call.arguments))
         return NULL;
     made->as.call.body = csg_parse_expression(parser);
-    return made->as.call.body ? finish(parser, made, from) : NULL;
+    return made->as.call.body ? end_expression(parser, made, from) : NULL;
 }
 
 /* ---- elements of a vector ------------------------------------------------------------------ */
@@ -237,7 +237,7 @@ static csg_expression *parse_loop(csg_parser *parser, csg_expression *made, csg_
 static csg_expression *parse_for(csg_parser *parser)
 {
     csg_span from = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_FOR, from);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_FOR, from);
     csg_parser_next(parser);
     csg_span open = csg_parser_span(parser);
     if (!made || !csg_parser_expect(parser, CSG_TOKEN_OPEN_ROUND, "after 'for'") ||
@@ -245,18 +245,18 @@ static csg_expression *parse_for(csg_parser *parser)
         return NULL;
     if (csg_parser_accept(parser, CSG_TOKEN_SEMICOLON)) {
         made = parse_loop(parser, made, open);
-        return made ? finish(parser, made, from) : NULL;
+        return made ? end_expression(parser, made, from) : NULL;
     }
     if (!csg_parser_close(parser, CSG_TOKEN_CLOSE_ROUND, open))
         return NULL;
     made->as.call.body = parse_element(parser);
-    return made->as.call.body ? finish(parser, made, from) : NULL;
+    return made->as.call.body ? end_expression(parser, made, from) : NULL;
 }
 
 static csg_expression *parse_if(csg_parser *parser)
 {
     csg_span from = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_IF, from);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_IF, from);
     csg_parser_next(parser);
     csg_span open = csg_parser_span(parser);
     if (!made || !csg_parser_expect(parser, CSG_TOKEN_OPEN_ROUND, "after 'if'"))
@@ -272,18 +272,18 @@ static csg_expression *parse_if(csg_parser *parser)
         if (!made->as.branch.other)
             return NULL;
     }
-    return finish(parser, made, from);
+    return end_expression(parser, made, from);
 }
 
 static csg_expression *parse_each(csg_parser *parser)
 {
     csg_span from = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_EACH, from);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_EACH, from);
     csg_parser_next(parser);
     if (!made)
         return NULL;
     made->as.inner = parse_element(parser);
-    return made->as.inner ? finish(parser, made, from) : NULL;
+    return made->as.inner ? end_expression(parser, made, from) : NULL;
 }
 
 /* Does a generator follow this opening parenthesis? ( for ..., ( each ..., ( let(...) for ... */
@@ -337,7 +337,7 @@ static csg_expression *parse_element(csg_parser *parser)
 
 static csg_expression *parse_range(csg_parser *parser, csg_expression *first, csg_span open)
 {
-    csg_expression *made = make(parser, CSG_EXPRESSION_RANGE, open);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_RANGE, open);
     csg_parser_next(parser);
     if (!made)
         return NULL;
@@ -351,14 +351,15 @@ static csg_expression *parse_range(csg_parser *parser, csg_expression *first, cs
         if (!made->as.range.end)
             return NULL;
     }
-    return csg_parser_close(parser, CSG_TOKEN_CLOSE_SQUARE, open) ? finish(parser, made, open)
-                                                                  : NULL;
+    return csg_parser_close(parser, CSG_TOKEN_CLOSE_SQUARE, open)
+               ? end_expression(parser, made, open)
+               : NULL;
 }
 
 static csg_expression *parse_bracketed(csg_parser *parser)
 {
     csg_span open = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_VECTOR, open);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_VECTOR, open);
     csg_parser_next(parser);
     while (made && csg_parser_peek(parser) != CSG_TOKEN_CLOSE_SQUARE) {
         if (csg_parser_accept(parser, CSG_TOKEN_COMMA))
@@ -380,7 +381,7 @@ static csg_expression *parse_bracketed(csg_parser *parser)
             break;
     }
     return made && csg_parser_close(parser, CSG_TOKEN_CLOSE_SQUARE, open)
-               ? finish(parser, made, open)
+               ? end_expression(parser, made, open)
                : NULL;
 }
 
@@ -390,7 +391,7 @@ static csg_expression *parse_literal(csg_parser *parser)
 {
     csg_span where = csg_parser_span(parser);
     const char *text = parser->text + where.offset;
-    csg_expression *made = make(parser, CSG_EXPRESSION_UNDEF, where);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_UNDEF, where);
     if (!made)
         return NULL;
     switch (csg_parser_peek(parser)) {
@@ -455,7 +456,7 @@ static csg_expression *parse_primary(csg_parser *parser)
         csg_expression *inner = csg_parse_expression(parser);
         if (!inner || !csg_parser_close(parser, CSG_TOKEN_CLOSE_ROUND, open))
             return NULL;
-        return finish(parser, inner, open);
+        return end_expression(parser, inner, open);
     }
     default:
         csg_parser_unexpected(parser, CSG_DIAG_EXPECTED_EXPRESSION, "an expression",
@@ -467,7 +468,7 @@ static csg_expression *parse_primary(csg_parser *parser)
 static csg_expression *parse_index(csg_parser *parser, csg_expression *object)
 {
     csg_span open = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_INDEX, open);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_INDEX, open);
     csg_parser_next(parser);
     if (!made)
         return NULL;
@@ -481,7 +482,7 @@ static csg_expression *parse_member(csg_parser *parser, csg_expression *object)
 {
     csg_parser_next(parser);
     csg_span where = csg_parser_span(parser);
-    csg_expression *made = make(parser, CSG_EXPRESSION_MEMBER, where);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_MEMBER, where);
     if (!made || !csg_parser_expect(parser, CSG_TOKEN_NAME, "after '.'"))
         return NULL;
     made->as.member.object = object;
@@ -491,7 +492,7 @@ static csg_expression *parse_member(csg_parser *parser, csg_expression *object)
 
 static csg_expression *parse_call(csg_parser *parser, csg_expression *callee)
 {
-    csg_expression *made = make(parser, CSG_EXPRESSION_CALL, callee->where);
+    csg_expression *made = make_expression(parser, CSG_EXPRESSION_CALL, callee->where);
     if (!made)
         return NULL;
     made->as.call.callee = callee;
@@ -513,7 +514,7 @@ static csg_expression *parse_postfix(csg_parser *parser)
         else
             break;
         if (made)
-            finish(parser, made, from);
+            end_expression(parser, made, from);
     }
     return parser->stop ? NULL : made;
 }
@@ -524,8 +525,9 @@ static csg_expression *parse_postfix(csg_parser *parser)
 static csg_expression *make_pair(csg_parser *parser, csg_expression_kind kind, csg_span sign,
                                  csg_expression *left, csg_expression *right)
 {
-    csg_expression *made =
-        left && (right || kind == CSG_EXPRESSION_UNARY) ? make(parser, kind, sign) : NULL;
+    csg_expression *made = left && (right || kind == CSG_EXPRESSION_UNARY)
+                               ? make_expression(parser, kind, sign)
+                               : NULL;
     if (made) {
         made->as.pair.left = left;
         made->as.pair.right = right;
@@ -556,7 +558,7 @@ static csg_expression *parse_power(csg_parser *parser)
     if (!made)
         return NULL;
     made->operation = CSG_TOKEN_CARET;
-    return finish(parser, made, from);
+    return end_expression(parser, made, from);
 }
 
 static csg_expression *parse_unary(csg_parser *parser)
@@ -571,7 +573,7 @@ static csg_expression *parse_unary(csg_parser *parser)
     if (!made)
         return NULL;
     made->operation = (uint8_t)kind;
-    return finish(parser, made, sign);
+    return end_expression(parser, made, sign);
 }
 
 static int precedence(csg_token_kind kind)
@@ -617,7 +619,7 @@ static csg_expression *parse_binary(csg_parser *parser, int least)
             make_pair(parser, CSG_EXPRESSION_BINARY, sign, left, parse_binary(parser, level + 1));
         if (left) {
             left->operation = (uint8_t)kind;
-            finish(parser, left, from);
+            end_expression(parser, left, from);
         }
     }
     return NULL;
@@ -629,7 +631,8 @@ static csg_expression *parse_conditional(csg_parser *parser)
     csg_expression *condition = parse_binary(parser, 1);
     if (!condition || csg_parser_peek(parser) != CSG_TOKEN_QUESTION)
         return condition;
-    csg_expression *made = make(parser, CSG_EXPRESSION_CONDITIONAL, csg_parser_span(parser));
+    csg_expression *made =
+        make_expression(parser, CSG_EXPRESSION_CONDITIONAL, csg_parser_span(parser));
     csg_parser_next(parser);
     if (!made)
         return NULL;
@@ -639,7 +642,7 @@ static csg_expression *parse_conditional(csg_parser *parser)
         !csg_parser_expect(parser, CSG_TOKEN_COLON, "between the two choices of '?'"))
         return NULL;
     made->as.branch.other = csg_parse_expression(parser);
-    return made->as.branch.other ? finish(parser, made, from) : NULL;
+    return made->as.branch.other ? end_expression(parser, made, from) : NULL;
 }
 
 csg_expression *csg_parse_expression(csg_parser *parser)

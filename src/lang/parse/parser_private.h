@@ -9,8 +9,8 @@
 typedef struct csg_parser {
     csg_program *program;
     const csgm_scene_options *options;
-    csg_file *file;  /* whose scope the statements go to */
-    uint32_t source; /* being read: the file's own, or one that it includes */
+    csg_program_file *file; /* whose scope the statements go to */
+    uint32_t source;        /* being read: the file's own, or one that it includes */
     const char *text;
     csg_token_array tokens;
     size_t at;

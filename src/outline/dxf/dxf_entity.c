@@ -25,7 +25,7 @@ static csg_vec2 point_at(const csg_dxf_entity *e, int code)
     return (csg_vec2){csg_dxf_get(e, code, 0), csg_dxf_get(e, code + 10, 0)};
 }
 
-static csgm_status finish(artist *a, bool done, bool closed)
+static csgm_status end_line(artist *a, bool done, bool closed)
 {
     return done ? csg_polylines_finish(a->out, closed) : CSGM_ERR_MEMORY;
 }
@@ -34,7 +34,7 @@ static csgm_status draw_line(artist *a)
 {
     bool done = csg_outline_add(a->pen, point_at(a->entity, 10)) &&
                 csg_outline_add(a->pen, point_at(a->entity, 11));
-    return finish(a, done, false);
+    return end_line(a, done, false);
 }
 
 /* Corners 3 and 4 stand crosswise. */
@@ -44,7 +44,7 @@ static csgm_status draw_solid(artist *a)
     bool done = true;
     for (int i = 0; i < 4; i++)
         done = done && csg_outline_add(a->pen, point_at(a->entity, order[i]));
-    return finish(a, done, true);
+    return end_line(a, done, true);
 }
 
 static csg_vec2 on_circle(csg_vec2 center, double radius, double degrees)
@@ -83,7 +83,7 @@ static csgm_status draw_circle(artist *a, bool whole)
         return CSGM_OK;
     bool done = whole || csg_outline_add(a->pen, on_circle(center, radius, from));
     done = done && draw_arc(a, center, radius, from, sweep);
-    return finish(a, done, whole);
+    return end_line(a, done, whole);
 }
 
 static csgm_status draw_ellipse(artist *a)
@@ -107,7 +107,7 @@ static csgm_status draw_ellipse(artist *a)
         done = done && csg_svg_ellipse_in_pieces(a->pen, center, major, minor, from, sweep, pieces);
     else
         done = done && csg_svg_ellipse(a->pen, center, major, minor, from, sweep, a->tolerance);
-    return finish(a, done, whole);
+    return end_line(a, done, whole);
 }
 
 /* ---- polylines --------------------------------------------------------------------------- */
@@ -154,7 +154,7 @@ static csgm_status close_corners(artist *a, corners *c, bool closed)
 {
     if (closed && c->count > 1 && c->done)
         c->done = draw_to(a, c->last.at, c->last.bulge, c->first.at);
-    return finish(a, c->done, closed);
+    return end_line(a, c->done, closed);
 }
 
 enum { POLYLINE_CLOSED = 1, POLYLINE_MESH = 16, POLYLINE_FACES = 64, VERTEX_OF_FRAME = 16 };
@@ -254,7 +254,7 @@ static csgm_status draw_spline(artist *a)
         csg_nurbs curve = {(int)degree, s.knots, s.point_count, s.points,
                            s.weight_count ? s.weights : NULL};
         if (csg_nurbs_is_valid(&curve))
-            status = finish(a, csg_nurbs_draw(&curve, a->pen, a->tolerance), false);
+            status = end_line(a, csg_nurbs_draw(&curve, a->pen, a->tolerance), false);
     } else {
         status = CSGM_ERR_MEMORY;
     }

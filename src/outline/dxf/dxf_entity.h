@@ -4,8 +4,8 @@
 #ifndef CSG_OUTLINE_DXF_ENTITY_H
 #define CSG_OUTLINE_DXF_ENTITY_H
 
-#include "outline/dxf/dxf.h"
 #include "outline/dxf/dxf_file.h"
+#include "outline/dxf/dxf_request.h"
 #include "outline/polylines.h"
 
 /* Adds the lines of entity number `index` of the file (a POLYLINE's vertices are the entities after

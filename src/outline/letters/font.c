@@ -286,7 +286,7 @@ static csg_vec2 to_plane(const tracer *t, const FT_Vector *v)
                       (double)v->y * pen->scale + pen->shift.y};
 }
 
-static int finish(tracer *t, csg_vec2 to, bool done)
+static int end_stroke(tracer *t, csg_vec2 to, bool done)
 {
     t->now = to;
     if (!done)
@@ -300,14 +300,14 @@ static int move_to(const FT_Vector *to, void *user)
 {
     tracer *t = user;
     csg_vec2 point = to_plane(t, to);
-    return finish(t, point, csg_outline_close(t->out) && csg_outline_add(t->out, point));
+    return end_stroke(t, point, csg_outline_close(t->out) && csg_outline_add(t->out, point));
 }
 
 static int line_to(const FT_Vector *to, void *user)
 {
     tracer *t = user;
     csg_vec2 point = to_plane(t, to);
-    return finish(t, point, csg_outline_add(t->out, point));
+    return end_stroke(t, point, csg_outline_add(t->out, point));
 }
 
 static int conic_to(const FT_Vector *control, const FT_Vector *to, void *user)
@@ -315,9 +315,9 @@ static int conic_to(const FT_Vector *control, const FT_Vector *to, void *user)
     tracer *t = user;
     csg_vec2 point = to_plane(t, to), by = to_plane(t, control);
     int pieces = t->pen->pieces;
-    return finish(t, point,
-                  pieces ? csg_outline_quadratic_in_pieces(t->out, t->now, by, point, pieces)
-                         : csg_outline_quadratic(t->out, t->now, by, point, t->pen->tolerance));
+    return end_stroke(t, point,
+                      pieces ? csg_outline_quadratic_in_pieces(t->out, t->now, by, point, pieces)
+                             : csg_outline_quadratic(t->out, t->now, by, point, t->pen->tolerance));
 }
 
 static int cubic_to(const FT_Vector *control1, const FT_Vector *control2, const FT_Vector *to,
@@ -326,9 +326,10 @@ static int cubic_to(const FT_Vector *control1, const FT_Vector *control2, const 
     tracer *t = user;
     csg_vec2 point = to_plane(t, to), by1 = to_plane(t, control1), by2 = to_plane(t, control2);
     int pieces = t->pen->pieces;
-    return finish(t, point,
-                  pieces ? csg_outline_cubic_in_pieces(t->out, t->now, by1, by2, point, pieces)
-                         : csg_outline_cubic(t->out, t->now, by1, by2, point, t->pen->tolerance));
+    return end_stroke(t, point,
+                      pieces
+                          ? csg_outline_cubic_in_pieces(t->out, t->now, by1, by2, point, pieces)
+                          : csg_outline_cubic(t->out, t->now, by1, by2, point, t->pen->tolerance));
 }
 
 /* TrueType's outer loops run clockwise. */

@@ -5,6 +5,7 @@
 #define CSG_OUTLINE_TEXT_RUNS_H
 
 #include "outline/letters/fonts.h"
+#include "outline/letters/text_request.h"
 
 typedef struct csg_text_run {
     size_t first, count; /* of the characters */

@@ -93,7 +93,7 @@ static csg_outline *pen_of(path *p)
     return pen;
 }
 
-static void finish(path *p, bool closed)
+static void end_subpath(path *p, bool closed)
 {
     if (p->drawing && p->status == CSGM_OK) {
         bool ends_at_start = p->now.x == p->start.x && p->now.y == p->start.y;
@@ -214,7 +214,7 @@ static bool move_to(path *p, csg_vec2 origin)
     csg_vec2 to;
     if (!read_points(p, origin, &to, 1))
         return false;
-    finish(p, false);
+    end_subpath(p, false);
     p->start = p->now = to;
     return true;
 }
@@ -273,7 +273,7 @@ csgm_status csg_svg_path(const char *text, double tolerance, csg_polylines *out,
             good = false;
         } else if (command == 'Z' || command == 'z') {
             good = named;
-            finish(&p, true);
+            end_subpath(&p, true);
             p.now = p.start;
             p.before = 'Z';
         } else {
@@ -283,6 +283,6 @@ csgm_status csg_svg_path(const char *text, double tolerance, csg_polylines *out,
             p.status = CSGM_ERR_LIMIT;
     }
     *broken |= !good;
-    finish(&p, false);
+    end_subpath(&p, false);
     return p.status;
 }

@@ -20,7 +20,7 @@ static csg_outline *pen_of(shape *d)
     return &d->lines->pen;
 }
 
-static void finish(shape *d, bool closed)
+static void end_outline(shape *d, bool closed)
 {
     csgm_status status = csg_polylines_finish(d->lines, closed);
     if (status != CSGM_OK && d->status == CSGM_OK)
@@ -72,7 +72,7 @@ static void draw_rectangle(shape *d, uint32_t e, const csg_svg_viewport *p, doub
         draw_to(d, x + w, y + h);
         draw_to(d, x, y + h);
     }
-    finish(d, true);
+    end_outline(d, true);
 }
 
 static void draw_ellipse(shape *d, uint32_t e, const csg_svg_viewport *p, double tolerance)
@@ -90,7 +90,7 @@ static void draw_ellipse(shape *d, uint32_t e, const csg_svg_viewport *p, double
         return;
     for (int quarter = 0; quarter < 4; quarter++)
         draw_corner(d, center, rx, ry, quarter, tolerance);
-    finish(d, true);
+    end_outline(d, true);
 }
 
 static void draw_line(shape *d, uint32_t e, const csg_svg_viewport *p)
@@ -100,7 +100,7 @@ static void draw_line(shape *d, uint32_t e, const csg_svg_viewport *p)
             csg_svg_attribute(xml, e, "y1", p->height, 0));
     draw_to(d, csg_svg_attribute(xml, e, "x2", p->width, 0),
             csg_svg_attribute(xml, e, "y2", p->height, 0));
-    finish(d, false);
+    end_outline(d, false);
 }
 
 static void draw_points(shape *d, uint32_t e, bool closed)
@@ -110,7 +110,7 @@ static void draw_points(shape *d, uint32_t e, bool closed)
     while (at && *at && d->status == CSGM_OK && csg_svg_number(&at, &x) && csg_svg_number(&at, &y))
         draw_to(d, x, y);
     d->broken += at && *at;
-    finish(d, closed);
+    end_outline(d, closed);
 }
 
 static void draw_path(shape *d, uint32_t e, double tolerance)

@@ -132,7 +132,7 @@ static void XMLCALL on_text(void *user, const char *text, int length)
         stop(r, csg_problem_set(r->problem, CSGM_ERR_LIMIT, "its text is too long"));
 }
 
-static csgm_status run(reader *r, const char *text, size_t length)
+static csgm_status parse_text(reader *r, const char *text, size_t length)
 {
     XML_SetUserData(r->parser, r);
     XML_SetElementHandler(r->parser, on_start, on_end);
@@ -162,7 +162,7 @@ csgm_status csg_xml_parse(csg_memory *memory, const char *text, size_t length, c
         return CSGM_ERR_MEMORY;
     *out = (csg_xml){.memory = memory};
     csg_arena_init(&out->arena, memory);
-    csgm_status status = run(&r, text, length);
+    csgm_status status = parse_text(&r, text, length);
     XML_ParserFree(r.parser);
     if (status == CSGM_OK && out->count == 0)
         status = csg_problem_set(problem, CSGM_ERR_FORMAT, "it has no elements");

@@ -224,8 +224,8 @@ static bool drop_twins(whole_loops *loops)
     return true;
 }
 
-static csgm_status run(csg_polygons_op op, csg_fill fill, const csg_outline *a,
-                       const csg_outline *b, csg_outline *out)
+static csgm_status combine_loops(csg_polygons_op op, csg_fill fill, const csg_outline *a,
+                                 const csg_outline *b, csg_outline *out)
 {
     whole_loops left = {.memory = a->memory}, right = {.memory = a->memory};
     grid g;
@@ -246,7 +246,7 @@ csgm_status csg_polygons_clean(const csg_outline *in, csg_fill fill, csg_outline
 {
     csg_outline none;
     csg_outline_init(&none, in->memory);
-    return run(CSG_POLYGONS_UNION, fill, in, &none, out);
+    return combine_loops(CSG_POLYGONS_UNION, fill, in, &none, out);
 }
 
 csgm_status csg_polygons_check(const csg_outline *in)
@@ -267,7 +267,7 @@ csgm_status csg_polygons_check(const csg_outline *in)
 csgm_status csg_polygons_combine(csg_polygons_op op, const csg_outline *a, const csg_outline *b,
                                  csg_outline *out)
 {
-    return run(op, CSG_FILL_NONZERO, a, b, out);
+    return combine_loops(op, CSG_FILL_NONZERO, a, b, out);
 }
 
 /* ---- offset ------------------------------------------------------------------------------- */

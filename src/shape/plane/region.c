@@ -46,7 +46,7 @@ static bool is_nowhere(const region *r, double x, double y)
     return !(r->tree.segment_count && fabs(x) < 1e150 && fabs(y) < 1e150);
 }
 
-static double value_at(const region *r, double x, double y, csg_nearest *nearest)
+static double value_at(const region *r, double x, double y, csg_segment_hit *nearest)
 {
     *nearest = csg_segment_nearest(&r->tree, x, y);
     csg_segment_place at = csg_segment_locate(&r->tree, nearest->segment, x, y);
@@ -62,7 +62,7 @@ static double value_at(const region *r, double x, double y, csg_nearest *nearest
  * way may be too short to have a direction. */
 static answer answer_at(const region *r, double x, double y)
 {
-    csg_nearest nearest;
+    csg_segment_hit nearest;
     if (is_nowhere(r, x, y))
         return (answer){.value = -INFINITY};
     answer a = {.value = value_at(r, x, y, &nearest)};
@@ -118,7 +118,7 @@ static void values(const csg_shape *shape, const float *x, const float *y, const
         uint64_t key = key_of(x[i], y[i]);
         kept *place = &places[(key * 0x9E3779B97F4A7C15u >> 48) % place_count];
         if (!place->is_set || place->key != key) {
-            csg_nearest nearest;
+            csg_segment_hit nearest;
             double px = (double)x[i], py = (double)y[i];
             float value = is_nowhere(r, px, py) ? -INFINITY : (float)value_at(r, px, py, &nearest);
             *place = (kept){key, value, true};

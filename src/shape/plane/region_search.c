@@ -18,7 +18,7 @@ static inline double greater(double a, double b)
 }
 
 static inline void search_leaf(const csg_segment_tree *tree, uint32_t number, double x, double y,
-                               csg_nearest *best)
+                               csg_segment_hit *best)
 {
     const csg_segment_leaf *leaf = &tree->leaves[number];
     double squared[CSG_SEGMENT_LANES];
@@ -31,7 +31,7 @@ static inline void search_leaf(const csg_segment_tree *tree, uint32_t number, do
     }
     for (uint32_t k = 0; k < CSG_SEGMENT_LANES; k++) {
         if (squared[k] < best->squared)
-            *best = (csg_nearest){squared[k], number * CSG_SEGMENT_LANES + k};
+            *best = (csg_segment_hit){squared[k], number * CSG_SEGMENT_LANES + k};
     }
 }
 
@@ -44,7 +44,7 @@ static inline void box_distances(const csg_segment_node *node, double x, double 
     }
 }
 
-csg_nearest csg_segment_nearest(const csg_segment_tree *tree, double x, double y)
+csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, double y)
 {
     struct {
         double squared;
@@ -53,7 +53,7 @@ csg_nearest csg_segment_nearest(const csg_segment_tree *tree, double x, double y
     uint32_t i = cell_along(x, tree->left, tree->per_x, tree->cells_x),
              j = cell_along(y, tree->bottom, tree->per_y, tree->cells_y);
     uint32_t first = tree->nearest_leaf[(size_t)j * tree->cells_x + i];
-    csg_nearest best = {INFINITY, first * CSG_SEGMENT_LANES};
+    csg_segment_hit best = {INFINITY, first * CSG_SEGMENT_LANES};
     search_leaf(tree, first, x, y, &best);
     uint32_t node = (uint32_t)tree->node_count - 1;
     for (size_t count = 0;;) {

@@ -46,17 +46,17 @@ typedef struct csg_segment_tree {
     csg_box box;
 } csg_segment_tree;
 
-typedef struct csg_nearest {
+typedef struct csg_segment_hit {
     double squared;   /* distance */
     uint32_t segment; /* of several that are as near, always the same one */
-} csg_nearest;
+} csg_segment_hit;
 
 /* Coordinates are finite and below 1e150. False: out of memory. */
 bool csg_segment_tree_init(csg_segment_tree *tree, csg_memory *memory, const csg_outline *outline);
 void csg_segment_tree_release(csg_segment_tree *tree);
 
 /* x, y finite; at least one segment. */
-csg_nearest csg_segment_nearest(const csg_segment_tree *tree, double x, double y);
+csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, double y);
 /* How often the loops go around the point. A corner belongs to one of its segments only, so no
  * point sees it twice; between 2 ulp of a segment to either side the answer is that of one side. */
 int csg_segment_winding(const csg_segment_tree *tree, double x, double y);

@@ -15,7 +15,7 @@ static double height_over(const csg_triangles *chain, uint32_t half, uint32_t ot
     return csg_vec3_dot(csg_vec3_normalize(normal), csg_vec3_sub(tip, a));
 }
 
-bool csg_chain_is_convex(const csg_triangles *chain, const csg_edges *edges)
+bool csg_chain_is_convex(const csg_triangles *chain, const csg_triangle_edges *edges)
 {
     for (size_t i = 0; i < edges->count; i++) {
         const uint32_t *halves = edges->halves + edges->edges[i].first;

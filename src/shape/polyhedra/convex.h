@@ -7,6 +7,6 @@
 #include "shape/polyhedra/edges.h"
 
 /* Of one piece in a frame that is nowhere inside twice: every edge bends outwards, up to 2^-30. */
-bool csg_chain_is_convex(const csg_triangles *chain, const csg_edges *edges);
+bool csg_chain_is_convex(const csg_triangles *chain, const csg_triangle_edges *edges);
 
 #endif

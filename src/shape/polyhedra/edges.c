@@ -80,7 +80,8 @@ static size_t count_edges(const size_t *starts, size_t point_count, const uint64
     return count;
 }
 
-static void fill(const size_t *starts, size_t point_count, const uint64_t *keys, csg_edges *out)
+static void fill(const size_t *starts, size_t point_count, const uint64_t *keys,
+                 csg_triangle_edges *out)
 {
     size_t edge = 0;
     for (uint32_t i = 0; i < point_count; i++) {
@@ -94,7 +95,7 @@ static void fill(const size_t *starts, size_t point_count, const uint64_t *keys,
     }
 }
 
-bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_edges *out)
+bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_triangle_edges *out)
 {
     size_t half_count = 3 * triangles->count;
     out->halves = csg_arena_alloc(arena, half_count * sizeof *out->halves);
@@ -112,7 +113,8 @@ bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_edges 
     return true;
 }
 
-int32_t csg_edge_net(const csg_triangles *triangles, const csg_edges *edges, const csg_edge *edge)
+int32_t csg_edge_net(const csg_triangles *triangles, const csg_triangle_edges *edges,
+                     const csg_edge *edge)
 {
     int32_t net = 0;
     for (uint32_t i = 0; i < edge->count; i++)

@@ -12,15 +12,15 @@ typedef struct csg_edge {
     uint32_t first, count; /* its half-edges, in halves */
 } csg_edge;
 
-typedef struct csg_edges {
+typedef struct csg_triangle_edges {
     csg_edge *edges; /* by low, then high */
     size_t count;
     uint32_t *halves;
     uint32_t *of_half; /* the edge of each half-edge */
-} csg_edges;
+} csg_triangle_edges;
 
 /* False: out of memory. No triangle has two equal corners. */
-bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_edges *out);
+bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_triangle_edges *out);
 
 static inline uint32_t csg_half_from(const csg_triangles *triangles, uint32_t half)
 {
@@ -31,7 +31,8 @@ static inline uint32_t csg_half_to(const csg_triangles *triangles, uint32_t half
     return triangles->corners[half / 3][(half % 3 + 1) % 3];
 }
 /* How often more from low to high than back. */
-int32_t csg_edge_net(const csg_triangles *triangles, const csg_edges *edges, const csg_edge *edge);
+int32_t csg_edge_net(const csg_triangles *triangles, const csg_triangle_edges *edges,
+                     const csg_edge *edge);
 
 /* In place, by heap: no memory, and never slow. */
 void csg_sort_keys(uint64_t *keys, size_t count);

@@ -4,7 +4,7 @@
  */
 #include "shape/polyhedra/frame.h"
 
-bool csg_frame_make(csg_box box, csg_frame *out)
+bool csg_triangle_frame_make(csg_box box, csg_triangle_frame *out)
 {
     csg_vec3 size = csg_box_size(box);
     double half = 0.5 * fmax(size.x, fmax(size.y, size.z));
@@ -14,9 +14,10 @@ bool csg_frame_make(csg_box box, csg_frame *out)
     frexp(half, &exponent);
     double scale = ldexp(1, -exponent), step = ldexp(1, exponent - 39);
     csg_vec3 center = csg_box_center(box);
-    *out = (csg_frame){.center = {rint(center.x / step) * step, rint(center.y / step) * step,
-                                  rint(center.z / step) * step},
-                       .scale = scale,
-                       .unscale = 1 / scale};
+    *out =
+        (csg_triangle_frame){.center = {rint(center.x / step) * step, rint(center.y / step) * step,
+                                        rint(center.z / step) * step},
+                             .scale = scale,
+                             .unscale = 1 / scale};
     return true;
 }

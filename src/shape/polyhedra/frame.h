@@ -12,34 +12,34 @@
 
 __extension__ typedef __int128 csg_int128;
 
-typedef struct csg_frame {
+typedef struct csg_triangle_frame {
     csg_vec3 center;
     double scale, unscale; /* powers of two */
-} csg_frame;
+} csg_triangle_frame;
 
 /* Frame units to steps of the lattice. */
 #define CSG_FRAME_STEPS 0x1p39
 
 /* False: the box is too large or too small for a frame (sides above 1e150 or all below 1e-150). */
-bool csg_frame_make(csg_box box, csg_frame *out);
+bool csg_triangle_frame_make(csg_box box, csg_triangle_frame *out);
 
-static inline csg_vec3 csg_frame_enter(const csg_frame *frame, csg_vec3 p)
+static inline csg_vec3 csg_triangle_frame_enter(const csg_triangle_frame *frame, csg_vec3 p)
 {
     return csg_vec3_scale(csg_vec3_sub(p, frame->center), frame->scale);
 }
-static inline csg_vec3 csg_frame_leave(const csg_frame *frame, csg_vec3 p)
+static inline csg_vec3 csg_triangle_frame_leave(const csg_triangle_frame *frame, csg_vec3 p)
 {
     return csg_vec3_add(csg_vec3_scale(p, frame->unscale), frame->center);
 }
 
 /* To the nearest lattice point, for |x| < 2^12: the sum's last bit is worth a step. */
-static inline double csg_frame_round(double x)
+static inline double csg_triangle_frame_round(double x)
 {
     return (x + 0x1.8p13) - 0x1.8p13;
 }
 
 /* Of a coordinate on the lattice. */
-static inline int64_t csg_frame_steps(double x)
+static inline int64_t csg_triangle_frame_steps(double x)
 {
     return (int64_t)(x * CSG_FRAME_STEPS);
 }

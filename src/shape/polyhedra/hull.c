@@ -123,16 +123,16 @@ static csgm_status run_library(hull_run *run, const csg_vec3 *points, csg_triang
 csgm_status csg_hull(csg_memory *memory, const csg_vec3 *points, size_t count, csg_triangles *out)
 {
     csg_box box;
-    csg_frame frame;
+    csg_triangle_frame frame;
     csg_triangles_init(out, memory);
     if (count < 4 || count > POINTS_MOST || !box_of(points, count, &box) ||
-        !csg_frame_make(box, &frame))
+        !csg_triangle_frame_make(box, &frame))
         return CSGM_ERR_SCENE;
     hull_run run;
     if (!make_run(&run, memory, count))
         return CSGM_ERR_MEMORY;
     for (size_t i = 0; i < count; i++) {
-        csg_vec3 p = csg_frame_enter(&frame, points[i]);
+        csg_vec3 p = csg_triangle_frame_enter(&frame, points[i]);
         run.coordinates[3 * i] = p.x;
         run.coordinates[3 * i + 1] = p.y;
         run.coordinates[3 * i + 2] = p.z;

@@ -17,7 +17,7 @@
 
 typedef struct polyhedron {
     csg_shape shape;
-    csg_frame frame;
+    csg_triangle_frame frame;
     csg_triangles mended;
     csg_tree tree;
     uint64_t hash;
@@ -54,7 +54,7 @@ typedef struct walker {
 
 typedef struct found {
     csg_vec3 at; /* frame units */
-    csg_nearest nearest;
+    csg_triangle_hit nearest;
     bool inside;
 } found;
 
@@ -95,7 +95,8 @@ static bool is_inside(walker *w, csg_vec3 at, double distance)
     if (!box_holds(w->solid->tree.box, at))
         return false;
     known_point p = {.at = at,
-                     .cell = {csg_frame_round(at.x), csg_frame_round(at.y), csg_frame_round(at.z)},
+                     .cell = {csg_triangle_frame_round(at.x), csg_triangle_frame_round(at.y),
+                              csg_triangle_frame_round(at.z)},
                      .free = distance * (1 - 0x1p-30) - LEAST,
                      .is_set = true};
     p.winding = find_winding(w, &p);
@@ -158,7 +159,7 @@ static csg_vec3 gradient_of(const polyhedron *solid, const found *f)
 static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
 {
     const polyhedron *solid = as_polyhedron(shape);
-    csg_vec3 at = csg_frame_enter(&solid->frame, p), ignored;
+    csg_vec3 at = csg_triangle_frame_enter(&solid->frame, p), ignored;
     if (is_far(at))
         return far_value(solid, at, gradient ? gradient : &ignored);
     walker w = {.solid = solid};
@@ -170,7 +171,7 @@ static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gr
 
 static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
 {
-    return csg_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
+    return csg_triangle_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
 }
 
 static void polyhedron_values(const csg_shape *shape, const float *x, const float *y,
@@ -245,7 +246,7 @@ static bool polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius
                                csg_shape_take_normal *take, void *user)
 {
     const polyhedron *solid = as_polyhedron(shape);
-    csg_vec3 at = csg_frame_enter(&solid->frame, c);
+    csg_vec3 at = csg_triangle_frame_enter(&solid->frame, c);
     if (is_far(at))
         return false;
     double least = sqrt(csg_tree_nearest(&solid->tree, at, 0).squared);
@@ -331,8 +332,8 @@ static bool is_overlapping(const polyhedron *solid)
         csg_vec3 out = csg_vec3_scale(csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac)), 0x1p-30);
         csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
         for (int k = 0; k < 2; k++) {
-            csg_vec3 cell = {csg_frame_round(at[k].x), csg_frame_round(at[k].y),
-                             csg_frame_round(at[k].z)};
+            csg_vec3 cell = {csg_triangle_frame_round(at[k].x), csg_triangle_frame_round(at[k].y),
+                             csg_triangle_frame_round(at[k].z)};
             if (box_holds(solid->tree.box, cell) &&
                 csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
                 return true;
@@ -354,7 +355,7 @@ static void take_triangles(polyhedron *solid, csg_triangles *triangles)
 {
     csg_box box = csg_box_empty();
     for (size_t i = 0; i < triangles->point_count; i++)
-        triangles->points[i] = csg_frame_leave(&solid->frame, triangles->points[i]);
+        triangles->points[i] = csg_triangle_frame_leave(&solid->frame, triangles->points[i]);
     for (size_t t = 0; t < triangles->count; t++)
         for (int k = 0; k < 3; k++) {
             csg_vec3 p = triangles->points[triangles->corners[t][k]];
@@ -366,10 +367,10 @@ static void take_triangles(polyhedron *solid, csg_triangles *triangles)
 }
 
 /* Fills a shape whose tree is made, or takes the triangles' memory back. */
-static csgm_status finish(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
-                          csg_repairs *repairs)
+static csgm_status fill_solid(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
+                              csg_repairs *repairs)
 {
-    csg_edges edges;
+    csg_triangle_edges edges;
     if (!turn_inverted_pieces(scratch, solid, chain, repairs) ||
         !csg_edges_make(scratch, &chain->triangles, &edges))
         return CSGM_ERR_MEMORY;
@@ -403,7 +404,7 @@ static csgm_status create(csg_memory *memory, csg_arena *scratch, const csg_tria
     atomic_init(&solid->shape.references, 1);
     status = CSGM_ERR_MEMORY;
     if (csg_tree_make(memory, scratch, &chain.triangles, &solid->tree)) {
-        status = finish(scratch, solid, &chain, repairs);
+        status = fill_solid(scratch, solid, &chain, repairs);
         if (status != CSGM_OK)
             csg_tree_release(&solid->tree);
     }

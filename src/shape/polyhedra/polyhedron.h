@@ -11,19 +11,8 @@
 #ifndef CSG_SHAPE_POLYHEDRON_H
 #define CSG_SHAPE_POLYHEDRON_H
 
+#include "shape/polyhedra/repairs.h"
 #include "shape/shape.h"
-
-/* What was wrong with the triangles and is mended now. */
-typedef struct csg_repairs {
-    size_t welded;        /* points that lay on another */
-    size_t degenerate;    /* triangles without area, or of loose flat sheets; left out */
-    size_t duplicate;     /* the same triangle again, left out */
-    size_t flipped;       /* triangles turned over */
-    size_t holes, filled; /* loops of boundary edges, and triangles that fill them */
-    size_t nonmanifold;   /* edges of more than two triangles */
-    bool inside_out;      /* the whole was turned over */
-    bool overlapping;     /* some places are inside more than once (a hint of self-intersection) */
-} csg_repairs;
 
 /* The inside is where the winding number is 1 or more (of the mended, outward triangles).
  * CSGM_ERR_SCENE: no triangles with area; coordinates must be finite. */

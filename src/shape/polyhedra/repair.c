@@ -10,8 +10,10 @@ bool csg_repair_is_flat(const csg_triangles *triangles, const uint32_t corners[3
     csg_vec3 a = triangles->points[corners[0]];
     csg_vec3 b = csg_vec3_sub(triangles->points[corners[1]], a);
     csg_vec3 c = csg_vec3_sub(triangles->points[corners[2]], a);
-    csg_int128 bx = csg_frame_steps(b.x), by = csg_frame_steps(b.y), bz = csg_frame_steps(b.z);
-    csg_int128 cx = csg_frame_steps(c.x), cy = csg_frame_steps(c.y), cz = csg_frame_steps(c.z);
+    csg_int128 bx = csg_triangle_frame_steps(b.x), by = csg_triangle_frame_steps(b.y),
+               bz = csg_triangle_frame_steps(b.z);
+    csg_int128 cx = csg_triangle_frame_steps(c.x), cy = csg_triangle_frame_steps(c.y),
+               cz = csg_triangle_frame_steps(c.z);
     return by * cz == bz * cy && bz * cx == bx * cz && bx * cy == by * cx;
 }
 
@@ -46,7 +48,7 @@ static csg_box used_box(const csg_triangles *in)
     return box;
 }
 
-static bool has_open_edge(const csg_edges *edges)
+static bool has_open_edge(const csg_triangle_edges *edges)
 {
     for (size_t i = 0; i < edges->count; i++)
         if (edges->edges[i].count == 1)
@@ -55,7 +57,7 @@ static bool has_open_edge(const csg_edges *edges)
 }
 
 /* Everything up to the closed chain; false is for memory. */
-static bool close_chain(csg_arena *scratch, csg_triangles *triangles, csg_edges *edges,
+static bool close_chain(csg_arena *scratch, csg_triangles *triangles, csg_triangle_edges *edges,
                         csg_repairs *repairs)
 {
     if (!csg_repair_drop(scratch, triangles, false, repairs) ||
@@ -89,14 +91,14 @@ static void settle_frame(csg_chain *chain)
 {
     csg_triangles *triangles = &chain->triangles;
     csg_box box = used_box(triangles);
-    csg_frame frame;
-    box.min = csg_frame_leave(&chain->frame, box.min);
-    box.max = csg_frame_leave(&chain->frame, box.max);
-    if (!csg_frame_make(box, &frame) || frame.scale < chain->frame.scale)
+    csg_triangle_frame frame;
+    box.min = csg_triangle_frame_leave(&chain->frame, box.min);
+    box.max = csg_triangle_frame_leave(&chain->frame, box.max);
+    if (!csg_triangle_frame_make(box, &frame) || frame.scale < chain->frame.scale)
         return;
     for (size_t i = 0; i < triangles->point_count; i++)
-        triangles->points[i] =
-            csg_frame_enter(&frame, csg_frame_leave(&chain->frame, triangles->points[i]));
+        triangles->points[i] = csg_triangle_frame_enter(
+            &frame, csg_triangle_frame_leave(&chain->frame, triangles->points[i]));
     chain->frame = frame;
 }
 
@@ -125,7 +127,7 @@ bool csg_repair_number(csg_arena *scratch, csg_triangles *triangles)
 static csgm_status repair(csg_arena *scratch, const csg_triangles *in, csg_chain *out,
                           csg_repairs *repairs)
 {
-    csg_edges edges;
+    csg_triangle_edges edges;
     if (!csg_repair_weld(scratch, &out->frame, in, &out->triangles, repairs) ||
         !close_chain(scratch, &out->triangles, &edges, repairs))
         return CSGM_ERR_MEMORY;
@@ -142,7 +144,7 @@ csgm_status csg_repair(csg_memory *memory, csg_arena *scratch, const csg_triangl
     *repairs = (csg_repairs){0};
     *out = (csg_chain){0};
     if (!in->count || in->count > MOST || in->point_count > MOST || !corners_are_points(in) ||
-        !points_are_finite(in) || !csg_frame_make(used_box(in), &out->frame))
+        !points_are_finite(in) || !csg_triangle_frame_make(used_box(in), &out->frame))
         return CSGM_ERR_SCENE;
     csg_triangles_init(&out->triangles, memory);
     csgm_status status = repair(scratch, in, out, repairs);

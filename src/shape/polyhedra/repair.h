@@ -9,10 +9,10 @@
 
 #include "shape/polyhedra/edges.h"
 #include "shape/polyhedra/frame.h"
-#include "shape/polyhedra/polyhedron.h"
+#include "shape/polyhedra/repairs.h"
 
 typedef struct csg_chain {
-    csg_frame frame;
+    csg_triangle_frame frame;
     csg_triangles triangles; /* in the frame; those without area are gone */
     uint32_t *pieces;        /* per triangle; pieces share no edge */
     size_t piece_count;
@@ -27,24 +27,24 @@ csgm_status csg_repair(csg_memory *memory, csg_arena *scratch, const csg_triangl
 /* ---- the steps; false is for memory ------------------------------------------------- */
 
 /* Corners on the lattice, equal ones one; points that no triangle has are gone. */
-bool csg_repair_weld(csg_arena *scratch, const csg_frame *frame, const csg_triangles *in,
+bool csg_repair_weld(csg_arena *scratch, const csg_triangle_frame *frame, const csg_triangles *in,
                      csg_triangles *out, csg_repairs *repairs);
 /* Points of open edges that nearly coincide become one. */
-bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
-                          size_t *welded);
+bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
+                          const csg_triangle_edges *edges, size_t *welded);
 /* Triangles with two equal corners go, and of those with the same three corners all but one; where
  * they cancel each other, all of them, unless the model is made of such pairs throughout.
  * only_cancel: copies that run alike stay. */
 bool csg_repair_drop(csg_arena *scratch, csg_triangles *triangles, bool only_cancel,
                      csg_repairs *repairs);
 /* The edges are those of the triangles before; where any is flipped they no longer are. */
-bool csg_repair_turn(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
+bool csg_repair_turn(csg_arena *scratch, csg_triangles *triangles, const csg_triangle_edges *edges,
                      size_t *flipped);
-bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
+bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_triangle_edges *edges,
                      csg_repairs *repairs);
 
 /* Fills pieces and volumes. CSGM_ERR_SCENE: nothing is left. */
-csgm_status csg_repair_pieces(csg_arena *scratch, const csg_edges *edges, csg_chain *chain,
+csgm_status csg_repair_pieces(csg_arena *scratch, const csg_triangle_edges *edges, csg_chain *chain,
                               csg_repairs *repairs);
 
 /* Numbers the points in the order of the corners; points that no triangle has are gone. With the

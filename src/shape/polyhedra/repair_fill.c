@@ -98,7 +98,7 @@ static bool is_before(chord a, chord b)
     return a.length2 < b.length2 || (a.length2 == b.length2 && a.tip < b.tip);
 }
 
-static void push(zipper *z, uint32_t tip)
+static void push_chord(zipper *z, uint32_t tip)
 {
     chord fresh = {distance2(z->triangles, z->loop[z->previous[tip]], z->loop[z->next[tip]]), tip,
                    ++z->stamps[tip]};
@@ -137,8 +137,8 @@ static bool zip(csg_triangles *triangles, zipper *z, size_t count, size_t goal)
         z->stamps[top.tip] = 0;
         z->next[before] = after;
         z->previous[after] = before;
-        push(z, before);
-        push(z, after);
+        push_chord(z, before);
+        push_chord(z, after);
         at = before < after ? before : after;
         left--;
     }
@@ -166,7 +166,7 @@ static bool zip_down(csg_arena *scratch, csg_triangles *triangles, uint32_t *loo
         z.previous[i] = i ? i - 1 : (uint32_t)count - 1;
     }
     for (uint32_t i = 0; i < count; i++)
-        push(&z, i);
+        push_chord(&z, i);
     return zip(triangles, &z, count, goal);
 }
 

@@ -36,7 +36,7 @@ static bool has_unused(const walk *w, uint32_t from, size_t *first)
     return at < w->count && w->edges[at] >> 32 == from;
 }
 
-static size_t count_needed(const csg_triangles *triangles, const csg_edges *edges)
+static size_t count_needed(const csg_triangles *triangles, const csg_triangle_edges *edges)
 {
     size_t count = 0;
     for (size_t i = 0; i < edges->count; i++) {
@@ -46,7 +46,7 @@ static size_t count_needed(const csg_triangles *triangles, const csg_edges *edge
     return count;
 }
 
-static void list_needed(const csg_triangles *triangles, const csg_edges *edges, walk *w)
+static void list_needed(const csg_triangles *triangles, const csg_triangle_edges *edges, walk *w)
 {
     size_t at = 0;
     for (size_t i = 0; i < edges->count; i++) {
@@ -104,7 +104,7 @@ static bool walk_from(csg_arena *scratch, csg_triangles *triangles, walk *w, uin
     return true;
 }
 
-bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
+bool csg_repair_fill(csg_arena *scratch, csg_triangles *triangles, const csg_triangle_edges *edges,
                      csg_repairs *repairs)
 {
     walk w = {.count = count_needed(triangles, edges)};

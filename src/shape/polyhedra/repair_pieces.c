@@ -17,7 +17,7 @@ static uint32_t find_root(uint32_t *parents, uint32_t i)
 }
 
 /* pieces: per triangle, numbered in the order of their first triangles. */
-static bool find_pieces(csg_arena *scratch, const csg_edges *edges, csg_chain *chain)
+static bool find_pieces(csg_arena *scratch, const csg_triangle_edges *edges, csg_chain *chain)
 {
     size_t count = chain->triangles.count;
     uint32_t *parents = csg_arena_alloc(scratch, count * sizeof *parents);
@@ -164,7 +164,7 @@ static bool drop_points(csg_arena *scratch, csg_triangles *triangles)
     return true;
 }
 
-csgm_status csg_repair_pieces(csg_arena *scratch, const csg_edges *edges, csg_chain *chain,
+csgm_status csg_repair_pieces(csg_arena *scratch, const csg_triangle_edges *edges, csg_chain *chain,
                               csg_repairs *repairs)
 {
     if (!find_pieces(scratch, edges, chain) || !drop_flat(scratch, chain, repairs) ||

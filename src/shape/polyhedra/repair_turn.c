@@ -10,7 +10,7 @@
 
 typedef struct patches {
     csg_triangles *triangles;
-    const csg_edges *edges;
+    const csg_triangle_edges *edges;
     uint8_t *turned; /* per triangle: 0, 1 or not yet visited */
     uint32_t *queue;
     size_t begin, end; /* of the patch, in queue */
@@ -52,7 +52,7 @@ static size_t turn_patch(patches *p)
     return which ? count : size - count;
 }
 
-bool csg_repair_turn(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
+bool csg_repair_turn(csg_arena *scratch, csg_triangles *triangles, const csg_triangle_edges *edges,
                      size_t *flipped)
 {
     csg_arena_mark mark = csg_arena_get_mark(scratch);

@@ -37,8 +37,8 @@ static uint64_t mix(uint64_t a, uint64_t b, uint64_t c)
 
 static uint64_t hash_point(csg_vec3 p)
 {
-    return mix((uint64_t)csg_frame_steps(p.x), (uint64_t)csg_frame_steps(p.y),
-               (uint64_t)csg_frame_steps(p.z));
+    return mix((uint64_t)csg_triangle_frame_steps(p.x), (uint64_t)csg_triangle_frame_steps(p.y),
+               (uint64_t)csg_triangle_frame_steps(p.z));
 }
 
 static bool equal_points(csg_vec3 a, csg_vec3 b)
@@ -49,10 +49,11 @@ static bool equal_points(csg_vec3 a, csg_vec3 b)
 /* ---- points -----------------------------------------------------------------------------------
  */
 
-static csg_vec3 on_lattice(const csg_frame *frame, csg_vec3 p)
+static csg_vec3 on_lattice(const csg_triangle_frame *frame, csg_vec3 p)
 {
-    csg_vec3 q = csg_frame_enter(frame, p);
-    return csg_vec3_make(csg_frame_round(q.x), csg_frame_round(q.y), csg_frame_round(q.z));
+    csg_vec3 q = csg_triangle_frame_enter(frame, p);
+    return csg_vec3_make(csg_triangle_frame_round(q.x), csg_triangle_frame_round(q.y),
+                         csg_triangle_frame_round(q.z));
 }
 
 /* The number of this point; a new one when it was not there. */
@@ -67,7 +68,7 @@ static uint32_t find_point(table *places, csg_triangles *out, csg_vec3 p)
     return places->slots[at];
 }
 
-bool csg_repair_weld(csg_arena *scratch, const csg_frame *frame, const csg_triangles *in,
+bool csg_repair_weld(csg_arena *scratch, const csg_triangle_frame *frame, const csg_triangles *in,
                      csg_triangles *out, csg_repairs *repairs)
 {
     table places;
@@ -158,8 +159,8 @@ static uint32_t settle(rims *r, uint32_t point)
     return point;
 }
 
-bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles, const csg_edges *edges,
-                          size_t *welded)
+bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
+                          const csg_triangle_edges *edges, size_t *welded)
 {
     size_t open = 0;
     for (size_t i = 0; i < edges->count; i++)

@@ -48,14 +48,14 @@ void csg_tree_release(csg_tree *tree);
 /* Turns a triangle over, by its place in the tree. */
 void csg_tree_turn(csg_tree *tree, size_t place);
 
-typedef struct csg_nearest {
+typedef struct csg_triangle_hit {
     double squared;  /* distance */
     uint32_t place;  /* in tree->triangles */
     uint32_t leaves; /* that were looked into: what the search cost */
-} csg_nearest;
+} csg_triangle_hit;
 
 /* p within 2^60 of the frame. hint: a place to begin with, any will do, a near one is quicker. */
-csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
+csg_triangle_hit csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
 /* The point of a triangle that is nearest to p. */
 csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *in_face);
 

@@ -140,7 +140,7 @@ static inline csg_four disc_distances(const csg_tree_leaf *leaf, const query *q)
 }
 
 static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg_vec3 p, query *q,
-                            csg_nearest *best)
+                            csg_triangle_hit *best)
 {
     csg_four least = disc_distances(leaf, q);
     best->leaves++;
@@ -157,9 +157,9 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
     }
 }
 
-csg_nearest csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint)
+csg_triangle_hit csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint)
 {
-    csg_nearest best = {triangle_squared(&tree->triangles[hint], p), hint, 0};
+    csg_triangle_hit best = {triangle_squared(&tree->triangles[hint], p), hint, 0};
     query q = {.p = {(float)p.x, (float)p.y, (float)p.z}};
     q.error = 0x1p-20f * (1 + fabsf(q.p[0]) + fabsf(q.p[1]) + fabsf(q.p[2]));
     q.limit = (float)best.squared * SLACK;

@@ -16,8 +16,8 @@ typedef struct side {
 
 static csg_int128 exact_side(csg_vec3 a, csg_vec3 b)
 {
-    csg_int128 ay = csg_frame_steps(a.y), az = csg_frame_steps(a.z);
-    csg_int128 by = csg_frame_steps(b.y), bz = csg_frame_steps(b.z);
+    csg_int128 ay = csg_triangle_frame_steps(a.y), az = csg_triangle_frame_steps(a.z);
+    csg_int128 by = csg_triangle_frame_steps(b.y), bz = csg_triangle_frame_steps(b.z);
     return ay * bz - az * by;
 }
 
@@ -52,9 +52,9 @@ static bool is_beyond(const side *ab, const side *bc, const side *ca, double dx)
     double size = fabs(ax) * bc->size + fabs(bx) * ca->size + fabs(cx) * ab->size;
     if (fabs(value) > 0x1p-48 * size)
         return (value > 0) == (ab->sign > 0);
-    csg_int128 exact = csg_frame_steps(ax) * exact_side(bc->a, bc->b) +
-                       csg_frame_steps(bx) * exact_side(ca->a, ca->b) +
-                       csg_frame_steps(cx) * exact_side(ab->a, ab->b);
+    csg_int128 exact = csg_triangle_frame_steps(ax) * exact_side(bc->a, bc->b) +
+                       csg_triangle_frame_steps(bx) * exact_side(ca->a, ca->b) +
+                       csg_triangle_frame_steps(cx) * exact_side(ab->a, ab->b);
     return exact != 0 && (exact > 0) == (ab->sign > 0);
 }
 

@@ -42,7 +42,7 @@ static bool reserve(csg_triangles *triangles, size_t more)
 }
 
 /* Room is there. */
-static void add(csg_triangles *triangles, uint32_t a, uint32_t b, uint32_t c)
+static void append_corners(csg_triangles *triangles, uint32_t a, uint32_t b, uint32_t c)
 {
     uint32_t *corners = triangles->corners[triangles->count++];
     corners[0] = a;
@@ -54,7 +54,7 @@ bool csg_triangles_add(csg_triangles *triangles, uint32_t a, uint32_t b, uint32_
 {
     if (!reserve(triangles, 1))
         return false;
-    add(triangles, a, b, c);
+    append_corners(triangles, a, b, c);
     return true;
 }
 
@@ -134,7 +134,7 @@ static bool is_ear(ring *r, uint32_t tip)
 static void clip(csg_triangles *triangles, ring *r, uint32_t tip)
 {
     uint32_t before = r->previous[tip], after = r->next[tip];
-    add(triangles, r->corners[before], r->corners[tip], r->corners[after]);
+    append_corners(triangles, r->corners[before], r->corners[tip], r->corners[after]);
     r->next[before] = after;
     r->previous[after] = before;
     r->count--;
@@ -185,7 +185,7 @@ static bool takes_second_diagonal(const flat_point *p)
 static void add_fan(csg_triangles *triangles, const uint32_t *corners, size_t count)
 {
     for (size_t i = 1; i + 1 < count; i++)
-        add(triangles, corners[0], corners[i], corners[i + 1]);
+        append_corners(triangles, corners[0], corners[i], corners[i + 1]);
 }
 
 bool csg_triangles_add_face(csg_triangles *triangles, const uint32_t *corners, size_t count)
