@@ -105,7 +105,7 @@ static order order_of(csg_eval *e, csg_value left, csg_value right, csg_span whe
     case CSG_VALUE_BOOLEAN:
         return order_numbers(left.as.boolean, right.as.boolean);
     case CSG_VALUE_STRING:
-        return order_numbers(strcmp(left.as.string->text, right.as.string->text), 0);
+        return order_numbers((double)strcmp(left.as.string->text, right.as.string->text), 0);
     case CSG_VALUE_VECTOR:
         return order_vectors(e, left.as.vector, right.as.vector, where);
     case CSG_VALUE_RANGE:

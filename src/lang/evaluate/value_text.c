@@ -4,6 +4,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "lang/evaluate/value.h"
@@ -72,9 +73,9 @@ static void put_exponent(csg_text *text, const char *digits, int count, int expo
 static int round_digits(double number, char digits[8])
 {
     char exact[48]; /* d.(25 digits)e+xxx: a tie ends at the seventh digit */
-    int exponent = 0, last = 5;
+    int exponent, last = 5;
     snprintf(exact, sizeof exact, "%.25e", number);
-    sscanf(exact + 28, "%d", &exponent);
+    exponent = (int)strtol(exact + 28, NULL, 10);
     digits[0] = exact[0];
     memcpy(digits + 1, exact + 2, 5);
     if (exact[7] < '5')
