@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80.
+"""House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80, and paths that are
+named in pages and comments exist.
 
 With --format: clang-format agrees with every C file (exit 77, a skip, where version 14 is not there).
 """
@@ -66,6 +67,60 @@ def check_file(root, path):
                 yield first, f"{name} has {length} lines; {FUNCTION_LINES} is the most"
 
 
+# A path from the root, or one of a source file from src, tests or tools/csgmesh, as pages and comments name them.
+PATH = re.compile(r"(?<![\w/.$*{}<>~@-])((?:src|include|scenes|tests|tools|docs)/[\w./*{},-]*\w|"
+                  r"[a-z_]+(?:/[a-z_]+)*/[\w-]+\.(?:c|h|cc|def))(?![\w*{<(/])")
+PAGES = (".md", ".txt", ".def") + CODE + (".py", ".sh", "meson.build")
+TEXT_ONLY = (".md", ".txt")  # the whole file is read; of code, comments and doc strings only
+# These tell of what was, or are made to name what is not there.
+WITHOUT_PATHS = {"CHANGELOG.md", "tests/bench/log.md", "tests/bench/results.md", "tests/house/test_checks.py"}
+
+
+def remarks(path, text):
+    """What is written for readers: pages as a whole, of code the comments, doc strings and the heads of scripts."""
+    if path.endswith(TEXT_ONLY):
+        return text
+    if path.endswith(CODE + (".def",)):
+        pattern = r"/\*.*?\*/|//[^\n]*"
+    else:
+        pattern = r'"""(?:.*?)"""|(?m:^[ \t]*#[^\n]*)'
+    out, end = [], 0  # what matches, with all line ends, so that lines keep their numbers
+    for match in re.finditer(pattern, text, re.S):
+        out += [re.sub(r"[^\n]", " ", text[end:match.start()]), match.group()]
+        end = match.end()
+    return "".join(out) + re.sub(r"[^\n]", " ", text[end:])
+
+
+def exists(root, path, named):
+    """From the root; source files also from src, include, tests, tools/csgmesh and the folders that the file is in."""
+    places, folder = ["", "src", "include", "tests", "tools/csgmesh"], os.path.dirname(path)
+    while folder:
+        places.append(folder)
+        folder = os.path.dirname(folder)
+    return any(os.path.exists(os.path.join(root, place, named)) for place in places)
+
+
+def check_paths(root, path):
+    """Each path that is named and is not there, with its line."""
+    with open(os.path.join(root, path), encoding="utf-8", errors="replace") as file:
+        text = file.read()
+    for number, line in enumerate(remarks(path, text).split("\n"), 1):
+        for match in PATH.finditer(line):
+            named = match.group(1).rstrip(".")
+            if not re.search(r"[*{}<]|NAME", named) and not exists(root, path, named):
+                yield number, f"{named} is not there"
+
+
+def pages(root):
+    """What is read for paths: sources, tests, tools and documents, and the single files at the top."""
+    yield from (path for path in files(root) if not path.startswith(os.path.join("tests", "data")) and
+                (path.endswith(PAGES) or is_script(os.path.join(root, path))))
+    yield from (name for name in sorted(os.listdir(root)) if name.endswith(PAGES))
+    scenes = os.path.join(root, "scenes")
+    for place, _, names in os.walk(scenes):
+        yield from (os.path.relpath(os.path.join(place, name), root) for name in sorted(names) if name.endswith(".md"))
+
+
 def check_format(root):
     program = shutil.which("clang-format-14") or shutil.which("clang-format")
     version = subprocess.run([program, "--version"], capture_output=True, text=True,
@@ -86,10 +141,11 @@ def main():
     if wants_format:
         return check_format(root)
     count = 0
-    for path in files(root):
-        for line, fault in check_file(root, path):
-            print(f"{path}:{line}: {fault}")
-            count += 1
+    faults = [(path, fault) for path in files(root) for fault in check_file(root, path)]
+    faults += [(path, fault) for path in pages(root) if path not in WITHOUT_PATHS for fault in check_paths(root, path)]
+    for path, (line, fault) in faults:
+        print(f"{path}:{line}: {fault}")
+        count += 1
     return 1 if count else 0
 
 

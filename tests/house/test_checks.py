@@ -58,6 +58,18 @@ class Planted(unittest.TestCase):
         self.assertIn("no SPDX", self.found("check_house.py", "src/a/a.c", short_function))
         self.assertIn("701 lines", self.found("check_house.py", "src/a/a.c", HEAD + 700 * "\n"))
 
+    def test_paths(self):
+        page = "See src/a/b.c, `tests/none.c`, scenes/*.txt, src/NAME.c and https://x.org/src/gone.c.\n"
+        self.assertEqual(self.found("check_house.py", "docs/page.md", page),
+                         "docs/page.md:1: src/a/b.c is not there\ndocs/page.md:1: tests/none.c is not there\n")
+        self.assertEqual(self.found("check_house.py", "docs/page.md", "See docs/page.md and docs.\n"), "")
+        code = HEAD + '#include "gone/away.h"\n\nstatic const char *name = "gone/away.c"; // as room/gone.c has it\n'
+        self.assertEqual(self.found("check_house.py", "src/room/a.c", code),
+                         "src/room/a.c:4: room/gone.c is not there\n")
+        self.assertEqual(self.found("check_house.py", "src/room/a.c", HEAD + "/* as room/a.c has it */\n"), "")
+        script = "# SPDX-License-Identifier: MIT\n# in tools/gone\nplace = 'tools/away'\n"
+        self.assertEqual(self.found("check_house.py", "tools/a.py", script), "tools/a.py:2: tools/gone is not there\n")
+
     def test_counting(self):
         results = ["OK", "OK", "FAIL", "TIMEOUT", "SKIP", "ERROR", "EXPECTEDFAIL"]
         log = "".join(json.dumps({"name": "x", "result": r}) + "\n" for r in results)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Parameters: which assignments are some, what the comments around them say, parameter sets, what
  * cannot be read, memory. (The program's side of it is in tests/cli/test_params.py; OpenSCAD's own
- * reading of the same comments in tests/openscad/customizer.)
+ * reading of the same comments in tests/data/openscad/customizer.)
  */
 #include <math.h>
 #include <setjmp.h>

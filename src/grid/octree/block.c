@@ -117,7 +117,7 @@ static void collect_signs(csg_block *block, const csg_lattice *lattice, const ui
             memcpy(&eight, s, sizeof eight);
             /* gathers the lowest bits of eight bytes (little endian) into the top byte */
             uint16_t row = (uint16_t)((eight * 0x0102040810204080u) >> 56 | (uint64_t)s[8] << 8);
-            int on = (inner[1] >> j & 1) & (inner[2] >> k & 1);
+            int on = inner[1] >> j & inner[2] >> k & 1;
             block->inside[k][j] = on ? row & inner[0] : 0;
         }
 }

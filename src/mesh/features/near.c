@@ -232,8 +232,8 @@ static bool enter_cells(const view *v, const int low[3], const int high[3], uint
                                         &room->place_capacity, room->place_count + 1,
                                         sizeof *room->places))
                     return false;
-                uint64_t cell = (uint64_t)((z * VIEW_CELLS + y) * VIEW_CELLS + x);
-                room->places[room->place_count++] = cell << 32 | triangle;
+                uint32_t cell = (uint32_t)((z * VIEW_CELLS + y) * VIEW_CELLS + x);
+                room->places[room->place_count++] = (uint64_t)cell << 32 | triangle;
             }
     return true;
 }

@@ -2,7 +2,7 @@
  * Files below two folders, paired by their names; see diff_folders.h. What counts is meshes and
  * scenes by their extensions; hidden files and READMEs do not. A name that one folder has alone
  * goes with one that differs in the extension only, if that one is alone too: goldens/mug.ply and
- * scenes/mug.txt.
+ * parts/mug.txt.
  */
 #include "diff/diff_folders.h"
 
