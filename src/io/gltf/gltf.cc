@@ -642,9 +642,8 @@ void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
     if (!loader.LoadASCIIFromString(&doc.model, &error, &warning, small.data(),
                                     static_cast<unsigned>(small.size()), ""))
         refuse(CSGM_ERR_FORMAT, "%.*s",
-               static_cast<int>(error.find_first_of("\n") == std::string::npos
-                                    ? error.size()
-                                    : error.find_first_of("\n")),
+               static_cast<int>(error.find('\n') == std::string::npos ? error.size()
+                                                                      : error.find('\n')),
                error.empty() ? "the document is not glTF" : error.c_str());
     walk(doc);
 }
