@@ -72,7 +72,7 @@ PATH = re.compile(r"(?<![\w/.$*{}<>~@-])((?:src|include|scenes|tests|tools|docs)
                   r"[a-z_]+(?:/[a-z_]+)*/[\w-]+\.(?:c|h|cc|def))(?![\w*{<(/])")
 PAGES = (".md", ".txt", ".def") + CODE + (".py", ".sh", "meson.build")
 TEXT_ONLY = (".md", ".txt")  # the whole file is read; of code, comments and doc strings only
-# These tell of what was, or are made to name what is not there.
+# These tell of what was, as docs/decisions do, or are made to name what is not there.
 WITHOUT_PATHS = {"CHANGELOG.md", "tests/bench/log.md", "tests/bench/results.md", "tests/house/test_checks.py"}
 
 
@@ -114,7 +114,7 @@ def check_paths(root, path):
 def pages(root):
     """What is read for paths: sources, tests, tools and documents, and the single files at the top."""
     yield from (path for path in files(root) if not path.startswith(os.path.join("tests", "data")) and
-                (path.endswith(PAGES) or is_script(os.path.join(root, path))))
+                not path.startswith(os.path.join("docs", "decisions")) and (path.endswith(PAGES) or is_script(os.path.join(root, path))))
     yield from (name for name in sorted(os.listdir(root)) if name.endswith(PAGES))
     scenes = os.path.join(root, "scenes")
     for place, _, names in os.walk(scenes):
