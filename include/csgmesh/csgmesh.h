@@ -93,6 +93,7 @@ typedef struct csgm_diag {
     const char *source_line; /* the whole line, not terminated, or NULL */
     uint32_t source_line_length;
     uint32_t end_line, end_column; /* just behind the last byte covered; 0 = not about text */
+    const char *library; /* the library whose file the place is in, "BOSL2"; NULL = no library's */
 } csgm_diag;
 
 /* Receives each finding as it is made. */
@@ -155,6 +156,8 @@ typedef struct csgm_context_options {
     csgm_diag_fn *on_diag;   /* called on the calling thread only; NULL = silent */
     csgm_text_fn *on_echo;   /* whole lines "ECHO: ...\n"; NULL = dropped */
     void *user;              /* passed to on_diag and on_echo */
+    bool library_warnings; /* tell each warning whose place is in a library, as those of the scene's
+                              own files; default false: one note says how many there are */
 } csgm_context_options;
 
 CSGM_API csgm_context_options csgm_context_options_default(void);

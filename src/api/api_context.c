@@ -92,6 +92,7 @@ static void fill_context(csgm_context *context, const csgm_context_options *opti
     context->diags.on_diag = options->on_diag;
     context->diags.user = options->user;
     context->diags.warnings_as_errors = options->warnings_as_errors;
+    context->diags.library_warnings = options->library_warnings;
     context->limits = options->limits;
     context->on_echo = options->on_echo;
     context->user = options->user;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Counting, capping and formatting of findings; see diagnostics.h.
+ * Counting, summing up and formatting of findings; see diagnostics.h.
  */
 #include "base/diagnostics.h"
 
@@ -39,25 +39,168 @@ const char *csg_diag_summary(csg_diag_code code)
     return row < sizeof rows / sizeof *rows ? rows[row].summary : NULL;
 }
 
+/* ---- what is shown ---------------------------------------------------------------------- */
+
+static csgm_severity severity_here(const csg_diag_sink *sink, csg_diag_code code)
+{
+    csgm_severity severity = csg_diag_severity(code);
+    return severity == CSGM_WARNING && sink->warnings_as_errors ? CSGM_ERROR : severity;
+}
+
+/* Is it about what a mesh or a file has not got, which nobody may miss? */
+static bool is_about_the_result(csg_diag_code code)
+{
+    return (code >= 400 && code < 600) || code == CSG_DIAG_LEFT_OUT || code == CSG_DIAG_PART_LOST;
+}
+
+static bool is_of_library(const csg_diag_sink *sink, const csgm_diag *diag)
+{
+    return diag->library && !sink->library_warnings;
+}
+
+/* The name of a finding's group, as far as a group keeps it. */
+static const char *group_name(const csg_diag_sink *sink, const csgm_diag *diag)
+{
+    enum { MOST = sizeof(csg_diag_group){0}.name - 1 };
+    const char *name = is_of_library(sink, diag) ? diag->library : diag->source_name;
+    size_t length = name ? strlen(name) : 0;
+    return length > MOST ? name + length - MOST : name ? name : "";
+}
+
+static csg_diag_code group_code(const csg_diag_sink *sink, csg_diag_code code,
+                                const csgm_diag *diag)
+{
+    return is_of_library(sink, diag) ? (csg_diag_code)0 : code;
+}
+
+/* The group's index, or group_count where there is none yet. */
+static uint32_t find_group(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
+{
+    const char *name = group_name(sink, diag);
+    csg_diag_code key = group_code(sink, code, diag);
+    uint32_t i = 0;
+    while (i < sink->group_count &&
+           !(sink->groups[i].code == key && strcmp(sink->groups[i].name, name) == 0))
+        i++;
+    return i;
+}
+
+bool csg_diag_is_shown(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
+{
+    csgm_severity severity = severity_here(sink, code);
+    if (severity == CSGM_NOTE)
+        return !sink->mute_notes;
+    if (severity == CSGM_ERROR)
+        return sink->errors < CSG_DIAG_ERRORS_MOST;
+    if (is_about_the_result(code))
+        return true;
+    if (is_of_library(sink, diag) || sink->warnings_shown >= CSG_DIAG_WARNINGS_MOST)
+        return false;
+    uint32_t group = find_group(sink, code, diag);
+    return group < sink->group_count ? sink->groups[group].shown < CSG_DIAG_WARNINGS_ALIKE
+                                     : group < CSG_DIAG_GROUPS_MOST;
+}
+
+static void count_warning(csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag,
+                          bool is_shown)
+{
+    sink->warnings++;
+    if (is_about_the_result(code))
+        return;
+    sink->warnings_shown += is_shown;
+    uint32_t i = find_group(sink, code, diag);
+    if (i == CSG_DIAG_GROUPS_MOST) {
+        sink->warnings_more++;
+        return;
+    }
+    if (i == sink->group_count) {
+        csg_diag_group *group = &sink->groups[sink->group_count++];
+        *group = (csg_diag_group){.code = group_code(sink, code, diag)};
+        snprintf(group->name, sizeof group->name, "%s", group_name(sink, diag));
+    }
+    *(is_shown ? &sink->groups[i].shown : &sink->groups[i].more) += 1;
+}
+
 void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag)
 {
     diag.code = (uint16_t)code;
-    diag.severity = csg_diag_severity(code);
-    if (diag.severity == CSGM_WARNING && sink->warnings_as_errors)
-        diag.severity = CSGM_ERROR;
-    if (diag.severity == CSGM_NOTE) {
-        if (sink->mute_notes)
-            return;
-    } else {
-        *(diag.severity == CSGM_ERROR ? &sink->errors : &sink->warnings) += 1;
-        sink->mute_notes = sink->errors + sink->warnings > CSG_DIAG_MOST;
+    diag.severity = severity_here(sink, code);
+    bool is_shown = csg_diag_is_shown(sink, code, &diag);
+    if (diag.severity == CSGM_ERROR) {
+        sink->errors++;
+        sink->errors_more += !is_shown;
+        sink->mute_notes = sink->errors > CSG_DIAG_ERRORS_IN_FULL;
         if (sink->mute_notes) {
-            sink->dropped++;
-            return;
+            diag.hint = diag.source_line = NULL;
+            diag.source_line_length = 0;
         }
+    } else if (diag.severity == CSGM_WARNING) {
+        count_warning(sink, code, &diag, is_shown);
+        sink->mute_notes = !is_shown;
     }
+    if (is_shown && sink->on_diag)
+        sink->on_diag(sink->user, &diag);
+}
+
+static void note(csg_diag_sink *sink, const char *message)
+{
+    csgm_diag diag = {.severity = CSGM_NOTE, .code = CSG_DIAG_NOTE, .message = message};
     if (sink->on_diag)
         sink->on_diag(sink->user, &diag);
+}
+
+/* "23 warnings inside libraries are not shown (BOSL2 21, MCAD 2); -Wlibraries shows them" */
+static void sum_up_libraries(csg_diag_sink *sink)
+{
+    char message[400];
+    uint32_t count = 0;
+    size_t length = 0;
+    for (uint32_t i = 0; i < sink->group_count; i++)
+        count += sink->groups[i].code == 0 ? sink->groups[i].more : 0;
+    if (count == 0)
+        return;
+    length +=
+        (size_t)snprintf(message, sizeof message, "%u %s inside libraries %s not shown (", count,
+                         count == 1 ? "warning" : "warnings", count == 1 ? "is" : "are");
+    const char *comma = "";
+    for (uint32_t i = 0; i < sink->group_count && length < 300; i++) {
+        const csg_diag_group *group = &sink->groups[i];
+        if (group->code != 0)
+            continue;
+        length += (size_t)snprintf(message + length, sizeof message - length, "%s%.40s %u", comma,
+                                   group->name, group->more);
+        comma = ", ";
+    }
+    snprintf(message + length, sizeof message - length, "); -Wlibraries shows %s",
+             count == 1 ? "it" : "them");
+    csg_diag_make_line(message);
+    note(sink, message);
+}
+
+void csg_diag_sum_up(csg_diag_sink *sink)
+{
+    char message[400];
+    for (uint32_t i = 0; i < sink->group_count; i++) {
+        const csg_diag_group *group = &sink->groups[i];
+        if (group->code == 0 || group->more == 0)
+            continue;
+        snprintf(message, sizeof message, "and %u more like W%04u%s%s: %s", group->more,
+                 (unsigned)group->code, group->name[0] ? " in " : "", group->name,
+                 csg_diag_summary(group->code));
+        csg_diag_make_line(message);
+        note(sink, message);
+    }
+    sum_up_libraries(sink);
+    if (sink->warnings_more) {
+        snprintf(message, sizeof message, "and %u more warnings of other kinds",
+                 sink->warnings_more);
+        note(sink, message);
+    }
+    if (sink->errors_more) {
+        snprintf(message, sizeof message, "and %u more errors", sink->errors_more);
+        note(sink, message);
+    }
+    sink->group_count = sink->errors_more = sink->warnings_more = 0;
 }
 
 void csg_diag_make_line(char *message)
@@ -84,17 +227,6 @@ void csg_diag_plain(csg_diag_sink *sink, csg_diag_code code, const char *name, c
     va_end(arguments);
     csg_diag_make_line(message);
     csg_diag_report(sink, code, (csgm_diag){.source_name = name, .message = message, .hint = hint});
-}
-
-void csg_diag_count_dropped(csg_diag_sink *sink, uint32_t count)
-{
-    char message[80];
-    snprintf(message, sizeof message, "%u more %s not shown", count,
-             count == 1 ? "finding is" : "findings are");
-    if (sink->on_diag)
-        sink->on_diag(
-            sink->user,
-            &(csgm_diag){.severity = CSGM_NOTE, .code = CSG_DIAG_NOTE, .message = message});
 }
 
 /* ---- formatting --------------------------------------------------------------------- */

@@ -67,7 +67,7 @@ static csgm_status open_source(csg_program *program, const csg_lang_input *input
     if (input->text)
         return csg_source_add(&program->sources, input->path ? input->path : "-", input->text,
                               input->text_length, source);
-    csg_source_request request = {input->path, csg_span_nowhere(), true};
+    csg_source_request request = {input->path, csg_span_nowhere(), true, NULL};
     csgm_status status = csg_source_read(&program->sources, &request, source);
     if (status != CSGM_OK)
         return status;
@@ -199,6 +199,7 @@ static void compile(compilation *c)
         (*c->out)->parse_s = parsed_s - begin_s;
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
+    csg_diag_sum_up(&c->context->diags);
     csg_program_reset(&program);
 }
 
@@ -376,10 +377,7 @@ static csgm_status compile_with(compilation *c)
     c->diag_user = context->diags.user;
     c->on_echo = context->on_echo;
     c->echo_user = context->user;
-    uint32_t dropped = context->diags.dropped;
     compile_on_thread(c);
-    if (context->diags.dropped > dropped)
-        csg_diag_count_dropped(&context->diags, context->diags.dropped - dropped);
     return c->status;
 }
 

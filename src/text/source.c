@@ -61,18 +61,30 @@ static void place_end(const csg_source *source, uint32_t offset, csgm_diag *diag
     }
 }
 
+/* A finding in the file of `where`, so far without its place and words. */
+static csgm_diag finding_in(const csg_sources *sources, csg_span where)
+{
+    const csg_source *source = where.source < sources->count ? &sources->items[where.source] : NULL;
+    return (csgm_diag){.source_name = source ? source->name : NULL,
+                       .library = source ? source->library : NULL};
+}
+
+bool csg_source_is_shown(const csg_sources *sources, csg_diag_code code, csg_span where)
+{
+    csgm_diag diag = finding_in(sources, where);
+    return csg_diag_is_shown(&sources->context->diags, code, &diag);
+}
+
 static void report_at(const csg_sources *sources, csg_diag_code code, csg_span where,
                       const char *hint, const char *message)
 {
-    csgm_diag diag = {.message = message, .hint = hint};
-    const csg_diag_sink *sink = &sources->context->diags;
-    /* What is not shown any more is only counted: finding its line could be slow. */
-    bool shown =
-        code == CSG_DIAG_NOTE ? !sink->mute_notes : sink->errors + sink->warnings < CSG_DIAG_MOST;
-    if (shown && where.source < sources->count) {
+    csgm_diag diag = finding_in(sources, where);
+    diag.message = message;
+    diag.hint = hint;
+    /* What is not shown is only counted: finding its line could be slow. */
+    if (where.source < sources->count && csg_diag_is_shown(&sources->context->diags, code, &diag)) {
         const csg_source *source = &sources->items[where.source];
         csg_source_place(source, where.offset, &diag.line, &diag.column);
-        diag.source_name = source->name;
         diag.length = where.length ? where.length : 1;
         uint32_t begin = (where.offset < source->length ? where.offset : source->length);
         begin -= diag.column - 1;
@@ -256,7 +268,8 @@ static int read_all(csg_memory *memory, int file, buffer *into)
 static csgm_status take(csg_sources *sources, const csg_source_request *request, const buffer *data,
                         const struct stat *info, uint32_t *out)
 {
-    csg_source source = {.from = request->from, .textual = request->textual};
+    csg_source source = {
+        .from = request->from, .textual = request->textual, .library = request->library};
     csgm_status status =
         check_content(sources, request->from, request->path, data->data, data->length);
     if (status != CSGM_OK)
@@ -315,6 +328,7 @@ csgm_status csg_source_read(csg_sources *sources, const csg_source_request *requ
         csg_source again = *known;
         again.from = request->from;
         again.textual = request->textual;
+        again.library = request->library;
         return add(sources, again, out);
     }
     /* A scene must not make the program wait for a pipe that nobody writes to. */

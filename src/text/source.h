@@ -16,6 +16,7 @@ typedef struct csg_source {
     uint64_t device, inode; /* identity of the file; both 0 for a text without one */
     csg_span from;          /* the include that asked for it; source UINT32_MAX = the main text */
     bool textual;           /* by include (its statements stand in the asking file), not by use */
+    const char *library;    /* the library that the file belongs to; NULL = the scene's own */
 } csg_source;
 
 typedef struct csg_sources {
@@ -30,6 +31,7 @@ typedef struct csg_source_request {
     const char *path;
     csg_span from; /* source UINT32_MAX: nobody's */
     bool textual;
+    const char *library; /* see csg_source; kept */
 } csg_source_request;
 
 void csg_sources_init(csg_sources *sources, csgm_context *context, csg_arena *arena);
@@ -52,6 +54,8 @@ void csg_source_place(const csg_source *source, uint32_t offset, uint32_t *line,
 void csg_source_report(const csg_sources *sources, csg_diag_code code, csg_span where,
                        const char *hint, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+/* Would a finding there be shown? For callers to whom its text is work. */
+bool csg_source_is_shown(const csg_sources *sources, csg_diag_code code, csg_span where);
 /* One note at a place, without a trace. */
 void csg_source_note(const csg_sources *sources, csg_span where, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

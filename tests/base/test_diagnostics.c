@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/context.h"
@@ -160,6 +161,7 @@ static void test_small_buffers(void **state)
 typedef struct heard {
     int count;
     csgm_diag last;
+    char message[600];
 } heard;
 
 static void hear(void *user, const csgm_diag *diag)
@@ -167,6 +169,7 @@ static void hear(void *user, const csgm_diag *diag)
     heard *h = user;
     h->count++;
     h->last = *diag;
+    snprintf(h->message, sizeof h->message, "%s", diag->message ? diag->message : "");
 }
 
 static void test_severity_comes_from_the_table(void **state)
@@ -205,27 +208,79 @@ static void test_numbers_are_unique(void **state)
     assert_null(name_of(999));
 }
 
-static void test_cap(void **state)
+static void test_errors_are_shown(void **state)
 {
     heard h = {0};
     csg_diag_sink sink = {.on_diag = hear, .user = &h};
-    for (int i = 0; i < CSG_DIAG_MOST + 5; i++) {
-        csg_diag_plain(&sink, CSG_DIAG_OUT_OF_MEMORY, NULL, NULL, "%d", i);
+    for (int i = 0; i < CSG_DIAG_ERRORS_MOST + 5; i++) {
+        csg_diag_plain(&sink, CSG_DIAG_OUT_OF_MEMORY, NULL, "a hint", "%d", i);
         csg_diag_plain(&sink, CSG_DIAG_NOTE, NULL, NULL, "a note");
     }
-    assert_int_equal(h.count, 2 * CSG_DIAG_MOST);
-    assert_int_equal(sink.errors, CSG_DIAG_MOST + 5);
-    assert_int_equal(sink.dropped, 5);
+    assert_int_equal(h.count, CSG_DIAG_ERRORS_MOST + CSG_DIAG_ERRORS_IN_FULL);
+    assert_int_equal(sink.errors, CSG_DIAG_ERRORS_MOST + 5);
+    csg_diag_sum_up(&sink);
+    assert_string_equal(h.message, "and 5 more errors");
 }
 
-static void test_dropped_findings_are_counted(void **state)
+static void test_warnings_alike_are_summed_up(void **state)
 {
     heard h = {0};
     csg_diag_sink sink = {.on_diag = hear, .user = &h};
-    csg_diag_count_dropped(&sink, 3);
+    for (int i = 0; i < 30; i++) {
+        csg_diag_plain(&sink, CSG_DIAG_UNKNOWN_VARIABLE, "a.txt", NULL, "%d", i);
+        csg_diag_plain(&sink, CSG_DIAG_UNKNOWN_VARIABLE, "b.txt", NULL, "%d", i);
+        csg_diag_plain(&sink, CSG_DIAG_BAD_RANGE, "a.txt", NULL, "%d", i);
+    }
+    assert_int_equal(h.count, 3 * CSG_DIAG_WARNINGS_ALIKE);
+    assert_int_equal(sink.warnings, 90);
+    csg_diag_plain(&sink, CSG_DIAG_UNKNOWN_MODULE, "a.txt", NULL, "an error is never lost");
+    assert_int_equal(h.count, 3 * CSG_DIAG_WARNINGS_ALIKE + 1);
+    for (int i = 0; i < 30; i++)
+        csg_diag_plain(&sink, CSG_DIAG_THIN_PART, "a.txt", NULL, "nor what a mesh lacks");
+    assert_int_equal(h.count, 3 * CSG_DIAG_WARNINGS_ALIKE + 31);
+    csg_diag_sum_up(&sink);
+    assert_int_equal(h.count, 3 * CSG_DIAG_WARNINGS_ALIKE + 34);
+    assert_non_null(strstr(h.message, "and 25 more like W0211 in a.txt: "));
+    csg_diag_sum_up(&sink); /* nothing is told twice */
+    assert_int_equal(h.count, 3 * CSG_DIAG_WARNINGS_ALIKE + 34);
+}
+
+static void test_many_kinds_and_files(void **state)
+{
+    heard h = {0};
+    csg_diag_sink sink = {.on_diag = hear, .user = &h};
+    char name[300];
+    for (int i = 0; i < 2 * CSG_DIAG_GROUPS_MOST; i++) {
+        snprintf(name, sizeof name, "%0200d.txt", i);
+        csg_diag_plain(&sink, CSG_DIAG_UNKNOWN_VARIABLE, name, NULL, "%d", i);
+    }
+    assert_int_equal(h.count, CSG_DIAG_WARNINGS_MOST);
+    assert_int_equal(sink.warnings, 2 * CSG_DIAG_GROUPS_MOST);
+    csg_diag_sum_up(&sink);
+    assert_int_equal(h.count,
+                     CSG_DIAG_WARNINGS_MOST + (CSG_DIAG_GROUPS_MOST - CSG_DIAG_WARNINGS_MOST) + 1);
+    snprintf(name, sizeof name, "and %d more warnings of other kinds", CSG_DIAG_GROUPS_MOST);
+    assert_string_equal(h.message, name);
+}
+
+static void test_libraries_are_one_line(void **state)
+{
+    heard h = {0};
+    csg_diag_sink sink = {.on_diag = hear, .user = &h};
+    for (int i = 0; i < 3; i++)
+        csg_diag_report(&sink, CSG_DIAG_UNKNOWN_VARIABLE,
+                        (csgm_diag){.source_name = "x.scad", .library = i ? "BOSL2" : "MCAD"});
+    assert_int_equal(h.count, 0);
+    csg_diag_report(&sink, CSG_DIAG_UNKNOWN_MODULE, (csgm_diag){.library = "MCAD"});
     assert_int_equal(h.count, 1);
-    assert_int_equal(h.last.severity, CSGM_NOTE);
-    csg_diag_count_dropped(&(csg_diag_sink){0}, 1); /* nobody listens */
+    csg_diag_sum_up(&sink);
+    assert_int_equal(h.count, 2);
+    assert_string_equal(h.message, "3 warnings inside libraries are not shown (MCAD 1, BOSL2 2); "
+                                   "-Wlibraries shows them");
+    sink.library_warnings = true;
+    csg_diag_report(&sink, CSG_DIAG_UNKNOWN_VARIABLE, (csgm_diag){.library = "MCAD"});
+    assert_int_equal(h.count, 3);
+    csg_diag_sum_up(&(csg_diag_sink){.warnings_more = 1, .errors_more = 1}); /* nobody listens */
 }
 
 static void test_out_of_memory(void **state)
@@ -252,8 +307,10 @@ int main(void)
         cmocka_unit_test(test_small_buffers),
         cmocka_unit_test(test_severity_comes_from_the_table),
         cmocka_unit_test(test_numbers_are_unique),
-        cmocka_unit_test(test_cap),
-        cmocka_unit_test(test_dropped_findings_are_counted),
+        cmocka_unit_test(test_errors_are_shown),
+        cmocka_unit_test(test_warnings_alike_are_summed_up),
+        cmocka_unit_test(test_many_kinds_and_files),
+        cmocka_unit_test(test_libraries_are_one_line),
         cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

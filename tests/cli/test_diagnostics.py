@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""How findings reach people and editors: places, traces, the cap, JSON lines, -Werror, colour."""
+"""How findings reach people and editors: places, traces, sums, JSON lines, -Werror, colour."""
 import json
+import os
 
 import cli
 
@@ -38,12 +39,35 @@ class Text(cli.CliTest):
         self.assert_status(result, 2)
         self.assertLess(len(result.stderr.splitlines()), 20, result.stderr)
 
-    def test_twenty_and_the_rest_is_counted(self):
+    def test_warnings_alike_are_summed_up(self):
         self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(30)) + "sphere(1);\n")
         result = self.run_in("check", "a.txt")
         self.assert_status(result, 0)
-        self.assertEqual(result.stderr.count("warning W0203"), 20)
-        self.assertTrue(result.stderr.endswith("note: 10 more findings are not shown\n"))
+        self.assertEqual(result.stderr.count("warning W0203"), 5)
+        self.assertTrue(result.stderr.endswith("note: and 25 more like W0203 in a.txt: no variable has this name\n"))
+
+    def test_an_error_behind_many_warnings_is_shown(self):
+        self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(50)) + "cube(nobody(1));\n")
+        result = self.run_in("check", "a.txt")
+        self.assert_status(result, 1)
+        self.assertIn("error E0202", result.stderr)
+
+    def test_parts_that_are_missing_are_told_behind_many_warnings(self):
+        self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(50)) +
+                   "rotate([70, 0, 315]) cube([10, 10, 0.01]); cube(2);\n")
+        result = self.run_in("a.txt", "-o", "a.stl")
+        self.assertIn("warning W0406", result.stderr)
+
+    def test_warnings_inside_libraries_are_one_line(self):
+        os.mkdir(os.path.join(self.folder, "libraries"))
+        self.write("libraries/rods.txt", "module rod() { cube(nobody); } a = b; c = d;\n")
+        self.write("a.txt", "use <rods.txt>\nrod(); cube(other);\n")
+        result = self.run_in("check", "-I", "libraries", "a.txt")
+        self.assertEqual(result.stderr.count("warning W"), 1)
+        self.assertIn("3 warnings inside libraries are not shown (rods.txt 3); -Wlibraries shows them", result.stderr)
+        result = self.run_in("check", "-I", "libraries", "-Wlibraries", "a.txt")
+        self.assertEqual(result.stderr.count("warning W"), 4)
+        self.assertNotIn("not shown", result.stderr)
 
     def test_werror(self):
         self.write("a.txt", "sphere(r = 1, colour = 2);\n")
@@ -108,9 +132,9 @@ class Json(cli.CliTest):
     def test_the_rest_is_counted(self):
         self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(30)) + "sphere(1);\n")
         found = self.findings("check", "a.txt", status=0)
-        self.assertEqual(len(found), 21)
-        self.assertEqual(found[20]["severity"], "note")
-        self.assertIn("10 more", found[20]["message"])
+        self.assertEqual(len(found), 6)
+        self.assertEqual(found[5]["severity"], "note")
+        self.assertIn("and 25 more like W0203", found[5]["message"])
 
     def test_bytes_that_are_no_text(self):
         self.write("a.txt", b"sphere(1); // \xff\xfe\n\x01\n")

@@ -31,7 +31,7 @@ static int print_tokens(csgm_context *context, const char *path)
     csg_sources sources;
     csg_token_array tokens = {0};
     uint32_t source;
-    csg_source_request request = {path, {UINT32_MAX, 0, 0}, true};
+    csg_source_request request = {.path = path, .from = {UINT32_MAX, 0, 0}, .textual = true};
     csg_arena_init(&arena, &context->memory);
     csg_sources_init(&sources, context, &arena);
     bool good = csg_source_read(&sources, &request, &source) == CSGM_OK &&

@@ -52,7 +52,9 @@ static void forget(bench *b)
     b->text_length = b->echo_length = 0;
     b->text[0] = b->echo[0] = '\0';
     b->code_count = 0;
-    b->context.diags.errors = b->context.diags.warnings = b->context.diags.dropped = 0;
+    b->context.diags.errors = b->context.diags.warnings = 0;
+    b->context.diags.errors_more = b->context.diags.warnings_more = 0;
+    b->context.diags.warnings_shown = b->context.diags.group_count = 0;
     b->context.diags.mute_notes = false;
 }
 

@@ -110,8 +110,8 @@ const char *csg_suggest(csg_eval *e, csg_diag_code code, csg_symbol name, csg_fr
     csg_member_kind kind = module     ? CSG_MEMBER_MODULE
                            : function ? CSG_MEMBER_FUNCTION
                                       : CSG_MEMBER_VARIABLE;
-    const csg_diag_sink *sink = &e->context->diags;
-    if (csg_eval_has_told(e, code, where) || sink->errors + sink->warnings >= CSG_DIAG_MOST)
+    if (csg_eval_has_told(e, code, where) ||
+        !csg_source_is_shown(&e->program->sources, code, where))
         return NULL; /* nobody will see it: the search is not for loops */
     const csg_symbol_entry *entry = &e->program->symbols.entries[name];
     const char *hint = hint_of_role(e, kind, name, frame);

@@ -342,7 +342,7 @@ static csgm_status apply_member(const reader *r, const char *file, const member 
 
 static csgm_status read_file(csg_program *program, const char *file, uint32_t *index)
 {
-    csg_source_request request = {file, csg_span_nowhere(), false};
+    csg_source_request request = {file, csg_span_nowhere(), false, NULL};
     csgm_status status = csg_source_read(&program->sources, &request, index);
     if (status != CSGM_OK)
         return status;

@@ -37,8 +37,19 @@ static const char *search_folders(csg_parser *parser, const char *name)
     return found;
 }
 
-/* `code` says that it was not found: a font is not missed as a source is. */
-static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code code)
+/* "BOSL2" of "BOSL2/std.scad", "std.scad" of itself. */
+static const char *library_of(csg_parser *parser, const char *name)
+{
+    const char *library = csg_arena_strndup(&parser->program->arena, name, strcspn(name, "/"));
+    if (!library)
+        csg_parser_no_memory(parser);
+    return library;
+}
+
+/* `code` says that it was not found: a font is not missed as a source is. *library: that of the
+ * file that asks, unless it was found in a folder of libraries. */
+static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code code,
+                             const char **library)
 {
     const char *name =
         csg_arena_strndup(&parser->program->arena, parser->text + path.offset + 1, path.length - 2);
@@ -50,8 +61,11 @@ static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code co
     const char *slash = strrchr(asking, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - asking) + 1 : 0;
     const char *found = try_path(parser, asking, folder, name);
-    if (!found && name[0] != '/')
+    *library = parser->program->sources.items[parser->source].library;
+    if (!found && name[0] != '/') {
         found = search_folders(parser, name);
+        *library = found ? library_of(parser, name) : NULL;
+    }
     if (!found && !parser->stop) {
         csg_source_report(&parser->program->sources, code, path,
                           strchr(name, '\\') ? "folders are separated by '/'"
@@ -89,15 +103,13 @@ static void add_dependency(csg_parser *parser, const char *path)
 }
 
 /* Reads the file that was found for a PATH token. */
-static bool read_found(csg_parser *parser, const char *path, csg_span where, bool textual,
-                       uint32_t *out)
+static bool read_found(csg_parser *parser, const csg_source_request *request, uint32_t *out)
 {
-    if (textual && includes_itself(parser, path)) {
-        report_cycle(parser, where, path);
+    if (request->textual && includes_itself(parser, request->path)) {
+        report_cycle(parser, request->from, request->path);
         return false;
     }
-    csg_source_request request = {path, where, textual};
-    csgm_status status = csg_source_read(&parser->program->sources, &request, out);
+    csgm_status status = csg_source_read(&parser->program->sources, request, out);
     if (status == CSGM_ERR_IO)
         parser->program->failed_io = true;
     if (status == CSGM_ERR_MEMORY || status == CSGM_ERR_LIMIT) {
@@ -105,7 +117,7 @@ static bool read_found(csg_parser *parser, const char *path, csg_span where, boo
         parser->status = status;
     }
     if (status == CSGM_OK)
-        add_dependency(parser, path);
+        add_dependency(parser, request->path);
     return status == CSGM_OK;
 }
 
@@ -148,8 +160,9 @@ void csg_load_include(csg_parser *parser, csg_scope *scope, csg_span path)
     uint32_t source;
     if (!csg_parser_enter(parser))
         return;
-    const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
-    if (found && read_found(parser, found, path, true, &source)) {
+    csg_source_request request = {.from = path, .textual = true};
+    request.path = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND, &request.library);
+    if (request.path && read_found(parser, &request, &source)) {
         csg_parser inner = derive(parser, source);
         parse_source(&inner, scope);
         take_outcome(parser, &inner);
@@ -187,11 +200,12 @@ static csg_program_file *find_used(const csg_parser *parser, const char *path)
 static csg_program_file *load_used(csg_parser *parser, csg_span path)
 {
     uint32_t source;
-    const char *found = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND);
-    if (!found)
+    csg_source_request request = {.from = path};
+    request.path = find_file(parser, path, CSG_DIAG_INCLUDE_NOT_FOUND, &request.library);
+    if (!request.path)
         return NULL;
-    csg_program_file *file = find_used(parser, found);
-    if (file || !read_found(parser, found, path, false, &source))
+    csg_program_file *file = find_used(parser, request.path);
+    if (file || !read_found(parser, &request, &source))
         return file;
     file = add_file(parser, source);
     if (!file)
@@ -215,7 +229,8 @@ static bool is_font(const csg_parser *parser, csg_span path)
 static void load_font(csg_parser *parser, csg_span where)
 {
     csg_program *program = parser->program;
-    const char *path = find_file(parser, where, CSG_DIAG_FONT_NOT_FOUND);
+    const char *library;
+    const char *path = find_file(parser, where, CSG_DIAG_FONT_NOT_FOUND, &library);
     if (!path)
         return;
     add_dependency(parser, path);

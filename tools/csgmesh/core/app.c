@@ -64,6 +64,7 @@ int cli_app_open(cli_app *app)
     options.threads = (uint32_t)app->options.threads;
     options.limits = limits_from(&app->options);
     options.warnings_as_errors = app->options.warnings == 1;
+    options.library_warnings = app->options.warnings == 2;
     options.on_diag = cli_console_diag;
     options.on_echo = cli_console_echo;
     options.user = &app->console;
