@@ -80,6 +80,26 @@ static void cleaning_follows_the_rule(void **state)
     }
 }
 
+/* Many corners at the same heights, holes that touch. */
+static void rectangles_on_a_grid(void **state)
+{
+    for (int round = 0; round < 2000; round++) {
+        forget();
+        for (int i = 12 + round % 50; i > 0; i--) {
+            double x = csg_random_below(&dice, 14), y = csg_random_below(&dice, 14);
+            double length = 1 + csg_random_below(&dice, 6), width = 1 + csg_random_below(&dice, 2);
+            bool high = csg_random_below(&dice, 2);
+            add_rectangle(&a, x, y, x + (high ? width : length), y + (high ? length : width));
+        }
+        uint32_t *indices;
+        size_t count;
+        assert_int_equal(csg_polygons_clean(&a, CSG_FILL_NONZERO, &out), CSGM_OK);
+        assert_int_equal(csg_polygons_triangulate(&out, &memory, &indices, &count), CSGM_OK);
+        check_triangles(&out, indices, count, 1e-6);
+        csg_memory_release(&memory, indices, count * sizeof *indices);
+    }
+}
+
 static bool combined(csg_polygons_op op, bool in_a, bool in_b)
 {
     return op == CSG_POLYGONS_UNION          ? in_a || in_b
@@ -422,6 +442,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
         TEST(cleaning_follows_the_rule),
+        TEST(rectangles_on_a_grid),
         TEST(operators_are_what_they_say),
         TEST(plain_numbers_stay),
         TEST(nothing_is_neutral),

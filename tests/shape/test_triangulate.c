@@ -102,6 +102,17 @@ static void straight_corners_stay(void **state)
     assert_int_equal(triangulate(0), 15);
 }
 
+/* The ray to the left from the hole's leftmost corner meets an edge at its end; on the same line to
+ * the right of that corner there are others, nearer, but behind the hole. */
+static void a_hole_between_corners_of_its_height(void **state)
+{
+    ADD_LOOP({0, 7}, {2, 7}, {2, 6}, {1, 6}, {1, 3}, {0, 3}, {0, 0}, {5, 0}, {5, 1}, {8, 1}, {8, 3},
+             {13, 3}, {13, 4}, {8, 4}, {8, 7}, {10, 7}, {10, 9}, {5, 9}, {5, 11}, {4, 11}, {4, 7},
+             {3, 7}, {3, 9}, {0, 9});
+    ADD_LOOP({6, 2}, {6, 3}, {5, 3}, {5, 4}, {7, 4}, {7, 2});
+    assert_int_equal(triangulate(0), 30);
+}
+
 static void loops_that_touch(void **state)
 {
     /* a hole whose leftmost corner is a corner of the ring, one that touches an edge, one that
@@ -233,6 +244,7 @@ int main(void)
         TEST(nothing_has_no_triangles),
         TEST(holes_and_islands),
         TEST(straight_corners_stay),
+        TEST(a_hole_between_corners_of_its_height),
         TEST(loops_that_touch),
         TEST(boards_of_stars),
         TEST(sieves),

@@ -51,10 +51,11 @@ typedef struct view {       /* from a hole's corner */
     int side;               /* 1: the triangle goes up to p, -1: down to q */
 } view;
 
+/* Where the edge ends on the ray, the triangle is a stretch of the ray: not what lies behind it. */
 static bool is_in_triangle(const view *v, csg_vec2 end, csg_vec2 r)
 {
     double up = v->side * (r.y - v->from.y);
-    return up >= 0 && csg_orient_plane(v->p, v->q, r) >= 0 &&
+    return up >= 0 && r.x <= v->from.x && csg_orient_plane(v->p, v->q, r) >= 0 &&
            v->side * csg_orient_plane(v->from, end, r) >= 0;
 }
 
