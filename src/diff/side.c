@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/places.h"
 #include "base/pool.h"
 #include "mesh/inspect.h"
 
@@ -78,31 +79,18 @@ static csgm_status check_view(csgm_context *context, const csgm_mesh_view *view)
 typedef struct welding {
     csg_vec3 *points;
     size_t count;
-    uint32_t *slots; /* point + 1; 0 = free */
-    size_t mask;
+    csg_table table;
 } welding;
-
-static uint64_t hash_of(csg_vec3 p)
-{
-    uint64_t bits[3], h = 0;
-    memcpy(bits, &p, sizeof bits);
-    for (int k = 0; k < 3; k++) {
-        h = (h ^ bits[k]) * 0x9E3779B97F4A7C15u;
-        h ^= h >> 32;
-    }
-    return h;
-}
 
 static uint32_t weld(welding *w, csg_vec3 p)
 {
-    p = csg_vec3_add(p, csg_vec3_make(0, 0, 0)); /* -0 becomes 0 */
-    size_t slot = hash_of(p) & w->mask;
-    for (; w->slots[slot]; slot = (slot + 1) & w->mask)
-        if (memcmp(&w->points[w->slots[slot] - 1], &p, sizeof p) == 0)
-            return w->slots[slot] - 1;
-    w->points[w->count++] = p;
-    w->slots[slot] = (uint32_t)w->count;
-    return (uint32_t)w->count - 1;
+    size_t slot;
+    uint32_t found = csg_place_find(&w->table, w->points, p, &slot);
+    if (found != CSG_TABLE_NONE)
+        return found;
+    w->points[w->count] = csg_vec3_add(p, csg_vec3_make(0, 0, 0)); /* -0 becomes 0 */
+    csg_table_put(&w->table, slot, (uint32_t)w->count);
+    return (uint32_t)w->count++;
 }
 
 static bool weld_side(welding *w, csg_diff_side *side)
@@ -124,20 +112,13 @@ static bool weld_side(welding *w, csg_diff_side *side)
 
 static bool weld_pair(csg_diff_pair *pair)
 {
-    csg_memory *memory = &pair->context->memory;
     size_t most = (size_t)(pair->sides[0].view->vertex_count + pair->sides[1].view->vertex_count);
-    size_t room = 16;
-    while (room < most + most / 2)
-        room *= 2;
-    welding w = {.points = csg_arena_alloc(&pair->arena, most * sizeof *w.points),
-                 .slots = csg_memory_alloc(memory, room * sizeof *w.slots),
-                 .mask = room - 1};
-    bool ok = w.points && w.slots;
-    if (w.slots)
-        memset(w.slots, 0, room * sizeof *w.slots);
+    welding w = {.points = csg_arena_alloc(&pair->arena, most * sizeof *w.points)};
+    csg_table_init(&w.table, &pair->context->memory);
+    bool ok = w.points && csg_table_reserve(&w.table, most + 1, NULL, NULL);
     for (int i = 0; i < 2 && ok; i++)
         ok = weld_side(&w, &pair->sides[i]);
-    csg_memory_release(memory, w.slots, room * sizeof *w.slots);
+    csg_table_release(&w.table);
     pair->points = w.points;
     pair->point_count = w.count;
     return ok;
@@ -306,7 +287,7 @@ static bool is_closed(const csg_diff_side *side)
         for (int k = 0; k < 3; k++) {
             uint64_t a = side->chain.corners[t][k], b = side->chain.corners[t][(k + 1) % 3];
             csg_vec3 key = {(double)(a < b ? a : b), (double)(a < b ? b : a), 1};
-            sum += a < b ? hash_of(key) : a > b ? 0 - hash_of(key) : 0;
+            sum += a < b ? csg_place_hash(key) : a > b ? 0 - csg_place_hash(key) : 0;
         }
     return sum == 0 && side->chain.count > 0;
 }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/places.h"
+
 static bool same_place(const csgm_mesh_view *mesh, uint64_t a, uint64_t b)
 {
     const float *p = mesh->positions + 3 * a, *q = mesh->positions + 3 * b;
@@ -23,40 +25,31 @@ static uint64_t map_runs(const csgm_mesh_view *mesh, uint32_t *to)
     return places;
 }
 
-static size_t home_slot(const float *p, size_t slot_count)
+static csg_vec3 place_of(const csgm_mesh_view *mesh, uint64_t i)
 {
-    uint64_t key = 0;
-    for (int k = 0; k < 3; k++) {
-        float c = p[k] + 0.0f; /* no -0 */
-        uint32_t bits;
-        memcpy(&bits, &c, sizeof bits);
-        key = (key ^ bits) * 0x9E3779B97F4A7C15u; /* Fibonacci hashing */
-        key ^= key >> 29;
-    }
-    return (size_t)key & (slot_count - 1);
+    return csg_vec3_from_floats(mesh->positions + 3 * i);
 }
 
 static uint64_t map_all(csg_memory *memory, const csgm_mesh_view *mesh, uint32_t *to, bool *failed)
 {
-    size_t slot_count = 16;
-    while (slot_count < 2 * mesh->vertex_count)
-        slot_count *= 2;
-    uint32_t *slots = csg_memory_alloc(memory, slot_count * sizeof *slots);
-    *failed = !slots;
-    if (!slots)
+    csg_table table;
+    csg_table_init(&table, memory);
+    *failed = !csg_table_reserve(&table, (size_t)mesh->vertex_count + 1, NULL, NULL);
+    if (*failed)
         return 0;
-    memset(slots, 0, slot_count * sizeof *slots);
     uint64_t places = 0;
     for (uint64_t i = 0; i < mesh->vertex_count; i++) {
-        size_t slot = home_slot(mesh->positions + 3 * i, slot_count);
-        while (slots[slot] && !same_place(mesh, i, slots[slot] - 1))
-            slot = (slot + 1) & (slot_count - 1);
-        places += !slots[slot];
-        if (!slots[slot])
-            slots[slot] = (uint32_t)i + 1;
-        to[i] = slots[slot] - 1;
+        size_t slot;
+        to[i] = csg_table_first(&table, csg_place_hash(place_of(mesh, i)), &slot);
+        while (to[i] != CSG_TABLE_NONE && !same_place(mesh, i, to[i]))
+            to[i] = csg_table_next(&table, &slot);
+        if (to[i] != CSG_TABLE_NONE)
+            continue;
+        to[i] = (uint32_t)i;
+        csg_table_put(&table, slot, to[i]);
+        places++;
     }
-    csg_memory_release(memory, slots, slot_count * sizeof *slots);
+    csg_table_release(&table);
     return places;
 }
 

@@ -5,7 +5,7 @@
  */
 #include <math.h>
 
-#include "base/table.h"
+#include "base/places.h"
 #include "io/text/scan.h"
 
 /* ---- welding ---------------------------------------------------------------------- */
@@ -15,37 +15,23 @@ typedef struct weld {
     csg_table table; /* of its vertices */
 } weld;
 
-static uint64_t hash_position(const double *p)
+/* Positions of the builder as points. */
+static const csg_vec3 *points_of(const csg_mesh_builder *builder)
 {
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; k++) {
-        double canonical = p[k] + 0.0; /* -0 and 0 are one place */
-        uint64_t bits;
-        memcpy(&bits, &canonical, sizeof bits);
-        hash = csg_hash_word(hash, bits);
-    }
-    return hash;
-}
-
-static uint64_t hash_vertex(const void *positions, uint32_t vertex)
-{
-    return hash_position((const double *)positions + 3 * (size_t)vertex);
+    return (const csg_vec3 *)builder->positions;
 }
 
 static bool find_or_add(weld *w, const double *p, uint32_t *vertex)
 {
     csg_mesh_builder *b = w->builder;
-    if (!csg_table_reserve(&w->table, b->vertex_count + 1, hash_vertex, b->positions)) {
+    if (!csg_table_reserve(&w->table, b->vertex_count + 1, csg_place_hash_of, b->positions)) {
         b->failed = true;
         return false;
     }
     size_t slot;
-    for (*vertex = csg_table_first(&w->table, hash_position(p), &slot); *vertex != CSG_TABLE_NONE;
-         *vertex = csg_table_next(&w->table, &slot)) {
-        const double *q = b->positions + 3 * (size_t)*vertex;
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
-            return true;
-    }
+    *vertex = csg_place_find(&w->table, points_of(b), csg_vec3_make(p[0], p[1], p[2]), &slot);
+    if (*vertex != CSG_TABLE_NONE)
+        return true;
     *vertex = (uint32_t)b->vertex_count;
     csg_table_put(&w->table, slot, *vertex);
     return csg_builder_vertex(b, p, NULL, NULL);

@@ -1,49 +1,19 @@
 /* SPDX-License-Identifier: MIT
  * Points at one place become one point, and triangles over the same three points one triangle:
- * both by hashing with open addressing. A second weld joins rims that miss each other by rounding
+ * both by a table of hashes. A second weld joins rims that miss each other by rounding
  * (a seam computed as sin(2 pi) on one side and 0 on the other): only points of open edges, within
  * 2^-20 of the frame.
  */
 #include <string.h>
 
+#include "base/places.h"
 #include "shape/polyhedra/repair.h"
 
-/* A table of indices into something else; UINT32_MAX is free. At most half full. */
-typedef struct table {
-    uint32_t *slots;
-    size_t mask;
-} table;
-
-static bool table_make(csg_arena *scratch, size_t entries, table *out)
+/* A table with room for `entries`, at least 1. */
+static bool make_table(csg_table *table, csg_memory *memory, size_t entries)
 {
-    size_t size = 16;
-    while (size < 2 * entries)
-        size *= 2;
-    out->mask = size - 1;
-    out->slots = csg_arena_alloc(scratch, size * sizeof *out->slots);
-    if (out->slots)
-        memset(out->slots, 0xff, size * sizeof *out->slots);
-    return out->slots;
-}
-
-static uint64_t mix(uint64_t a, uint64_t b, uint64_t c)
-{
-    uint64_t h = a * 0x9E3779B97F4A7C15u ^ (b + 0x7F4A7C15u) * 0xC2B2AE3D27D4EB4Fu ^
-                 (c + 0x165667B1u) * 0xD6E8FEB86659FD93u;
-    h ^= h >> 32;
-    h *= 0xD6E8FEB86659FD93u;
-    return h ^ h >> 29;
-}
-
-static uint64_t hash_point(csg_vec3 p)
-{
-    return mix((uint64_t)csg_triangle_frame_steps(p.x), (uint64_t)csg_triangle_frame_steps(p.y),
-               (uint64_t)csg_triangle_frame_steps(p.z));
-}
-
-static bool equal_points(csg_vec3 a, csg_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
+    csg_table_init(table, memory);
+    return csg_table_reserve(table, entries + 1, NULL, NULL);
 }
 
 /* ---- points -----------------------------------------------------------------------------------
@@ -57,31 +27,32 @@ static csg_vec3 on_lattice(const csg_triangle_frame *frame, csg_vec3 p)
 }
 
 /* The number of this point; a new one when it was not there. */
-static uint32_t find_point(table *places, csg_triangles *out, csg_vec3 p)
+static uint32_t find_point(csg_table *places, csg_triangles *out, csg_vec3 p)
 {
-    size_t at = hash_point(p) & places->mask;
-    for (; places->slots[at] != UINT32_MAX; at = (at + 1) & places->mask)
-        if (equal_points(out->points[places->slots[at]], p))
-            return places->slots[at];
-    places->slots[at] = (uint32_t)out->point_count;
-    out->points[out->point_count++] = p;
-    return places->slots[at];
+    size_t slot;
+    uint32_t found = csg_place_find(places, out->points, p, &slot);
+    if (found != CSG_TABLE_NONE)
+        return found;
+    csg_table_put(places, slot, (uint32_t)out->point_count);
+    out->points[out->point_count] = p;
+    return (uint32_t)out->point_count++;
 }
 
 bool csg_repair_weld(csg_arena *scratch, const csg_triangle_frame *frame, const csg_triangles *in,
                      csg_triangles *out, csg_repairs *repairs)
 {
-    table places;
+    csg_table places;
     uint32_t *number = csg_arena_alloc(scratch, in->point_count * sizeof *number);
     void *points = NULL, *corners = NULL;
-    if (!number || !table_make(scratch, in->point_count, &places) ||
-        !csg_memory_reserve(out->memory, &points, &out->point_capacity, in->point_count,
-                            sizeof *out->points))
+    if (!number || !csg_memory_reserve(out->memory, &points, &out->point_capacity, in->point_count,
+                                       sizeof *out->points))
         return false;
     out->points = points;
     if (!csg_memory_reserve(out->memory, &corners, &out->capacity, in->count, sizeof *out->corners))
         return false;
     out->corners = corners;
+    if (!make_table(&places, scratch->memory, in->point_count))
+        return false;
     memset(number, 0xff, in->point_count * sizeof *number);
     for (size_t t = 0; t < in->count; t++) {
         for (int k = 0; k < 3; k++) {
@@ -95,6 +66,7 @@ bool csg_repair_weld(csg_arena *scratch, const csg_triangle_frame *frame, const 
         }
     }
     out->count = in->count;
+    csg_table_release(&places);
     return true;
 }
 
@@ -105,7 +77,7 @@ static const double RIM_REACH = 0x1p-20;
 
 typedef struct rims {
     const csg_triangles *triangles;
-    table cells;
+    csg_table cells;       /* the first of each cell, as an index into kept */
     uint32_t *kept, *next; /* points that stay, and the next in the same cell */
     size_t count;
 } rims;
@@ -115,25 +87,20 @@ static csg_vec3 cell_of(csg_vec3 p)
     return csg_vec3_make(floor(p.x / RIM_REACH), floor(p.y / RIM_REACH), floor(p.z / RIM_REACH));
 }
 
-static uint64_t hash_cell(csg_vec3 cell)
+/* The first kept point of this cell; NONE: there is none, and *slot is where it would be. */
+static uint32_t first_in_cell(const rims *r, csg_vec3 cell, size_t *slot)
 {
-    return mix((uint64_t)(int64_t)cell.x, (uint64_t)(int64_t)cell.y, (uint64_t)(int64_t)cell.z);
-}
-
-/* The slot of this cell, or the free one where it would be. */
-static size_t cell_slot(const rims *r, csg_vec3 cell)
-{
-    size_t at = hash_cell(cell) & r->cells.mask;
-    while (r->cells.slots[at] != UINT32_MAX &&
-           !equal_points(cell_of(r->triangles->points[r->kept[r->cells.slots[at]]]), cell))
-        at = (at + 1) & r->cells.mask;
-    return at;
+    uint32_t i = csg_table_first(&r->cells, csg_place_hash(cell), slot);
+    while (i != CSG_TABLE_NONE &&
+           !csg_place_is_same(cell_of(r->triangles->points[r->kept[i]]), cell))
+        i = csg_table_next(&r->cells, slot);
+    return i;
 }
 
 static uint32_t near_in_cell(const rims *r, csg_vec3 cell, csg_vec3 p)
 {
-    uint32_t i = r->cells.slots[cell_slot(r, cell)];
-    for (; i != UINT32_MAX; i = r->next[i]) {
+    size_t slot;
+    for (uint32_t i = first_in_cell(r, cell, &slot); i != CSG_TABLE_NONE; i = r->next[i]) {
         csg_vec3 away = csg_vec3_sub(r->triangles->points[r->kept[i]], p);
         if (csg_vec3_dot(away, away) <= RIM_REACH * RIM_REACH)
             return r->kept[i];
@@ -143,7 +110,7 @@ static uint32_t near_in_cell(const rims *r, csg_vec3 cell, csg_vec3 p)
 
 /* A point that stays and is near, or this one, which then stays. Those that stay are further apart
  * than the reach, so a cell has few of them. */
-static uint32_t settle(rims *r, uint32_t point)
+static uint32_t keep_or_find(rims *r, uint32_t point)
 {
     csg_vec3 p = r->triangles->points[point], home = cell_of(p);
     for (int i = 0; i < 27; i++) {
@@ -152,10 +119,10 @@ static uint32_t settle(rims *r, uint32_t point)
         if (found != UINT32_MAX)
             return found;
     }
-    size_t slot = cell_slot(r, home);
+    size_t slot;
     r->kept[r->count] = point;
-    r->next[r->count] = r->cells.slots[slot];
-    r->cells.slots[slot] = (uint32_t)r->count++;
+    r->next[r->count] = first_in_cell(r, home, &slot);
+    csg_table_put(&r->cells, slot, (uint32_t)r->count++);
     return point;
 }
 
@@ -171,14 +138,14 @@ bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
               .kept = csg_arena_alloc(scratch, 2 * open * sizeof *r.kept),
               .next = csg_arena_alloc(scratch, 2 * open * sizeof *r.next)};
     uint32_t *number = csg_arena_alloc(scratch, triangles->point_count * sizeof *number);
-    if (!r.kept || !r.next || !number || !table_make(scratch, 2 * open, &r.cells))
+    if (!r.kept || !r.next || !number || !make_table(&r.cells, scratch->memory, 2 * open))
         return false;
     memset(number, 0xff, triangles->point_count * sizeof *number);
     for (size_t i = 0; i < edges->count; i++) {
         uint32_t ends[2] = {edges->edges[i].low, edges->edges[i].high};
         for (int k = 0; k < 2 && edges->edges[i].count == 1; k++) {
             if (number[ends[k]] == UINT32_MAX) {
-                number[ends[k]] = settle(&r, ends[k]);
+                number[ends[k]] = keep_or_find(&r, ends[k]);
                 *welded += number[ends[k]] != ends[k];
             }
         }
@@ -187,6 +154,7 @@ bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
         for (int k = 0; k < 3; k++)
             if (number[triangles->corners[t][k]] != UINT32_MAX)
                 triangles->corners[t][k] = number[triangles->corners[t][k]];
+    csg_table_release(&r.cells);
     return true;
 }
 
@@ -213,7 +181,7 @@ static bool sort_corners(const uint32_t in[3], uint32_t out[3])
     return b < c;
 }
 
-static size_t gather(const csg_triangles *triangles, table *places, alike *groups,
+static size_t gather(const csg_triangles *triangles, csg_table *places, alike *groups,
                      size_t *degenerate)
 {
     size_t count = 0;
@@ -224,18 +192,20 @@ static size_t gather(const csg_triangles *triangles, table *places, alike *group
             ++*degenerate;
             continue;
         }
-        size_t at = mix(key[0], key[1], key[2]) & places->mask;
-        while (places->slots[at] != UINT32_MAX &&
-               memcmp(groups[places->slots[at]].corners, key, sizeof key) != 0)
-            at = (at + 1) & places->mask;
-        if (places->slots[at] == UINT32_MAX) {
+        size_t slot;
+        uint64_t hash = csg_hash_word(csg_hash_word(csg_hash_word(0, key[0]), key[1]), key[2]);
+        uint32_t group = csg_table_first(places, hash, &slot);
+        while (group != CSG_TABLE_NONE && memcmp(groups[group].corners, key, sizeof key) != 0)
+            group = csg_table_next(places, &slot);
+        if (group == CSG_TABLE_NONE) {
             const uint32_t *first = triangles->corners[t];
-            groups[count] =
+            group = (uint32_t)count++;
+            groups[group] =
                 (alike){{key[0], key[1], key[2]}, {first[0], first[1], first[2]}, rising, 0, 0};
-            places->slots[at] = (uint32_t)count++;
+            csg_table_put(places, slot, group);
         }
-        groups[places->slots[at]].net += rising ? 1 : -1;
-        groups[places->slots[at]].count++;
+        groups[group].net += rising ? 1 : -1;
+        groups[group].count++;
     }
     return count;
 }
@@ -253,12 +223,13 @@ static uint32_t copies_of(const alike *group, bool only_cancel, bool double_side
 bool csg_repair_drop(csg_arena *scratch, csg_triangles *triangles, bool only_cancel,
                      csg_repairs *repairs)
 {
-    table places;
+    csg_table places;
     csg_arena_mark mark = csg_arena_get_mark(scratch);
     alike *groups = csg_arena_alloc(scratch, triangles->count * sizeof *groups);
-    if (!groups || !table_make(scratch, triangles->count, &places))
+    if (!groups || !make_table(&places, scratch->memory, triangles->count))
         return false;
     size_t count = gather(triangles, &places, groups, &repairs->degenerate), pairs = 0, kept = 0;
+    csg_table_release(&places);
     for (size_t i = 0; i < count; i++)
         pairs += groups[i].net == 0;
     for (size_t i = 0; i < count; i++) {
