@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Offsets of flat figures. Where the field of a figure is
- * no exact distance on the side that an offset needs (inside a union, outside an intersection, or
- * an offset of an offset), the figure is made polygons first.
+ * Offsets of flat figures. Where the field of a figure is no exact distance on the side that an
+ * offset needs (inside a union, outside an intersection, or an offset of an offset), the figure is
+ * made polygons first.
  */
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A ball swept along a polyline, Bezier curves or a Catmull-Rom curve, its radius
- * changing with the parameter. A polyline is a union of capsules, a curve one of the scene's tubes
+ * A ball swept along a polyline, Bezier curves or a Catmull-Rom curve, its radius changing with the
+ * parameter. A polyline is a union of capsules, a curve one of the scene's tubes
  * along Bezier curves (scene/primitives/curve.h), both exactly.
  */
 #include <math.h>

@@ -29,7 +29,7 @@ bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span wher
 {
     if (left.kind != right.kind || !csg_eval_charge(e, 1, where))
         return false;
-    switch (left.kind) {
+    switch ((csg_value_kind)left.kind) {
     case CSG_VALUE_NUMBER:
         return left.as.number == right.as.number;
     case CSG_VALUE_BOOLEAN:
@@ -50,9 +50,13 @@ bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span wher
         return equal_ranges(left.as.range, right.as.range);
     case CSG_VALUE_FUNCTION:
         return left.as.function == right.as.function;
-    default:
-        return true;
+    case CSG_VALUE_UNDEF:
+    case CSG_VALUE_TERM:
+    case CSG_VALUE_UNSET:
+    case CSG_VALUE_FRAME:
+        break;
     }
+    return true;
 }
 
 /* ---- order ------------------------------------------------------------------------------------
@@ -99,7 +103,7 @@ static order order_of(csg_eval *e, csg_value left, csg_value right, csg_span whe
 {
     if (left.kind != right.kind || !csg_eval_charge(e, 1, where))
         return INCOMPARABLE;
-    switch (left.kind) {
+    switch ((csg_value_kind)left.kind) {
     case CSG_VALUE_NUMBER:
         return order_numbers(left.as.number, right.as.number);
     case CSG_VALUE_BOOLEAN:
@@ -110,9 +114,17 @@ static order order_of(csg_eval *e, csg_value left, csg_value right, csg_span whe
         return order_vectors(e, left.as.vector, right.as.vector, where);
     case CSG_VALUE_RANGE:
         return order_ranges(left.as.range, right.as.range);
-    default:
-        return INCOMPARABLE;
+    case CSG_VALUE_UNDEF:
+    case CSG_VALUE_BLEND:
+    case CSG_VALUE_TERM:
+    case CSG_VALUE_STEP:
+    case CSG_VALUE_UNSET:
+    case CSG_VALUE_FUNCTION:
+    case CSG_VALUE_RULE:
+    case CSG_VALUE_FRAME:
+        break;
     }
+    return INCOMPARABLE;
 }
 
 bool csg_value_is_less(csg_eval *e, csg_value left, csg_value right, csg_span where)

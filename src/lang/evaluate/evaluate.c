@@ -333,7 +333,7 @@ static csg_value evaluate_index(csg_eval *e, const csg_expression *x, csg_frame 
 static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
     csg_value made;
-    switch (x->kind) {
+    switch ((csg_expression_kind)x->kind) {
     case CSG_EXPRESSION_NUMBER:
         return csg_value_number(x->as.number);
     case CSG_EXPRESSION_BOOLEAN:
@@ -361,9 +361,19 @@ static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame 
         if (made.kind == CSG_VALUE_UNDEF)
             csg_eval_no_memory(e);
         return made;
-    default:
-        return csg_value_undef();
+    case CSG_EXPRESSION_UNDEF:
+    case CSG_EXPRESSION_CONDITIONAL:
+    case CSG_EXPRESSION_CALL:
+    case CSG_EXPRESSION_LET:
+    case CSG_EXPRESSION_ASSERT:
+    case CSG_EXPRESSION_ECHO:
+    case CSG_EXPRESSION_FOR:
+    case CSG_EXPRESSION_FOR_LOOP:
+    case CSG_EXPRESSION_IF:
+    case CSG_EXPRESSION_EACH:
+        break;
     }
+    return csg_value_undef();
 }
 
 /* ---- the loop
@@ -454,7 +464,7 @@ csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
     size_t dynamics = e->dynamic_count, trace = e->trace_count;
     bool done = false;
     while (!done && at.x && csg_eval_charge(e, 1, at.x->where)) {
-        switch (at.x->kind) {
+        switch ((csg_expression_kind)at.x->kind) {
         case CSG_EXPRESSION_CONDITIONAL:
             choose(e, &at);
             break;
@@ -466,7 +476,22 @@ csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
         case CSG_EXPRESSION_CALL:
             done = evaluate_call(e, &at, &result);
             break;
-        default:
+        case CSG_EXPRESSION_NUMBER:
+        case CSG_EXPRESSION_BOOLEAN:
+        case CSG_EXPRESSION_UNDEF:
+        case CSG_EXPRESSION_STRING:
+        case CSG_EXPRESSION_NAME:
+        case CSG_EXPRESSION_UNARY:
+        case CSG_EXPRESSION_BINARY:
+        case CSG_EXPRESSION_INDEX:
+        case CSG_EXPRESSION_MEMBER:
+        case CSG_EXPRESSION_VECTOR:
+        case CSG_EXPRESSION_RANGE:
+        case CSG_EXPRESSION_FUNCTION:
+        case CSG_EXPRESSION_FOR:
+        case CSG_EXPRESSION_FOR_LOOP:
+        case CSG_EXPRESSION_IF:
+        case CSG_EXPRESSION_EACH:
             result = evaluate_plain(e, at.x, at.frame);
             done = true;
             break;

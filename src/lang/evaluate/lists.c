@@ -69,7 +69,7 @@ static void begin_range(csg_eval *e, csg_iteration *iteration, csg_span where)
 bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, csg_span where)
 {
     *iteration = (csg_iteration){.over = over};
-    switch (over.kind) {
+    switch ((csg_value_kind)over.kind) {
     case CSG_VALUE_RANGE:
         begin_range(e, iteration, where);
         break;
@@ -81,7 +81,15 @@ bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, 
         break;
     case CSG_VALUE_UNDEF:
         break;
-    default:
+    case CSG_VALUE_NUMBER:
+    case CSG_VALUE_BOOLEAN:
+    case CSG_VALUE_BLEND:
+    case CSG_VALUE_TERM:
+    case CSG_VALUE_STEP:
+    case CSG_VALUE_UNSET:
+    case CSG_VALUE_FUNCTION:
+    case CSG_VALUE_RULE:
+    case CSG_VALUE_FRAME:
         iteration->count = 1;
         break;
     }
@@ -232,7 +240,7 @@ static void add_element(csg_eval *e, const csg_expression *x, csg_frame *frame, 
 {
     if (!csg_eval_charge(e, 1, x->where) || !csg_eval_check_stack(e, x->where))
         return;
-    switch (x->kind) {
+    switch ((csg_expression_kind)x->kind) {
     case CSG_EXPRESSION_FOR:
         add_for(e, x, 0, frame, list);
         return;
@@ -254,7 +262,20 @@ static void add_element(csg_eval *e, const csg_expression *x, csg_frame *frame, 
     case CSG_EXPRESSION_ASSERT:
         csg_eval_assert(e, &x->as.call.arguments, frame, x->where);
         break;
-    default:
+    case CSG_EXPRESSION_NUMBER:
+    case CSG_EXPRESSION_BOOLEAN:
+    case CSG_EXPRESSION_UNDEF:
+    case CSG_EXPRESSION_STRING:
+    case CSG_EXPRESSION_NAME:
+    case CSG_EXPRESSION_UNARY:
+    case CSG_EXPRESSION_BINARY:
+    case CSG_EXPRESSION_CONDITIONAL:
+    case CSG_EXPRESSION_INDEX:
+    case CSG_EXPRESSION_MEMBER:
+    case CSG_EXPRESSION_CALL:
+    case CSG_EXPRESSION_VECTOR:
+    case CSG_EXPRESSION_RANGE:
+    case CSG_EXPRESSION_FUNCTION:
         csg_list_push(e, list, csg_evaluate(e, x, frame), x->where);
         return;
     }

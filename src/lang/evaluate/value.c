@@ -181,7 +181,7 @@ csg_frame *csg_frame_create(csg_heap *heap, csg_frame *parent, uint32_t count)
 
 bool csg_value_is_true(csg_value value)
 {
-    switch (value.kind) {
+    switch ((csg_value_kind)value.kind) {
     case CSG_VALUE_NUMBER:
         return value.as.number != 0;
     case CSG_VALUE_BOOLEAN:
@@ -193,17 +193,46 @@ bool csg_value_is_true(csg_value value)
     case CSG_VALUE_UNDEF:
     case CSG_VALUE_UNSET:
         return false;
-    default:
-        return true;
+    case CSG_VALUE_BLEND:
+    case CSG_VALUE_TERM:
+    case CSG_VALUE_STEP:
+    case CSG_VALUE_RANGE:
+    case CSG_VALUE_FUNCTION:
+    case CSG_VALUE_RULE:
+    case CSG_VALUE_FRAME:
+        break;
     }
+    return true;
 }
 
 const char *csg_value_kind_name(csg_value value)
 {
-    static const char *const names[] = {"undef",    "number", "bool",   "blend",  "formula",
-                                        "step",     "undef",  "string", "vector", "range",
-                                        "function", "blend",  "undef"};
-    return names[value.kind];
+    switch ((csg_value_kind)value.kind) {
+    case CSG_VALUE_NUMBER:
+        return "number";
+    case CSG_VALUE_BOOLEAN:
+        return "bool";
+    case CSG_VALUE_BLEND:
+    case CSG_VALUE_RULE:
+        return "blend";
+    case CSG_VALUE_TERM:
+        return "formula";
+    case CSG_VALUE_STEP:
+        return "step";
+    case CSG_VALUE_STRING:
+        return "string";
+    case CSG_VALUE_VECTOR:
+        return "vector";
+    case CSG_VALUE_RANGE:
+        return "range";
+    case CSG_VALUE_FUNCTION:
+        return "function";
+    case CSG_VALUE_UNDEF:
+    case CSG_VALUE_UNSET:
+    case CSG_VALUE_FRAME:
+        break;
+    }
+    return "undef";
 }
 
 bool csg_value_numbers(csg_value value, size_t count, double *out)

@@ -177,7 +177,7 @@ static void put_rule(csg_text *text, const csg_rule_value *value, const csg_symb
 
 void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_symbols *symbols)
 {
-    switch (value.kind) {
+    switch ((csg_value_kind)value.kind) {
     case CSG_VALUE_NUMBER:
         csg_text_put_number(text, value.as.number);
         break;
@@ -212,7 +212,9 @@ void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_
     case CSG_VALUE_TERM:
         csg_text_put_string(text, "formula");
         break;
-    default:
+    case CSG_VALUE_UNDEF:
+    case CSG_VALUE_UNSET:
+    case CSG_VALUE_FRAME:
         csg_text_put_string(text, "undef");
         break;
     }
@@ -365,32 +367,11 @@ static void put_loop(csg_text *text, const csg_expression *e, const csg_symbols 
     csg_text_put_expression(text, e->as.loop.body, symbols);
 }
 
-static void put_literal(csg_text *text, const csg_expression *e, const csg_symbols *symbols)
-{
-    switch (e->kind) {
-    case CSG_EXPRESSION_NUMBER:
-        csg_text_put_number(text, e->as.number);
-        break;
-    case CSG_EXPRESSION_BOOLEAN:
-        csg_text_put_string(text, e->as.boolean ? "true" : "false");
-        break;
-    case CSG_EXPRESSION_STRING:
-        put_string(text, e->as.string.text, e->as.string.length);
-        break;
-    case CSG_EXPRESSION_NAME:
-        csg_text_put_string(text, csg_symbol_name(symbols, e->as.name));
-        break;
-    default:
-        csg_text_put_string(text, "undef");
-        break;
-    }
-}
-
 void csg_text_put_expression(csg_text *text, const csg_expression *e, const csg_symbols *symbols)
 {
     if (text->failed)
         return;
-    switch (e->kind) {
+    switch ((csg_expression_kind)e->kind) {
     case CSG_EXPRESSION_UNARY:
     case CSG_EXPRESSION_BINARY:
         put_operator(text, e, symbols);
@@ -445,8 +426,20 @@ void csg_text_put_expression(csg_text *text, const csg_expression *e, const csg_
     case CSG_EXPRESSION_RANGE:
         put_range_expression(text, e, symbols);
         break;
-    default:
-        put_literal(text, e, symbols);
+    case CSG_EXPRESSION_NUMBER:
+        csg_text_put_number(text, e->as.number);
+        break;
+    case CSG_EXPRESSION_BOOLEAN:
+        csg_text_put_string(text, e->as.boolean ? "true" : "false");
+        break;
+    case CSG_EXPRESSION_STRING:
+        put_string(text, e->as.string.text, e->as.string.length);
+        break;
+    case CSG_EXPRESSION_NAME:
+        csg_text_put_string(text, csg_symbol_name(symbols, e->as.name));
+        break;
+    case CSG_EXPRESSION_UNDEF:
+        csg_text_put_string(text, "undef");
         break;
     }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Handlers of built-in functions; one for each name in the second column of functions.def.
+ * Built-in functions: a row of functions.def declares its body.
  */
 #ifndef CSG_LANG_FUNCTIONS_H
 #define CSG_LANG_FUNCTIONS_H

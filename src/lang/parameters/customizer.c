@@ -35,7 +35,7 @@ static int literal_kind(const csg_expression *x, int depth)
     enum { DEEPEST = 64 };
     if (depth > DEEPEST)
         return -1;
-    switch (x->kind) {
+    switch ((csg_expression_kind)x->kind) {
     case CSG_EXPRESSION_NUMBER:
     case CSG_EXPRESSION_BOOLEAN:
     case CSG_EXPRESSION_STRING:
@@ -56,9 +56,23 @@ static int literal_kind(const csg_expression *x, int depth)
                        (!x->as.range.step || literal_kind(x->as.range.step, depth + 1) >= 0)
                    ? x->kind
                    : -1;
-    default:
-        return -1;
+    case CSG_EXPRESSION_NAME:
+    case CSG_EXPRESSION_BINARY:
+    case CSG_EXPRESSION_CONDITIONAL:
+    case CSG_EXPRESSION_INDEX:
+    case CSG_EXPRESSION_MEMBER:
+    case CSG_EXPRESSION_CALL:
+    case CSG_EXPRESSION_FUNCTION:
+    case CSG_EXPRESSION_LET:
+    case CSG_EXPRESSION_ASSERT:
+    case CSG_EXPRESSION_ECHO:
+    case CSG_EXPRESSION_FOR:
+    case CSG_EXPRESSION_FOR_LOOP:
+    case CSG_EXPRESSION_IF:
+    case CSG_EXPRESSION_EACH:
+        break;
     }
+    return -1;
 }
 
 int csg_customizer_literal_kind(const csg_expression *expression)
