@@ -8,6 +8,7 @@
 #include "base/memory.h"
 
 typedef struct csg_pool csg_pool;
+typedef struct csg_trace_lanes csg_trace_lanes;
 
 struct csgm_context {
     csg_memory memory;
@@ -17,6 +18,7 @@ struct csgm_context {
     void *user;
     csgm_isa isa;   /* never AUTO */
     csg_pool *pool; /* threads = 1: still a pool, of the caller alone */
+    csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
 };
 
 /* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY. */

@@ -7,10 +7,13 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "base/trace.h"
+
 typedef struct job {
     csg_pool_work *work;
     void *user;
     size_t count;
+    const char *zone; /* of a trace */
 } job;
 
 typedef struct worker {
@@ -21,7 +24,8 @@ typedef struct worker {
 
 struct csg_pool {
     csg_memory *memory;
-    uint32_t threads; /* with the caller */
+    csg_trace_lanes *trace; /* NULL = none */
+    uint32_t threads;       /* with the caller */
     pthread_mutex_t lock;
     pthread_cond_t wake, idle;
     uint64_t generation; /* of the job; under lock */
@@ -49,6 +53,22 @@ static bool claim(csg_pool *pool, size_t *index)
     return *index < pool->job.count;
 }
 
+/* Items until there are none left. */
+static void work_on_items(csg_pool *pool, uint32_t worker_index, csg_pool_poll *poll)
+{
+    csg_trace_loop loop = {0};
+    size_t index, items = 0;
+    if (pool->trace)
+        loop = csg_trace_loop_begin(pool->job.zone);
+    for (; claim(pool, &index); items++) {
+        run_item(pool, worker_index, index);
+        if (poll)
+            poll(pool->job.user, atomic_load(&pool->done), pool->job.count);
+    }
+    if (pool->trace && items)
+        csg_trace_loop_end(pool->trace, worker_index, &loop, items);
+}
+
 static void *worker_main(void *argument)
 {
     worker *self = argument;
@@ -62,9 +82,7 @@ static void *worker_main(void *argument)
             break;
         seen = pool->generation;
         pthread_mutex_unlock(&pool->lock);
-        size_t index;
-        while (claim(pool, &index))
-            run_item(pool, self->index, index);
+        work_on_items(pool, self->index, NULL);
         pthread_mutex_lock(&pool->lock);
         if (--pool->busy == 0)
             pthread_cond_signal(&pool->idle);
@@ -119,11 +137,16 @@ uint32_t csg_pool_threads(const csg_pool *pool)
     return pool->threads;
 }
 
+void csg_pool_set_trace(csg_pool *pool, csg_trace_lanes *lanes)
+{
+    pool->trace = lanes; /* workers look after the lock that gives them a job */
+}
+
 bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll,
                   void *user)
 {
     pthread_mutex_lock(&pool->lock);
-    pool->job = (job){work, user, count};
+    pool->job = (job){work, user, count, pool->trace ? csg_trace_open_name(pool->trace) : NULL};
     atomic_store(&pool->next, 0);
     atomic_store(&pool->done, 0);
     atomic_store(&pool->stopped, false);
@@ -134,12 +157,7 @@ bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_po
         pthread_cond_broadcast(&pool->wake);
     }
     pthread_mutex_unlock(&pool->lock);
-    size_t index;
-    while (claim(pool, &index)) {
-        run_item(pool, 0, index);
-        if (poll)
-            poll(user, atomic_load(&pool->done), count);
-    }
+    work_on_items(pool, 0, poll);
     if (!alone) {
         pthread_mutex_lock(&pool->lock);
         while (pool->busy)

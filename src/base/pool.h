@@ -12,11 +12,14 @@
 #include "base/memory.h"
 
 typedef struct csg_pool csg_pool;
+typedef struct csg_trace_lanes csg_trace_lanes;
 
 /* threads >= 1. NULL on failure. With fewer threads than asked for when the system has no more. */
 csg_pool *csg_pool_create(csg_memory *memory, uint32_t threads);
 void csg_pool_destroy(csg_pool *pool); /* NULL is a no-op */
 uint32_t csg_pool_threads(const csg_pool *pool);
+/* From now on each worker's part of a loop is a zone (trace.h). */
+void csg_pool_set_trace(csg_pool *pool, csg_trace_lanes *lanes);
 
 /* Work on item `index` as worker `worker` (< csg_pool_threads). False = stop everything. */
 typedef bool csg_pool_work(void *user, uint32_t worker, size_t index);
