@@ -144,6 +144,8 @@ typedef struct csgm_limits {
                               build; default 0 = none */
 } csgm_limits;
 
+typedef struct csgm_trace csgm_trace; /* see "trace" below */
+
 /* How a context is set up. Start from csgm_context_options_default() and change what you need. */
 typedef struct csgm_context_options {
     uint32_t struct_size; /* set by csgm_context_options_default; do not touch */
@@ -158,6 +160,8 @@ typedef struct csgm_context_options {
     void *user;              /* passed to on_diag and on_echo */
     bool library_warnings; /* tell each warning whose place is in a library, as those of the scene's
                               own files; default false: one note says how many there are */
+    csgm_trace *trace;     /* where its time goes is noted there; outlives it; NULL (the default) =
+                              nowhere */
 } csgm_context_options;
 
 CSGM_API csgm_context_options csgm_context_options_default(void);
@@ -171,6 +175,28 @@ CSGM_API uint64_t csgm_context_memory(const csgm_context *context, uint64_t *pea
 CSGM_API uint32_t csgm_context_threads(const csgm_context *context);
 /* "avx512", "avx2", "sse2", "neon" or "scalar"; static storage. */
 CSGM_API const char *csgm_context_isa(const csgm_context *context);
+
+/* ---- trace: where the time goes ------------------------------------------------------ */
+
+/* Zones: stretches of a thread's work with a name, from reading the text to waiting for the disk,
+ * and each thread's part of each parallel loop. docs/trace.md lists them. Several contexts, at
+ * work at the same time, may share a trace; threads of contexts that have ended hand their lanes
+ * on to later ones. Meshes have the same bytes with and without a trace. Its memory is its own and
+ * counts in no context's limit: at most memory_bytes (0 = 64 MiB, about half a million zones).
+ * Zones that find no room are left out and counted. allocator NULL = malloc and free. */
+CSGM_API csgm_status csgm_trace_create(const csgm_allocator *allocator, uint64_t memory_bytes,
+                                       csgm_trace **out);
+/* After all contexts that have it. */
+CSGM_API void csgm_trace_destroy(csgm_trace *trace);
+/* Zones of your own around calls with this context, on the thread that makes them: begin and end
+ * in pairs. Nothing happens in a context without a trace. name: static storage. note (may be NULL):
+ * what it is about, as a file's name; copied. */
+CSGM_API void csgm_trace_begin(csgm_context *context, const char *name, const char *note);
+CSGM_API void csgm_trace_end(csgm_context *context);
+/* The JSON of Chrome's trace event format, which Perfetto opens. No context may be at work. */
+CSGM_API csgm_status csgm_trace_print(csgm_trace *trace, csgm_text_fn *sink, void *user);
+/* How many zones found no room. */
+CSGM_API uint64_t csgm_trace_dropped(const csgm_trace *trace);
 
 /* ---- scene: the evaluated CSG/blend tree ------------------------------------------ */
 

@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "base/pool.h"
+#include "base/trace.h"
 #include "field/kernels/dispatch.h"
 
 /* More workers than this never helped, and each costs a stack. */
@@ -112,7 +113,17 @@ static csgm_status start_context(csgm_context *context, const csgm_context_optio
     uint32_t threads = options->threads ? options->threads : usable_cores();
     context->pool =
         csg_pool_create(&context->memory, threads < THREADS_MOST ? threads : THREADS_MOST);
-    return context->pool ? CSGM_OK : csg_context_no_memory(context);
+    if (!context->pool)
+        return csg_context_no_memory(context);
+    if (options->trace) {
+        context->trace = csg_trace_enter(options->trace, csg_pool_threads(context->pool));
+        if (!context->trace) {
+            csg_pool_destroy(context->pool);
+            return csg_context_no_memory(context);
+        }
+        csg_pool_set_trace(context->pool, context->trace);
+    }
+    return CSGM_OK;
 }
 
 csgm_status csgm_context_create(const csgm_context_options *options, csgm_context **out)
@@ -145,6 +156,7 @@ void csgm_context_destroy(csgm_context *context)
     if (!context)
         return;
     csg_pool_destroy(context->pool);
+    csg_trace_leave(context->trace);
     release_context(context, context->memory.allocator);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Fields of the public interface: a scene compiled to a tape, evaluated at arrays of points.
  */
+#include "base/trace.h"
 #include "field/field.h"
 
 csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out)
@@ -10,11 +11,13 @@ csgm_status csgm_field_compile(csgm_context *context, const csgm_scene *scene, c
     *out = NULL;
     if (!context || !scene)
         return CSGM_ERR_ARGUMENT;
+    CSG_ZONE(context, "compile");
     csgm_field *field;
     csgm_status status = csg_field_compile(context, scene, &field);
     if (status != CSGM_OK)
         return status;
     status = csg_field_compile_parts(field);
+    csg_zone_count(context, "nodes", field->tape.count);
     if (status == CSGM_OK)
         *out = field;
     else

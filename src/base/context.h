@@ -16,8 +16,8 @@ struct csgm_context {
     csgm_limits limits;
     csgm_text_fn *on_echo; /* NULL = dropped */
     void *user;
-    csgm_isa isa;   /* never AUTO */
-    csg_pool *pool; /* threads = 1: still a pool, of the caller alone */
+    csgm_isa isa;           /* never AUTO */
+    csg_pool *pool;         /* threads = 1: still a pool, of the caller alone */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
 };
 

@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,7 +41,6 @@ typedef struct lane {
 
 struct csgm_trace {
     csg_memory memory;
-    csgm_allocator allocator;
     pthread_mutex_t lock;
     lane **lanes; /* under lock */
     size_t lane_count, lane_capacity;
@@ -151,6 +151,8 @@ void csg_trace_leave(csg_trace_lanes *lanes)
     if (!lanes)
         return;
     csgm_trace *trace = lanes->trace;
+    while (lanes->depth)
+        csg_trace_end(lanes);
     pthread_mutex_lock(&trace->lock);
     for (uint32_t i = 0; i < lanes->threads && lanes->lanes[i]; i++)
         lanes->lanes[i]->is_taken = false;
@@ -336,8 +338,8 @@ void csg_trace_print(csgm_trace *trace, csgm_text_fn *sink, void *user)
     printer p = {sink, user, true};
     pthread_mutex_lock(&trace->lock);
     print(&p,
-          "{\"displayTimeUnit\":\"ms\",\"otherData\":{\"csgmesh\":\"%d.%d.%d\",\"dropped_zones\":%" PRIu64
-          "},\n\"traceEvents\":[",
+          "{\"displayTimeUnit\":\"ms\",\"otherData\":{\"csgmesh\":\"%d.%d.%d\",\"dropped_zones\":"
+          "%" PRIu64 "},\n\"traceEvents\":[",
           CSGM_VERSION_MAJOR, CSGM_VERSION_MINOR, CSGM_VERSION_PATCH, csg_trace_dropped(trace));
     begin_event(&p);
     print(&p, "{\"ph\":\"M\",\"pid\":1,\"name\":\"process_name\",\"args\":{\"name\":\"csgmesh\"}}");

@@ -16,13 +16,13 @@
 csgm_status csg_trace_create(const csgm_allocator *allocator, uint64_t memory_bytes,
                              csgm_trace **out);
 void csg_trace_destroy(csgm_trace *trace);
-/* Nobody may be at work in a zone. False: the sink's text is incomplete, for lack of memory. */
+/* Nobody may be at work in a zone; what is still open is left out. */
 void csg_trace_print(csgm_trace *trace, csgm_text_fn *sink, void *user);
 uint64_t csg_trace_dropped(const csgm_trace *trace);
 
 /* The lanes of a context with so many threads. NULL: no memory. */
 csg_trace_lanes *csg_trace_enter(csgm_trace *trace, uint32_t threads);
-/* Its threads have ended. NULL is a no-op. */
+/* Its threads have ended; zones still open end here. NULL is a no-op. */
 void csg_trace_leave(csg_trace_lanes *lanes);
 
 /* The three below are for the context's calling thread (worker 0) alone. name is static; the note

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "base/trace.h"
 #include "diff/attributes.h"
 #include "diff/diff.h"
 #include "diff/distances.h"
@@ -103,6 +104,7 @@ static void take_maximum(comparison *c, const csg_diff_maximum *search, csgm_dif
 
 static csgm_status measure_direction(comparison *c, int from)
 {
+    CSG_ZONE(c->pair.context, from ? "from B to A" : "from A to B");
     csgm_diff_distance *out = &c->report->distance[from];
     csg_diff_maximum search = {.from = from,
                                .tolerance = indifferent(c),
@@ -165,6 +167,7 @@ static csgm_status measure_counted(comparison *c)
 
 static csgm_status measure_distances(comparison *c)
 {
+    CSG_ZONE(c->pair.context, "distances");
     csgm_status status = csg_diff_measure_points(&c->pair);
     for (int from = 0; from < 2 && status == CSGM_OK; from++)
         status = measure_direction(c, from);
@@ -200,6 +203,7 @@ static double whole_volume(const comparison *c, int i)
 
 static csgm_status measure_volume(comparison *c)
 {
+    CSG_ZONE(c->pair.context, "volume");
     csgm_diff_volume *out = &c->report->volume;
     for (int i = 0; i < 2; i++)
         if (!c->is_empty[i] && !c->pair.sides[i].is_closed)
@@ -223,6 +227,7 @@ static csgm_status measure_volume(comparison *c)
 
 static csgm_status compare_attributes(comparison *c)
 {
+    CSG_ZONE(c->pair.context, "attributes");
     uint32_t ignored = c->options->ignored;
     csgm_diff_report *r = c->report;
     if (c->is_empty[0] || c->is_empty[1])
@@ -331,6 +336,7 @@ static csgm_status keep_vertex_distances(comparison *c)
 
 static csgm_status measure_fields(comparison *c)
 {
+    CSG_ZONE(c->pair.context, "field");
     const csgm_scene *const scenes[2] = {c->options->scene_b, c->options->scene_a};
     csgm_status status = CSGM_OK;
     for (int from = 0; from < 2 && status == CSGM_OK; from++)
@@ -376,6 +382,7 @@ static csgm_status compare(comparison *c, const csgm_mesh_view *a, const csgm_me
 csgm_status csg_diff_run(csgm_context *context, const csgm_mesh_view *a, const csgm_mesh_view *b,
                          const csgm_diff_options *options, csgm_diff **out)
 {
+    CSG_ZONE(context, "diff");
     csgm_diff *diff = csg_memory_alloc(&context->memory, sizeof *diff);
     if (!diff)
         return csg_context_no_memory(context);

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/trace.h"
+
 static csg_diff_face face_of(const csg_diff_side *side, size_t triangle)
 {
     const uint32_t *p = side->chain.corners[triangle];
@@ -53,6 +55,7 @@ static csg_diff_face *sorted_faces(csg_diff_pair *pair, const csg_diff_side *sid
 
 csgm_status csg_diff_match_make(csg_diff_pair *pair, csg_diff_match *match, bool *same)
 {
+    CSG_ZONE(pair->context, "match");
     const csg_diff_side *a = &pair->sides[0], *b = &pair->sides[1];
     *same = false;
     *match = (csg_diff_match){.count = a->chain.count};

@@ -9,6 +9,7 @@
 
 #include "base/places.h"
 #include "base/pool.h"
+#include "base/trace.h"
 #include "mesh/inspect.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
@@ -192,6 +193,7 @@ static void enter_frame(csg_diff_pair *pair)
 csgm_status csg_diff_pair_make(csg_diff_pair *pair, csgm_context *context, const csgm_mesh_view *a,
                                const csgm_mesh_view *b, bool may_turn_b)
 {
+    CSG_ZONE(context, "weld");
     static const csgm_monitor nobody;
     *pair = (csg_diff_pair){.context = context, .monitor = &nobody};
     csg_arena_init(&pair->arena, &context->memory);
@@ -312,6 +314,7 @@ static bool prepare_side(void *user, uint32_t worker, size_t index)
 
 csgm_status csg_diff_pair_prepare(csg_diff_pair *pair, bool with_trees)
 {
+    CSG_ZONE(pair->context, "trees");
     preparation p = {pair, with_trees, {CSGM_OK, CSGM_OK}};
     if (csg_pool_run(pair->context->pool, 2, prepare_side, NULL, &p))
         return CSGM_OK;

@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/trace.h"
 #include "io/formats.h"
 
 /* ---- temporaries in progress ------------------------------------------------------ */
@@ -227,13 +228,19 @@ static bool is_unchanged(const csg_file *file)
     return same;
 }
 
+static int wait_for_disk(const csg_file *file)
+{
+    CSG_ZONE(file->context, "sync");
+    return fsync(file->fd) == 0 ? 0 : errno;
+}
+
 csgm_status csg_file_commit(csg_file *file)
 {
     if (file->target && file->only_if_changed && is_unchanged(file)) {
         csg_file_abandon(file);
         return CSGM_OK;
     }
-    int error = file->target && file->sync && fsync(file->fd) != 0 ? errno : 0;
+    int error = file->target && file->sync ? wait_for_disk(file) : 0;
     if (close(file->fd) != 0 && !error)
         error = errno;
     if (file->target && !error && rename(file->temporary, file->target) != 0)

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"
 
@@ -146,5 +147,6 @@ csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm
 csgm_status csg_io_read(csgm_context *context, const char *path, csgm_format format,
                         csgm_mesh **out)
 {
+    CSG_ZONE(context, "read mesh");
     return csg_io_read_fd(context, -1, path, format, out);
 }

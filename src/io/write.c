@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/trace.h"
 #include "io/file.h"
 #include "io/format_table.h"
 #include "io/formats.h"
@@ -138,6 +139,7 @@ static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, co
 static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int fd, const char *name,
                         const csg_format_row *row, const csgm_write_options *options)
 {
+    CSG_ZONE(context, "write");
     csg_sink sink;
     csgm_status status = csg_sink_open(&sink, context, fd, name);
     if (status)

@@ -13,6 +13,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "lang/modules/modules.h"
 #include "lang/parameters/customizer.h"
 #include "lang/parameters/overrides.h"
@@ -81,6 +82,7 @@ static csgm_status open_source(csg_program *program, const csg_lang_input *input
 
 static csgm_status parse(csg_program *program, const compilation *c)
 {
+    CSG_ZONE(program->context, "parse");
     uint32_t source;
     csgm_status status = open_source(program, c->input, &source);
     if (status != CSGM_OK)
@@ -128,10 +130,33 @@ static csgm_status seal_marks(csg_eval *e, csgm_scene *out[CSG_MARK_COUNT])
     return status == CSGM_ERR_MEMORY ? csg_context_no_memory(e->context) : status;
 }
 
+static csgm_status seal(csg_eval *e, csg_node_id root, csgm_scene **out)
+{
+    CSG_ZONE(e->context, "seal");
+    const csg_program *program = e->program;
+    csgm_scene *marked[CSG_MARK_COUNT] = {NULL, NULL};
+    csgm_status status = seal_marks(e, marked);
+    if (status == CSGM_OK) {
+        status = csg_build_finish(&e->builder, root, program->dependencies,
+                                  program->dependency_count, out);
+        if (status == CSGM_ERR_MEMORY)
+            csg_context_no_memory(e->context);
+    }
+    for (int i = 0; i < CSG_MARK_COUNT; i++)
+        if (status == CSGM_OK)
+            (*out)->marked[i] = marked[i];
+        else
+            csg_scene_destroy(marked[i]);
+    if (status == CSGM_OK)
+        csg_zone_count(e->context, "nodes", (*out)->node_count);
+    return status;
+}
+
 static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **out)
 {
+    CSG_ZONE(program->context, "evaluate");
     csg_eval e;
-    csgm_scene *scene = NULL, *marked[CSG_MARK_COUNT] = {NULL, NULL};
+    csgm_scene *scene = NULL;
     csg_node_id root = CSG_NODE_NONE;
     csgm_status status = csg_eval_init(&e, program);
     if (status == CSGM_OK) {
@@ -142,18 +167,7 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
     if (status == CSGM_OK && program->context->diags.errors > errors)
         status = CSGM_ERR_SCENE; /* warnings as errors */
     if (status == CSGM_OK)
-        status = seal_marks(&e, marked);
-    if (status == CSGM_OK) {
-        status = csg_build_finish(&e.builder, root, program->dependencies,
-                                  program->dependency_count, &scene);
-        if (status == CSGM_ERR_MEMORY)
-            csg_context_no_memory(program->context);
-    }
-    for (int i = 0; i < CSG_MARK_COUNT; i++)
-        if (status == CSGM_OK)
-            scene->marked[i] = marked[i];
-        else
-            csg_scene_destroy(marked[i]);
+        status = seal(&e, root, &scene);
     if (status == CSGM_OK && !keep_texts(program, scene)) {
         csg_scene_destroy(scene);
         status = csg_context_no_memory(program->context);
@@ -176,6 +190,7 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
 
 static void compile(compilation *c)
 {
+    CSG_ZONE(c->context, "scene");
     csg_program program;
     uint32_t errors = c->context->diags.errors;
     char here;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 #include "field/kernels/dispatch.h"
 
 enum {
@@ -185,6 +186,7 @@ static bool append_children(build *b)
 
 static bool make_level(build *b)
 {
+    CSG_ZONE(b->out->context, "cells of rays");
     csg_memory *memory = &b->out->context->memory;
     size_t parents = b->end - b->first, bytes = parents * CSG_OCTANTS * sizeof *b->children;
     b->children = csg_memory_alloc(memory, bytes);

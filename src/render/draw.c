@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 
 enum { VERTICES_PER_ITEM = 1 << 14 };
 
@@ -155,6 +156,7 @@ static bool each_triangle(csg_draw *draw, bool fill)
 
 static csgm_status sort_triangles(csg_draw *draw, uint64_t *total)
 {
+    CSG_ZONE(draw->picture->context, "sort triangles");
     csgm_context *context = draw->picture->context;
     size_t tiles = (size_t)draw->columns * draw->rows;
     draw->tile_first = csg_memory_alloc(&context->memory, (tiles + 1) * sizeof(uint64_t));
@@ -198,6 +200,7 @@ static bool project_item(void *user, uint32_t worker, size_t item)
 
 static csgm_status project(csg_draw *draw)
 {
+    CSG_ZONE(draw->picture->context, "project");
     csgm_context *context = draw->picture->context;
     size_t count = draw->mesh->vertex_count;
     if (!count)
@@ -264,6 +267,7 @@ static void release(csg_draw *draw, uint64_t total)
 
 static csgm_status draw_all(csg_draw *draw, csgm_render_stats *stats)
 {
+    CSG_ZONE(draw->picture->context, "draw");
     csg_picture *picture = draw->picture;
     uint64_t total = 0;
     csgm_status status = project(draw);
@@ -296,6 +300,7 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                             const csgm_render_options *options, csgm_image **out,
                             csgm_render_stats *stats)
 {
+    CSG_ZONE(context, "render mesh");
     csg_picture picture;
     csgm_render_options own = *options;
     own.slice_axis = -1; /* of scenes */

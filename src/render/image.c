@@ -5,6 +5,7 @@
 
 #include <strings.h>
 
+#include "base/trace.h"
 #include "io/file.h"
 
 csgm_status csg_image_create(csgm_context *context, uint32_t width, uint32_t height,
@@ -91,6 +92,7 @@ static csgm_status find_format(csgm_context *context, const char *name, csgm_ima
 static csgm_status put(csgm_context *context, const csgm_image *image, int fd, const char *name,
                        csgm_image_format format)
 {
+    CSG_ZONE(context, "write picture");
     csg_sink sink;
     csgm_status status = csg_sink_open(&sink, context, fd, name);
     if (status != CSGM_OK)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "scene/lazy/lazy.h"
 
 enum { MOST_STEPS = 1000 };
@@ -152,6 +153,7 @@ static csgm_status create_lazy(lazy_job *job, const csgm_field *field)
 
 static csgm_status run(lazy_job *job, csgm_render_stats *stats)
 {
+    CSG_ZONE(job->picture->context, "trace rays");
     csg_picture *picture = job->picture;
     job->lipschitz = csg_lazy_lipschitz(job->lazy);
     csgm_status status = CSGM_OK;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "render/layer.h"
 #include "render/lazy_scene.h"
@@ -349,6 +350,7 @@ static void fill_stats(const scene_job *job, csgm_render_stats *stats)
 
 static csgm_status trace_all(scene_job *job, csgm_render_stats *stats)
 {
+    CSG_ZONE(job->picture->context, "trace rays");
     csg_picture *picture = job->picture;
     csgm_status status = csg_layers_prepare(job->layers, picture);
     if (status == CSGM_OK && !create_rooms(job))
@@ -409,6 +411,7 @@ csgm_status csg_render_scene(csgm_context *context, const csgm_field *field,
                              const csgm_render_options *options, csgm_image **out,
                              csgm_render_stats *stats)
 {
+    CSG_ZONE(context, "render scene");
     csg_picture picture = {.context = context};
     scene_job job = {.picture = &picture};
     csg_box bounds = csg_box_empty();

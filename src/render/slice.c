@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "field/prune/prune.h"
 #include "render/job.h"
@@ -224,6 +225,7 @@ static double round_step(double step)
 csgm_status csg_render_slice(csg_picture *picture, const csgm_field *field, csg_box bounds,
                              csgm_render_stats *stats)
 {
+    CSG_ZONE(picture->context, "section");
     csgm_context *context = picture->context;
     csg_vec3 size = csg_box_size(bounds);
     double half_height = picture->view.pixel * picture->view.height / 2;

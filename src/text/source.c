@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/trace.h"
 #include "base/utf8.h"
 
 enum {
@@ -323,6 +324,7 @@ static const csg_source *find_read(const csg_sources *sources, const char *path)
 
 csgm_status csg_source_read(csg_sources *sources, const csg_source_request *request, uint32_t *out)
 {
+    CSG_ZONE(sources->context, "read text");
     const csg_source *known = find_read(sources, request->path);
     if (known) {
         csg_source again = *known;

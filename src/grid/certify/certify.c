@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "grid/certify/certify_block.h"
 
@@ -271,6 +272,7 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
                             const csg_lattice *lattice, const csg_certify_options *options,
                             csg_certify_report *report)
 {
+    CSG_ZONE(context, "certify");
     walk w = {.context = context,
               .field = field,
               .lattice = lattice,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 #include "field/cones/cone.h"
 #include "field/kernels/dispatch.h"
 #include "field/prune/prune.h"
@@ -364,9 +365,23 @@ static bool join_items(walk *w, size_t item_count, size_t element, void **joined
     return true;
 }
 
+/* The cubes that the children are, for a trace; 0: they are blocks, and sampled. */
+static const char *zone_of_level(int level)
+{
+    static const char *const names[] = {
+        "sampling",        "octree level 1",  "octree level 2",  "octree level 3",
+        "octree level 4",  "octree level 5",  "octree level 6",  "octree level 7",
+        "octree level 8",  "octree level 9",  "octree level 10", "octree level 11",
+        "octree level 12", "octree level 13", "octree level 14", "octree level 15",
+        "octree level 16", "octree level 17", "octree level 18"};
+    const int most = (int)(sizeof names / sizeof *names) - 1;
+    return names[level < most ? level : most];
+}
+
 /* Splits cells [first_cell, end_cell); the children, cells or blocks, come back joined. */
 static bool run_level(walk *w, size_t element, void **joined, size_t *total)
 {
+    CSG_ZONE(w->context, zone_of_level(w->level));
     csg_memory *memory = &w->context->memory;
     size_t cells = w->end_cell - w->first_cell;
     size_t most = cells / (ITEMS_PER_WORKER * (size_t)w->worker_count) + 1;
@@ -382,6 +397,8 @@ static bool run_level(walk *w, size_t element, void **joined, size_t *total)
         atomic_store(&w->out_of_memory, true);
         done = false;
     }
+    csg_zone_count(w->context, "cells", cells);
+    csg_zone_count(w->context, w->level ? "children" : "blocks", done ? *total : 0);
     csg_memory_release(memory, w->segments, (items + 1) * sizeof(segment));
     for (uint32_t i = 0; i < w->worker_count; i++)
         w->workers[i].cell_count = w->workers[i].block_count = 0;
@@ -486,6 +503,7 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
                               const csg_lattice *lattice, const csg_octree_options *options,
                               csg_octree **out)
 {
+    CSG_ZONE(context, "octree");
     walk *w = csg_memory_alloc(&context->memory, sizeof *w);
     if (!w)
         return csg_context_no_memory(context);

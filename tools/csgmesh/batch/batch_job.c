@@ -298,6 +298,8 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     m.app.options.threads = threads;
     m.app.options.if_changed = true;
     m.app.start_s = cli_now_s();
+    m.app.trace = run->app->trace;
+    m.app.zone_note = job->scene;
     *is_large = false;
     FILE *out = open_console(&m, &text, &length);
     result->status = out ? make(&m, may_defer, is_large) : CLI_TROUBLE;

@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "core/textfile.h"
+#include "core/trace.h"
 
 double cli_now_s(void)
 {
@@ -68,10 +69,13 @@ int cli_app_open(cli_app *app)
     options.on_diag = cli_console_diag;
     options.on_echo = cli_console_echo;
     options.user = &app->console;
+    options.trace = app->trace;
     csgm_status status = csgm_context_create(&options, &app->context);
     if (status != CSGM_OK && !app->console.errors)
         cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot start: %s",
                         csgm_status_name(status));
+    if (status == CSGM_OK)
+        cli_trace_open(app);
     return cli_exit_status(status);
 }
 

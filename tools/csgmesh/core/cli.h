@@ -15,6 +15,8 @@ typedef struct cli_app {
     cli_console console;
     csgm_context *context; /* from cli_app_open on */
     double start_s;
+    csgm_trace *trace;     /* of --trace, or NULL */
+    const char *zone_note; /* in it: what the context is at work on; NULL = the first operand */
 } cli_app;
 
 /* Makes the context from the options. CLI_DONE, or the exit status. */

@@ -8,6 +8,7 @@
 #include "batch/batch_hash.h"
 #include "core/cli.h"
 #include "core/interrupt.h"
+#include "core/trace.h"
 
 static const struct {
     const char *name;
@@ -61,7 +62,10 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
         return print_version(app);
     if (app->options.help)
         return help(app, is_named ? commands[command].name : NULL);
-    return commands[command].run(app);
+    int status = cli_trace_begin(app);
+    if (status == CLI_DONE)
+        status = commands[command].run(app);
+    return cli_trace_end(app, status);
 }
 
 /* Where the command's name stands: the first argument that is neither an option nor the value of

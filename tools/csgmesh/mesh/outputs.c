@@ -62,7 +62,7 @@ static int refuse_path(cli_app *app, const char *path, int reason)
 }
 
 /* What fails now would fail after minutes of work too. */
-static int check_place(cli_app *app, const char *path)
+int cli_outputs_check_place(cli_app *app, const char *path)
 {
     struct stat status;
     char folder[4096];
@@ -149,7 +149,7 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
         return refuse_no_output(app, scene_path);
     status = check_collisions(app);
     for (size_t i = 0; i < options->outputs.count && status == CLI_DONE; i++) {
-        status = check_place(app, options->outputs.items[i]);
+        status = cli_outputs_check_place(app, options->outputs.items[i]);
         if (status == CLI_DONE)
             status = check_format(app, i);
     }

@@ -16,4 +16,8 @@ csgm_normals cli_outputs_normals(const cli_options *options);
 csgm_write_options cli_outputs_options(const cli_options *options);
 int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh);
 
+/* What would fail after minutes of work is refused now: a missing or locked folder. CLI_DONE or
+ * CLI_TROUBLE, reported. */
+int cli_outputs_check_place(cli_app *app, const char *path);
+
 #endif

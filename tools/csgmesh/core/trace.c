@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT
+ * The trace of a run; see trace.h.
+ */
+#include "core/trace.h"
+
+#include <string.h>
+
+#include "core/textfile.h"
+#include "mesh/outputs.h"
+
+/* What else this run writes to that path, as the user has named it; NULL: nothing. */
+static const char *other_at(const cli_options *o, const char *path)
+{
+    const struct {
+        const char *path, *name;
+    } rows[] = {
+        {o->stats, "--stats"},    {o->depfile, "-M"},         {o->junit, "--junit"},
+        {o->diff_json, "--json"}, {o->diff_junit, "--junit"}, {o->diff_heatmap, "--heatmap"},
+        {o->diff_png, "--png"},   {o->diff_html, "--html"},   {o->json ? "-" : NULL, "--json"}};
+    for (size_t i = 0; i < o->outputs.count; i++)
+        if (strcmp(o->outputs.items[i], path) == 0)
+            return "-o";
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].path && strcmp(rows[i].path, path) == 0)
+            return rows[i].name;
+    return NULL;
+}
+
+int cli_trace_begin(cli_app *app)
+{
+    const char *path = app->options.trace;
+    if (!path)
+        return CLI_DONE;
+    const char *other = other_at(&app->options, path);
+    if (other)
+        return cli_usage_error(app, "write one of them to another file",
+                               "--trace and %s both write to %s", other,
+                               strcmp(path, "-") ? path : "standard output");
+    if (cli_outputs_check_place(app, path) != CLI_DONE)
+        return CLI_TROUBLE;
+    if (csgm_trace_create(NULL, 0, &app->trace) == CSGM_OK)
+        return CLI_DONE;
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    return CLI_TROUBLE;
+}
+
+void cli_trace_open(cli_app *app)
+{
+    static const char *const names[] = {
+#define COMMAND(NAME, name, operands, summary, examples) #name,
+#include "core/commands.def"
+#undef COMMAND
+    };
+    const cli_list *operands = &app->options.operands;
+    if (app->zone_note)
+        csgm_trace_begin(app->context, "job", app->zone_note);
+    else
+        csgm_trace_begin(app->context, names[app->options.command],
+                         operands->count ? operands->items[0] : NULL);
+}
+
+static void print_to_file(void *user, const char *text, size_t length)
+{
+    fwrite(text, 1, length, user);
+}
+
+static int write_trace(cli_app *app)
+{
+    cli_text text;
+    uint64_t dropped = csgm_trace_dropped(app->trace);
+    if (cli_text_open(&text))
+        csgm_trace_print(app->trace, print_to_file, text.out);
+    if (dropped)
+        cli_console_say(&app->console, CSGM_WARNING, NULL,
+                        "%llu zones found no room and are not in %s", (unsigned long long)dropped,
+                        app->options.trace);
+    return cli_text_write(app, &text, app->options.trace);
+}
+
+int cli_trace_end(cli_app *app, int status)
+{
+    if (!app->trace)
+        return status;
+    csgm_context_destroy(app->context); /* its zones end */
+    app->context = NULL;
+    int written = write_trace(app);
+    csgm_trace_destroy(app->trace);
+    app->trace = NULL;
+    return written > status ? written : status;
+}
