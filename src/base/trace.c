@@ -35,6 +35,7 @@ typedef struct chunk {
 
 /* One thread at a time writes to it: zones in the order of their ends. */
 typedef struct lane {
+    size_t number;
     chunk *first, *last;
     bool is_taken; /* under the trace's lock */
 } lane;
@@ -115,7 +116,7 @@ static lane *take_lane(csgm_trace *trace)
         csg_memory_release(&trace->memory, fresh, sizeof *fresh);
         return NULL;
     }
-    *fresh = (lane){.is_taken = true};
+    *fresh = (lane){.number = trace->lane_count, .is_taken = true};
     trace->lanes[trace->lane_count++] = fresh;
     return fresh;
 }
@@ -241,8 +242,8 @@ void csg_trace_loop_end(csg_trace_lanes *lanes, uint32_t worker, const csg_trace
     zone z = {.name = loop->name,
               .start_ns = loop->start_ns,
               .thread_ns = loop->thread_ns,
-              .counts = {{"items", items}},
-              .count_count = 1,
+              .counts = {{"items", items}, {"caller", lanes->lanes[0]->number}},
+              .count_count = 2,
               .is_loop = true};
     close_zone(lanes, worker, &z);
 }

@@ -6,6 +6,7 @@
 #include "mesh/pipeline/build.h"
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/output.h"
 
@@ -147,6 +148,7 @@ static csgm_status reshape_mesh(build *b)
 static csgm_status build_mesh(build *b, csgm_context *context, const csgm_mesh_options *options,
                               csgm_mesh_stats *stats)
 {
+    CSG_ZONE(context, "build");
     csg_mesh_output *out = &b->output;
     connect_stages(b, context, options);
     csgm_status status = sample_and_count(b);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/trace.h"
 #include "scene/reference.h"
 #include "scene/tree/texts.h"
 
@@ -123,6 +124,7 @@ static csgm_status certify(const csg_mesh_input *in, csg_mesh_watch *watch, csg_
 static csgm_status follow_doubts(const csg_mesh_input *in, csg_octree *octree,
                                  csg_mesh_doubts *doubts)
 {
+    CSG_ZONE(in->context, "doubts");
     csg_certify_place place;
     csgm_status status;
     if (!csg_certify_doubts(in->context, in->field, &in->lattice, octree, &place,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 #include "mesh/features/bare.h"
 #include "mesh/features/cross.h"
 #include "mesh/features/move.h"
@@ -114,6 +115,7 @@ static void add_to_blocks(csg_mesh_creases *c, size_t first_block)
 
 csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 {
+    CSG_ZONE(c->watch->context, "features: find");
     if (!c->sharp)
         return CSGM_OK;
     c->blocks = blocks;
@@ -144,6 +146,7 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 
 void csg_mesh_number_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
 {
+    CSG_ZONE(c->watch->context, "numbering");
     csg_feature_store *store = &c->store;
     if (!c->sharp || store->index.slots)
         return;
@@ -188,6 +191,7 @@ static bool flip_item(void *user, uint32_t worker, size_t item)
  * does not depend on threads: there are few. Each sees where those before it have gone. */
 static bool order_features(csg_mesh_creases *c, csg_feature_probe *probe)
 {
+    CSG_ZONE(c->watch->context, "features: move");
     enum { ROUNDS = 3 };
     csg_feature_store *store = &c->store;
     size_t moved = 1;
@@ -235,6 +239,7 @@ static bool test_item(void *user, uint32_t worker, size_t item)
 /* Until nothing folds over and nothing meets anything else: in the end all are smooth. */
 static bool settle_rounds(uncrossing *u)
 {
+    CSG_ZONE(u->creases->watch->context, "features: settle");
     csg_mesh_creases *c = u->creases;
     csg_pool *pool = c->watch->context->pool;
     for (size_t changed = 1; changed;) {
@@ -284,6 +289,7 @@ static bool uncross_features(csg_mesh_creases *c, const csg_octree *octree,
 
 csgm_status csg_mesh_settle_features(csg_mesh_creases *c, const csg_octree *octree)
 {
+    CSG_ZONE(c->watch->context, "features: join");
     if (!c->sharp || !octree)
         return CSGM_OK;
     csgm_context *context = c->watch->context;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 #include "mesh/features/emit.h"
 
 /* ---- one block ---------------------------------------------------------------------------------
@@ -186,6 +187,7 @@ static void poll_progress(void *user, size_t done, size_t count)
 
 csgm_status csg_mesh_make_slabs(csg_mesh_output *o, csg_mesh_slabs *slabs)
 {
+    CSG_ZONE(o->watch->context, "marching");
     csgm_status status = CSGM_OK;
     for (size_t i = slabs->count; i-- > 0 && status == CSGM_OK;) {
         status = csg_mesh_take_slab(slabs, i);

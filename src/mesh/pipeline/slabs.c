@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/trace.h"
 
 csgm_status csg_mesh_walk_octree(csg_mesh_slabs *s, const csg_mesh_input *in)
 {
@@ -70,6 +71,7 @@ static bool count_item(void *user, uint32_t worker_index, size_t item)
 static csgm_status sample_slab(csg_mesh_slabs *s, const csg_slab *slab, uint64_t *vertices,
                                uint64_t *triangles)
 {
+    CSG_ZONE(s->watch->context, "slab");
     csgm_status status = csg_octree_sample(s->octree, slab->first_cell, slab->end_cell);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(s->watch) : status;

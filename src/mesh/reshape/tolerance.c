@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "base/trace.h"
 #include "mesh/reshape/decimate.h"
 #include "mesh/reshape/improve.h"
 #include "mesh/reshape/refine.h"
@@ -70,6 +71,7 @@ static csgm_status reach_share(csg_decimation *d, csg_mesh_goal *goal)
 
 static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed *missed)
 {
+    CSG_ZONE(r->context, "decimation");
     csg_decimation d;
     r->error = goal->care * goal->error;
     csgm_status status = csg_decimation_begin(&d, r, missed);
@@ -84,6 +86,7 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
 /* The bound that is proven. */
 static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 {
+    CSG_ZONE(r->context, "distance proof");
     csg_distance_proof proof;
     goal->allowed = goal->error > 0 ? goal->error : r->error;
     goal->bound = INFINITY;
@@ -103,6 +106,7 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 /* What the cells are too large for; where they are free, smaller ones are asked for. */
 static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *missed)
 {
+    CSG_ZONE(r->context, "missed parts");
     *missed = (csg_missed){0};
     if (!(goal->error > 0))
         return CSGM_OK;
@@ -145,6 +149,7 @@ static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
 csgm_status csg_mesh_reshape(csg_mesh_goal *goal, csgm_mesh **mesh, const csg_marching *marching,
                              csg_mesh_watch *watch)
 {
+    CSG_ZONE(watch->context, "reshape");
     csg_remesh remesh;
     double begin_s = csg_clock_now_s();
     csgm_status status = csg_remesh_begin(&remesh, *mesh, marching, watch);
