@@ -22,25 +22,6 @@ static bool looks_along(const float *a, const float *b, const float *c, const fl
            0;
 }
 
-/* Apexes this near to each other are one place: cells. */
-static const double APART = 1e-3;
-
-static bool are_apart(const csg_feature_store *store, const csg_feature *f, const csg_feature *g)
-{
-    double square = 0;
-    for (int i = 0; i < 3; i++)
-        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
-    return square >= APART * APART * store->cell_size * store->cell_size;
-}
-
-/* Whether both halves of a flipped segment look the way their sheets do, as they are. */
-static bool flips_plainly(const csg_feature *f, int s, const csg_feature *g, int t)
-{
-    int s1 = (s + 1) % f->side_count;
-    return looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
-           looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]);
-}
-
 /* A triangle across a crease that is not flipped looks out between its two sheets. */
 static bool stays_outward(const csg_feature *f, int s)
 {
@@ -103,15 +84,22 @@ static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables,
     return false;
 }
 
-/* Both ask the same question. */
+/* Whether both apexes can be joined over side s: both ask the same question. */
 static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
                        int s)
 {
+    static const double APART = 1e-3; /* cells: apexes nearer to each other are one place */
     csg_feature *g = &store->features[f->beyond[s]];
-    int t = f->beyond_side[s];
-    if (!are_apart(store, f, g))
+    int t = f->beyond_side[s], s1 = (s + 1) % f->side_count;
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
+    if (!(square >= APART * APART * store->cell_size * store->cell_size))
         return false;
-    if (!f->takes_next && !g->takes_next && flips_plainly(f, s, g, t))
+    /* both halves of the flipped segment look the way their sheets do, as they are */
+    if (!f->takes_next && !g->takes_next &&
+        looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
+        looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]))
         return true;
     return (csg_feature_cuts_at(store->features, tables, f, s) &&
             csg_feature_cuts_at(store->features, tables, g, t)) ||

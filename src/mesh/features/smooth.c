@@ -6,14 +6,6 @@
 
 #include <string.h>
 
-static uint8_t corner_of(const csg_feature *f, uint8_t edge)
-{
-    uint8_t corner = 0;
-    while (f->edge[corner] != edge)
-        corner++;
-    return corner;
-}
-
 /* The triangles of marching cubes, in corners of the polygon; how many. */
 static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tables,
                                 uint8_t corner[CSG_CELL_EDGES][3])
@@ -25,27 +17,26 @@ static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tab
         edge = own;
     for (int loop = 0; loop < f->loop && !f->joined; loop++)
         edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
-    for (unsigned i = 0; i < 3 * count; i++)
-        corner[i / 3][i % 3] = corner_of(f, edge[i]);
+    for (unsigned i = 0; i < 3 * count; i++) {
+        uint8_t k = 0;
+        while (f->edge[k] != edge[i])
+            k++;
+        corner[i / 3][i % 3] = k;
+    }
     return count;
 }
 
-/* The square of twice the area. */
-static double area_of(const csg_feature *f, const uint8_t corner[3])
-{
-    csg_vec3 at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = csg_vec3_from_floats(f->corner[corner[i]]);
-    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(at[1], at[0]), csg_vec3_sub(at[2], at[0]));
-    return csg_vec3_dot(n, n);
-}
-
+/* By the square of twice the area. */
 static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_EDGES][3], unsigned count)
 {
     double most = -1;
     unsigned largest = 0;
     for (unsigned t = 0; t < count; t++) {
-        double area = area_of(f, corner[t]);
+        csg_vec3 at[3];
+        for (int i = 0; i < 3; i++)
+            at[i] = csg_vec3_from_floats(f->corner[corner[t][i]]);
+        csg_vec3 n = csg_vec3_cross(csg_vec3_sub(at[1], at[0]), csg_vec3_sub(at[2], at[0]));
+        double area = csg_vec3_dot(n, n);
         if (area > most) {
             most = area;
             largest = t;

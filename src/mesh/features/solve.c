@@ -15,25 +15,6 @@ enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS };
 typedef csg_feature_polygon polygon;
 typedef csg_apex apex;
 
-/* Whether all creases that cross a polygon are blunt: one that enters it and is not found where it
- * should leave it fades there: it ends, and smoothly. */
-static bool is_fading(const csg_feature_room *room, const csg_found_loop *loop)
-{
-    float sharpest = 0;
-    for (int s = 0; s < loop->side_count; s++)
-        if (loop->crease[s] >= 0)
-            sharpest = fmaxf(sharpest, room->segments[loop->crease[s]].jump);
-    return sharpest < CSG_FEATURE_FADING;
-}
-
-static bool has_crease(const csg_found_loop *loop)
-{
-    bool any = false;
-    for (int s = 0; s < loop->side_count; s++)
-        any = any || loop->crease[s] >= 0;
-    return any;
-}
-
 /* Sheets are runs of corners between creases; without creases, round a tip, each corner. A single
  * crease is none: a side may pass so near to the axis below the tip of a cone that it looks like
  * one; the polygon may be that round the tip. */
@@ -174,14 +155,21 @@ bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_f
                             sizeof(csg_feature)))
         return false;
     csg_feature *out = &room->features[room->count];
-    bool good = mark_sheets(room, loop, &p);
-    bool crossed = has_crease(loop);
+    bool good = mark_sheets(room, loop, &p), crossed = false;
+    float sharpest = 0;
+    for (int s = 0; s < loop->side_count; s++)
+        if (loop->crease[s] >= 0) {
+            crossed = true;
+            sharpest = fmaxf(sharpest, room->segments[loop->crease[s]].jump);
+        }
     if (!crossed && (!good || !loop->wide) && !loop->joined)
         return true;
     bool found = good && (crossed || loop->wide) && solve_polygon(room, loop, &p, probe, out);
     /* nobody beyond could help a tip: it is for the polygon there to reach */
     bool solved = found && (p.creased || out->state == CSG_FEATURE_SOLVED);
-    bool fades = is_fading(room, loop);
+    /* where all creases are blunt, one that enters the polygon and is not found where it should
+     * leave it fades there: it ends, and smoothly */
+    bool fades = sharpest < CSG_FEATURE_FADING;
     bool creased = p.creased && !fades;
     if (good && creased && !solved)
         leave_unsolved(room, loop, &p, out);
