@@ -30,7 +30,7 @@ typedef struct passage {
     bool is_kinked;
 } passage;
 
-static bool pass_revolve(const double q[3], double rho, passage *p)
+static bool pass_revolve(const float *own, const double q[3], double rho, passage *p)
 {
     double r = length_of(q[0], q[1]), s = r > 0 ? rho / r : 1;
     bool is_clear = s < 0.9;
@@ -43,7 +43,7 @@ static bool pass_revolve(const double q[3], double rho, passage *p)
     return true;
 }
 
-static bool pass_slice(const double q[3], passage *p)
+static bool pass_slice(const float *own, const double q[3], double rho, passage *p)
 {
     p->row[0][0] = p->row[1][1] = 1;
     p->image[0] = q[0];
@@ -101,17 +101,12 @@ static bool pass(const csg_tape_warp *warp, const double q[3], double rho, passa
 {
     *p = (passage){.norm = 1};
     switch (warp->kind) {
-    case CSG_WARP_REVOLVE:
-        return pass_revolve(q, rho, p);
-    case CSG_WARP_SLICE:
-        return pass_slice(q, p);
-    case CSG_WARP_TWIST:
-        return pass_twist(warp->own, q, rho, p);
-    case CSG_WARP_BEND:
-        return pass_bend(warp->own, q, rho, p);
-    default:
-        return false;
+#define CSG_WARP(NAME, name, ...)                                                                  \
+    case CSG_WARP_##NAME:                                                                          \
+        return pass_##name(warp->own, q, rho, p);
+#include "scene/primitives/warps.def"
     }
+    return false;
 }
 
 /* out = m^T J^T */

@@ -105,19 +105,17 @@ static inline warped bend_at(const float *own, point p)
             gz[i] = m[2] * a + m[5] * b + m[8] * c;                                                \
         }                                                                                          \
     }
-#define EACH_WARP(X) X(REVOLVE, revolve) X(SLICE, slice) X(TWIST, twist) X(BEND, bend)
-#define WARP_LOOPS(NAME, name) LOOPS(name)
-EACH_WARP(WARP_LOOPS)
+#define CSG_WARP(NAME, name, ...) LOOPS(name)
+#include "scene/primitives/warps.def"
 
 static void warp_points(const csg_tape_warp *warp, float *x, float *y, float *z, size_t count)
 {
     switch (warp->kind) {
-#define CASE(NAME, name)                                                                           \
+#define CSG_WARP(NAME, name, ...)                                                                  \
     case CSG_WARP_##NAME:                                                                          \
         name##_points(warp, x, y, z, count);                                                       \
         break;
-        EACH_WARP(CASE)
-#undef CASE
+#include "scene/primitives/warps.def"
     }
 }
 
@@ -125,12 +123,11 @@ static void warp_gradients(const csg_tape_warp *warp, const float *x, const floa
                            const float *z, size_t count, float *gx, float *gy, float *gz)
 {
     switch (warp->kind) {
-#define CASE(NAME, name)                                                                           \
+#define CSG_WARP(NAME, name, ...)                                                                  \
     case CSG_WARP_##NAME:                                                                          \
         name##_gradients(warp, x, y, z, count, gx, gy, gz);                                        \
         break;
-        EACH_WARP(CASE)
-#undef CASE
+#include "scene/primitives/warps.def"
     }
 }
 

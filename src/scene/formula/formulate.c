@@ -35,7 +35,7 @@ static point_terms through(csg_terms *t, const csg_affine *a, const csg_term *p)
     return out;
 }
 
-static point_terms twisted(csg_terms *t, const double *v, const csg_term *p)
+static point_terms twist_terms(csg_terms *t, const double *v, const csg_term *p)
 {
     double reach = v[CSG_TWIST_REACH];
     csg_term rho = csg_term_max_number(t, csg_term_norm2(t, p[0], p[1]), reach);
@@ -50,7 +50,7 @@ static point_terms twisted(csg_terms *t, const double *v, const csg_term *p)
 }
 
 /* Behind the ends the angle runs back to 0: |phi| is cut by most (180 - |phi|) / (180 - most). */
-static point_terms bent(csg_terms *t, const double *v, const csg_term *p)
+static point_terms bend_terms(csg_terms *t, const double *v, const csg_term *p)
 {
     double radius = v[CSG_BEND_RADIUS], most = v[CSG_BEND_ANGLE];
     csg_term across = csg_term_number_sub(t, radius, p[2]), s = csg_term_norm2(t, p[0], across);
@@ -63,19 +63,24 @@ static point_terms bent(csg_terms *t, const double *v, const csg_term *p)
     return (point_terms){{along, p[1], csg_term_number_sub(t, radius, s)}};
 }
 
+static point_terms revolve_terms(csg_terms *t, const double *v, const csg_term *p)
+{
+    return (point_terms){{csg_term_norm2(t, p[0], p[1]), p[2], csg_term_number(t, 0)}};
+}
+
+static point_terms slice_terms(csg_terms *t, const double *v, const csg_term *p)
+{
+    return (point_terms){{p[0], p[1], csg_term_number(t, 0)}};
+}
+
 static point_terms warped(csg_terms *t, const csg_warp *warp, const csg_term *p)
 {
-    csg_term zero = csg_term_number(t, 0);
-    switch ((csg_warp_kind)warp->kind) {
-    case CSG_WARP_REVOLVE:
-        return (point_terms){{csg_term_norm2(t, p[0], p[1]), p[2], zero}};
-    case CSG_WARP_SLICE:
-        return (point_terms){{p[0], p[1], zero}};
-    case CSG_WARP_TWIST:
-        return twisted(t, warp->parameters, p);
-    default: /* BEND */
-        return bent(t, warp->parameters, p);
-    }
+    static point_terms (*const terms_of[CSG_WARP_COUNT])(csg_terms *, const double *,
+                                                         const csg_term *) = {
+#define CSG_WARP(NAME, name, ...) [CSG_WARP_##NAME] = name##_terms,
+#include "scene/primitives/warps.def"
+    };
+    return terms_of[warp->kind](t, warp->parameters, p);
 }
 
 static void place_points(work *w)

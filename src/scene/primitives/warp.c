@@ -7,29 +7,6 @@
 
 #define PI 3.14159265358979323846
 
-typedef struct warp_row {
-    const char *name;
-    uint32_t given;
-} warp_row;
-
-static const warp_row rows[CSG_WARP_COUNT] = {
-#define CSG_WARP(NAME, name, given, doc) [CSG_WARP_##NAME] = {#name, given},
-#include "scene/primitives/warps.def"
-#undef CSG_WARP
-};
-
-const char *csg_warp_name(csg_warp_kind kind)
-{
-    assert(kind < CSG_WARP_COUNT);
-    return rows[kind].name;
-}
-
-uint32_t csg_warp_given(csg_warp_kind kind)
-{
-    assert(kind < CSG_WARP_COUNT);
-    return rows[kind].given;
-}
-
 static csg_vec3 vec3(double x, double y, double z)
 {
     return (csg_vec3){x, y, z};
@@ -43,7 +20,17 @@ static double farthest_from_axis(csg_box box)
     return hypot(x, y);
 }
 
-static bool settle_twist(csg_warp *warp, csg_box child, const char **why)
+static bool revolve_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    return true;
+}
+
+static bool slice_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    return true;
+}
+
+static bool twist_settle(csg_warp *warp, csg_box child, const char **why)
 {
     double reach = csg_box_is_empty(child) ? 0 : 1.25 * farthest_from_axis(child);
     *why = "what is twisted must end somewhere";
@@ -51,7 +38,7 @@ static bool settle_twist(csg_warp *warp, csg_box child, const char **why)
     return isfinite(reach);
 }
 
-static bool settle_bend(csg_warp *warp, csg_box child, const char **why)
+static bool bend_settle(csg_warp *warp, csg_box child, const char **why)
 {
     double *v = warp->parameters, radius = v[CSG_BEND_RADIUS];
     const double most = 170 * PI / 180;
@@ -70,23 +57,42 @@ static bool settle_bend(csg_warp *warp, csg_box child, const char **why)
     return v[CSG_BEND_NEAREST] > 1e-3 * radius;
 }
 
-bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why)
+static bool revolve_check(const double *v, csg_refusal *refusal)
 {
-    if (warp->kind == CSG_WARP_TWIST)
-        return settle_twist(warp, child, why);
-    return warp->kind != CSG_WARP_BEND || settle_bend(warp, child, why);
+    return true;
+}
+
+static bool slice_check(const double *v, csg_refusal *refusal)
+{
+    return true;
+}
+
+static bool twist_check(const double *v, csg_refusal *refusal)
+{
+    return v[CSG_TWIST_LOW] <= v[CSG_TWIST_HIGH] ||
+           csg_refuse(refusal, "the twist ends below its beginning");
+}
+
+static bool bend_check(const double *v, csg_refusal *refusal)
+{
+    return csg_check_positive(refusal, v[CSG_BEND_RADIUS], "the radius");
 }
 
 /* ---- points ---------------------------------------------------------------------------------- */
 
-static csg_warped revolve(csg_vec3 p)
+static csg_warped revolve_at(const double *v, csg_vec3 p)
 {
     double rho = hypot(p.x, p.y);
     double cosine = rho > 0 ? p.x / rho : 0, sine = rho > 0 ? p.y / rho : 0;
     return (csg_warped){vec3(rho, p.z, 0), {vec3(cosine, 0, 0), vec3(sine, 0, 0), vec3(0, 1, 0)}};
 }
 
-static csg_warped twist(const double *v, csg_vec3 p)
+static csg_warped slice_at(const double *v, csg_vec3 p)
+{
+    return (csg_warped){vec3(p.x, p.y, 0), {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 0)}};
+}
+
+static csg_warped twist_at(const double *v, csg_vec3 p)
 {
     double low = v[CSG_TWIST_LOW], high = v[CSG_TWIST_HIGH], reach = v[CSG_TWIST_REACH];
     double rate = v[CSG_TWIST_RATE] * (PI / 180), rho = hypot(p.x, p.y);
@@ -106,7 +112,7 @@ static csg_warped twist(const double *v, csg_vec3 p)
     return out;
 }
 
-static csg_warped bend(const double *v, csg_vec3 p)
+static csg_warped bend_at(const double *v, csg_vec3 p)
 {
     double radius = v[CSG_BEND_RADIUS], nearest = v[CSG_BEND_NEAREST], most = v[CSG_BEND_ANGLE];
     double across = radius - p.z, s = hypot(p.x, across), phi = atan2(p.x, across);
@@ -124,41 +130,32 @@ static csg_warped bend(const double *v, csg_vec3 p)
                          vec3(around * sine - outward * cosine, 0, cosine)}};
 }
 
-csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p)
-{
-    switch ((csg_warp_kind)warp->kind) {
-    case CSG_WARP_REVOLVE:
-        return revolve(p);
-    case CSG_WARP_SLICE:
-        return (csg_warped){vec3(p.x, p.y, 0), {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 0)}};
-    case CSG_WARP_TWIST:
-        return twist(warp->parameters, p);
-    default:
-        assert(warp->kind == CSG_WARP_BEND);
-        return bend(warp->parameters, p);
-    }
-}
-
 /* ---- the Lipschitz constant -------------------------------------------------------------------
  * Twist: around the axis, a point's image moves by rho rate for a step along z; the largest
  * singular value of [[1, k], [0, 1]] is (k + sqrt(k^2 + 4)) / 2. Bend: steps around the line grow
  * by radius / s; near the line a step outwards moves the image by radius phi / nearest as well. */
 
-static double bend_constant(const double *v)
+static double revolve_scale(const double *v)
+{
+    return 1;
+}
+
+static double slice_scale(const double *v)
+{
+    return 1;
+}
+
+static double twist_scale(const double *v)
+{
+    double k = fabs(v[CSG_TWIST_RATE]) * (PI / 180) * v[CSG_TWIST_REACH];
+    return 2 / (k + sqrt(k * k + 4));
+}
+
+static double bend_scale(const double *v)
 {
     double most = v[CSG_BEND_ANGLE], grow = v[CSG_BEND_RADIUS] / v[CSG_BEND_NEAREST];
     double around = grow * fmax(1, most / (PI - most)), outward = grow * most;
-    return fmax(around, sqrt(around * around + outward * outward + 1));
-}
-
-double csg_warp_scale(const csg_warp *warp)
-{
-    const double *v = warp->parameters;
-    if (warp->kind == CSG_WARP_TWIST) {
-        double k = fabs(v[CSG_TWIST_RATE]) * (PI / 180) * v[CSG_TWIST_REACH];
-        return 2 / (k + sqrt(k * k + 4));
-    }
-    return warp->kind == CSG_WARP_BEND ? 1 / bend_constant(v) : 1;
+    return 1 / fmax(around, sqrt(around * around + outward * outward + 1));
 }
 
 /* ---- boxes ------------------------------------------------------------------------------------
@@ -170,8 +167,26 @@ static csg_box ring_box(double radius, double low, double high)
                       : (csg_box){{-radius, -radius, low}, {radius, radius, high}};
 }
 
-static csg_box bend_box(double radius, csg_box child, bool all_round)
+static csg_box revolve_box(const double *v, csg_box child, bool all_round)
 {
+    return ring_box(child.max.x, child.min.y, child.max.y);
+}
+
+static csg_box slice_box(const double *v, csg_box child, bool all_round)
+{
+    if (child.min.z > 0 || child.max.z < 0)
+        return csg_box_empty();
+    return (csg_box){{child.min.x, child.min.y, -INFINITY}, {child.max.x, child.max.y, INFINITY}};
+}
+
+static csg_box twist_box(const double *v, csg_box child, bool all_round)
+{
+    return ring_box(farthest_from_axis(child), child.min.z, child.max.z);
+}
+
+static csg_box bend_box(const double *v, csg_box child, bool all_round)
+{
+    double radius = v[CSG_BEND_RADIUS];
     double nearest = fmax(radius - child.max.z, 0), farthest = fmax(radius - child.min.z, 0);
     double low = fmax(child.min.x / radius, -PI), high = fmin(child.max.x / radius, PI);
     low = all_round ? -PI : low;
@@ -193,22 +208,71 @@ static csg_box bend_box(double radius, csg_box child, bool all_round)
     return isfinite(farthest) ? box : csg_box_all();
 }
 
+/* ---- the table --------------------------------------------------------------------------------
+ * A function that a warp lacks is an error here that names it.
+ */
+
+typedef struct warp_row {
+    const char *name;
+    uint32_t given;
+    unsigned traits;
+    bool (*check)(const double *v, csg_refusal *refusal);
+    bool (*settle)(csg_warp *warp, csg_box child, const char **why);
+    csg_warped (*at)(const double *v, csg_vec3 p);
+    double (*scale)(const double *v);
+    csg_box (*box)(const double *v, csg_box child, bool all_round);
+} warp_row;
+
+static const warp_row rows[CSG_WARP_COUNT] = {
+#define CSG_WARP(NAME, name, given, traits, doc)                                                   \
+    [CSG_WARP_##NAME] = {#name,         given,     traits,       name##_check,                     \
+                         name##_settle, name##_at, name##_scale, name##_box},
+#include "scene/primitives/warps.def"
+};
+
+static const warp_row *row_of(csg_warp_kind kind)
+{
+    assert(kind < CSG_WARP_COUNT);
+    return &rows[kind];
+}
+
+const char *csg_warp_name(csg_warp_kind kind)
+{
+    return row_of(kind)->name;
+}
+
+uint32_t csg_warp_given(csg_warp_kind kind)
+{
+    return row_of(kind)->given;
+}
+
+unsigned csg_warp_traits(csg_warp_kind kind)
+{
+    return row_of(kind)->traits;
+}
+
+bool csg_warp_check(const csg_warp *warp, csg_refusal *refusal)
+{
+    return row_of(warp->kind)->check(warp->parameters, refusal);
+}
+
+bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    return row_of(warp->kind)->settle(warp, child, why);
+}
+
+csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p)
+{
+    return row_of(warp->kind)->at(warp->parameters, p);
+}
+
+double csg_warp_scale(const csg_warp *warp)
+{
+    return row_of(warp->kind)->scale(warp->parameters);
+}
+
 csg_box csg_warp_box(const csg_warp *warp, csg_box child, bool all_round)
 {
-    if (csg_box_is_empty(child))
-        return child;
-    switch ((csg_warp_kind)warp->kind) {
-    case CSG_WARP_REVOLVE:
-        return ring_box(child.max.x, child.min.y, child.max.y);
-    case CSG_WARP_SLICE:
-        if (child.min.z > 0 || child.max.z < 0)
-            return csg_box_empty();
-        return (csg_box){{child.min.x, child.min.y, -INFINITY},
-                         {child.max.x, child.max.y, INFINITY}};
-    case CSG_WARP_TWIST:
-        return ring_box(farthest_from_axis(child), child.min.z, child.max.z);
-    default:
-        assert(warp->kind == CSG_WARP_BEND);
-        return bend_box(warp->parameters[CSG_BEND_RADIUS], child, all_round);
-    }
+    return csg_box_is_empty(child) ? child
+                                   : row_of(warp->kind)->box(warp->parameters, child, all_round);
 }

@@ -11,13 +11,18 @@
 #include <stdint.h>
 
 #include "base/geometry.h"
+#include "scene/primitives/sizes.h"
 
 typedef enum csg_warp_kind {
-#define CSG_WARP(NAME, name, given, doc) CSG_WARP_##NAME,
+#define CSG_WARP(NAME, ...) CSG_WARP_##NAME,
 #include "scene/primitives/warps.def"
-#undef CSG_WARP
     CSG_WARP_COUNT
 } csg_warp_kind;
+
+enum {
+    CSG_WARP_IS_FLAT = 1, /* its field does not depend on z */
+    CSG_WARP_IS_CUT = 2   /* needs its child's box, and the builder cuts what lies outside */
+};
 
 enum {
     CSG_WARP_PARAMETERS = 5,
@@ -35,6 +40,9 @@ enum { CSG_BEND_RADIUS, CSG_BEND_NEAREST, CSG_BEND_ANGLE /* radians */ };
 
 const char *csg_warp_name(csg_warp_kind kind);
 uint32_t csg_warp_given(csg_warp_kind kind);
+unsigned csg_warp_traits(csg_warp_kind kind);
+/* The parameters given; finite. */
+bool csg_warp_check(const csg_warp *warp, csg_refusal *refusal);
 
 /* Fills in what depends on the box of the child's solid. False: the warp cannot be done: the box is
  * infinite or reaches where the map tears; *why says so in one sentence. */

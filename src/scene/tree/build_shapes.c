@@ -142,7 +142,7 @@ static csg_node_id append_warp(csg_scene_builder *builder, const csg_warp *warp,
     scene->warps = warps;
     scene->warps[scene->warp_count] = *warp;
     csg_node node = {.kind = CSG_NODE_WARP,
-                     .flags = warp->kind == CSG_WARP_SLICE ? CSG_FLAG_FLAT : 0,
+                     .flags = csg_warp_traits(warp->kind) & CSG_WARP_IS_FLAT ? CSG_FLAG_FLAT : 0,
                      .payload = (uint32_t)scene->warp_count++,
                      .where = where};
     return csg_build_append(builder, node, &child, 1);
@@ -192,12 +192,29 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
                               2, where);
 }
 
+/* What is left of a warp that is cut, child: the box of what it warps. */
+static csg_node_id room_of(csg_scene_builder *builder, const csg_warp *warp, csg_box child,
+                           csg_span where)
+{
+    switch ((csg_warp_kind)warp->kind) {
+    case CSG_WARP_TWIST:
+        return wall(builder, warp, where);
+    case CSG_WARP_BEND:
+        return bend_room(builder, warp, child, where);
+    case CSG_WARP_REVOLVE: /* these are not cut */
+    case CSG_WARP_SLICE:
+    case CSG_WARP_COUNT:
+        break;
+    }
+    return CSG_NODE_NONE;
+}
+
 /* Checks and settles the warp of a child that is not empty. *box: of the child's solid, where the
  * warp needs it; false after a failure. */
 static bool settle(csg_scene_builder *builder, csg_warp *warp, csg_node_id child, csg_box *box)
 {
     const char *why = "";
-    bool needs_box = warp->kind == CSG_WARP_TWIST || warp->kind == CSG_WARP_BEND;
+    bool needs_box = csg_warp_traits(warp->kind) & CSG_WARP_IS_CUT;
     *box = needs_box ? csg_build_box(builder, child) : csg_box_all();
     if (builder->status != CSGM_OK)
         return false;
@@ -233,10 +250,9 @@ csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *given, cs
     if (csg_box_is_empty(box))
         return csg_build_empty(builder, where);
     csg_node_id warped = append_warp(builder, &warp, child, where);
-    if (warped == CSG_NODE_NONE || (warp.kind != CSG_WARP_TWIST && warp.kind != CSG_WARP_BEND))
+    if (warped == CSG_NODE_NONE || !(csg_warp_traits(warp.kind) & CSG_WARP_IS_CUT))
         return warped;
-    csg_node_id room = warp.kind == CSG_WARP_TWIST ? wall(builder, &warp, where)
-                                                   : bend_room(builder, &warp, box, where);
+    csg_node_id room = room_of(builder, &warp, box, where);
     return room == CSG_NODE_NONE
                ? room
                : csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},

@@ -37,12 +37,6 @@ static bool check_range(csg_scene_builder *builder, double value, const char *wh
     return is_fine(builder, csg_check_range(&refusal, value, what), &refusal);
 }
 
-static bool check_positive(csg_scene_builder *builder, double value, const char *what)
-{
-    csg_refusal refusal = {0};
-    return is_fine(builder, csg_check_positive(&refusal, value, what), &refusal);
-}
-
 static bool check_not_negative(csg_scene_builder *builder, double value, const char *what)
 {
     csg_refusal refusal = {0};
@@ -207,10 +201,9 @@ bool csg_check_warp(csg_scene_builder *builder, const csg_warp *warp, csg_node_i
     for (uint32_t i = 0; i < csg_warp_given(warp->kind); i++)
         if (!check_range(builder, v[i], "a number of the deformation"))
             return false;
-    if (warp->kind == CSG_WARP_BEND && !check_positive(builder, v[CSG_BEND_RADIUS], "the radius"))
+    csg_refusal refusal = {0};
+    if (!is_fine(builder, csg_warp_check(warp, &refusal), &refusal))
         return false;
-    if (warp->kind == CSG_WARP_TWIST && !(v[CSG_TWIST_LOW] <= v[CSG_TWIST_HIGH]))
-        csg_check_fail(builder, CSGM_ERR_SCENE, "the twist ends below its beginning");
     if (builder->scene->nodes[child].warps >= CSG_MOST_WARPS)
         csg_check_fail(builder, CSGM_ERR_SCENE, "more than %d deformations one inside the other",
                        CSG_MOST_WARPS);
