@@ -92,7 +92,7 @@ static void add_raw_points(test_points *points)
 static void check_intervals(const csg_kernel *kernel, const csg_kernel *scalar,
                             const csg_tape *tape, const test_points *points, const char *what)
 {
-    enum { MOST_NODES = 64 };
+    enum { MOST_NODES = 256 };
     float low[2][MOST_NODES * CSG_OCTANTS], high[2][MOST_NODES * CSG_OCTANTS];
     static float scratch[1 << 16];
     assert_true(tape->count <= MOST_NODES);
