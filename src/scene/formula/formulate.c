@@ -75,12 +75,19 @@ static point_terms slice_terms(csg_terms *t, const double *v, const csg_term *p)
 
 static point_terms warped(csg_terms *t, const csg_warp *warp, const csg_term *p)
 {
-    static point_terms (*const terms_of[CSG_WARP_COUNT])(csg_terms *, const double *,
-                                                         const csg_term *) = {
-#define CSG_WARP(NAME, name, ...) [CSG_WARP_##NAME] = name##_terms,
-#include "scene/primitives/warps.def"
-    };
-    return terms_of[warp->kind](t, warp->parameters, p);
+    switch ((csg_warp_kind)warp->kind) { /* no default: a warp that is missing does not compile */
+    case CSG_WARP_REVOLVE:
+        return revolve_terms(t, warp->parameters, p);
+    case CSG_WARP_SLICE:
+        return slice_terms(t, warp->parameters, p);
+    case CSG_WARP_TWIST:
+        return twist_terms(t, warp->parameters, p);
+    case CSG_WARP_BEND:
+        return bend_terms(t, warp->parameters, p);
+    case CSG_WARP_COUNT:
+        break;
+    }
+    return (point_terms){{p[0], p[1], p[2]}};
 }
 
 static void place_points(work *w)
