@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "base/pool.h"
+#include "base/scene_codes.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * JSON for the library's customers: the reader of parameter sets, with its findings as diagnostics.
  */
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "csgmesh/csgmesh.h"
 #include "text/json.h"
 #include "text/source.h"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/context.h"
 
+#include "base/mesh_codes.h"
+
 csgm_status csg_context_no_memory(csgm_context *context)
 {
     uint64_t limit = context->memory.limit_bytes;

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "base/screen.h"
 
 static const struct {
@@ -15,7 +17,8 @@ static const struct {
     const char *summary;
 } rows[] = {
 #define CSG_DIAG(name, number, severity, summary) {CSG_DIAG_##name, severity, summary},
-#include "base/diagnostics.def"
+#include "base/mesh_codes.def"
+#include "base/scene_codes.def"
 #undef CSG_DIAG
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Where findings go: counted, summed up where they repeat, and handed to the user's callback. The
- * codes are one table, diagnostics.def. text/source.h turns a span into file, line and column and
- * reports through this.
+ * codes stand in two tables, scene_codes.def and mesh_codes.def. text/source.h turns a span into
+ * file, line and column and reports through this.
  *
  * What is shown: each error, the first hundred of them with their line and hint; each warning of
  * what a mesh or file lacks; of other warnings the first few of each kind in each file, and how
@@ -16,11 +16,7 @@
 
 #include "csgmesh/csgmesh.h"
 
-typedef enum csg_diag_code {
-#define CSG_DIAG(name, number, severity, summary) CSG_DIAG_##name = (number),
-#include "base/diagnostics.def"
-#undef CSG_DIAG
-} csg_diag_code;
+typedef uint32_t csg_diag_code; /* CSG_DIAG_ of scene_codes.h or mesh_codes.h */
 
 enum {
     CSG_DIAG_ERRORS_IN_FULL = 100, /* errors with their source line, hint and notes */

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "base/places.h"
 #include "base/pool.h"
 #include "base/trace.h"

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "field/field.h"
+#include "field/rule_layout.h"
 
 static const char *const op_names[CSG_OP_COUNT] = {
 #define CSG_PRIMITIVE(NAME, name, ...) [CSG_OP_##NAME] = #name,
@@ -23,7 +24,7 @@ static const char *const op_names[CSG_OP_COUNT] = {
 };
 
 static const char *const curve_names[] = {
-#define CSG_FALLOFF(NAME, name, iso, steepest, doc) [CSG_CURVE_##NAME] = #name,
+#define CSG_FALLOFF(NAME, name, iso, steepest, steepest_at, doc) [CSG_CURVE_##NAME] = #name,
 #include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
     [CSG_CURVE_STEP] = "step",

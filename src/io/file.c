@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/formats.h"
 

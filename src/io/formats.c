@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <strings.h>
 
+#include "base/mesh_codes.h"
 #include "io/format_table.h"
 
 /* ---- the table -------------------------------------------------------------------- */

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"

@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "base/mesh_codes.h"
+
 csgm_status csg_sink_open(csg_sink *sink, csgm_context *context, int fd, const char *name)
 {
     *sink = (csg_sink){.context = context, .fd = fd, .name = name};

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/mesh_codes.h"
 #include "io/file.h"
 #include "io/format_table.h"
 

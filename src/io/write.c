@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/file.h"
 #include "io/format_table.h"

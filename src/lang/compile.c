@@ -5,6 +5,7 @@
  * with a large stack (address space only, until it is used) and stop with a finding before its end.
  * The caller's callbacks must run on the caller's thread: the worker hands each one over and waits.
  */
+#include "base/scene_codes.h"
 #include "lang/lang.h"
 
 #include <errno.h>

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/geometry.h"
+#include "base/mesh_codes.h"
 #include "mesh/weld.h"
 
 enum { INSERTION_SORT_MOST = 24 };

@@ -4,6 +4,7 @@
 #include "mesh/watch.h"
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 
 void csg_mesh_watch_begin(csg_mesh_watch *w, csgm_context *context, const csgm_monitor *monitor,
                           double limit_from_s)

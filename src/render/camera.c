@@ -6,6 +6,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/mesh_codes.h"
+
 enum { AROUND = 32, MOST_CORNERS = 2 * AROUND };
 
 static const double MARGIN = 1.06; /* how much larger the picture is than what it frames */

@@ -5,6 +5,7 @@
 
 #include <strings.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/file.h"
 

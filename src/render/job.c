@@ -4,6 +4,7 @@
 #include "render/job.h"
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 
 enum { MOST_SAMPLES = 8 };
 

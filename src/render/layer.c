@@ -7,6 +7,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "field/kernels/dispatch.h"
 #include "scene/boxes/bounds.h"
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "render/layer.h"

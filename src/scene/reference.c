@@ -4,6 +4,9 @@
  */
 #include "scene/reference.h"
 
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
+
 typedef struct workspace {
     csg_vec3 *points; /* per node, in its own frame */
     csg_sample *samples;

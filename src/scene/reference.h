@@ -15,8 +15,7 @@ typedef struct csg_sample {
 csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p);
 
 /* f_b(x, n) and its derivative (operators.md 2.1), x >= 0. Not for SHARP and ROUND. */
-void csg_reference_blend_function(csg_blend_kind kind, double n, double x, double *value,
-                                  double *derivative);
+void csg_reference_blend_function(csg_blend blend, double x, double *value, double *derivative);
 
 /* Union of k >= 1 values: G and its partial derivatives (sections 2.2 and 12). FOLD blends need
  * k = 2. Intersection: -G(-f); difference: -G(-f1, f2, ...). */

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * Names and numbers of primitives and blends, read out of primitives.def and operators.def.
+ * Names and numbers of primitives, read out of primitives.def, and what nodes say of themselves.
  */
 #include "scene/scene.h"
 
 #include <assert.h>
+
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 
 typedef struct kind_row {
     const char *name;
@@ -34,79 +37,6 @@ uint32_t csg_primitive_parameter_count(csg_node_kind kind)
     return kinds[kind].parameter_count;
 }
 
-typedef struct blend_row {
-    const char *name;
-    double raw, support, excess;
-    bool area, fold, smooth, convex;
-} blend_row;
-
-static const blend_row blends[CSG_BLEND_COUNT] = {
-#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
-    [CSG_BLEND_##NAME] = {#name, raw, support, excess, area, false, smooth, convex},
-#define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
-    [CSG_BLEND_##NAME] = {#name, raw, support, excess, area, true, smooth, convex},
-#include "scene/operators/operators.def"
-};
-
-const char *csg_blend_name(csg_blend_kind kind)
-{
-    assert(kind < CSG_BLEND_END);
-    if (csg_blend_is_rule(kind))
-        return csg_rule_name(kind);
-    return kind == CSG_BLEND_ORTHOGONAL ? "orthogonal" : blends[kind].name;
-}
-
-double csg_blend_raw(csg_blend_kind kind, double width)
-{
-    assert(kind < CSG_BLEND_COUNT);
-    return blends[kind].raw * width;
-}
-
-double csg_blend_support(csg_blend blend)
-{
-    if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL)
-        return 0;
-    if (csg_blend_is_rule(blend.kind))
-        return INFINITY;
-    return blends[blend.kind].support * blend.n;
-}
-
-double csg_blend_excess(csg_blend blend, uint32_t operands)
-{
-    if (blend.kind == CSG_BLEND_SHARP || blend.kind == CSG_BLEND_ORTHOGONAL || operands < 2)
-        return 0;
-    if (csg_blend_is_rule(blend.kind))
-        return INFINITY;
-    if (blend.kind == CSG_BLEND_ROUND)
-        return blend.n * (1 - 1 / sqrt((double)operands));
-    double two = blends[blend.kind].excess * (blends[blend.kind].area ? sqrt(blend.n) : blend.n);
-    return two * (operands - 1); /* each step of the fold exceeds the one before by that much */
-}
-
-bool csg_blend_is_fold(csg_blend_kind kind)
-{
-    return csg_blend_is_rule(kind) ? csg_rule_is_fold(kind) : blends[kind].fold;
-}
-
-bool csg_blend_is_smooth(csg_blend_kind kind)
-{
-    return kind < CSG_BLEND_COUNT && blends[kind].smooth;
-}
-
-bool csg_blend_is_convex(csg_blend_kind kind)
-{
-    return kind < CSG_BLEND_COUNT && blends[kind].convex;
-}
-
-csg_blend csg_blend_scale(csg_blend blend, double factor)
-{
-    if (csg_blend_is_rule(blend.kind))
-        return blend;
-    bool area = blend.kind < CSG_BLEND_COUNT && blends[blend.kind].area;
-    blend.n *= area ? factor * factor : factor;
-    return blend;
-}
-
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
 {
     return (csg_blend){(csg_blend_kind)node->blend, scene->parameters[node->payload]};
@@ -119,6 +49,12 @@ uint32_t csg_node_parameter_count(const csg_node *node)
     bool fields = csg_blend_takes_fields(node->blend) ||
                   (node->blend == CSG_BLEND_SHARP && (node->flags & CSG_FLAG_SOFT));
     return fields ? CSG_OPERATOR_FIELD_PARAMETERS : 1;
+}
+
+const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)
+{
+    bool has = csg_node_is_operator((csg_node_kind)node->kind) && csg_blend_is_rule(node->blend);
+    return has ? &scene->rules[(size_t)scene->parameters[node->payload]] : NULL;
 }
 
 csg_soft csg_scene_soft(const csgm_scene *scene, const csg_node *node)

@@ -32,9 +32,15 @@
 #include "base/geometry.h"
 #include "base/span.h"
 #include "scene/formula/formula.h"
-#include "scene/operators/rule.h"
+#include "scene/operators/blend.h"
 #include "scene/primitives/warp.h"
 #include "shape/shape.h"
+
+/* scene/operators/: rule.h, soft.h; who looks into them includes those, so that a row of
+ * their tables does not rebuild everything. */
+typedef struct csg_rule csg_rule;
+typedef struct csg_soft csg_soft;
+typedef struct csg_operand csg_operand;
 
 typedef uint32_t csg_node_id;
 #define CSG_NODE_NONE UINT32_MAX
@@ -76,22 +82,6 @@ static inline bool csg_node_is_operator(csg_node_kind kind)
 const char *csg_node_kind_name(csg_node_kind kind);
 /* Doubles in a primitive's payload; a field and a shape have none. */
 uint32_t csg_primitive_parameter_count(csg_node_kind kind);
-
-const char *csg_blend_name(csg_blend_kind kind); /* as in the scene language */
-/* n for the language's width w (operators.md 13). */
-double csg_blend_raw(csg_blend_kind kind, double width);
-/* chi: operands that differ by this or more do not blend; INFINITY for some, and for rules
- * (csg_scene_support). */
-double csg_blend_support(csg_blend blend);
-/* Largest value of G - max over `operands` operands; INFINITY for rules (csg_scene_excess). */
-double csg_blend_excess(csg_blend blend, uint32_t operands);
-bool csg_blend_is_fold(csg_blend_kind kind);
-/* smooth and convex of operators.def; false for ORTHOGONAL and for rules. */
-bool csg_blend_is_smooth(csg_blend_kind kind);
-bool csg_blend_is_convex(csg_blend_kind kind);
-/* The blend as a solid scaled by `factor` needs it: areas grow with its square. Rules stay as they
- * are (csg_rule_scale). */
-csg_blend csg_blend_scale(csg_blend blend, double factor);
 
 typedef struct csg_color {
     float r, g, b, a; /* 0..1, sRGB */
@@ -183,11 +173,7 @@ static inline const double *csg_scene_parameters(const csgm_scene *scene, const 
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 
 /* The rule of an operator that has one, else NULL. */
-static inline const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)
-{
-    bool has = csg_node_is_operator((csg_node_kind)node->kind) && csg_blend_is_rule(node->blend);
-    return has ? &scene->rules[(size_t)scene->parameters[node->payload]] : NULL;
-}
+const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node);
 /* lambda of a soft node, in its own frame: F = 1/2 + lambda f. 0 where it is not soft. */
 static inline double csg_scene_softness(const csgm_scene *scene, csg_node_id id)
 {

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "scene/operators/rule.h"
 #include "shape/plane/polygons.h"
 #include "solid/measure.h"
 #include "solid/operations.h"
@@ -120,7 +121,7 @@ static csg_node_id wedge(csg_solid_job *job, double angle)
     if (sides[0] == CSG_NODE_NONE || sides[1] == CSG_NODE_NONE)
         return CSG_NODE_NONE;
     return csg_build_operator(builder, angle <= 180 ? CSG_NODE_INTERSECTION : CSG_NODE_UNION,
-                              (csg_blend){CSG_BLEND_SHARP, 0}, sides, 2, where);
+                              CSG_SHARP, sides, 2, where);
 }
 
 /* A figure that touches the axis goes on behind it, so that the axis is no edge. */
@@ -190,8 +191,7 @@ csg_node_id csg_solid_turn(csg_solid_job *job, csg_node_id flat, double angle, d
     cut = csg_solid_moved(job, csg_solid_done(job, cut), &by);
     if (cut == CSG_NODE_NONE)
         return cut;
-    return csg_solid_done(job, csg_build_operator(job->builder, CSG_NODE_INTERSECTION,
-                                                  (csg_blend){CSG_BLEND_SHARP, 0},
+    return csg_solid_done(job, csg_build_operator(job->builder, CSG_NODE_INTERSECTION, CSG_SHARP,
                                                   (csg_node_id[]){node, cut}, 2, where));
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/primitive.h"
 #include "solid/measure.h"
@@ -55,7 +56,7 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
         return false;
     if (csg_node_is_operator(node->kind) &&
         !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
-        (node->blend != CSG_BLEND_SHARP || (!joins && !meets)))
+        (!csg_blend_is_sharp(node->blend) || (!joins && !meets)))
         return false;
     for (uint32_t i = 0; i < node->child_count; i++) {
         bool flips = node->kind == CSG_NODE_DIFFERENCE && i > 0;

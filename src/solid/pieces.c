@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -95,7 +96,7 @@ static bool is_transparent(const csgm_scene *scene, const csg_solid_piece *piece
         return r > 0 && factor > 0;
     }
     case CSG_NODE_UNION:
-        return node->blend == CSG_BLEND_SHARP;
+        return csg_blend_is_sharp(node->blend);
     default:
         return false;
     }

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "base/utf8.h"
 
 typedef enum place { IN_CODE, IN_STRING, IN_COMMENT } place;

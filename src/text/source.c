@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "base/trace.h"
 #include "base/utf8.h"
 

@@ -11,6 +11,8 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 
 static const char line[] = "  sphere(r = -1);";
 
@@ -195,7 +197,8 @@ static const char *name_of(int number)
 #define CSG_DIAG(name, number, severity, summary)                                                  \
     case number:                                                                                   \
         return #name;
-#include "base/diagnostics.def"
+#include "base/mesh_codes.def"
+#include "base/scene_codes.def"
 #undef CSG_DIAG
     default:
         return NULL;

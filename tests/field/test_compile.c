@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/field_support.h"
+#include "scene/operators/blend_kinds.h"
 
 #define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})
 

@@ -10,6 +10,7 @@
 #include "field/compile/compile_curve.h"
 #include "field/cones/cone_curve.h"
 #include "field/field_support.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/primitive.h"
 
 #include <float.h>

@@ -9,6 +9,7 @@
 
 #include "field/field_support.h"
 #include "field/kernels/functions.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/random_formula.h"
 
 /* ---- functions ------------------------------------------------------------------------------ */

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "field/field_support.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/primitive.h"
 
 enum frame_kind {

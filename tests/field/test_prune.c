@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "field/prune_support.h"
+#include "scene/operators/blend_kinds.h"
 
 static void test_random_scenes(void **state)
 {

@@ -11,6 +11,8 @@
 #include <string.h>
 
 #include "field/prune_support.h"
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 
 static const csg_blend_kind kinds[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) CSG_BLEND_##NAME,

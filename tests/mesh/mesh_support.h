@@ -9,6 +9,7 @@
 #include "field/kernels/dispatch.h"
 #include "mesh/inspect.h"
 #include "mesh/pipeline/parts.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/random_scene.h"
 #include "scene/scene_support.h"
 

@@ -7,6 +7,7 @@
 
 #include "grid/certify/certify.h"
 #include "mesh/mesh_support.h"
+#include "scene/operators/blend_kinds.h"
 
 static uint32_t pose_count = 8;
 

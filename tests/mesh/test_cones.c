@@ -6,6 +6,7 @@
 
 #include "field/cones/cone.h"
 #include "mesh/mesh_support.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/random_formula.h"
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"

@@ -2,6 +2,7 @@
  * Builds that do not end well: cancelled at any moment, out of time, over the memory limit, and
  * with each allocation refused in turn. Each says why, once, and gives back what it took.
  */
+#include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
 
 #include <stdatomic.h>

@@ -14,6 +14,7 @@
 
 #include "base/random.h"
 #include "mesh/weld.h"
+#include "scene/operators/blend_kinds.h"
 
 static unsigned pose_count = 4;
 

@@ -2,6 +2,7 @@
  * Solids that make meshers leak: touching ones, faces that coincide or run through lattice points,
  * cut by the bounds, tiny, thin, empty, and far from the origin.
  */
+#include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
 
 #include <stdio.h>

@@ -2,6 +2,7 @@
  * Meshes of solids that are known in closed form: volumes within 0.1 % at 256 cells, vertices on
  * exact surfaces, fillets on their arc.
  */
+#include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
 
 #define PI 3.14159265358979323846

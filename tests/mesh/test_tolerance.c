@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
 
 static unsigned scene_count = 6, first_scene = 0;

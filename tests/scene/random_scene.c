@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "random_rule.h"
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 #include "scene/primitives/primitive.h"
 
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };

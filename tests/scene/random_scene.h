@@ -7,6 +7,7 @@
 #define TEST_RANDOM_SCENE_H
 
 #include "base/random.h"
+#include "scene/operators/rule.h"
 #include "scene/tree/build.h"
 
 /* A scene of about that many primitives (>= 1); CSG_NODE_NONE when the builder failed. */

@@ -2,6 +2,7 @@
  * Solids made of figures of the plane and of warps; see random_scene.h.
  */
 #include "random_scene.h"
+#include "scene/operators/blend_kinds.h"
 
 static const csg_span nowhere = {.source = UINT32_MAX};
 

@@ -3,6 +3,7 @@
  * not negative and sum to 1 (so K = 1), monotone, translation, commutative, inert operands change
  * no bit, the excess and the support of operators.def are met and exact.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_support.h"
 
 #include <string.h>
@@ -252,10 +253,10 @@ static void check_slopes(csg_blend blend)
     enum { STEPS = 1000 };
     double support = csg_blend_support(blend), end = isinf(support) ? 50 : support;
     double value, slope, first, before, least = 0;
-    csg_reference_blend_function(blend.kind, blend.n, 0, &value, &first);
+    csg_reference_blend_function(blend, 0, &value, &first);
     before = first;
     for (int i = 1; i < STEPS; i++) {
-        csg_reference_blend_function(blend.kind, blend.n, end * i / STEPS, &value, &slope);
+        csg_reference_blend_function(blend, end * i / STEPS, &value, &slope);
         least = fmin(least, slope - before);
         before = slope;
     }

@@ -3,6 +3,8 @@
  * node, and the two-level scheme, whose clamped values must have the plain field's sign everywhere
  * and its value inside the band.
  */
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 #include "scene_fixture.h"
 
 #include <stdlib.h>

@@ -2,6 +2,7 @@
  * What the builder makes of nodes: the shape of the sealed tree, refused parameters, limits, very
  * deep trees, and every allocation failing once.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_support.h"
 
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * around once, for polygons up to the tolerance and for what is traced up to a cell; areas;
  * trouble.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_support.h"
 
 #include <limits.h>

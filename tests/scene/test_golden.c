@@ -5,6 +5,7 @@
  * scenes.
  */
 #include "golden_rows.h"
+#include "scene/operators/blend_kinds.h"
 
 static const double tolerance = 1e-12;
 
@@ -20,8 +21,8 @@ static csg_blend_kind blend_of(const char *k)
 static void check_function(const row *r)
 {
     double value, derivative;
-    csg_reference_blend_function(blend_of(r->fields[1]), number(r->fields[3]), number(r->fields[2]),
-                                 &value, &derivative);
+    csg_blend blend = {blend_of(r->fields[1]), number(r->fields[3])};
+    csg_reference_blend_function(blend, number(r->fields[2]), &value, &derivative);
     test_near(value, number(r->fields[4]), tolerance);
     test_near(derivative, number(r->fields[5]), tolerance);
 }

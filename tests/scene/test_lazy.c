@@ -3,6 +3,8 @@
  * everywhere and its value in the band, counts are those of the worked example, and the cases in
  * which plainer boxes go wrong do so here too.
  */
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 #include "scene_fixture.h"
 
 #include <stdlib.h>

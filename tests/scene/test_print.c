@@ -2,6 +2,7 @@
  * The printed tree: exact text of each kind of node, numbers that read back, depth without
  * recursion, memory. (That the text parses back to the same tree is tested with the parser.)
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_fixture.h"
 
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * Lipschitz constant, gradients agree with central differences, |f| is a lower bound of the
  * distance, and pruning by support changes nothing. Small hand-made trees fix the signs.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_fixture.h"
 
 #include "random_scene.h"

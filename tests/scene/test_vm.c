@@ -2,6 +2,7 @@
  * Scenes as formulas and as .vm tapes: the same values as the reference, also after a tape was read
  * back; operations that only tapes have; tapes that are wrong.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene_fixture.h"
 
 #include <stdio.h>

@@ -125,7 +125,7 @@ def steps():
 def falloffs():
     rows = [[code(f'"{name}"'), doc.replace("^2", "²").replace("^4", "⁴").replace("^6", "⁶").replace("^3", "³"),
              f"{float(iso):.6f}", f"{float(steepest):.6f}"]
-            for _, (_, name, iso, steepest, doc) in calls("src/scene/operators/falloffs.def")]
+            for _, (_, name, iso, steepest, _, doc) in calls("src/scene/operators/falloffs.def")]
     return table(["falloff", "P(d)", "1/2 at d =", "steepest"], rows)
 
 
@@ -139,7 +139,8 @@ def unsupported():
 
 def diagnostics():
     rows = []
-    for _, (_, number, severity, summary) in calls("src/base/diagnostics.def"):
+    tables = [*calls("src/base/scene_codes.def"), *calls("src/base/mesh_codes.def")]
+    for _, (_, number, severity, summary) in tables:
         word = severity.removeprefix("CSGM_").lower()
         rows.append([f"{word[0].upper()}{int(number):04d}", word, summary])
     return table(["code", "severity", "what was found"], rows)

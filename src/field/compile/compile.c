@@ -11,6 +11,8 @@
 #include "field/field.h"
 #include "field/kernels/dispatch.h"
 #include "field/kernels/warp_kernel.h"
+#include "field/rule_layout.h"
+#include "scene/operators/soft.h"
 #include "scene/primitives/point.h"
 
 /* What a node inherits from its ancestors. */

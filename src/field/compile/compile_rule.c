@@ -5,13 +5,36 @@
 
 #include <math.h>
 
+#include "field/rule_layout.h"
+#include "scene/operators/soft.h"
+#include "scene/operators/steps.h"
+
 #define RADIANS (3.14159265358979323846 / 180)
 
 bool csg_rule_works_on_complements(csg_blend_kind kind, bool is_union)
 {
-    if (kind == CSG_BLEND_SCALE_SET) /* made of an intersection, sums of a union */
+    switch (kind) {
+    case CSG_BLEND_SCALE_SET: /* made of an intersection */
         return is_union;
-    return !is_union && (kind == CSG_BLEND_SOFT_SUM || kind == CSG_BLEND_SOFT_SET);
+    case CSG_BLEND_SOFT_SUM: /* sums are made of a union */
+    case CSG_BLEND_SOFT_SET:
+        return !is_union;
+    case CSG_BLEND_EXTERIOR:
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_ARC:
+    case CSG_BLEND_ARC_SHARP:
+    case CSG_BLEND_FIELD_SHARP: /* has a formula of each */
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
+    }
+    return false;
 }
 
 void csg_deliver_pack(csg_form form, bool flip, double scale, double shift,
@@ -122,7 +145,18 @@ size_t csg_rule_pack(const csg_rule *rule, bool is_union, double factor, double 
         return CSG_SCALE_OMEGA + 1;
     case CSG_BLEND_ARC:
         return pack_arc(rule, is_union, values);
-    default: /* kernels read the scale function's wherever there is none */
-        return CSG_SCALE_OMEGA + 1;
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_ARC_SHARP:
+    case CSG_BLEND_FIELD_SHARP:
+    case CSG_BLEND_PROFILE:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break; /* none of its own; kernels read the scale function's wherever there is none */
     }
+    return CSG_SCALE_OMEGA + 1;
 }

@@ -5,7 +5,9 @@
 #ifndef CSG_FIELD_COMPILE_RULE_H
 #define CSG_FIELD_COMPILE_RULE_H
 
+#include "field/rule_layout.h"
 #include "field/tape.h"
+#include "scene/operators/soft.h"
 
 /* What the node above takes: values f, or fields F (as an operand of an operator that takes
  * fields), or their complements 1 - F. */

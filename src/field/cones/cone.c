@@ -9,6 +9,7 @@
 
 #include "field/cones/cone_along.h"
 #include "field/point.h"
+#include "scene/operators/blend_kinds.h"
 
 static double dot(const double a[3], const double b[3])
 {

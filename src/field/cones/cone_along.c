@@ -19,6 +19,7 @@
 #include "field/cones/cone_formula.h"
 #include "field/kernels/soft_formulas.h"
 #include "field/prune/prune.h"
+#include "field/rule_layout.h"
 
 enum { DEPTH = 64 };
 
@@ -156,7 +157,7 @@ static bool join_slopes(const csg_tape *tape, const csg_tape_node *node, slope_r
                         slope_range b)
 {
     const float *own = tape->parameters + node->join_parameters;
-    switch (node->join_blend) {
+    switch ((csg_blend_kind)node->join_blend) {
     case CSG_BLEND_ORTHOGONAL:
         *a = mix(*a, b, 1, 1.41421357);
         return true;
@@ -194,12 +195,17 @@ static bool join_slopes(const csg_tape *tape, const csg_tape_node *node, slope_r
     case CSG_BLEND_SCALE_SET:
         mix_homogeneous(node, own, a, b);
         return true;
-    default:
-        if (node->join_blend >= CSG_BLEND_COUNT)
-            return false;
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
         *a = mix(*a, b, 1, 1);
         return true;
+    case CSG_BLEND_ARC_SHARP: /* nothing is known */
+    case CSG_BLEND_PROFILE:
+    case CSG_BLEND_END: /* TURNING */
+        break;
     }
+    return false;
 }
 
 /* ---- deliveries -------------------------------------------------------------------------------
@@ -224,24 +230,20 @@ static void slopes_of_falloff(uint8_t curve_kind, float low, float high, double 
                               double *most)
 {
     hump h = {.low = (double)low, .high = (double)high};
-    switch (curve_kind) {
-#define CSG_FALLOFF(NAME, name, iso, steepest, doc)                                                \
+    switch ((csg_tape_curve)curve_kind) {
+#define CSG_FALLOFF(NAME, name, iso, steepest, steepest_at, doc)                                   \
     case CSG_CURVE_##NAME:                                                                         \
         h.from = -(double)falloff_##name(low).slope;                                               \
         h.to = -(double)falloff_##name(high).slope;                                                \
         h.at_top = (double)(steepest) + 1e-5;                                                      \
+        h.top = steepest_at;                                                                       \
         break;
 #include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
-    default:
+    case CSG_CURVE_STEP:
+    case CSG_CURVE_CLAMP:
         break;
     }
-    /* where P'' is 0 */
-    const double tops[] = {[CSG_CURVE_SEXTIC] = 0.50348,
-                           [CSG_CURVE_CUBIC] = 0.44721,
-                           [CSG_CURVE_QUARTIC] = 0.57735,
-                           [CSG_CURVE_QUADRATIC] = 1};
-    h.top = tops[curve_kind];
     h.low -= 1e-4;
     h.high += 1e-4;
     range_of_hump(h, least, most);

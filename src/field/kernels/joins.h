@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "field/kernels/batch.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/blends.h"
 
 /* The intersection of a and b, raised by n, whose gradients are at right angles. Away from the edge

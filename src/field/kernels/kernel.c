@@ -21,6 +21,7 @@
 #include "field/kernels/leaf_kernel.h"
 #include "field/kernels/rule_kernel.h"
 #include "field/kernels/smooth_kernel.h"
+#include "field/rule_layout.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)

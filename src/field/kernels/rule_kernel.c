@@ -9,6 +9,7 @@
 #include "field/kernels/rule_kernel.h"
 
 #include "field/kernels/soft_formulas.h"
+#include "field/rule_layout.h"
 
 /* Relative rounding of a join or of a field function, and of N_S and N_A after it. */
 #define ROUNDING 0x1p-20f
@@ -44,15 +45,15 @@ static void soften(const float *parameters, uint8_t kind, float *restrict values
                    float *restrict slope, size_t count)
 {
     const float rate = parameters[CSG_SOFTEN_RATE], iso = parameters[CSG_SOFTEN_ISO];
-    switch (kind) {
-#define CSG_FALLOFF(NAME, name, iso_, steepest, doc)                                               \
+    switch ((csg_tape_curve)kind) {
+#define CSG_FALLOFF(NAME, name, iso_, steepest, steepest_at, doc)                                  \
     case CSG_CURVE_##NAME:                                                                         \
         SOFTEN_LOOP(falloff_##name(distance_of(iso, rate, v)), -rate)
 #include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
     case CSG_CURVE_STEP:
         SOFTEN_LOOP(step_cubic(larger(smaller(rate * v, 1.0f), -1.0f)), rate)
-    default:
+    case CSG_CURVE_CLAMP:
         SOFTEN_LOOP(clamped(0.5f + rate * v), rate)
     }
 }
@@ -199,6 +200,16 @@ static inline mixture field_intersection(float x, float y)
     return (mixture){smaller(x, y), first, 1.0f - first};
 }
 
+/* What plain joins are not: sums, blends of lengths, and TURNING (CSG_BLEND_END). */
+#define CASES_OF_OTHERS                                                                            \
+    case CSG_BLEND_SOFT_SUM:                                                                       \
+    case CSG_BLEND_SOFT_SET:                                                                       \
+    case CSG_BLEND_EXTERIOR:                                                                       \
+    case CSG_BLEND_INTERIOR:                                                                       \
+    case CSG_BLEND_PROFILE:                                                                        \
+    case CSG_BLEND_ORTHOGONAL:                                                                     \
+    case CSG_BLEND_END:
+
 #define RULE_PARAMETERS                                                                            \
     const float exponent = parameters[CSG_RICCI_EXPONENT];                                         \
     const float r1 = parameters[CSG_SCALE_R1], r2 = parameters[CSG_SCALE_R2];                      \
@@ -228,7 +239,7 @@ static void plain_join(const csg_tape_node *node, const float *parameters, float
         const float x = a[i], y = b[i];                                                            \
         a[i] = (expression).value;                                                                 \
     }
-    switch (node->join_blend) {
+    switch ((csg_blend_kind)node->join_blend) {
 #define CASE(NAME, united, met)                                                                    \
     case CSG_BLEND_##NAME:                                                                         \
         if (is_union)                                                                              \
@@ -238,7 +249,10 @@ static void plain_join(const csg_tape_node *node, const float *parameters, float
         break;
         EACH_RULE(CASE)
 #undef CASE
-    default:
+        CASES_OF_OTHERS
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
         break;
     }
 }
@@ -259,7 +273,7 @@ static void plain_partials(const csg_tape_node *node, const float *parameters,
         PARTIAL_LOOP(sum_of(x, y))
         return;
     }
-    switch (node->join_blend) {
+    switch ((csg_blend_kind)node->join_blend) {
 #define CASE(NAME, united, met)                                                                    \
     case CSG_BLEND_##NAME:                                                                         \
         if (is_union)                                                                              \
@@ -269,7 +283,10 @@ static void plain_partials(const csg_tape_node *node, const float *parameters,
         break;
         EACH_RULE(CASE)
 #undef CASE
-    default:
+        CASES_OF_OTHERS
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
         break;
     }
 }

@@ -12,6 +12,8 @@
 #include "field/kernels/smooth_kernel.h"
 
 #include "field/kernels/functions.h"
+#include "field/rule_layout.h"
+#include "scene/operators/steps.h"
 
 /* ---- steps: mu and its derivative over a batch ------------------------------------------------
  */
@@ -152,8 +154,12 @@ static void steps(const float *parameters, const float *t, float *value, float *
         sigmoids(parameters[CSG_SMOOTH_DEGREE], parameters[CSG_SMOOTH_REACH], t, value, slope,
                  count);
         break;
-    default:
+    case CSG_STEP_POLY:
+    case CSG_STEP_BSPLINE:
         polynomials(n, t, value, slope, count);
+        break;
+    case CSG_STEP_COUNT:
+        break;
     }
 }
 

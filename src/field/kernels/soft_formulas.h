@@ -11,6 +11,7 @@
 #define CSG_FIELD_SOFT_FORMULAS_H
 
 #include "field/kernels/functions.h"
+#include "field/rule_layout.h"
 #include "field/tape.h"
 #include "scene/primitives/point.h"
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "field/prune/prune_fields.h"
+#include "scene/operators/blend_kinds.h"
 
 void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
                      float rounding)

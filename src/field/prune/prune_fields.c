@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "field/rule_layout.h"
+
 /* Comparisons keep this far, relatively, from where the kernels' roundings may decide otherwise. */
 static const float ROOM = 1.0f + 0x1p-19f;
 
@@ -25,7 +27,7 @@ static bounds bounds_of(const csg_field_ranges *ranges, uint32_t node, int octan
 static bool is_neutral(const csg_tape_node *op, bounds b)
 {
     bool is_union = op->op == CSG_OP_RULE_UNION;
-    switch (op->blend) {
+    switch ((csg_blend_kind)op->blend) {
     case CSG_BLEND_SOFT_SUM:
     case CSG_BLEND_SOFT_SET:
         return b.high <= 0;
@@ -35,9 +37,19 @@ static bool is_neutral(const csg_tape_node *op, bounds b)
     case CSG_BLEND_ARC:
     case CSG_BLEND_ARC_SHARP:
         return is_union && b.high <= 0;
-    default:
-        return false;
+    case CSG_BLEND_SCALE_SET: /* by its ratio, where there are two */
+    case CSG_BLEND_FIELD_SHARP:
+    case CSG_BLEND_EXTERIOR: /* the rest takes no fields */
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
     }
+    return false;
 }
 
 /* Of the largest fields' lower ends the highest (mirrored for an intersection). */
@@ -84,13 +96,13 @@ enum { NEITHER, DROP_X, DROP_Y };
 static int drop_of_two(const csg_tape_node *op, const float *p, bounds x, bounds y)
 {
     bool is_union = op->op == CSG_OP_RULE_UNION;
-    switch (op->blend) {
+    switch ((csg_blend_kind)op->blend) {
     case CSG_BLEND_ARC:
         if (y.high * ROOM <= p[CSG_ARC_B] * x.low)
             return is_union ? DROP_Y : DROP_X;
         if (x.high * ROOM <= p[CSG_ARC_A] * y.low)
             return is_union ? DROP_X : DROP_Y;
-        return NEITHER;
+        break;
     case CSG_BLEND_ARC_SHARP:
         if (is_sharp_apart(y, x))
             return is_union ? DROP_Y : DROP_X;
@@ -98,13 +110,25 @@ static int drop_of_two(const csg_tape_node *op, const float *p, bounds x, bounds
             return is_union ? DROP_X : DROP_Y;
         return NEITHER;
     case CSG_BLEND_SCALE_SET:
-    case CSG_BLEND_TURNING:
+    case CSG_BLEND_END: /* TURNING */
         if (is_scale_apart(op, p, p[CSG_SCALE_R2], x, y))
             return DROP_Y;
         return is_scale_apart(op, p, p[CSG_SCALE_R1], y, x) ? DROP_X : NEITHER;
-    default:
-        return NEITHER;
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_FIELD_SHARP: /* by is_neutral and is_beaten */
+    case CSG_BLEND_EXTERIOR:    /* the rest takes no fields */
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+        break;
     }
+    return NEITHER;
 }
 
 /* ---- all of them -------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
  * quantises positions and normals, and drops degenerate triangles, which is said as a warning.
  * Bare files keep sRGB colours; glTF hands in linear ones.
  */
+#include "base/mesh_codes.h"
 #include "io/writers.h"
 
 csgm_status csg_write_draco(csg_sink *sink, const csgm_mesh_view *mesh,

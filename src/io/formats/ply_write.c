@@ -3,6 +3,7 @@
  * then faces as lists of three. Coordinates are float, or double when the mesh has an origin.
  * Written directly: OpenMesh takes several times as long (README.md).
  */
+#include "base/mesh_codes.h"
 #include "io/writers.h"
 
 /* A comment ends where its line does. */

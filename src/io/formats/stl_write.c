@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/mesh_codes.h"
 #include "io/writers.h"
 
 typedef struct facet {

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "base/mesh_codes.h"
 #include "io/color.h"
 #include "io/gltf/gltf_layout.h"
 #include "io/stream_kind.h"

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "base/scene_codes.h"
+
 typedef struct unsupported_row {
     const char *name, *hint;
 } unsupported_row;

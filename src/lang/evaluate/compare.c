@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "lang/evaluate/rule_value.h"
 #include "lang/evaluate/symbolic.h"
 
 static bool equal_vectors(csg_eval *e, const csg_vector *a, const csg_vector *b, csg_span where)

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/builtins.h"
 #include "lang/evaluate/symbolic.h"
 

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "outline/letters/text.h"
 
 /* ---- findings ----------------------------------------------------------------------------------

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
 
 /* ---- building lists

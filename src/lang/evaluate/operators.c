@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
 
 csg_value csg_eval_no_operation(csg_eval *e, const csg_expression *x, csg_value left,

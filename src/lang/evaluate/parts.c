@@ -5,6 +5,8 @@
  */
 #include <string.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
 
 void csg_push_part(csg_eval *e, csg_eval_part part)
@@ -120,8 +122,7 @@ void csg_join_as_part(csg_eval *e, size_t first, csg_span where)
 {
     if (e->part_count == first + 1)
         return;
-    csg_node_id node =
-        csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, where);
+    csg_node_id node = csg_join_parts(e, first, CSG_NODE_UNION, CSG_SHARP, where);
     if (node != CSG_NODE_NONE)
         csg_push_part(e, csg_part_plain(node));
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/builtins.h"
 #include "lang/evaluate/marks.h"
 
@@ -20,8 +21,7 @@ static void run_body(csg_eval *e, const csg_definition *module, csg_frame *call,
         csg_value_number(outer.kind == CSG_VALUE_NUMBER ? outer.as.number + 1 : 1));
     if (!e->stop)
         csg_run_scope(e, module->body, call, true);
-    csg_node_id node =
-        csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, statement->where);
+    csg_node_id node = csg_join_parts(e, first, CSG_NODE_UNION, CSG_SHARP, statement->where);
     if (node != CSG_NODE_NONE)
         csg_push_part(e, csg_part_plain(node));
 }
@@ -102,8 +102,7 @@ static void run_if(csg_eval *e, const csg_statement *statement, csg_frame *frame
 /* ! shows this alone: the first one holds. Its place in the scene becomes empty. */
 static void make_root(csg_eval *e, const csg_statement *statement, size_t first, size_t first_mark)
 {
-    csg_node_id node =
-        csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, statement->where);
+    csg_node_id node = csg_join_parts(e, first, CSG_NODE_UNION, CSG_SHARP, statement->where);
     if (node == CSG_NODE_NONE)
         return;
     if (e->root != CSG_NODE_NONE) {
@@ -169,7 +168,7 @@ csg_node_id csg_eval_run(csg_eval *e)
     csg_frame *frame = csg_eval_file_frame(e, scene);
     if (frame && !e->stop)
         csg_run_statements(e, scene->scope, frame, true);
-    csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, whole);
+    csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, CSG_SHARP, whole);
     if (e->root == CSG_NODE_NONE)
         csg_marks_take(e, 0, whole, e->marked);
     return thicken_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);

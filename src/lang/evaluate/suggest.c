@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
 #include "lang/parse/hints.h"
 

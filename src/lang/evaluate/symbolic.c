@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
+
 static const char hint[] =
     "a formula is made of + - * / % ^, abs min max floor sqrt pow exp ln sin "
     "cos tan asin acos atan atan2 norm dot cross";

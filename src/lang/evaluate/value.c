@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "lang/evaluate/rule_value.h"
+
 void csg_heap_init(csg_heap *heap, csg_memory *memory, uint32_t deepest)
 {
     *heap = (csg_heap){memory, NULL, deepest};

@@ -86,12 +86,6 @@ struct csg_function {
     csg_frame *frame; /* where it was made */
 };
 
-struct csg_rule_value {
-    csg_object object;
-    csg_rule rule;          /* checked, not settled */
-    csg_function *function; /* of profile(), else NULL */
-};
-
 /* Variables of one scope, call or let; names are searched outwards along `parent`. */
 struct csg_frame {
     csg_object object;

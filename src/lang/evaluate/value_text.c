@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lang/evaluate/rule_value.h"
 #include "lang/evaluate/value.h"
+#include "scene/operators/steps.h"
 
 void csg_text_put(csg_text *text, const char *data, size_t length)
 {

@@ -8,7 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
+#include "scene/operators/blend_kinds.h"
 
 typedef struct row {
     const char *name;
@@ -135,6 +137,8 @@ csg_value csg_function_blend(const csg_function_call *call)
     int kind = CSG_BLEND_COUNT - 1;
     while (kind > 0 && strcmp(csg_blend_name((csg_blend_kind)kind), call->name) != 0)
         kind--;
+    if (kind == 0) /* a row here without one in operators.def must not pass for a sharp blend */
+        return csg_value_undef();
     double value = blend_number(call);
     bool raw = call->syntax[0].name == call->e->symbol_n;
     if (call->arguments[0].kind != CSG_VALUE_NUMBER)

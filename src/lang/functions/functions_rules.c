@@ -6,7 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/functions/functions.h"
+#include "scene/operators/rule.h"
+#include "scene/operators/steps.h"
 
 static const char *argument_name(const csg_function_call *call, uint32_t i)
 {

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "base/utf8.h"
 #include "lang/functions/functions.h"
 

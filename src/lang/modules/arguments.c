@@ -5,7 +5,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/modules.h"
+#include "scene/operators/blend_kinds.h"
 
 void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
                         const char *format, ...)

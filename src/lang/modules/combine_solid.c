@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * combine(): its function is evaluated once, on terms that stand for the fields of its children.
  */
+#include "base/scene_codes.h"
 #include "lang/modules/formula_call.h"
 #include "lang/modules/shapes.h"
 #include "scene/operators/combine.h"

@@ -3,9 +3,10 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/modules.h"
 
-static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+static const csg_blend sharp = {0, 0};
 
 /* ---- for
  * ----------------------------------------------------------------------------------------- */

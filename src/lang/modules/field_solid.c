@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
 #include "lang/modules/formula_call.h"
 

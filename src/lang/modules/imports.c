@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/services.h"
 #include "outline/dxf/dxf.h"
 #include "outline/svg/svg.h"

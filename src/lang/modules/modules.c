@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
+
 /* ---- tables ------------------------------------------------------------------------------------
  */
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
 
 csg_node_id csg_module_slab(csg_module_call *call)

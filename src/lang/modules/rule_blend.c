@@ -3,6 +3,8 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
+#include "lang/evaluate/rule_value.h"
 #include "lang/modules/formula_call.h"
 
 /* What a profile's bounds say about it. */

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/scene_codes.h"
 #include "lang/services.h"
 #include "shape/plane/crossings.h"
 #include "solid/measure.h"
@@ -275,6 +276,5 @@ size_t csg_shape_operands(csg_module_call *call, bool flat, bool each)
 csg_node_id csg_shape_children(csg_module_call *call, bool flat)
 {
     size_t first = csg_shape_operands(call, flat, false);
-    return csg_join_parts(call->e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0},
-                          call->statement->where);
+    return csg_join_parts(call->e, first, CSG_NODE_UNION, CSG_SHARP, call->statement->where);
 }

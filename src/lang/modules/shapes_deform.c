@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
 #include "solid/measure.h"
 
@@ -97,8 +98,7 @@ csg_node_id csg_module_shell(csg_module_call *call)
         grown(call, csg_shape_done(call, csg_build_copy(builder, outer)), -thickness);
     if (inner == CSG_NODE_NONE)
         return inner;
-    return csg_shape_done(call, csg_build_operator(builder, CSG_NODE_DIFFERENCE,
-                                                   (csg_blend){CSG_BLEND_SHARP, 0},
+    return csg_shape_done(call, csg_build_operator(builder, CSG_NODE_DIFFERENCE, CSG_SHARP,
                                                    (csg_node_id[]){outer, inner}, 2, where));
 }
 

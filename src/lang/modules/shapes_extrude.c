@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/imports.h"
 #include "solid/operations.h"
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/imports.h"
 #include "outline/heights/heights.h"
 

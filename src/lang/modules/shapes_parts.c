@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * part() and material(): what meshes say of solids beside their shape and colour.
  */
+#include "base/scene_codes.h"
 #include "lang/modules/modules.h"
 #include "lang/modules/shapes.h"
 #include "scene/tree/parts.h"

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/imports.h"
 #include "lang/modules/shapes.h"
 #include "outline/letters/text.h"

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "scene/operators/soft.h"
 
 static bool read_falloff(csg_module_call *call, uint32_t index, csg_falloff *out)
 {

@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
 
 static csg_node_id primitive(csg_module_call *call, csg_node_kind kind, const double *parameters)

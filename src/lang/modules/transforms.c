@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/marks.h"
 #include "lang/modules/shapes.h"
 
@@ -201,7 +202,7 @@ static csg_node_id joined_children(csg_module_call *call, csg_node_kind kind)
     /* Only a union may take what a for loop or children() makes one by one: the others would
      * mean something else than in OpenSCAD. */
     csg_run_scope(e, call->statement->children, call->frame, kind == CSG_NODE_UNION);
-    if (blend.kind != CSG_BLEND_SHARP && e->part_count - first < 2)
+    if (!csg_blend_is_sharp(blend.kind) && e->part_count - first < 2)
         csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, call->spans[0], NULL,
                         "this %s has %s, its blend is not used", call->name,
                         e->part_count == first ? "no children" : "only one child");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * import() of .vm tapes: a formula from a file becomes a field.
  */
+#include "base/scene_codes.h"
 #include "lang/modules/formula_call.h"
 #include "lang/modules/imports.h"
 #include "outline/input.h"

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
 
 typedef struct section {

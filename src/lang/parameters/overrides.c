@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/scene_codes.h"
 #include "lang/parameters/assignments.h"
 #include "lang/parameters/parameter_set.h"
 #include "lang/parse/parser.h"

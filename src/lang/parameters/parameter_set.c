@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "lang/parameters/assignments.h"
 #include "lang/parameters/customizer.h"
 #include "lang/parse/parser.h"

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/scene_codes.h"
 #include "text/folders.h"
 
 /* ---- finding -------------------------------------------------------------------------------- */

@@ -3,6 +3,7 @@
  * Precedence, loosest first: ?:  ||  &&  == !=  < <= > >=  + -  * / %  unary + - !  ^  call index .
  * As in OpenSCAD 2021, ^ binds tighter than a sign before it (-2^2 = -4) and groups to the right.
  */
+#include "base/scene_codes.h"
 #include "lang/parse/parser_private.h"
 
 static csg_expression *parse_unary(csg_parser *parser);

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
+#include "base/scene_codes.h"
 #include "lang/parse/hints.h"
 #include "lang/parse/loader.h"
 #include "lang/parse/parser_private.h"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/point.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/blends.h"
 
 /* What one operand can be in the ball. */

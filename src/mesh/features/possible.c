@@ -15,6 +15,7 @@
 #include <math.h>
 
 #include "grid/octree/octree.h"
+#include "scene/operators/blend_kinds.h"
 
 typedef struct ball {
     float at[3], radius;

@@ -6,6 +6,7 @@
 #include "mesh/pipeline/build.h"
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/output.h"

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "scene/reference.h"
 #include "scene/tree/texts.h"

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "base/mesh_codes.h"
+
 static csgm_status choose_bounds(csg_mesh_input *in)
 {
     csg_diag_sink *diags = &in->context->diags;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/tries.h"
 

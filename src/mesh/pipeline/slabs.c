@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "base/pool.h"
 #include "base/trace.h"
 

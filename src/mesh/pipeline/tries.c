@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "base/mesh_codes.h"
 
 static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
 {

@@ -7,6 +7,7 @@
 
 #include "scene/boxes/field_levels.h"
 #include "scene/boxes/level_boxes.h"
+#include "scene/operators/blend_kinds.h"
 
 /* The root's own box is then the hull of the leaves' boxes, and no look from above makes it
  * smaller. Scenes of a million solids are mostly like that. */

@@ -4,6 +4,9 @@
  */
 #include "scene/boxes/field_levels.h"
 
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
+
 /* Inverses are found to this, on the safe side. */
 #define ROOM 1e-12
 
@@ -68,9 +71,18 @@ static double union_floor(const csg_rule *rule, double k, double t)
         return t / rule->k[0];
     case CSG_BLEND_ARC_SHARP: /* the same sets as max at 1/2, and little more below */
         return t >= 0.5 - 2 * ROOM ? t : fmax(t - 0.0366117, t / sqrt(2));
-    default:
-        return t;
+    case CSG_BLEND_FIELD_SHARP:
+    case CSG_BLEND_EXTERIOR: /* the rest takes no fields */
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
     }
+    return t;
 }
 
 /* Where an intersection is at least t <= 1/2, every operand is at least this. */

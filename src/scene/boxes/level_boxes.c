@@ -15,6 +15,7 @@
 
 #include "scene/boxes/field_levels.h"
 #include "scene/boxes/half_spaces.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/combine.h"
 #include "scene/primitives/primitive_box.h"
 

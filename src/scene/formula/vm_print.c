@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A scene's formula, step by step; see vm.h.
  */
+#include "base/scene_codes.h"
 #include "scene/formula/vm.h"
 
 #include <stdio.h>

@@ -7,6 +7,7 @@
 #include "scene/lazy/lazy.h"
 
 #include "scene/lazy/lazy_private.h"
+#include "scene/operators/blend_kinds.h"
 
 /* A value at or below the floor may come out as any other such value, and one at or above the
  * ceiling too: whoever asked cannot see a difference. */

@@ -6,6 +6,7 @@
 #include "scene/boxes/bounds.h"
 #include "scene/boxes/level_boxes.h"
 #include "scene/lazy/lazy_private.h"
+#include "scene/operators/rule.h"
 
 enum { MOST_PASSES = 32 };
 

@@ -177,7 +177,7 @@ static size_t split(operand *operands, size_t count, double *rest, range *waitin
 
 static bool is_sharp(const csg_node *node, csg_node_kind kind)
 {
-    return node->kind == kind && node->blend == CSG_BLEND_SHARP;
+    return node->kind == kind && csg_blend_is_sharp(node->blend);
 }
 
 /* Whether the node vanishes into the sharp union above it. */

@@ -10,8 +10,8 @@
  *   name_term    f_b as steps of a formula, for the exchange with other programs (formulate.h); x
  *                is at most chi already
  *
- * Those who use them paste these names together from the rows: a function that is missing, or one
- * without a row, does not compile.
+ * Those who use them paste these names together from the rows, so a row without one of its three
+ * functions does not compile.
  */
 #ifndef CSG_SCENE_BLENDS_H
 #define CSG_SCENE_BLENDS_H

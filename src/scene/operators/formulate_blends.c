@@ -5,6 +5,7 @@
 
 #include <assert.h>
 
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/blends.h"
 
 static csg_term largest(csg_terms *t, const csg_term *values, size_t count)
@@ -21,7 +22,7 @@ static csg_term excess(csg_terms *t, csg_blend blend, csg_term x)
     double n = blend.n, limit = csg_blend_support(blend);
     if (isfinite(limit))
         x = csg_term_min_number(t, x, limit);
-    switch (blend.kind) {
+    switch ((csg_blend_kind)blend.kind) {
 #define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
     case CSG_BLEND_##NAME:                                                                         \
         return name##_term(t, n, x);

@@ -3,6 +3,7 @@
  * (operators.md 2.1, 2.2, 12). Operands outside the support leave the largest operand as it is, bit
  * for bit.
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene/reference.h"
 
 #include <assert.h>
@@ -10,15 +11,14 @@
 #include "scene/operators/blends.h"
 #include "scene/operators/choice.h"
 
-void csg_reference_blend_function(csg_blend_kind kind, double n, double x, double *value,
-                                  double *derivative)
+void csg_reference_blend_function(csg_blend blend, double x, double *value, double *derivative)
 {
     csg_blended made = {0, 0};
-    bool blends = x < csg_blend_support((csg_blend){kind, n}); /* not where it is NaN */
-    switch (kind) {
+    bool blends = x < csg_blend_support(blend); /* not where it is NaN */
+    switch ((csg_blend_kind)blend.kind) {
 #define CSG_FOLD(NAME, name, area, raw, support, excess, smooth, convex, doc)                      \
     case CSG_BLEND_##NAME:                                                                         \
-        made = blends ? name##_double(n, x) : made;                                                \
+        made = blends ? name##_double(blend.n, x) : made;                                          \
         break;
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
     case CSG_BLEND_##NAME:
@@ -37,7 +37,7 @@ static double fold_union(csg_blend blend, const double *values, double *partials
 {
     size_t hi = csg_largest_of(values, 2), lo = 1 - hi;
     double x = values[hi] - values[lo], value, derivative;
-    csg_reference_blend_function(blend.kind, blend.n, x, &value, &derivative);
+    csg_reference_blend_function(blend, x, &value, &derivative);
     if (value == 0 && derivative == 0)
         return csg_choose(values, 2, hi, partials);
     partials[hi] = 1 + derivative;

@@ -125,6 +125,21 @@ static const char *step_problem(csg_step step, char *text, size_t size)
     return text;
 }
 
+static const char *exterior_problem(const csg_rule *rule, char *text, size_t size)
+{
+    double delta = rule->parameters[0], eps = rule->parameters[1];
+    if (eps > delta) {
+        snprintf(text, size, "eps must be at most delta = %g, not %g", delta, eps);
+        return text;
+    }
+    if (rule->step.kind == CSG_STEP_SIGMOID && rule->step.parameter * delta < 10 * eps) {
+        snprintf(text, size, "a sigmoid's alpha must be at least 10 eps / delta = %g, not %g",
+                 10 * eps / delta, rule->step.parameter);
+        return text;
+    }
+    return step_problem(rule->step, text, size);
+}
+
 /* The profile as given: angles in degrees, between those of the rule. */
 static const char *profile_problem(const csg_rule *rule, char *text, size_t size)
 {
@@ -172,21 +187,31 @@ const char *csg_rule_problem(const csg_rule *rule, char *text, size_t size)
     }
     if (!is_within(rule->range, 0, false, 1e15))
         return out_of_range(text, size, "range", rule->range, 0, true, 1e15);
-    if (rule->kind == CSG_BLEND_EXTERIOR && v[1] > v[0]) {
-        snprintf(text, size, "eps must be at most delta = %g, not %g", v[0], v[1]);
-        return text;
-    }
-    if (rule->kind == CSG_BLEND_EXTERIOR && rule->step.kind == CSG_STEP_SIGMOID &&
-        rule->step.parameter * v[0] < 10 * v[1]) {
-        snprintf(text, size, "a sigmoid's alpha must be at least 10 eps / delta = %g, not %g",
-                 10 * v[1] / v[0], rule->step.parameter);
-        return text;
-    }
-    if (rule->kind == CSG_BLEND_EXTERIOR || rule->kind == CSG_BLEND_INTERIOR)
+    switch (rule->kind) {
+    case CSG_BLEND_EXTERIOR:
+        return exterior_problem(rule, text, size);
+    case CSG_BLEND_INTERIOR:
         return step_problem(rule->step, text, size);
-    if (rule->kind == CSG_BLEND_SCALE_SET)
+    case CSG_BLEND_SCALE_SET:
         return scale_problem(rule, text, size);
-    return rule->kind == CSG_BLEND_ARC ? profile_problem(rule, text, size) : NULL;
+    case CSG_BLEND_ARC:
+        return profile_problem(rule, text, size);
+    case CSG_BLEND_PROFILE: /* its function is looked at where it is made (build_profile.c) */
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_ARC_SHARP:
+    case CSG_BLEND_FIELD_SHARP:
+        return NULL; /* each parameter alone */
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break; /* no rules */
+    }
+    return "there is no such rule";
 }
 
 /* ---- profiles ---------------------------------------------------------------------------------
@@ -295,29 +320,53 @@ static double scale_k(const csg_rule *rule)
     return fmin(bound, most * SCAN_ROOM);
 }
 
+static void set_both(csg_rule *rule, bool monotone, double k)
+{
+    rule->monotone[0] = rule->monotone[1] = monotone;
+    rule->k[0] = rule->k[1] = k;
+}
+
+static void settle_lengths(csg_rule *rule)
+{
+    const double *v = rule->parameters;
+    rule->facts = csg_step_find_facts(rule->step);
+    double k = rule->kind == CSG_BLEND_INTERIOR ? rule->facts.interior
+                                                : 1 + v[1] / v[0] * rule->facts.exterior;
+    set_both(rule, false, rule->step.kind == CSG_STEP_SIGMOID ? k * SIGMOID_ROOM : k);
+}
+
 void csg_rule_settle(csg_rule *rule)
 {
-    bool lengths = rule->kind == CSG_BLEND_EXTERIOR || rule->kind == CSG_BLEND_INTERIOR;
-    rule->monotone[0] = rule->monotone[1] = !lengths;
-    rule->k[0] = rule->k[1] = 0;
-    if (lengths) {
-        const double *v = rule->parameters;
-        rule->facts = csg_step_find_facts(rule->step);
-        rule->k[0] = rule->kind == CSG_BLEND_INTERIOR ? rule->facts.interior
-                                                      : 1 + v[1] / v[0] * rule->facts.exterior;
-        if (rule->step.kind == CSG_STEP_SIGMOID)
-            rule->k[0] *= SIGMOID_ROOM;
-        rule->k[1] = rule->k[0];
-    } else if (rule->kind == CSG_BLEND_ARC) {
+    set_both(rule, true, 0);
+    switch (rule->kind) {
+    case CSG_BLEND_EXTERIOR:
+    case CSG_BLEND_INTERIOR:
+        settle_lengths(rule);
+        break;
+    case CSG_BLEND_ARC:
         settle_arc(rule);
-    } else if (rule->kind == CSG_BLEND_SCALE_SET) {
-        rule->k[0] = rule->k[1] = scale_k(rule);
-        rule->monotone[0] = rule->monotone[1] = rule->parameters[3] == 0;
-    } else if (rule->kind == CSG_BLEND_ARC_SHARP) {
+        break;
+    case CSG_BLEND_SCALE_SET:
+        set_both(rule, rule->parameters[3] == 0, scale_k(rule));
+        break;
+    case CSG_BLEND_ARC_SHARP:
         rule->k[0] = sqrt(2);
         rule->k[1] = 4 - 2 * sqrt(2);
-    } else if (rule->kind == CSG_BLEND_FIELD_SHARP) {
-        rule->k[0] = rule->k[1] = 1;
+        break;
+    case CSG_BLEND_FIELD_SHARP:
+        set_both(rule, true, 1);
+        break;
+    case CSG_BLEND_PROFILE: /* a combine node, which has its own */
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET:
+    case CSG_BLEND_PERLIN: /* K by the number of operands: csg_rule_slope */
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
     }
 }
 
@@ -371,7 +420,17 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
         return most * rule->k[!is_union];
     case CSG_BLEND_ARC_SHARP: /* a point of the unit circle, divided by more than 1 (5.6) */
         return fmin(most * rule->k[!is_union], count == 2 ? hypot(slopes[0], slopes[1]) : INFINITY);
-    default:
-        return most * rule->k[!is_union];
+    case CSG_BLEND_EXTERIOR:
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+    case CSG_BLEND_SCALE_SET:
+    case CSG_BLEND_FIELD_SHARP:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
     }
+    return most * rule->k[!is_union];
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Blends with more parameters than one length: rules (operators.def), and what they act on: smooth
- * unit steps, field functions, the conversion of distances into fields. Definitions in double:
- * rule.c, rule_fields.c, steps.c; what they mean: operators.md 4 to 7.
+ * Blends with more parameters than one length: rules (operators.def). Definitions in double:
+ * rule.c, rule_fields.c, rule_lengths.c; what they mean: operators.md 5 to 7.
  *
  * A rule of FIELDS is G(F1, F2, ...) with F in [0, 1], 1/2 on the surface; operands are clamped on
  * entry, the result is not. An intersection is an operator of its own; a difference is the
@@ -16,71 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum csg_blend_kind {
-#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc) CSG_BLEND_##NAME,
-#include "scene/operators/operators.def"
-    CSG_BLEND_COUNT,
-    /* Intersection of fields with gradients at right angles, as of an extrusion's outline and its
-     * ends: where both are negative -sqrt(a^2 + b^2), so that exact distances give an exact
-     * distance. Made by csg_build_extrude only, not in the language. */
-    CSG_BLEND_ORTHOGONAL = CSG_BLEND_COUNT,
-#define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) CSG_BLEND_##NAME,
-#include "scene/operators/operators.def"
-    CSG_BLEND_END
-} csg_blend_kind;
-
-/* A blend with its parameter n of operators.md section 2 (w of section 12 for ROUND). Of a rule n
- * is its index among the rules of the scene or of the builder. */
-typedef struct csg_blend {
-    csg_blend_kind kind;
-    double n; /* > 0; 0 for SHARP and ORTHOGONAL. HYPERBOLA and RECIPROCAL: area, else length */
-} csg_blend;
-
-static inline bool csg_blend_is_rule(csg_blend_kind kind)
-{
-    return kind > CSG_BLEND_ORTHOGONAL;
-}
-/* Whether it acts on fields in [0, 1] and gives a soft node. */
-static inline bool csg_blend_takes_fields(csg_blend_kind kind)
-{
-    return kind > CSG_BLEND_PROFILE;
-}
-
-/* ---- smooth unit steps ------------------------------------------------------------------------
- */
-
-typedef enum csg_step_kind {
-#define CSG_STEP(NAME, name, standard, least, most, whole, even, doc) CSG_STEP_##NAME,
-#include "scene/operators/steps.def"
-#undef CSG_STEP
-    CSG_STEP_COUNT
-} csg_step_kind;
-
-typedef struct csg_step {
-    csg_step_kind kind;
-    double parameter;
-} csg_step;
-
-const char *csg_step_name(csg_step_kind kind);
-/* A sigmoid is 0 or 1 where alpha |t| is this or more; a part in 1e16 of it is lost. */
-#define CSG_SIGMOID_END 37.0
-/* mu is 0 below -reach and 1 above it. */
-double csg_step_reach(csg_step step);
-/* mu(t); *slope: mu'(t). */
-double csg_step_at(csg_step step, double t, double *slope);
-
-/* Largest values that enclosures need (operators.md 7.1): of s (1 - mu(s)) and s mu(-s) for s >= 0,
- * of u^2 (1 - mu(u)) and u^2 mu(-u) for 0 <= u <= 1, each with the place where it is; K of
- * INTERIOR; h of EXTERIOR. The second of each pair equals the first for an even step. */
-typedef struct csg_step_facts {
-    double dent[2], dent_at[2], bump[2], bump_at[2];
-    double interior, exterior; /* K_int; h */
-} csg_step_facts;
-
-csg_step_facts csg_step_find_facts(csg_step step);
-
-/* ---- rules ------------------------------------------------------------------------------------
- */
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/steps.h"
 
 enum {
     CSG_RULE_PARAMETERS = 4,
@@ -162,42 +98,5 @@ double csg_spline_at(const csg_spline *spline, double angle, double *slope);
 double csg_normalise_scale(double u, double m, double *slope);
 double csg_normalise_soft(double u, double *slope);
 double csg_scale_top(double r1, double r2, double kappa);
-
-/* ---- soft objects -----------------------------------------------------------------------------
- */
-
-typedef enum csg_falloff {
-#define CSG_FALLOFF(NAME, name, iso, steepest, doc) CSG_FALLOFF_##NAME,
-#include "scene/operators/falloffs.def"
-#undef CSG_FALLOFF
-    CSG_FALLOFF_COUNT
-} csg_falloff;
-
-const char *csg_falloff_name(csg_falloff falloff);
-double csg_falloff_iso(csg_falloff falloff);      /* d where P = 1/2 */
-double csg_falloff_steepest(csg_falloff falloff); /* largest |P'| */
-/* P(d) and P'(d), d >= 0. */
-double csg_falloff_at(csg_falloff falloff, double d, double *slope);
-
-/* A SOFT node: F = P(d), d = iso - f (1 - iso) / range, at least 0. */
-typedef struct csg_soft {
-    csg_falloff falloff;
-    double range; /* > 0: how far outside of the child's surface F becomes 0 */
-} csg_soft;
-
-/* lambda of F for a child with constant 1. */
-double csg_soft_lambda(csg_soft soft);
-/* F for the child's f; *slope: dF / df. */
-double csg_soft_at(csg_soft soft, double f, double *slope);
-
-/* An operand of a rule of FIELDS. soft: F = clamp(1/2 + slope f, 0, 1); else F = H3(slope f), slope
- * = 1 / range (H3: the step poly(3)). */
-typedef struct csg_operand {
-    double slope;
-    bool soft;
-} csg_operand;
-
-/* F for the operand's f; *derivative: dF / df. */
-double csg_operand_field(csg_operand operand, double f, double *derivative);
 
 #endif

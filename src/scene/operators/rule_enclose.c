@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 
 /* A sigmoid's tails make its exterior blend differ from a local one by less than this part of
@@ -139,16 +140,35 @@ static void enclose_turns(const csg_rule *rule, bool is_union, const double *low
 void csg_rule_enclose(const csg_rule *rule, bool is_union, const double *low, const double *high,
                       size_t count, const double cosines[2], double *partials, double out[2])
 {
-    if (count > 1 && rule->kind == CSG_BLEND_EXTERIOR) {
+    bool monotone = count == 1 || rule->monotone[!is_union];
+    csg_blend_kind kind = monotone ? CSG_BLEND_END : rule->kind;
+    switch (kind) {
+    case CSG_BLEND_EXTERIOR:
         enclose_exterior(rule, low, high, out);
-    } else if (count > 1 && rule->kind == CSG_BLEND_INTERIOR) {
+        return;
+    case CSG_BLEND_INTERIOR:
         enclose_interior(rule, low, high, out);
-    } else if (count > 1 && !rule->monotone[!is_union] && rule->kind == CSG_BLEND_ARC) {
+        return;
+    case CSG_BLEND_ARC:
         enclose_angles(rule, is_union, low, high, out);
-    } else if (count > 1 && !rule->monotone[!is_union]) {
+        return;
+    case CSG_BLEND_SCALE_SET:
         enclose_turns(rule, is_union, low, high, cosines, out);
-    } else {
-        out[0] = csg_rule_apply(rule, is_union, low, count, 0, partials);
-        out[1] = csg_rule_apply(rule, is_union, high, count, 0, partials);
+        return;
+    case CSG_BLEND_PROFILE:
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_SOFT_SET:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_ARC_SHARP:
+    case CSG_BLEND_FIELD_SHARP: /* always monotone */
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        break;
     }
+    out[0] = csg_rule_apply(rule, is_union, low, count, 0, partials);
+    out[1] = csg_rule_apply(rule, is_union, high, count, 0, partials);
 }

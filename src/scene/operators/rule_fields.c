@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "scene/operators/choice.h"
+#include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 
 #define DEGREE 0.017453292519943295
@@ -333,8 +334,15 @@ double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values,
         return arc(rule, is_union, values, partials);
     case CSG_BLEND_ARC_SHARP:
         return arc_sharp(is_union, values, partials);
-    default:
-        assert(rule->kind == CSG_BLEND_FIELD_SHARP);
+    case CSG_BLEND_FIELD_SHARP:
         return sharp(is_union, values, count, partials);
+    case CSG_BLEND_PROFILE: /* a combine node */
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+    case CSG_BLEND_ORTHOGONAL:
+    case CSG_BLEND_END:
+        assert(!"a rule that is applied");
     }
+    return NAN;
 }

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 
 /* 1 - mu(s) on the right, mu(-s) on the left, and its derivative by s. */

@@ -4,7 +4,8 @@
 #include <assert.h>
 #include <math.h>
 
-#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
+#include "scene/operators/steps.h"
 
 typedef struct falloff_row {
     const char *name;
@@ -12,7 +13,7 @@ typedef struct falloff_row {
 } falloff_row;
 
 static const falloff_row falloffs[] = {
-#define CSG_FALLOFF(NAME, name, iso, steepest, doc) {#name, iso, steepest},
+#define CSG_FALLOFF(NAME, name, iso, steepest, steepest_at, doc) {#name, iso, steepest},
 #include "scene/operators/falloffs.def"
 #undef CSG_FALLOFF
 };
@@ -49,10 +50,14 @@ double csg_falloff_at(csg_falloff falloff, double d, double *slope)
     case CSG_FALLOFF_QUARTIC:
         *slope = -4 * d * rest;
         return rest * rest;
-    default:
+    case CSG_FALLOFF_QUADRATIC:
         *slope = -2 * d;
         return rest;
+    case CSG_FALLOFF_COUNT:
+        break;
     }
+    assert(!"a falloff");
+    return NAN;
 }
 
 /* How fast d grows as f falls. */

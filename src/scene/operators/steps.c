@@ -4,8 +4,9 @@
  */
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 
-#include "scene/operators/rule.h"
+#include "scene/operators/steps.h"
 
 #define PI 3.14159265358979323846
 
@@ -89,9 +90,13 @@ double csg_step_at(csg_step step, double t, double *slope)
         return rising(n, t, slope);
     case CSG_STEP_RISING2:
         return rising_square(n, t, slope);
-    default:
+    case CSG_STEP_SIGMOID:
         return sigmoid(step.parameter, t, slope);
+    case CSG_STEP_COUNT:
+        break;
     }
+    assert(!"a step");
+    return NAN;
 }
 
 double csg_step_reach(csg_step step)
@@ -130,9 +135,11 @@ static double measured(csg_step step, measure what, double s)
         return value + s * slope;
     case FALL:
         return -value - s * slope;
-    default:
-        return s * rest - s * s / 2 * slope;
+    case BULGE_RIGHT:
+    case BULGE_LEFT:
+        break;
     }
+    return s * rest - s * s / 2 * slope;
 }
 
 /* The largest on [low, high]: the best of many samples, then golden sections around it. */

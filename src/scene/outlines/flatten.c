@@ -40,7 +40,7 @@ static bool is_made_of_children(const csg_node *node)
     case CSG_NODE_UNION:
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:
-        return node->blend == CSG_BLEND_SHARP;
+        return csg_blend_is_sharp(node->blend);
     default:
         return false;
     }

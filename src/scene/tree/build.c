@@ -4,6 +4,8 @@
  * blends become chains); nested n-ary operators are flattened when the scene is sealed (seal.c).
  */
 #include "scene/tree/build.h"
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/rule.h"
 #include "scene/primitives/primitive.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"

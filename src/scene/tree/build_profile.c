@@ -3,6 +3,7 @@
  * interval arithmetic; the operator itself is a combine node.
  */
 #include "scene/formula/terms.h"
+#include "scene/operators/rule.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
 

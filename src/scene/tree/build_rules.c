@@ -2,6 +2,8 @@
  * Building soft objects and operators by rules: ranges of influence that follow from the operands,
  * and arcs whose angles are given by points.
  */
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
 #include "scene/primitives/curve.h"
 #include "scene/reference.h"
 #include "scene/tree/build_private.h"

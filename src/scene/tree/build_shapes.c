@@ -3,6 +3,7 @@
  * extrusions, warps, and copies.
  */
 #include "scene/boxes/bounds.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
 

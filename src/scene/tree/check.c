@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "scene/operators/rule.h"
 #include "scene/primitives/primitive.h"
 
 /* A map whose smallest stretch is below this part of its largest is as good as singular. */

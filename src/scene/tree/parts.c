@@ -66,7 +66,7 @@ static bool descend(finder *f, csg_part_unit *at)
 static bool is_way(const csg_node *node)
 {
     return node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
-           (node->kind == CSG_NODE_UNION && node->blend == CSG_BLEND_SHARP);
+           (node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend));
 }
 
 static bool push(finder *f, csg_part_unit item)
@@ -247,7 +247,7 @@ static csg_node_id build_part(csg_scene_builder *b, const csg_parts *parts, uint
         if (nodes[count++] == CSG_NODE_NONE)
             return CSG_NODE_NONE;
     }
-    return csg_build_operator(b, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, nodes, count,
+    return csg_build_operator(b, CSG_NODE_UNION, CSG_SHARP, nodes, count,
                               b->scene->nodes[parts->scene->root].where);
 }
 

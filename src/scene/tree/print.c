@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/operators/rule.h"
 #include "scene/tree/print_private.h"
 
 enum { DEEPEST_INDENT = 40, INDENT = 2 };

@@ -5,6 +5,7 @@
  * of each node are computed once, here.
  */
 #include "scene/boxes/bounds.h"
+#include "scene/operators/rule.h"
 #include "scene/tree/build.h"
 #include "scene/tree/softness.h"
 

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+#include "scene/operators/rule.h"
+#include "scene/operators/soft.h"
+
 static double slope_of_operand(const csgm_scene *scene, const csg_node *node, uint32_t index,
                                const double *slopes)
 {

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ * Codes of findings about meshing, files and limits. Only who reports one includes this, so that a
+ * row of the table does not rebuild everything.
+ */
+#ifndef CSG_BASE_MESH_CODES_H
+#define CSG_BASE_MESH_CODES_H
+
+enum {
+#define CSG_DIAG(name, number, severity, summary) CSG_DIAG_##name = (number),
+#include "base/mesh_codes.def"
+#undef CSG_DIAG
+};
+
+#endif
