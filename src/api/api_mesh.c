@@ -158,7 +158,7 @@ static bool same_name(const char *a, const char *b)
 static double max_abs_of_part(const csg_parts *parts, const csgm_mesh_view *mesh, uint64_t index,
                               uint64_t step, uint64_t *count)
 {
-    csg_part part = csg_part_get(mesh, index);
+    csg_part_stretch part = csg_part_get(mesh, index);
     size_t i = 0;
     csgm_scene *scene;
     while (i < parts->count && !same_name(csg_parts_name(parts, i), part.name))

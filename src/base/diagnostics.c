@@ -239,7 +239,7 @@ typedef struct writer {
     size_t size, length;
 } writer;
 
-static void put(writer *w, const char *text, size_t length)
+static void put_bytes(writer *w, const char *text, size_t length)
 {
     for (size_t i = 0; i < length; i++, w->length++)
         if (w->length + 1 < w->size)
@@ -248,7 +248,7 @@ static void put(writer *w, const char *text, size_t length)
 
 static void put_string(writer *w, const char *text)
 {
-    put(w, text, strlen(text));
+    put_bytes(w, text, strlen(text));
 }
 
 static void put_place(writer *w, const csgm_diag *diag)
@@ -315,7 +315,7 @@ static void put_caret(writer *w, const csgm_diag *diag)
     for (size_t at = shown.from; at < shown.to; at += cell.bytes) {
         cell = csg_screen_cell_at(shown.text + at, shown.to - at);
         if (cell.is_shown)
-            put(w, shown.text + at, cell.bytes);
+            put_bytes(w, shown.text + at, cell.bytes);
         else
             put_string(w, "\xEF\xBF\xBD"); /* U+FFFD */
     }

@@ -174,8 +174,8 @@ static bool is_unwanted(const engine *e, csg_vec3 center, double distance, doubl
 }
 
 /* Puts parts that are not settled on the stack. */
-static void push(const engine *e, outcome *out, const csg_piece *parts, uint32_t count,
-                 csg_piece *stack, uint32_t *depth)
+static void queue_parts(const engine *e, outcome *out, const csg_piece *parts, uint32_t count,
+                        csg_piece *stack, uint32_t *depth)
 {
     uint32_t ignored;
     for (uint32_t i = 0; i < count; i++) {
@@ -224,7 +224,7 @@ static void work_on(const engine *e, outcome *out, csg_piece piece, csg_piece *s
     if (count < 2)
         out->upper = fmax(out->upper, piece.bound); /* too small for doubles */
     else
-        push(e, out, parts, count, stack, depth);
+        queue_parts(e, out, parts, count, stack, depth);
 }
 
 /* ---- items of a batch ----------------------------------------------------------------------- */
@@ -302,7 +302,7 @@ static bool fill_batch(engine *e, size_t size)
     return true;
 }
 
-static bool join(engine *e)
+static bool join_outcomes(engine *e)
 {
     csg_memory *memory = &e->pair->context->memory;
     csg_diff_maximum *search = e->search;
@@ -338,7 +338,7 @@ static csgm_status run_batch(engine *e)
     bool out_of_memory = false;
     for (size_t i = 0; i < e->item_count; i++)
         out_of_memory |= e->outcomes[i].out_of_memory;
-    out_of_memory |= !join(e);
+    out_of_memory |= !join_outcomes(e);
     csg_memory_release(memory, e->outcomes, size);
     return out_of_memory ? csg_context_no_memory(e->pair->context) : ran ? CSGM_OK : CSGM_CANCELLED;
 }

@@ -59,7 +59,7 @@ void csg_io_cleanup_pending(void)
 
 /* ---- finding the target ----------------------------------------------------------- */
 
-static csgm_status fail(csg_file *file, int error)
+static csgm_status fail(csg_atomic_file *file, int error)
 {
     csg_diag_plain(&file->context->diags, CSG_DIAG_CANNOT_WRITE, file->path, NULL,
                    "cannot write: %s", strerror(error));
@@ -112,7 +112,7 @@ static const char *follow_links(csg_arena *names, const char *path)
     return NULL;
 }
 
-static csgm_status open_direct(csg_file *file, int descriptor)
+static csgm_status open_direct(csg_atomic_file *file, int descriptor)
 {
     file->fd = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, 0)
                                : open(file->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
@@ -120,7 +120,7 @@ static csgm_status open_direct(csg_file *file, int descriptor)
 }
 
 /* Created by our own open, not mkstemp, so that the kernel applies the umask. */
-static int open_temporary(csg_file *file)
+static int open_temporary(csg_atomic_file *file)
 {
     static atomic_uint counter;
     int folder = (int)folder_length(file->target);
@@ -154,9 +154,10 @@ static void take_over(int fd, const struct stat *old)
         errno = 0;
 }
 
-csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *path)
+csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path)
 {
-    *file = (csg_file){.context = context, .path = path, .fd = -1, .sync = true, .pending = -1};
+    *file =
+        (csg_atomic_file){.context = context, .path = path, .fd = -1, .sync = true, .pending = -1};
     csg_arena_init(&file->names, &context->memory);
     int descriptor = descriptor_of(path);
     struct stat old;
@@ -179,7 +180,7 @@ csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *p
 
 /* ---- the end ---------------------------------------------------------------------- */
 
-static void forget(csg_file *file)
+static void forget(csg_atomic_file *file)
 {
     pending_remove(file->pending);
     csg_arena_reset(&file->names);
@@ -214,7 +215,7 @@ static bool same_bytes(int a, int b)
 }
 
 /* Does the target hold the temporary's bytes? Where that cannot be told, it does not. */
-static bool is_unchanged(const csg_file *file)
+static bool is_unchanged(const csg_atomic_file *file)
 {
     struct stat old, new;
     if (stat(file->target, &old) != 0 || fstat(file->fd, &new) != 0 || old.st_size != new.st_size)
@@ -229,13 +230,13 @@ static bool is_unchanged(const csg_file *file)
     return same;
 }
 
-static int wait_for_disk(const csg_file *file)
+static int wait_for_disk(const csg_atomic_file *file)
 {
     CSG_ZONE(file->context, "sync");
     return fsync(file->fd) == 0 ? 0 : errno;
 }
 
-csgm_status csg_file_commit(csg_file *file)
+csgm_status csg_file_commit(csg_atomic_file *file)
 {
     if (file->target && file->only_if_changed && is_unchanged(file)) {
         csg_file_abandon(file);
@@ -257,7 +258,7 @@ csgm_status csg_file_commit(csg_file *file)
     return fail(file, error);
 }
 
-void csg_file_abandon(csg_file *file)
+void csg_file_abandon(csg_atomic_file *file)
 {
     close(file->fd);
     if (file->temporary)

@@ -7,7 +7,7 @@
 
 #include "base/context.h"
 
-typedef struct csg_file {
+typedef struct csg_atomic_file {
     csgm_context *context;
     csg_arena names;
     const char *path;      /* as given, for diagnostics; borrowed */
@@ -17,13 +17,13 @@ typedef struct csg_file {
     bool sync; /* on the disk before it gets its name; true unless changed before the commit */
     bool only_if_changed; /* a target with these bytes stays as it is; set before the commit */
     int pending;          /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
-} csg_file;
+} csg_atomic_file;
 
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */
-csgm_status csg_file_create(csg_file *file, csgm_context *context, const char *path);
+csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path);
 /* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. */
-csgm_status csg_file_commit(csg_file *file);
+csgm_status csg_file_commit(csg_atomic_file *file);
 /* Closes and removes the temporary. */
-void csg_file_abandon(csg_file *file);
+void csg_file_abandon(csg_atomic_file *file);
 
 #endif

@@ -5,9 +5,10 @@
 
 #include <string.h>
 
-csg_part csg_part_get(const csgm_mesh_view *mesh, uint64_t index)
+csg_part_stretch csg_part_get(const csgm_mesh_view *mesh, uint64_t index)
 {
-    csg_part out = {.vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count};
+    csg_part_stretch out = {.vertex_count = mesh->vertex_count,
+                            .triangle_count = mesh->triangle_count};
     if (!mesh->part_count)
         return out;
     const csgm_mesh_part *part = &mesh->parts[index];
@@ -27,7 +28,8 @@ csg_part csg_part_get(const csgm_mesh_view *mesh, uint64_t index)
     return out;
 }
 
-bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part *part, uint16_t pair[2])
+bool csg_part_has_one_material(const csgm_mesh_view *mesh, const csg_part_stretch *part,
+                               uint16_t pair[2])
 {
     pair[0] = CSG_MATERIAL_METALLIC;
     pair[1] = CSG_MATERIAL_ROUGHNESS;

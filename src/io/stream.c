@@ -22,7 +22,7 @@ typedef struct stream_buffer {
 struct csg_stream {
     csg_stream_view view; /* first, so that a kind's view is its stream */
     const csg_stream_kind *kind;
-    csg_file file;
+    csg_atomic_file file;
     stream_buffer *buffers;       /* one for each worker */
     atomic_uint_fast64_t written; /* bytes so far */
     atomic_int error;             /* errno of the first failed write */
@@ -114,7 +114,7 @@ bool csg_stream_cut(csg_stream_view *stream, uint64_t size_bytes)
 
 /* ---- the stream ------------------------------------------------------------------- */
 
-static csgm_status begin(void *user, const csg_mesh_counts *counts)
+static csgm_status begin_file(void *user, const csg_mesh_counts *counts)
 {
     static const float some_floats[1];
     static const uint8_t some_bytes[1];
@@ -136,7 +136,7 @@ static bool put_run(void *user, const csg_mesh_run *run)
 csg_mesh_receiver csg_stream_receiver(csg_stream *stream)
 {
     return (csg_mesh_receiver){.user = stream,
-                               .begin = begin,
+                               .begin = begin_file,
                                .put = put_run,
                                .wants_corners = stream->kind->wants_corners};
 }

@@ -184,7 +184,7 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
 {
     csgm_write_options defaults = csg_write_options_default();
     const csg_format_row *row;
-    csg_file file;
+    csg_atomic_file file;
     options = options ? options : &defaults;
     csgm_status status = prepare(context, mesh, path, format, options, &row);
     if (status)

@@ -90,8 +90,8 @@ static csgm_status find_format(csgm_context *context, const char *name, csgm_ima
 }
 
 /* The format is known and there. */
-static csgm_status put(csgm_context *context, const csgm_image *image, int fd, const char *name,
-                       csgm_image_format format)
+static csgm_status put_image(csgm_context *context, const csgm_image *image, int fd,
+                             const char *name, csgm_image_format format)
 {
     CSG_ZONE(context, "write picture");
     csg_sink sink;
@@ -112,14 +112,14 @@ static csgm_status put(csgm_context *context, const csgm_image *image, int fd, c
 csgm_status csg_image_write(csgm_context *context, const csgm_image *image, const char *path,
                             csgm_image_format format)
 {
-    csg_file file;
+    csg_atomic_file file;
     csgm_status status = find_format(context, path, &format);
     if (status == CSGM_OK)
         status = csg_file_create(&file, context, path);
     if (status != CSGM_OK)
         return status;
     file.sync = false; /* a picture is made again sooner than a disk is waited for */
-    status = put(context, image, file.fd, path, format);
+    status = put_image(context, image, file.fd, path, format);
     if (status == CSGM_OK)
         return csg_file_commit(&file);
     csg_file_abandon(&file);
@@ -130,5 +130,5 @@ csgm_status csg_image_write_fd(csgm_context *context, const csgm_image *image, i
                                const char *name, csgm_image_format format)
 {
     csgm_status status = find_format(context, name, &format);
-    return status == CSGM_OK ? put(context, image, fd, name, format) : status;
+    return status == CSGM_OK ? put_image(context, image, fd, name, format) : status;
 }

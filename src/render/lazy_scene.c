@@ -151,7 +151,7 @@ static csgm_status create_lazy(lazy_job *job, const csgm_field *field)
     return csg_lazy_create(field->scene, &lazy, &job->lazy);
 }
 
-static csgm_status run(lazy_job *job, csgm_render_stats *stats)
+static csgm_status render_by_points(lazy_job *job, csgm_render_stats *stats)
 {
     CSG_ZONE(job->picture->context, "trace rays");
     csg_picture *picture = job->picture;
@@ -180,7 +180,7 @@ csgm_status csg_render_lazy(csg_picture *picture, const csgm_field *field, csg_b
     measure(&job, bounds);
     csgm_status status = create_lazy(&job, field);
     if (status == CSGM_OK)
-        status = run(&job, stats);
+        status = render_by_points(&job, stats);
     csg_lazy_destroy(job.lazy);
     return status;
 }

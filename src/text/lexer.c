@@ -116,7 +116,7 @@ static void skip_character(lexer *l, place in)
     l->at += length ? (uint32_t)length : 1;
 }
 
-static bool push(lexer *l, csg_token_kind kind, uint32_t from)
+static bool push_token(lexer *l, csg_token_kind kind, uint32_t from)
 {
     csg_token_array *out = l->out;
     if (!csg_memory_reserve(l->memory, (void **)&out->items, &out->capacity, out->count + 1,
@@ -258,11 +258,11 @@ static bool lex_string(lexer *l)
     }
     if (peek(l, 0) == '"') {
         l->at++;
-        return push(l, CSG_TOKEN_STRING, from);
+        return push_token(l, CSG_TOKEN_STRING, from);
     }
     csg_source_report(l->sources, CSG_DIAG_UNTERMINATED_STRING, span(l, from, from + 1),
                       "close it with '\"' on the same line", "this string never ends");
-    return push(l, CSG_TOKEN_BAD, from);
+    return push_token(l, CSG_TOKEN_BAD, from);
 }
 
 char *csg_token_string(csg_arena *arena, const char *text, uint32_t length, size_t *out_length)
@@ -504,7 +504,7 @@ static bool lex_strange(lexer *l)
         skip_character(l, IN_CODE);
     else
         l->at += length;
-    return push(l, CSG_TOKEN_BAD, from);
+    return push_token(l, CSG_TOKEN_BAD, from);
 }
 
 static bool lex_punctuation(lexer *l)
@@ -514,7 +514,7 @@ static bool lex_punctuation(lexer *l)
             memcmp(punctuation[i].text, l->text + l->at, punctuation[i].length) == 0) {
             uint32_t from = l->at;
             l->at += punctuation[i].length;
-            return push(l, punctuation[i].kind, from);
+            return push_token(l, punctuation[i].kind, from);
         }
     return lex_strange(l);
 }
@@ -542,7 +542,7 @@ bool csg_lex(const csg_sources *sources, uint32_t source, csg_token_array *out)
         else
             ok = lex_punctuation(&l);
     }
-    return ok && push(&l, CSG_TOKEN_END, l.length);
+    return ok && push_token(&l, CSG_TOKEN_END, l.length);
 }
 
 void csg_tokens_release(csg_memory *memory, csg_token_array *tokens)

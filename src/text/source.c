@@ -162,7 +162,7 @@ static bool is_binary(const char *text, size_t length)
     return strange >= 4 * CONTROL && strange * 12 > sniffed * CONTROL;
 }
 
-static csgm_status add(csg_sources *sources, csg_source source, uint32_t *out)
+static csgm_status add_source(csg_sources *sources, csg_source source, uint32_t *out)
 {
     csg_memory *memory = &sources->context->memory;
     if (sources->count >= MOST_SOURCES) {
@@ -228,7 +228,7 @@ csgm_status csg_source_add(csg_sources *sources, const char *name, const char *t
     if (stat(name, &info) == 0 && S_ISREG(info.st_mode))
         identify(&source, &info);
     source.length = (uint32_t)length;
-    return add(sources, source, out);
+    return add_source(sources, source, out);
 }
 
 bool csg_source_exists(const char *path)
@@ -268,8 +268,8 @@ static int read_all(csg_memory *memory, int file, buffer *into)
     return 0;
 }
 
-static csgm_status take(csg_sources *sources, const csg_source_request *request, const buffer *data,
-                        const struct stat *info, uint32_t *out)
+static csgm_status take_text(csg_sources *sources, const csg_source_request *request,
+                             const buffer *data, const struct stat *info, uint32_t *out)
 {
     csg_source source = {
         .from = request->from, .textual = request->textual, .library = request->library};
@@ -283,7 +283,7 @@ static csgm_status take(csg_sources *sources, const csg_source_request *request,
         return csg_context_no_memory(sources->context);
     source.length = (uint32_t)data->length;
     identify(&source, info);
-    return add(sources, source, out);
+    return add_source(sources, source, out);
 }
 
 static csgm_status read_file(csg_sources *sources, const csg_source_request *request, int file,
@@ -311,7 +311,7 @@ static csgm_status read_file(csg_sources *sources, const csg_source_request *req
         report_file(sources, CSG_DIAG_UNREADABLE_SOURCE, request->from, request->path, NULL,
                     strerror(problem));
     else
-        status = take(sources, request, &data, &info, out);
+        status = take_text(sources, request, &data, &info, out);
     csg_memory_release(memory, data.data, data.capacity);
     return status;
 }
@@ -333,7 +333,7 @@ csgm_status csg_source_read(csg_sources *sources, const csg_source_request *requ
         again.from = request->from;
         again.textual = request->textual;
         again.library = request->library;
-        return add(sources, again, out);
+        return add_source(sources, again, out);
     }
     /* A scene must not make the program wait for a pipe that nobody writes to. */
     int wait = request->from.source < sources->count ? O_NONBLOCK : 0;

@@ -38,6 +38,15 @@ def formats_written():
     return message.split("formats:")[1].split()
 
 
+def formats_read():
+    """Those of them that can be read, too: by the rows of the table, and by what this build lacks."""
+    sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "tools", "manual"))
+    from tables import format_rows  # pylint: disable=import-outside-toplevel
+    ways = {name: way for name, _, way, _, _ in format_rows()}
+    return [name for name in formats_written() if ways[name] != "WRITE_ONLY"
+            and (has_library("tinygltf") or name not in ("gltf", "glb"))]
+
+
 def has_library(name):
     """Whether this build has the optional library, as its own version says."""
     lines = run("--version").stdout.decode().splitlines()

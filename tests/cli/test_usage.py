@@ -94,7 +94,7 @@ class Mistakes(cli.CliTest):
         self.refused("a.txt", "-o", "a.glb", "-r", "9", "-s", "1", words=["give one"])
 
     def test_formats(self):
-        self.refused("a.txt", "-o", "a.xyz", words=["tells no format", "formats: obj ply"])
+        self.refused("a.txt", "-o", "a.nothing", words=["tells no format", "formats: obj ply"])
         self.refused("a.txt", "-o", "-", words=["add -f"])
         self.refused("a.txt", "-o", "a.glb", "-f", "doc", words=["unknown format 'doc'"])
 

@@ -221,7 +221,7 @@ static void devices_and_pipes_are_written_directly(void **state)
 static void cleanup_removes_a_temporary(void **state)
 {
     fixture *f = *state;
-    csg_file file;
+    csg_atomic_file file;
     assert_int_equal(csg_file_create(&file, &f->io.context, in_folder(f, "a.ply")), CSGM_OK);
     assert_int_equal(io_folder_count(f->folder), 1);
     csg_io_cleanup_pending();
@@ -236,7 +236,7 @@ static void cleanup_removes_a_temporary(void **state)
 static void names_and_options_are_checked(void **state)
 {
     fixture *f = *state;
-    assert_int_equal(write_to(f, in_folder(f, "a.xyz")), CSGM_ERR_UNSUPPORTED);
+    assert_int_equal(write_to(f, in_folder(f, "a.nothing")), CSGM_ERR_UNSUPPORTED);
     assert_int_equal(write_to(f, in_folder(f, "noextension")), CSGM_ERR_UNSUPPORTED);
     assert_int_equal(write_to(f, in_folder(f, "A.PLY")), CSGM_OK);
     csgm_write_options options = csg_write_options_default();

@@ -12,6 +12,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "io/format_table.h"
+
 static csgm_mesh *read_as(io_context *io, const char *name, const void *bytes, size_t size)
 {
     csgm_mesh *mesh = NULL;
@@ -136,8 +138,10 @@ static void pipe_is_told_by_content(void **state)
     int ends[2];
     csgm_mesh *mesh = io_shape_make(&io.context, IO_CUBE), *back = NULL;
     csgm_mesh_view view = csg_mesh_view(mesh);
-    for (int format = CSGM_FORMAT_OBJ + 1; format < CSGM_FORMAT_COUNT; format++) {
-        if (!csg_format_available((csgm_format)format, true))
+    for (int format = CSGM_FORMAT_AUTO + 1; format < CSGM_FORMAT_COUNT; format++) {
+        if (!csg_format_available((csgm_format)format, true) ||
+            !csg_format_available((csgm_format)format, false) ||
+            !*csg_format_find((csgm_format)format)->first_bytes)
             continue;
         assert_int_equal(pipe(ends), 0);
         assert_int_equal(csg_io_write_fd(&io.context, &view, ends[1], "standard output",

@@ -13,7 +13,7 @@
 typedef struct obj {
     csg_input *input;
     csg_mesh_builder *builder;
-    csg_scan scan;
+    csg_text_scan scan;
     float *normals; /* the vn lines, 3 each */
     size_t normal_count, normal_room;
     uint32_t *normal_of; /* per vertex: vn + 1 of its first corner, 0 = none yet */

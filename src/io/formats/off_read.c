@@ -12,7 +12,7 @@
 typedef struct off {
     csg_input *input;
     csg_mesh_builder *builder;
-    csg_scan scan;
+    csg_text_scan scan;
     bool texture, color, normal;
     uint64_t vertex_count, face_count;
 } off;

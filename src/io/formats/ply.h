@@ -65,6 +65,7 @@ typedef struct csg_ply_header {
 } csg_ply_header;
 
 /* Leaves the scan on the first byte of data. Reports what is broken. */
-csgm_status csg_ply_read_header(const csg_input *input, csg_scan *scan, csg_ply_header *header);
+csgm_status csg_ply_read_header(const csg_input *input, csg_text_scan *scan,
+                                csg_ply_header *header);
 
 #endif

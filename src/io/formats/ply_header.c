@@ -10,7 +10,7 @@ typedef struct word {
     size_t length;
 } word;
 
-static word next(csg_scan *scan)
+static word next(csg_text_scan *scan)
 {
     word w;
     w.length = csg_scan_word(scan, &w.text);
@@ -69,7 +69,7 @@ static csg_ply_slot find_slot(const csg_ply_element *element, word w, bool is_li
     return CSG_PLY_SKIP;
 }
 
-static csgm_status add_element(const csg_input *input, csg_scan *scan, csg_ply_header *header)
+static csgm_status add_element(const csg_input *input, csg_text_scan *scan, csg_ply_header *header)
 {
     int64_t count;
     word name = next(scan);
@@ -90,7 +90,7 @@ static csgm_status add_element(const csg_input *input, csg_scan *scan, csg_ply_h
     return CSGM_OK;
 }
 
-static csgm_status add_property(const csg_input *input, csg_scan *scan, csg_ply_header *header)
+static csgm_status add_property(const csg_input *input, csg_text_scan *scan, csg_ply_header *header)
 {
     csg_ply_property property = {.count_type = CSG_PLY_U8};
     word type = next(scan);
@@ -118,7 +118,7 @@ static csgm_status add_property(const csg_input *input, csg_scan *scan, csg_ply_
     return CSGM_OK;
 }
 
-static csgm_status set_format(const csg_input *input, csg_scan *scan, csg_ply_header *header)
+static csgm_status set_format(const csg_input *input, csg_text_scan *scan, csg_ply_header *header)
 {
     word name = next(scan);
     header->ascii = is(name, "ascii");
@@ -129,7 +129,7 @@ static csgm_status set_format(const csg_input *input, csg_scan *scan, csg_ply_he
     return CSGM_OK;
 }
 
-csgm_status csg_ply_read_header(const csg_input *input, csg_scan *scan, csg_ply_header *header)
+csgm_status csg_ply_read_header(const csg_input *input, csg_text_scan *scan, csg_ply_header *header)
 {
     bool has_format = false;
     memset(header, 0, sizeof *header);

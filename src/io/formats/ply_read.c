@@ -10,7 +10,7 @@
 typedef struct ply {
     csg_input *input;
     csg_mesh_builder *builder;
-    csg_scan scan; /* also the cursor of binary data */
+    csg_text_scan scan; /* also the cursor of binary data */
     csg_ply_header header;
     uint64_t vertex_count;
 } ply;

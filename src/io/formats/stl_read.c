@@ -78,7 +78,7 @@ static csgm_status read_binary(csg_input *input, weld *w)
 
 /* ---- ASCII ------------------------------------------------------------------------ */
 
-static bool next_is(csg_scan *s, const char *expected)
+static bool next_is(csg_text_scan *s, const char *expected)
 {
     const char *word;
     csg_scan_space(s);
@@ -86,7 +86,7 @@ static bool next_is(csg_scan *s, const char *expected)
     return csg_scan_is(word, length, expected);
 }
 
-static bool three_numbers(csg_scan *s, double *values)
+static bool three_numbers(csg_text_scan *s, double *values)
 {
     for (int k = 0; k < 3; k++) {
         csg_scan_space(s);
@@ -97,7 +97,7 @@ static bool three_numbers(csg_scan *s, double *values)
 }
 
 /* After "facet". */
-static bool read_facet(csg_scan *s, double corners[3][3])
+static bool read_facet(csg_text_scan *s, double corners[3][3])
 {
     double normal[3]; /* may be anything, nan too */
     if (!next_is(s, "normal") || !three_numbers(s, normal) || !next_is(s, "outer") ||
@@ -115,7 +115,7 @@ static bool read_facet(csg_scan *s, double corners[3][3])
 
 static csgm_status read_ascii(csg_input *input, weld *w)
 {
-    csg_scan s = csg_scan_start(input);
+    csg_text_scan s = csg_scan_start(input);
     const char *word;
     double corners[3][3];
     bool open = false;

@@ -125,7 +125,7 @@ static void number_materials(csg_gltf_part *parts, uint64_t count)
 static void measure_part(csg_gltf_layout *layout, csg_gltf_part *out, const csgm_mesh_view *mesh,
                          uint64_t index)
 {
-    csg_part part = csg_part_get(mesh, index);
+    csg_part_stretch part = csg_part_get(mesh, index);
     *out = (csg_gltf_part){.name = part.name,
                            .first_vertex = part.first_vertex,
                            .vertex_count = part.vertex_count,

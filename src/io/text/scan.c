@@ -3,10 +3,10 @@
  */
 #include "io/text/scan.h"
 
-csg_scan csg_scan_start(const csg_input *input)
+csg_text_scan csg_scan_start(const csg_input *input)
 {
     const char *text = (const char *)input->bytes;
-    return (csg_scan){text, text + input->size_bytes, 1};
+    return (csg_text_scan){text, text + input->size_bytes, 1};
 }
 
 static bool is_blank(char c)
@@ -14,13 +14,13 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
-static bool continues(const csg_scan *s)
+static bool continues(const csg_text_scan *s)
 {
     return *s->at == '\\' && s->end - s->at >= 2 &&
            (s->at[1] == '\n' || (s->end - s->at >= 3 && s->at[1] == '\r' && s->at[2] == '\n'));
 }
 
-void csg_scan_blanks(csg_scan *s)
+void csg_scan_blanks(csg_text_scan *s)
 {
     while (s->at < s->end) {
         if (is_blank(*s->at)) {
@@ -34,7 +34,7 @@ void csg_scan_blanks(csg_scan *s)
     }
 }
 
-void csg_scan_skip_line(csg_scan *s)
+void csg_scan_skip_line(csg_text_scan *s)
 {
     while (s->at < s->end && *s->at != '\n')
         s->at++;
@@ -44,7 +44,7 @@ void csg_scan_skip_line(csg_scan *s)
     }
 }
 
-void csg_scan_space(csg_scan *s)
+void csg_scan_space(csg_text_scan *s)
 {
     while (s->at < s->end) {
         if (*s->at == '\n' || *s->at == '#')
@@ -56,18 +56,18 @@ void csg_scan_space(csg_scan *s)
     }
 }
 
-bool csg_scan_at_line_end(csg_scan *s)
+bool csg_scan_at_line_end(csg_text_scan *s)
 {
     csg_scan_blanks(s);
     return s->at == s->end || *s->at == '\n' || *s->at == '#';
 }
 
-static bool ends_word(const csg_scan *s, const char *at)
+static bool ends_word(const csg_text_scan *s, const char *at)
 {
     return at == s->end || is_blank(*at) || *at == '\n' || *at == '#';
 }
 
-size_t csg_scan_word(csg_scan *s, const char **word)
+size_t csg_scan_word(csg_text_scan *s, const char **word)
 {
     csg_scan_blanks(s);
     *word = s->at;
@@ -86,7 +86,7 @@ bool csg_scan_is(const char *word, size_t length, const char *expected)
     return expected[length] == '\0';
 }
 
-bool csg_scan_number(csg_scan *s, double *value)
+bool csg_scan_number(csg_text_scan *s, double *value)
 {
     csg_scan_blanks(s);
     const char *after = csg_number_parse(s->at, s->end, value);
@@ -96,7 +96,7 @@ bool csg_scan_number(csg_scan *s, double *value)
     return true;
 }
 
-bool csg_scan_integer(csg_scan *s, int64_t *value)
+bool csg_scan_integer(csg_text_scan *s, int64_t *value)
 {
     csg_scan_blanks(s);
     const char *at = s->at;

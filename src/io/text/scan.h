@@ -7,30 +7,30 @@
 #include "io/adapter.h"
 #include "io/reader.h"
 
-typedef struct csg_scan {
+typedef struct csg_text_scan {
     const char *at, *end;
     uint32_t line; /* 1-based */
-} csg_scan;
+} csg_text_scan;
 
-csg_scan csg_scan_start(const csg_input *input);
+csg_text_scan csg_scan_start(const csg_input *input);
 
 /* Blanks but no line ends; a backslash before a line end is a blank. */
-void csg_scan_blanks(csg_scan *scan);
+void csg_scan_blanks(csg_text_scan *scan);
 /* Blanks, line ends, and comments from '#' to the end of their line. */
-void csg_scan_space(csg_scan *scan);
-void csg_scan_skip_line(csg_scan *scan); /* through the line's end */
+void csg_scan_space(csg_text_scan *scan);
+void csg_scan_skip_line(csg_text_scan *scan); /* through the line's end */
 /* After blanks: at a line end, a comment or the end of the file. */
-bool csg_scan_at_line_end(csg_scan *scan);
+bool csg_scan_at_line_end(csg_text_scan *scan);
 
 /* The next word on this line: its length, 0 at the line's end. */
-size_t csg_scan_word(csg_scan *scan, const char **word);
+size_t csg_scan_word(csg_text_scan *scan, const char **word);
 /* Same letters, any case. */
 bool csg_scan_is(const char *word, size_t length, const char *expected);
 
 /* The next word on this line as a number: false and not moved when it is none. Infinite and NaN are
  * numbers here. */
-bool csg_scan_number(csg_scan *scan, double *value);
+bool csg_scan_number(csg_text_scan *scan, double *value);
 /* As above, whole numbers only. */
-bool csg_scan_integer(csg_scan *scan, int64_t *value);
+bool csg_scan_integer(csg_text_scan *scan, int64_t *value);
 
 #endif

@@ -87,8 +87,8 @@ static void multiply(const double a[12], const double b[12], double out[12])
                              (c == 3 ? a[4 * r + 3] : 0);
 }
 
-static csgm_status push(reading *r, const csg_3mf_reference *reference, const double outer[12],
-                        int depth)
+static csgm_status push_component(reading *r, const csg_3mf_reference *reference,
+                                  const double outer[12], int depth)
 {
     csg_input *input = r->m->input;
     const csg_3mf_object *object = find_object(r, reference);
@@ -155,8 +155,8 @@ static csgm_status unfold(reading *r)
         placed place = r->stack[--r->stack_count];
         status = add_mesh(r, &place);
         for (size_t i = place.object->component_count; i-- > 0 && !status;)
-            status = push(r, &r->m->components[place.object->first_component + i], place.transform,
-                          place.depth + 1);
+            status = push_component(r, &r->m->components[place.object->first_component + i],
+                                    place.transform, place.depth + 1);
     }
     return status;
 }
@@ -174,7 +174,7 @@ csgm_status csg_3mf_read(csg_input *input, csg_mesh_builder *builder)
         if (!csg_builder_part(builder, object ? object->name : NULL))
             status = csg_context_no_memory(input->context);
         else
-            status = push(&r, &model.items[i], NULL, 0);
+            status = push_component(&r, &model.items[i], NULL, 0);
         if (!status)
             status = unfold(&r);
     }

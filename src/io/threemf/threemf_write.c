@@ -27,7 +27,7 @@ typedef struct model {
     csg_zip *zip;
     const csgm_mesh_view *mesh;
     palette palette;
-    csg_part part; /* being written */
+    csg_part_stretch part; /* being written */
     bool offset;
 } model;
 
@@ -183,7 +183,7 @@ static void put_pieces(model *m, uint64_t lines, csg_zip_piece_fn *piece)
 /* ---- the model --------------------------------------------------------------------------------
  */
 
-static void put(model *m, const char *text)
+static void put_xml(model *m, const char *text)
 {
     csg_zip_text(m->zip, text, strlen(text));
 }
@@ -191,9 +191,9 @@ static void put(model *m, const char *text)
 static void put_id(model *m, const char *before, uint64_t id, const char *after)
 {
     char text[CSG_NUMBER_MOST];
-    put(m, before);
+    put_xml(m, before);
     csg_zip_text(m->zip, text, (size_t)(csg_number_put_u64(text, id) - text));
-    put(m, after);
+    put_xml(m, after);
 }
 
 /* XML has no way to write most control characters: they become spaces. */
@@ -207,7 +207,7 @@ static void put_escaped(model *m, const char *text)
                                             : NULL;
         char plain = (unsigned char)*text < ' ' ? ' ' : *text;
         if (escape)
-            put(m, escape);
+            put_xml(m, escape);
         else
             csg_zip_text(m->zip, &plain, 1);
     }
@@ -234,14 +234,14 @@ static void put_looks(model *m)
     if (m->mesh->materials) {
         put_id(m, "<m:pbmetallicdisplayproperties id=\"", DISPLAY_ID, "\">\n");
         put_pieces(m, m->palette.look_count, display_piece);
-        put(m, "</m:pbmetallicdisplayproperties>\n");
+        put_xml(m, "</m:pbmetallicdisplayproperties>\n");
     }
     put_id(m, "<m:colorgroup id=\"", COLORS_ID, "\"");
     if (m->mesh->materials)
         put_id(m, " displaypropertiesid=\"", DISPLAY_ID, "\"");
-    put(m, ">\n");
+    put_xml(m, ">\n");
     put_pieces(m, m->palette.look_count, color_piece);
-    put(m, "</m:colorgroup>\n");
+    put_xml(m, "</m:colorgroup>\n");
 }
 
 static void put_object(model *m, uint64_t index)
@@ -249,49 +249,50 @@ static void put_object(model *m, uint64_t index)
     m->part = csg_part_get(m->mesh, index);
     put_id(m, "<object id=\"", FIRST_OBJECT_ID + index, "\" type=\"model\"");
     if (m->part.name && *m->part.name) {
-        put(m, " name=\"");
+        put_xml(m, " name=\"");
         put_escaped(m, m->part.name);
-        put(m, "\"");
+        put_xml(m, "\"");
     }
     if (m->palette.of_vertex)
         put_id(m, " pid=\"", COLORS_ID, "\" pindex=\"0\"");
-    put(m, ">\n<mesh>\n<vertices>\n");
+    put_xml(m, ">\n<mesh>\n<vertices>\n");
     put_pieces(m, m->part.vertex_count, vertex_piece);
-    put(m, "</vertices>\n<triangles>\n");
+    put_xml(m, "</vertices>\n<triangles>\n");
     put_pieces(m, m->part.triangle_count, triangle_piece);
-    put(m, "</triangles>\n</mesh>\n</object>\n");
+    put_xml(m, "</triangles>\n</mesh>\n</object>\n");
 }
 
 static void put_model(model *m, csgm_unit unit)
 {
     uint64_t count = m->mesh->triangle_count ? csg_part_count(m->mesh) : 0;
-    put(m, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");
-    put(m, unit_name(unit));
-    put(m, "\" xml:lang=\"en-US\" "
-           "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
-           "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
-           "<metadata name=\"Application\">" CSG_WRITTEN_BY "</metadata>\n<resources>\n");
+    put_xml(m, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");
+    put_xml(m, unit_name(unit));
+    put_xml(m, "\" xml:lang=\"en-US\" "
+               "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+               "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
+               "<metadata name=\"Application\">" CSG_WRITTEN_BY "</metadata>\n<resources>\n");
     if (m->palette.of_vertex)
         put_looks(m);
     for (uint64_t i = 0; i < count; i++)
         if (!m->mesh->part_count || m->mesh->parts[i].triangle_count)
             put_object(m, i);
-    put(m, "</resources>\n<build>\n");
+    put_xml(m, "</resources>\n<build>\n");
     for (uint64_t i = 0; i < count; i++)
         if (!m->mesh->part_count || m->mesh->parts[i].triangle_count)
             put_id(m, "<item objectid=\"", FIRST_OBJECT_ID + i, "\"/>\n");
-    put(m, "</build>\n</model>\n");
+    put_xml(m, "</build>\n</model>\n");
 }
 
 static void put_small_files(model *m)
 {
     csg_zip_file(m->zip, "[Content_Types].xml");
-    put(m, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-           "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
-           "<Default Extension=\"rels\" "
-           "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
-           "<Default Extension=\"model\" "
-           "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
+    put_xml(m,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+            "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
+            "<Default Extension=\"rels\" "
+            "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
+            "<Default Extension=\"model\" "
+            "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
     csg_zip_file(m->zip, "_rels/.rels");
     put(m,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

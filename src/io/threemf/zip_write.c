@@ -62,7 +62,7 @@ struct csg_zip {
 
 enum { SIZE_BYTES = 16 };
 
-static void *take(void *memory, unsigned count, unsigned size)
+static void *allocate_for_zlib(void *memory, unsigned count, unsigned size)
 {
     size_t bytes = (size_t)count * size + SIZE_BYTES;
     uint8_t *block = csg_memory_alloc(memory, bytes);
@@ -173,7 +173,7 @@ void csg_zip_pieces(csg_zip *zip, uint64_t count, csg_zip_piece_fn *piece, void 
 
 /* ---- the archive ----------------------------------------------------------------------------- */
 
-static void put(csg_zip *zip, const void *bytes, size_t count)
+static void put_bytes(csg_zip *zip, const void *bytes, size_t count)
 {
     csg_sink_put(zip->sink, bytes, count);
     zip->written += count;
@@ -201,10 +201,10 @@ static void end_file(csg_zip *zip)
         return;
     entry *file = &zip->files[zip->file_count - 1];
     flush_loose(zip);
-    put(zip, last_block, sizeof last_block);
+    put_bytes(zip, last_block, sizeof last_block);
     file->packed_bytes += sizeof last_block;
     store_sizes(csg_store_u32(descriptor, 0x08074B50), file);
-    put(zip, descriptor, sizeof descriptor);
+    put_bytes(zip, descriptor, sizeof descriptor);
 }
 
 void csg_zip_file(csg_zip *zip, const char *name)
@@ -215,8 +215,8 @@ void csg_zip_file(csg_zip *zip, const char *name)
     *file = (entry){.name = name, .at = zip->written};
     store_kind(csg_store_u32(head, 0x04034B50));
     csg_store_u16(head + 26, (uint32_t)strlen(name));
-    put(zip, head, sizeof head);
-    put(zip, name, strlen(name));
+    put_bytes(zip, head, sizeof head);
+    put_bytes(zip, name, strlen(name));
 }
 
 static void put_record(csg_zip *zip, const entry *file)
@@ -226,8 +226,8 @@ static void put_record(csg_zip *zip, const entry *file)
     at = store_sizes(store_kind(at), file);
     csg_store_u16(at, (uint32_t)strlen(file->name));
     csg_store_u32(record + 42, (uint32_t)file->at);
-    put(zip, record, sizeof record);
-    put(zip, file->name, strlen(file->name));
+    put_bytes(zip, record, sizeof record);
+    put_bytes(zip, file->name, strlen(file->name));
 }
 
 csgm_status csg_zip_finish(csg_zip *zip)
@@ -245,7 +245,7 @@ csgm_status csg_zip_finish(csg_zip *zip)
     csg_store_u16(end + 10, (uint32_t)zip->file_count);
     csg_store_u32(end + 12, (uint32_t)(zip->written - directory));
     csg_store_u32(end + 16, (uint32_t)directory);
-    put(zip, end, sizeof end);
+    put_bytes(zip, end, sizeof end);
     return fits && zip->written < UINT32_MAX ? CSGM_OK : CSGM_ERR_UNSUPPORTED;
 }
 
@@ -258,7 +258,7 @@ static bool make_packers(csg_zip *zip)
     memset(zip->packers, 0, zip->worker_count * sizeof(packer));
     for (uint32_t i = 0; i < zip->worker_count; i++) {
         z_stream *stream = &zip->packers[i].stream;
-        stream->zalloc = take;
+        stream->zalloc = allocate_for_zlib;
         stream->zfree = give_back;
         stream->opaque = memory;
         zip->packers[i].ready =

@@ -76,7 +76,7 @@ static bool open_temporary(temporary *t, const char *target)
 }
 
 /* Closes, and gives the file its name if all went well; errno is that of the first failure. */
-static bool finish(temporary *t, bool good, const char *target)
+static bool close_and_rename(temporary *t, bool good, const char *target)
 {
     int reason = errno;
     if (close(t->fd) != 0 && good) {
@@ -97,7 +97,8 @@ static bool finish(temporary *t, bool good, const char *target)
 bool batch_write_small(const char *path, const char *text, size_t length)
 {
     temporary t;
-    return open_temporary(&t, path) && finish(&t, cli_write_fully(t.fd, text, length), path);
+    return open_temporary(&t, path) &&
+           close_and_rename(&t, cli_write_fully(t.fd, text, length), path);
 }
 
 char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
@@ -164,7 +165,7 @@ bool batch_copy(const char *from, const char *to, const batch_digest *digest, bo
     int reason = errno;
     close(source);
     errno = reason;
-    return opened && finish(&t, good, to);
+    return opened && close_and_rename(&t, good, to);
 }
 
 /* ---- leftovers ------------------------------------------------------------------------ */

@@ -266,7 +266,7 @@ static void set_outputs(maker *m)
     m->app.options.outputs = names;
 }
 
-static int make(maker *m, bool may_defer, bool *is_large)
+static int make_job(maker *m, bool may_defer, bool *is_large)
 {
     set_outputs(m);
     int status = cli_work_check(&m->app);
@@ -302,7 +302,7 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     m.app.zone_note = job->scene;
     *is_large = false;
     FILE *out = open_console(&m, &text, &length);
-    result->status = out ? make(&m, may_defer, is_large) : CLI_TROUBLE;
+    result->status = out ? make_job(&m, may_defer, is_large) : CLI_TROUBLE;
     cli_work_release(&m.work);
     if (out)
         cli_console_flush(&m.app.console);

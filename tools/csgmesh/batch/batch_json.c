@@ -21,7 +21,7 @@ typedef struct builder {
     bool too_deep;
 } builder;
 
-static bool take(void *user, csgm_json_kind kind, const char *text, size_t length)
+static bool take_event(void *user, csgm_json_kind kind, const char *text, size_t length)
 {
     builder *b = user;
     if (kind == CSGM_JSON_END) {
@@ -94,7 +94,7 @@ int batch_json_load(cli_app *app, batch_arena *arena, const char *path, batch_va
     char *text = read_file(app, path, &length);
     if (!text)
         return CLI_TROUBLE;
-    csgm_status status = csgm_json_read(app->context, text, length, path, take, &b);
+    csgm_status status = csgm_json_read(app->context, text, length, path, take_event, &b);
     free(text);
     if (status == CSGM_OK && (b.too_deep || arena->failed)) {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read %s: %s", path,

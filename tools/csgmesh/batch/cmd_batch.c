@@ -23,7 +23,7 @@ static int check_usage(cli_app *app)
     return CLI_DONE;
 }
 
-static int run(cli_app *app, batch_plan *plan)
+static int run_plan(cli_app *app, batch_plan *plan)
 {
     batch_run state = {.app = app, .plan = plan};
     int status = batch_run_all(&state);
@@ -45,7 +45,7 @@ int cli_cmd_batch(cli_app *app)
     if (status == CLI_DONE)
         status = batch_plan_make(app, &plan);
     if (status == CLI_DONE)
-        status = app->options.emit ? emit_plan(&plan) : run(app, &plan);
+        status = app->options.emit ? emit_plan(&plan) : run_plan(app, &plan);
     batch_plan_release(&plan);
     return status;
 }

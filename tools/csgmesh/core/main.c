@@ -76,7 +76,7 @@ static int find_named(int argc, char **argv, cli_command *command)
     return operand < argc && find_command(argv[operand], command) ? operand : 0;
 }
 
-static int run(cli_app *app, int argc, char **argv)
+static int dispatch(cli_app *app, int argc, char **argv)
 {
     cli_command command = CLI_MESH;
     if (argc < 2) {
@@ -98,7 +98,7 @@ int main(int argc, char **argv)
 {
     cli_app app = {.start_s = cli_now_s(), .console = cli_console_make()};
     cli_interrupt_install();
-    int status = run(&app, argc, argv);
+    int status = dispatch(&app, argc, argv);
     cli_console_flush(&app.console);
     csgm_context_destroy(app.context);
     cli_options_release(&app.options);

@@ -236,7 +236,7 @@ static bool name_in_a(cli_app *app, const char *a, const char *b, diff_result *r
     return false;
 }
 
-static int run(cli_app *app, const csgm_diff_options *options, diff_results *results)
+static int compare_pairs(cli_app *app, const csgm_diff_options *options, diff_results *results)
 {
     const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
     const cli_options *o = &app->options;
@@ -290,7 +290,7 @@ int cli_cmd_diff(cli_app *app)
         status = find_pairs(app, &results);
     if (status == CLI_DONE) {
         csgm_diff_options options = diff_options(&app->options, ignored);
-        status = run(app, &options, &results);
+        status = compare_pairs(app, &options, &results);
         if (app->options.diff_json && diff_write_json(app, &results) != CLI_DONE)
             status = CLI_TROUBLE;
         if (app->options.diff_junit && diff_write_junit(app, &results) != CLI_DONE)

@@ -121,8 +121,8 @@ static csgm_status draw_side(painter *p, int side)
 }
 
 /* Both meshes as one: vertices of B, then those of A; triangles of B, then those of A that show. */
-static void join(const diff_drawing *d, float *positions, uint8_t *colors, uint32_t *indices,
-                 csgm_mesh_view *out)
+static void join_meshes(const diff_drawing *d, float *positions, uint8_t *colors, uint32_t *indices,
+                        csgm_mesh_view *out)
 {
     csgm_vec3 origin = d->box.min;
     *out = (csgm_mesh_view){
@@ -163,7 +163,7 @@ static csgm_status draw_heatmap(painter *p)
     csgm_status status = CSGM_ERR_MEMORY;
     if (positions && colors && indices && vertices < UINT32_MAX) {
         csgm_mesh_view joined;
-        join(d, positions, colors, indices, &joined);
+        join_meshes(d, positions, colors, indices, &joined);
         status = draw(p, 2, &joined);
     }
     free(positions);

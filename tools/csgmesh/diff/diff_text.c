@@ -8,7 +8,7 @@
 
 #include "diff/diff_result.h"
 
-static void add(char *text, size_t size, const char *more)
+static void append(char *text, size_t size, const char *more)
 {
     size_t length = strlen(text);
     snprintf(text + length, size - length, "%s%s", length ? "; " : "", more);
@@ -21,7 +21,7 @@ static void explain_distance(const csgm_diff_report *r, char *text, size_t size)
     double lower = is_counted ? r->counted.lower : r->hausdorff_lower;
     snprintf(line, sizeof line, "%.4g apart%s, more than %.4g", lower,
              is_counted ? " where it counts" : "", r->tolerance);
-    add(text, size, line);
+    append(text, size, line);
 }
 
 static void explain_topology(const csgm_diff_report *r, char *text, size_t size)
@@ -37,28 +37,29 @@ static void explain_topology(const csgm_diff_report *r, char *text, size_t size)
     else
         snprintf(line, sizeof line, "genus %" PRId64 " became %" PRId64, a->check.genus,
                  b->check.genus);
-    add(text, size, line);
+    append(text, size, line);
 }
 
 static void explain_difference(const csgm_diff_report *r, char *text, size_t size)
 {
     char line[160];
     if (r->reasons & CSGM_DIFF_REASON_EMPTY)
-        add(text, size, r->figures[0].triangles ? "B is empty" : "A is empty");
+        append(text, size, r->figures[0].triangles ? "B is empty" : "A is empty");
     if (r->reasons & CSGM_DIFF_REASON_DISTANCE)
         explain_distance(r, text, size);
     if (r->reasons & CSGM_DIFF_REASON_VOLUME) {
         snprintf(line, sizeof line, "%.3g %% of the volume differ", 100 * r->volume.ratio);
-        add(text, size, r->volume.is_measured ? line : "volumes of open meshes cannot be compared");
+        append(text, size,
+               r->volume.is_measured ? line : "volumes of open meshes cannot be compared");
     }
     if (r->reasons & CSGM_DIFF_REASON_TOPOLOGY)
         explain_topology(r, text, size);
     if (r->reasons & CSGM_DIFF_REASON_NORMALS)
-        add(text, size, "normals differ");
+        append(text, size, "normals differ");
     if (r->reasons & CSGM_DIFF_REASON_COLORS)
-        add(text, size, "colours differ");
+        append(text, size, "colours differ");
     if (r->reasons & CSGM_DIFF_REASON_NAMES)
-        add(text, size, "names of parts differ");
+        append(text, size, "names of parts differ");
 }
 
 void diff_explain(const diff_result *result, char *text, size_t size)
@@ -66,15 +67,15 @@ void diff_explain(const diff_result *result, char *text, size_t size)
     const csgm_diff_report *r = &result->report;
     text[0] = '\0';
     if (result->outcome == DIFF_ONLY_A || result->outcome == DIFF_ONLY_B)
-        add(text, size, result->outcome == DIFF_ONLY_A ? "only in A" : "only in B");
+        append(text, size, result->outcome == DIFF_ONLY_A ? "only in A" : "only in B");
     else if (result->outcome == DIFF_FAILED)
-        add(text, size, "could not be compared");
+        append(text, size, "could not be compared");
     else if (r->is_different)
         explain_difference(r, text, size);
     else if (r->level == CSGM_DIFF_SAME_BYTES)
-        add(text, size, "the same bytes");
+        append(text, size, "the same bytes");
     else if (r->level == CSGM_DIFF_SAME_TRIANGLES)
-        add(text, size, "the same triangles");
+        append(text, size, "the same triangles");
     else if (isinf(r->tolerance))
         snprintf(text, size, "volumes within the tolerance, at most %.4g apart",
                  r->hausdorff_upper);

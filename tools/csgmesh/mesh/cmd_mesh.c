@@ -194,7 +194,7 @@ static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
     return status;
 }
 
-static int run(cli_app *app, const char *path)
+static int mesh_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
     run_report report = {0};
@@ -226,5 +226,5 @@ int cli_cmd_mesh(cli_app *app)
         status = cli_depfile_check(app);
     if (status == CLI_DONE)
         status = cli_app_open(app);
-    return status == CLI_DONE ? run(app, operands->items[0]) : status;
+    return status == CLI_DONE ? mesh_scene(app, operands->items[0]) : status;
 }

@@ -5,7 +5,7 @@
 
 #include "core/cli.h"
 
-static void put(void *user, const char *text, size_t length)
+static void put_on_stdout(void *user, const char *text, size_t length)
 {
     fwrite(text, 1, length, user);
 }
@@ -24,7 +24,7 @@ int cli_cmd_dump(cli_app *app)
     if (status == CLI_DONE)
         status = cli_exit_status(cli_app_load(app, options->operands.items[0], &scene));
     if (status == CLI_DONE)
-        status = cli_exit_status(csgm_scene_dump(app->context, scene, what, put, stdout));
+        status = cli_exit_status(csgm_scene_dump(app->context, scene, what, put_on_stdout, stdout));
     csgm_scene_destroy(scene);
     return cli_finish_stdout(app, status);
 }
