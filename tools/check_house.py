@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80, and paths that are
-named in pages and comments exist.
+"""House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80; a type that a header
+declares has a name of its own; static functions are named by what they do; paths that are named in pages and comments
+exist.
 
 With --format: clang-format agrees with every C file (exit 77, a skip, where version 14 is not there).
 """
@@ -22,6 +23,12 @@ LONG_FILES = {os.path.join("include", "csgmesh", "csgmesh.h"): "the whole public
 
 # (file, function): why it may be longer.
 LONG_FUNCTIONS = {}
+
+# What such a function runs, puts or joins is what its name should say. These layers keep the rule.
+SAYS_NOTHING = {"run", "put", "join", "push", "finish"}
+# Names of several types that are still to be parted.
+SHARED_TYPES = {"csg_edges", "csg_frame", "csg_nearest", "curve", "range"}
+NAMED = ("src/base/", "src/text/", "src/io/", "src/render/", "src/diff/", "src/api/", "tools/csgmesh/")
 
 
 def files(root):
@@ -51,6 +58,30 @@ def functions(lines):
         yield name.group(1) if name else "?", first + 1, end - first + 1
 
 
+def defined_types(text):
+    """Names of the types that a C file defines: struct, enum and union tags with a body, typedefs of anything."""
+    text = re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
+    yield from re.findall(r"^\}\s*(\w+);", text, re.M)
+    yield from re.findall(r"^(?:typedef\s+)?(?:struct|enum|union)\s+(\w+)[^;{()]*\{", text, re.M)
+    for line, name in re.findall(r"^(typedef\s+[^{;()]*?\b(\w+)\s*(?:\[[^\]]*\])?;)", text, re.M):
+        if not re.match(rf"typedef\s+(?:struct|enum|union)\s+{name}\s+{name};", line):
+            yield name
+
+
+def check_types(root):
+    """One name, one type: what a header of src/ declares is declared nowhere else, in no other .c either."""
+    where = {}
+    for path in files(root):
+        if path.startswith("src" + os.sep) and path.endswith(CODE):
+            with open(os.path.join(root, path), encoding="utf-8") as file:
+                for name in set(defined_types(file.read())):
+                    where.setdefault(name, []).append(path)
+    for name, paths in sorted(where.items()):
+        headers = [path for path in paths if path.endswith(".h")]
+        if headers and len(paths) > 1 and name not in SHARED_TYPES:
+            yield headers[0], 1, f"the type {name} is defined in " + ", ".join(sorted(paths))
+
+
 def check_file(root, path):
     full = os.path.join(root, path)
     if not (path.endswith(MARKED) or is_script(full)):
@@ -65,6 +96,8 @@ def check_file(root, path):
         for name, first, length in functions(lines):
             if length > FUNCTION_LINES and (path, name) not in LONG_FUNCTIONS:
                 yield first, f"{name} has {length} lines; {FUNCTION_LINES} is the most"
+            if name in SAYS_NOTHING and lines[first - 1].startswith("static") and path.startswith(NAMED):
+                yield first, f"a static function called {name}: say what"
 
 
 # A path from the root, or one of a source file from src, tests or tools/csgmesh, as pages and comments name them.
@@ -143,6 +176,7 @@ def main():
     count = 0
     faults = [(path, fault) for path in files(root) for fault in check_file(root, path)]
     faults += [(path, fault) for path in pages(root) if path not in WITHOUT_PATHS for fault in check_paths(root, path)]
+    faults += [(path, (line, fault)) for path, line, fault in check_types(root)]
     for path, (line, fault) in faults:
         print(f"{path}:{line}: {fault}")
         count += 1

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Folder order is data order: every #include in src/ and tools/ must name its own folder or one above.
+"""Folder order is data order: every #include in src/ and tools/ must name its own folder or one above, and modules
+include each other in no circle but the few of CIRCLES.
 
 Prints one line a fault and exits 1 when there is any. The order is that of src/README.md.
 """
@@ -22,10 +23,27 @@ PARTS = {
     "io": ["text", "formats", "gltf", "threemf"],
 }
 
-# The scene layer knows nothing of text: spans are plain numbers there.
 # Made by the build.
 GENERATED = {"report_page.inc"}
 
+# Circles of modules that may be, and why. A module is NAME.c with NAME.h. In all but two the second is a helper of the first,
+# in a file of its own for its length: it takes the types that the first one's header declares.
+CIRCLES = {
+    frozenset({"field/compile/compile_curve", "field/compile/compile_leaf"}):
+        "a curve is a leaf that makes leaves: it is packed by the rules of all others",
+    frozenset({"field/cones/cone", "field/cones/cone_along"}): "cone_along takes the cones that cone.h declares",
+    frozenset({"grid/certify/certify", "grid/certify/certify_block"}): "certify_block fills the places that certify.h declares",
+    frozenset({"mesh/features/join", "mesh/features/move", "mesh/features/shift"}):
+        "apexes are joined, moved and joined again, until nothing changes",
+    frozenset({"outline/dxf/dxf", "outline/dxf/dxf_entity"}): "dxf_entity draws by the request that dxf.h declares",
+    frozenset({"outline/letters/fonts", "outline/letters/text", "outline/letters/text_runs"}):
+        "text_runs looks for fonts by the request that text.h declares",
+    frozenset({"scene/tree/build", "scene/tree/check"}): "check.h takes the builder that build.h declares",
+    frozenset({"shape/polyhedra/polyhedron", "shape/polyhedra/repair"}):
+        "repair tells what it did in the report that polyhedron.h declares",
+}
+
+# The scene layer knows nothing of text: spans are plain numbers there.
 FORBIDDEN = {("scene", "text"): "scenes know nothing of text"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
@@ -90,6 +108,57 @@ def check_source(root):
                 yield path, number, fault
 
 
+def module_graph(root):
+    """module -> the modules that its .c, .cc and .h include. .def files are data; what NAME_private.h takes from
+    NAME.h, to hand both to the files of a module that is in several, is no circle."""
+    graph = {}
+    for path in sources(os.path.join(root, "src")):
+        name, ending = os.path.splitext(os.path.relpath(path, os.path.join(root, "src")).replace(os.sep, "/"))
+        if ending in (".c", ".cc", ".h"):
+            graph.setdefault(name, set()).update(
+                os.path.splitext(other)[0] for _, quote, other in includes(path)
+                if quote == '"' and other.endswith(".h"))
+    return {name: {other for other in others if other in graph and name not in (other, other + "_private")}
+            for name, others in graph.items()}
+
+
+def circles(graph):
+    """The sets of modules that reach each other: strongly connected components of more than one (Tarjan 1972)."""
+    index, low, waiting, found = {}, {}, [], []
+
+    def visit(name):
+        index[name] = low[name] = len(index)
+        waiting.append(name)
+        for other in sorted(graph[name]):
+            if other not in index:
+                visit(other)
+            if other in waiting:
+                low[name] = min(low[name], low[other])
+        if low[name] == index[name]:
+            at = waiting.index(name)
+            if len(waiting) - at > 1:
+                found.append(sorted(waiting[at:]))
+            del waiting[at:]
+
+    for name in sorted(graph):
+        if name not in index:
+            visit(name)
+    return sorted(found)
+
+
+def check_circles(root):
+    found = circles(module_graph(root))
+    for circle in found:
+        if frozenset(circle) not in CIRCLES:
+            first = next(os.path.join(root, "src", circle[0] + ending) for ending in (".c", ".cc", ".h")
+                         if os.path.exists(os.path.join(root, "src", circle[0] + ending)))
+            yield first, 1, "modules include each other in a circle: " + ", ".join(circle)
+    here = os.path.abspath(os.path.join(os.path.dirname(__file__), ".."))
+    for circle in CIRCLES if root == here else ():
+        if sorted(circle) not in found:
+            yield __file__, 1, "no circle any more, but still allowed: " + ", ".join(sorted(circle))
+
+
 def check_tools(root):
     """Programs use the public header and files of their own folder, named from there; nothing of src/."""
     tools = os.path.join(root, "tools")
@@ -109,7 +178,7 @@ def check_tools(root):
 def main():
     root = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else
                            os.path.join(os.path.dirname(__file__), ".."))
-    faults = list(check_source(root)) + list(check_tools(root))
+    faults = list(check_source(root)) + list(check_circles(root)) + list(check_tools(root))
     for path, number, fault in faults:
         print(f"{os.path.relpath(path, root)}:{number}: {fault}")
     return 1 if faults else 0

@@ -360,7 +360,7 @@ static bool lex_number(lexer *l)
     } else {
         check_finite(l, from);
     }
-    return push(l, CSG_TOKEN_NUMBER, from);
+    return push_token(l, CSG_TOKEN_NUMBER, from);
 }
 
 /* "e-12" at `text`: its value, at most MOST either way, which is beyond all doubles. */
@@ -433,7 +433,7 @@ static bool lex_path(lexer *l)
         return true;
     }
     l->at++;
-    return push(l, CSG_TOKEN_PATH, open);
+    return push_token(l, CSG_TOKEN_PATH, open);
 }
 
 static bool lex_name(lexer *l)
@@ -446,7 +446,7 @@ static bool lex_name(lexer *l)
         if (keywords[i].length == l->at - from &&
             memcmp(keywords[i].text, l->text + from, l->at - from) == 0)
             kind = keywords[i].kind;
-    if (!push(l, kind, from))
+    if (!push_token(l, kind, from))
         return false;
     return kind == CSG_TOKEN_INCLUDE || kind == CSG_TOKEN_USE ? lex_path(l) : true;
 }

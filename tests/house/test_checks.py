@@ -17,17 +17,24 @@ def check(script, *arguments):
 
 
 class Planted(unittest.TestCase):
-    def tree(self, path, text):
+    def trees(self, texts):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        full = os.path.join(folder.name, path)
-        os.makedirs(os.path.dirname(full))
-        with open(full, "w", encoding="utf-8") as file:
-            file.write(text)
+        for path, text in texts.items():
+            full = os.path.join(folder.name, path)
+            os.makedirs(os.path.dirname(full), exist_ok=True)
+            with open(full, "w", encoding="utf-8") as file:
+                file.write(text)
         return folder.name
 
+    def tree(self, path, text):
+        return self.trees({path: text})
+
     def found(self, script, path, text):
-        result = check(script, self.tree(path, text))
+        return self.found_in(script, {path: text})
+
+    def found_in(self, script, texts):
+        result = check(script, self.trees(texts))
         self.assertEqual(result.returncode, 1 if result.stdout else 0, result.stderr)
         return result.stdout
 
@@ -47,6 +54,31 @@ class Planted(unittest.TestCase):
             found = self.found("check_layers.py", path, f"#include {include}\n")
             self.assertEqual(bool(found), bool(fault), f"{path} {include}: {found}")
             self.assertIn(fault, found)
+
+    def test_circles(self):
+        def text(*names):
+            return "".join(f'#include "{name}"\n' for name in names)
+        there = {"src/base/a.c": text("base/a.h", "base/b.h"), "src/base/a.h": "", "src/base/b.c": text("base/b.h")}
+        self.assertEqual(self.found_in("check_layers.py", {**there, "src/base/b.h": ""}), "")
+        for back in ({"src/base/b.h": text("base/a.h")},
+                     {"src/base/b.h": "", "src/base/b.c": text("base/c.h"), "src/base/c.h": text("base/a.h")}):
+            self.assertIn("circle: base/a, base/b", self.found_in("check_layers.py", {**there, **back}))
+        private = {"src/base/a.c": text("base/a.h", "base/a_private.h"), "src/base/a.h": "",
+                   "src/base/a_private.h": text("base/a.h")}
+        self.assertEqual(self.found_in("check_layers.py", private), "")
+
+    def test_names(self):
+        one = {"src/a/a.h": HEAD + "typedef struct csg_thing {\n    int x;\n} csg_thing;\n"}
+        for other, fault in (("typedef struct csg_thing csg_thing;\nstruct csg_thing {\n    int x;\n};\n", True),
+                             ("enum csg_thing { A, B };\n", True), ("typedef int csg_thing;\n", True),
+                             ("typedef struct csg_thing csg_thing;\n", False), ("csg_thing thing;\n", False)):
+            found = self.found_in("check_house.py", {**one, "src/b/b.c": HEAD + other})
+            self.assertEqual("csg_thing is defined in" in found, fault, other + found)
+        two = {f"src/a/{name}.c": HEAD + "typedef struct row {\n    int x;\n} row;\n" for name in "ab"}
+        self.assertEqual(self.found_in("check_house.py", two), "", "types of one file each")
+        function = "static int run(void)\n{\n}\n"
+        self.assertIn("called run", self.found("check_house.py", "src/io/a.c", HEAD + function))
+        self.assertEqual(self.found("check_house.py", "src/io/a.c", HEAD + function.replace("run", "run_it")), "")
 
     def test_house(self):
         body = "    work();\n"

@@ -65,7 +65,7 @@ static void put_string(json *j, const char *text, size_t most)
             j->text[j->length++] = '\\';
         j->text[j->length++] = (char)c;
     }
-    put(j, "\"");
+    put_text(j, "\"");
 }
 
 static void put_name(json *j, const char *name)

@@ -294,7 +294,8 @@ static void put_small_files(model *m)
             "<Default Extension=\"model\" "
             "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
     csg_zip_file(m->zip, "_rels/.rels");
-    put(m,
+    put_xml(
+        m,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n"
         "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
