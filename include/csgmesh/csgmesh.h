@@ -16,6 +16,10 @@
  *   Errors     Fallible calls return csgm_status; *out is NULL unless it is CSGM_OK.
  *              Bad input is an error with a diagnostic. Broken contracts (NULL context,
  *              options not made by *_default) are CSGM_ERR_ARGUMENT. Nothing exits or aborts.
+ *   Options    Start from *_default(), then change members. struct_size says which version of the
+ *              struct the caller was compiled with: members may be added at its end, and where the
+ *              caller's struct ends before them they have their defaults. A size that no version
+ *              has had, a larger one too, is CSGM_ERR_ARGUMENT. options NULL = all defaults.
  *   Determinism  Same scene text + options => same bytes, for any thread count and any ISA.
  */
 #ifndef CSGMESH_CSGMESH_H

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "api/options.h"
 #include "base/context.h"
 #include "base/pool.h"
 #include "base/scene_codes.h"
@@ -129,15 +130,15 @@ static csgm_status start_context(csgm_context *context, const csgm_context_optio
 
 csgm_status csgm_context_create(const csgm_context_options *options, csgm_context **out)
 {
-    csgm_context_options defaults = csgm_context_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_context_options own = csgm_context_options_default();
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    csgm_allocator allocator = options->allocator;
-    if (options->struct_size != sizeof *options || !allocator.alloc != !allocator.release ||
-        (unsigned)options->isa > CSGM_ISA_NEON)
+    if (!csg_options_adopt(&own, sizeof own, options))
+        return CSGM_ERR_ARGUMENT;
+    options = &own;
+    csgm_allocator allocator = own.allocator;
+    if (!allocator.alloc != !allocator.release || (unsigned)options->isa > CSGM_ISA_NEON)
         return CSGM_ERR_ARGUMENT;
     csgm_context *context = allocator.alloc ? allocator.alloc(allocator.user, sizeof *context)
                                             : malloc(sizeof *context);

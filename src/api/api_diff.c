@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "api/options.h"
 #include "api/view.h"
 #include "diff/diff.h"
 
@@ -14,25 +15,23 @@ csgm_diff_options csgm_diff_options_default(void)
 
 static bool is_sound(const csgm_diff_options *options)
 {
-    return options->struct_size == sizeof *options && options->tolerance >= 0 &&
-           options->tolerance_relative >= 0 && options->tolerance_volume >= 0 &&
-           options->material <= CSGM_DIFF_REMOVED && options->samples > 0 &&
-           options->samples <= UINT32_MAX;
+    return options->tolerance >= 0 && options->tolerance_relative >= 0 &&
+           options->tolerance_volume >= 0 && options->material <= CSGM_DIFF_REMOVED &&
+           options->samples > 0 && options->samples <= UINT32_MAX;
 }
 
 csgm_status csgm_diff_meshes(csgm_context *context, const csgm_mesh_view *a,
                              const csgm_mesh_view *b, const csgm_diff_options *options,
                              csgm_diff **out)
 {
-    csgm_diff_options defaults = csgm_diff_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_diff_options own = csgm_diff_options_default();
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !csg_view_is_sound(a) || !csg_view_is_sound(b) || !is_sound(options))
+    if (!context || !csg_view_is_sound(a) || !csg_view_is_sound(b) ||
+        !csg_options_adopt(&own, sizeof own, options) || !is_sound(&own))
         return CSGM_ERR_ARGUMENT;
-    return csg_diff_run(context, a, b, options, out);
+    return csg_diff_run(context, a, b, &own, out);
 }
 
 void csgm_diff_destroy(csgm_diff *diff)
@@ -59,11 +58,9 @@ csgm_status csgm_diff_write_heatmap(csgm_context *context, const csgm_diff *diff
                                     const char *path, csgm_format format,
                                     const csgm_write_options *options)
 {
-    csgm_write_options defaults = csgm_write_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_write_options own = csgm_write_options_default();
     if (!context || !diff || (side != 0 && side != 1) || !diff->distances[side] || !path ||
-        format >= CSGM_FORMAT_COUNT || options->struct_size != sizeof *options)
+        format >= CSGM_FORMAT_COUNT || !csg_options_adopt(&own, sizeof own, options))
         return CSGM_ERR_ARGUMENT;
-    return csg_diff_write_heatmap(context, diff, side, path, format, options);
+    return csg_diff_write_heatmap(context, diff, side, path, format, &own);
 }

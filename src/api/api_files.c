@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Mesh files of the public interface: checks the arguments and calls io, which checks the rest.
  */
+#include "api/options.h"
 #include "api/view.h"
 #include "io/formats.h"
 
@@ -47,26 +48,22 @@ void csgm_files_abandon(void)
 csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
                             csgm_format format, const csgm_write_options *options)
 {
-    csgm_write_options defaults = csgm_write_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_write_options own = csgm_write_options_default();
     if (!context || !csg_view_is_sound(mesh) || !path || format >= CSGM_FORMAT_COUNT ||
-        options->struct_size != sizeof *options)
+        !csg_options_adopt(&own, sizeof own, options))
         return CSGM_ERR_ARGUMENT;
-    return csg_io_write(context, mesh, path, format, options);
+    return csg_io_write(context, mesh, path, format, &own);
 }
 
 csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                const char *name, csgm_format format,
                                const csgm_write_options *options)
 {
-    csgm_write_options defaults = csgm_write_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_write_options own = csgm_write_options_default();
     if (!context || !csg_view_is_sound(mesh) || fd < 0 || format >= CSGM_FORMAT_COUNT ||
-        options->struct_size != sizeof *options)
+        !csg_options_adopt(&own, sizeof own, options))
         return CSGM_ERR_ARGUMENT;
-    return csg_io_write_fd(context, mesh, fd, name, format, options);
+    return csg_io_write_fd(context, mesh, fd, name, format, &own);
 }
 
 csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,

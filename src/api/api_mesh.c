@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Meshes of the public interface: a field in, an indexed triangle mesh out, and its inspection.
  */
+#include "api/options.h"
 #include "api/view.h"
 
 #include <math.h>
@@ -31,16 +32,14 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
                             const csgm_mesh_options *options, csgm_mesh **out,
                             csgm_mesh_stats *stats)
 {
-    csgm_mesh_options defaults = csgm_mesh_options_default();
-    if (!options)
-        options = &defaults;
+    csgm_mesh_options own = csgm_mesh_options_default();
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !field || options->struct_size != sizeof *options)
+    if (!context || !field || !csg_options_adopt(&own, sizeof own, options))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats ignored;
-    return csg_mesh_build(context, field, options, out, stats ? stats : &ignored);
+    return csg_mesh_build(context, field, &own, out, stats ? stats : &ignored);
 }
 
 /* Into a file that is filled from all sides. */
@@ -86,22 +85,20 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
                                  csgm_format format, const csgm_write_options *write_options,
                                  uint64_t counts[2], csgm_mesh_stats *stats)
 {
-    csgm_mesh_options mesh_defaults = csgm_mesh_options_default();
-    csgm_write_options write_defaults = csgm_write_options_default();
-    options = options ? options : &mesh_defaults;
-    write_options = write_options ? write_options : &write_defaults;
+    csgm_mesh_options joined = csgm_mesh_options_default();
+    csgm_write_options own = csgm_write_options_default();
     if (!context || !field || !path || format >= CSGM_FORMAT_COUNT ||
-        options->struct_size != sizeof *options ||
-        write_options->struct_size != sizeof *write_options)
+        !csg_options_adopt(&joined, sizeof joined, options) ||
+        !csg_options_adopt(&own, sizeof own, write_options))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats ignored;
     csg_mesh_counts made = {0};
-    csgm_mesh_options joined = *options;
-    if (options->normals == CSGM_NORMALS_CREASE &&
+    if (joined.normals == CSGM_NORMALS_CREASE &&
         !(csg_format_traits(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format) &
           CSGM_KEEPS_CREASES))
         joined.normals = CSGM_NORMALS_VERTEX;
     options = &joined;
+    write_options = &own;
     bool streams =
         csg_mesh_can_stream(field, options) && csg_stream_is_possible(path, format, write_options);
     csgm_status status = (streams ? stream_file : build_and_write)(

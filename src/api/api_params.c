@@ -9,27 +9,29 @@ csgm_status csgm_params_parse(csgm_context *context, const char *text, size_t te
                               const char *name, const csgm_scene_options *options,
                               csgm_params **out)
 {
+    csgm_scene_options own;
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || (!text && text_length) || !csg_scene_options_are_sound(options))
+    if (!context || (!text && text_length) || !csg_scene_options_adopt(&own, options))
         return CSGM_ERR_ARGUMENT;
     csg_lang_input input = {.path = name ? name : "text",
                             .text = text ? text : "",
                             .text_length = text_length,
-                            .options = options};
+                            .options = &own};
     return csg_lang_parameters(context, &input, out);
 }
 
 csgm_status csgm_params_load(csgm_context *context, const char *path,
                              const csgm_scene_options *options, csgm_params **out)
 {
+    csgm_scene_options own;
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !path || !csg_scene_options_are_sound(options))
+    if (!context || !path || !csg_scene_options_adopt(&own, options))
         return CSGM_ERR_ARGUMENT;
-    csg_lang_input input = {.path = path, .options = options};
+    csg_lang_input input = {.path = path, .options = &own};
     return csg_lang_parameters(context, &input, out);
 }
 

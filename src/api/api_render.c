@@ -3,6 +3,7 @@
  */
 #include <string.h>
 
+#include "api/options.h"
 #include "api/view.h"
 #include "render/render.h"
 
@@ -60,23 +61,21 @@ csgm_render_options csgm_render_options_default(void)
     return csg_render_options_default();
 }
 
-/* The options to take: the defaults for NULL; NULL where they are of another version. */
+/* The options to take; NULL where they are of no version that this one knows. */
 static const csgm_render_options *options_of(const csgm_render_options *options,
-                                             csgm_render_options *defaults)
+                                             csgm_render_options *own)
 {
-    *defaults = csg_render_options_default();
-    if (!options)
-        return defaults;
-    return options->struct_size == sizeof *options ? options : NULL;
+    *own = csg_render_options_default();
+    return csg_options_adopt(own, sizeof *own, options) ? own : NULL;
 }
 
 csgm_status csgm_render_scene(csgm_context *context, const csgm_field *field,
                               const csgm_render_options *options, csgm_image **out,
                               csgm_render_stats *stats)
 {
-    csgm_render_options defaults;
+    csgm_render_options own;
     csgm_render_stats ignored;
-    options = options_of(options, &defaults);
+    options = options_of(options, &own);
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
@@ -89,9 +88,9 @@ csgm_status csgm_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                              const csgm_render_options *options, csgm_image **out,
                              csgm_render_stats *stats)
 {
-    csgm_render_options defaults;
+    csgm_render_options own;
     csgm_render_stats ignored;
-    options = options_of(options, &defaults);
+    options = options_of(options, &own);
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;

@@ -13,11 +13,11 @@ csgm_scene_options csgm_scene_options_default(void)
     return (csgm_scene_options){.struct_size = sizeof(csgm_scene_options)};
 }
 
-bool csg_scene_options_are_sound(const csgm_scene_options *options)
+bool csg_scene_options_adopt(csgm_scene_options *options, const csgm_scene_options *given)
 {
-    if (!options)
-        return true;
-    if (options->struct_size != sizeof *options || (options->define_count && !options->defines) ||
+    *options = csgm_scene_options_default();
+    if (!csg_options_adopt(options, sizeof *options, given) ||
+        (options->define_count && !options->defines) ||
         (options->include_dir_count && !options->include_dirs) ||
         !options->parameter_file != !options->parameter_set ||
         (options->facets != CSGM_FACETS_ROUND && options->facets != CSGM_FACETS_EXACT))
@@ -34,15 +34,16 @@ bool csg_scene_options_are_sound(const csgm_scene_options *options)
 csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t text_length,
                              const char *name, const csgm_scene_options *options, csgm_scene **out)
 {
+    csgm_scene_options own;
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || (!text && text_length) || !csg_scene_options_are_sound(options))
+    if (!context || (!text && text_length) || !csg_scene_options_adopt(&own, options))
         return CSGM_ERR_ARGUMENT;
     csg_lang_input input = {.path = name ? name : "text",
                             .text = text ? text : "",
                             .text_length = text_length,
-                            .options = options,
+                            .options = &own,
                             .services = csg_api_services()};
     return csg_lang_compile(context, &input, out);
 }
@@ -50,12 +51,13 @@ csgm_status csgm_scene_parse(csgm_context *context, const char *text, size_t tex
 csgm_status csgm_scene_load(csgm_context *context, const char *path,
                             const csgm_scene_options *options, csgm_scene **out)
 {
+    csgm_scene_options own;
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !path || !csg_scene_options_are_sound(options))
+    if (!context || !path || !csg_scene_options_adopt(&own, options))
         return CSGM_ERR_ARGUMENT;
-    csg_lang_input input = {.path = path, .options = options, .services = csg_api_services()};
+    csg_lang_input input = {.path = path, .options = &own, .services = csg_api_services()};
     return csg_lang_compile(context, &input, out);
 }
 
@@ -81,7 +83,9 @@ csgm_scene_info csgm_scene_get_info(const csgm_scene *scene)
 
 size_t csgm_scene_folder(const csgm_scene_options *options, size_t index, char *buffer, size_t size)
 {
-    return csg_folder_name(options, index, buffer, size);
+    csgm_scene_options own;
+    return csg_folder_name(csg_scene_options_adopt(&own, options) ? &own : NULL, index, buffer,
+                           size);
 }
 
 const char *csgm_scene_dependency(const csgm_scene *scene, size_t index)

@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * Checks of options that several public functions take.
+ * Options as callers give them: of this version or of an older one, whose structs end earlier.
  */
 #ifndef CSG_API_OPTIONS_H
 #define CSG_API_OPTIONS_H
 
 #include "csgmesh/csgmesh.h"
 
-/* NULL is sound: the defaults. */
-bool csg_scene_options_are_sound(const csgm_scene_options *options);
+/* `own` holds the defaults; what the caller's struct has takes their place, what it ends before
+ * keeps them. NULL keeps all. false: struct_size is no size that a version of the struct had. */
+bool csg_options_adopt(void *own, size_t own_bytes, const void *given);
+
+/* The same for scenes, whose options are checked here, too. */
+bool csg_scene_options_adopt(csgm_scene_options *own, const csgm_scene_options *given);
 
 #endif

@@ -177,6 +177,35 @@ static void test_options_not_made_by_default(void **state)
     end(&r);
 }
 
+/* The sizes that a struct may have: its own, and a shorter one that another release had. Members
+ * behind it have their defaults, whatever lies there. */
+static void test_options_of_other_versions(void **state)
+{
+    csgm_mesh_options options = csgm_mesh_options_default();
+    const uint32_t own = options.struct_size;
+    const uint32_t refused[] = {0, 8, own - 1, own + 1, own + 8, 0x5A5A5A58, UINT32_MAX};
+    run r;
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        options = coarse();
+        options.struct_size = refused[i];
+        assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_ERR_ARGUMENT);
+        assert_null(r.mesh);
+        end(&r);
+    }
+    uint64_t triangles;
+    options = coarse();
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    triangles = csgm_mesh_get_view(r.mesh).triangle_count;
+    end(&r);
+    const uint32_t shorter = offsetof(csgm_mesh_options, tolerance);
+    assert_true(shorter < own);
+    memset((char *)&options + shorter, 0xFF, own - shorter); /* beyond the caller's struct */
+    options.struct_size = shorter;
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    assert_int_equal(csgm_mesh_get_view(r.mesh).triangle_count, triangles);
+    end(&r);
+}
+
 static void test_params(void **state)
 {
     static const char text[] = "// how wide\nwidth = 3; // [1:5]\ncube(width);\n";
@@ -368,6 +397,7 @@ int main(void)
         cmocka_unit_test(test_field_agrees_with_the_reference),
         cmocka_unit_test(test_destroy_of_nothing),
         cmocka_unit_test(test_options_not_made_by_default),
+        cmocka_unit_test(test_options_of_other_versions),
         cmocka_unit_test(test_params),
         cmocka_unit_test(test_null_arguments),
         cmocka_unit_test(test_names),

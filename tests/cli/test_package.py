@@ -62,12 +62,42 @@ class Package(cli.CliTest):
         program = glob.glob(self.path("**/bin/csgmesh"), recursive=True)[0]
         subprocess.run([program, "--version"], check=True, capture_output=True)
 
+    def test_pages_scenes_and_examples(self):
+        """All of docs, scenes and integrations is there, and the pages' links to each other hold."""
+        source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+        share = os.path.dirname(os.path.dirname(glob.glob(self.path("**/doc/csgmesh"), recursive=True)[0]))
+        pages = os.path.join(share, "doc", "csgmesh")
+        for folder in ("docs", "scenes"):
+            for place, _, names in os.walk(os.path.join(source, folder)):
+                for name in names:
+                    there = os.path.join(pages, os.path.relpath(os.path.join(place, name), source))
+                    self.assertEqual(os.path.exists(there), name != "meson.build", there)
+        for name in ("README.md", "CHANGELOG.md", "LICENSE"):
+            self.assertTrue(os.path.exists(os.path.join(pages, name)), name)
+        for name in ("batch.schema.json", "make/csgmesh.mk", "meson/csgmesh/meson.build", "github/csgmesh/action.yml"):
+            self.assertTrue(os.path.exists(os.path.join(share, "csgmesh", name)), name)
+        scene = os.path.join(pages, "scenes", "parts", "mug.txt")
+        self.assert_status(self.run_in(scene, "-r", "16", "-q", "-o", "mug.ply"), 0)
+
+    @unittest.skipUnless(shutil.which("readelf"), "readelf is not installed")
+    def test_soname_and_version_node(self):
+        library = os.path.join(self.libraries, "libcsgmesh.so")
+        dynamic = subprocess.run(["readelf", "-d", library], check=True, capture_output=True, text=True).stdout
+        self.assertIn("soname: [libcsgmesh.so.0]", dynamic)
+        symbols = subprocess.run(["readelf", "-W", "--dyn-syms", library], check=True, capture_output=True,
+                                 text=True).stdout
+        exported = cli.re.findall(r"(?:FUNC|OBJECT)\s+GLOBAL\s+DEFAULT\s+\d+\s+(\S+)", symbols)
+        ours = [name for name in exported if name.startswith("csgm_")]
+        self.assertGreater(len(ours), 30)
+        self.assertEqual([name for name in ours if not name.endswith("@@CSGMESH_0")], [])
+        self.assertIn("csgm_format_traits@@CSGMESH_0", ours)
+
     @unittest.skipUnless(shutil.which("nm"), "nm is not installed")
     def test_exported_names(self):
         library = os.path.join(self.libraries, "libcsgmesh.so")
         lines = subprocess.run(["nm", "-D", "--defined-only", library], check=True,
                                capture_output=True, text=True).stdout.splitlines()
-        names = [line.split()[-1] for line in lines]
+        names = [line.split()[-1].split("@")[0] for line in lines if " A " not in line]
         self.assertGreater(len(names), 30)
         self.assertEqual([name for name in names if not name.startswith("csgm_")], [])
         with open(glob.glob(self.path("**/csgmesh.h"), recursive=True)[0],
