@@ -24,11 +24,11 @@ LONG_FILES = {os.path.join("include", "csgmesh", "csgmesh.h"): "the whole public
 # (file, function): why it may be longer.
 LONG_FUNCTIONS = {}
 
-# What such a function runs, puts or joins is what its name should say. These layers keep the rule.
+# What such a function runs, puts or joins is what its name should say.
 SAYS_NOTHING = {"run", "put", "join", "push", "finish"}
-# Names of several types that are still to be parted.
-SHARED_TYPES = {"csg_edges", "csg_frame", "csg_nearest", "curve", "range"}
-NAMED = ("src/base/", "src/text/", "src/io/", "src/render/", "src/diff/", "src/api/", "tools/csgmesh/")
+NAMED = ("src/", "tools/csgmesh/")
+# Types of headers that only kernels include, each in a file of its own: they are named as a .c names its own.
+SHARED_TYPES = {"curve", "range"}
 
 
 def files(root):

@@ -29,7 +29,7 @@ void csg_print_number(csgm_text_fn *sink, void *user, double value)
     sink(user, text, strlen(text));
 }
 
-static void put(printer *out, const char *text)
+static void put_text(printer *out, const char *text)
 {
     out->sink(out->user, text, strlen(text));
 }
@@ -38,7 +38,7 @@ static void put_name(printer *out, uint32_t step)
 {
     char text[16];
     snprintf(text, sizeof text, "v%u", step);
-    put(out, text);
+    put_text(out, text);
 }
 
 static const char *sign_of(csg_formula_op op)
@@ -67,7 +67,7 @@ static void put_operand(printer *out, uint32_t index)
     if (step->op == CSG_FORMULA_CONSTANT) {
         csg_print_number(out->sink, out->user, step->constant);
     } else if (step->op <= CSG_FORMULA_Z) {
-        put(out, out->words->coordinates[step->op - CSG_FORMULA_X]);
+        put_text(out, out->words->coordinates[step->op - CSG_FORMULA_X]);
     } else if (out->named[index]) {
         put_name(out, index);
     } else {
@@ -81,17 +81,17 @@ static void put_operation(printer *out, uint32_t index)
     const csg_formula_step *step = &out->steps[index];
     const char *sign = sign_of(step->op);
     if (step->op == CSG_FORMULA_NEG) {
-        put(out, "(-");
+        put_text(out, "(-");
     } else {
-        put(out, sign ? "" : csg_formula_op_name(step->op));
-        put(out, "(");
+        put_text(out, sign ? "" : csg_formula_op_name(step->op));
+        put_text(out, "(");
     }
     put_operand(out, step->a);
     if (csg_formula_op_arity(step->op) > 1) {
-        put(out, sign ? sign : ", ");
+        put_text(out, sign ? sign : ", ");
         put_operand(out, step->b);
     }
-    put(out, ")");
+    put_text(out, ")");
 }
 
 /* named[] of each step; `uses` and `depth` are work of one uint32_t per step. */
@@ -124,20 +124,20 @@ bool csg_formula_print(csg_memory *memory, const csg_formula_step *steps, uint32
         return false;
     printer out = {steps, (uint8_t *)(work + 2 * count), words, sink, user};
     choose_names(&out, count, work, work + count);
-    put(&out, "function (");
-    put(&out, words->parameters);
-    put(&out, ") ");
+    put_text(&out, "function (");
+    put_text(&out, words->parameters);
+    put_text(&out, ") ");
     bool any = false;
     for (uint32_t i = 0; i < count; i++) {
         if (!out.named[i])
             continue;
-        put(&out, any ? ", " : "let (");
+        put_text(&out, any ? ", " : "let (");
         any = true;
         put_name(&out, i);
-        put(&out, " = ");
+        put_text(&out, " = ");
         put_operation(&out, i);
     }
-    put(&out, any ? ") " : "");
+    put_text(&out, any ? ") " : "");
     put_operand(&out, count - 1);
     csg_memory_release(memory, work, bytes);
     return true;

@@ -33,7 +33,7 @@ static const struct {
 #undef CSG_VM_OP
 };
 
-static void put(tape *out, const char *text)
+static void put_text(tape *out, const char *text)
 {
     out->sink(out->user, text, strlen(text));
 }
@@ -42,9 +42,9 @@ static uint32_t put_constant(tape *out, double value)
 {
     char text[32];
     snprintf(text, sizeof text, "_%x const ", out->count);
-    put(out, text);
+    put_text(out, text);
     csg_print_number(out->sink, out->user, value);
-    put(out, "\n");
+    put_text(out, "\n");
     return out->count++;
 }
 
@@ -57,8 +57,8 @@ static uint32_t put_line(tape *out, const char *op, uint32_t a, uint32_t b)
         length += snprintf(text + length, sizeof text - (size_t)length, " _%x", a);
     if (b != NOWHERE)
         snprintf(text + length, sizeof text - (size_t)length, " _%x", b);
-    put(out, text);
-    put(out, "\n");
+    put_text(out, text);
+    put_text(out, "\n");
     return out->count++;
 }
 

@@ -357,7 +357,7 @@ static bool ask_next(evaluation *e, frame *f)
     return false;
 }
 
-static csg_sample finish(const evaluation *e, const frame *f)
+static csg_sample sample_of(const evaluation *e, const frame *f)
 {
     const csg_lazy *lazy = e->lazy;
     csg_sample out = csg_reference_node(&lazy->tree, &lazy->tree.nodes[f->node], f->at,
@@ -390,7 +390,7 @@ csg_sample csg_lazy_eval(const csg_lazy *lazy, csg_vec3 p, void *scratch, csg_la
         if (ask_next(&e, f))
             continue;
         total += weight(&lazy->tree.nodes[f->node], f->evaluated);
-        result = finish(&e, f);
+        result = sample_of(&e, f);
         if (--e.depth)
             receive(&e, &e.frames[e.depth - 1], result);
     }

@@ -55,7 +55,7 @@ static double stretch_of(const csg_affine *map)
     return sqrt(0.5 * (squares + rest));
 }
 
-static bool push(flattener *f, step **steps, size_t *count, size_t *capacity, step s)
+static bool push_step(flattener *f, step **steps, size_t *count, size_t *capacity, step s)
 {
     void *data = *steps;
     if (!csg_memory_reserve(f->memory, &data, capacity, *count + 1, sizeof s))
@@ -68,12 +68,13 @@ static bool push(flattener *f, step **steps, size_t *count, size_t *capacity, st
 static bool plan(flattener *f, csg_node_id root, double tolerance)
 {
     const csgm_scene *scene = f->builder->scene;
-    if (!push(f, &f->waiting, &f->waiting_count, &f->waiting_capacity, (step){root, tolerance}))
+    if (!push_step(f, &f->waiting, &f->waiting_count, &f->waiting_capacity,
+                   (step){root, tolerance}))
         return false;
     while (f->waiting_count) {
         step s = f->waiting[--f->waiting_count];
         const csg_node *node = node_at(f, s.node);
-        if (!push(f, &f->steps, &f->step_count, &f->step_capacity, s))
+        if (!push_step(f, &f->steps, &f->step_count, &f->step_capacity, s))
             return false;
         if (!is_made_of_children(node))
             continue;
@@ -81,7 +82,7 @@ static bool plan(flattener *f, csg_node_id root, double tolerance)
             s.tolerance /= stretch_of(&scene->transforms[node->payload]);
         for (uint32_t k = 0; k < node->child_count; k++) {
             s.node = csg_scene_children(scene, node)[k];
-            if (!push(f, &f->waiting, &f->waiting_count, &f->waiting_capacity, s))
+            if (!push_step(f, &f->waiting, &f->waiting_count, &f->waiting_capacity, s))
                 return false;
         }
     }
@@ -240,7 +241,7 @@ static csgm_status make(flattener *f, step s)
     return status;
 }
 
-static csgm_status run(flattener *f, csg_node_id root, double tolerance)
+static csgm_status flatten_tree(flattener *f, csg_node_id root, double tolerance)
 {
     if (!plan(f, root, tolerance))
         return CSGM_ERR_MEMORY;
@@ -260,7 +261,7 @@ csgm_status csg_flatten(csg_scene_builder *builder, csg_node_id flat, double tol
     bool is_empty = builder->scene->nodes[flat].kind == CSG_NODE_EMPTY;
     if (!is_empty && !csg_build_is_flat(builder, flat))
         return CSGM_ERR_SCENE;
-    csgm_status status = run(&f, flat, tolerance);
+    csgm_status status = flatten_tree(&f, flat, tolerance);
     if (!status)
         *out = f.done[--f.done_count];
     while (f.done_count)

@@ -99,7 +99,7 @@ static bool march(tracer *t, uint32_t x, uint32_t y)
 
 /* ---- quadtree ----------------------------------------------------------------------------- */
 
-static bool push(tracer *t, square s)
+static bool push_square(tracer *t, square s)
 {
     void *waiting = t->waiting;
     if (!csg_memory_reserve(t->memory, &waiting, &t->waiting_capacity, t->waiting_count + 1,
@@ -127,7 +127,7 @@ static bool visit(tracer *t, square s)
         return march(t, s.x, s.y);
     uint32_t half = s.size / 2;
     for (uint32_t k = 0; k < 4; k++) {
-        if (!push(t, (square){s.x + (k & 1) * half, s.y + (k >> 1) * half, half}))
+        if (!push_square(t, (square){s.x + (k & 1) * half, s.y + (k >> 1) * half, half}))
             return false;
     }
     return true;
@@ -192,7 +192,7 @@ static bool close_loops(tracer *t, csg_outline *out)
 
 static csgm_status trace(tracer *t, uint32_t cells, csg_outline *out)
 {
-    if (!push(t, (square){0, 0, cells}))
+    if (!push_square(t, (square){0, 0, cells}))
         return t->status;
     while (t->waiting_count) {
         if (!visit(t, t->waiting[--t->waiting_count]))

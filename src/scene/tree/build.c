@@ -481,8 +481,8 @@ static size_t drop_empty(const csgm_scene *scene, const csg_node_id *children, s
     return left;
 }
 
-static csg_node_id join(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
-                        const csg_node_id *operands, size_t count, csg_span where)
+static csg_node_id join_operands(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
+                                 const csg_node_id *operands, size_t count, csg_span where)
 {
     double range = 0;
     if (count == 1)
@@ -519,7 +519,7 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
     if (count && !kept)
         return csg_build_no_memory(builder);
     size_t left = count ? drop_empty(builder->scene, children, count, kept) : 0;
-    csg_node_id result = left    ? join(builder, kind, blend, kept, left, where)
+    csg_node_id result = left    ? join_operands(builder, kind, blend, kept, left, where)
                          : count ? children[0]
                                  : csg_build_empty(builder, where);
     csg_memory_release(memory, kept, count * sizeof *kept);

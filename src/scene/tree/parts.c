@@ -69,7 +69,7 @@ static bool is_way(const csg_node *node)
            (node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend));
 }
 
-static bool push(finder *f, csg_part_unit item)
+static bool push_unit(finder *f, csg_part_unit item)
 {
     if (!csg_memory_reserve(f->memory, (void **)&f->stack, &f->stack_room, f->stack_count + 1,
                             sizeof item))
@@ -95,7 +95,7 @@ static bool visit(finder *f)
     if (!descend(f, &at))
         return false;
     for (uint32_t i = node->child_count; i-- > 0;)
-        if (!push(f, (csg_part_unit){csg_scene_children(scene, node)[i], at.way}))
+        if (!push_unit(f, (csg_part_unit){csg_scene_children(scene, node)[i], at.way}))
             return false;
     return true;
 }
@@ -106,7 +106,7 @@ static bool find_units(finder *f)
     const csgm_scene *scene = parts->scene;
     csg_part_way start = {.place = csg_affine_identity()};
     memset(f->counts, 0, scene->node_count);
-    bool done = add_way(f, &start) && push(f, (csg_part_unit){scene->root, 0});
+    bool done = add_way(f, &start) && push_unit(f, (csg_part_unit){scene->root, 0});
     while (done && f->stack_count)
         done = visit(f);
     for (csg_node_id i = 0; done && i < scene->node_count; i++) {

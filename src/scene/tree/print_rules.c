@@ -13,16 +13,16 @@ typedef struct output {
     void *user;
 } output;
 
-static void put(const output *out, const char *text)
+static void put_text(const output *out, const char *text)
 {
     out->sink(out->user, text, strlen(text));
 }
 
 static void put_named(const output *out, const char *separator, const char *name, double value)
 {
-    put(out, separator);
-    put(out, name);
-    put(out, " = ");
+    put_text(out, separator);
+    put_text(out, name);
+    put_text(out, " = ");
     csg_print_number(out->sink, out->user, value);
 }
 
@@ -31,29 +31,29 @@ static void put_profile(const output *out, const csg_rule *rule)
 {
     const csg_spline *s = &rule->spline;
     uint32_t settled = s->settled ? 1 : 0, count = s->count - 2 * settled;
-    put(out, ", profile = [");
+    put_text(out, ", profile = [");
     for (uint32_t i = 0; i < count; i++) {
-        put(out, i ? ", [" : "[");
+        put_text(out, i ? ", [" : "[");
         csg_print_number(out->sink, out->user, settled ? s->degrees[i] : s->angle[i]);
-        put(out, ", ");
+        put_text(out, ", ");
         csg_print_number(out->sink, out->user, s->factor[i + settled]);
-        put(out, "]");
+        put_text(out, "]");
     }
-    put(out, "]");
+    put_text(out, "]");
 }
 
 static void put_points(const output *out, const csg_rule *rule)
 {
     for (uint32_t i = 0; i < rule->point_count; i++) {
-        put(out, i == 2 ? ", through = [" : i ? ", " : "");
-        put(out, "[");
+        put_text(out, i == 2 ? ", through = [" : i ? ", " : "");
+        put_text(out, "[");
         for (int axis = 0; axis < 3; axis++) {
-            put(out, axis ? ", " : "");
+            put_text(out, axis ? ", " : "");
             csg_print_number(out->sink, out->user, rule->points[i][axis]);
         }
-        put(out, "]");
+        put_text(out, "]");
     }
-    put(out, rule->point_count > 2 ? "]" : "");
+    put_text(out, rule->point_count > 2 ? "]" : "");
 }
 
 static void put_arc(const output *out, const csg_rule *rule)
@@ -62,11 +62,11 @@ static void put_arc(const output *out, const csg_rule *rule)
         put_points(out, rule);
         return;
     }
-    put(out, "angles = [");
+    put_text(out, "angles = [");
     csg_print_number(out->sink, out->user, rule->parameters[0]);
-    put(out, ", ");
+    put_text(out, ", ");
     csg_print_number(out->sink, out->user, rule->parameters[1]);
-    put(out, "]");
+    put_text(out, "]");
     if (rule->spline.count)
         put_profile(out, rule);
 }
@@ -76,8 +76,8 @@ void csg_rule_print(const csg_rule *rule, double range,
 {
     const output out = {sink, user};
     const char *separator = "";
-    put(&out, csg_rule_name(rule->kind));
-    put(&out, "(");
+    put_text(&out, csg_rule_name(rule->kind));
+    put_text(&out, "(");
     if (rule->kind == CSG_BLEND_ARC) {
         put_arc(&out, rule);
         separator = ", ";
@@ -86,15 +86,15 @@ void csg_rule_print(const csg_rule *rule, double range,
          i++, separator = ", ")
         put_named(&out, separator, csg_rule_parameter_of(rule->kind, i).name, rule->parameters[i]);
     if (!csg_blend_takes_fields(rule->kind)) {
-        put(&out, ", step = ");
-        put(&out, csg_step_name(rule->step.kind));
-        put(&out, "(");
+        put_text(&out, ", step = ");
+        put_text(&out, csg_step_name(rule->step.kind));
+        put_text(&out, "(");
         csg_print_number(sink, user, rule->step.parameter);
-        put(&out, ")");
+        put_text(&out, ")");
     } else if (range > 0) {
         put_named(&out, separator, "range", range);
     }
-    put(&out, ")");
+    put_text(&out, ")");
 }
 
 void csg_put_soft(const csg_printer *out, const csg_node *node)

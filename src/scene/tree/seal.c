@@ -73,7 +73,7 @@ static csgm_status walk_begin(walk *w, csg_arena *scratch, const csgm_scene *sce
     return w->stack && w->order && w->seen ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
-static bool push(walk *w, csg_node_id node, uint32_t parent)
+static bool push_node(walk *w, csg_node_id node, uint32_t parent)
 {
     if (w->seen[node - w->lowest])
         return false;
@@ -92,7 +92,7 @@ static bool is_flattened(const csgm_scene *scene, csg_node_id inner, csg_node_id
 /* False when a node is reached twice. */
 static bool walk_from(walk *w, const csgm_scene *scene, csg_node_id root)
 {
-    push(w, root, UINT32_MAX);
+    push_node(w, root, UINT32_MAX);
     while (w->stacked) {
         visit v = w->stack[--w->stacked];
         const csg_node *node = &scene->nodes[v.node];
@@ -101,7 +101,7 @@ static bool walk_from(walk *w, const csgm_scene *scene, csg_node_id root)
             v.parent = w->count++;
         }
         for (uint32_t i = 0; i < node->child_count; i++)
-            if (!push(w, csg_scene_children(scene, node)[i], v.parent))
+            if (!push_node(w, csg_scene_children(scene, node)[i], v.parent))
                 return false;
     }
     return true;

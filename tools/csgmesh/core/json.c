@@ -136,6 +136,23 @@ void cli_json_string(cli_json *json, const char *key, const char *text)
     put_text(json->out, text);
 }
 
+void cli_json_open_plain(cli_json *json, const char *key)
+{
+    put_key(json, key);
+    fputc('"', json->out);
+}
+
+void cli_json_close_plain(cli_json *json)
+{
+    fputc('"', json->out);
+}
+
+void cli_json_verbatim(cli_json *json, const char *key, const char *value)
+{
+    put_key(json, key);
+    fputs(value, json->out);
+}
+
 void cli_json_vec3(cli_json *json, const char *key, csgm_vec3 value)
 {
     cli_json_open(json, key, '[');

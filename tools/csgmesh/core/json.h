@@ -32,6 +32,11 @@ void cli_json_number(cli_json *json, const char *key, double value);
 void cli_json_bool(cli_json *json, const char *key, bool value);
 /* Bytes that are no UTF-8 become U+FFFD. */
 void cli_json_string(cli_json *json, const char *key, const char *text);
+/* A string of digits and base64, put to json->out between the two as it is. */
+void cli_json_open_plain(cli_json *json, const char *key);
+void cli_json_close_plain(cli_json *json);
+/* A member whose value is JSON already. */
+void cli_json_verbatim(cli_json *json, const char *key, const char *value);
 void cli_json_vec3(cli_json *json, const char *key, csgm_vec3 value);
 /* [[x, y, z], [x, y, z]], null for the empty box. */
 void cli_json_box(cli_json *json, const char *key, csgm_box box);

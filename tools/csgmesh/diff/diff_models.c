@@ -38,12 +38,12 @@ static void put_end(encoder *e)
         fputc(i <= bytes ? digits[bits >> (18 - 6 * i) & 63] : '=', e->out);
 }
 
-static void put_array(FILE *out, const char *key, const void *items, size_t count, size_t size)
+static void put_array(cli_json *json, const char *key, const void *items, size_t count, size_t size)
 {
-    encoder e = {.out = out};
+    encoder e = {.out = json->out};
     if (!items)
         return;
-    fprintf(out, ", \"%s\": \"", key);
+    cli_json_open_plain(json, key);
     for (size_t i = 0; i < count; i++) {
         uint32_t item = size == 4   ? ((const uint32_t *)items)[i]
                         : size == 2 ? ((const uint16_t *)items)[i]
@@ -52,68 +52,65 @@ static void put_array(FILE *out, const char *key, const void *items, size_t coun
             put_byte(&e, item >> 8 * k);
     }
     put_end(&e);
-    fputc('"', out);
+    cli_json_close_plain(json);
 }
 
-static void put_model(FILE *out, const char *key, const diff_thin *mesh)
+static void put_model(cli_json *json, const char *key, const diff_thin *mesh)
 {
-    char cell[40];
-    cli_format_double(cell, sizeof cell, mesh->cell);
-    fprintf(out, "\"%s\": {\"vertices\": %lu, \"triangles\": %llu, \"cell\": %s", key,
-            (unsigned long)mesh->vertex_count, (unsigned long long)mesh->triangle_count, cell);
-    put_array(out, "positions", mesh->positions, (size_t)mesh->vertex_count * 3, 2);
-    put_array(out, "heat", mesh->heat, mesh->vertex_count, 2);
-    put_array(out, "colors", mesh->colors, (size_t)mesh->vertex_count * 3, 1);
-    put_array(out, "indices", mesh->indices, (size_t)mesh->triangle_count * 3, 4);
-    fputs("}, ", out);
+    cli_json_open(json, key, '{');
+    cli_json_count(json, "vertices", mesh->vertex_count);
+    cli_json_count(json, "triangles", mesh->triangle_count);
+    cli_json_number(json, "cell", mesh->cell);
+    put_array(json, "positions", mesh->positions, (size_t)mesh->vertex_count * 3, 2);
+    put_array(json, "heat", mesh->heat, mesh->vertex_count, 2);
+    put_array(json, "colors", mesh->colors, (size_t)mesh->vertex_count * 3, 1);
+    put_array(json, "indices", mesh->indices, (size_t)mesh->triangle_count * 3, 4);
+    cli_json_end(json, '}');
 }
 
-static void put_numbers(FILE *out, const char *key, const double *values, size_t count)
+static void put_numbers(cli_json *json, const char *key, const double *values, size_t count)
 {
-    fprintf(out, "\"%s\": [", key);
-    for (size_t i = 0; i < count; i++) {
-        char text[40];
-        cli_format_double(text, sizeof text, values[i]);
-        fprintf(out, "%s%s", i ? ", " : "", text);
-    }
-    fputs("]", out);
+    cli_json_open(json, key, '[');
+    for (size_t i = 0; i < count; i++)
+        cli_json_number(json, NULL, values[i]);
+    cli_json_end(json, ']');
 }
 
-static void put_frame(FILE *out, const diff_drawing *d)
+static void put_frame(cli_json *json, const diff_drawing *d)
 {
     double box[6] = {d->box.min.x, d->box.min.y, d->box.min.z,
                      d->box.max.x, d->box.max.y, d->box.max.z};
     double toward[3] = {d->toward.x, d->toward.y, d->toward.z};
-    put_numbers(out, "box", box, 6);
-    fputs(", ", out);
-    put_numbers(out, "toward", toward, 3);
-    fputs(", ", out);
-    put_numbers(out, "most", &d->most, 1);
-    fputs(", \"stops\": [", out);
+    put_numbers(json, "box", box, 6);
+    put_numbers(json, "toward", toward, 3);
+    put_numbers(json, "most", &d->most, 1);
+    cli_json_open(json, "stops", '[');
     for (int i = 0; i <= 4; i++) {
         uint8_t rgb[3];
         csgm_diff_color(i, 4, rgb);
-        fprintf(out, "%s[%d, %d, %d]", i ? ", " : "", rgb[0], rgb[1], rgb[2]);
+        put_numbers(json, NULL, (double[]){rgb[0], rgb[1], rgb[2]}, 3);
     }
-    fputs("]}", out);
+    cli_json_end(json, ']');
 }
 
 static bool put_models(FILE *out, const diff_drawing *d, uint64_t *room)
 {
     static const char *const keys[2] = {"a", "b"};
+    cli_json json = cli_json_make(out, false);
     bool good = true;
-    fputc('{', out);
+    cli_json_begin(&json, '{');
     for (int side = 0; good && side < 2; side++) {
         diff_thin mesh;
         uint64_t most = *room / 2 < DIFF_PAGE_MESH_MOST ? *room / 2 : DIFF_PAGE_MESH_MOST;
         good = diff_thin_make(d, side, most, &mesh);
         if (good) {
-            put_model(out, keys[side], &mesh);
+            put_model(&json, keys[side], &mesh);
             *room -= mesh.triangle_count < *room ? mesh.triangle_count : *room;
         }
         diff_thin_release(&mesh);
     }
-    put_frame(out, d);
+    put_frame(&json, d);
+    cli_json_end(&json, '}');
     return good;
 }
 

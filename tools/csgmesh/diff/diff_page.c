@@ -81,8 +81,8 @@ static void put_pair(cli_json *json, const diff_result *result)
         diff_put_report(json, &result->report);
         cli_json_end(json, '}');
     }
-    if (result->models) /* digits, base64 and brackets: as it stands */
-        fprintf(json->out, ", \"models\": %s", result->models);
+    if (result->models)
+        cli_json_verbatim(json, "models", result->models);
     cli_json_end(json, '}');
 }
 
