@@ -31,6 +31,8 @@ GENERATED = {"report_page.inc"}
 CIRCLES = {
     frozenset({"field/compile/compile_curve", "field/compile/compile_leaf"}):
         "a curve is a leaf that makes leaves: it is packed by the rules of all others",
+    frozenset({"lang/evaluate/rule_value", "lang/evaluate/value"}): "a rule is a value and holds values",
+    frozenset({"scene/operators/blend_kinds", "scene/operators/rule"}): "a rule is a kind of blend and asks the table of kinds",
     frozenset({"field/cones/cone", "field/cones/cone_along"}): "cone_along takes the cones that cone.h declares",
     frozenset({"scene/tree/build", "scene/tree/check"}): "check.h takes the builder that build.h declares",
 }
