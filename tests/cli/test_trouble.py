@@ -178,5 +178,49 @@ class Limits(cli.CliTest):
         self.limited("for (i = [1 : 5000]) translate([i, 0, 0]) sphere(0.3);\n", "--max-nodes", "1000")
 
 
+class Sources(cli.CliTest):
+    """No output overwrites what the run reads, whatever it is called there."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("s.txt", "include <sizes.txt>\nimport(\"part.stl\"); sphere(r);\n")
+        self.write("sizes.txt", "r = 2;\n")
+        self.write("ball.txt", "sphere(1);\n")
+        self.assert_status(self.run_in("ball.txt", "-r", "8", "-o", "part.stl"), 0)
+        self.assert_status(self.run_in("ball.txt", "-r", "9", "-o", "other.stl"), 0)
+        os.symlink("s.txt", self.path("link.txt"))
+        os.link(self.path("part.stl"), self.path("hard.stl"))
+        self.before = self.contents()
+
+    def contents(self):
+        found = {}
+        for name in os.listdir(self.folder):
+            with open(self.path(name), "rb") as file:
+                found[name] = file.read()
+        return found
+
+    def test_sources_stay(self):
+        for arguments in (
+                ["s.txt", "-f", "stl", "-o", "s.txt"], ["s.txt", "-f", "stl", "-o", "./s.txt"],
+                ["s.txt", "-f", "stl", "-o", "link.txt"], ["s.txt", "-f", "stl", "-o", "sizes.txt"],
+                ["s.txt", "-o", "part.stl"], ["s.txt", "-o", "hard.stl"],
+                ["s.txt", "-o", "out.stl", "--stats=s.txt"], ["s.txt", "-o", "out.stl", "-M", "sizes.txt"],
+                ["s.txt", "-o", "out.stl", "-M", "./out.stl"], ["s.txt", "-o", "out.stl", "-o", "./out.stl"],
+                ["render", "s.txt", "-o", "out.png", "--stats=part.stl"],
+                ["diff", "part.stl", "other.stl", "--json", "part.stl"],
+                ["diff", "part.stl", "other.stl", "--html", "./other.stl"],
+                ["diff", "part.stl", "s.txt", "--junit", "sizes.txt"],
+                ["diff", "part.stl", "other.stl", "--json", "out", "--junit", "./out"]):
+            result = self.run_in(*arguments)
+            self.assert_status(result, 2)
+            self.assertEqual(result.stderr.count("error"), 1, result.stderr)
+            self.assertRegex(result.stderr, "would overwrite|both write to")
+            self.assertEqual(self.contents(), self.before, arguments)
+
+    def test_what_is_no_source_is_written(self):
+        self.assert_status(self.run_in("ball.txt", "-r", "8", "-o", "other.stl", "--stats=/dev/null"), 0)
+        self.assert_status(self.run_in("diff", "part.stl", "other.stl", "--update", "--json", "out.json"), 0)
+
+
 if __name__ == "__main__":
     cli.main()

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/sources.h"
 #include "core/textfile.h"
 #include "core/trace.h"
 
@@ -61,6 +62,9 @@ static csgm_limits limits_from(const cli_options *options)
 
 int cli_app_open(cli_app *app)
 {
+    int guarded = cli_sources_guard(app);
+    if (guarded != CLI_DONE)
+        return guarded;
     csgm_context_options options = csgm_context_options_default();
     options.threads = (uint32_t)app->options.threads;
     options.limits = limits_from(&app->options);

@@ -3,6 +3,7 @@
  */
 #include "core/work.h"
 
+#include "core/sources.h"
 #include "mesh/outputs.h"
 
 int cli_work_check(cli_app *app)
@@ -18,9 +19,10 @@ int cli_work_check(cli_app *app)
 int cli_work_load(cli_app *app, cli_work *work, const char *path)
 {
     csgm_status status = cli_app_load(app, path, &work->scene);
-    if (status == CSGM_OK)
-        work->info = csgm_scene_get_info(work->scene);
-    return cli_exit_status(status);
+    if (status != CSGM_OK)
+        return cli_exit_status(status);
+    work->info = csgm_scene_get_info(work->scene);
+    return cli_sources_guard_scene(app, work->scene);
 }
 
 static csgm_mesh_options mesh_options(cli_app *app)

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "core/format_lists.h"
+#include "core/sources.h"
 #include "diff/diff_folders.h"
 #include "diff/diff_report.h"
 
@@ -277,6 +278,19 @@ static int find_pairs(cli_app *app, diff_results *results)
     return diff_results_add(app, results, a, b) ? CLI_DONE : CLI_TROUBLE;
 }
 
+/* The exit status of the comparison, unless one cannot be written. */
+static int write_reports(cli_app *app, const diff_results *results, int status)
+{
+    const cli_options *o = &app->options;
+    if (o->diff_json && diff_write_json(app, results) != CLI_DONE)
+        status = CLI_TROUBLE;
+    if (o->diff_junit && diff_write_junit(app, results) != CLI_DONE)
+        status = CLI_TROUBLE;
+    if (o->diff_html && diff_write_html(app, results) != CLI_DONE)
+        status = CLI_TROUBLE;
+    return status;
+}
+
 int cli_cmd_diff(cli_app *app)
 {
     diff_results results = {0};
@@ -288,15 +302,14 @@ int cli_cmd_diff(cli_app *app)
         status = cli_app_open(app);
     if (status == CLI_DONE)
         status = find_pairs(app, &results);
+    for (size_t i = 0; status == CLI_DONE && i < 2 * results.count; i++)
+        status =
+            cli_sources_guard_file(app, i % 2 ? results.items[i / 2].b : results.items[i / 2].a);
     if (status == CLI_DONE) {
         csgm_diff_options options = diff_options(&app->options, ignored);
         status = compare_pairs(app, &options, &results);
-        if (app->options.diff_json && diff_write_json(app, &results) != CLI_DONE)
-            status = CLI_TROUBLE;
-        if (app->options.diff_junit && diff_write_junit(app, &results) != CLI_DONE)
-            status = CLI_TROUBLE;
-        if (app->options.diff_html && diff_write_html(app, &results) != CLI_DONE)
-            status = CLI_TROUBLE;
+        if (!app->would_overwrite)
+            status = write_reports(app, &results, status);
     }
     diff_results_release(&results);
     return cli_finish_stdout(app, status);

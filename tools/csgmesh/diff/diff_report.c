@@ -33,19 +33,6 @@ static int check_png(cli_app *app)
 int diff_report_check(cli_app *app)
 {
     const cli_options *o = &app->options;
-    const struct {
-        const char *name, *path;
-    } files[] = {{"json", o->diff_json},
-                 {"junit", o->diff_junit},
-                 {"heatmap", o->diff_heatmap},
-                 {"png", o->diff_png},
-                 {"html", o->diff_html}};
-    enum { FILES = sizeof files / sizeof *files };
-    for (size_t i = 0; i < FILES; i++)
-        for (size_t j = i + 1; files[i].path && j < FILES; j++)
-            if (files[j].path && strcmp(files[i].path, files[j].path) == 0)
-                return cli_usage_error(app, NULL, "--%s and --%s both write to %s", files[i].name,
-                                       files[j].name, files[i].path);
     csgm_camera camera = {.azimuth_deg = 0};
     if (o->view && !o->diff_png && !o->diff_html)
         return cli_usage_error(app, NULL, "--view needs --png or --html");

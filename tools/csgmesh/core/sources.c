@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ * Outputs and what they must not be; see sources.h.
+ */
+#include "core/sources.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* What tells a file from others. Not regular (a device, a pipe): it may be read and written. */
+typedef struct identity {
+    bool is_file;
+    dev_t device;
+    ino_t inode;
+    const char
+        *name; /* in the folder of device and inode, for a file that does not exist; else NULL */
+} identity;
+
+static identity identify(const char *path)
+{
+    struct stat info;
+    identity none = {.is_file = false};
+    if (!path || strcmp(path, "-") == 0)
+        return none;
+    if (stat(path, &info) == 0)
+        return S_ISREG(info.st_mode)
+                   ? (identity){.is_file = true, .device = info.st_dev, .inode = info.st_ino}
+                   : none;
+    char folder[4096];
+    const char *slash = strrchr(path, '/');
+    int length = slash ? (int)(slash - path) + 1 : 0;
+    if ((size_t)length >= sizeof folder)
+        return none;
+    snprintf(folder, sizeof folder, "%.*s", length, path);
+    if (stat(slash ? folder : ".", &info) != 0)
+        return none;
+    return (identity){.is_file = true,
+                      .device = info.st_dev,
+                      .inode = info.st_ino,
+                      .name = slash ? slash + 1 : path};
+}
+
+static bool are_same(const identity *a, const identity *b)
+{
+    return a->is_file && b->is_file && a->device == b->device && a->inode == b->inode &&
+           (!a->name) == (!b->name) && (!a->name || strcmp(a->name, b->name) == 0);
+}
+
+/* Output `index` of a run, and the option that names it; NULL where that is not given. *is_last:
+ * there are no more. */
+static const char *output_at(const cli_options *o, size_t index, const char **option, bool *is_last)
+{
+    const struct {
+        const char *option, *path;
+    } others[] = {{"-M", o->depfile},
+                  {"--stats", o->stats},
+                  {"--trace", o->trace},
+                  {"--junit", o->junit},
+                  {"--json", o->diff_json},
+                  {"--junit", o->diff_junit},
+                  {"--heatmap", o->diff_heatmap},
+                  {"--png", o->diff_png},
+                  {"--html", o->diff_html}};
+    enum { OTHERS = sizeof others / sizeof *others };
+    bool is_other = index >= o->outputs.count;
+    *is_last = index + 1 >= o->outputs.count + OTHERS;
+    *option = is_other ? others[index - o->outputs.count].option : "-o";
+    return is_other ? others[index - o->outputs.count].path : o->outputs.items[index];
+}
+
+int cli_sources_guard_file(cli_app *app, const char *input)
+{
+    identity read = identify(input);
+    bool is_last = !read.is_file || read.name; /* what does not exist is not read */
+    for (size_t i = 0; !is_last; i++) {
+        const char *option, *path = output_at(&app->options, i, &option, &is_last);
+        identity written = identify(path);
+        app->would_overwrite |= are_same(&read, &written);
+        app->would_overwrite |= are_same(&read, &written);
+        if (app->would_overwrite)
+            return cli_usage_error(app, "give the output another name",
+                                   "%s %s would overwrite %s, which this run reads", option, path,
+                                   input);
+    }
+    return CLI_DONE;
+}
+
+int cli_sources_guard_scene(cli_app *app, const csgm_scene *scene)
+{
+    const char *path;
+    int status = CLI_DONE;
+    for (size_t i = 0; status == CLI_DONE && (path = csgm_scene_dependency(scene, i)); i++)
+        status = cli_sources_guard_file(app, path);
+    return status;
+}
+
+static int guard_outputs(cli_app *app)
+{
+    bool is_last = false, is_last_other;
+    for (size_t i = 0; !is_last; i++) {
+        const char *option, *other_option;
+        const char *path = output_at(&app->options, i, &option, &is_last);
+        identity one = identify(path);
+        is_last_other = is_last || !one.is_file;
+        for (size_t j = i + 1; !is_last_other; j++) {
+            const char *other = output_at(&app->options, j, &other_option, &is_last_other);
+            identity two = identify(other);
+            if (are_same(&one, &two))
+                return cli_usage_error(app, "give one of them another name",
+                                       "%s and %s both write to %s", option, other_option, path);
+        }
+    }
+    return CLI_DONE;
+}
+
+int cli_sources_guard(cli_app *app)
+{
+    int status = guard_outputs(app);
+    for (size_t i = 0; status == CLI_DONE && i < app->options.operands.count; i++)
+        status = cli_sources_guard_file(app, app->options.operands.items[i]);
+    return status;
+}
