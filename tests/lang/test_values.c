@@ -44,6 +44,33 @@ static void check(const char *scene, const char *echo)
     assert_string_equal(b.echo, echo);
 }
 
+/* Each row whose handler looks it up in operators.def or steps.def is found there. */
+static void blends_of_the_table_are_blends(void **state)
+{
+    static const struct {
+        const char *name, *handler;
+    } rows[] = {
+#define CSG_FUNCTION(name, handler, fewest, most, parameters, doc) {#name, #handler},
+#include "lang/functions/functions.def"
+#undef CSG_FUNCTION
+    };
+    (void)state;
+    int tried = 0;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        bool blend = strcmp(rows[i].handler, "blend") == 0;
+        if (!blend && strcmp(rows[i].handler, "rule") != 0 && strcmp(rows[i].handler, "step") != 0)
+            continue;
+        char text[160];
+        snprintf(text, sizeof text, "echo(is_undef(%s(%s))); sphere(1);", rows[i].name,
+                 blend ? "1" : "");
+        assert_int_equal(bench_compile(&b, text), CSGM_OK);
+        if (strcmp(b.echo, "false\n") != 0)
+            fail_msg("%s() is no %s: %s", rows[i].name, rows[i].handler, b.text);
+        tried++;
+    }
+    assert_true(tried > 20);
+}
+
 static void scopes_are_lexical_and_the_last_assignment_holds(void **state)
 {
     check("a = 1; echo(a); a = 2;", "2\n");
@@ -146,6 +173,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(echo_prints_what_openscad_prints),
+        cmocka_unit_test(blends_of_the_table_are_blends),
         cmocka_unit_test(scopes_are_lexical_and_the_last_assignment_holds),
         cmocka_unit_test(special_variables_are_dynamic),
         cmocka_unit_test(children_are_chosen_by_index),

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "field/cones/cone.h"
+#include "mesh/distance/slopes.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/random_formula.h"
@@ -44,6 +45,36 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     return true;
 }
 
+/* The range of mesh/distance/slopes.h over a triangle, tried at random points of it. Returns
+ * whether there was one. */
+static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_random *random,
+                      csg_vec3 at, double radius)
+{
+    const csg_kernel *kernel = csg_kernel_for(CSGM_ISA_AUTO);
+    size_t floats = csg_kernel_scratch_floats(field->depth);
+    float *scratch = malloc(floats * sizeof *scratch);
+    assert_non_null(scratch);
+    csg_gradients found;
+    csg_vec3 v[3], local[3], c = csg_vec3_sub(at, field->center);
+    for (int i = 0; i < 3; i++) {
+        v[i] = csg_vec3_add(at, csg_vec3_scale(test_direction(random), 0.99 * radius));
+        local[i] = csg_vec3_sub(v[i], field->center);
+    }
+    bool is_known =
+        csg_gradients_find(kernel, &field->tape, local, c, radius, scratch, floats, &found);
+    for (int i = 0; is_known && i < TRIES; i++) {
+        double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
+        csg_vec3 p = csg_vec3_add(csg_vec3_scale(v[0], s), csg_vec3_scale(v[1], t));
+        p = csg_vec3_add(p, csg_vec3_scale(v[2], 1 - s - t));
+        double value = test_sample(scene, p).value;
+        if (value < found.low - 1e-4 || value > found.high + 1e-4)
+            fail_msg("a value of %g, not %g to %g, near (%g, %g, %g) within %g", value, found.low,
+                     found.high, at.x, at.y, at.z, radius);
+    }
+    free(scratch);
+    return is_known;
+}
+
 static csg_blend any_blend(csg_random *random)
 {
     const csg_blend blends[] = {SHARP,
@@ -58,7 +89,7 @@ static void cones_hold(void **state)
 {
     (void)state;
     csg_random random = {.state = 81};
-    uint32_t found = 0;
+    uint32_t found = 0, ranges = 0;
     for (int kind = 0; kind < 36; kind++) {
         mesh_case c;
         mesh_case_begin(&c, 1);
@@ -75,12 +106,16 @@ static void cones_hold(void **state)
             root = csg_build_transform(&c.builder, &stretch, root, NOWHERE);
         }
         mesh_case_compile(&c, root);
-        for (int i = 0; i < 250; i++)
-            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.6),
-                              exp(csg_random_uniform(&random, -5, -0.5)));
+        for (int i = 0; i < 250; i++) {
+            csg_vec3 at = test_point(&random, 1.6);
+            double radius = exp(csg_random_uniform(&random, -5, -0.5));
+            found += try_cone(c.scene, c.field, &random, at, radius);
+            ranges += try_range(c.scene, c.field, &random, at, radius);
+        }
         mesh_case_end(&c);
     }
     assert_true(found > 3000);
+    assert_true(ranges > 3000);
 }
 
 /* ---- other leaves ---------------------------------------------------------------------------- */

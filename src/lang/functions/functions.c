@@ -132,13 +132,20 @@ static double blend_number(const csg_function_call *call)
     return NAN;
 }
 
+csg_value csg_no_such_blend(const csg_function_call *call)
+{
+    csg_eval_report(call->e, CSG_DIAG_BAD_BLEND, call->where, NULL,
+                    "%s() has no row in the table of blends", call->name);
+    return csg_value_undef();
+}
+
 csg_value csg_function_blend(const csg_function_call *call)
 {
     int kind = CSG_BLEND_COUNT - 1;
     while (kind > 0 && strcmp(csg_blend_name((csg_blend_kind)kind), call->name) != 0)
         kind--;
     if (kind == 0) /* a row here without one in operators.def must not pass for a sharp blend */
-        return csg_value_undef();
+        return csg_no_such_blend(call);
     double value = blend_number(call);
     bool raw = call->syntax[0].name == call->e->symbol_n;
     if (call->arguments[0].kind != CSG_VALUE_NUMBER)

@@ -19,4 +19,8 @@ csg_value csg_functions_call(csg_eval *e, int row, const csg_expression *x, csg_
 /* The value of an expression where a call round(r) means the blend. */
 csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame);
 
+/* For a row of functions.def whose handler looks its blend, rule or step up in another table: an
+ * error where that has none of the name. */
+csg_value csg_no_such_blend(const csg_function_call *call);
+
 #endif

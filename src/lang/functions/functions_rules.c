@@ -50,8 +50,10 @@ csg_value csg_function_step(const csg_function_call *call)
 #undef CSG_STEP
     };
     int kind = 0;
-    while (strcmp(csg_step_name((csg_step_kind)kind), call->name) != 0)
+    while (kind < CSG_STEP_COUNT && strcmp(csg_step_name((csg_step_kind)kind), call->name) != 0)
         kind++;
+    if (kind == CSG_STEP_COUNT)
+        return csg_no_such_blend(call);
     csg_step step = {(csg_step_kind)kind, standard[kind]};
     if (call->count && call->arguments[0].kind != CSG_VALUE_UNDEF)
         step.parameter = number_of(call, 0, "its parameter");
@@ -151,8 +153,10 @@ csg_value csg_function_rule(const csg_function_call *call)
 {
     const char *name = strcmp(call->name, "superelliptic") == 0 ? "ricci" : call->name;
     csg_blend_kind kind = CSG_BLEND_EXTERIOR;
-    while (strcmp(csg_rule_name(kind), name) != 0)
+    while (kind < CSG_BLEND_END && strcmp(csg_rule_name(kind), name) != 0)
         kind++;
+    if (kind == CSG_BLEND_END)
+        return csg_no_such_blend(call);
     csg_rule rule = csg_rule_standard(kind);
     uint32_t position = 0;
     for (uint32_t i = 0; i < call->count; i++)

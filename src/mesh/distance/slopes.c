@@ -68,9 +68,11 @@ static blended blend_at(uint8_t blend, float n, float chi, double d)
     case CSG_BLEND_##NAME:                                                                         \
         return name##_float(n, chi, x);
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* the larger one */                                                    \
+        break;
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* no binary blend */                                                   \
+        break;
 #include "scene/operators/operators.def"
     case CSG_BLEND_ORTHOGONAL:
     case CSG_BLEND_END:

@@ -27,9 +27,11 @@ static csg_term excess(csg_terms *t, csg_blend blend, csg_term x)
     case CSG_BLEND_##NAME:                                                                         \
         return name##_term(t, n, x);
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* the larger one */                                                    \
+        break;
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* no binary blend */                                                   \
+        break;
 #include "scene/operators/operators.def"
     case CSG_BLEND_ORTHOGONAL:
     case CSG_BLEND_END:

@@ -21,9 +21,11 @@ void csg_reference_blend_function(csg_blend blend, double x, double *value, doub
         made = blends ? name##_double(blend.n, x) : made;                                          \
         break;
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* the larger one */                                                    \
+        break;
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
-    case CSG_BLEND_##NAME:
+    case CSG_BLEND_##NAME: /* no binary blend */                                                   \
+        break;
 #include "scene/operators/operators.def"
     case CSG_BLEND_ORTHOGONAL:
     case CSG_BLEND_END:
