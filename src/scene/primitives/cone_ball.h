@@ -13,8 +13,8 @@
  * Faces. Where faces meet, every gradient is a face's (minus its outward normal) or, outside,
  * minus a unit vector of the form w_1 n_1 + w_2 n_2 + ... with all w >= 0, whose sum is at least 1
  * since |sum w n| <= sum w. So what climbs with all faces' gradients climbs there too. A face
- * takes part when its plane is near enough to be the nearest one anywhere in the ball. Primitives
- * of this kind have the trait FACES.
+ * takes part when its plane is near enough to be the nearest one anywhere in the ball and, outside,
+ * when the ball may be in front of its plane. Primitives of this kind have the trait FACES.
  */
 #ifndef CSG_SCENE_CONE_BALL_H
 #define CSG_SCENE_CONE_BALL_H
