@@ -16,12 +16,15 @@
  *                  K >= 1 a bound on the sum of its partial derivatives' sizes
  *   soft           (F - 1/2) / lambda, F = P(d) in [0, 1] of its child's f (csg_soft): a soft node
  *   operator       scene/operators/operators.def; difference is the intersection of the first child
- * with the negated others. One that takes fields (csg_rule, FIELDS) gives a soft node again, (G(F1,
- * F2, ...) - 1/2) / lambda empty          -infinity A flat node's field does not depend on z: a
- * figure of the plane. A soft node's f + 1/2 times its softness lambda is a field F in [0, 1]
- * (before an operator's excess); transforms, colours and warps of soft nodes are soft, and sharp
- * operators with soft operands only. Lipschitz constants: 1, but for formulas and for EXTERIOR and
- * INTERIOR, whose K multiplies their operands' (csg_scene_slopes).
+ *                  with the negated others. One that takes fields (csg_rule, FIELDS) gives a soft
+ *                  node again, (G(F1, F2, ...) - 1/2) / lambda
+ *   empty          -infinity
+ *
+ * A flat node's field does not depend on z: a figure of the plane. A soft node's f + 1/2 times its
+ * softness lambda is a field F in [0, 1] (before an operator's excess); transforms, colours and
+ * warps of soft nodes are soft, and sharp operators with soft operands only. Lipschitz constants:
+ * 1, but for formulas and for EXTERIOR and INTERIOR, whose K multiplies their operands'
+ * (csg_scene_slopes).
  */
 #ifndef CSG_SCENE_SCENE_H
 #define CSG_SCENE_SCENE_H

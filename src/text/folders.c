@@ -31,8 +31,10 @@ size_t csg_folder_name(const csgm_scene_options *options, size_t index, char *bu
     static const char for_all[] = "/usr/share/openscad/libraries";
 #endif
     size_t given = options ? options->include_dir_count : 0, length = 0;
-    if (index < given)
-        return (size_t)snprintf(buffer, size, "%s", options->include_dirs[index]);
+    if (index < given) {
+        const char *name = options->include_dirs[index];
+        return (size_t)snprintf(buffer, size, "%s", *name ? name : "."); /* 0 means no folder */
+    }
     index -= given;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         const char *folder = folder_of_list(getenv(lists[i]), &index, &length);

@@ -199,10 +199,10 @@ static void dependencies_are_in_order_of_reading(void **state)
 static void folders_are_searched_in_order(void **state)
 {
     char text[128], inc[128];
-    const char *dirs[] = {inc};
+    const char *dirs[] = {"", inc}; /* an empty name is the current folder, and not the end */
     (void)state;
     csgm_scene_options options = {
-        .struct_size = sizeof options, .include_dirs = dirs, .include_dir_count = 1};
+        .struct_size = sizeof options, .include_dirs = dirs, .include_dir_count = 2};
     snprintf(inc, sizeof inc, "%s", path_of("inc"));
     mkdir(inc, 0700);
     mkdir(path_of("env"), 0700);

@@ -59,7 +59,7 @@ static double tangent(double degrees)
     bool below = a > 90;
     a = below ? 180 - a : a;
     double value = a == 45 ? 1 : a == 0 ? 0 : sine_of_quarter(a) / sine_of_quarter(90 - a);
-    return below ? -value : value;
+    return below && value != 0 ? -value : value;
 }
 
 /* A whole number of degrees when that is what the function of it gives back. */

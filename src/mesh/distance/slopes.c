@@ -297,7 +297,7 @@ static bool join_round(walker *w, const csg_tape_node *node)
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
-/* Signed distances to convex sets are concave, wherever they are asked. */
+/* Signed distances to convex sets, and 1 - d of a gauge d, are concave, wherever they are asked. */
 static bool is_concave(uint8_t op)
 {
     return csg_op_has(op, CSG_TRAIT_CONVEX);

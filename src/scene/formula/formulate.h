@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A whole scene as one formula of x, y and z, in double: the same field as scene/tree/reference, up
+ * A whole scene as one formula of x, y and z, in double: the same field as scene/reference.c, up
  * to rounding, but for tubes along curves, which become chords within 1e-4 of the largest radius.
  * Choices become steep steps, iterations are written out. Solids bounded by triangles can be
  * written only where they are convex.
