@@ -203,7 +203,7 @@ void csg_diag_sum_up(csg_diag_sink *sink)
         snprintf(message, sizeof message, "and %u more errors", sink->errors_more);
         note(sink, message);
     }
-    sink->group_count = sink->errors_more = sink->warnings_more = 0;
+    sink->group_count = sink->errors_more = sink->warnings_more = sink->warnings_shown = 0;
 }
 
 void csg_diag_make_line(char *message)

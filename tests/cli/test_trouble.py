@@ -206,6 +206,9 @@ class Sources(cli.CliTest):
                 ["s.txt", "-o", "part.stl"], ["s.txt", "-o", "hard.stl"],
                 ["s.txt", "-o", "out.stl", "--stats=s.txt"], ["s.txt", "-o", "out.stl", "-M", "sizes.txt"],
                 ["s.txt", "-o", "out.stl", "-M", "./out.stl"], ["s.txt", "-o", "out.stl", "-o", "./out.stl"],
+                ["s.txt", "-o", "out.stl", "--trace", "s.txt"], ["s.txt", "-o", "out.stl", "--trace", "sizes.txt"],
+                ["s.txt", "-o", "out.stl", "--trace", "./part.stl"],
+                ["diff", "part.stl", "other.stl", "--json", "-", "--junit", "-"],
                 ["render", "s.txt", "-o", "out.png", "--stats=part.stl"],
                 ["diff", "part.stl", "other.stl", "--json", "part.stl"],
                 ["diff", "part.stl", "other.stl", "--html", "./other.stl"],
@@ -216,6 +219,17 @@ class Sources(cli.CliTest):
             self.assertEqual(result.stderr.count("error"), 1, result.stderr)
             self.assertRegex(result.stderr, "would overwrite|both write to")
             self.assertEqual(self.contents(), self.before, arguments)
+
+    def test_a_batch_leaves_imports_alone(self):
+        self.write("mesh.txt", "import(\"mesh.stl\");\n")
+        os.link(self.path("part.stl"), self.path("mesh.stl"))
+        result = self.run_in("batch", "mesh.txt", "-d", ".", "-f", "stl", "--name", "{scene}.{ext}")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("would overwrite", result.stderr)
+        with open(self.path("mesh.stl"), "rb") as file:
+            self.assertEqual(file.read(), self.before["part.stl"])
+        result = self.run_in("batch", "mesh.txt", "-d", "out", "-f", "stl")
+        self.assert_status(result, 0)
 
     def test_what_is_no_source_is_written(self):
         self.assert_status(self.run_in("ball.txt", "-r", "8", "-o", "other.stl", "--stats=/dev/null"), 0)

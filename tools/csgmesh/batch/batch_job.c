@@ -270,10 +270,13 @@ static int make_job(maker *m, bool may_defer, bool *is_large)
 {
     set_outputs(m);
     int status = cli_work_check(&m->app);
+    cli_list names = m->app.options.outputs;
+    m->app.options.outputs = m->job->outputs; /* what must be no source */
     if (status == CLI_DONE)
         status = cli_app_open(&m->app);
     if (status == CLI_DONE)
         status = cli_work_load(&m->app, &m->work, m->job->scene);
+    m->app.options.outputs = names;
     *is_large = status == CLI_DONE && may_defer && is_long_work(m);
     if (*is_large)
         return CLI_DONE;

@@ -75,12 +75,12 @@ int cli_sources_guard_file(cli_app *app, const char *input)
     for (size_t i = 0; !is_last; i++) {
         const char *option, *path = output_at(&app->options, i, &option, &is_last);
         identity written = identify(path);
-        app->would_overwrite |= are_same(&read, &written);
-        app->would_overwrite |= are_same(&read, &written);
-        if (app->would_overwrite)
-            return cli_usage_error(app, "give the output another name",
-                                   "%s %s would overwrite %s, which this run reads", option, path,
-                                   input);
+        if (!are_same(&read, &written))
+            continue;
+        app->would_overwrite = true;
+        return cli_usage_error(app, "give the output another name",
+                               "%s %s would overwrite %s, which this run reads", option, path,
+                               input);
     }
     return CLI_DONE;
 }
@@ -101,13 +101,18 @@ static int guard_outputs(cli_app *app)
         const char *option, *other_option;
         const char *path = output_at(&app->options, i, &option, &is_last);
         identity one = identify(path);
-        is_last_other = is_last || !one.is_file;
+        is_last_other = is_last || !path;
         for (size_t j = i + 1; !is_last_other; j++) {
             const char *other = output_at(&app->options, j, &other_option, &is_last_other);
+            if (other && strcmp(path, "-") == 0 && strcmp(other, "-") == 0)
+                return cli_usage_error(app, NULL, "%s and %s both write to standard output", option,
+                                       other_option);
             identity two = identify(other);
-            if (are_same(&one, &two))
-                return cli_usage_error(app, "give one of them another name",
-                                       "%s and %s both write to %s", option, other_option, path);
+            if (!are_same(&one, &two))
+                continue;
+            app->would_overwrite = true;
+            return cli_usage_error(app, "give one of them another name",
+                                   "%s and %s both write to %s", option, other_option, path);
         }
     }
     return CLI_DONE;
