@@ -98,6 +98,7 @@ typedef struct csgm_diag {
     uint32_t source_line_length;
     uint32_t end_line, end_column; /* just behind the last byte covered; 0 = not about text */
     const char *library; /* the library whose file the place is in, "BOSL2"; NULL = no library's */
+    bool lenient;        /* a warning that would be an error in a strict text (csgm_leniency) */
 } csgm_diag;
 
 /* Receives each finding as it is made. */
@@ -221,6 +222,15 @@ typedef enum csgm_facets {
     CSGM_FACETS_EXACT  /* $fn, $fa and $fs hold everywhere, as in OpenSCAD */
 } csgm_facets;
 
+/* Mistakes of which OpenSCAD only warns, going on without what they concern: an unknown module or
+ * function, a missing include, an argument of the wrong kind, faces without points. */
+typedef enum csgm_leniency {
+    CSGM_STRICT,          /* they are errors */
+    CSGM_LENIENT_BY_FILE, /* warnings in files named .scad or .csg, errors elsewhere: the file in
+                             which the mistake stands decides */
+    CSGM_LENIENT          /* they are warnings, and say what is left out */
+} csgm_leniency;
+
 /* How a scene's text is read: values from outside, folders of includes, and facets. */
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
@@ -231,7 +241,8 @@ typedef struct csgm_scene_options {
     /* A set of values from a file in the JSON of OpenSCAD's customizer, both or neither; they
      * replace the scene's own, and defines replace them. */
     const char *parameter_file, *parameter_set;
-    csgm_facets facets; /* default ROUND */
+    csgm_facets facets;     /* default ROUND */
+    csgm_leniency leniency; /* default STRICT */
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

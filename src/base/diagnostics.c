@@ -13,7 +13,7 @@
 
 static const struct {
     csg_diag_code code;
-    csgm_severity severity;
+    int severity; /* csgm_severity or CSG_STRICT_ERROR */
     const char *summary;
 } rows[] = {
 #define CSG_DIAG(name, number, severity, summary) {CSG_DIAG_##name, severity, summary},
@@ -33,7 +33,15 @@ static size_t row_of(csg_diag_code code)
 csgm_severity csg_diag_severity(csg_diag_code code)
 {
     size_t row = row_of(code);
-    return row < sizeof rows / sizeof *rows ? rows[row].severity : CSGM_ERROR;
+    if (row == sizeof rows / sizeof *rows || rows[row].severity == CSG_STRICT_ERROR)
+        return CSGM_ERROR;
+    return (csgm_severity)rows[row].severity;
+}
+
+bool csg_diag_may_be_lenient(csg_diag_code code)
+{
+    size_t row = row_of(code);
+    return row < sizeof rows / sizeof *rows && rows[row].severity == CSG_STRICT_ERROR;
 }
 
 const char *csg_diag_summary(csg_diag_code code)
@@ -44,16 +52,18 @@ const char *csg_diag_summary(csg_diag_code code)
 
 /* ---- what is shown ---------------------------------------------------------------------- */
 
-static csgm_severity severity_here(const csg_diag_sink *sink, csg_diag_code code)
+static csgm_severity severity_here(const csg_diag_sink *sink, csg_diag_code code,
+                                   const csgm_diag *diag)
 {
-    csgm_severity severity = csg_diag_severity(code);
+    csgm_severity severity = diag->lenient ? CSGM_WARNING : csg_diag_severity(code);
     return severity == CSGM_WARNING && sink->warnings_as_errors ? CSGM_ERROR : severity;
 }
 
 /* Is it about what a mesh or a file has not got, which nobody may miss? */
-static bool is_about_the_result(csg_diag_code code)
+static bool is_about_the_result(csg_diag_code code, const csgm_diag *diag)
 {
-    return (code >= 400 && code < 600) || code == CSG_DIAG_LEFT_OUT || code == CSG_DIAG_PART_LOST;
+    return diag->lenient || (code >= 400 && code < 600) || code == CSG_DIAG_LEFT_OUT ||
+           code == CSG_DIAG_PART_LOST;
 }
 
 static bool is_of_library(const csg_diag_sink *sink, const csgm_diag *diag)
@@ -90,12 +100,12 @@ static uint32_t find_group(const csg_diag_sink *sink, csg_diag_code code, const 
 
 bool csg_diag_is_shown(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
 {
-    csgm_severity severity = severity_here(sink, code);
+    csgm_severity severity = severity_here(sink, code, diag);
     if (severity == CSGM_NOTE)
         return !sink->mute_notes;
     if (severity == CSGM_ERROR)
         return sink->errors < CSG_DIAG_ERRORS_MOST;
-    if (is_about_the_result(code))
+    if (is_about_the_result(code, diag))
         return true;
     if (is_of_library(sink, diag) || sink->warnings_shown >= CSG_DIAG_WARNINGS_MOST)
         return false;
@@ -108,7 +118,7 @@ static void count_warning(csg_diag_sink *sink, csg_diag_code code, const csgm_di
                           bool is_shown)
 {
     sink->warnings++;
-    if (is_about_the_result(code))
+    if (is_about_the_result(code, diag))
         return;
     sink->warnings_shown += is_shown;
     uint32_t i = find_group(sink, code, diag);
@@ -127,7 +137,7 @@ static void count_warning(csg_diag_sink *sink, csg_diag_code code, const csgm_di
 void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag)
 {
     diag.code = (uint16_t)code;
-    diag.severity = severity_here(sink, code);
+    diag.severity = severity_here(sink, code, &diag);
     bool is_shown = csg_diag_is_shown(sink, code, &diag);
     if (diag.severity == CSGM_ERROR) {
         sink->errors++;

@@ -4,9 +4,9 @@
  * file, line and column and reports through this.
  *
  * What is shown: each error, the first hundred of them with their line and hint; each warning of
- * what a mesh or file lacks; of other warnings the first few of each kind in each file, and how
- * many more there are. Warnings inside a library, which its user did not write, are one note in
- * all.
+ * what a mesh or file lacks, so also each that is an error in a strict text; of other warnings the
+ * first few of each kind in each file, and how many more there are. Warnings inside a library,
+ * which its user did not write, are one note in all.
  */
 #ifndef CSG_BASE_DIAGNOSTICS_H
 #define CSG_BASE_DIAGNOSTICS_H
@@ -47,8 +47,13 @@ typedef struct csg_diag_sink {
     uint32_t group_count;
 } csg_diag_sink;
 
-/* Severity of the code's table row (warnings_as_errors not applied). */
+/* In the tables: an error in a strict text, a warning in a lenient one. */
+enum { CSG_STRICT_ERROR = CSGM_ERROR + 1 };
+
+/* Severity of the code's table row (warnings_as_errors not applied), in a strict text. */
 csgm_severity csg_diag_severity(csg_diag_code code);
+/* Is it only a warning in a lenient text? */
+bool csg_diag_may_be_lenient(csg_diag_code code);
 /* The table's one-line summary of a code, NULL for an unknown one. */
 const char *csg_diag_summary(csg_diag_code code);
 

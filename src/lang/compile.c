@@ -200,6 +200,7 @@ static void compile(compilation *c)
     if (c->context->limits.timeout_s > 0)
         program.deadline_s = csg_clock_now_s() + c->context->limits.timeout_s;
     program.options = &c->options;
+    program.sources.leniency = c->options.leniency;
     program.services = c->input->services;
     program.exact_facets = c->options.facets == CSGM_FACETS_EXACT;
     program.stack_end = (uintptr_t)&here - c->stack_bytes;

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -64,24 +65,31 @@ static void place_end(const csg_source *source, uint32_t offset, csgm_diag *diag
     }
 }
 
+bool csg_source_is_lenient(const csg_sources *sources, csg_diag_code code, csg_span where)
+{
+    return where.source < sources->count && sources->items[where.source].lenient &&
+           csg_diag_may_be_lenient(code);
+}
+
 /* A finding in the file of `where`, so far without its place and words. */
-static csgm_diag finding_in(const csg_sources *sources, csg_span where)
+static csgm_diag finding_in(const csg_sources *sources, csg_diag_code code, csg_span where)
 {
     const csg_source *source = where.source < sources->count ? &sources->items[where.source] : NULL;
     return (csgm_diag){.source_name = source ? source->name : NULL,
-                       .library = source ? source->library : NULL};
+                       .library = source ? source->library : NULL,
+                       .lenient = csg_source_is_lenient(sources, code, where)};
 }
 
 bool csg_source_is_shown(const csg_sources *sources, csg_diag_code code, csg_span where)
 {
-    csgm_diag diag = finding_in(sources, where);
+    csgm_diag diag = finding_in(sources, code, where);
     return csg_diag_is_shown(&sources->context->diags, code, &diag);
 }
 
 static void report_at(const csg_sources *sources, csg_diag_code code, csg_span where,
                       const char *hint, const char *message)
 {
-    csgm_diag diag = finding_in(sources, where);
+    csgm_diag diag = finding_in(sources, code, where);
     diag.message = message;
     diag.hint = hint;
     /* What is not shown is only counted: finding its line could be slow. */
@@ -162,6 +170,13 @@ static bool is_binary(const char *text, size_t length)
     return strange >= 4 * CONTROL && strange * 12 > sniffed * CONTROL;
 }
 
+/* By its name: an OpenSCAD file has one of these endings. */
+static bool is_openscad(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && (strcasecmp(dot, ".scad") == 0 || strcasecmp(dot, ".csg") == 0);
+}
+
 static csgm_status add_source(csg_sources *sources, csg_source source, uint32_t *out)
 {
     csg_memory *memory = &sources->context->memory;
@@ -173,6 +188,8 @@ static csgm_status add_source(csg_sources *sources, csg_source source, uint32_t 
     if (!csg_memory_reserve(memory, (void **)&sources->items, &sources->capacity,
                             sources->count + 1, sizeof *sources->items))
         return csg_context_no_memory(sources->context);
+    source.lenient = sources->leniency == CSGM_LENIENT ||
+                     (sources->leniency == CSGM_LENIENT_BY_FILE && is_openscad(source.name));
     sources->items[sources->count] = source;
     *out = (uint32_t)sources->count++;
     return CSGM_OK;

@@ -17,11 +17,13 @@ typedef struct csg_source {
     csg_span from;          /* the include that asked for it; source UINT32_MAX = the main text */
     bool textual;           /* by include (its statements stand in the asking file), not by use */
     const char *library;    /* the library that the file belongs to; NULL = the scene's own */
+    bool lenient;           /* what OpenSCAD only warns of is a warning here too */
 } csg_source;
 
 typedef struct csg_sources {
     csgm_context *context;
     csg_arena *arena; /* names and texts */
+    csgm_leniency leniency;
     csg_source *items;
     size_t count, capacity;
 } csg_sources;
@@ -54,6 +56,8 @@ void csg_source_place(const csg_source *source, uint32_t offset, uint32_t *line,
 void csg_source_report(const csg_sources *sources, csg_diag_code code, csg_span where,
                        const char *hint, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+/* Is a finding of this code, which is an error in a strict text, only a warning there? */
+bool csg_source_is_lenient(const csg_sources *sources, csg_diag_code code, csg_span where);
 /* Would a finding there be shown? For callers to whom its text is work. */
 bool csg_source_is_shown(const csg_sources *sources, csg_diag_code code, csg_span where);
 /* One note at a place, without a trace. */

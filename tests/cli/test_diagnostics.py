@@ -80,6 +80,21 @@ class Text(cli.CliTest):
             self.assertIn("error E0", result.stderr)
         self.assert_files("a.txt")
 
+    def test_leniency(self):
+        text = "nobody(); cube(1);\n"
+        self.write("a.scad", text)
+        self.write("a.txt", text)
+        for arguments, status in ((["a.scad"], 0), (["a.txt"], 1), (["--strict", "a.scad"], 1),
+                                  (["--lenient", "a.txt"], 0), (["-Werror", "a.scad"], 1),
+                                  (["--strict", "--lenient", "a.txt"], 2)):
+            self.assert_status(self.run_in("check", *arguments), status)
+        result = self.run_in("check", "-q", "--summary", "a.scad")
+        self.assertEqual(result.stderr, "summary: 0 errors, 1 warning; 1 of what OpenSCAD only warns of (0201: 1): "
+                                        "--strict makes them errors\n")
+        result = self.run_in("check", "--summary", "--diagnostics=json", "a.scad")
+        self.assertEqual(json.loads(result.stderr.splitlines()[-1]),
+                         {"summary": {"errors": 0, "warnings": 1, "lenient": 1}})
+
     def test_color(self):
         self.write("a.txt", "sphere(;\n")
         for arguments, env, wanted in (([], {}, False), (["--color=always"], {}, True),

@@ -141,8 +141,9 @@ def diagnostics():
     rows = []
     tables = [*calls("src/base/scene_codes.def"), *calls("src/base/mesh_codes.def")]
     for _, (_, number, severity, summary) in tables:
-        word = severity.removeprefix("CSGM_").lower()
-        rows.append([f"{word[0].upper()}{int(number):04d}", word, summary])
+        lenient = severity == "CSG_STRICT_ERROR"
+        word = "error" if lenient else severity.removeprefix("CSGM_").lower()
+        rows.append([f"{word[0].upper()}{int(number):04d}", word + (", lenient: warning" if lenient else ""), summary])
     return table(["code", "severity", "what was found"], rows)
 
 

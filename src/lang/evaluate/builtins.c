@@ -50,7 +50,10 @@ bool csg_unsupported_report(csg_eval *e, csg_member_kind kind, csg_symbol name, 
         return false;
     csg_eval_report(e, CSG_DIAG_NOT_SUPPORTED, where,
                     module ? unsupported_modules[row].hint : unsupported_functions[row].hint,
-                    "%s() is not supported yet", entry->name);
+                    "%s() is not supported yet%s", entry->name,
+                    !csg_eval_is_lenient(e, CSG_DIAG_NOT_SUPPORTED, where) ? ""
+                    : module ? "; it is left out, with what stands under it"
+                             : "; the call counts as undef");
     return true;
 }
 

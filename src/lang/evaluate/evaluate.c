@@ -152,6 +152,12 @@ static bool find_literal(csg_eval *e, csg_symbol name, const csg_frame *frame, t
     return found && to_literal(*found, out);
 }
 
+static const char *loss_of_call(const csg_eval *e, csg_span where)
+{
+    return csg_eval_is_lenient(e, CSG_DIAG_UNKNOWN_FUNCTION, where) ? "; the call counts as undef"
+                                                                    : "";
+}
+
 static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *frame, target *out)
 {
     const csg_expression *callee = call->as.call.callee;
@@ -168,8 +174,9 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
                                 ? "a function stands in front of its arguments: len(v), not v.len()"
                             : value.kind == CSG_VALUE_NUMBER ? "a multiplication needs '*'"
                                                              : NULL,
-                            "only a function can be called, this is %s%s",
-                            value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value));
+                            "only a function can be called, this is %s%s%s",
+                            value.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(value),
+                            loss_of_call(e, callee->whole));
         csg_value_release(&e->heap, value);
         return found;
     }
@@ -188,8 +195,9 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
         csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_FUNCTION, out->name, frame, callee->where,
                                     hint, sizeof hint),
-                        "there is no function '%s'",
-                        csg_symbol_name(&e->program->symbols, out->name));
+                        "there is no function '%s'%s",
+                        csg_symbol_name(&e->program->symbols, out->name),
+                        loss_of_call(e, callee->where));
     return out->builtin >= 0;
 }
 

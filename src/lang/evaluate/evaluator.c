@@ -78,11 +78,17 @@ static void report(csg_eval *e, csg_diag_code code, csg_span where, const char *
     csg_eval_note_calls(e);
 }
 
+bool csg_eval_is_lenient(const csg_eval *e, csg_diag_code code, csg_span where)
+{
+    return csg_source_is_lenient(&e->program->sources, code, where);
+}
+
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                      const char *format, ...)
 {
     va_list arguments;
-    if (csg_diag_severity(code) == CSGM_ERROR && e->status == CSGM_OK)
+    if (csg_diag_severity(code) == CSGM_ERROR && !csg_eval_is_lenient(e, code, where) &&
+        e->status == CSGM_OK)
         e->status = CSGM_ERR_SCENE;
     if (e->stop || !is_news(e, code, where))
         return;
@@ -255,7 +261,8 @@ csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_
     if (name == e->symbol_pi)
         return csg_value_number(3.14159265358979323846);
     const char *text = csg_symbol_name(&e->program->symbols, name);
-    if (text[0] >= '0' && text[0] <= '9') {
+    bool is_lenient = e->program->sources.items[where.source].lenient;
+    if (text[0] >= '0' && text[0] <= '9' && !is_lenient) { /* where OpenSCAD knows a variable */
         csg_eval_report(e, CSG_DIAG_BAD_NUMBER, where,
                         "numbers have no units, a multiplication needs '*'",
                         "'%s' is not a number, and no variable has this name", text);

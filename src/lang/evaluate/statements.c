@@ -60,8 +60,11 @@ static void run_unknown(csg_eval *e, const csg_statement *statement, csg_frame *
         csg_eval_report(e, CSG_DIAG_UNKNOWN_MODULE, statement->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_MODULE, statement->name, frame,
                                     statement->where, hint, sizeof hint),
-                        "there is no module '%s'",
-                        csg_symbol_name(&e->program->symbols, statement->name));
+                        "there is no module '%s'%s",
+                        csg_symbol_name(&e->program->symbols, statement->name),
+                        csg_eval_is_lenient(e, CSG_DIAG_UNKNOWN_MODULE, statement->where)
+                            ? "; it is left out, with what stands under it"
+                            : "");
     csg_node_id node = e->stop ? CSG_NODE_NONE : csg_build_empty(&e->builder, statement->where);
     node = csg_check_node(e, node, statement->where);
     if (node != CSG_NODE_NONE)

@@ -112,8 +112,12 @@ csg_value csg_functions_call(csg_eval *e, int index, const csg_expression *x, cs
 static csg_value make_blend(const csg_function_call *call, csg_blend_kind kind, double n)
 {
     if (!(n >= 0) || isinf(n)) {
-        csg_eval_report(call->e, CSG_DIAG_OUT_OF_RANGE, call->syntax[0].value->whole, NULL,
-                        "%s() needs a finite number of at least 0, not %g", call->name, n);
+        csg_span where = call->syntax[0].value->whole;
+        csg_eval_report(call->e, CSG_DIAG_OUT_OF_RANGE, where, NULL,
+                        "%s() needs a finite number of at least 0, not %g%s", call->name, n,
+                        csg_eval_is_lenient(call->e, CSG_DIAG_OUT_OF_RANGE, where)
+                            ? "; the blend is left out"
+                            : "");
         n = 0;
     }
     csg_value made = {.kind = CSG_VALUE_BLEND, .blend = (uint8_t)(n > 0 ? kind : CSG_BLEND_SHARP)};

@@ -21,7 +21,8 @@ static csg_value complain(const csg_function_call *call, uint32_t i, csg_diag_co
                           const char *problem)
 {
     csg_span where = i < call->count ? call->syntax[i].value->whole : call->where;
-    csg_eval_report(call->e, code, where, NULL, "%s(): %s", call->name, problem);
+    csg_eval_report(call->e, code, where, NULL, "%s(): %s%s", call->name, problem,
+                    csg_eval_is_lenient(call->e, code, where) ? "; the blend is left out" : "");
     return csg_value_undef();
 }
 

@@ -4,27 +4,61 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/scene_codes.h"
 #include "lang/modules/modules.h"
 #include "scene/operators/blend_kinds.h"
 
-void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
-                        const char *format, ...)
+static const char DEFAULT_TAKEN[] = "the default is taken";
+
+/* What becomes of a call that fails: most make nothing, these give their children as they are. */
+static const char *loss_of(const csg_module_call *call)
+{
+    static const char *const names[] = {"translate", "rotate", "scale",    "mirror", "multmatrix",
+                                        "color",     "part",   "material", "resize"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(call->name, names[i]) == 0)
+            return "its children stay as they are";
+    return "it is left out";
+}
+
+static bool report(csg_module_call *call, uint32_t index, csg_diag_code code, const char *instead,
+                   const char *format, va_list arguments)
 {
     char problem[320], hint[120];
     const csg_parameter_row *row = &call->parameters[index];
-    va_list arguments;
-    va_start(arguments, format);
+    csg_span where = csg_has_argument(call, index) ? call->spans[index] : call->statement->where;
+    bool is_lenient = csg_eval_is_lenient(call->e, code, where);
     vsnprintf(problem, sizeof problem, format, arguments);
-    va_end(arguments);
     snprintf(hint, sizeof hint, "%s must be %s", row->name, row->range);
     csg_eval_report(
-        call->e, code, csg_has_argument(call, index) ? call->spans[index] : call->statement->where,
+        call->e, code, where,
         (code == CSG_DIAG_OUT_OF_RANGE || code == CSG_DIAG_EMPTY_SHAPE) && row->range[0] ? hint
                                                                                          : NULL,
-        "%s(): %s", call->name, problem);
+        "%s(): %s%s%s", call->name, problem, is_lenient ? "; " : "", is_lenient ? instead : "");
+    return is_lenient;
+}
+
+void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
+                        const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    report(call, index, code, loss_of(call), format, arguments);
+    va_end(arguments);
     call->failed = true;
+}
+
+bool csg_argument_mishap(csg_module_call *call, uint32_t index, csg_diag_code code,
+                         const char *instead, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    bool goes_on = report(call, index, code, instead, format, arguments);
+    va_end(arguments);
+    call->failed = call->failed || !goes_on;
+    return goes_on;
 }
 
 bool csg_has_argument(const csg_module_call *call, uint32_t index)
@@ -59,8 +93,9 @@ double csg_argument_number(csg_module_call *call, uint32_t index, double otherwi
     if (value.kind == CSG_VALUE_UNDEF)
         return otherwise;
     if (value.kind != CSG_VALUE_NUMBER) {
-        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "%s must be a number, not a %s",
-                           call->parameters[index].name, csg_value_kind_name(value));
+        csg_argument_mishap(call, index, CSG_DIAG_BAD_TYPE, DEFAULT_TAKEN,
+                            "%s must be a number, not a %s", call->parameters[index].name,
+                            csg_value_kind_name(value));
         return otherwise;
     }
     if (!in_range(value.as.number, range)) {
@@ -94,10 +129,10 @@ csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 oth
     if (spread && value.kind == CSG_VALUE_NUMBER) {
         v[0] = v[1] = v[2] = value.as.number;
     } else if (!csg_value_numbers(value, 3, v) && !csg_value_numbers(value, 2, v)) {
-        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "%s must be %s[x, y, z], not a %s%s",
-                           call->parameters[index].name, spread ? "a number or " : "",
-                           csg_value_kind_name(value),
-                           value.kind == CSG_VALUE_VECTOR ? " of something else" : "");
+        csg_argument_mishap(call, index, CSG_DIAG_BAD_TYPE, DEFAULT_TAKEN,
+                            "%s must be %s[x, y, z], not a %s%s", call->parameters[index].name,
+                            spread ? "a number or " : "", csg_value_kind_name(value),
+                            value.kind == CSG_VALUE_VECTOR ? " of something else" : "");
         return otherwise;
     }
     for (int i = 0; i < 3; i++)

@@ -69,7 +69,10 @@ const char *csg_import_find(csg_module_call *call, uint32_t index)
     }
     if (!e->stop)
         csg_eval_report(e, CSG_DIAG_IMPORT_NOT_FOUND, call->spans[index], CSG_FOLDERS_IN_WORDS,
-                        "%s(): there is no file '%.200s'", call->name, name.as.string->text);
+                        "%s(): there is no file '%.200s'%s", call->name, name.as.string->text,
+                        csg_eval_is_lenient(e, CSG_DIAG_IMPORT_NOT_FOUND, call->spans[index])
+                            ? "; it is left out"
+                            : "");
     call->failed = true;
     return NULL;
 }

@@ -70,9 +70,15 @@ csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 oth
 csg_blend csg_argument_blend(csg_module_call *call, uint32_t index);
 /* The same for a value of kind RULE. */
 csg_blend csg_rule_blend(csg_module_call *call, uint32_t index);
-/* Reports that an argument is out of its range or of the wrong kind. */
+/* Reports that an argument is out of its range or of the wrong kind: the call makes nothing (a
+ * transform leaves its children as they are), which is said where the text is lenient. */
 void csg_argument_error(csg_module_call *call, uint32_t index, csg_diag_code code,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* The same where the call can go on in another way, `instead`: "the default is taken". True in a
+ * lenient text: go on so. */
+bool csg_argument_mishap(csg_module_call *call, uint32_t index, csg_diag_code code,
+                         const char *instead, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
 /* The children, united. */
 csg_node_id csg_module_children(csg_module_call *call);
 

@@ -111,8 +111,9 @@ static void tell_reason(csg_module_call *call, const csg_solid_reason *reason)
     case CSG_SOLID_CROSSES_AXIS:
         csg_eval_report(
             e, CSG_DIAG_CROSSES_AXIS, where, "move it to one side: translate([r, 0])",
-            "%s(): the figure reaches from x = %g to x = %g, over the axis it turns about",
-            call->name, reason->range[0], reason->range[1]);
+            "%s(): the figure reaches from x = %g to x = %g, over the axis it turns about%s",
+            call->name, reason->range[0], reason->range[1],
+            csg_eval_is_lenient(e, CSG_DIAG_CROSSES_AXIS, where) ? "; it is left out" : "");
         break;
     case CSG_SOLID_BAD_NODE:
         csg_eval_report(e, CSG_DIAG_BAD_SOLID, where, NULL, "%s", reason->problem);
@@ -227,14 +228,17 @@ double csg_argument_radius(csg_module_call *call, uint32_t r, uint32_t d, double
 bool csg_argument_pair(csg_module_call *call, uint32_t index, double out[2])
 {
     csg_value value = call->values[index];
+    double pair[2];
     if (!csg_has_argument(call, index))
         return true;
-    if (value.kind == CSG_VALUE_NUMBER)
+    if (value.kind == CSG_VALUE_NUMBER) {
         out[0] = out[1] = value.as.number;
-    else if (!csg_value_numbers(value, 2, out)) {
-        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "%s must be a number or [x, y]",
-                           call->parameters[index].name);
-        return false;
+    } else if (csg_value_numbers(value, 2, pair)) {
+        out[0] = pair[0];
+        out[1] = pair[1];
+    } else {
+        return csg_argument_mishap(call, index, CSG_DIAG_BAD_TYPE, "the default is taken",
+                                   "%s must be a number or [x, y]", call->parameters[index].name);
     }
     if (isfinite(out[0]) && isfinite(out[1]))
         return true;
@@ -251,9 +255,11 @@ static void tell_of_unlike(csg_module_call *call, bool flat, size_t dropped, siz
                             : "linear_extrude() makes a solid of a figure";
     csg_span where = call->statement->where;
     if (left == 0)
-        csg_eval_report(call->e, CSG_DIAG_WRONG_DIMENSION, where, hint, "%s() needs %s, not %s",
-                        call->name, flat ? "flat figures" : "solids",
-                        flat ? "solids" : "flat figures");
+        csg_eval_report(
+            call->e, CSG_DIAG_WRONG_DIMENSION, where, hint, "%s() needs %s, not %s%s", call->name,
+            flat ? "flat figures" : "solids", flat ? "solids" : "flat figures",
+            csg_eval_is_lenient(call->e, CSG_DIAG_WRONG_DIMENSION, where) ? "; they are left out"
+                                                                          : "");
     else
         csg_eval_report(call->e, CSG_DIAG_MIXED_DIMENSIONS, where, hint,
                         "%s() takes %s: %zu of its children %s left out", call->name,

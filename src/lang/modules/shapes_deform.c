@@ -43,11 +43,22 @@ static bool factors(csg_module_call *call, const double wanted[3], const bool au
     return true;
 }
 
+/* [x, y, z] or less of it, as in OpenSCAD: sides that are not named stay as they are. */
+static csg_vec3 read_size(csg_module_call *call, uint32_t index)
+{
+    double x;
+    csg_value value = call->values[index];
+    if (csg_value_numbers(value, 1, &x) && isfinite(x))
+        return csg_vec3_make(x, 0, 0);
+    return csg_argument_vector(call, index, csg_vec3_make(0, 0, 0),
+                               value.kind != CSG_VALUE_VECTOR || value.as.vector->count > 1);
+}
+
 csg_node_id csg_module_resize(csg_module_call *call)
 {
     enum { NEW_SIZE, AUTO };
     csg_eval *e = call->e;
-    csg_vec3 to = csg_argument_vector(call, NEW_SIZE, csg_vec3_make(0, 0, 0), true);
+    csg_vec3 to = read_size(call, NEW_SIZE);
     bool automatic[3];
     csg_box box;
     double scale[3];
@@ -60,7 +71,7 @@ csg_node_id csg_module_resize(csg_module_call *call)
     csg_vec3 size = csg_box_size(box);
     if (!factors(call, (double[]){to.x, to.y, to.z}, automatic, (double[]){size.x, size.y, size.z},
                  csg_eval_is_flat(e, node) ? 2 : 3, scale))
-        return csg_shape_empty(call);
+        return node;
     csg_affine by = csg_affine_scale(csg_vec3_make(scale[0], scale[1], scale[2]));
     return csg_shape_moved(call, node, &by);
 }
@@ -165,8 +176,10 @@ csg_node_id csg_module_twist(csg_module_call *call)
     double rate = csg_argument_number(call, RATE, 0, CSG_ANY), size;
     bool between = csg_has_argument(call, LOW) && csg_has_argument(call, HIGH);
     csg_node_id node = between ? csg_module_children(call) : csg_shape_children(call, false);
-    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node) || rate == 0 || call->failed)
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node))
         return node;
+    if (rate == 0 || call->failed)
+        return call->failed ? csg_shape_empty(call) : node;
     csg_solid_job job = csg_shape_job(call);
     bool finite = csg_finite_size(&job, node, &size);
     csg_shape_made(call, &job, node);

@@ -75,9 +75,10 @@ static bool add_path(csg_module_call *call, uint32_t index, csg_vector *points, 
         else if (!all)
             at = NAN;
         if (!(at >= 0 && at < points->count)) {
-            csg_argument_error(call, index, CSG_DIAG_BAD_POINTS,
-                               "a path names point %g, there are points 0 to %d", at,
-                               (int)points->count - 1);
+            if (csg_argument_mishap(
+                    call, index, CSG_DIAG_BAD_POINTS, "such corners of the paths are left out",
+                    "a path names point %g, there are points 0 to %d", at, (int)points->count - 1))
+                continue;
             return false;
         }
         if (!read_point(call, 0, points->items[(uint32_t)at], (uint32_t)at, &point))
@@ -97,17 +98,18 @@ static bool add_paths(csg_module_call *call, uint32_t index, csg_vector *points,
     csg_value paths = call->values[index];
     if (!csg_has_argument(call, index))
         return add_path(call, index, points, paths, true, out);
-    if (paths.kind != CSG_VALUE_VECTOR) {
-        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "paths must be lists of indices");
-        return false;
-    }
+    if (paths.kind != CSG_VALUE_VECTOR)
+        return csg_argument_mishap(call, index, CSG_DIAG_BAD_TYPE, "all points are one path",
+                                   "paths must be lists of indices") &&
+               add_path(call, index, points, paths, true, out);
     const csg_vector *list = paths.as.vector;
     if (list->count && list->items[0].kind == CSG_VALUE_NUMBER)
         return add_path(call, index, points, paths, false, out);
     for (uint32_t i = 0; i < list->count; i++) {
         if (list->items[i].kind != CSG_VALUE_VECTOR) {
-            csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "paths[%u] is no list of indices",
-                               i);
+            if (csg_argument_mishap(call, index, CSG_DIAG_BAD_TYPE, "such paths are left out",
+                                    "paths[%u] is no list of indices", i))
+                continue;
             return false;
         }
         if (!add_path(call, index, points, list->items[i], false, out))

@@ -3,6 +3,8 @@
  * OpenSCAD; what is wrong with them is mended and told (shape/polyhedra/polyhedron.h).
  */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/scene_codes.h"
@@ -33,42 +35,79 @@ static bool add_points(csg_module_call *call, uint32_t index, csg_triangles *out
     return true;
 }
 
-/* Corners of a face, the other way round, into `corners`. */
-static bool read_face(csg_module_call *call, uint32_t index, uint32_t number, csg_value face,
-                      size_t point_count, uint32_t *corners)
+/* What of the faces cannot be used: in a lenient text all of it, else the first. */
+typedef struct bad_faces {
+    uint32_t count; /* corners, and faces that are none */
+    char first[160];
+} bad_faces;
+
+/* The first is kept in words; true: go on without. */
+static bool miss(csg_module_call *call, bad_faces *bad, uint32_t index, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static bool miss(csg_module_call *call, bad_faces *bad, uint32_t index, const char *format, ...)
 {
-    const csg_vector *list = face.as.vector;
-    for (uint32_t i = 0; i < list->count; i++) {
-        csg_value corner = list->items[i];
-        double at = corner.kind == CSG_VALUE_NUMBER ? trunc(corner.as.number) : NAN;
-        if (!(at >= 0 && at < (double)point_count)) {
-            csg_argument_error(call, index, CSG_DIAG_BAD_POINTS,
-                               "%s[%u] names point %g, there are points 0 to %d",
-                               call->parameters[index].name, number, at, (int)point_count - 1);
-            return false;
-        }
-        corners[list->count - 1 - i] = (uint32_t)at;
-    }
-    return true;
+    va_list arguments;
+    va_start(arguments, format);
+    if (bad->count++ == 0)
+        vsnprintf(bad->first, sizeof bad->first, format, arguments);
+    va_end(arguments);
+    return csg_eval_is_lenient(call->e, CSG_DIAG_BAD_POINTS, call->spans[index]);
 }
 
+/* Corners of a face, the other way round, to the end of `corners`; how many there are. */
+static size_t read_face(csg_module_call *call, uint32_t index, uint32_t number,
+                        const csg_vector *face, size_t point_count, uint32_t *corners,
+                        bad_faces *bad)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < face->count; i++) {
+        csg_value corner = face->items[i];
+        double at = corner.kind == CSG_VALUE_NUMBER ? trunc(corner.as.number) : NAN;
+        if (at >= 0 && at < (double)point_count)
+            corners[face->count - ++count] = (uint32_t)at;
+        else if (!miss(call, bad, index, "%s[%u] names point %g, there are points 0 to %d",
+                       call->parameters[index].name, number, at, (int)point_count - 1))
+            return 0;
+    }
+    return count;
+}
+
+/* False: stop. */
 static bool add_face(csg_module_call *call, uint32_t index, uint32_t number, csg_value face,
-                     csg_triangles *out)
+                     csg_triangles *out, bad_faces *bad)
 {
     csg_memory *memory = call->e->heap.memory;
-    if (face.kind != CSG_VALUE_VECTOR || face.as.vector->count < 3) {
-        csg_argument_error(call, index, CSG_DIAG_BAD_POINTS,
-                           "%s[%u] is not a list of at least 3 indices of points",
-                           call->parameters[index].name, number);
-        return false;
-    }
-    size_t count = face.as.vector->count;
-    uint32_t *corners = csg_memory_alloc(memory, count * sizeof *corners);
-    bool read = corners && read_face(call, index, number, face, out->point_count, corners);
-    if (!corners || (read && !csg_triangles_add_face(out, corners, count)))
+    if (face.kind != CSG_VALUE_VECTOR || face.as.vector->count < 3)
+        return miss(call, bad, index, "%s[%u] is not a list of at least 3 indices of points",
+                    call->parameters[index].name, number);
+    size_t room = face.as.vector->count;
+    uint32_t *corners = csg_memory_alloc(memory, room * sizeof *corners);
+    size_t count = 0;
+    if (corners)
+        count = read_face(call, index, number, face.as.vector, out->point_count, corners, bad);
+    if (!corners || (count >= 3 && !csg_triangles_add_face(out, corners + room - count, count)))
         csg_eval_no_memory(call->e);
-    csg_memory_release(memory, corners, count * sizeof *corners);
-    return read && !call->e->stop;
+    csg_memory_release(memory, corners, room * sizeof *corners);
+    return (count == room || bad->count == 0 ||
+            csg_eval_is_lenient(call->e, CSG_DIAG_BAD_POINTS, call->spans[index])) &&
+           !call->e->stop;
+}
+
+/* As OpenSCAD does, corners without a point are left out, and faces with less than three. */
+static void add_faces(csg_module_call *call, uint32_t index, csg_triangles *out)
+{
+    bad_faces bad = {0};
+    const csg_vector *faces = call->values[index].as.vector;
+    char instead[80] = "it is left out";
+    for (uint32_t i = 0; i < faces->count; i++)
+        if (!add_face(call, index, i, faces->items[i], out, &bad))
+            break;
+    if (bad.count > 1)
+        snprintf(instead, sizeof instead, "it is left out, as are %u more corners or faces",
+                 bad.count - 1);
+    if (bad.count && !call->e->stop)
+        csg_argument_mishap(call, index, CSG_DIAG_BAD_POINTS, instead, "%s", bad.first);
 }
 
 csg_node_id csg_module_polyhedron(csg_module_call *call)
@@ -83,9 +122,9 @@ csg_node_id csg_module_polyhedron(csg_module_call *call)
     bool ok = add_points(call, POINTS, &triangles);
     if (ok && faces.kind != CSG_VALUE_VECTOR)
         csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "faces must be lists of indices");
-    for (uint32_t i = 0; ok && !call->failed && i < faces.as.vector->count; i++)
-        ok = add_face(call, index, i, faces.as.vector->items[i], &triangles);
     if (ok && !call->failed)
+        add_faces(call, index, &triangles);
+    if (ok && !call->failed && !e->stop)
         return csg_shape_solid(call, &triangles, !csg_argument_boolean(call, CLEAN));
     csg_triangles_release(&triangles);
     return csg_shape_empty(call);

@@ -72,8 +72,8 @@ static csg_text_request read_request(csg_module_call *call)
         request.text = text.as.string->text;
         request.length = text.as.string->length;
     } else {
-        csg_argument_error(call, TEXT, CSG_DIAG_BAD_TYPE, "text must be a string, not a %s",
-                           csg_value_kind_name(text));
+        csg_argument_error(call, TEXT, CSG_DIAG_BAD_TYPE, "text must be a string, not %s%s",
+                           text.kind == CSG_VALUE_UNDEF ? "" : "a ", csg_value_kind_name(text));
     }
     request.size = csg_argument_number(call, SIZE, 10, CSG_POSITIVE);
     request.spacing = csg_argument_number(call, SPACING, 1, CSG_ANY);

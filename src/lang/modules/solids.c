@@ -38,8 +38,12 @@ csg_node_id csg_module_cube(csg_module_call *call)
     csg_vec3 size = csg_argument_vector(call, SIZE, csg_vec3_make(1, 1, 1), true);
     double smallest = fmin(size.x, fmin(size.y, size.z));
     if (!call->failed && call->values[SIZE].kind == CSG_VALUE_VECTOR &&
-        call->values[SIZE].as.vector->count != 3)
-        csg_argument_error(call, SIZE, CSG_DIAG_BAD_TYPE, "size must be a number or [x, y, z]");
+        call->values[SIZE].as.vector->count != 3 &&
+        csg_argument_mishap(call, SIZE, CSG_DIAG_BAD_TYPE, "the default is taken",
+                            "size must be a number or [x, y, z]")) {
+        size = csg_vec3_make(1, 1, 1);
+        smallest = 1;
+    }
     if (!call->failed && !(smallest > 0))
         csg_argument_error(call, SIZE, CSG_DIAG_EMPTY_SHAPE,
                            "an edge of length %g makes no solid, it must be above 0", smallest);

@@ -68,11 +68,12 @@ static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code co
         *library = found ? library_of(parser, name) : NULL;
     }
     if (!found && !parser->stop) {
-        csg_source_report(&parser->program->sources, code, path,
-                          strchr(name, '\\') ? "folders are separated by '/'"
-                                             : CSG_FOLDERS_IN_WORDS,
-                          "there is no file '%.200s'", name);
-        parser->program->failed_io |= code == CSG_DIAG_INCLUDE_NOT_FOUND;
+        bool is_lenient = csg_source_is_lenient(&parser->program->sources, code, path);
+        csg_source_report(
+            &parser->program->sources, code, path,
+            strchr(name, '\\') ? "folders are separated by '/'" : CSG_FOLDERS_IN_WORDS,
+            "there is no file '%.200s'%s", name, is_lenient ? "; what it defines is missing" : "");
+        parser->program->failed_io |= code == CSG_DIAG_INCLUDE_NOT_FOUND && !is_lenient;
     }
     return found;
 }

@@ -62,6 +62,8 @@ static csgm_limits limits_from(const cli_options *options)
 
 int cli_app_open(cli_app *app)
 {
+    if (app->options.strict && app->options.lenient)
+        return cli_usage_error(app, NULL, "--strict and --lenient say the opposite: give one");
     int guarded = cli_sources_guard(app);
     if (guarded != CLI_DONE)
         return guarded;
@@ -148,6 +150,11 @@ static csgm_status set_parameter_file(cli_app *app, csgm_scene_options *options)
     return CSGM_ERR_ARGUMENT;
 }
 
+static csgm_leniency leniency_of(const cli_options *options)
+{
+    return options->strict ? CSGM_STRICT : options->lenient ? CSGM_LENIENT : CSGM_LENIENT_BY_FILE;
+}
+
 static csgm_status load_with_options(cli_app *app, const request *wanted)
 {
     const cli_list *texts = &app->options.defines;
@@ -162,6 +169,7 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     options.include_dirs = app->options.include_dirs.items;
     options.include_dir_count = app->options.include_dirs.count;
     options.facets = app->options.facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
+    options.leniency = leniency_of(&app->options);
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);

@@ -40,6 +40,7 @@ void cli_console_configure(cli_console *console, const cli_options *options)
 static bool is_muted(cli_console *console, csgm_severity severity)
 {
     console->errors += severity == CSGM_ERROR;
+    console->warnings += severity == CSGM_WARNING;
     if (severity != CSGM_NOTE)
         console->mute_notes = console->quiet && severity == CSGM_WARNING;
     return console->mute_notes;
@@ -145,9 +146,50 @@ static void print_colored(FILE *out, csgm_severity severity, const csgm_diag *di
     fputs(rest, out);
 }
 
+/* Of a finding that is an error in a strict text. */
+static void count_lenient(cli_console *console, uint16_t code)
+{
+    size_t i = 0;
+    while (i + 1 < CLI_KINDS_MOST && console->kinds[i].code && console->kinds[i].code != code)
+        i++;
+    console->kinds[i].code = code;
+    console->kinds[i].count++;
+    console->lenient++;
+}
+
+void cli_console_summary(cli_console *console)
+{
+    char kinds[16 * CLI_KINDS_MOST] = "";
+    for (size_t i = 0, at = 0; i < CLI_KINDS_MOST && console->kinds[i].code; i++)
+        at += (size_t)snprintf(kinds + at, sizeof kinds - at, "%s%04u: %u", i ? ", " : "",
+                               (unsigned)console->kinds[i].code, console->kinds[i].count);
+    cli_console_flush(console);
+    if (console->json) {
+        cli_json json = cli_json_make(console->out, false);
+        cli_json_begin(&json, '{');
+        cli_json_open(&json, "summary", '{');
+        cli_json_count(&json, "errors", console->errors);
+        cli_json_count(&json, "warnings", console->warnings);
+        cli_json_count(&json, "lenient", console->lenient);
+        cli_json_end(&json, '}');
+        cli_json_end(&json, '}');
+        fputc('\n', console->out);
+        return;
+    }
+    fprintf(console->out, "summary: %u error%s, %u warning%s", console->errors,
+            console->errors == 1 ? "" : "s", console->warnings, console->warnings == 1 ? "" : "s");
+    if (console->lenient)
+        fprintf(console->out,
+                "; %u of what OpenSCAD only warns of (%s): --strict makes them errors",
+                console->lenient, kinds);
+    fputc('\n', console->out);
+}
+
 void cli_console_diag(void *user, const csgm_diag *diag)
 {
     cli_console *console = user;
+    if (diag->lenient)
+        count_lenient(console, diag->code);
     if (is_muted(console, diag->severity))
         return;
     cli_console_end_progress(console);

@@ -11,12 +11,19 @@
 #include "core/json.h"
 #include "core/options.h"
 
+enum { CLI_KINDS_MOST = 32 };
+
 typedef struct cli_console {
     FILE *out; /* standard error, but for one of many jobs */
     bool quiet, color, json, is_terminal;
-    bool mute_notes; /* they belong to a warning that was not shown */
-    uint32_t errors; /* said so far, warnings made errors by -Werror included */
-    int progress;    /* index of --progress: auto, always, never */
+    bool mute_notes;            /* they belong to a warning that was not shown */
+    uint32_t errors;            /* said so far, warnings made errors by -Werror included */
+    uint32_t warnings, lenient; /* the same; lenient: those that are errors in a strict text */
+    struct {
+        uint16_t code;
+        uint32_t count;
+    } kinds[CLI_KINDS_MOST]; /* of the lenient ones */
+    int progress;            /* index of --progress: auto, always, never */
     double stage_start_s;
     int stage;  /* csgm_stage, -1 before the first */
     FILE *held; /* --diagnostics=json: a finding that waits for its notes, or NULL */
@@ -41,6 +48,9 @@ void cli_console_echo(void *user, const char *text, size_t length);
 __attribute__((format(printf, 4, 5))) void cli_console_say(cli_console *console,
                                                            csgm_severity severity, const char *hint,
                                                            const char *format, ...);
+
+/* --summary: what was found, in one line. */
+void cli_console_summary(cli_console *console);
 
 /* csgm_monitor.progress; user is a cli_console. */
 void cli_console_progress(void *user, csgm_stage stage, double fraction);

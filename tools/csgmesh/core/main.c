@@ -65,6 +65,8 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
     int status = cli_trace_begin(app);
     if (status == CLI_DONE)
         status = commands[command].run(app);
+    if (app->options.summary)
+        cli_console_summary(&app->console);
     return cli_trace_end(app, status);
 }
 
