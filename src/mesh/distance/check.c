@@ -14,8 +14,11 @@
 
 enum { PIECES = 1 << 11, STACK = 64 };
 
+/* Small triangles that a piece is cut into, along a side. */
+enum { MOST_CUTS = 12, MOST_PLACES = (MOST_CUTS + 1) * (MOST_CUTS + 2) / 2 + CSG_LANES };
+
 /* Looked at before the proof is given up: all in all, and of one piece that was cut. */
-static const uint64_t MOST_PIECES = 6000000, MOST_OF_ONE = 20000;
+static const uint64_t MOST_PIECES = 6000000, MOST_OF_ONE = 2000;
 
 typedef struct piece {
     csg_vec3 at[3], normal;
@@ -72,6 +75,55 @@ static double slack_of(const proof *p)
     return 4 * (double)p->remesh->probe.noise;
 }
 
+/* By how much f has the sign that it should have, at least, at the corners of cuts^2 small
+ * triangles that the piece is cut into, a step away from it: inside where turn is 1, else outside.
+ */
+static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 step, double turn,
+                        int cuts)
+{
+    float at[3][MOST_PLACES] = {{0}}, f[MOST_PLACES] = {0};
+    csg_vec3 first = csg_vec3_add(v[0], csg_vec3_scale(step, turn)), q;
+    double least = INFINITY;
+    size_t n = 0;
+    for (int i = 0; i <= cuts; i++)
+        for (int k = 0; i + k <= cuts; k++, n++) {
+            q = csg_vec3_add(csg_vec3_scale(csg_vec3_sub(v[1], v[0]), (double)i / cuts),
+                             csg_vec3_scale(csg_vec3_sub(v[2], v[0]), (double)k / cuts));
+            q = csg_vec3_add(first, q);
+            at[0][n] = (float)q.x, at[1][n] = (float)q.y, at[2][n] = (float)q.z;
+        }
+    p->remesh->probe.marching->kernel->values(&s->tape, at[0], at[1], at[2], n, f, s->scratch,
+                                              p->scratch_floats);
+    for (size_t i = 0; i < n; i++)
+        least = !(turn * (double)f[i] >= least) ? turn * (double)f[i] : least;
+    return least;
+}
+
+/* Whether all of the piece is inside a step along the axis, and outside a step back. Values lie
+ * between those at the corners of a small triangle but for what gradients stray by from one vector.
+ * As many triangles as it takes: gradients are found once, and values cost little. */
+static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3],
+                             const csg_gradients *gradients, csg_vec3 axis)
+{
+    csg_vec3 step = csg_vec3_scale(axis, p->error);
+    double stray = gradients->stray * d.radius, slack = slack_of(p) + gradients->doubt;
+    if (!(stray < MOST_CUTS * (double)s->tape.lipschitz * p->error))
+        return false;
+    for (int cuts = 2; cuts <= MOST_CUTS;) {
+        double inside = margin_of(p, s, v, step, 1, cuts) - slack;
+        if (!(inside * MOST_CUTS > stray))
+            return false;
+        double margin = fmin(inside, margin_of(p, s, v, step, -1, cuts) - slack);
+        if (margin * cuts > stray)
+            return true;
+        if (!(margin * MOST_CUTS > stray))
+            return false;
+        int enough = (int)ceil(stray / margin);
+        cuts = enough > cuts ? enough : cuts + 1;
+    }
+    return false;
+}
+
 static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3])
 {
     csg_gradients gradients;
@@ -81,7 +133,9 @@ static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v
         !csg_cone_find_axis(&gradients.balls, &cone))
         return false;
     double least = cone.least * p->error - slack_of(p);
-    return gradients.low >= -least && gradients.high <= least;
+    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
+    return (gradients.low >= -least && gradients.high <= least) ||
+           settles_by_steps(p, s, d, v, &gradients, axis);
 }
 
 static bool settles_by_signs(const proof *p, settler *s, disc d, csg_vec3 normal)

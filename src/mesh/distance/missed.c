@@ -21,9 +21,9 @@ enum {
 };
 
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
-static const double SHEET_CELLS = 2, AROUND_CELLS = 1;
+static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
 /* How near a sheet's gradients must be to their middle, of the field's slope. */
-static const double SMOOTH = 0.75, CREASED = 0.45;
+static const double SMOOTH = 0.5, CREASED = 0.45;
 
 /* What a frontier cube gave, and where it is. */
 typedef struct segment {
@@ -101,15 +101,23 @@ static bool find_surface(const walk *w, worker *s, const cube *q, double value, 
     return fabs(value) <= noise;
 }
 
-/* Whether all gradients in the cube are near to one direction. */
-static bool is_one_sheet(const walk *w, worker *s, const cube *q)
+/* How far the field can be from its value in the middle, all over the cube. */
+static double change_in(const cube *q, const csg_gradients *gradients)
 {
-    csg_gradients gradients;
-    const csg_vec3 middle[3] = {q->c, q->c, q->c};
-    if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, middle, q->c,
-                            sqrt(3.0) * q->half, s->scratch, w->scratch_floats, &gradients))
-        return false;
-    const csg_cone_balls *balls = &gradients.balls;
+    double most = 0;
+    if (!(gradients->stray < INFINITY))
+        return INFINITY;
+    for (uint32_t i = 0; i < gradients->balls.count; i++) {
+        const csg_cone_ball *ball = &gradients->balls.items[i];
+        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
+        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
+    }
+    return most * q->half + gradients->doubt;
+}
+
+/* Whether all gradients are near to one direction. */
+static bool is_one_sheet(const csg_cone_balls *balls)
+{
     csg_vec3 axis = {0, 0, 0};
     double least = INFINITY, steepest = 0;
     for (uint32_t i = 0; i < balls->count; i++) {
@@ -146,6 +154,13 @@ static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t
 
 typedef enum verdict { SETTLED, DIVIDE, NO_MEMORY } verdict;
 
+/* All of the cube. */
+static bool is_near_mesh(const walk *w, const cube *q)
+{
+    double most = 0.9 * w->error - sqrt(3.0) * q->half;
+    return most > 0 && csg_triangle_tree_nearest(&w->remesh->tree, q->c, most, NULL) < INFINITY;
+}
+
 /* A place of the surface at hand, how far from the mesh it is. */
 static verdict settle(const walk *w, worker *s, const cube *q)
 {
@@ -155,17 +170,25 @@ static verdict settle(const walk *w, worker *s, const cube *q)
     if (2 * q->half > SHEET_CELLS * cell * 1.01)
         return DIVIDE;
     double value = value_at(w, s, &q->tape, q->c);
-    if (fabs(value) > w->lipschitz * ball + 4 * (double)w->remesh->probe.noise)
+    double noise = 4 * (double)w->remesh->probe.noise;
+    const csg_vec3 middle[3] = {q->c, q->c, q->c};
+    csg_gradients gradients;
+    if (fabs(value) > w->lipschitz * ball + noise)
         return SETTLED;
-    bool small = q->half <= w->least, sheet = is_one_sheet(w, s, q);
-    bool near =
-        ball < 0.9 * w->error &&
-        csg_triangle_tree_nearest(&w->remesh->tree, q->c, 0.9 * w->error - ball, NULL) < INFINITY;
+    bool known = csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, middle, q->c, ball,
+                                    s->scratch, w->scratch_floats, &gradients);
+    if (known && fabs(value) > change_in(q, &gradients) + noise)
+        return SETTLED;
+    bool small = q->half <= w->least, sheet = known && is_one_sheet(&gradients.balls);
+    bool near = !small && !sheet && is_near_mesh(w, q);
     if (!small && !sheet && !near)
         return DIVIDE;
     if (!find_surface(w, s, q, value, &p))
-        return small || near ? SETTLED : DIVIDE;
-    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, &triangle);
+        return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
+    /* most are near: to look there first costs little */
+    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, w->error, &triangle);
+    if (distance == INFINITY)
+        distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, &triangle);
     if (distance == INFINITY)
         distance = far;
     if (sheet && distance <= w->error)

@@ -384,25 +384,20 @@ static bool walk(walker *w, const float *low, const float *high)
     return true;
 }
 
-/* Where the whole field's gradients stray little, its values at the corners say more than those of
- * the leaves. */
-static void find_root_range(const walker *w, csg_gradients *out)
+/* How far gradients are at most from the middle of the balls, which they are in the hull of. */
+static double find_stray(const operand *root)
 {
-    const operand *root = &w->stack[0];
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
-    out->low = root->low;
-    out->high = root->high;
-    if (w->tape->count == 1 || root->balls.count != 1 || root->stretched || root->balls.has_edges)
-        return;
-    for (int i = 0; i < CSG_LANES; i++) {
-        x[i] = (float)w->v[i % 3].x;
-        y[i] = (float)w->v[i % 3].y;
-        z[i] = (float)w->v[i % 3].z;
-    }
-    w->kernel->values(w->tape, x, y, z, 3, f, w->scratch, w->scratch_floats);
-    double stray = root->balls.items[0].spread * w->flat + root->doubt;
-    out->low = fmax(out->low, (double)fminf(f[0], fminf(f[1], f[2])) - stray);
-    out->high = fmin(out->high, (double)fmaxf(f[0], fmaxf(f[1], f[2])) + stray);
+    const csg_cone_balls *balls = &root->balls;
+    csg_cone_ball middle = {.at = {0, 0, 0}};
+    double stray = 0;
+    if (root->stretched || balls->has_edges || !balls->count)
+        return INFINITY;
+    for (uint32_t i = 0; i < balls->count; i++)
+        for (int k = 0; k < 3; k++)
+            middle.at[k] += balls->items[i].at[k] / balls->count;
+    for (uint32_t i = 0; i < balls->count; i++)
+        stray = fmax(stray, apart(&middle, &balls->items[i]));
+    return stray;
 }
 
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
@@ -436,6 +431,9 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
     if (!walk(&w, low, high))
         return false;
     out->balls = w.stack[0].balls;
-    find_root_range(&w, out);
+    out->low = w.stack[0].low;
+    out->high = w.stack[0].high;
+    out->stray = find_stray(&w.stack[0]);
+    out->doubt = w.stack[0].doubt;
     return out->balls.count > 0;
 }

@@ -21,6 +21,8 @@ enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 typedef struct csg_gradients {
     csg_cone_balls balls;
     double low, high; /* of the field, over the triangle */
+    double stray;     /* no gradient is farther from one and the same vector; INFINITY: not known */
+    double doubt;     /* rounding of the field's values */
 } csg_gradients;
 
 /* Over the ball around c, and over a triangle within it. scratch: as the kernel needs it. False: no

@@ -1,60 +1,125 @@
 /* SPDX-License-Identifier: MIT
- * Two triangles, and one against all; see crossing.h.
+ * Two triangles, and some against all; see crossing.h. Nearly all pairs are told apart by a plane:
+ * that is looked at first.
  */
 #include "mesh/remesh/crossing.h"
 
 #include <math.h>
 
+#include "mesh/remesh/triangle.h"
+
 /* ---- two triangles -----------------------------------------------------------------------------
  */
 
-/* Whether the segment p q meets the triangle; `clear` < 0: only if it is well inside. */
-static bool pierces(csg_vec3 p, csg_vec3 q, const csg_vec3 v[3], double clear)
+/* A triangle with its plane. */
+typedef struct plate {
+    const csg_vec3 *v;
+    const uint32_t *ids;
+    csg_vec3 normal; /* twice the area long */
+    double norm;
+} plate;
+
+static plate plate_of(const csg_vec3 v[3], const uint32_t ids[3])
 {
-    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
-    double norm = csg_vec3_norm(n);
-    double a = csg_vec3_dot(n, csg_vec3_sub(p, v[0])), b = csg_vec3_dot(n, csg_vec3_sub(q, v[0]));
-    if (!(norm > 0) || fmin(a, b) > clear * norm || fmax(a, b) < -clear * norm || a == b)
+    csg_vec3 normal = csg_triangle_cross(v[0], v[1], v[2]);
+    return (plate){v, ids, normal, csg_vec3_norm(normal)};
+}
+
+/* Whether the segment p q meets the triangle; `clear` < 0: only if it is well inside. */
+static bool pierces(csg_vec3 p, csg_vec3 q, const plate *t, double clear)
+{
+    const csg_vec3 *v = t->v;
+    double a = csg_vec3_dot(t->normal, csg_vec3_sub(p, v[0]));
+    double b = csg_vec3_dot(t->normal, csg_vec3_sub(q, v[0]));
+    double low = a < b ? a : b, high = a < b ? b : a;
+    if (!(t->norm > 0) || low > clear * t->norm || high < -clear * t->norm || a == b)
         return false;
     csg_vec3 way = csg_vec3_sub(q, p);
     csg_vec3 at = csg_vec3_add(p, csg_vec3_scale(way, fmin(1, fmax(0, a / (a - b)))));
     for (int k = 0; k < 3; k++) {
         csg_vec3 side = csg_vec3_sub(v[(k + 1) % 3], v[k]);
-        double within = csg_vec3_dot(n, csg_vec3_cross(side, csg_vec3_sub(at, v[k])));
-        if (within < -clear * norm * csg_vec3_norm(side))
+        double within = csg_vec3_dot(t->normal, csg_vec3_cross(side, csg_vec3_sub(at, v[k])));
+        if (within < -clear * t->norm * csg_vec3_norm(side))
             return false;
     }
     return true;
 }
 
-/* Corners in common: their places in each; -1 at the end. */
-static int common_corners(const uint32_t a[3], const uint32_t b[3], int in_a[3], int in_b[3])
+/* Corners in common: their places in each. */
+static int common_corners(const uint32_t a[3], const uint32_t b[3], int *in_a, int *in_b)
 {
     int count = 0;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            if (a[i] == b[k] && count < 3) {
-                in_a[count] = i;
-                in_b[count++] = k;
+            if (a[i] == b[k]) {
+                *in_a = i;
+                *in_b = k;
+                count++;
             }
     return count;
 }
 
-static bool cross(const csg_vec3 a[3], const uint32_t a_ids[3], const csg_vec3 b[3],
-                  const uint32_t b_ids[3], double clear)
+/* Whether b is on one side of the plane of a, but for the corner that they share (or -1). */
+static bool is_beyond(const plate *a, const csg_vec3 b[3], int shared, double clear)
 {
-    int in_a[3], in_b[3], common = common_corners(a_ids, b_ids, in_a, in_b);
+    double low = INFINITY, high = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        if (k == shared)
+            continue;
+        double d = csg_vec3_dot(a->normal, csg_vec3_sub(b[k], a->v[0]));
+        low = d < low ? d : low;
+        high = d > high ? d : high;
+    }
+    double least = shared < 0 ? clear * a->norm : 0;
+    return low > least || high < -least;
+}
+
+static bool cross(const plate *a, const plate *b, double clear)
+{
+    int i = -1, k = -1, common = common_corners(a->ids, b->ids, &i, &k);
     if (common >= 2)
         return false; /* at an edge: they would have to lie in one another */
-    if (common == 1) {
-        int i = in_a[0], k = in_b[0];
-        return pierces(a[(i + 1) % 3], a[(i + 2) % 3], b, -clear) ||
-               pierces(b[(k + 1) % 3], b[(k + 2) % 3], a, -clear);
-    }
-    for (int k = 0; k < 3; k++)
-        if (pierces(a[k], a[(k + 1) % 3], b, clear) || pierces(b[k], b[(k + 1) % 3], a, clear))
+    if (is_beyond(a, b->v, k, clear) || is_beyond(b, a->v, i, clear))
+        return false;
+    if (common == 1)
+        return pierces(a->v[(i + 1) % 3], a->v[(i + 2) % 3], b, -clear) ||
+               pierces(b->v[(k + 1) % 3], b->v[(k + 2) % 3], a, -clear);
+    for (k = 0; k < 3; k++)
+        if (pierces(a->v[k], a->v[(k + 1) % 3], b, clear) ||
+            pierces(b->v[k], b->v[(k + 1) % 3], a, clear))
             return true;
     return false;
+}
+
+/* ---- the new ones ------------------------------------------------------------------------------
+ */
+
+/* Whether a fan lies over a plane without folds: all of it faces one way, and it goes around its
+ * middle once. Its triangles cannot cross then. */
+static bool is_unfolded(const csg_crossing_change *c, const plate *plates)
+{
+    static const double LEAST_COS = 0.05;
+    csg_vec3 sum = {0, 0, 0}, x, y;
+    for (size_t i = 0; i < c->count; i++)
+        sum = csg_vec3_add(sum, plates[i].normal);
+    csg_vec3 axis = csg_vec3_normalize(sum);
+    for (size_t i = 0; i < c->count; i++)
+        if (!(csg_vec3_dot(axis, plates[i].normal) > LEAST_COS * plates[i].norm))
+            return false;
+    x = csg_vec3_cross(axis, fabs(axis.x) < 0.6 ? csg_vec3_make(1, 0, 0) : csg_vec3_make(0, 1, 0));
+    y = csg_vec3_cross(axis, x);
+    int turns = 0; /* sides that pass the half line along x */
+    for (size_t i = 0; i < c->count; i++) {
+        csg_vec3 p = csg_vec3_sub(c->at[i][1], c->at[i][0]);
+        csg_vec3 q = csg_vec3_sub(c->at[i][2], c->at[i][0]);
+        double p_y = csg_vec3_dot(p, y), q_y = csg_vec3_dot(q, y);
+        if ((p_y < 0) == (q_y < 0))
+            continue;
+        double p_x = csg_vec3_dot(p, x), q_x = csg_vec3_dot(q, x);
+        double across = p_x * (q_y - p_y) - p_y * (q_x - p_x);
+        turns += (across > 0) == (q_y > p_y);
+    }
+    return turns == 1;
 }
 
 /* ---- all of them -------------------------------------------------------------------------------
@@ -72,51 +137,106 @@ static bool stays(const csg_triangle_tree *t, const csg_crossing_change *c, uint
     return true;
 }
 
-static bool crosses_leaf(const csg_triangle_tree *t, const csg_crossing_change *c, size_t one,
-                         const csg_triangle_box *box, size_t leaf)
+typedef struct range {
+    double min, max;
+} range;
+
+static range range_of(double a, double b, double c)
 {
-    for (size_t i = leaf * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, leaf); i < end;
-         i++) {
-        csg_vec3 v[3];
-        if (!stays(t, c, (uint32_t)i))
-            continue;
-        csg_triangle_tree_corners(t, (uint32_t)i, v);
-        csg_triangle_box other = csg_triangle_box_of(v);
-        if (csg_triangle_boxes_overlap(box, &other) &&
-            cross(c->at[one], c->vertex[one], v, t->corners->vertex + 3 * i, t->noise))
+    range r = a < b ? (range){a, b} : (range){b, a};
+    return (range){c < r.min ? c : r.min, c > r.max ? c : r.max};
+}
+
+static bool are_apart(range a, range b)
+{
+    return a.min > b.max || b.min > a.max;
+}
+
+/* A box of exact places. */
+typedef struct extent {
+    range x, y, z;
+} extent;
+
+static extent extent_of(const csg_vec3 v[3])
+{
+    return (extent){range_of(v[0].x, v[1].x, v[2].x), range_of(v[0].y, v[1].y, v[2].y),
+                    range_of(v[0].z, v[1].z, v[2].z)};
+}
+
+/* The new triangles, with what is known of each, and the box around all. */
+typedef struct newcomers {
+    plate plates[CSG_CROSSING_MOST];
+    extent extents[CSG_CROSSING_MOST];
+    csg_triangle_box all;
+} newcomers;
+
+static bool crosses_triangle(const csg_triangle_tree *t, const newcomers *n, size_t count,
+                             uint32_t triangle)
+{
+    const uint32_t *ids = t->corners->vertex + 3 * (size_t)triangle;
+    const csg_vec3 v[3] = {t->at[ids[0]], t->at[ids[1]], t->at[ids[2]]};
+    const csg_triangle_box *all = &n->all;
+    extent e;
+    e.x = range_of(v[0].x, v[1].x, v[2].x);
+    if (are_apart(e.x, (range){(double)all->min[0], (double)all->max[0]}))
+        return false;
+    e.y = range_of(v[0].y, v[1].y, v[2].y);
+    if (are_apart(e.y, (range){(double)all->min[1], (double)all->max[1]}))
+        return false;
+    e.z = range_of(v[0].z, v[1].z, v[2].z);
+    if (are_apart(e.z, (range){(double)all->min[2], (double)all->max[2]}))
+        return false;
+    plate other = plate_of(v, ids);
+    for (size_t i = 0; i < count; i++) {
+        const extent *own = &n->extents[i];
+        if (!are_apart(own->x, e.x) && !are_apart(own->y, e.y) && !are_apart(own->z, e.z) &&
+            cross(&n->plates[i], &other, t->noise))
             return true;
     }
     return false;
 }
 
-static bool crosses_rest(const csg_triangle_tree *t, const csg_crossing_change *c, size_t one)
+static bool crosses_rest(const csg_triangle_tree *t, const csg_crossing_change *c,
+                         const newcomers *n)
 {
     size_t stack[CSG_TRIANGLE_TREE_STACK], top = 0;
-    csg_triangle_box box = csg_triangle_box_of(c->at[one]);
     stack[top++] = 1;
     while (top) {
         size_t i = stack[--top];
-        if (!csg_triangle_boxes_overlap(&box, &t->nodes[i]))
+        if (!csg_triangle_boxes_overlap(&n->all, &t->nodes[i]))
             continue;
-        if (i >= t->leaf_count) {
-            if (crosses_leaf(t, c, one, &box, i - t->leaf_count))
-                return true;
+        if (i < t->leaf_count) {
+            stack[top++] = 2 * i + 1;
+            stack[top++] = 2 * i;
             continue;
         }
-        stack[top++] = 2 * i + 1;
-        stack[top++] = 2 * i;
+        i -= t->leaf_count;
+        for (size_t k = i * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, i); k < end; k++) {
+            uint32_t triangle = csg_triangle_tree_item(t, k);
+            if (stays(t, c, triangle) && crosses_triangle(t, n, c->count, triangle))
+                return true;
+        }
     }
     return false;
 }
 
 bool csg_crossing_is_made(const csg_triangle_tree *t, const csg_crossing_change *c)
 {
+    newcomers n; /* not filled: it is large */
+    n.all = csg_triangle_box_of(c->at[0]);
     for (size_t i = 0; i < c->count; i++) {
-        for (size_t k = i + 1; k < c->count; k++)
-            if (cross(c->at[i], c->vertex[i], c->at[k], c->vertex[k], t->noise))
-                return true;
-        if (crosses_rest(t, c, i))
-            return true;
+        csg_triangle_box box = csg_triangle_box_of(c->at[i]);
+        n.plates[i] = plate_of(c->at[i], c->vertex[i]);
+        n.extents[i] = extent_of(c->at[i]);
+        for (int k = 0; k < 3; k++) {
+            n.all.min[k] = box.min[k] < n.all.min[k] ? box.min[k] : n.all.min[k];
+            n.all.max[k] = box.max[k] > n.all.max[k] ? box.max[k] : n.all.max[k];
+        }
     }
-    return false;
+    if (!c->is_fan || !is_unfolded(c, n.plates))
+        for (size_t i = 0; i < c->count; i++)
+            for (size_t k = i + 1; k < c->count; k++)
+                if (cross(&n.plates[i], &n.plates[k], t->noise))
+                    return true;
+    return crosses_rest(t, c, &n);
 }

@@ -6,13 +6,16 @@
 
 #include "mesh/remesh/triangle_tree.h"
 
-/* Triangles to come, and whose place they take. */
+enum { CSG_CROSSING_MOST = 2 * CSG_CORNERS_MOST_VALENCE };
+
+/* Triangles to come, CSG_CROSSING_MOST at most, and whose place they take. */
 typedef struct csg_crossing_change {
     const csg_vec3 (*at)[3];
     const uint32_t (*vertex)[3];
     size_t count;
     uint32_t vertices[2];  /* all triangles at these go, CSG_CORNER_NONE: no others */
     uint32_t triangles[2]; /* and these, the same */
+    bool is_fan;           /* all there is around vertex[i][0], which is the same for all */
 } csg_crossing_change;
 
 /* Whether an edge goes through a triangle, or comes as near to it as the tree's noise: of the new

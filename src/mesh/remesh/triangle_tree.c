@@ -11,17 +11,18 @@
 static const csg_triangle_box NOTHING = {{INFINITY, INFINITY, INFINITY},
                                          {-INFINITY, -INFINITY, -INFINITY}};
 
+/* Comparisons and not fminf: that is a call. A float is at most half a step off: one that is
+ * rounded inwards is moved by more than that. */
 static void include(csg_triangle_box *box, csg_vec3 p)
 {
+    static const float STEP = 0x1p-23f, LEAST = 0x1p-140f;
     const double v[3] = {p.x, p.y, p.z};
     for (int k = 0; k < 3; k++) {
-        float low = (float)v[k], high = low;
-        if ((double)low > v[k])
-            low = nextafterf(low, -INFINITY);
-        if ((double)high < v[k])
-            high = nextafterf(high, INFINITY);
-        box->min[k] = fminf(box->min[k], low);
-        box->max[k] = fmaxf(box->max[k], high);
+        float near = (float)v[k], off = (near < 0 ? -near : near) * STEP + LEAST;
+        float low = (double)near > v[k] ? near - off : near;
+        float high = (double)near < v[k] ? near + off : near;
+        box->min[k] = low < box->min[k] ? low : box->min[k];
+        box->max[k] = high > box->max[k] ? high : box->max[k];
     }
 }
 
@@ -37,18 +38,10 @@ static csg_triangle_box box_around(const csg_triangle_box *a, const csg_triangle
 {
     csg_triangle_box box;
     for (int k = 0; k < 3; k++) {
-        box.min[k] = fminf(a->min[k], b->min[k]);
-        box.max[k] = fmaxf(a->max[k], b->max[k]);
+        box.min[k] = b->min[k] < a->min[k] ? b->min[k] : a->min[k];
+        box.max[k] = b->max[k] > a->max[k] ? b->max[k] : a->max[k];
     }
     return box;
-}
-
-bool csg_triangle_boxes_overlap(const csg_triangle_box *a, const csg_triangle_box *b)
-{
-    bool apart = false;
-    for (int k = 0; k < 3; k++)
-        apart |= a->min[k] > b->max[k] || b->min[k] > a->max[k];
-    return !apart;
 }
 
 void csg_triangle_tree_corners(const csg_triangle_tree *t, uint32_t triangle, csg_vec3 out[3])
@@ -63,45 +56,71 @@ static csg_triangle_box box_of_leaf(const csg_triangle_tree *t, size_t leaf)
     for (size_t i = leaf * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, leaf); i < end;
          i++) {
         csg_vec3 v[3];
-        if (!csg_corners_is_live(t->corners, (uint32_t)i))
+        uint32_t triangle = csg_triangle_tree_item(t, i);
+        if (!csg_corners_is_live(t->corners, triangle))
             continue;
-        csg_triangle_tree_corners(t, (uint32_t)i, v);
+        csg_triangle_tree_corners(t, triangle, v);
         for (int k = 0; k < 3; k++)
             include(&box, v[k]);
     }
     return box;
 }
 
-bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, const csg_vec3 *at)
+static bool fill(csg_triangle_tree *t)
 {
-    static const double ROUNDING = 1e-7; /* of the whole */
-    *t = (csg_triangle_tree){.corners = corners, .at = at, .leaf_count = 1};
-    while (t->leaf_count * CSG_TRIANGLES_A_LEAF < corners->triangle_count)
+    t->leaf_count = 1;
+    while (t->leaf_count * CSG_TRIANGLES_A_LEAF < t->count)
         t->leaf_count *= 2;
-    t->nodes = csg_memory_alloc(corners->memory, 2 * t->leaf_count * sizeof *t->nodes);
-    if (!t->nodes)
+    if (!csg_memory_reserve(t->corners->memory, (void **)&t->nodes, &t->node_capacity,
+                            2 * t->leaf_count, sizeof *t->nodes))
         return false;
     for (size_t i = 0; i < t->leaf_count; i++)
         t->nodes[t->leaf_count + i] = box_of_leaf(t, i);
     for (size_t i = t->leaf_count - 1; i; i--)
         t->nodes[i] = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
+    return true;
+}
+
+bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, const csg_vec3 *at)
+{
+    static const double ROUNDING = 1e-7; /* of the whole */
+    *t = (csg_triangle_tree){.corners = corners, .at = at, .count = corners->triangle_count};
+    if (!fill(t))
+        return false;
     const csg_triangle_box *all = &t->nodes[1];
     for (int k = 0; k < 3 && all->max[k] >= all->min[k]; k++)
         t->noise = fmax(t->noise, ROUNDING * ((double)all->max[k] - (double)all->min[k]));
     return true;
 }
 
+bool csg_triangle_tree_make_of(csg_triangle_tree *t, const csg_triangle_tree *whole,
+                               const csg_corners *corners, const uint32_t *items, uint32_t count,
+                               const uint32_t *slots)
+{
+    t->corners = corners;
+    t->at = whole->at;
+    t->noise = whole->noise;
+    t->items = items;
+    t->slots = slots;
+    t->count = count;
+    return fill(t);
+}
+
 void csg_triangle_tree_release(csg_triangle_tree *t)
 {
     if (t->corners)
-        csg_memory_release(t->corners->memory, t->nodes, 2 * t->leaf_count * sizeof *t->nodes);
+        csg_memory_release(t->corners->memory, t->nodes, t->node_capacity * sizeof *t->nodes);
     *t = (csg_triangle_tree){0};
 }
 
 void csg_triangle_tree_update(csg_triangle_tree *t, uint32_t triangle)
 {
-    size_t i = t->leaf_count + triangle / CSG_TRIANGLES_A_LEAF;
-    t->nodes[i] = box_of_leaf(t, triangle / CSG_TRIANGLES_A_LEAF);
+    size_t leaf = (t->slots ? t->slots[triangle] : triangle) / CSG_TRIANGLES_A_LEAF;
+    size_t i = t->leaf_count + leaf;
+    csg_triangle_box own = box_of_leaf(t, leaf);
+    if (!memcmp(&own, &t->nodes[i], sizeof own))
+        return;
+    t->nodes[i] = own;
     for (i /= 2; i; i /= 2) {
         csg_triangle_box box = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
         if (!memcmp(&box, &t->nodes[i], sizeof box))
@@ -141,13 +160,14 @@ static void look_at_leaf(const csg_triangle_tree *t, size_t leaf, csg_vec3 at, d
     for (size_t i = leaf * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, leaf); i < end;
          i++) {
         csg_vec3 v[3];
-        if (!csg_corners_is_live(t->corners, (uint32_t)i))
+        uint32_t item = csg_triangle_tree_item(t, i);
+        if (!csg_corners_is_live(t->corners, item))
             continue;
-        csg_triangle_tree_corners(t, (uint32_t)i, v);
+        csg_triangle_tree_corners(t, item, v);
         double weights[3], square = csg_triangle_nearest(v, at, weights);
         if (square < *least) {
             *least = square;
-            *triangle = (uint32_t)i;
+            *triangle = item;
         }
     }
 }

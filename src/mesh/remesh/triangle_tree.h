@@ -24,12 +24,21 @@ typedef struct csg_triangle_tree {
     const csg_vec3 *at;
     csg_triangle_box *nodes; /* a heap: the children of i are 2 i and 2 i + 1 */
     size_t leaf_count;       /* a power of two */
-    double noise;            /* of places, rounded to floats as vertices are */
+    size_t node_capacity;
+    const uint32_t *items; /* its triangles, in order; NULL: all of them */
+    const uint32_t *slots; /* where a triangle stands in items; NULL with these */
+    uint32_t count;        /* of triangles */
+    double noise;          /* of places, rounded to floats as vertices are */
 } csg_triangle_tree;
 
 /* False: out of memory, nothing to release. */
 bool csg_triangle_tree_make(csg_triangle_tree *tree, const csg_corners *corners,
                             const csg_vec3 *at);
+/* Over some of the triangles of `whole`, in a tree that is {0} or was made before: its memory is
+ * used again. Only those that slots tells of may change. False: out of memory; to be released. */
+bool csg_triangle_tree_make_of(csg_triangle_tree *tree, const csg_triangle_tree *whole,
+                               const csg_corners *corners, const uint32_t *items, uint32_t count,
+                               const uint32_t *slots);
 void csg_triangle_tree_release(csg_triangle_tree *tree);
 
 /* After a triangle has changed, or is gone. */
@@ -40,11 +49,19 @@ void csg_triangle_tree_update_around(csg_triangle_tree *tree, uint32_t vertex);
 static inline size_t csg_triangle_tree_end(const csg_triangle_tree *tree, size_t leaf)
 {
     size_t end = (leaf + 1) * CSG_TRIANGLES_A_LEAF;
-    return end < tree->corners->triangle_count ? end : tree->corners->triangle_count;
+    return end < tree->count ? end : tree->count;
+}
+static inline uint32_t csg_triangle_tree_item(const csg_triangle_tree *tree, size_t i)
+{
+    return tree->items ? tree->items[i] : (uint32_t)i;
 }
 
 csg_triangle_box csg_triangle_box_of(const csg_vec3 triangle[3]);
-bool csg_triangle_boxes_overlap(const csg_triangle_box *a, const csg_triangle_box *b);
+static inline bool csg_triangle_boxes_overlap(const csg_triangle_box *a, const csg_triangle_box *b)
+{
+    return (a->min[0] <= b->max[0]) & (b->min[0] <= a->max[0]) & (a->min[1] <= b->max[1]) &
+           (b->min[1] <= a->max[1]) & (a->min[2] <= b->max[2]) & (b->min[2] <= a->max[2]);
+}
 void csg_triangle_tree_corners(const csg_triangle_tree *tree, uint32_t triangle, csg_vec3 out[3]);
 
 /* The distance of the nearest triangle, INFINITY where it is `most` or more. triangle may be NULL.

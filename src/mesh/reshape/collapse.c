@@ -53,12 +53,19 @@ double csg_collapse_cost(const csg_decimation *d, uint32_t from, uint32_t to)
 {
     /* Of two that cost nothing the shorter edge goes first: flat parts thin out evenly. */
     static const double LENGTH_SHARE = 1e-6;
+    /* Of the error: what is farther than that from its planes, in the mean of squares, fails. */
+    static const double HOPELESS = 2;
     const csg_remesh *r = d->remesh;
     csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     proposal p = places_of(d, &q, from, to);
     csg_vec3 edge = csg_vec3_sub(r->at[from], r->at[to]);
     double square = csg_vec3_dot(edge, edge);
-    return p.count ? csg_quadric_error(&q, p.at[0]) + LENGTH_SHARE * square * square : -1;
+    if (!p.count)
+        return -1;
+    double error = csg_quadric_error(&q, p.at[0]), most = HOPELESS * r->error;
+    if (error > most * most * (q.xx + q.yy + q.zz)) /* these are the planes' weights, summed up */
+        return -1;
+    return error + LENGTH_SHARE * square * square;
 }
 
 /* ---- the ring ----------------------------------------------------------------------------------
@@ -140,8 +147,15 @@ static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
                                         .vertex = (const uint32_t(*)[3])room->vertex,
                                         .count = room->count,
                                         .vertices = {from, to},
-                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
+                                        .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE},
+                                        .is_fan = true};
     return csg_crossing_is_made(&d->remesh->tree, &change);
+}
+
+static bool is_within(const csg_decimation *d, csg_vec3 p)
+{
+    return p.x > d->low.x && p.y > d->low.y && p.z > d->low.z && p.x < d->high.x &&
+           p.y < d->high.y && p.z < d->high.z;
 }
 
 static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
@@ -149,7 +163,7 @@ static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 
 {
     csg_remesh *r = d->remesh;
     *at = p->at[i];
-    if (!p->exact[i] && !csg_remesh_project(r, at, r->cell))
+    if ((!p->exact[i] && !csg_remesh_project(r, at, r->cell)) || !is_within(d, *at))
         return false;
     move_ring(d->room, *at);
     if (!has_shape(d->room))
@@ -180,11 +194,26 @@ static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t
     d->version[from]++;
 }
 
+/* The two vertices that face the edge: their lists of triangles change too. */
+static bool owns_apexes(const csg_decimation *d, uint32_t corner)
+{
+    const csg_corners *m = &d->remesh->corners;
+    uint32_t apex = csg_corner_previous(corner);
+    return csg_decimation_owns(d, m->vertex[apex]) &&
+           csg_decimation_owns(d, m->vertex[m->across[apex]]);
+}
+
 bool csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
 {
     csg_remesh *r = d->remesh;
     uint32_t corner = csg_corners_find_edge(&r->corners, from, to);
-    if (corner == CSG_CORNER_NONE || !csg_corners_can_collapse(&r->corners, corner))
+    if (corner == CSG_CORNER_NONE)
+        return false;
+    if (!owns_apexes(d, corner)) {
+        d->state[from] = CSG_VERTEX_HELD_UP;
+        return false;
+    }
+    if (!csg_corners_can_collapse(&r->corners, corner))
         return false;
     csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     proposal p = places_of(d, &q, from, to);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The order of collapses; see decimate.h. A queue by cost, then by number, so the result depends on
- * nothing but the mesh; entries whose ends have changed since are dropped when they come up. What
- * was refused is tried again once everything else is done, for as long as that is worth while.
+ * The order of collapses in one region; see decimate.h. A queue by cost, then by number, so the
+ * result depends on nothing but the mesh; entries whose ends have changed since are dropped when
+ * they come up. What was refused is tried again if something near it has changed since, for as long
+ * as that is worth while.
  */
 #include "mesh/reshape/decimate.h"
 
@@ -56,17 +57,36 @@ static bool add_edge(csg_decimation *d, uint32_t a, uint32_t b)
     return add_waiting(d, (csg_waiting){(float)cost, from, to, d->version[from] + d->version[to]});
 }
 
-static bool add_all_edges(csg_decimation *d)
+/* Edges that are not settled. */
+static bool add_all_edges(csg_decimation *d, const uint32_t *items, uint32_t count)
 {
     const csg_corners *m = &d->remesh->corners;
-    for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
-        if (!csg_corners_is_live(m, c / 3))
-            continue;
-        uint32_t a = m->vertex[c], b = m->vertex[csg_corner_next(c)];
-        if (a < b && !add_edge(d, a, b))
-            return false;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t t = items ? items[i] : i;
+        for (uint32_t c = 3 * t; c < 3 * t + 3 && csg_corners_is_live(m, t); c++) {
+            uint32_t a = m->vertex[c], b = m->vertex[csg_corner_next(c)];
+            bool fresh = d->state[a] == CSG_VERTEX_FRESH || d->state[b] == CSG_VERTEX_FRESH;
+            if (!csg_decimation_owns(d, a) || !csg_decimation_owns(d, b))
+                continue;
+            if (a < b && fresh && !add_edge(d, a, b))
+                return false;
+        }
     }
     return true;
+}
+
+/* In the queue, all of their edges. */
+static void settle_all(csg_decimation *d, const uint32_t *items, uint32_t count)
+{
+    const csg_corners *m = &d->remesh->corners;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t t = items ? items[i] : i;
+        for (uint32_t c = 3 * t; c < 3 * t + 3 && csg_corners_is_live(m, t); c++) {
+            uint32_t v = m->vertex[c];
+            if (csg_decimation_owns(d, v) && d->state[v] == CSG_VERTEX_FRESH)
+                d->state[v] = CSG_VERTEX_SETTLED;
+        }
+    }
 }
 
 static bool add_edges_around(csg_decimation *d, uint32_t vertex)
@@ -74,8 +94,13 @@ static bool add_edges_around(csg_decimation *d, uint32_t vertex)
     const csg_corners *m = &d->remesh->corners;
     uint32_t first = m->corner[vertex], c = first;
     do {
-        if (!add_edge(d, vertex, m->vertex[csg_corner_next(c)]))
+        uint32_t other = m->vertex[csg_corner_next(c)];
+        if (!csg_decimation_owns(d, other))
+            d->state[vertex] = CSG_VERTEX_HELD_UP;
+        else if (!add_edge(d, vertex, other))
             return false;
+        else if (d->state[other] == CSG_VERTEX_SETTLED)
+            d->state[other] = CSG_VERTEX_FRESH;
         c = csg_corner_swing(m, c);
     } while (c != first);
     return true;
@@ -168,6 +193,7 @@ static bool take_arrays(csg_decimation *d)
     csg_memory *memory = r->memory;
     d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
     d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
+    d->state = csg_memory_alloc(memory, vertices);
     d->sample_capacity = vertices + triangles + (d->missed ? d->missed->count : 0);
     d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
     d->next_sample = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->next_sample);
@@ -180,8 +206,8 @@ static bool take_arrays(csg_decimation *d)
         memset(d->room, 0, sizeof *d->room);
     if (d->version)
         memset(d->version, 0, vertices * sizeof *d->version);
-    return d->quadrics && d->version && d->samples && d->next_sample && d->first_sample &&
-           d->queue && d->room && keep_looks(d);
+    return d->quadrics && d->version && d->state && d->samples && d->next_sample &&
+           d->first_sample && d->queue && d->room && keep_looks(d);
 }
 
 csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed)
@@ -202,6 +228,7 @@ void csg_decimation_end(csg_decimation *d)
     size_t triangles = d->remesh->corners.triangle_count;
     csg_memory_release(memory, d->quadrics, vertices * sizeof *d->quadrics);
     csg_memory_release(memory, d->version, vertices * sizeof *d->version);
+    csg_memory_release(memory, d->state, vertices);
     csg_memory_release(memory, d->samples, d->sample_capacity * sizeof *d->samples);
     csg_memory_release(memory, d->next_sample, d->sample_capacity * sizeof *d->next_sample);
     csg_memory_release(memory, d->first_sample, triangles * sizeof *d->first_sample);
@@ -230,29 +257,31 @@ static csgm_status collapse_waiting(csg_decimation *d, uint32_t least)
             entry.version != d->version[entry.from] + d->version[entry.to])
             continue;
         if (i % LOOK_UP_EVERY == 0 && csg_mesh_should_stop(r->watch))
-            return csg_mesh_why_stopped(r->watch);
+            return CSGM_CANCELLED;
         d->tried++;
         if (!csg_collapse_try(d, entry.from, entry.to))
             continue;
         d->made++;
         if (!add_edges_around(d, entry.to))
-            return csg_context_no_memory(r->context);
+            return CSGM_ERR_MEMORY;
     }
     return CSGM_OK;
 }
 
-csgm_status csg_decimate(csg_decimation *d, uint32_t least)
+csgm_status csg_decimate_region(csg_decimation *d, const uint32_t *items, uint32_t count,
+                                uint32_t least)
 {
-    enum { MOST_PASSES = 4, WORTH = 20 /* a part of the triangles that a pass must take */ };
+    enum { MOST_PASSES = 4, WORTH = 20 /* a part of the tries that a pass must succeed in */ };
     csg_remesh *r = d->remesh;
     csgm_status status = CSGM_OK;
     for (int pass = 0; pass < MOST_PASSES && r->corners.live > least && status == CSGM_OK; pass++) {
-        uint32_t before = r->corners.live;
+        uint64_t made = d->made, tried = d->tried;
         d->queue->count = 0;
-        if (!add_all_edges(d))
-            return csg_context_no_memory(r->context);
+        if (!add_all_edges(d, items, count))
+            return CSGM_ERR_MEMORY;
+        settle_all(d, items, count);
         status = collapse_waiting(d, least);
-        if ((uint64_t)(before - r->corners.live) * WORTH < before)
+        if ((d->made - made) * WORTH <= d->tried - tried)
             break;
     }
     return status;

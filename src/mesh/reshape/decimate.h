@@ -13,6 +13,8 @@ csgm_status csg_decimation_begin(csg_decimation *decimation, csg_remesh *remesh,
                                  const csg_missed *missed);
 void csg_decimation_end(csg_decimation *decimation);
 
+enum { CSG_DECIMATE_ALL = 4 /* of triangles: fewer there are never */ };
+
 /* Collapses what remesh->error allows until `least` triangles are left. CSGM_OK, or why it was
  * stopped (reported). */
 csgm_status csg_decimate(csg_decimation *decimation, uint32_t least);

@@ -120,17 +120,38 @@ static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t trian
            fabs(material[1] - own->material[1]) <= MATERIAL_STEP;
 }
 
-/* The triangle that answers for a sample from now on, the first that is near enough by far or else
- * the nearest; NONE: it would be too far away. */
+/* Whether the sample is right above or below the triangle: weights and height are found then. */
+static bool is_over(const csg_facet *t, csg_vec3 p, double weights[3], double *square)
+{
+    csg_vec3 off = csg_vec3_sub(p, t->at);
+    double a = csg_vec3_dot(off, t->toward[0]), b = csg_vec3_dot(off, t->toward[1]);
+    if (!(a >= 0 && b >= 0 && a + b <= 1))
+        return false;
+    double height = csg_vec3_dot(off, t->normal);
+    weights[0] = 1 - a - b;
+    weights[1] = a;
+    weights[2] = b;
+    *square = height * height;
+    return true;
+}
+
+/* The triangle that answers for a sample from now on: the first that it is over, near enough, or
+ * else the nearest; NONE: it would be too far away. */
 static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
 {
     const csg_collapse_room *room = d->room;
     double most = d->remesh->error * d->remesh->error, least = INFINITY, best[3] = {0, 0, 0};
     csg_vec3 p = csg_sample_at(d, sample);
-    uint32_t owner = CSG_CORNER_NONE;
-    for (uint32_t i = 0; i < room->count && least > most / 256; i++) {
+    double weights[3], square;
+    for (uint32_t i = 0; i < room->count; i++) {
         uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
-        double weights[3], square = csg_triangle_nearest(room->after[k], p, weights);
+        if (is_over(&room->facet[k], p, weights, &square) && square <= most &&
+            looks_alike(d, sample, k, weights, kept))
+            return k;
+    }
+    uint32_t owner = CSG_CORNER_NONE;
+    for (uint32_t k = 0; k < room->count; k++) {
+        square = csg_triangle_nearest(room->after[k], p, weights);
         if (square < least) {
             least = square;
             owner = k;
@@ -140,11 +161,27 @@ static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t 
     return least <= most && looks_alike(d, sample, owner, best, kept) ? owner : CSG_CORNER_NONE;
 }
 
+static csg_facet facet_of(const csg_vec3 v[3])
+{
+    csg_vec3 s = csg_vec3_sub(v[1], v[0]), t = csg_vec3_sub(v[2], v[0]);
+    csg_vec3 n = csg_vec3_cross(s, t);
+    double square = csg_vec3_dot(n, n);
+    csg_facet f = {.at = v[0]};
+    if (!(square > 0)) /* nothing is over it */
+        return (csg_facet){.at = v[0], .toward = {{NAN, NAN, NAN}, {NAN, NAN, NAN}}};
+    f.toward[0] = csg_vec3_scale(csg_vec3_cross(t, n), 1 / square);
+    f.toward[1] = csg_vec3_scale(csg_vec3_cross(n, s), 1 / square);
+    f.normal = csg_vec3_scale(n, 1 / sqrt(square));
+    return f;
+}
+
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept)
 {
     csg_collapse_room *room = d->room;
     uint32_t hint = 0;
     room->owner_count = 0;
+    for (uint32_t i = 0; i < room->count; i++)
+        room->facet[i] = facet_of((const csg_vec3 *)room->after[i]);
     for (uint32_t i = 0; i < room->count + 2; i++)
         for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
              s = d->next_sample[s]) {

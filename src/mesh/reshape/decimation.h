@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A mesh while it is thinned out: what decimate.c (order and loop), decimate_samples.c (points of
- * the surface) and collapse.c (one edge) share.
+ * A mesh while it is thinned out: what regions.c (which part of it, on which thread), decimate.c
+ * (order and loop), decimate_samples.c (points of the surface) and collapse.c (one edge) share.
  */
 #ifndef CSG_MESH_RESHAPE_DECIMATION_H
 #define CSG_MESH_RESHAPE_DECIMATION_H
@@ -22,10 +22,17 @@ typedef struct csg_collapse_queue {
 
 enum { CSG_RING_MOST = 2 * CSG_CORNERS_MOST_VALENCE };
 
+/* A triangle as it is asked for places: p - at, times each of toward, is p's weight at the second
+ * and the third corner. */
+typedef struct csg_facet {
+    csg_vec3 at, toward[2], normal;
+} csg_facet;
+
 /* The triangles around an edge, as they would be after its collapse. */
 typedef struct csg_collapse_room {
     uint32_t triangle[CSG_RING_MOST + 2]; /* those that stay, then the two that go */
     csg_vec3 before[CSG_RING_MOST][3], after[CSG_RING_MOST][3];
+    csg_facet facet[CSG_RING_MOST]; /* of after */
     uint32_t vertex[CSG_RING_MOST][3];
     uint32_t count; /* that stay */
     csg_look_at_vertex look;
@@ -50,10 +57,32 @@ typedef struct csg_decimation {
     size_t sample_capacity;
     csg_collapse_queue *queue;
     csg_collapse_room *room;
+    /* What is worked on at a time (regions.h): vertices of which all triangles lie in the cube. */
+    const uint32_t *region_of; /* per vertex; NONE: of several, it stays */
+    uint8_t *state;            /* per vertex: csg_vertex_state */
+    uint32_t region;
+    csg_vec3 low, high; /* the cube */
     uint64_t tried, made;
 } csg_decimation;
 
+/* Edges between two vertices that are settled were tried, and nothing around has changed since. */
+typedef enum csg_vertex_state {
+    CSG_VERTEX_SETTLED,
+    CSG_VERTEX_FRESH,
+    CSG_VERTEX_HELD_UP /* by what lies in other regions: fresh for those that come later */
+} csg_vertex_state;
+
+static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
+{
+    return d->region_of[vertex] == d->region;
+}
+
 bool csg_decimation_make_samples(csg_decimation *d);
+/* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
+ * left. items: its triangles, of which some may be of others; NULL: all there are. CSGM_OK,
+ * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */
+csgm_status csg_decimate_region(csg_decimation *d, const uint32_t *items, uint32_t count,
+                                uint32_t least);
 /* Whether the samples of room->triangle are near enough to room->after, and who takes which. */
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept);
 void csg_decimation_hand_over(csg_decimation *d);

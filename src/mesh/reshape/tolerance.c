@@ -77,7 +77,7 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
     csgm_status status = csg_decimation_begin(&d, r, missed);
     if (status != CSGM_OK)
         return status;
-    status = goal->share > 0 ? reach_share(&d, goal) : csg_decimate(&d, 4);
+    status = goal->share > 0 ? reach_share(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
     goal->measured = csg_decimation_largest_distance(&d);
     csg_decimation_end(&d);
     return status;

@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT
+ * Thinning out on all threads; see decimate.h. Space is cut into cubes, an octree of those that
+ * hold many triangles. What lies in a cube with all that it meets in a vertex is changed there, and
+ * new triangles stay in it: so nothing of one cube ever meets what another changes, and each is
+ * done on any thread. Triangles that lie across the sides of cubes stay as they are; the cubes that
+ * come next are shifted by a third of their size, and the last one holds everything. Which cubes
+ * there are depends on the mesh and its place alone: so does the result.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "base/trace.h"
+#include "field/field.h"
+#include "mesh/reshape/decimate.h"
+
+enum { MOST_OF_REGION = 10000, DEEPEST = 16, ROUNDS = 3 };
+
+/* A cube and the triangles that meet it; those in it are changed there. */
+typedef struct region {
+    size_t first;
+    uint32_t count;
+    csg_vec3 low, high;
+    uint32_t removed; /* of the triangles */
+} region;
+
+/* What one thread needs: its own view of the mesh, whose arrays are shared. */
+typedef struct worker {
+    csg_remesh remesh;
+    csg_decimation decimation;
+    csg_collapse_queue queue;
+    csg_collapse_room *room;
+} worker;
+
+typedef struct cutting {
+    csg_decimation *d;
+    csg_triangle_box *boxes; /* per triangle */
+    uint32_t *slots;         /* per triangle: where it stands among those of its region */
+    uint32_t *inside;        /* per triangle: the region, NONE: across */
+    uint32_t *region_of;     /* per vertex */
+    uint32_t *items;         /* the triangles of one region after another */
+    size_t item_count, item_capacity;
+    region *regions;
+    size_t region_count, region_capacity;
+    csg_arena arena;
+    worker *workers;
+    uint32_t worker_count;
+    atomic_int status;
+} cutting;
+
+/* ---- cubes -------------------------------------------------------------------------------------
+ */
+
+/* Triangles in one cube keep clear of those in the next by more than rounding. */
+static double margin_of(const csg_remesh *r)
+{
+    return 2 * r->tree.noise;
+}
+
+static bool meets(const csg_triangle_box *box, csg_vec3 low, csg_vec3 high)
+{
+    return (double)box->max[0] >= low.x && (double)box->min[0] <= high.x &&
+           (double)box->max[1] >= low.y && (double)box->min[1] <= high.y &&
+           (double)box->max[2] >= low.z && (double)box->min[2] <= high.z;
+}
+
+static bool is_in(const csg_triangle_box *box, csg_vec3 low, csg_vec3 high)
+{
+    return (double)box->min[0] > low.x && (double)box->max[0] < high.x &&
+           (double)box->min[1] > low.y && (double)box->max[1] < high.y &&
+           (double)box->min[2] > low.z && (double)box->max[2] < high.z;
+}
+
+static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, csg_vec3 high)
+{
+    csg_memory *memory = c->d->remesh->memory;
+    if (!csg_memory_reserve(memory, (void **)&c->regions, &c->region_capacity, c->region_count + 1,
+                            sizeof *c->regions) ||
+        !csg_memory_reserve(memory, (void **)&c->items, &c->item_capacity, c->item_count + count,
+                            sizeof *c->items))
+        return false;
+    double margin = margin_of(c->d->remesh);
+    csg_vec3 by = {margin, margin, margin};
+    region *new = &c->regions[c->region_count];
+    *new = (region){c->item_count, count, csg_vec3_add(low, by), csg_vec3_sub(high, by), 0};
+    memcpy(c->items + c->item_count, ids, count * sizeof *ids);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!is_in(&c->boxes[ids[i]], new->low, new->high))
+            continue;
+        c->inside[ids[i]] = (uint32_t)c->region_count;
+        c->slots[ids[i]] = i;
+    }
+    c->item_count += count;
+    c->region_count++;
+    return true;
+}
+
+/* The triangles of ids that meet the cube, cut into eighths while they are many. */
+static bool cut(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, double side,
+                int depth)
+{
+    csg_vec3 high = csg_vec3_add(low, csg_vec3_make(side, side, side));
+    csg_arena_mark mark = csg_arena_get_mark(&c->arena);
+    uint32_t *own = csg_arena_alloc(&c->arena, count * sizeof *own), n = 0;
+    bool done = own != NULL;
+    for (uint32_t i = 0; done && i < count; i++)
+        if (meets(&c->boxes[ids[i]], low, high))
+            own[n++] = ids[i];
+    if (done && n && (n <= MOST_OF_REGION || depth == DEEPEST))
+        done = add_region(c, own, n, low, high);
+    else if (done && n)
+        for (int o = 0; o < 8 && done; o++) {
+            csg_vec3 step = {o & 1 ? side / 2 : 0, o & 2 ? side / 2 : 0, o & 4 ? side / 2 : 0};
+            done = cut(c, own, n, csg_vec3_add(low, step), side / 2, depth + 1);
+        }
+    csg_arena_release_to(&c->arena, mark);
+    return done;
+}
+
+/* The first cubes: places and sizes do not depend on how large the mesh is, but for a factor of
+ * two. */
+static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, int round)
+{
+    const csg_remesh *r = c->d->remesh;
+    const csg_triangle_box *all = &r->tree.nodes[1];
+    csg_vec3 center = r->marching->field->center;
+    const double middle[3] = {center.x, center.y, center.z};
+    double extent = 0, from[3], side = 1;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, (double)all->max[k] - (double)all->min[k]);
+    side = exp2(ceil(log2(fmax(extent, 1e-30))));
+    int last[3];
+    for (int k = 0; k < 3; k++) {
+        double shift = side * (0.29 + round / 3.0) - middle[k], begin = (double)all->min[k] - shift;
+        from[k] = floor(begin / side) * side + shift;
+        last[k] = (double)all->max[k] >= from[k] + side ? 1 : 0;
+    }
+    bool done = true;
+    for (int x = 0; x <= last[0]; x++)
+        for (int y = 0; y <= last[1]; y++)
+            for (int z = 0; z <= last[2] && done; z++) {
+                csg_vec3 low = {from[0] + x * side, from[1] + y * side, from[2] + z * side};
+                done = cut(c, ids, count, low, side, 0);
+            }
+    return done;
+}
+
+/* ---- whose vertex is it ------------------------------------------------------------------------
+ */
+
+/* A vertex belongs to a region if all its triangles do. */
+static void share_out(cutting *c)
+{
+    enum { NOT_MET = CSG_CORNER_NONE - 1 };
+    const csg_corners *m = &c->d->remesh->corners;
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        c->region_of[v] = (uint32_t)NOT_MET;
+    for (uint32_t t = 0; t < m->triangle_count; t++)
+        for (uint32_t k = 3 * t; k < 3 * t + 3 && csg_corners_is_live(m, t); k++) {
+            uint32_t *of = &c->region_of[m->vertex[k]];
+            *of = *of == (uint32_t)NOT_MET || *of == c->inside[t] ? c->inside[t] : CSG_CORNER_NONE;
+        }
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        if (c->d->state[v] == CSG_VERTEX_HELD_UP)
+            c->d->state[v] = CSG_VERTEX_FRESH;
+}
+
+static bool make_cubes(cutting *c, int round)
+{
+    const csg_remesh *r = c->d->remesh;
+    uint32_t count = r->corners.triangle_count, n = 0;
+    uint32_t *live = csg_arena_alloc(&c->arena, count * sizeof *live);
+    if (!live)
+        return false;
+    c->item_count = c->region_count = 0;
+    for (uint32_t t = 0; t < count; t++) {
+        csg_vec3 v[3];
+        c->inside[t] = CSG_CORNER_NONE;
+        if (!csg_corners_is_live(&r->corners, t))
+            continue;
+        csg_triangle_tree_corners(&r->tree, t, v);
+        c->boxes[t] = csg_triangle_box_of(v);
+        live[n++] = t;
+    }
+    bool done = cut_all(c, live, n, round);
+    csg_arena_reset(&c->arena);
+    if (done)
+        share_out(c);
+    return done;
+}
+
+/* ---- one region --------------------------------------------------------------------------------
+ */
+
+static bool thin_out_region(void *user, uint32_t worker_index, size_t index)
+{
+    cutting *c = user;
+    worker *w = &c->workers[worker_index];
+    const csg_remesh *whole = c->d->remesh;
+    region *g = &c->regions[index];
+    const uint32_t *items = c->items + g->first;
+    w->remesh.corners = whole->corners;
+    w->remesh.error = whole->error;
+    w->decimation.region = (uint32_t)index;
+    w->decimation.low = g->low;
+    w->decimation.high = g->high;
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (csg_triangle_tree_make_of(&w->remesh.tree, &whole->tree, &w->remesh.corners, items,
+                                  g->count, c->slots))
+        status = csg_decimate_region(&w->decimation, items, g->count, 0);
+    g->removed = whole->corners.live - w->remesh.corners.live;
+    if (status == CSGM_OK)
+        return true;
+    atomic_store(&c->status, (int)status);
+    return false;
+}
+
+static csgm_status run_round(cutting *c, int round)
+{
+    csg_remesh *r = c->d->remesh;
+    if (!make_cubes(c, round))
+        return CSGM_ERR_MEMORY;
+    c->d->region_of = c->region_of;
+    for (uint32_t i = 0; i < c->worker_count; i++)
+        c->workers[i].decimation.region_of = c->region_of;
+    if (!csg_pool_run(r->context->pool, c->region_count, thin_out_region, NULL, c))
+        return (csgm_status)atomic_load(&c->status);
+    for (size_t i = 0; i < c->region_count; i++)
+        r->corners.live -= c->regions[i].removed;
+    csg_triangle_tree_release(&r->tree);
+    return csg_triangle_tree_make(&r->tree, &r->corners, r->at) ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+/* What is left, as one region. */
+static csgm_status run_last(cutting *c, uint32_t least)
+{
+    csg_decimation *d = c->d;
+    const csg_corners *m = &d->remesh->corners;
+    memset(c->region_of, 0, m->vertex_count * sizeof *c->region_of);
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        if (d->state[v] == CSG_VERTEX_HELD_UP)
+            d->state[v] = CSG_VERTEX_FRESH;
+    d->region_of = c->region_of;
+    d->region = 0;
+    d->low = csg_vec3_make(-INFINITY, -INFINITY, -INFINITY);
+    d->high = csg_vec3_make(INFINITY, INFINITY, INFINITY);
+    return csg_decimate_region(d, NULL, m->triangle_count, least);
+}
+
+/* ---- beginning and ending ----------------------------------------------------------------------
+ */
+
+static bool begin_worker(cutting *c, worker *w)
+{
+    const csg_remesh *whole = c->d->remesh;
+    *w = (worker){.remesh = *whole, .decimation = *c->d};
+    w->remesh.tree = (csg_triangle_tree){0};
+    w->room = csg_memory_alloc(whole->memory, sizeof *w->room);
+    if (w->room)
+        memset(w->room, 0, sizeof *w->room);
+    w->decimation.remesh = &w->remesh;
+    w->decimation.queue = &w->queue;
+    w->decimation.room = w->room;
+    w->decimation.tried = w->decimation.made = 0;
+    return csg_probe_make(&w->remesh.probe, whole->marching, whole->memory) && w->room;
+}
+
+static void end_worker(worker *w, csg_memory *memory)
+{
+    csg_triangle_tree_release(&w->remesh.tree);
+    csg_probe_release(&w->remesh.probe);
+    csg_memory_release(memory, w->queue.heap, w->queue.capacity * sizeof *w->queue.heap);
+    if (w->room)
+        csg_memory_release(memory, w->room->owner, w->room->owner_capacity * sizeof(uint32_t));
+    csg_memory_release(memory, w->room, sizeof *w->room);
+}
+
+static bool begin(cutting *c, bool in_cubes)
+{
+    const csg_remesh *r = c->d->remesh;
+    size_t triangles = r->corners.triangle_count, vertices = r->corners.vertex_count;
+    csg_memory *memory = r->memory;
+    csg_arena_init(&c->arena, memory);
+    c->region_of = csg_memory_alloc(memory, vertices * sizeof *c->region_of);
+    if (!c->region_of || !in_cubes)
+        return c->region_of != NULL;
+    c->boxes = csg_memory_alloc(memory, triangles * sizeof *c->boxes);
+    c->slots = csg_memory_alloc(memory, triangles * sizeof *c->slots);
+    c->inside = csg_memory_alloc(memory, triangles * sizeof *c->inside);
+    c->worker_count = csg_pool_threads(r->context->pool);
+    c->workers = csg_memory_alloc(memory, c->worker_count * sizeof *c->workers);
+    bool done = c->boxes && c->slots && c->inside && c->workers;
+    for (uint32_t i = 0; c->workers && i < c->worker_count; i++)
+        done = begin_worker(c, &c->workers[i]) && done;
+    return done;
+}
+
+static void end(cutting *c)
+{
+    const csg_remesh *r = c->d->remesh;
+    size_t triangles = r->corners.triangle_count, vertices = r->corners.vertex_count;
+    csg_memory *memory = r->memory;
+    for (uint32_t i = 0; c->workers && i < c->worker_count; i++) {
+        c->d->tried += c->workers[i].decimation.tried;
+        c->d->made += c->workers[i].decimation.made;
+        end_worker(&c->workers[i], memory);
+    }
+    csg_memory_release(memory, c->workers, c->worker_count * sizeof *c->workers);
+    csg_memory_release(memory, c->inside, triangles * sizeof *c->inside);
+    csg_memory_release(memory, c->slots, triangles * sizeof *c->slots);
+    csg_memory_release(memory, c->boxes, triangles * sizeof *c->boxes);
+    csg_memory_release(memory, c->region_of, vertices * sizeof *c->region_of);
+    csg_memory_release(memory, c->items, c->item_capacity * sizeof *c->items);
+    csg_memory_release(memory, c->regions, c->region_capacity * sizeof *c->regions);
+    csg_arena_reset(&c->arena);
+    c->d->region_of = NULL;
+}
+
+csgm_status csg_decimate(csg_decimation *d, uint32_t least)
+{
+    csg_remesh *r = d->remesh;
+    cutting c = {.d = d};
+    /* where a number of triangles is the goal the cheapest of all have to go */
+    bool in_cubes = least <= CSG_DECIMATE_ALL && r->corners.live > MOST_OF_REGION;
+    memset(d->state, CSG_VERTEX_FRESH, r->corners.vertex_count);
+    csgm_status status = begin(&c, in_cubes) ? CSGM_OK : CSGM_ERR_MEMORY;
+    for (int round = 0; round < ROUNDS && in_cubes && status == CSGM_OK; round++) {
+        CSG_ZONE(r->context, "cubes");
+        status = run_round(&c, round);
+    }
+    if (status == CSGM_OK) {
+        CSG_ZONE(r->context, "seams");
+        status = run_last(&c, least);
+    }
+    end(&c);
+    return status == CSGM_ERR_MEMORY  ? csg_context_no_memory(r->context)
+           : status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch)
+                                      : status;
+}
