@@ -241,8 +241,10 @@ typedef struct csgm_scene_options {
     /* A set of values from a file in the JSON of OpenSCAD's customizer, both or neither; they
      * replace the scene's own, and defines replace them. */
     const char *parameter_file, *parameter_set;
-    csgm_facets facets;     /* default ROUND */
-    csgm_leniency leniency; /* default STRICT */
+    csgm_facets facets;        /* default ROUND */
+    csgm_leniency leniency;    /* default STRICT */
+    uint32_t openscad_version; /* what version_num() says: 20210100 is 2021.01; 0 (the default): the
+                                  newest one that is fully supported */
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

@@ -44,6 +44,9 @@ csg_node_id csg_solid_offset_round(csg_solid_job *job, const csg_facet_rule *rul
 csg_node_id csg_solid_offset_sharp(csg_solid_job *job, csg_node_id child, double by,
                                    csg_corner corner, double tolerance);
 
+/* The figure without its holes: polygons. */
+csg_node_id csg_solid_fill(csg_solid_job *job, csg_node_id child);
+
 /* ---- of numbers (tubes.c, periodic.c) -------------------------------------------------------- */
 
 typedef struct csg_knot { /* of a skeleton */

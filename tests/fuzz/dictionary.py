@@ -15,8 +15,8 @@ TABLES = [("src/text/tokens.def", r'CSG_(?:KEYWORD|PUNCTUATION)\(\w+, "([^"]+)"\
           ("src/lang/functions/functions.def", r"CSG_FUNCTION\((\w+),"),
           ("src/lang/modules/modules.def", r"CSG_(?:MODULE|CONTROL)\((\w+),"),
           ("src/lang/modules/modules.def", r"CSG_PARAMETER\(\w+, ([\w$]+),"),
-          ("src/lang/evaluate/unsupported_modules.def", r"CSG_UNSUPPORTED\((\w+),"),
-          ("src/lang/evaluate/unsupported_functions.def", r"CSG_UNSUPPORTED\((\w+),")]
+          ("src/lang/modules/modules.def", r"CSG_ALIAS\((\w+),"),
+          ("src/lang/evaluate/unsupported_modules.def", r"CSG_UNSUPPORTED\((\w+),")]
 # What no table names: special variables, odd numbers, escapes, the separator of files (files.c).
 OTHERS = ["$fn", "$fa", "$fs", "$t", "$preview", "$children", "$parent_modules", "PI", "1e999", "-0",
           "0x1F", "1e-320", "4294967296", "9007199254740993", "\\u{1F600}", "\\x41", "\\n", "/*", "*/",

@@ -110,6 +110,14 @@ static void figures_have_their_areas(void **state)
          256,
          {{0, 0, 0}, {10, 10, 4}}},
         {"linear_extrude(2) polygon([[0,0], [4,4], [4,0], [0,4]]);", 16, {{0, 0, 0}, {4, 4, 2}}},
+        {"linear_extrude(2) fill() difference() { square(9); translate([1, 1]) difference() {"
+         " square(7); translate([2, 2]) square(1); } }",
+         162,
+         {{0, 0, 0}, {9, 9, 2}}},
+        {"linear_extrude(2) fill() difference() { square(9); translate([1, 1]) square(7);"
+         " translate([-1, 4]) square([5, 1]); }", /* the slit opens what would be a hole */
+         62,
+         {{0, 0, 0}, {9, 9, 2}}},
         {"linear_extrude(5) intersection() { circle(5); square(6); }",
          125 * PI / 4,
          {{0, 0, 0}, {5, 5, 5}}},

@@ -56,7 +56,8 @@ def run_openscad(scene):
 
 def run_csgmesh(scene):
     """What it echoes, and how many other things it says."""
-    done = subprocess.run([os.environ["CSGMESH"], "check", "--diagnostics=json", scene.name],
+    done = subprocess.run([os.environ["CSGMESH"], "check", "--diagnostics=json", "--openscad-version", VERSION,
+                           scene.name],
                           cwd=FOLDER, timeout=60, capture_output=True)
     echoes, findings = [], []
     for line in done.stderr.decode("utf-8", "surrogateescape").splitlines():

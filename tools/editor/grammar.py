@@ -44,7 +44,7 @@ def grammar():
     keywords = set(rows("src/text/tokens.def", r'CSG_KEYWORD\(\w+, "(\w+)"\)'))
     signs = rows("src/text/tokens.def", r'CSG_PUNCTUATION\(\w+, "([^"]+)"\)')
     functions = rows("src/lang/functions/functions.def", r"CSG_FUNCTION\((\w+),")
-    modules = [m for m in rows("src/lang/modules/modules.def", r"CSG_(?:MODULE|CONTROL)\((\w+),") if m not in keywords]
+    modules = [m for m in rows("src/lang/modules/modules.def", r"CSG_(?:MODULE|CONTROL|ALIAS)\((\w+),") if m not in keywords]
     brackets = [s for s in signs if s in "()[]{},;"]
     operators = [s for s in signs if s not in brackets]
     control = keywords - DEFINERS - CONSTANTS - READERS

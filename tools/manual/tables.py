@@ -131,9 +131,8 @@ def falloffs():
 
 def unsupported():
     rows = []
-    for path in ("src/lang/evaluate/unsupported_modules.def", "src/lang/evaluate/unsupported_functions.def"):
-        for _, (name, instead) in calls(path):
-            rows.append([code(name), "" if instead == "NULL" else instead])
+    for _, (name, instead) in calls("src/lang/evaluate/unsupported_modules.def"):
+        rows.append([code(name), "" if instead == "NULL" else instead])
     return table(["not there yet", "until then"], rows)
 
 

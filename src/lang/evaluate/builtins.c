@@ -11,49 +11,33 @@ typedef struct unsupported_row {
     const char *name, *hint;
 } unsupported_row;
 
-static const unsupported_row unsupported_modules[] =
-    {
+static const unsupported_row unsupported[] = {
 #define CSG_UNSUPPORTED(name, hint) {#name, hint},
 #include "lang/evaluate/unsupported_modules.def"
-#undef CSG_UNSUPPORTED
-},
-                             unsupported_functions[] = {
-#define CSG_UNSUPPORTED(name, hint) {#name, hint},
-#include "lang/evaluate/unsupported_functions.def"
 #undef CSG_UNSUPPORTED
 };
 
 void csg_unsupported_intern(csg_symbols *symbols, bool *ok)
 {
-    enum {
-        MODULES = sizeof unsupported_modules / sizeof *unsupported_modules,
-        FUNCTIONS = sizeof unsupported_functions / sizeof *unsupported_functions
-    };
-    for (size_t i = 0; i < MODULES + FUNCTIONS && *ok; i++) {
-        bool module = i < MODULES;
-        size_t row = module ? i : i - MODULES;
-        const char *name = module ? unsupported_modules[row].name : unsupported_functions[row].name;
+    for (size_t i = 0; i < sizeof unsupported / sizeof *unsupported && *ok; i++) {
+        const char *name = unsupported[i].name;
         csg_symbol symbol = csg_symbol_intern(symbols, name, strlen(name));
-        csg_symbol_entry *entry = &symbols->entries[symbol];
         *ok = symbol != 0;
         if (symbol)
-            *(module ? &entry->unsupported : &entry->unsupported_function) = (int16_t)row;
+            symbols->entries[symbol].unsupported = (int16_t)i;
     }
 }
 
-bool csg_unsupported_report(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_span where)
+bool csg_unsupported_report(csg_eval *e, csg_symbol name, csg_span where)
 {
     const csg_symbol_entry *entry = &e->program->symbols.entries[name];
-    bool module = kind == CSG_MEMBER_MODULE;
-    int row = module ? entry->unsupported : entry->unsupported_function;
-    if (row < 0)
+    if (entry->unsupported < 0)
         return false;
-    csg_eval_report(e, CSG_DIAG_NOT_SUPPORTED, where,
-                    module ? unsupported_modules[row].hint : unsupported_functions[row].hint,
+    csg_eval_report(e, CSG_DIAG_NOT_SUPPORTED, where, unsupported[entry->unsupported].hint,
                     "%s() is not supported yet%s", entry->name,
-                    !csg_eval_is_lenient(e, CSG_DIAG_NOT_SUPPORTED, where) ? ""
-                    : module ? "; it is left out, with what stands under it"
-                             : "; the call counts as undef");
+                    csg_eval_is_lenient(e, CSG_DIAG_NOT_SUPPORTED, where)
+                        ? "; it is left out, with what stands under it"
+                        : "");
     return true;
 }
 

@@ -32,7 +32,7 @@ csg_value csg_bad_argument(const csg_function_call *call, uint32_t index, const 
 /* ---- what is not supported ------------------------------------------------------------------- */
 
 void csg_unsupported_intern(csg_symbols *symbols, bool *ok);
-/* Reports a name that is known but not supported yet; false: it is not known. */
-bool csg_unsupported_report(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_span where);
+/* Reports the name of a module that is known but not supported yet; false: it is not known. */
+bool csg_unsupported_report(csg_eval *e, csg_symbol name, csg_span where);
 
 #endif

@@ -46,6 +46,7 @@ bool csg_value_equal(csg_eval *e, csg_value left, csg_value right, csg_span wher
         return left.as.string->length == right.as.string->length &&
                memcmp(left.as.string->text, right.as.string->text, left.as.string->length) == 0;
     case CSG_VALUE_VECTOR:
+    case CSG_VALUE_RECORD:
         return equal_vectors(e, left.as.vector, right.as.vector, where);
     case CSG_VALUE_RANGE:
         return equal_ranges(left.as.range, right.as.range);
@@ -116,6 +117,7 @@ static order order_of(csg_eval *e, csg_value left, csg_value right, csg_span whe
     case CSG_VALUE_RANGE:
         return order_ranges(left.as.range, right.as.range);
     case CSG_VALUE_UNDEF:
+    case CSG_VALUE_RECORD:
     case CSG_VALUE_BLEND:
     case CSG_VALUE_TERM:
     case CSG_VALUE_STEP:

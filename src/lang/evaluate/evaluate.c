@@ -190,8 +190,7 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
         return true;
     }
     out->builtin = e->program->symbols.entries[out->name].function;
-    if (out->builtin < 0 && !e->stop &&
-        !csg_unsupported_report(e, CSG_MEMBER_FUNCTION, out->name, callee->where))
+    if (out->builtin < 0 && !e->stop)
         csg_eval_report(e, CSG_DIAG_UNKNOWN_FUNCTION, callee->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_FUNCTION, out->name, frame, callee->where,
                                     hint, sizeof hint),
@@ -260,11 +259,25 @@ static csg_value character_at(csg_eval *e, const csg_string *string, double inde
     return csg_eval_string(e, string->text + from, to - from);
 }
 
+/* Its search costs steps: an object may have many entries. */
+static csg_value entry_at(csg_eval *e, csg_value record, const char *key, size_t length,
+                          csg_span where)
+{
+    enum { KEYS_A_STEP = 16 };
+    uint32_t count = csg_record_count(record);
+    if (!csg_eval_charge(e, count / KEYS_A_STEP, where))
+        return csg_value_undef();
+    uint32_t i = csg_record_find(record, key, length);
+    return i < count ? csg_value_retain(record.as.vector->items[2 * i + 1]) : csg_value_undef();
+}
+
 static csg_value element_at(csg_eval *e, csg_value object, csg_value index, csg_span where)
 {
     double i = index.kind == CSG_VALUE_NUMBER ? trunc(index.as.number) : -1;
     if (object.kind == CSG_VALUE_VECTOR && i >= 0 && i < object.as.vector->count)
         return csg_value_retain(object.as.vector->items[(size_t)i]);
+    if (object.kind == CSG_VALUE_RECORD && index.kind == CSG_VALUE_STRING)
+        return entry_at(e, object, index.as.string->text, index.as.string->length, where);
     if (object.kind == CSG_VALUE_STRING)
         return character_at(e, object.as.string, i, where);
     if (object.kind == CSG_VALUE_RANGE && i >= 0 && i < 3) {
@@ -284,6 +297,9 @@ static csg_value evaluate_member(csg_eval *e, const csg_expression *x, csg_frame
                        : name == e->symbol_z ? 2
                                              : -1;
         result = element_at(e, object, csg_value_number(index), x->where);
+    } else if (object.kind == CSG_VALUE_RECORD) {
+        const csg_symbol_entry *key = &e->program->symbols.entries[name];
+        result = entry_at(e, object, key->name, key->length, x->where);
     } else if (object.kind == CSG_VALUE_RANGE) {
         double index = name == e->symbol_begin  ? 0
                        : name == e->symbol_step ? 1

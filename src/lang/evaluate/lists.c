@@ -78,6 +78,9 @@ bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, 
     case CSG_VALUE_VECTOR:
         iteration->count = over.as.vector->count;
         break;
+    case CSG_VALUE_RECORD:
+        iteration->count = csg_record_count(over);
+        break;
     case CSG_VALUE_STRING:
         iteration->count = (double)over.as.string->characters;
         break;
@@ -120,6 +123,8 @@ bool csg_iteration_next(csg_eval *e, csg_iteration *iteration, csg_value *out, c
                                            : over.as.range->begin + index * over.as.range->step);
     else if (over.kind == CSG_VALUE_VECTOR)
         *out = csg_value_retain(over.as.vector->items[(size_t)index]);
+    else if (over.kind == CSG_VALUE_RECORD) /* its keys */
+        *out = csg_value_retain(over.as.vector->items[2 * (size_t)index]);
     else if (over.kind == CSG_VALUE_STRING)
         *out = next_character(e, iteration);
     else

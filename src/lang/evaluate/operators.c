@@ -215,6 +215,62 @@ static csg_value multiply(csg_eval *e, const csg_expression *x, csg_value left, 
     return csg_eval_no_operation(e, x, left, right);
 }
 
+/* ---- bits ------------------------------------------------------------------------------------- */
+
+/* The whole number that a value is, cut towards 0. */
+static bool to_whole(csg_value value, int64_t *out)
+{
+    const double most = 9223372036854775808.0; /* 2^63 */
+    if (value.kind != CSG_VALUE_NUMBER || !(fabs(value.as.number) < most))
+        return false;
+    *out = (int64_t)value.as.number;
+    return true;
+}
+
+static csg_value no_bits(csg_eval *e, const csg_expression *x, const char *problem)
+{
+    const char *sign = csg_token_kind_name(x->operation);
+    csg_eval_report(e, CSG_DIAG_BAD_OPERANDS, x->where,
+                    x->operation == CSG_TOKEN_BIT_AND   ? "logical and is '&&'"
+                    : x->operation == CSG_TOKEN_BIT_OR  ? "logical or is '||'"
+                    : x->operation == CSG_TOKEN_BIT_NOT ? "logical not is '!'"
+                                                        : NULL,
+                    "%.*s needs %s, it counts as undef", (int)strlen(sign), sign, problem);
+    return csg_value_undef();
+}
+
+/* Of 64-bit integers in two's complement, as in OpenSCAD. */
+static csg_value combine_bits(csg_eval *e, const csg_expression *x, csg_value left, csg_value right)
+{
+    int64_t a, b;
+    if (left.kind == CSG_VALUE_UNDEF || right.kind == CSG_VALUE_UNDEF)
+        return csg_value_undef();
+    if (csg_symbolic_refuse(e, left, x->where, "an operation on bits") ||
+        csg_symbolic_refuse(e, right, x->where, "an operation on bits"))
+        return csg_value_undef();
+    if (!to_whole(left, &a) || !to_whole(right, &b))
+        return no_bits(e, x, "two numbers between -2^63 and 2^63");
+    if (x->operation == CSG_TOKEN_BIT_AND)
+        return csg_value_number((double)(a & b));
+    if (x->operation == CSG_TOKEN_BIT_OR)
+        return csg_value_number((double)(a | b));
+    if (b < 0 || b > 63)
+        return no_bits(e, x, "a number of places from 0 to 63");
+    if (x->operation == CSG_TOKEN_SHIFT_LEFT)
+        return csg_value_number((double)(int64_t)((uint64_t)a << b));
+    return csg_value_number((double)(a >= 0 ? a >> b : ~(~a >> b)));
+}
+
+static csg_value invert_bits(csg_eval *e, const csg_expression *x, csg_value operand)
+{
+    int64_t a;
+    if (operand.kind == CSG_VALUE_UNDEF ||
+        csg_symbolic_refuse(e, operand, x->where, "an operation on bits"))
+        return csg_value_undef();
+    return to_whole(operand, &a) ? csg_value_number((double)~a)
+                                 : no_bits(e, x, "a number between -2^63 and 2^63");
+}
+
 /* ---- entry
  * ---------------------------------------------------------------------------------------------- */
 
@@ -246,6 +302,11 @@ csg_value csg_eval_binary(csg_eval *e, const csg_expression *x, csg_value left, 
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
         return add_values(e, x, left, right);
+    case CSG_TOKEN_BIT_AND:
+    case CSG_TOKEN_BIT_OR:
+    case CSG_TOKEN_SHIFT_LEFT:
+    case CSG_TOKEN_SHIFT_RIGHT:
+        return combine_bits(e, x, left, right);
     case CSG_TOKEN_STAR:
     case CSG_TOKEN_SLASH:
         return both ? scalars(e, x, left, right) : multiply(e, x, left, right);
@@ -280,6 +341,8 @@ csg_value csg_eval_unary(csg_eval *e, const csg_expression *x, csg_value operand
                         "a condition");
     if (x->operation == CSG_TOKEN_NOT)
         return csg_value_boolean(!csg_value_is_true(operand));
+    if (x->operation == CSG_TOKEN_BIT_NOT)
+        return invert_bits(e, x, operand);
     if (x->operation == CSG_TOKEN_MINUS)
         return negate(e, x, operand);
     return csg_value_retain(operand);

@@ -56,7 +56,7 @@ static void run_module(csg_eval *e, const csg_definition *module, csg_frame *hom
 static void run_unknown(csg_eval *e, const csg_statement *statement, csg_frame *frame)
 {
     char hint[96];
-    if (!csg_unsupported_report(e, CSG_MEMBER_MODULE, statement->name, statement->where))
+    if (!csg_unsupported_report(e, statement->name, statement->where))
         csg_eval_report(e, CSG_DIAG_UNKNOWN_MODULE, statement->where,
                         csg_suggest(e, CSG_DIAG_UNKNOWN_MODULE, statement->name, frame,
                                     statement->where, hint, sizeof hint),

@@ -81,7 +81,7 @@ void csg_object_release(csg_heap *heap, csg_object *object)
     for (dying = object; dying;) {
         object = dying;
         dying = object->next;
-        if (object->kind == CSG_VALUE_VECTOR) {
+        if (object->kind == CSG_VALUE_VECTOR || object->kind == CSG_VALUE_RECORD) {
             const csg_vector *vector = (const csg_vector *)object;
             drop_values(heap, vector->items, vector->count, &dying);
         } else if (object->kind == CSG_VALUE_FUNCTION) {
@@ -191,6 +191,7 @@ bool csg_value_is_true(csg_value value)
     case CSG_VALUE_STRING:
         return value.as.string->length > 0;
     case CSG_VALUE_VECTOR:
+    case CSG_VALUE_RECORD:
         return value.as.vector->count > 0;
     case CSG_VALUE_UNDEF:
     case CSG_VALUE_UNSET:
@@ -225,6 +226,8 @@ const char *csg_value_kind_name(csg_value value)
         return "string";
     case CSG_VALUE_VECTOR:
         return "vector";
+    case CSG_VALUE_RECORD:
+        return "object";
     case CSG_VALUE_RANGE:
         return "range";
     case CSG_VALUE_FUNCTION:
@@ -247,6 +250,18 @@ bool csg_value_numbers(csg_value value, size_t count, double *out)
         out[i] = value.as.vector->items[i].as.number;
     }
     return true;
+}
+
+uint32_t csg_record_find(csg_value record, const char *key, size_t length)
+{
+    const csg_vector *entries = record.as.vector;
+    uint32_t i = 0, count = entries->count / 2;
+    for (; i < count; i++) {
+        const csg_string *name = entries->items[2 * i].as.string;
+        if (name->length == length && memcmp(name->text, key, length) == 0)
+            break;
+    }
+    return i;
 }
 
 double csg_range_count(const csg_range *range)

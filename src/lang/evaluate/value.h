@@ -24,6 +24,8 @@ typedef enum csg_value_kind {
     CSG_VALUE_UNSET,  /* a variable of a scope before its assignment */
     CSG_VALUE_STRING, /* from here on: objects */
     CSG_VALUE_VECTOR,
+    CSG_VALUE_RECORD, /* a vector of keys (strings) and values in turn: what scenes call an object
+                       */
     CSG_VALUE_RANGE,
     CSG_VALUE_FUNCTION,
     CSG_VALUE_RULE, /* a blend of more than one parameter */
@@ -53,7 +55,7 @@ typedef struct csg_value {
         csg_formula_id term; /* of the evaluator's formula */
         csg_object *object;
         csg_string *string;
-        csg_vector *vector;
+        csg_vector *vector; /* of a RECORD too */
         csg_range *range;
         csg_function *function;
         csg_rule_value *rule;
@@ -173,8 +175,16 @@ static inline void csg_frame_release(csg_heap *heap, csg_frame *frame)
 static inline void csg_vector_set(csg_vector *vector, size_t index, csg_value element)
 {
     vector->items[index] = element;
-    if (element.kind == CSG_VALUE_VECTOR && element.as.vector->depth >= vector->depth)
+    bool nests = element.kind == CSG_VALUE_VECTOR || element.kind == CSG_VALUE_RECORD;
+    if (nests && element.as.vector->depth >= vector->depth)
         vector->depth = element.as.vector->depth + 1;
+}
+
+/* Of a RECORD: the place of a key among its entries; their number where it is not there. */
+uint32_t csg_record_find(csg_value record, const char *key, size_t length);
+static inline uint32_t csg_record_count(csg_value record)
+{
+    return record.as.vector->count / 2;
 }
 
 bool csg_value_is_true(csg_value value);

@@ -144,6 +144,18 @@ static void put_vector(csg_text *text, const csg_vector *vector, const csg_symbo
     csg_text_put(text, "]", 1);
 }
 
+static void put_record(csg_text *text, const csg_vector *entries, const csg_symbols *symbols)
+{
+    csg_text_put(text, "{ ", 2);
+    for (uint32_t i = 0; i + 1 < entries->count && !text->failed; i += 2) {
+        csg_text_put_value(text, entries->items[i], false, symbols);
+        csg_text_put(text, " = ", 3);
+        csg_text_put_value(text, entries->items[i + 1], true, symbols);
+        csg_text_put(text, "; ", 2);
+    }
+    csg_text_put(text, "}", 1);
+}
+
 static void put_blend(csg_text *text, csg_value value)
 {
     csg_text_put_string(text, csg_blend_name(value.blend));
@@ -195,6 +207,9 @@ void csg_text_put_value(csg_text *text, csg_value value, bool quoted, const csg_
         break;
     case CSG_VALUE_VECTOR:
         put_vector(text, value.as.vector, symbols);
+        break;
+    case CSG_VALUE_RECORD:
+        put_record(text, value.as.vector, symbols);
         break;
     case CSG_VALUE_RANGE:
         put_range(text, value.as.range);

@@ -19,6 +19,11 @@ csg_value csg_functions_call(csg_eval *e, int row, const csg_expression *x, csg_
 /* The value of an expression where a call round(r) means the blend. */
 csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame);
 
+/* Objects under construction: a list of keys and values in turn. Sets an entry (value consumed). */
+void csg_record_put(csg_eval *e, csg_list *list, const char *key, csg_value value, csg_span where);
+/* The list becomes the object, and is released. */
+csg_value csg_record_finish(csg_eval *e, csg_list *list);
+
 /* For a row of functions.def whose handler looks its blend, rule or step up in another table: an
  * error where that has none of the name. */
 csg_value csg_no_such_blend(const csg_function_call *call);

@@ -8,50 +8,13 @@
 #include <string.h>
 
 #include "base/scene_codes.h"
+#include "lang/evaluate/files.h"
 #include "lang/services.h"
 #include "outline/dxf/dxf.h"
 #include "outline/svg/svg.h"
 #include "text/folders.h"
-#include "text/source.h"
 
 /* ---- finding --------------------------------------------------------------------------------- */
-
-/* folder (up to length) + "/" + name, when it can be read. */
-static const char *try_path(csg_module_call *call, const char *folder, size_t length,
-                            const char *name)
-{
-    csg_eval *e = call->e;
-    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
-    const char *path =
-        csg_arena_printf(&e->program->arena, "%.*s%s%s", (int)length, folder, slash, name);
-    if (!path)
-        csg_eval_no_memory(e);
-    return path && csg_source_exists(path) ? path : NULL;
-}
-
-static const char *search(csg_module_call *call, const char *name, csg_span asking)
-{
-    const csg_program *program = call->e->program;
-    const char *from = program->sources.items[asking.source].name;
-    const char *slash = strrchr(from, '/');
-    size_t folder = slash && name[0] != '/' ? (size_t)(slash - from) + 1 : 0;
-    const char *found = try_path(call, from, folder, name);
-    if (name[0] == '/')
-        return found;
-    char where[4096];
-    size_t length = 0;
-    for (size_t i = 0;
-         !found && (length = csg_folder_name(program->options, i, where, sizeof where)) > 0; i++)
-        if (length < sizeof where)
-            found = try_path(call, where, length, name);
-    return found;
-}
-
-void csg_import_depend(csg_eval *e, const char *path)
-{
-    if (!csg_program_depend(e->program, path))
-        csg_eval_no_memory(e);
-}
 
 const char *csg_import_find(csg_module_call *call, uint32_t index)
 {
@@ -62,11 +25,9 @@ const char *csg_import_find(csg_module_call *call, uint32_t index)
                            call->parameters[index].name);
         return NULL;
     }
-    const char *found = search(call, name.as.string->text, call->statement->where);
-    if (found) {
-        csg_import_depend(e, found);
-        return e->stop ? NULL : found;
-    }
+    const char *found = csg_file_find(e, name.as.string->text, call->statement->where);
+    if (found)
+        return found;
     if (!e->stop)
         csg_eval_report(e, CSG_DIAG_IMPORT_NOT_FOUND, call->spans[index], CSG_FOLDERS_IN_WORDS,
                         "%s(): there is no file '%.200s'%s", call->name, name.as.string->text,
@@ -75,16 +36,6 @@ const char *csg_import_find(csg_module_call *call, uint32_t index)
                             : "");
     call->failed = true;
     return NULL;
-}
-
-void csg_import_extension(const char *path, char out[8])
-{
-    const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
-    size_t i = 0;
-    if (dot && (!slash || dot > slash))
-        for (dot++; dot[i] && i < 7; i++)
-            out[i] = (char)(dot[i] >= 'A' && dot[i] <= 'Z' ? dot[i] - 'A' + 'a' : dot[i]);
-    out[i] = '\0';
 }
 
 /* ---- figures --------------------------------------------------------------------------------- */
@@ -214,7 +165,7 @@ static csg_node_id import_drawing(csg_module_call *call, const drawing *d, const
     csg_bytes bytes;
     csg_outline outline;
     csg_problem problem = {""};
-    csg_import_extension(path, extension);
+    csg_file_extension(path, extension);
     bool svg = strcmp(extension, "svg") == 0;
     if (!svg && strcmp(extension, "dxf") != 0)
         return CSG_NODE_NONE;
@@ -295,7 +246,7 @@ csg_node_id csg_module_import(csg_module_call *call)
     csg_node_id node = import_drawing(call, &d, path);
     if (node != CSG_NODE_NONE || call->e->stop)
         return node;
-    csg_import_extension(path, extension);
+    csg_file_extension(path, extension);
     node = strcmp(extension, "vm") == 0 ? csg_import_tape(call, path, FILE_NAME, BOUNDS, LIPSCHITZ)
                                         : import_mesh(call, FILE_NAME, path);
     return csg_argument_boolean(call, CENTER) ? centered(call, node) : node;

@@ -30,6 +30,15 @@ static const struct {
 #include "lang/modules/modules.def"
 };
 
+/* Names that OpenSCAD has given up, and still takes. */
+static const struct {
+    const char *old;
+    module_id module;
+} aliases[] = {
+#define CSG_ALIAS(old, name) {#old, MODULE_##name},
+#include "lang/modules/modules.def"
+};
+
 enum how { NAMED, POSITIONAL };
 
 static const csg_parameter_row parameters[] = {
@@ -45,6 +54,12 @@ void csg_modules_intern(csg_symbols *symbols, bool *ok)
         *ok = symbol != 0;
         if (symbol)
             symbols->entries[symbol].module = (int16_t)i;
+    }
+    for (size_t i = 0; i < sizeof aliases / sizeof *aliases && *ok; i++) {
+        csg_symbol symbol = csg_symbol_intern(symbols, aliases[i].old, strlen(aliases[i].old));
+        *ok = symbol != 0;
+        if (symbol)
+            symbols->entries[symbol].module = (int16_t)aliases[i].module;
     }
 }
 
@@ -156,6 +171,26 @@ static void bind_arguments(csg_module_call *call)
                             call->parameters[slot].name);
         csg_value_release(&e->heap, call->values[slot]);
         call->values[slot] = value;
+        call->spans[slot] = argument->value->whole;
+    }
+}
+
+void csg_module_call_of_function(csg_module_call *call, const csg_function_call *from,
+                                 const char *module, uint32_t skipped)
+{
+    int row = 0;
+    uint32_t position = 0;
+    while (row < MODULE_COUNT && strcmp(modules[row].name, module) != 0)
+        row++;
+    find_rows(call, row);
+    call->parameters += skipped;
+    call->parameter_count -= skipped;
+    for (uint32_t i = 0; i < from->count; i++) {
+        const csg_argument *argument = &from->syntax[i];
+        uint32_t slot = find_slot(call, argument, &position);
+        if (slot == call->parameter_count)
+            continue;
+        call->values[slot] = from->arguments[i];
         call->spans[slot] = argument->value->whole;
     }
 }

@@ -44,6 +44,11 @@ void csg_modules_intern(csg_symbols *symbols, bool *ok);
 /* Runs the module of this row: its parts go on the stack, several only where they may spread. */
 void csg_modules_run(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame,
                      bool spread);
+/* For functions that take the parameters of a module (but the first `skipped`): fills in what
+ * csg_argument_* look at; e, name and a statement with the place are set. The values stay the
+ * function's. */
+void csg_module_call_of_function(csg_module_call *call, const csg_function_call *from,
+                                 const char *module, uint32_t skipped);
 /* Tells of parts that are only operands (scene/tree/parts.h); CSGM_ERR_MEMORY is reported. */
 csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Flat figures: circle, square, polygon, and offset of what is flat.
+ * Flat figures: circle, square, polygon; offset and fill of what is flat.
  */
 #include <math.h>
 
@@ -162,4 +162,13 @@ csg_node_id csg_module_offset(csg_module_call *call)
     csg_node_id node = sharp ? csg_solid_offset_sharp(&job, child, by, corner, 0)
                              : csg_solid_offset_round(&job, &rule, child, by);
     return csg_shape_made(call, &job, node);
+}
+
+csg_node_id csg_module_fill(csg_module_call *call)
+{
+    csg_node_id child = csg_shape_children(call, true);
+    if (child == CSG_NODE_NONE || csg_eval_is_empty(call->e, child))
+        return child;
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_solid_fill(&job, child));
 }

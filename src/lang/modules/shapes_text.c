@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * text(): a figure of the letters' outlines (outline/letters/text.h). What font stands for one that
- * is missing, and what characters no font has, is told.
+ * text(): a figure of the letters' outlines (outline/letters/text.h); textmetrics() and
+ * fontmetrics(), its measures. What font stands for one that is missing, and what characters no
+ * font has, is told.
  */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/scene_codes.h"
-#include "lang/modules/imports.h"
+#include "lang/evaluate/files.h"
 #include "lang/modules/shapes.h"
 #include "outline/letters/text.h"
 
@@ -117,38 +118,138 @@ static void depend_on_fonts(csg_module_call *call, const csg_fonts *fonts)
     for (size_t i = 0; (path = csg_fonts_file(fonts, i)) && !e->stop; i++) {
         const char *copy = csg_arena_strndup(&e->program->arena, path, strlen(path));
         if (copy)
-            csg_import_depend(e, copy);
+            csg_file_depend(e, copy);
         else
             csg_eval_no_memory(e);
     }
 }
 
-csg_node_id csg_module_text(csg_module_call *call)
+/* False: told, or stopped. */
+static bool set_text(csg_module_call *call, csg_outline *out, csg_text_report *report)
 {
     csg_eval *e = call->e;
-    csg_text_report report = {0};
-    csg_outline outline;
     csg_text_request request = read_request(call);
     if (call->failed)
-        return csg_shape_empty(call);
+        return false;
     csg_fonts *fonts = open_fonts(call);
     if (!fonts || !csg_eval_charge(e, 10 + 10 * request.length, call->statement->where))
-        return CSG_NODE_NONE;
-    csgm_status status = csg_text_outline(fonts, &request, &outline, &report);
+        return false;
+    csgm_status status = csg_text_outline(fonts, &request, out, report);
     if (status == CSGM_ERR_MEMORY) {
         csg_eval_no_memory(e);
-        return CSG_NODE_NONE;
+        return false;
     }
     if (status != CSGM_OK) {
         csg_argument_error(
             call, csg_has_argument(call, FONT) ? FONT : TEXT, CSG_DIAG_BAD_IMPORT, "%s",
-            report.problem.text[0] ? report.problem.text : "this build has no library for fonts");
-        return csg_shape_empty(call);
+            report->problem.text[0] ? report->problem.text : "this build has no library for fonts");
+        return false;
     }
-    tell(call, &report);
+    tell(call, report);
     depend_on_fonts(call, fonts);
+    return true;
+}
+
+csg_node_id csg_module_text(csg_module_call *call)
+{
+    csg_text_report report = {0};
+    csg_outline outline;
+    if (!set_text(call, &outline, &report))
+        return csg_shape_empty(call);
     if (outline.loop_count)
         return csg_shape_area(call, &outline, false);
     csg_outline_release(&outline);
     return csg_shape_empty(call); /* no text, or blanks: OpenSCAD says nothing either */
+}
+
+/* ---- measures -------------------------------------------------------------------------------- */
+
+static void put_number(const csg_function_call *call, csg_list *list, const char *key, double value)
+{
+    csg_record_put(call->e, list, key, csg_value_number(value), call->where);
+}
+
+static void put_pair(const csg_function_call *call, csg_list *list, const char *key, csg_vec2 value)
+{
+    csg_list pair = {0};
+    csg_list_push(call->e, &pair, csg_value_number(value.x), call->where);
+    csg_list_push(call->e, &pair, csg_value_number(value.y), call->where);
+    csg_record_put(call->e, list, key, csg_list_finish(call->e, &pair), call->where);
+}
+
+static void put_text(const csg_function_call *call, csg_list *list, const char *key,
+                     const char *text, size_t length)
+{
+    csg_record_put(call->e, list, key, csg_eval_string(call->e, text, length), call->where);
+}
+
+csg_value csg_function_textmetrics(const csg_function_call *call)
+{
+    const csg_statement place = {.where = call->where};
+    csg_module_call text = {.e = call->e, .name = call->name, .statement = &place};
+    csg_text_report report = {0};
+    csg_outline outline;
+    csg_list list = {0};
+    csg_module_call_of_function(&text, call, "text", 0);
+    if (!set_text(&text, &outline, &report))
+        return csg_value_undef();
+    csg_outline_release(&outline);
+    put_pair(call, &list, "position", report.position);
+    put_pair(call, &list, "size", report.extent);
+    put_number(call, &list, "ascent", report.ascent);
+    put_number(call, &list, "descent", report.descent);
+    put_pair(call, &list, "offset", report.offset);
+    put_pair(call, &list, "advance", report.advance);
+    return csg_record_finish(call->e, &list);
+}
+
+static void put_heights(const csg_function_call *call, csg_list *list, const char *key, double up,
+                        double down)
+{
+    csg_list inner = {0};
+    put_number(call, &inner, "ascent", up);
+    put_number(call, &inner, "descent", down);
+    csg_record_put(call->e, list, key, csg_record_finish(call->e, &inner), call->where);
+}
+
+/* "Family:style=Bold" is both names. */
+static void put_names(const csg_function_call *call, csg_list *list, const char *font)
+{
+    csg_list names = {0};
+    const char *colon = strchr(font, ':'), *style = strstr(font, "style=");
+    style = style ? style + strlen("style=") : "Regular";
+    put_text(call, &names, "family", font, colon ? (size_t)(colon - font) : strlen(font));
+    put_text(call, &names, "style", style, strcspn(style, ":"));
+    csg_record_put(call->e, list, "font", csg_record_finish(call->e, &names), call->where);
+}
+
+csg_value csg_function_fontmetrics(const csg_function_call *call)
+{
+    enum { ITS_SIZE, ITS_FONT };
+    const csg_statement place = {.where = call->where};
+    csg_module_call text = {.e = call->e, .name = call->name, .statement = &place};
+    csg_text_report report = {0};
+    csg_font_metrics metrics;
+    csg_list list = {0};
+    csg_module_call_of_function(&text, call, "text", 1);
+    double size = csg_argument_number(&text, ITS_SIZE, 10, CSG_POSITIVE);
+    csg_fonts *fonts = text.failed ? NULL : open_fonts(&text);
+    if (!fonts)
+        return csg_value_undef();
+    csgm_status status =
+        csg_text_font_metrics(fonts, string_of(&text, ITS_FONT), size, &metrics, &report);
+    if (status == CSGM_ERR_MEMORY)
+        csg_eval_no_memory(call->e);
+    else if (status != CSGM_OK)
+        csg_argument_error(&text, ITS_FONT, CSG_DIAG_BAD_IMPORT, "%s",
+                           report.problem.text[0] ? report.problem.text
+                                                  : "this build has no library for fonts");
+    if (status != CSGM_OK)
+        return csg_value_undef();
+    depend_on_fonts(&text, fonts);
+    put_heights(call, &list, "nominal", metrics.ascent, metrics.descent);
+    put_heights(call, &list, "max", metrics.top, metrics.bottom);
+    put_number(call, &list, "interline", metrics.interline);
+    put_names(call, &list, report.font);
+    return csg_record_finish(call->e, &list);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Expressions: precedence climbing over the binary operators, recursive descent for the rest.
- * Precedence, loosest first: ?:  ||  &&  == !=  < <= > >=  + -  * / %  unary + - !  ^  call index .
+ * Precedence, loosest first: ?:  ||  &&  == !=  < <= > >=  |  &  << >>  + -  * / %  unary + - ! ~  ^
+ * call index .
  * As in OpenSCAD 2021, ^ binds tighter than a sign before it (-2^2 = -4) and groups to the right.
  */
 #include "base/scene_codes.h"
@@ -164,6 +165,7 @@ static bool begins_expression(csg_token_kind kind)
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
     case CSG_TOKEN_NOT:
+    case CSG_TOKEN_BIT_NOT:
     case CSG_TOKEN_FOR:
     case CSG_TOKEN_IF:
     case CSG_TOKEN_EACH:
@@ -565,7 +567,8 @@ static csg_expression *parse_power(csg_parser *parser)
 static csg_expression *parse_unary(csg_parser *parser)
 {
     csg_token_kind kind = csg_parser_peek(parser);
-    if (kind != CSG_TOKEN_MINUS && kind != CSG_TOKEN_PLUS && kind != CSG_TOKEN_NOT)
+    if (kind != CSG_TOKEN_MINUS && kind != CSG_TOKEN_PLUS && kind != CSG_TOKEN_NOT &&
+        kind != CSG_TOKEN_BIT_NOT)
         return parse_power(parser);
     csg_span sign = csg_parser_span(parser);
     csg_parser_next(parser);
@@ -592,19 +595,26 @@ static int precedence(csg_token_kind kind)
     case CSG_TOKEN_GREATER:
     case CSG_TOKEN_GREATER_EQUAL:
         return 4;
+    case CSG_TOKEN_BIT_OR:
+        return 5;
+    case CSG_TOKEN_BIT_AND:
+        return 6;
+    case CSG_TOKEN_SHIFT_LEFT:
+    case CSG_TOKEN_SHIFT_RIGHT:
+        return 7;
     case CSG_TOKEN_PLUS:
     case CSG_TOKEN_MINUS:
-        return 5;
+        return 8;
     case CSG_TOKEN_STAR:
     case CSG_TOKEN_SLASH:
     case CSG_TOKEN_PERCENT:
-        return 6;
+        return 9;
     default:
         return 0;
     }
 }
 
-/* All operators that bind at least as tightly as `least`; recursion at most 6 levels deep. */
+/* All operators that bind at least as tightly as `least`; recursion at most 9 levels deep. */
 static csg_expression *parse_binary(csg_parser *parser, int least)
 {
     csg_span from = csg_parser_span(parser);

@@ -30,8 +30,7 @@ static csg_symbol append(csg_symbols *symbols, const char *name, size_t length, 
                             symbols->count + 2, sizeof *symbols->entries))
         return 0;
     if (symbols->count == 0)
-        symbols->entries[symbols->count++] =
-            (csg_symbol_entry){"", 0, 0, false, -1, -1, -1, -1, false};
+        symbols->entries[symbols->count++] = (csg_symbol_entry){"", 0, 0, false, -1, -1, -1, false};
     const char *copy = csg_arena_strndup(symbols->arena, name, length);
     if (!copy)
         return 0;
@@ -39,8 +38,7 @@ static csg_symbol append(csg_symbols *symbols, const char *name, size_t length, 
         (csg_symbol_entry){copy, (uint32_t)length,
                            hash, length > 0 && name[0] == '$' && strcmp(copy, "$children") != 0,
                            -1,   -1,
-                           -1,   -1,
-                           false};
+                           -1,   false};
     return (csg_symbol)symbols->count++;
 }
 

@@ -15,9 +15,8 @@ typedef struct csg_symbol_entry {
     bool special;        /* begins with '$': dynamic scope; not $children, which is lexical */
     int16_t function;    /* row in functions.def, -1 = none */
     int16_t module;      /* row in modules.def, -1 = none */
-    int16_t unsupported; /* row in unsupported.def, -1 = none */
-    int16_t unsupported_function; /* row in unsupported_functions.def, -1 = none */
-    bool variable;                /* the text gives it a value somewhere */
+    int16_t unsupported; /* row in unsupported_modules.def, -1 = none */
+    bool variable;       /* the text gives it a value somewhere */
 } csg_symbol_entry;
 
 typedef struct csg_symbols {

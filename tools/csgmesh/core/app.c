@@ -155,6 +155,24 @@ static csgm_leniency leniency_of(const cli_options *options)
     return options->strict ? CSGM_STRICT : options->lenient ? CSGM_LENIENT : CSGM_LENIENT_BY_FILE;
 }
 
+/* "2021.01" or "2021.01.15" -> 20210100, 20210115. */
+static bool read_level(cli_app *app, uint32_t *out)
+{
+    unsigned year = 0, month = 0, day = 0;
+    char after;
+    const char *text = app->options.openscad_version;
+    if (!text)
+        return true;
+    int read = sscanf(text, "%4u.%2u.%2u%c", &year, &month, &day, &after);
+    if ((read != 2 && read != 3) || year < 2000 || month < 1 || month > 12 || day > 31) {
+        cli_usage_error(app, "as --openscad-version 2021.01",
+                        "--openscad-version wants YEAR.MONTH or YEAR.MONTH.DAY, not '%.40s'", text);
+        return false;
+    }
+    *out = year * 10000 + month * 100 + day;
+    return true;
+}
+
 static csgm_status load_with_options(cli_app *app, const request *wanted)
 {
     const cli_list *texts = &app->options.defines;
@@ -170,6 +188,8 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     options.include_dir_count = app->options.include_dirs.count;
     options.facets = app->options.facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
     options.leniency = leniency_of(&app->options);
+    if (status == CSGM_OK && !read_level(app, &options.openscad_version))
+        status = CSGM_ERR_ARGUMENT;
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);
