@@ -3,6 +3,8 @@
  */
 #include "shape/shape.h"
 
+#include <string.h>
+
 void csg_shape_retain(csg_shape *shape)
 {
     atomic_fetch_add(&shape->references, 1);
@@ -19,16 +21,44 @@ double csg_shape_sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
     return shape->operations->sample(shape, p, gradient);
 }
 
+static bool is_same(const float *a, const float *b)
+{
+    return memcmp(a, b, sizeof *a) == 0; /* two zeros are not */
+}
+
+/* Vector code fills its lanes with copies of the first point, and most batches are of one point:
+ * how many come before the copies. */
+static size_t count_distinct(const float *x, const float *y, const float *z, size_t count)
+{
+    while (count > 1 && is_same(&x[count - 1], x) && is_same(&y[count - 1], y) &&
+           is_same(&z[count - 1], z))
+        count--;
+    return count;
+}
+
+static void copy_first(float *array, size_t from, size_t count)
+{
+    for (size_t i = from; i < count; i++)
+        array[i] = array[0];
+}
+
 void csg_shape_values(const csg_shape *shape, const float *x, const float *y, const float *z,
                       size_t count, float *out)
 {
-    shape->operations->values(shape, x, y, z, count, out);
+    size_t distinct = count_distinct(x, y, z, count);
+    shape->operations->values(shape, x, y, z, distinct, out);
+    copy_first(out, distinct, count);
 }
 
 void csg_shape_gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
                          size_t count, float *out, float *gx, float *gy, float *gz)
 {
-    shape->operations->gradients(shape, x, y, z, count, out, gx, gy, gz);
+    size_t distinct = count_distinct(x, y, z, count);
+    shape->operations->gradients(shape, x, y, z, distinct, out, gx, gy, gz);
+    copy_first(out, distinct, count);
+    copy_first(gx, distinct, count);
+    copy_first(gy, distinct, count);
+    copy_first(gz, distinct, count);
 }
 
 uint64_t csg_shape_hash(const csg_shape *shape)
