@@ -17,7 +17,7 @@ PARTS = {
     "outline": ["letters", "svg", "dxf", "heights"],
     "scene": ["formula", "primitives", "operators", "boxes", "tree", "lazy", "outlines"],
     "lang": ["parse", "evaluate", "functions", "modules", "parameters"],
-    "field": ["kernels", "prune", "compile", "cones"],
+    "field": ["kernels", "gradients", "prune", "compile", "cones"],
     "grid": ["octree", "certify"],
     "mesh": ["marching", "features", "remesh", "distance", "reshape", "pipeline"],
     "io": ["text", "formats", "gltf", "threemf"],

@@ -24,6 +24,8 @@ typedef enum csg_op {
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
     CSG_OP_ROUND_INTERSECTION,
+    CSG_OP_FILLET_UNION, /* takes `arity` values, the last `planes` of them those of planes */
+    CSG_OP_FILLET_INTERSECTION,
     CSG_OP_COMBINE,    /* takes `arity` values from the stack, x, y, z of a formula */
     CSG_OP_SOFTEN,     /* one child: its value becomes a field in [0, 1] */
     CSG_OP_RULE_UNION, /* of fields: its children's joins did the work, what is left it delivers */
@@ -56,7 +58,8 @@ static inline bool csg_op_is_leaf(uint8_t op)
 }
 static inline bool csg_op_is_union(uint8_t op)
 {
-    return op == CSG_OP_UNION || op == CSG_OP_ROUND_UNION || op == CSG_OP_RULE_UNION;
+    return op == CSG_OP_UNION || op == CSG_OP_ROUND_UNION || op == CSG_OP_FILLET_UNION ||
+           op == CSG_OP_RULE_UNION;
 }
 /* Works on fields in [0, 1] instead of values. */
 static inline bool csg_op_takes_fields(uint8_t op)
@@ -68,10 +71,15 @@ static inline bool csg_op_is_round(uint8_t op)
     return op == CSG_OP_ROUND_UNION || op == CSG_OP_ROUND_INTERSECTION;
 }
 
+static inline bool csg_op_is_fillet(uint8_t op)
+{
+    return op == CSG_OP_FILLET_UNION || op == CSG_OP_FILLET_INTERSECTION;
+}
+
 /* Operators that look at all their operands' values at once. */
 static inline bool csg_op_takes_all(uint8_t op)
 {
-    return csg_op_is_round(op) || op == CSG_OP_COMBINE;
+    return csg_op_is_round(op) || csg_op_is_fillet(op) || op == CSG_OP_COMBINE;
 }
 
 /* Turns the one value below it into what it delivers. */
@@ -90,6 +98,8 @@ typedef struct csg_tape_node {
                       csg_tape_curve */
     uint8_t join_blend;
     uint8_t frame;            /* leaves: csg_leaf_frame */
+    bool is_plane;            /* leaves: at which a fillet ends, none of its operands */
+    uint16_t planes;          /* fillets: how many of the last children are such */
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */
     uint32_t join_parameters; /* into the parameters, of the operator that joins */
@@ -157,7 +167,8 @@ typedef struct csg_tape {
     float lipschitz;          /* of the whole field */
     float steepest;           /* of its leaves */
     uint32_t count;
-    bool turns; /* some TURNING operator stands in the whole tape */
+    float waver; /* how far the field strays from one that has the constant `lipschitz` */
+    bool turns;  /* some value in the whole tape depends on its operands' gradients */
 } csg_tape;
 
 static inline uint32_t csg_tape_leaf_count(const csg_tape *tape)

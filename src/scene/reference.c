@@ -4,6 +4,8 @@
  */
 #include "scene/reference.h"
 
+#include "scene/operators/choice.h"
+#include "scene/operators/fillet.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 
@@ -69,13 +71,80 @@ static double operand_sign(csg_node_kind kind, uint32_t index)
     return kind == CSG_NODE_INTERSECTION || (kind == CSG_NODE_DIFFERENCE && index == 0) ? -1 : 1;
 }
 
+typedef struct fillet_end {
+    csg_fillet_planes planes;
+    csg_vec3 p;
+} fillet_end;
+
+static double fillet_inside(const void *user, const csg_fillet_operand *operands,
+                            const csg_fillet_choice *subset, uint32_t *plane)
+{
+    const fillet_end *end = user;
+    double least = INFINITY;
+    for (size_t i = 0; i < end->planes.count; i++) {
+        double reach = -INFINITY;
+        for (uint32_t k = 0; k < subset->count; k++)
+            reach = fmax(
+                reach, end->planes.reaches[operands[subset->at[k]].index * end->planes.count + i]);
+        double inside = reach - csg_vec3_dot(end->planes.normals[i], end->p);
+        if (inside < least)
+            *plane = (uint32_t)i;
+        least = fmin(least, inside);
+    }
+    return least;
+}
+
+/* Of operands whose values are in w->values, with their signs; p: the point, in the node's own
+ * frame. */
+static csg_sample unite_fillet(const csg_reference_work *w, const csgm_scene *scene,
+                               const csg_node *node, csg_vec3 p, const csg_sample *samples,
+                               const csg_node_id *at)
+{
+    csg_fillet_operand reach[CSG_FILLET_MOST];
+    fillet_end end = {csg_scene_fillet_planes(scene, node), p};
+    csg_fillet_ends ends = {end.planes.count ? fillet_inside : NULL, &end};
+    uint32_t count = 0;
+    double r = csg_scene_parameters(scene, node)[CSG_FILLET_N];
+    size_t top = csg_largest_of(w->values, node->child_count);
+    double most = csg_choose(w->values, node->child_count, top, w->partials);
+    for (uint32_t k = 0; k < node->child_count && isfinite(most); k++) {
+        csg_vec3 g = samples[at[k]].gradient;
+        double sign = operand_sign((csg_node_kind)node->kind, k);
+        csg_fillet_operand made = {.index = k};
+        if (most - w->values[k] < 2 * r &&
+            csg_fillet_set(&made, w->values[k], sign * g.x, sign * g.y, sign * g.z))
+            count = csg_fillet_insert(reach, count, &made);
+    }
+    csg_sample out = {most, csg_vec3_scale(samples[at[top]].gradient,
+                                           operand_sign((csg_node_kind)node->kind, (uint32_t)top))};
+    if (count < 2)
+        return out;
+    csg_fillet_choice best = csg_fillet_solve(r, reach, count, &ends);
+    if (!(reach[0].f + best.excess > most))
+        return out;
+    out = (csg_sample){reach[0].f + best.excess, {0, 0, 0}};
+    if (best.is_ended)
+        out.gradient = csg_vec3_scale(end.planes.normals[best.plane], -1);
+    for (uint32_t i = 0; i < best.count && !best.is_ended; i++) {
+        uint32_t k = reach[best.at[i]].index;
+        double weight = operand_sign((csg_node_kind)node->kind, k) * best.share[i];
+        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[k]].gradient, weight));
+    }
+    return out;
+}
+
 static csg_sample combine(const csg_reference_work *w, const csgm_scene *scene,
-                          const csg_node *node, const csg_sample *samples, const csg_node_id *at)
+                          const csg_node *node, csg_vec3 p, const csg_sample *samples,
+                          const csg_node_id *at)
 {
     csg_node_kind kind = node->kind;
     for (uint32_t k = 0; k < node->child_count; k++)
         w->values[k] = operand_sign(kind, k) * samples[at[k]].value;
     double outer = operand_sign(kind, 0);
+    if (csg_blend_is_fillet(node->blend)) {
+        csg_sample made = unite_fillet(w, scene, node, p, samples, at);
+        return (csg_sample){outer * made.value, csg_vec3_scale(made.gradient, outer)};
+    }
     const csg_rule *rule = csg_scene_rule(scene, node);
     double value =
         outer * (rule ? csg_rule_apply(rule, true, w->values, node->child_count, 0, w->partials)
@@ -219,7 +288,7 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
         if (!csg_node_is_operator(node->kind))
             return sample_leaf(work, scene, node, p);
         return csg_blend_takes_fields(node->blend) ? combine_fields(work, scene, node, samples, at)
-                                                   : combine(work, scene, node, samples, at);
+                                                   : combine(work, scene, node, p, samples, at);
     }
 }
 

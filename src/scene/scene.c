@@ -48,7 +48,25 @@ uint32_t csg_node_parameter_count(const csg_node *node)
         return csg_primitive_parameter_count(node->kind);
     bool fields = csg_blend_takes_fields(node->blend) ||
                   (node->blend == CSG_BLEND_SHARP && (node->flags & CSG_FLAG_SOFT));
+    if (csg_blend_is_fillet(node->blend))
+        return CSG_FILLET_PARAMETERS;
     return fields ? CSG_OPERATOR_FIELD_PARAMETERS : 1;
+}
+
+bool csg_node_is_fillet(const csg_node *node)
+{
+    return csg_node_is_operator(node->kind) && csg_blend_is_fillet(node->blend);
+}
+
+csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node)
+{
+    const double *v = csg_scene_parameters(scene, node);
+    csg_fillet_planes planes = {.count = (size_t)v[CSG_FILLET_PLANES]};
+    if (planes.count) {
+        planes.normals = scene->normals + (size_t)v[CSG_FILLET_FIRST_NORMAL];
+        planes.reaches = scene->reaches + (size_t)v[CSG_FILLET_FIRST_REACH];
+    }
+    return planes;
 }
 
 const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)

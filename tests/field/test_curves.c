@@ -8,8 +8,8 @@
  * 0).
  */
 #include "field/compile/compile_curve.h"
-#include "field/cones/cone_curve.h"
 #include "field/field_support.h"
+#include "field/gradients/cone_curve.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/primitive.h"
 
@@ -110,8 +110,8 @@ static void check_ranges(const test_subject *s, const test_points *points,
     assert_true(tape->count <= MOST_NODES);
     for (size_t i = 0; i + CSG_OCTANTS <= points->count; i += CSG_OCTANTS * 8) {
         float radius = (float)csg_random_uniform(random, 0, 0.5);
-        kernel->intervals(tape, points->x + i, points->y + i, points->z + i, radius, low, high,
-                          scratch);
+        kernel->intervals(tape, points->x + i, points->y + i, points->z + i, radius, NULL, low,
+                          high, scratch);
         for (size_t o = 0; o < CSG_OCTANTS; o++) {
             size_t root = (size_t)(tape->count - 1) * CSG_OCTANTS + o;
             assert_true(low[root] <= results->value[i + o] && results->value[i + o] <= high[root]);

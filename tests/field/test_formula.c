@@ -224,8 +224,8 @@ static void check_intervals(const test_subject *subject, const csg_kernel *kerne
         for (int axis = 0; axis < 3; axis++)
             c[axis][o] = (float)csg_random_uniform(random, -2, 2);
     float radius = half * 1.7320511f;
-    kernel->intervals(tape, c[0], c[1], c[2], radius, low[0], high[0], scratch);
-    scalar->intervals(tape, c[0], c[1], c[2], radius, low[1], high[1], scratch);
+    kernel->intervals(tape, c[0], c[1], c[2], radius, NULL, low[0], high[0], scratch);
+    scalar->intervals(tape, c[0], c[1], c[2], radius, NULL, low[1], high[1], scratch);
     size_t bytes = tape->count * CSG_OCTANTS * sizeof(float);
     assert_memory_equal(low[0], low[1], bytes);
     assert_memory_equal(high[0], high[1], bytes);

@@ -40,6 +40,34 @@ static void test_random_scenes(void **state)
     assert_true(in_band > 10000);
 }
 
+/* Trees of fillets, whose values depend on gradients and may jump. */
+static void test_random_fillet_scenes(void **state)
+{
+    uint64_t cells = 0, shortened = 0, in_band = 0;
+    csg_random random = {23};
+    test_random_fillets = true;
+    for (unsigned i = 0; i < 150; i++) {
+        walk w = {0};
+        char what[48];
+        snprintf(what, sizeof what, "random fillets %u", i);
+        test_random_shapes = i % 3 == 1;
+        test_random_curves = i % 5 == 3;
+        test_subject_begin(&w.subject);
+        test_subject_compile(&w.subject,
+                             test_random_scene(&w.subject.builder, &random, 2 + i * 7 % 20));
+        walk_begin(&w, 3);
+        for (int turn = 0; turn < 3; turn++) {
+            cube at = {test_point(&random, 1), csg_random_uniform(&random, 0.05, 1.5)};
+            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
+            descend(&w, &random, at, tau, what);
+        }
+        cells += w.cells, shortened += w.shortened, in_band += w.in_band;
+        walk_end(&w);
+    }
+    test_random_fillets = test_random_shapes = test_random_curves = false;
+    assert_true(cells > 3000 && shortened > 400 && in_band > 10000);
+}
+
 /* ---- on the threshold
  * ------------------------------------------------------------------------------ */
 
@@ -107,9 +135,9 @@ static void check_threshold(csg_random *random, csg_blend_kind kind, csg_node_ki
 
 static void test_threshold(void **state)
 {
-    static const csg_blend_kind kinds[] = {CSG_BLEND_SHARP,     CSG_BLEND_ROUND,
-                                           CSG_BLEND_OVERBLEND, CSG_BLEND_COSINE,
-                                           CSG_BLEND_PARABOLA,  CSG_BLEND_CHAMFER};
+    static const csg_blend_kind kinds[] = {
+        CSG_BLEND_SHARP,    CSG_BLEND_ROUND,   CSG_BLEND_OVERBLEND, CSG_BLEND_COSINE,
+        CSG_BLEND_PARABOLA, CSG_BLEND_CHAMFER, CSG_BLEND_FILLET};
     csg_random random = {22};
     walk totals = {0};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
@@ -152,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_random_fillet_scenes),
         cmocka_unit_test(test_threshold),
         cmocka_unit_test(test_one_of_many),
     };

@@ -151,7 +151,7 @@ static void check_intervals(const test_subject *s, const test_points *points, co
         double half = pow(10, uniform(&random, -3, 0)), radius = half * sqrt(3.0) * (1 + 1e-6);
         for (size_t k = 0; k < count; k++) {
             kernels[k]->intervals(&s->field->tape, points->x + i, points->y + i, points->z + i,
-                                  (float)radius, low[k], high[k], scratch);
+                                  (float)radius, NULL, low[k], high[k], scratch);
             if (memcmp(low[0], low[k], nodes * CSG_OCTANTS * sizeof(float)) ||
                 memcmp(high[0], high[k], nodes * CSG_OCTANTS * sizeof(float)))
                 fail_msg("%s: %s has other intervals", what, kernels[k]->name);
@@ -298,7 +298,7 @@ static csg_node_id random_operand(csg_scene_builder *builder, csg_random *random
 static csg_blend random_blend(csg_scene_builder *builder, csg_random *random, bool turning)
 {
     if (csg_random_below(random, 4) == 0)
-        return test_random_blend(random, csg_random_below(random, CSG_BLEND_COUNT));
+        return test_random_blend(random, csg_random_below(random, CSG_BLEND_FILLET));
     size_t row = csg_random_below(random, KINDS);
     csg_blend_kind kind = kinds[row];
     if (kind == CSG_BLEND_FIELD_SHARP || is_combined(row))

@@ -128,7 +128,9 @@ static csg_blend any_blend(csg_scene_builder *builder, csg_random *random)
     if (test_random_rules && chance(random, 0.35))
         return any_rule(builder, random);
     if (chance(random, 0.75))
-        kind = (csg_blend_kind)csg_random_below(random, CSG_BLEND_COUNT);
+        kind = (csg_blend_kind)csg_random_below(random, CSG_BLEND_FILLET);
+    if (test_random_fillets && chance(random, 0.6))
+        kind = CSG_BLEND_FILLET;
     return test_random_blend(random, kind);
 }
 
@@ -150,6 +152,7 @@ static csg_node_id colored(csg_scene_builder *builder, csg_random *random, csg_n
 bool test_random_shapes = false;
 
 bool test_random_curves = false;
+bool test_random_fillets = false;
 
 static csg_node_id random_tube(csg_scene_builder *builder, csg_random *random)
 {

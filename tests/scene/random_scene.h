@@ -25,6 +25,10 @@ extern bool test_random_rules;
  */
 extern bool test_random_curves;
 
+/* Whether most blends are fillets, which no formula of their operands' values says. Off at first.
+ */
+extern bool test_random_fillets;
+
 /* A rule of this kind with random parameters, not settled. */
 csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
 

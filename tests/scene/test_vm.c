@@ -122,7 +122,7 @@ static void test_blends(void **state)
     csg_random random = {3};
     for (int i = 0; i < 300; i++) {
         csg_node_id nodes[6];
-        csg_blend_kind kind = (csg_blend_kind)(i % CSG_BLEND_COUNT);
+        csg_blend_kind kind = (csg_blend_kind)(i % CSG_BLEND_FILLET);
         size_t count = 2 + csg_random_below(&random, 5);
         for (size_t k = 0; k < count; k++) {
             csg_affine place = test_random_affine(&random, 0.5, 1, 0.5);

@@ -6,67 +6,17 @@
 
 #include "field/compile/compile_curve.h"
 #include "field/compile/compile_formula.h"
-#include "field/compile/compile_leaf.h"
-#include "field/compile/compile_rule.h"
-#include "field/field.h"
+#include "field/compile/compile_private.h"
 #include "field/kernels/dispatch.h"
 #include "field/kernels/warp_kernel.h"
 #include "field/rule_layout.h"
-#include "scene/operators/soft.h"
 #include "scene/primitives/point.h"
 
-/* What a node inherits from its ancestors. */
-typedef struct frame {
-    csg_affine place; /* own frame -> scene, or -> the frame below the warp */
-    double factor;    /* product of the ancestors' smallest singular values and warps' scales */
-    double raise;     /* what offsets above add to the value with its sign */
-    uint32_t warp;    /* index + 1, 0 = none */
-    double magnitude; /* of the lengths in the warps' arithmetic */
-    bool negate;
-    csg_form form;     /* what the operator above takes */
-    bool is_raised;    /* an offset stands between, so it is no field that comes up */
-    csg_operand entry; /* how it becomes one then */
-    double entry_factor;
-    bool colored, shaded;      /* by a colour, by a material from further out */
-    csg_color paint, material; /* what `color` is the number of */
-    uint32_t color;
-} frame;
+typedef csg_compile_frame frame;
+typedef csg_compile_task task;
+typedef csg_compiler compiler;
 
-/* An operator (or a wrapper on the way to one) whose children are being written. */
-typedef struct task {
-    csg_node_id node;
-    uint32_t next_child;
-    frame frame;
-    /* The operator that the children join: this one, or an ancestor of the same sharp kind. */
-    uint32_t group;   /* index of its task */
-    uint32_t written; /* of a group: children in the tape so far */
-    uint32_t begin;   /* of a group: first node */
-    uint32_t parameters;
-    bool is_union;
-    bool combines; /* by a formula */
-    bool softens;
-    csg_tape_curve curve; /* where it softens */
-    csg_blend blend;
-} task;
-
-typedef struct compiler {
-    csgm_context *context;
-    const csgm_scene *scene;
-    csgm_field *field;
-    csg_tape_node *nodes;
-    float *parameters;
-    csg_color *colors, *materials; /* as many of both */
-    task *tasks;
-    csg_tape_step *steps;
-    csg_tape_formula *formulas;
-    csg_tape_warp *warps;
-    size_t warp_count, warp_capacity;
-    size_t step_count, step_capacity, formula_count, formula_capacity;
-    size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
-        color_capacity, material_capacity, task_count, task_capacity;
-} compiler;
-
-static bool push_parameters(compiler *c, const float *values, size_t count, uint32_t *at)
+bool csg_compile_push(compiler *c, const float *values, size_t count, uint32_t *at)
 {
     if (c->parameter_count + count > UINT32_MAX ||
         !csg_memory_reserve(&c->context->memory, (void **)&c->parameters, &c->parameter_capacity,
@@ -129,8 +79,7 @@ static bool take_look(compiler *c, frame *f, const csg_look *look)
 
 /* ---- leaves ------------------------------------------------------------------------------- */
 
-/* Where a node's own frame lies, relative to the field's centre or in the frame below the warp. */
-static csg_affine place_of(const compiler *c, const frame *f)
+csg_affine csg_compile_place(const compiler *c, const frame *f)
 {
     csg_affine place = f->place;
     if (f->warp)
@@ -161,7 +110,7 @@ static bool take_formula(compiler *c, csg_leaf *l, const csg_formula *formula)
 static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
 {
     const csg_formula *formula = &c->scene->formulas[node->payload];
-    csg_affine place = place_of(c, f);
+    csg_affine place = csg_compile_place(c, f);
     l->op = CSG_OP_FIELD;
     csg_leaf_place(l, &place);
     l->sigma = f->negate ? -f->factor : f->factor;
@@ -172,7 +121,7 @@ static bool place_field(compiler *c, csg_leaf *l, const frame *f, const csg_node
 
 static void place_shape(compiler *c, csg_leaf *l, const frame *f, const csg_node *node)
 {
-    csg_affine place = place_of(c, f);
+    csg_affine place = csg_compile_place(c, f);
     csg_box box = c->scene->shapes[node->payload]->box;
     double x = fmax(fabs(box.min.x), fabs(box.max.x)), y = fmax(fabs(box.min.y), fabs(box.max.y));
     double z = fmax(fabs(box.min.z), fabs(box.max.z));
@@ -184,12 +133,12 @@ static void place_shape(compiler *c, csg_leaf *l, const frame *f, const csg_node
     l->magnitude = hypot(hypot(x, y), isfinite(z) ? z : 0) * f->factor + csg_vec3_norm(l->offset);
 }
 
-static bool write_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t warp)
+bool csg_compile_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t warp)
 {
     float values[CSG_LEAF_MOST_PARAMETERS];
     size_t count = csg_leaf_pack(l, color, values);
     csg_tape_node *node = push_node(c);
-    if (!node || !push_parameters(c, values, count, &node->parameters))
+    if (!node || !csg_compile_push(c, values, count, &node->parameters))
         return false;
     node->op = l->op;
     node->frame = (uint8_t)l->frame;
@@ -213,7 +162,7 @@ static bool write_entry(compiler *c, const frame *f, uint32_t begin)
     csg_tape_curve curve = csg_soften_pack_operand(f->entry, f->entry_factor, values);
     csg_deliver_pack(f->form, false, 0, 0, values);
     csg_tape_node *node = push_node(c);
-    if (!node || !push_parameters(c, values, CSG_SOFTEN_PARAMETERS, &node->parameters))
+    if (!node || !csg_compile_push(c, values, CSG_SOFTEN_PARAMETERS, &node->parameters))
         return false;
     node->op = CSG_OP_SOFTEN;
     node->blend = (uint8_t)curve;
@@ -234,22 +183,28 @@ static bool is_alike(const compiler *c, const task *above, bool is_union)
 static void mark_join(compiler *c, task *group)
 {
     csg_tape_node *node = &c->nodes[c->node_count - 1];
-    if (group->written && group->blend.kind != CSG_BLEND_ROUND && !group->combines) {
+    bool at_once = group->combines || group->blend.kind == CSG_BLEND_ROUND ||
+                   csg_blend_is_fillet(group->blend.kind);
+    if (group->written && !at_once) {
         node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
         node->join_blend = (uint8_t)group->blend.kind;
         node->join_parameters = group->parameters;
     }
+    if (csg_blend_is_fillet(group->blend.kind))
+        node->join_parameters = csg_compile_reaches(c, group);
     group->written++;
 }
 
 static bool begin_blend(compiler *c, task *t)
 {
+    if (csg_blend_is_fillet(t->blend.kind))
+        return csg_compile_fillet(c, t);
     float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
                                                                               : (float)t->blend.n,
                                              (float)csg_blend_support(t->blend)};
     if (t->blend.kind == CSG_BLEND_ORTHOGONAL)
         values[CSG_OPERATOR_N] = (float)t->frame.raise;
-    return push_parameters(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
+    return csg_compile_push(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
 }
 
 static uint8_t op_of(const task *t)
@@ -260,6 +215,8 @@ static uint8_t op_of(const task *t)
         return CSG_OP_SOFTEN;
     if (t->blend.kind == CSG_BLEND_ROUND)
         return t->is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION;
+    if (csg_blend_is_fillet(t->blend.kind))
+        return t->is_union ? CSG_OP_FILLET_UNION : CSG_OP_FILLET_INTERSECTION;
     if (csg_blend_takes_fields(t->blend.kind))
         return t->is_union ? CSG_OP_RULE_UNION : CSG_OP_RULE_INTERSECTION;
     return t->is_union ? CSG_OP_UNION : CSG_OP_INTERSECTION;
@@ -268,6 +225,9 @@ static uint8_t op_of(const task *t)
 /* After its operands. */
 static bool write_operator(compiler *c, const task *t)
 {
+    uint32_t planes = 0;
+    if (csg_blend_is_fillet(t->blend.kind) && !csg_compile_planes(c, t, &planes))
+        return false;
     csg_tape_node *node = push_node(c);
     if (!node)
         return false;
@@ -276,7 +236,8 @@ static bool write_operator(compiler *c, const task *t)
         node->frame = CSG_FRAME_AFFINE;
     node->blend = (uint8_t)(t->softens ? (int)t->curve : (int)t->blend.kind);
     node->parameters = t->parameters;
-    node->arity = t->written;
+    node->arity = t->written + planes;
+    node->planes = (uint16_t)planes;
     node->size = (uint32_t)c->node_count - t->begin;
     return true;
 }
@@ -285,7 +246,7 @@ static bool write_curve(compiler *c, const csg_node *node, const frame *f, task 
 {
     csg_curve curve = csg_curve_make(node->kind, csg_scene_parameters(c->scene, node));
     csg_curve pieces[CSG_CURVE_MOST_PIECES];
-    csg_affine place = place_of(c, f);
+    csg_affine place = csg_compile_place(c, f);
     size_t count = csg_curve_cut(&curve, pieces);
     bool alike = count == 1 || (f->form == CSG_FORM_VALUE && is_alike(c, above, !f->negate));
     task own = {.begin = (uint32_t)c->node_count, .is_union = !f->negate};
@@ -295,7 +256,7 @@ static bool write_curve(compiler *c, const csg_node *node, const frame *f, task 
         csg_leaf l = {.raise = f->raise};
         csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind, pieces[i].at[0]);
         l.magnitude += f->magnitude;
-        if (!write_leaf(c, &l, f->color, f->warp))
+        if (!csg_compile_leaf(c, &l, f->color, f->warp))
             return false;
         if (!alike || i + 1 < count)
             mark_join(c, alike ? above : &own);
@@ -313,14 +274,14 @@ static bool compile_leaf(compiler *c, const csg_node *node, const frame *f, task
     } else if (node->kind == CSG_NODE_SHAPE) {
         place_shape(c, &l, f, node);
     } else if (node->kind != CSG_NODE_EMPTY && !csg_node_is_curve(node->kind)) {
-        csg_affine place = place_of(c, f);
+        csg_affine place = csg_compile_place(c, f);
         csg_leaf_primitive(&l, &place, f->factor, f->negate, node->kind,
                            csg_scene_parameters(c->scene, node));
     }
     l.magnitude += f->magnitude;
     l.raise = f->raise;
     bool done = csg_node_is_curve(node->kind) ? write_curve(c, node, f, above)
-                                              : write_leaf(c, &l, f->color, f->warp);
+                                              : csg_compile_leaf(c, &l, f->color, f->warp);
     return done && (f->form == CSG_FORM_VALUE || write_entry(c, f, begin));
 }
 
@@ -343,7 +304,7 @@ static bool push_combination(compiler *c, const csg_node *node, const frame *f, 
     float values[CSG_LEAF_MOST_PARAMETERS];
     if (!take_formula(c, &l, formula))
         return false;
-    return push_parameters(c, values, csg_leaf_pack(&l, 0, values), at);
+    return csg_compile_push(c, values, csg_leaf_pack(&l, 0, values), at);
 }
 
 /* Whether the node gives a field to an operator that takes one, or takes values for one. */
@@ -375,7 +336,7 @@ static bool begin_soft(compiler *c, const csg_node *node, task *t)
     csg_soft soft = {.range = p[0], .falloff = (csg_falloff)p[1]};
     t->curve = csg_soften_pack_soft(soft, t->frame.factor, values);
     pack_delivery(c, t, false, values);
-    return push_parameters(c, values, CSG_SOFTEN_PARAMETERS, &t->parameters);
+    return csg_compile_push(c, values, CSG_SOFTEN_PARAMETERS, &t->parameters);
 }
 
 static bool begin_rule(compiler *c, const csg_node *node, const csg_rule *rule, task *t)
@@ -391,7 +352,7 @@ static bool begin_rule(compiler *c, const csg_node *node, const csg_rule *rule, 
     if (takes_fields)
         pack_delivery(c, t, csg_rule_works_on_complements(rule->kind, t->is_union),
                       values + CSG_RULE_DELIVER);
-    return push_parameters(c, values, count, &t->parameters);
+    return csg_compile_push(c, values, count, &t->parameters);
 }
 
 /* outer: the group that the operator stands in, or NULL. */
@@ -480,7 +441,7 @@ static void operand_frame(const compiler *c, const task *t, const csg_node *node
 /* The frame below a warp. */
 static bool warp_frame(compiler *c, const csg_warp *warp, frame *f)
 {
-    csg_affine place = place_of(c, f), to_own;
+    csg_affine place = csg_compile_place(c, f), to_own;
     csg_tape_warp made = {.outer = f->warp, .kind = warp->kind};
     csg_affine_invert(place, &to_own); /* build.h admits only invertible maps */
     for (int i = 0; i < 9; i++)
@@ -627,8 +588,8 @@ static bool write_clip(compiler *c, csg_box box)
     csg_leaf_primitive(&l, &centre, 1, false, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0});
     const float sharp[CSG_OPERATOR_PARAMETERS] = {[CSG_OPERATOR_N] = 1};
     uint32_t parameters;
-    if (!push_parameters(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) ||
-        !write_leaf(c, &l, 0, 0))
+    if (!csg_compile_push(c, sharp, CSG_OPERATOR_PARAMETERS, &parameters) ||
+        !csg_compile_leaf(c, &l, 0, 0))
         return false;
     csg_tape_node *node = &c->nodes[c->node_count - 1];
     node->join = CSG_JOIN_INTERSECTION;
@@ -658,7 +619,8 @@ static bool compile_field(compiler *c, const csg_box *clip)
         field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
     return compile_tree(c) && (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
            keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
-                     c->color_count);
+                     c->color_count) &&
+           csg_compile_waver(&c->context->memory, &field->tape);
 }
 
 static csgm_status compile(csgm_context *context, const csgm_scene *scene, const csg_box *clip,

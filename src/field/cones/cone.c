@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "field/cones/cone_along.h"
+#include "field/gradients/cone_fillet.h"
 #include "field/point.h"
 #include "scene/operators/blend_kinds.h"
 
@@ -91,6 +92,20 @@ static bool is_sharp(const csg_tape_node *node)
            (node->blend == CSG_BLEND_SHARP || node->blend == CSG_BLEND_ORTHOGONAL);
 }
 
+/* A fillet's gradient strays from the combinations of its operands': as if theirs were so much
+ * wider. */
+static bool widen_operands(const csg_tape *tape, uint32_t n, const float c[3], double radius,
+                           csg_cone_leaves *leaves)
+{
+    const csg_tape_node *node = &tape->nodes[n];
+    double stray;
+    if (node->size != node->arity + 1 || !csg_fillet_find_stray(tape, node, c, radius, &stray))
+        return false;
+    for (uint32_t i = leaves->first[leaves->count - node->arity]; i < leaves->balls.count; i++)
+        leaves->balls.items[i].spread += stray;
+    return true;
+}
+
 /* Of each leaf; false: one has no bound. */
 static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
                         csg_cone_leaves *leaves, csg_cone *out, bool *is_simple)
@@ -104,6 +119,10 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
             if (!csg_cone_add_leaf(&leaves->balls, tape, node, c, radius))
                 return false;
             leaves->corner[leaves->count++] = leaves->balls.corner;
+        } else if (csg_op_is_fillet(node->op)) {
+            if (!widen_operands(tape, i, c, radius, leaves))
+                return false;
+            out->is_crease |= node->planes > 0;
         } else {
             *is_simple = *is_simple && operator_combines(node);
             out->is_crease |= is_sharp(node);

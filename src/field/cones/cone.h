@@ -11,8 +11,8 @@
 #ifndef CSG_FIELD_CONE_H
 #define CSG_FIELD_CONE_H
 
+#include "field/gradients/cone_leaf.h"
 #include "field/prune/prune.h"
-#include "scene/primitives/cone_ball.h"
 
 typedef struct csg_cone {
     double axis[3];     /* v, unit length */
@@ -26,18 +26,6 @@ typedef struct csg_cone {
  * shown. room: for the intervals that some operators need; NULL: these have no bound then. */
 bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
                    csg_cone *out);
-
-/* ---- cone_leaf.c ------------------------------------------------------------------------------
- */
-
-/* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
- * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least
- * 1. False: no bound, or too many. */
-bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
-                       const float c[3], double radius);
-
-/* A bound on the largest singular value of a matrix of 3 x 3, row by row. */
-double csg_cone_norm(const float *m);
 
 /* ---- cone.c -----------------------------------------------------------------------------------
  */

@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-#include "field/cones/cone_formula.h"
+#include "field/gradients/cone_formula.h"
 #include "field/kernels/soft_formulas.h"
 #include "field/prune/prune.h"
 #include "field/rule_layout.h"
@@ -363,7 +363,7 @@ static bool run_node(const csg_tape *tape, uint32_t n, const float *low, const f
                      stack *s, bool *has_edges)
 {
     const csg_tape_node *node = &tape->nodes[n];
-    if (csg_op_is_round(node->op)) {
+    if (csg_op_is_round(node->op) || csg_op_is_fillet(node->op)) { /* leaves are wide enough */
         s->top -= node->arity;
         slope_range r = s->items[s->top];
         for (uint32_t k = 1; k < node->arity; k++)

@@ -54,6 +54,7 @@ static void join_values(const csg_tape_node *node, const float *parameters, floa
     case CSG_BLEND_##NAME:
 #include "scene/operators/operators.def"
     case CSG_BLEND_ROUND:
+    case CSG_BLEND_FILLET:
     case CSG_BLEND_END:
         break; /* joined elsewhere */
     }
@@ -93,6 +94,7 @@ static void join_shares(const csg_tape_node *node, const float *parameters, cons
     case CSG_BLEND_##NAME:
 #include "scene/operators/operators.def"
     case CSG_BLEND_ROUND:
+    case CSG_BLEND_FILLET:
     case CSG_BLEND_END:
         break; /* joined elsewhere */
     }

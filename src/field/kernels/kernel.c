@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "base/select.h"
+#include "field/kernels/fillet_kernel.h"
 #include "field/kernels/formula_kernel.h"
 #include "field/kernels/joins.h"
 #include "field/kernels/leaf_kernel.h"
@@ -285,6 +286,24 @@ static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots
         out[i] = work[i] + raise;
 }
 
+/* work: room for a number per operand and plane. */
+static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, slots s,
+                               size_t first, float *work)
+{
+    fillet_numbers(tape, node, (uint32_t *)(void *)work);
+    return (fillet_arrays){
+        .values = slot(s, first),
+        .numbers = (const uint32_t *)(const void *)work,
+        .parameters = tape->parameters,
+        .stride = s.stride,
+        .per = MOST_CHANNELS,
+        .operands = node->arity - node->planes,
+        .planes = node->planes,
+        .turn = csg_op_is_union(node->op) ? 1.0f : -1.0f,
+        .radius = (double)tape->parameters[node->parameters + CSG_OPERATOR_N],
+    };
+}
+
 static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
                        uint32_t depth, size_t index, plan wanted)
 {
@@ -392,6 +411,11 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_mixed(tape, node, s, depth, top++, channels_of(wanted), p.count, work);
+        } else if (csg_op_is_fillet(node->op)) {
+            top -= node->arity;
+            fillet_arrays arrays = fillet_of(tape, node, s, top, work);
+            arrays.channels = channel(s, depth, top++, 0);
+            fillet_combine(&arrays, wanted.colors, p.count);
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
             combine_mixed(tape, node, s, depth, top++, wanted, p.count, work);
@@ -405,11 +429,12 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
     }
 }
 
-/* Whether a join's value depends on its operands' gradients. */
+/* Whether a value depends on its operands' gradients. */
 static int turns(const csg_tape *tape)
 {
     for (uint32_t n = 0; n < tape->count; n++)
-        if (tape->nodes[n].join_blend == CSG_BLEND_TURNING && tape->nodes[n].join)
+        if ((tape->nodes[n].join_blend == CSG_BLEND_TURNING && tape->nodes[n].join) ||
+            csg_op_is_fillet(tape->nodes[n].op))
             return 1;
     return 0;
 }
@@ -527,7 +552,7 @@ static inline void join_intervals(const csg_tape_node *node, const float *parame
 
 static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
-                      float *low, float *high, float *scratch)
+                      const float *turns, float *low, float *high, float *scratch)
 {
     uint32_t depth = csg_tape_depth(tape);
     csg_points p = {cx, cy, cz, CSG_OCTANTS};
@@ -544,6 +569,12 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
             top -= node->arity;
             combine_round_values(tape, node, lows, top, CSG_OCTANTS, work);
             combine_round_values(tape, node, highs, top, CSG_OCTANTS, work);
+            top++;
+        } else if (csg_op_is_fillet(node->op)) {
+            top -= node->arity;
+            fillet_arrays arrays = fillet_of(tape, node, lows, top, work);
+            const float *of_node = turns ? turns + (size_t)n * 2 * CSG_OCTANTS : NULL;
+            fillet_intervals(&arrays, of_node, slot(lows, top), slot(highs, top));
             top++;
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;

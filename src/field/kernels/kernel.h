@@ -39,10 +39,12 @@ typedef struct csg_kernel {
 
     /* Intervals of every node's value (before its join) over eight cubes, given by the balls
      * around them: low[8 * i + o] <= value of node i over cube o <= high[8 * i + o], rounding of
-     * the leaves included. */
+     * the leaves included. turns: of node i, a fillet, in cube o the least and the most that two of
+     * its operands turn from each other, turns[16 * i + 2 * o] and the next (cone_fillet.h); NULL:
+     * by anything. */
     void (*intervals)(const csg_tape *tape, const float cx[CSG_OCTANTS],
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
-                      float *low, float *high, float *scratch);
+                      const float *turns, float *low, float *high, float *scratch);
 
     /* One join alone, a = a op b, for benchmarks: node is a child that joins, count a multiple of
      * CSG_LANES and at most CSG_BATCH. Not one that turns with gradients. */

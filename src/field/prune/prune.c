@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/gradients/cone_fillet.h"
 #include "field/prune/prune_fields.h"
 #include "scene/operators/blend_kinds.h"
 
@@ -20,10 +21,11 @@ static void release_arrays(csg_pruner *pruner)
     size_t n = pruner->capacity;
     csg_memory_release(pruner->memory, pruner->low, n * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->high, n * CSG_OCTANTS * sizeof(float));
+    csg_memory_release(pruner->memory, pruner->turns, n * 2 * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->dropped, n);
     csg_memory_release(pruner->memory, pruner->stack, n * sizeof(csg_emitted));
     csg_memory_release(pruner->memory, pruner->nodes, n * sizeof(csg_tape_node));
-    pruner->low = pruner->high = NULL;
+    pruner->low = pruner->high = pruner->turns = NULL;
     pruner->dropped = NULL;
     pruner->stack = NULL;
     pruner->nodes = NULL;
@@ -45,19 +47,38 @@ static bool make_room(csg_pruner *pruner, const csg_tape *tape)
                             scratch, sizeof(float)))
         return false;
     size_t n = tape->count;
-    if (n <= pruner->capacity)
+    if (n <= pruner->capacity && (pruner->turns || !tape->turns))
         return true;
+    n = n > pruner->capacity ? n : pruner->capacity;
     release_arrays(pruner);
     pruner->capacity = n;
     pruner->low = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
     pruner->high = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
+    if (tape->turns) /* no other tape needs them */
+        pruner->turns = csg_memory_alloc(pruner->memory, n * 2 * CSG_OCTANTS * sizeof(float));
     pruner->dropped = csg_memory_alloc(pruner->memory, n);
     pruner->stack = csg_memory_alloc(pruner->memory, n * sizeof(csg_emitted));
     pruner->nodes = csg_memory_alloc(pruner->memory, n * sizeof(csg_tape_node));
-    if (pruner->low && pruner->high && pruner->dropped && pruner->stack && pruner->nodes)
+    if (pruner->low && pruner->high && pruner->dropped && pruner->stack && pruner->nodes &&
+        (pruner->turns || !tape->turns))
         return true;
     release_arrays(pruner);
     return false;
+}
+
+/* How far the operands of each fillet turn from each other in each cube. */
+static void find_turns(csg_pruner *pruner, const float cx[CSG_OCTANTS], const float cy[CSG_OCTANTS],
+                       const float cz[CSG_OCTANTS], float radius)
+{
+    const csg_tape *tape = pruner->tape;
+    for (uint32_t i = 0; i < tape->count; i++)
+        for (int o = 0; o < CSG_OCTANTS && csg_op_is_fillet(tape->nodes[i].op); o++) {
+            csg_fillet_turns turns = csg_fillet_find_turns(
+                tape, &tape->nodes[i], (const float[]){cx[o], cy[o], cz[o]}, (double)radius);
+            float *out = pruner->turns + ((size_t)i * CSG_OCTANTS + (size_t)o) * 2;
+            out[0] = turns.least;
+            out[1] = turns.most;
+        }
 }
 
 bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[CSG_OCTANTS],
@@ -68,8 +89,11 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
     pruner->tape = tape;
     pruner->decided = false;
     pruner->slack = pruner->rounding * tape->steepest;
-    pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding, pruner->low,
-                              pruner->high, pruner->scratch);
+    if (tape->turns)
+        find_turns(pruner, cx, cy, cz, radius + pruner->rounding);
+    pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding,
+                              tape->turns ? pruner->turns : NULL, pruner->low, pruner->high,
+                              pruner->scratch);
     return true;
 }
 
@@ -116,12 +140,12 @@ static float *lanes(float *of_nodes, uint32_t node)
 static void find_best(const csg_tape_node *nodes, uint32_t node, float *lower, float turn,
                       float best[CSG_OCTANTS], uint32_t best_child[CSG_OCTANTS])
 {
-    uint32_t child = node - 1;
+    uint32_t child = node - 1 - nodes[node].planes; /* these are leaves */
     for (int o = 0; o < CSG_OCTANTS; o++) {
         best[o] = -INFINITY;
         best_child[o] = child;
     }
-    for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size) {
+    for (uint32_t k = nodes[node].planes; k < nodes[node].arity; k++, child -= nodes[child].size) {
         const float *bound = lanes(lower, child);
         for (int o = 0; o < CSG_OCTANTS; o++) {
             bool more = turn * bound[o] > best[o];
@@ -176,6 +200,50 @@ static void demand_fields(csg_pruner *pruner, uint32_t node)
     }
 }
 
+/* How far any two operands together reach beyond the plane with this number, at least. */
+static float least_beyond(const csg_pruner *pruner, uint32_t node, uint32_t number)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    float least = INFINITY, next = INFINITY;
+    uint32_t child = node - 1 - op->planes;
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
+        float beyond = pruner->tape->parameters[nodes[child].join_parameters + number];
+        next = fminf(next, fmaxf(least, beyond));
+        least = fminf(least, beyond);
+    }
+    return next;
+}
+
+/* Drops planes at which a fillet does not end there: the operands, grown by what the fillet can add
+ * to them, do not reach them, or the parent cannot see so far. */
+static void decide_planes(csg_pruner *pruner, uint32_t node, const float *demand_low,
+                          const float *demand_high)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    bool is_union = csg_op_is_union(op->op);
+    float turn = is_union ? 1.0f : -1.0f, reach[CSG_OCTANTS];
+    float r = pruner->tape->parameters[op->parameters + CSG_OPERATOR_N];
+    float *upper = is_union ? pruner->high : pruner->low;
+    float *lower = is_union ? pruner->low : pruner->high;
+    uint32_t child = node - 1 - op->planes;
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        reach[o] = -INFINITY;
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size)
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            reach[o] = fmaxf(reach[o], turn * lanes(upper, child)[o] + r);
+    for (uint32_t plane = node - op->planes; plane < node; plane++) {
+        float beyond = least_beyond(pruner, node, nodes[plane].join_parameters) - pruner->slack;
+        uint8_t mask = pruner->dropped[node];
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            float seen = is_union ? demand_high[o] : -demand_low[o];
+            float from = turn * lanes(lower, plane)[o] + beyond;
+            mask |= (uint8_t)((from > fminf(reach[o], seen)) << o);
+        }
+        pruner->dropped[plane] = mask;
+        pruner->dropped_any |= mask;
+    }
+}
+
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
  * below the largest sibling, by the blend's support. Intersections are the mirror image. The
  * demand on an operand takes the place of its interval, which nobody needs any more. */
@@ -191,6 +259,8 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
         demand_fields(pruner, node);
         return;
     }
+    if (op->planes)
+        decide_planes(pruner, node, demand_low, demand_high);
     bool is_union = csg_op_is_union(op->op);
     /* INTERIOR is not above its larger operand. */
     bool is_smooth = op->blend == CSG_BLEND_EXTERIOR || op->blend == CSG_BLEND_INTERIOR;
@@ -199,7 +269,7 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
     float edge = turn * pruner->tape->parameters[op->parameters + CSG_OPERATOR_N] - pruner->slack;
     float *lower = is_union ? pruner->low : pruner->high;
     float *upper = is_union ? pruner->high : pruner->low;
-    uint32_t best_child[CSG_OCTANTS], child = node - 1;
+    uint32_t best_child[CSG_OCTANTS], child = node - 1 - op->planes;
     find_best(nodes, node, lower, turn, threshold, best_child);
     for (int o = 0; o < CSG_OCTANTS; o++) {
         float demand = is_union ? demand_low[o] : -demand_high[o];
@@ -207,7 +277,7 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
         if (op->blend == CSG_BLEND_ORTHOGONAL) /* at the edge both matter */
             threshold[o] = fminf(threshold[o], edge);
     }
-    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
         uint8_t mask =
             pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
         pruner->dropped[child] = mask;
@@ -229,9 +299,9 @@ static void decide(csg_pruner *pruner, float tau)
     float low[CSG_OCTANTS], high[CSG_OCTANTS];
     pruner->decided = true;
     pruner->dropped_any = pruner->dropped[root] = 0;
-    for (int o = 0; o < CSG_OCTANTS; o++) { /* where a field turns there is no Lipschitz constant */
-        low[o] = tape->turns ? -INFINITY : -tau;
-        high[o] = tape->turns ? INFINITY : tau;
+    for (int o = 0; o < CSG_OCTANTS; o++) { /* no Lipschitz constant bounds what wavers */
+        low[o] = -tau - tape->waver;
+        high[o] = tau + tape->waver;
     }
     for (uint32_t i = tape->count; i > 0;) {
         uint32_t node = i - 1, size = tape->nodes[node].size;
@@ -255,9 +325,16 @@ static void decide(csg_pruner *pruner, float tau)
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {
-    if (kept == 1 && csg_prune_is_identity(pruner->tape, op))
-        return; /* the operand stands for its operator */
     csg_tape_node *nodes = pruner->nodes;
+    uint32_t planes = 0;
+    while (op->planes && nodes[stack[*top - 1 - planes].root].is_plane)
+        planes++;
+    if (kept - planes == 1 && csg_prune_is_identity(pruner->tape, op)) {
+        *count -= planes;
+        *top -= planes;
+        nodes[stack[*top - 1].root].join_parameters = op->join_parameters;
+        return; /* the operand stands for its operator */
+    }
     csg_emitted *first = &stack[*top - kept];
     for (uint32_t k = 0; k < kept && !csg_op_takes_all(op->op); k++) {
         csg_tape_node *operand = &nodes[first[k].root];
@@ -271,6 +348,7 @@ static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t 
     *node = *op;
     node->join = CSG_JOIN_NONE;
     node->arity = kept;
+    node->planes = (uint16_t)planes;
     node->size = *count + 1 - first->begin;
     first->root = (*count)++;
     *top -= kept - 1;

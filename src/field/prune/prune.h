@@ -30,6 +30,7 @@ typedef struct csg_pruner {
     float slack;       /* of comparisons: the same of leaves' values; operators' own rounding is in
                           their intervals */
     float *low, *high; /* of every node, eight lanes; later the demands on operators */
+    float *turns;      /* of every node, where the tape has fillets: csg_kernel.intervals */
     uint8_t *dropped;  /* a bit for each octant */
     uint8_t dropped_any;
     bool decided;

@@ -154,7 +154,8 @@ csg_value csg_function_blend(const csg_function_call *call)
     bool raw = call->syntax[0].name == call->e->symbol_n;
     if (call->arguments[0].kind != CSG_VALUE_NUMBER)
         return csg_value_undef();
-    if (call->syntax[0].name && !raw && call->syntax[0].name != call->e->symbol_w)
+    bool radius = kind == CSG_BLEND_FILLET && call->syntax[0].name == call->e->symbol_r;
+    if (call->syntax[0].name && !raw && !radius && call->syntax[0].name != call->e->symbol_w)
         csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[0].where, NULL,
                         "%s() takes the width w or the raw parameter n", call->name);
     return make_blend(call, (csg_blend_kind)kind,

@@ -427,7 +427,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
             w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, c)));
         }
     }
-    kernel->intervals(tape, x, y, z, 0, low, high, scratch);
+    kernel->intervals(tape, x, y, z, 0, NULL, low, high, scratch);
     if (!walk(&w, low, high))
         return false;
     out->balls = w.stack[0].balls;

@@ -80,6 +80,10 @@ static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t
         if (csg_op_is_round(node->op) &&
             !widen(tape, CSG_BLEND_ROUND, node->parameters, csg_op_is_union(node->op), cell, b))
             return false;
+        if (csg_op_is_fillet(node->op) &&
+            (node->planes ||
+             !widen(tape, CSG_BLEND_FILLET, node->parameters, csg_op_is_union(node->op), cell, b)))
+            return false; /* it ends in an edge */
         if (node->op == CSG_OP_COMBINE || csg_op_delivers(node->op))
             return false;
     }

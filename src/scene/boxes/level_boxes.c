@@ -111,7 +111,7 @@ static void union_levels(const csgm_scene *scene, const csg_node *node, double *
         *support = p->support + *excess;
         return;
     }
-    bool adds = node->blend != CSG_BLEND_INTERIOR;
+    bool adds = node->blend != CSG_BLEND_INTERIOR && !csg_blend_is_fillet(node->blend);
     *excess = adds ? csg_scene_excess(scene, node) : 0;
     *support = adds ? csg_scene_support(scene, node) : 0;
 }
@@ -186,6 +186,8 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
         add_level(list, inner_level(scene, node, level));
     } else if (acts_as(scene, node) == CSG_NODE_UNION) {
         union_levels(scene, node, &excess, &support);
+        if (csg_blend_is_fillet(node->blend))
+            add_level(list, 0);
         add_level(list, level);
         add_level(list, level + excess);
         add_level(list, level + support);
@@ -279,6 +281,19 @@ static csg_box box_at(const table *t, csg_node_id node, double level)
     return t->whole ? csg_box_intersect(box, t->regions[slot]) : box;
 }
 
+/* A fillet adds nothing beyond the hull of the operands' boxes, whose sides are among its planes:
+ * it is above -level where one operand is, or within the hull grown by level. */
+static csg_box filleted_box(const table *t, const csg_node *node, double level)
+{
+    const csg_node_id *children = csg_scene_children(t->scene, node);
+    csg_box box = csg_box_empty(), hull = csg_box_empty();
+    for (uint32_t i = 0; i < node->child_count; i++) {
+        box = csg_box_hull(box, box_at(t, children[i], level));
+        hull = csg_box_hull(hull, box_at(t, children[i], 0));
+    }
+    return csg_box_hull(box, csg_box_grow(hull, level));
+}
+
 /* Hull of the operands at `level` and of every pair's common part, one grown by the excess, the
  * other by the support. */
 static csg_box union_box(const table *t, const csg_node *node, double level)
@@ -289,6 +304,8 @@ static csg_box union_box(const table *t, const csg_node *node, double level)
     union_levels(t->scene, node, &excess, &support);
     csg_box box = csg_box_empty();
     bool pairs = support > 0 && count <= MOST_PAIRED;
+    if (csg_blend_is_fillet(node->blend))
+        return filleted_box(t, node, level);
     for (uint32_t i = 0; i < count; i++)
         box = csg_box_hull(box, box_at(t, children[i], pairs ? level : level + excess));
     if (!pairs)
@@ -378,10 +395,12 @@ static csg_box fields_box(const table *t, const csg_node *node, double level)
 }
 
 /* Nodes whose box is not better known in the root's frame than in their own: warps, which have no
- * affine way there, and extrusions, whose operands are infinite along axes that may be turned. */
+ * affine way there, extrusions, whose operands are infinite along axes that may be turned, and
+ * fillets, which end at the sides of a box in their own. */
 static bool is_opaque(const csg_node *node)
 {
     return node->kind == CSG_NODE_WARP ||
+           (node->kind == CSG_NODE_UNION && csg_blend_is_fillet(node->blend)) ||
            (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
 }
 

@@ -166,7 +166,7 @@ static bool make_value(work *w, csg_node_id id)
     const csg_term *p = w->points[id].at;
     if (node->child_count)
         inner = w->values[csg_scene_children(scene, node)[0]];
-    if (node->kind == CSG_NODE_SOFT || csg_scene_rule(scene, node))
+    if (node->kind == CSG_NODE_SOFT || csg_scene_rule(scene, node) || csg_node_is_fillet(node))
         return false;
     if (node->kind == CSG_NODE_TRANSFORM)
         *value = csg_term_mul_number(w->t, inner, scene->scales[node->payload]);

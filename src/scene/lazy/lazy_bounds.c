@@ -12,8 +12,8 @@ enum { MOST_PASSES = 32 };
 
 bool csg_lazy_is_plain(const csg_node *node)
 {
-    return csg_node_is_operator(node->kind) && !csg_blend_is_rule(node->blend) &&
-           node->blend != CSG_BLEND_ORTHOGONAL;
+    return csg_node_is_operator(node->kind) && node->blend < CSG_BLEND_COUNT &&
+           !csg_blend_is_fillet(node->blend);
 }
 
 /* ---- boxes of the paper -------------------------------------------------------------------- */
@@ -119,9 +119,11 @@ static csgm_status find_paper_boxes(csg_lazy *lazy, csg_arena *scratch, bool sha
 
 /* Its value depends on its operands' gradients, which bounds change: they are left alone. It has no
  * Lipschitz constant either. */
-static bool eliminates_bulges(const csgm_scene *tree, const csg_node *node)
+static bool looks_at_gradients(const csgm_scene *tree, const csg_node *node)
 {
     const csg_rule *rule = csg_scene_rule(tree, node);
+    if (csg_node_is_fillet(node))
+        return true;
     return rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0;
 }
 
@@ -138,7 +140,7 @@ static csgm_status find_exact_bounds(csg_lazy *lazy, csg_arena *scratch, double 
     for (size_t i = tree->node_count; i-- > 0;) {
         const csg_node *node = &tree->nodes[i];
         csg_lazy_bound *bound = &lazy->bounds[i];
-        bool inner = bound->is_known && !eliminates_bulges(tree, node);
+        bool inner = bound->is_known && !looks_at_gradients(tree, node);
         bound->box = bounds[i].clamp_box;
         bound->below = bounds[i].below;
         for (uint32_t k = 0; k < node->child_count; k++)
@@ -159,7 +161,7 @@ static bool find_lipschitz(csg_lazy *lazy, csg_arena *scratch)
     csg_scene_slopes(tree, slopes);
     for (size_t i = 0; i < tree->node_count; i++) {
         const csg_node *node = &tree->nodes[i];
-        double lambda = eliminates_bulges(tree, node) ? INFINITY : fmax(slopes[i], 1);
+        double lambda = looks_at_gradients(tree, node) ? INFINITY : fmax(slopes[i], 1);
         for (uint32_t k = 0; k < node->child_count; k++)
             if (lazy->bounds[csg_scene_children(tree, node)[k]].lambda == INFINITY)
                 lambda = INFINITY;

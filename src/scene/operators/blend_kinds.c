@@ -53,6 +53,8 @@ double csg_blend_excess(csg_blend blend, uint32_t operands)
         return INFINITY;
     if (blend.kind == CSG_BLEND_ROUND)
         return blend.n * (1 - 1 / sqrt((double)operands));
+    if (blend.kind == CSG_BLEND_FILLET && operands > 2)
+        return blend.n;
     double two = blends[blend.kind].excess * (blends[blend.kind].area ? sqrt(blend.n) : blend.n);
     return two * (operands - 1); /* each step of the fold exceeds the one before by that much */
 }

@@ -7,6 +7,8 @@
 
 #include "scene/operators/blend.h"
 
+/* Blends that one length describes; those that stand before FILLET are functions of values alone.
+ */
 typedef enum csg_blend_kind {
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc) CSG_BLEND_##NAME,
 #include "scene/operators/operators.def"
@@ -28,6 +30,12 @@ static inline bool csg_blend_is_rule(csg_blend_kind kind)
 static inline bool csg_blend_takes_fields(csg_blend_kind kind)
 {
     return kind > CSG_BLEND_PROFILE;
+}
+
+/* Whether its value depends on its operands' gradients, too: no formula of values says it. */
+static inline bool csg_blend_is_fillet(csg_blend_kind kind)
+{
+    return kind == CSG_BLEND_FILLET;
 }
 
 const char *csg_blend_name(csg_blend_kind kind); /* as in the scene language */

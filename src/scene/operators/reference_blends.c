@@ -120,6 +120,7 @@ double csg_reference_union(csg_blend blend, const double *values, size_t count, 
         return orthogonal_union(values, partials);
     if (count == 1 || blend.kind == CSG_BLEND_SHARP || !(blend.n > 0) || isinf(values[top]))
         return csg_choose(values, count, top, partials);
+    assert(!csg_blend_is_fillet(blend.kind)); /* values do not say it: csg_reference_node */
     if (blend.kind == CSG_BLEND_ROUND)
         return round_union(blend.n, values, count, partials);
     assert(count == 2);

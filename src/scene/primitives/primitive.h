@@ -80,7 +80,7 @@ typedef struct csg_primitive {
     void (*pack)(csg_leaf *leaf, const double *v, double k);
     int own_count;
     /* Adds the gradients in the ball (cone_ball.h). False: no bound. NULL for curves
-     * (field/cones/cone_curve.h). */
+     * (field/gradients/cone_curve.h). */
     bool (*gradients)(csg_cone_leaf *leaf);
     /* Whether a crease of the field may be within `reach` of q where its values are in the band. A
      * centre or an axis counts too. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Tubes along Bezier curves of two degrees (curve.h). Parameters: x y z r of each control point.
  * Their leaves in the tape are pieces of the curve: packed by field/compile/compile_curve.h, run by
- * field/kernels/curve_kernel.c, with gradients by field/cones/cone_curve.h.
+ * field/kernels/curve_kernel.c, with gradients by field/gradients/cone_curve.h.
  */
 #ifndef CSG_SCENE_TUBE_H
 #define CSG_SCENE_TUBE_H

@@ -438,7 +438,7 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
 {
     csgm_scene *scene = builder->scene;
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, count) ||
-        !csg_build_reserve_parameters(builder, CSG_OPERATOR_FIELD_PARAMETERS))
+        !csg_build_reserve_parameters(builder, CSG_FILLET_PARAMETERS)) /* the most */
         return CSG_NODE_NONE;
     csg_node node = {.kind = (uint8_t)kind,
                      .blend = (uint8_t)blend.kind,
@@ -451,7 +451,10 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
     bool all_soft = true;
     for (size_t i = 0; i < count; i++)
         all_soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
-    if (own > 1) {
+    if (csg_blend_is_fillet(blend.kind)) { /* planes are found when the scene is sealed */
+        parameters[CSG_FILLET_FIRST_NORMAL] = parameters[CSG_FILLET_FIRST_REACH] = 0;
+        parameters[CSG_FILLET_PLANES] = 0;
+    } else if (own > 1) {
         parameters[CSG_OPERATOR_RANGE] = all_soft ? 1 : range; /* nothing is converted */
         parameters[CSG_OPERATOR_LAMBDA] = 0;
     }
@@ -470,14 +473,37 @@ static csg_node_id absorbing_operand(const csgm_scene *scene, csg_node_kind kind
     return CSG_NODE_NONE;
 }
 
-/* Operands that are left once empty ones are gone; `kept` has room for all of them. */
-static size_t drop_empty(const csgm_scene *scene, const csg_node_id *children, size_t count,
-                         csg_node_id *kept)
+/* A fillet of fillets of the same radius is one of all their operands, if it is of the same kind:
+ * the union of what the others are subtracted from, too. */
+static bool is_spread(const csgm_scene *scene, csg_node_kind kind, csg_blend blend, size_t index,
+                      csg_node_id child)
+{
+    const csg_node *node = &scene->nodes[child];
+    bool subtracted = kind == CSG_NODE_DIFFERENCE && index > 0;
+    return csg_blend_is_fillet(blend.kind) && csg_node_is_operator(node->kind) &&
+           csg_blend_is_fillet(node->blend) && csg_scene_blend(scene, node).n == blend.n &&
+           node->kind == (subtracted ? CSG_NODE_UNION : kind);
+}
+
+/* Operands that are left once empty ones are gone and fillets are spread; returns their count, and
+ * has room for them in `kept`, unless it is NULL. */
+static size_t gather_operands(const csgm_scene *scene, csg_node_kind kind, csg_blend blend,
+                              const csg_node_id *children, size_t count, csg_node_id *kept)
 {
     size_t left = 0;
-    for (size_t i = 0; i < count; i++)
-        if (scene->nodes[children[i]].kind != CSG_NODE_EMPTY)
-            kept[left++] = children[i];
+    for (size_t i = 0; i < count; i++) {
+        const csg_node *node = &scene->nodes[children[i]];
+        if (is_spread(scene, kind, blend, i, children[i])) {
+            const csg_node_id *inner = csg_scene_children(scene, node);
+            for (uint32_t k = 0; k < node->child_count; k++, left++)
+                if (kept)
+                    kept[left] = inner[k];
+        } else if (node->kind != CSG_NODE_EMPTY) {
+            if (kept)
+                kept[left] = children[i];
+            left++;
+        }
+    }
     return left;
 }
 
@@ -515,13 +541,14 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
     if (empty != CSG_NODE_NONE)
         return empty;
     csg_memory *memory = &builder->context->memory;
-    csg_node_id *kept = count ? csg_memory_alloc(memory, count * sizeof *kept) : NULL;
-    if (count && !kept)
+    size_t left = gather_operands(builder->scene, kind, blend, children, count, NULL);
+    csg_node_id *kept = left ? csg_memory_alloc(memory, left * sizeof *kept) : NULL;
+    if (left && !kept)
         return csg_build_no_memory(builder);
-    size_t left = count ? drop_empty(builder->scene, children, count, kept) : 0;
+    gather_operands(builder->scene, kind, blend, children, count, kept);
     csg_node_id result = left    ? join_operands(builder, kind, blend, kept, left, where)
                          : count ? children[0]
                                  : csg_build_empty(builder, where);
-    csg_memory_release(memory, kept, count * sizeof *kept);
+    csg_memory_release(memory, kept, left * sizeof *kept);
     return result;
 }

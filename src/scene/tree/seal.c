@@ -5,6 +5,7 @@
  * of each node are computed once, here.
  */
 #include "scene/boxes/bounds.h"
+#include "scene/operators/fillet_planes.h"
 #include "scene/operators/rule.h"
 #include "scene/tree/build.h"
 #include "scene/tree/softness.h"
@@ -348,6 +349,12 @@ static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_
     return status;
 }
 
+static csgm_status measure(csgm_scene *scene)
+{
+    csgm_status status = csg_bounds_fill(scene);
+    return status == CSGM_OK ? csg_fillet_planes_find(scene) : status;
+}
+
 csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csgm_scene **out)
 {
     if (builder->status != CSGM_OK)
@@ -358,7 +365,7 @@ csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csg
     csgm_status status = seal_copy(builder, node, &scene);
     if (status != CSGM_OK)
         return status;
-    status = csg_bounds_fill(scene);
+    status = measure(scene);
     if (status == CSGM_OK)
         *out = scene;
     else
@@ -383,7 +390,7 @@ csgm_status csg_build_finish(csg_scene_builder *builder, csg_node_id root,
     if (status != CSGM_OK)
         return builder->status = status;
     csg_build_abandon(builder); /* bounds need room too */
-    status = csg_bounds_fill(scene);
+    status = measure(scene);
     if (status == CSGM_OK && !copy_dependencies(scene, dependencies, dependency_count))
         status = CSGM_ERR_MEMORY;
     if (status != CSGM_OK) {

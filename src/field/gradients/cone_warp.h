@@ -4,7 +4,8 @@
 #ifndef CSG_FIELD_CONE_WARP_H
 #define CSG_FIELD_CONE_WARP_H
 
-#include "field/cones/cone.h"
+#include "field/tape.h"
+#include "scene/primitives/cone_ball.h"
 
 /* One warp: the derivative at the ball's centre, transposed, and how far it changes in the ball. */
 typedef struct csg_cone_turn {
@@ -27,5 +28,8 @@ bool csg_cone_warp(const csg_tape *tape, uint32_t warp, double c[3], double *rad
 /* Takes the balls of vectors from number `first` on back, those of the leaf added last. False: too
  * many. */
 bool csg_cone_unwarp(const csg_cone_way *way, csg_cone_balls *balls, uint32_t first);
+
+/* A bound on the largest singular value of a matrix of 3 x 3, row by row. */
+double csg_cone_norm(const float *m);
 
 #endif

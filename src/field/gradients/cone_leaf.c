@@ -5,10 +5,10 @@
  */
 #include <math.h>
 
-#include "field/cones/cone.h"
-#include "field/cones/cone_curve.h"
-#include "field/cones/cone_formula.h"
-#include "field/cones/cone_warp.h"
+#include "field/gradients/cone_curve.h"
+#include "field/gradients/cone_formula.h"
+#include "field/gradients/cone_leaf.h"
+#include "field/gradients/cone_warp.h"
 #include "scene/primitives/curve.h"
 
 static double square_of(const double v[3])
@@ -127,23 +127,6 @@ static bool add_primitive(csg_cone_leaf *l, csg_node_kind kind)
         return csg_primitive_of(kind)->gradients(l);
     return csg_cone_curve(l->own, l->q, l->rho, g, &spread) &&
            csg_cone_add(l, g[0], g[1], g[2], spread);
-}
-
-/* The square root of the largest row sum of |M^T M|. */
-double csg_cone_norm(const float *m)
-{
-    double most = 0;
-    for (int i = 0; i < 3; i++) {
-        double sum = 0;
-        for (int j = 0; j < 3; j++) {
-            double d = 0;
-            for (int k = 0; k < 3; k++)
-                d += (double)m[3 * k + i] * (double)m[3 * k + j];
-            sum += fabs(d);
-        }
-        most = fmax(most, sum);
-    }
-    return sqrt(most);
 }
 
 static void place_affine(csg_cone_leaf *l, const float *frame, const double c[3], double sigma)

@@ -5,7 +5,7 @@
  * those that reach so deep may hold it, and the directions to them, from anywhere in the ball, are
  * in a cone each.
  */
-#include "field/cones/cone_curve.h"
+#include "field/gradients/cone_curve.h"
 
 #include <math.h>
 

@@ -9,11 +9,28 @@
  *   bend     the row along the circle is radius / s times a unit vector around the line, whose
  *            derivative is 1 / s^2 in size; the row across turns by asin(rho / s)
  */
-#include "field/cones/cone_warp.h"
+#include "field/gradients/cone_warp.h"
 
 #include <math.h>
 
 #include "field/kernels/functions.h"
+
+/* The square root of the largest row sum of |M^T M|. */
+double csg_cone_norm(const float *m)
+{
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int j = 0; j < 3; j++) {
+            double d = 0;
+            for (int k = 0; k < 3; k++)
+                d += (double)m[3 * k + i] * (double)m[3 * k + j];
+            sum += fabs(d);
+        }
+        most = fmax(most, sum);
+    }
+    return sqrt(most);
+}
 
 /* More than the floats of a warp err. */
 static const double ROUNDING = 1e-5;

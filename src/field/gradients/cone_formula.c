@@ -3,7 +3,7 @@
  * operations of functions.h, whose ranges include all rounding. A minimum has the gradient of one
  * of its operands, or where both are possible of either; u * u is no product of strangers.
  */
-#include "field/cones/cone_formula.h"
+#include "field/gradients/cone_formula.h"
 
 #include "field/kernels/functions.h"
 

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ * Fillets on the tape: the planes behind their operands, and how far the field strays because of
+ * them from one with a Lipschitz constant.
+ */
+#include "field/compile/compile_private.h"
+
+#include <math.h>
+
+#include "field/rule_layout.h"
+#include "scene/operators/fillet.h"
+
+/* The plane with this number lies where the operand ends that reaches farthest, of those that end.
+ * False: fewer than two do, so that none of the operands' unions ends there. */
+static bool find_plane(const csg_compiler *c, const csg_node *node, size_t number, double *d)
+{
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    uint32_t ending = 0;
+    *d = -INFINITY;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double reach = planes.reaches[k * planes.count + number];
+        ending += isfinite(reach);
+        *d = isfinite(reach) ? fmax(*d, reach) : *d;
+    }
+    return ending > 1;
+}
+
+bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t)
+{
+    const csg_node *node = &c->scene->nodes[t->node];
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    const float own[CSG_OPERATOR_PARAMETERS] = {(float)t->blend.n,
+                                                (float)csg_blend_support(t->blend)};
+    const float unknown = INFINITY;
+    uint32_t at;
+    if (!csg_compile_push(c, own, CSG_OPERATOR_PARAMETERS, &t->parameters))
+        return false;
+    for (size_t i = 0; i < planes.count * node->child_count; i++)
+        if (!csg_compile_push(c, &unknown, 1, &at))
+            return false;
+    float *beyond = c->parameters + t->parameters + CSG_OPERATOR_PARAMETERS;
+    for (size_t i = 0; i < planes.count; i++) {
+        double d;
+        bool is_known = find_plane(c, node, i, &d);
+        for (size_t k = i; is_known && k < planes.count * node->child_count; k += planes.count)
+            if (isfinite(planes.reaches[k]))
+                beyond[k] = (float)((planes.reaches[k] - d) * t->frame.factor);
+    }
+    return true;
+}
+
+uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t)
+{
+    size_t planes = csg_scene_fillet_planes(c->scene, &c->scene->nodes[t->node]).count;
+    return t->parameters + CSG_OPERATOR_PARAMETERS + t->written * (uint32_t)planes;
+}
+
+bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count)
+{
+    const csg_node *node = &c->scene->nodes[t->node];
+    const csg_compile_frame *f = &t->frame;
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    csg_affine place = csg_compile_place(c, f);
+    *count = 0;
+    for (size_t i = 0; i < planes.count; i++) {
+        csg_vec3 n = planes.normals[i];
+        double d;
+        if (!find_plane(c, node, i, &d))
+            continue;
+        csg_leaf l = {.raise = f->raise};
+        csg_leaf_primitive(&l, &place, f->factor, f->negate, CSG_NODE_PLANE,
+                           (double[]){n.x, n.y, n.z, d});
+        l.magnitude += f->magnitude;
+        if (!csg_compile_leaf(c, &l, f->color, f->warp))
+            return false;
+        c->nodes[c->node_count - 1].is_plane = true;
+        c->nodes[c->node_count - 1].join_parameters = (uint32_t)i;
+        ++*count;
+    }
+    return true;
+}
+
+/* Of a fillet alone: it lies between its largest operand and that plus this. */
+static float excess_of(const csg_tape *tape, const csg_tape_node *node)
+{
+    float r = tape->parameters[node->parameters + CSG_OPERATOR_N];
+    return node->arity - node->planes > 2 ? r : (float)CSG_FILLET_PAIR_EXCESS * r;
+}
+
+/* Operators of lengths hand on how far their operands stray. */
+bool csg_compile_waver(csg_memory *memory, csg_tape *tape)
+{
+    uint32_t top = 0, depth = csg_tape_depth(tape);
+    float *stack = csg_memory_alloc(memory, depth * sizeof *stack);
+    if (!stack)
+        return false;
+    tape->waver = 0;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        if (csg_op_is_leaf(node->op))
+            stack[top++] = 0;
+        for (uint32_t k = 1; csg_op_takes_all(node->op) && k < node->arity; k++, top--)
+            stack[top - 2] = fmaxf(stack[top - 2], stack[top - 1]);
+        if (csg_op_is_fillet(node->op)) {
+            stack[top - 1] += excess_of(tape, node);
+            tape->turns = true;
+        }
+        bool bends = node->op == CSG_OP_COMBINE || csg_op_delivers(node->op);
+        if (bends && stack[top - 1] > 0)
+            stack[top - 1] = INFINITY;
+        if (node->join_blend == CSG_BLEND_TURNING && node->join)
+            stack[top - 2] = INFINITY;
+        if (node->join) {
+            top--;
+            stack[top - 1] = fmaxf(stack[top - 1], stack[top]);
+        }
+    }
+    tape->waver = stack[0];
+    csg_memory_release(memory, stack, depth * sizeof *stack);
+    return true;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ * The gradients that a leaf of the tape can have in a ball: each primitive states its own
+ * (scene/primitives/cone_ball.h), here they are placed.
+ */
+#ifndef CSG_FIELD_CONE_LEAF_H
+#define CSG_FIELD_CONE_LEAF_H
+
+#include "field/tape.h"
+#include "scene/primitives/cone_ball.h"
+
+/* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
+ * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least
+ * 1. False: no bound, or too many. */
+bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                       const float c[3], double radius);
+
+#endif
