@@ -218,6 +218,37 @@ static float *channel(slots s, uint32_t depth, size_t index, int c)
     return slot(s, depth + index * MOST_CHANNELS + (size_t)c);
 }
 
+/* A term of a sum that must not depend on the order of its terms: a multiple of 2^-32 of the size,
+ * which doubles add without rounding. */
+static inline double grain(double term, double size)
+{
+    const double large = 0x1.8p20 * size;
+    return (term + large) - large;
+}
+
+/* Where more than two operands are active, out of their weights. */
+static void total_of_many(const float *weights, size_t stride, uint32_t arity, float w,
+                          const float *active, float *total, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double sum = 0;
+        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
+            sum += grain((double)weights[k * stride + i], (double)w);
+        total[i] = active[i] > 2 ? (float)sum : total[i];
+    }
+}
+
+static void mean_of_many(const float *shares, size_t stride, uint32_t arity, const float *in,
+                         size_t in_stride, const float *active, float *mean, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double sum = 0;
+        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
+            sum += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
+        mean[i] = (float)sum;
+    }
+}
+
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
                                 uint32_t depth, size_t first, int channels, size_t count,
                                 float *work)
@@ -225,22 +256,30 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
     float w = tape->parameters[node->parameters + CSG_OPERATOR_N];
     int is_union = node->op == CSG_OP_ROUND_UNION;
     float *top = work, *excess = work + s.stride, *total = work + 2 * s.stride;
+    float *active = total + s.stride, *mean = active + s.stride;
     float *gaps = slot(s, first);
+    const int many = node->arity > 2;
     round_solve(gaps, s.stride, node->arity, is_union, w, count, top, excess, total);
     for (size_t i = 0; i < count; i++)
-        total[i] = 0;
+        total[i] = active[i] = 0;
     for (uint32_t k = 0; k < node->arity; k++)
         for (size_t i = 0; i < count; i++) {
             float weight = larger(w - gaps[k * s.stride + i] - excess[i], 0);
             gaps[k * s.stride + i] = weight;
             total[i] += weight;
+            active[i] += weight > 0 ? 1.0f : 0;
         }
+    if (many)
+        total_of_many(gaps, s.stride, node->arity, w, active, total, count);
     /* Shares first, so that a lone active operand has exactly 1. */
     for (uint32_t k = 0; k < node->arity; k++)
         for (size_t i = 0; i < count; i++)
             gaps[k * s.stride + i] = quotient(gaps[k * s.stride + i], total[i]);
     for (int c = 0; c < channels; c++) {
         float *out = channel(s, depth, first, c);
+        if (many)
+            mean_of_many(gaps, s.stride, node->arity, out, MOST_CHANNELS * s.stride, active, mean,
+                         count);
         for (size_t i = 0; i < count; i++)
             out[i] = gaps[i] * out[i];
         for (uint32_t k = 1; k < node->arity; k++) {
@@ -248,6 +287,8 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
             for (size_t i = 0; i < count; i++)
                 out[i] += gaps[k * s.stride + i] * in[i];
         }
+        for (size_t i = 0; many && i < count; i++)
+            out[i] = active[i] > 2 ? mean[i] : out[i];
     }
     const float turn = is_union ? 1.0f : -1.0f;
     for (size_t i = 0; i < count; i++)

@@ -130,8 +130,9 @@ static csgm_status report(const csgm_scene *scene, csgm_status status, csg_node_
         csg_diag_plain(diags, CSG_DIAG_NO_TAPE, NULL, NULL,
                        "the scene's tape would have more than %zu lines", most);
     if (status == CSGM_ERR_UNSUPPORTED && scene->nodes[obstacle].kind != CSG_NODE_SHAPE)
-        csg_diag_plain(diags, CSG_DIAG_NO_TAPE, NULL, NULL,
-                       "no tape can hold soft solids, nor blends by fields or smooth steps");
+        csg_diag_plain(
+            diags, CSG_DIAG_NO_TAPE, NULL, NULL,
+            "no tape can hold soft solids, fillets, nor blends by fields or smooth steps");
     else if (status == CSGM_ERR_UNSUPPORTED)
         csg_diag_plain(
             diags, CSG_DIAG_NO_TAPE, NULL,

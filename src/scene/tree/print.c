@@ -168,7 +168,7 @@ static void put_operator(const csg_printer *out, const csg_node *node)
     } else if (!rule && blend.kind != CSG_BLEND_SHARP) {
         csg_put(out, "blend = ");
         csg_put(out, csg_blend_name(blend.kind));
-        csg_put_argument(out, "(", "n", blend.n);
+        csg_put_argument(out, "(", csg_blend_is_fillet(blend.kind) ? "r" : "n", blend.n);
         csg_put(out, ")");
         separator = ", ";
     }
