@@ -20,7 +20,7 @@ PARTS = {
     "field": ["kernels", "gradients", "prune", "compile", "cones"],
     "grid": ["octree", "certify"],
     "mesh": ["marching", "features", "remesh", "distance", "reshape", "pipeline"],
-    "io": ["text", "formats", "gltf", "threemf"],
+    "io": ["text", "formats", "gltf", "threemf", "drawings"],
 }
 
 # Made by the build.

@@ -231,6 +231,14 @@ typedef enum csgm_leniency {
     CSGM_LENIENT          /* they are warnings, and say what is left out */
 } csgm_leniency;
 
+/* What becomes of a scene that is a flat figure. */
+typedef enum csgm_flat {
+    CSGM_FLAT_PLATE,   /* a solid, 1 thick, with a warning */
+    CSGM_FLAT_DRAWING, /* its outlines are kept for csgm_scene_draw; solids beside it are left out,
+                          with a warning, and a scene without a flat figure is an error */
+    CSGM_FLAT_BOTH     /* both; a scene that is a solid is an error */
+} csgm_flat;
+
 /* How a scene's text is read: values from outside, folders of includes, and facets. */
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
@@ -245,6 +253,7 @@ typedef struct csgm_scene_options {
     csgm_leniency leniency;    /* default STRICT */
     uint32_t openscad_version; /* what version_num() says: 20210100 is 2021.01; 0 (the default): the
                                   newest one that is fully supported */
+    csgm_flat flat;            /* default PLATE */
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);
@@ -653,6 +662,31 @@ typedef struct csgm_write_options {
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);
+
+/* What the outlines of a flat scene are written as. */
+typedef enum csgm_drawing_format {
+    CSGM_DRAWING_NONE,
+    CSGM_DRAWING_SVG,
+    CSGM_DRAWING_DXF,
+    CSGM_DRAWING_PDF,
+    CSGM_DRAWING_COUNT
+} csgm_drawing_format;
+
+CSGM_API csgm_drawing_format csgm_drawing_format_from_path(const char *path);
+CSGM_API csgm_drawing_format csgm_drawing_format_from_name(const char *name);
+CSGM_API const char *csgm_drawing_format_name(csgm_drawing_format format);
+/* How many layers the drawing of a scene has: one for each part's name and colour. 0: nothing
+ * encloses an area, or no drawing was asked for (csgm_flat). */
+CSGM_API size_t csgm_scene_layer_count(const csgm_scene *scene);
+/* Writes the drawing, in millimetres: corners as they are, arcs within 1e-5 of the figure's size,
+ * what is blended or a formula along its contour on a lattice of 512 cells. As csgm_mesh_write; of
+ * the options unit, sync and only_if_changed count. CSGM_ERR_ARGUMENT: it has no layers. */
+CSGM_API csgm_status csgm_scene_draw(csgm_context *context, const csgm_scene *scene,
+                                     const char *path, csgm_drawing_format format,
+                                     const csgm_write_options *options);
+CSGM_API csgm_status csgm_scene_draw_fd(csgm_context *context, const csgm_scene *scene, int fd,
+                                        const char *name, csgm_drawing_format format,
+                                        const csgm_write_options *options);
 
 /* The file appears complete or not at all: written beside the target, synced, renamed.
  * options NULL = defaults. */

@@ -25,6 +25,9 @@ enum { CSG_NUMBER_MOST = 32 }; /* bytes any of the put functions may write */
 char *csg_number_put_float(char *text, float value);
 char *csg_number_put_double(char *text, double value);
 char *csg_number_put_u64(char *text, uint64_t value);
+/* With at most `decimals` digits behind the point (0 to 20), no exponent, no zeros at its end. */
+enum { CSG_FIXED_MOST = 352 };
+char *csg_number_put_fixed(char *text, double value, int decimals);
 /* Reads one decimal number (a leading '+' is taken) at text; returns its end, NULL when there is
  * none. Too large becomes infinity, too small zero. */
 const char *csg_number_parse(const char *text, const char *end, double *value);

@@ -148,6 +148,10 @@ static csgm_status seal(csg_eval *e, csg_node_id root, csgm_scene **out)
             (*out)->marked[i] = marked[i];
         else
             csg_scene_destroy(marked[i]);
+    if (status == CSGM_OK) {
+        (*out)->drawing = e->drawing;
+        e->drawing = NULL;
+    }
     if (status == CSGM_OK)
         csg_zone_count(e->context, "nodes", (*out)->node_count);
     return status;
@@ -175,7 +179,8 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
     }
     if (status == CSGM_OK) {
         warn_empty(&e, scene);
-        status = csg_warn_lost_parts(&e, scene);
+        bool is_drawing = program->options && program->options->flat == CSGM_FLAT_DRAWING;
+        status = is_drawing ? CSGM_OK : csg_warn_lost_parts(&e, scene); /* parts are layers there */
         if (status != CSGM_OK)
             csg_scene_destroy(scene);
     }

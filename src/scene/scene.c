@@ -7,6 +7,7 @@
 
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "shape/plane/drawing.h"
 
 typedef struct kind_row {
     const char *name;
@@ -134,6 +135,7 @@ void csg_scene_destroy(csgm_scene *scene)
         csg_shape_release(scene->shapes[i]);
     for (int i = 0; i < CSG_MARK_COUNT; i++) /* these have none themselves */
         csg_scene_destroy(scene->marked[i]);
+    csg_drawing_destroy(scene->drawing);
     csg_arena_reset(&scene->arena);
     csg_memory_release(memory, scene, sizeof *scene);
 }

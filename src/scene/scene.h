@@ -173,7 +173,8 @@ struct csgm_scene {
     const csg_scene_text *texts; /* a span's source is an index; copied into arena, or borrowed */
     size_t text_count;
     csgm_scene *marked[CSG_MARK_COUNT]; /* owned; NULL: nothing is marked so */
-    double parse_s, evaluate_s;         /* wall time it took to get here; filled by lang/ */
+    struct csg_drawing *drawing; /* owned; NULL: none was asked for (shape/plane/drawing.h) */
+    double parse_s, evaluate_s;  /* wall time it took to get here; filled by lang/ */
 };
 
 static inline const csg_node_id *csg_scene_children(const csgm_scene *scene, const csg_node *node)

@@ -23,6 +23,20 @@ char *csg_number_put_u64(char *text, uint64_t value)
     return std::to_chars(text, text + CSG_NUMBER_MOST, value).ptr;
 }
 
+char *csg_number_put_fixed(char *text, double value, int decimals)
+{
+    char *end =
+        std::to_chars(text, text + CSG_FIXED_MOST, value, std::chars_format::fixed, decimals).ptr;
+    if (decimals > 0) {
+        while (end[-1] == '0')
+            end--;
+        end -= end[-1] == '.';
+    }
+    if (end == text + 2 && text[0] == '-' && text[1] == '0')
+        *--end = '\0', text[0] = '0'; /* -0 */
+    return end;
+}
+
 /* from_chars leaves the value alone when out of range: 1e999 and 1e-999 differ in the sign of the
  * exponent after the first 'e', or in the place of the point. */
 static double out_of_range(const char *text, const char *end)

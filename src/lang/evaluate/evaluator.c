@@ -11,6 +11,7 @@
 #include "base/mesh_codes.h"
 #include "base/scene_codes.h"
 #include "outline/letters/text.h"
+#include "shape/plane/drawing.h"
 
 /* ---- findings ----------------------------------------------------------------------------------
  */
@@ -476,6 +477,7 @@ void csg_eval_reset(csg_eval *e)
 {
     csg_memory *memory = &e->context->memory;
     csg_build_abandon(&e->builder);
+    csg_drawing_destroy(e->drawing);
     csg_fonts_destroy(e->fonts);
     csg_heap_reset(&e->heap);
     csg_memory_release(memory, e->dynamics, e->dynamic_capacity * sizeof *e->dynamics);

@@ -79,6 +79,8 @@ typedef struct csg_eval {
     csg_mark *marks; /* a stack (marks.h) */
     size_t mark_count, mark_capacity;
 
+    struct csg_drawing *drawing; /* of a flat scene, where one is asked for; owned */
+
     csg_node_id root; /* what a ! modifier chose, or NONE */
     csg_node_id
         marked[CSG_MARK_COUNT]; /* after the run, or once there is a root: each mark's solid */
@@ -220,6 +222,11 @@ void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
 size_t csg_parts_drop_unlike(csg_eval *e, size_t first, bool flat);
 /* The same by the first part's dimension; warns of the others. */
 void csg_parts_keep_alike(csg_eval *e, size_t first, csg_span where);
+/* At the end of a scene (flat_scene.c): where only a drawing is asked for, solids beside figures
+ * are left out, told; */
+void csg_eval_keep_drawn(csg_eval *e, csg_span where);
+/* a flat scene is drawn and becomes a plate, as csgm_flat says. */
+csg_node_id csg_eval_finish_flat(csg_eval *e, csg_node_id node, csg_span where);
 bool csg_eval_is_empty(const csg_eval *e, csg_node_id node);
 bool csg_eval_is_flat(const csg_eval *e, csg_node_id node); /* false for the empty solid */
 /* After every csg_build_*: a failure becomes a finding, and the node EMPTY. */

@@ -154,16 +154,6 @@ void csg_run_scope(csg_eval *e, const csg_scope *scope, csg_frame *frame, bool s
     csg_eval_pop_dynamics(e, dynamics);
 }
 
-/* A scene that is a figure of the plane becomes a plate of thickness 1, told. */
-static csg_node_id thicken_scene(csg_eval *e, csg_node_id node, csg_span where)
-{
-    if (node == CSG_NODE_NONE || e->stop || !csg_eval_is_flat(e, node))
-        return node;
-    csg_eval_report(e, CSG_DIAG_FLAT_SCENE, where, "linear_extrude(height) gives it one",
-                    "the scene is a flat figure: it gets a thickness of 1");
-    return csg_check_node(e, csg_build_extrude(&e->builder, node, -0.5, 0.5, where), where);
-}
-
 csg_node_id csg_eval_run(csg_eval *e)
 {
     const csg_program_file *scene = e->program->files[0];
@@ -171,8 +161,9 @@ csg_node_id csg_eval_run(csg_eval *e)
     csg_frame *frame = csg_eval_file_frame(e, scene);
     if (frame && !e->stop)
         csg_run_statements(e, scene->scope, frame, true);
+    csg_eval_keep_drawn(e, whole);
     csg_node_id node = csg_join_parts(e, 0, CSG_NODE_UNION, CSG_SHARP, whole);
     if (e->root == CSG_NODE_NONE)
         csg_marks_take(e, 0, whole, e->marked);
-    return thicken_scene(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
+    return csg_eval_finish_flat(e, e->root != CSG_NODE_NONE ? e->root : node, whole);
 }

@@ -190,6 +190,7 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     options.leniency = leniency_of(&app->options);
     if (status == CSGM_OK && !read_level(app, &options.openscad_version))
         status = CSGM_ERR_ARGUMENT;
+    options.flat = app->flat;
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);

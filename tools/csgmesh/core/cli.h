@@ -17,6 +17,7 @@ typedef struct cli_app {
     double start_s;
     csgm_trace *trace;     /* of --trace, or NULL */
     const char *zone_note; /* in it: what the context is at work on; NULL = the first operand */
+    csgm_flat flat;        /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
     bool would_overwrite;  /* an output is a file that is read: nothing may be written any more */
 } cli_app;
 

@@ -11,6 +11,7 @@
 #include "core/work.h"
 #include "mesh/certify.h"
 #include "mesh/depfile.h"
+#include "mesh/drawings.h"
 #include "mesh/outputs.h"
 
 typedef struct run_report {
@@ -173,8 +174,8 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
  * hear the warnings of meshing before a file is there. */
 static bool goes_straight_to_file(const cli_options *options)
 {
-    return options->outputs.count == 1 && strcmp(options->outputs.items[0], "-") != 0 &&
-           !options->stats && options->warnings == 0;
+    return options->outputs.count == 1 && !cli_drawings_count(options) &&
+           strcmp(options->outputs.items[0], "-") != 0 && !options->stats && options->warnings == 0;
 }
 
 static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
@@ -194,14 +195,27 @@ static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
     return status;
 }
 
+/* Drawings are written first; where they are all that is asked for, the scene is not meshed. */
+static int draw_scene(cli_app *app, const cli_work *work)
+{
+    int status = app->flat == CSGM_FLAT_PLATE ? CLI_DONE : cli_drawings_write(app, work->scene);
+    if (status == CLI_DONE && app->flat == CSGM_FLAT_DRAWING && app->options.depfile)
+        status = cli_depfile_write(app, work->scene);
+    return status;
+}
+
 static int mesh_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
     run_report report = {0};
+    app->flat = cli_drawings_flat(&app->options);
     int status = cli_work_load(app, &work, path);
-    if (status == CLI_DONE && goes_straight_to_file(&app->options)) {
+    if (status == CLI_DONE)
+        status = draw_scene(app, &work);
+    bool is_meshed = status == CLI_DONE && app->flat != CSGM_FLAT_DRAWING;
+    if (is_meshed && goes_straight_to_file(&app->options)) {
         status = mesh_to_file(app, &work, &report);
-    } else if (status == CLI_DONE) {
+    } else if (is_meshed) {
         status = cli_work_mesh(app, &work);
         if (status == CLI_DONE)
             status = write_all(app, &work, &report);

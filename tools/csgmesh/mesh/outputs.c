@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/format_lists.h"
+#include "mesh/drawings.h"
 
 csgm_format cli_outputs_format(const cli_options *options, size_t index)
 {
@@ -45,7 +46,9 @@ static int check_format(cli_app *app, size_t index)
 {
     const char *path = app->options.outputs.items[index];
     csgm_format format = cli_outputs_format(&app->options, index);
-    char known[160];
+    char known[200];
+    if (cli_drawings_format(&app->options, index) != CSGM_DRAWING_NONE)
+        return CLI_DONE;
     cli_formats_of_this_build(known, sizeof known);
     if (format == CSGM_FORMAT_AUTO && strcmp(path, "-") == 0)
         return cli_usage_error(app, known, "standard output needs a format: add -f glb");
@@ -121,7 +124,9 @@ static void warn_without_effect(cli_app *app)
     uint32_t traits = 0; /* of all outputs together */
     char wanted[160];
     for (size_t i = 0; i < options->outputs.count; i++)
-        traits |= csgm_format_traits(cli_outputs_format(options, i));
+        traits |= cli_drawings_format(options, i) != CSGM_DRAWING_NONE
+                      ? CSGM_HEEDS_UNIT
+                      : csgm_format_traits(cli_outputs_format(options, i));
     if (options->draco && traits & CSGM_HEEDS_DRACO)
         traits |= CSGM_HEEDS_DRACO_BITS;
     if (options->normals == CREASE && !(traits & CSGM_KEEPS_CREASES))
@@ -140,8 +145,9 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
 {
     const cli_options *options = &app->options;
     int status = CLI_DONE;
-    if (options->format && csgm_format_from_name(options->format) == CSGM_FORMAT_AUTO) {
-        char known[160];
+    if (options->format && csgm_format_from_name(options->format) == CSGM_FORMAT_AUTO &&
+        csgm_drawing_format_from_name(options->format) == CSGM_DRAWING_NONE) {
+        char known[200];
         cli_formats_of_this_build(known, sizeof known);
         return cli_usage_error(app, known, "unknown format '%s'", options->format);
     }
@@ -196,6 +202,8 @@ int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh)
     for (size_t i = 0; i < app->options.outputs.count; i++) {
         const char *path = app->options.outputs.items[i];
         csgm_format format = cli_outputs_format(&app->options, i);
+        if (cli_drawings_format(&app->options, i) != CSGM_DRAWING_NONE)
+            continue; /* it is written already */
         csgm_status status = strcmp(path, "-") == 0
                                  ? csgm_mesh_write_fd(app->context, mesh, STDOUT_FILENO,
                                                       "standard output", format, &options)
