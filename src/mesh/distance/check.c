@@ -102,11 +102,11 @@ static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec
 /* Whether all of the piece is inside a step along the axis, and outside a step back. Values lie
  * between those at the corners of a small triangle but for what gradients stray by from one vector.
  * As many triangles as it takes: gradients are found once, and values cost little. */
-static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3],
-                             const csg_gradients *gradients, csg_vec3 axis)
+static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3], double stray,
+                             double slack, csg_vec3 axis)
 {
     csg_vec3 step = csg_vec3_scale(axis, p->error);
-    double stray = gradients->stray * d.radius, slack = slack_of(p) + gradients->doubt;
+    stray *= d.radius;
     if (!(stray < MOST_CUTS * (double)s->tape.lipschitz * p->error))
         return false;
     for (int cuts = 2; cuts <= MOST_CUTS;) {
@@ -135,25 +135,19 @@ static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v
     double least = cone.least * p->error - slack_of(p);
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
     return (gradients.low >= -least && gradients.high <= least) ||
-           settles_by_steps(p, s, d, v, &gradients, axis);
-}
-
-static bool settles_by_signs(const proof *p, settler *s, disc d, csg_vec3 normal)
-{
-    double least = (double)s->tape.lipschitz * d.radius + slack_of(p);
-    csg_vec3 step = csg_vec3_scale(normal, p->error);
-    return value_at(p, s, csg_vec3_add(d.center, step)) < -least &&
-           value_at(p, s, csg_vec3_sub(d.center, step)) > least;
+           settles_by_steps(p, s, d, v, gradients.stray, slack_of(p) + gradients.doubt, axis);
 }
 
 /* Thin walls, sharp tips: a change of sign in any direction will do. */
 static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, csg_vec3 side)
 {
+    enum { RINGS = 4, WAYS = 26, ROOM = WAYS + CSG_LANES };
     csg_vec3 other = csg_vec3_cross(normal, side);
+    float at[3][ROOM] = {{0}}, f[ROOM] = {0};
     bool inside = false, outside = false;
     double reach = p->error - d.radius;
-    for (int ring = 0; ring < 4 && !(inside && outside); ring++, reach /= 4)
-        for (int i = 0; i < 26 && !(inside && outside); i++) {
+    for (int ring = 0; ring < RINGS && !(inside && outside); ring++, reach /= 4) {
+        for (int i = 0; i < WAYS; i++) {
             /* around in the plane, and leaning to both sides: the plane may be the surface itself
              */
             static const double around[8][2] = {{0.9, 0},   {0, 0.9},    {-0.9, 0},   {0, -0.9},
@@ -163,25 +157,42 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
             csg_vec3 off =
                 csg_vec3_add(csg_vec3_scale(normal, up),
                              csg_vec3_add(csg_vec3_scale(side, x), csg_vec3_scale(other, y)));
-            double f = value_at(p, s, csg_vec3_add(d.center, csg_vec3_scale(off, reach)));
-            inside |= f > slack_of(p);
-            outside |= f < -slack_of(p);
+            csg_vec3 q = csg_vec3_add(d.center, csg_vec3_scale(off, reach));
+            at[0][i] = (float)q.x, at[1][i] = (float)q.y, at[2][i] = (float)q.z;
         }
+        p->remesh->probe.marching->kernel->values(&s->tape, at[0], at[1], at[2], WAYS, f,
+                                                  s->scratch, p->scratch_floats);
+        for (int i = 0; i < WAYS; i++) {
+            inside |= (double)f[i] > slack_of(p);
+            outside |= (double)f[i] < -slack_of(p);
+        }
+    }
     return inside && outside;
 }
 
-static bool settles(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal)
+/* FAR: no surface is as near as it should be, whatever the piece is cut into. */
+typedef enum verdict { OPEN, SETTLED, FAR } verdict;
+
+static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal)
 {
+    static const double STEPS_REACH = 6; /* of the error */
     disc d = disc_of(v);
+    double lipschitz = (double)s->tape.lipschitz;
     s->pieces++;
     if (settles_by_cone(p, s, d, v)) {
         s->by_cone++;
-        return true;
+        return SETTLED;
     }
-    if (d.radius <= 1.5 * p->error && settles_by_signs(p, s, d, normal))
-        return true;
+    if (d.radius > STEPS_REACH * p->error)
+        return OPEN;
+    if (fabs(value_at(p, s, d.center)) > lipschitz * p->error + slack_of(p))
+        return FAR;
+    /* any gradient is as near to zero as that */
+    csg_vec3 inward = csg_vec3_scale(normal, -1);
+    if (settles_by_steps(p, s, d, v, lipschitz, slack_of(p), inward))
+        return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
-    return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side);
+    return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
 }
 
 /* The two halves by the middle of the longest side; false: small enough to give up. */
@@ -216,9 +227,11 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
     while (top) {
         csg_vec3 v[3];
         memcpy(v, stack[--top], sizeof v);
-        if (settles(p, s, v, whole->normal))
+        verdict what = settle(p, s, v, whole->normal);
+        if (what == SETTLED)
             continue;
-        if (top + 2 > STACK || s->pieces > most || !bisect(v, p->error / 16, &stack[top]))
+        if (what == FAR || top + 2 > STACK || s->pieces > most ||
+            !bisect(v, p->error / 16, &stack[top]))
             return false;
         top += 2;
     }
@@ -287,7 +300,11 @@ static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *piec
         piece parts[CSG_OCTANTS];
         s->tape = tapes[i];
         pieces[i].open = !tapes[i].count;
-        if (pieces[i].open || settles(p, s, pieces[i].at, pieces[i].normal))
+        if (pieces[i].open)
+            continue;
+        verdict what = settle(p, s, pieces[i].at, pieces[i].normal);
+        pieces[i].open = what == FAR;
+        if (what != OPEN)
             continue;
         if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
             disc_of(pieces[i].at).radius < 2 * p->error) {

@@ -4,12 +4,14 @@
  * one of these, with the tape pruned to the piece's neighbourhood:
  *
  *   cone     gradients in the ball of radius r + E around c have a direction v in common in which f
- *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so
- *            c + E v is inside and c - E v outside, for all of its points. Of the order of
- *            sqrt(E / curvature), so that smooth parts are settled by large pieces, and flat ones
- *            up to their edges.
- *   signs    f(c + E n) <= -lambda r and f(c - E n) >= lambda r: the signs hold for all of the
- * piece nearby   f changes its sign within E - r of c
+ *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so c + E v is
+ *            inside and c - E v outside, for all of its points
+ *   steps    f > 0 at the corners of small triangles that the piece, moved by E v, is cut into, by
+ *            more than gradients can stray from one vector over such a triangle; and f < 0 for the
+ *            piece moved by -E v. v is a cone's axis, or the piece's normal if there is no cone:
+ *            gradients stray from 0 by lambda then. Values cost little beside gradients' bounds, so
+ *            pieces of the order of sqrt(E / curvature) are settled at once
+ *   nearby   f changes its sign within E - r of c
  *
  * Every piece that is settled has the surface within E on the line through each of its points; and
  * where a cone settled it, just once: the surface near it is one sheet, so it is within E of the

@@ -44,7 +44,7 @@ csg_look_at_vertex csg_remesh_look(csg_remesh *r, csg_vec3 at)
 /* ---- the bracket ------------------------------------------------------------------------------
  */
 
-enum { MOST_SPLIT = 6, MOST_POINTS = CSG_PROBE_MOST / 2 };
+enum { MOST_SPLIT = 3, MOST_POINTS = CSG_PROBE_MOST / 2 };
 
 typedef struct bracket {
     float out[MOST_POINTS][3], in[MOST_POINTS][3];

@@ -92,17 +92,23 @@ static void add_fan(csg_decimation *d, uint32_t vertex, uint32_t other)
     } while (c != first);
 }
 
-static void find_ring(csg_decimation *d, uint32_t from, uint32_t to, uint32_t corner)
+/* The two triangles that go, behind those that stay. */
+static void finish_ring(csg_decimation *d, uint32_t to, uint32_t corner)
 {
     csg_collapse_room *room = d->room;
     const csg_corners *m = &d->remesh->corners;
-    room->count = 0;
-    add_fan(d, from, to);
-    add_fan(d, to, from);
     room->triangle[room->count] = corner / 3;
     room->triangle[room->count + 1] = m->across[csg_corner_previous(corner)] / 3;
     for (uint32_t i = 0; i < room->count; i++)
         room->vertex[i][0] = to;
+}
+
+static void find_ring(csg_decimation *d, uint32_t from, uint32_t to, uint32_t corner)
+{
+    d->room->count = 0;
+    add_fan(d, from, to);
+    add_fan(d, to, from);
+    finish_ring(d, to, corner);
 }
 
 static void move_ring(csg_collapse_room *room, csg_vec3 at)
@@ -186,13 +192,71 @@ static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t
     csg_triangle_tree_update_around(&r->tree, to);
     for (uint32_t i = 0; i < 2; i++)
         csg_triangle_tree_update(&r->tree, d->room->triangle[d->room->count + i]);
-    r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
     if (r->looks)
         r->looks[to] = d->room->look;
     d->quadrics[to] = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     d->version[to]++;
     d->version[from]++;
 }
+
+/* ---- where it is flat --------------------------------------------------------------------------
+ */
+
+/* Whether all triangles at a vertex go on through the place of a neighbour, to rounding, and look
+ * the same: in a plane, or along a straight edge between two. Without the vertex they cover what
+ * they covered before. */
+static bool is_flat(const csg_remesh *r, uint32_t vertex, uint32_t neighbour)
+{
+    static const double ROUNDING = 4; /* of the tree's noise */
+    const csg_corners *m = &r->corners;
+    csg_vec3 at = r->at[vertex], off = csg_vec3_sub(r->at[neighbour], at);
+    uint32_t first = m->corner[vertex], c = first;
+    do {
+        uint32_t v = m->vertex[csg_corner_next(c)], w = m->vertex[csg_corner_previous(c)];
+        csg_vec3 n = csg_triangle_cross(at, r->at[v], r->at[w]);
+        double height = csg_vec3_dot(n, off), most = ROUNDING * r->tree.noise;
+        if (!(height * height <= most * most * csg_vec3_dot(n, n)) ||
+            (r->looks && memcmp(&r->looks[v], &r->looks[vertex], sizeof r->looks[v])))
+            return false;
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+    return true;
+}
+
+/* Slivers too, which has_shape lets pass. */
+static bool faces_as_before(const csg_collapse_room *room)
+{
+    for (uint32_t i = 0; i < room->count; i++) {
+        const csg_vec3 *v = room->before[i], *w = room->after[i];
+        if (!(csg_vec3_dot(csg_triangle_cross(v[0], v[1], v[2]),
+                           csg_triangle_cross(w[0], w[1], w[2])) > 0))
+            return false;
+    }
+    return true;
+}
+
+/* Neither field nor crossings need to be asked. */
+static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
+{
+    csg_remesh *r = d->remesh;
+    csg_collapse_room *room = d->room;
+    if (r->kind[from] == CSG_VERTEX_CORNER || !is_flat(r, from, to))
+        return false;
+    uint32_t corner = csg_corners_find_edge(&r->corners, from, to);
+    room->count = 0;
+    add_fan(d, from, to);
+    finish_ring(d, to, corner);
+    move_ring(room, r->at[to]);
+    if (r->looks)
+        room->look = r->looks[to];
+    if (!faces_as_before(room) || !has_shape(room) || !csg_decimation_can_hand_over(d, to))
+        return false;
+    collapse(d, corner, from, to, r->at[to]);
+    return true;
+}
+
+/* ---- one edge ----------------------------------------------------------------------------------
+ */
 
 /* The two vertices that face the edge: their lists of triangles change too. */
 static bool owns_apexes(const csg_decimation *d, uint32_t corner)
@@ -203,27 +267,32 @@ static bool owns_apexes(const csg_decimation *d, uint32_t corner)
            csg_decimation_owns(d, m->vertex[m->across[apex]]);
 }
 
-bool csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
+uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
 {
     csg_remesh *r = d->remesh;
     uint32_t corner = csg_corners_find_edge(&r->corners, from, to);
     if (corner == CSG_CORNER_NONE)
-        return false;
+        return CSG_CORNER_NONE;
     if (!owns_apexes(d, corner)) {
         d->state[from] = CSG_VERTEX_HELD_UP;
-        return false;
+        return CSG_CORNER_NONE;
     }
     if (!csg_corners_can_collapse(&r->corners, corner))
-        return false;
+        return CSG_CORNER_NONE;
+    if (collapse_flat(d, from, to))
+        return to;
+    if (collapse_flat(d, to, from))
+        return from;
     csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     proposal p = places_of(d, &q, from, to);
     find_ring(d, from, to, corner);
     for (int i = 0; i < p.count; i++) {
         csg_vec3 at;
-        if (place_is_good(d, &p, i, &at, from, to)) {
-            collapse(d, corner, from, to, at);
-            return true;
-        }
+        if (!place_is_good(d, &p, i, &at, from, to))
+            continue;
+        collapse(d, corner, from, to, at);
+        r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
+        return to;
     }
-    return false;
+    return CSG_CORNER_NONE;
 }

@@ -259,10 +259,11 @@ static csgm_status collapse_waiting(csg_decimation *d, uint32_t least)
         if (i % LOOK_UP_EVERY == 0 && csg_mesh_should_stop(r->watch))
             return CSGM_CANCELLED;
         d->tried++;
-        if (!csg_collapse_try(d, entry.from, entry.to))
+        uint32_t kept = csg_collapse_try(d, entry.from, entry.to);
+        if (kept == CSG_CORNER_NONE)
             continue;
         d->made++;
-        if (!add_edges_around(d, entry.to))
+        if (!add_edges_around(d, kept))
             return CSGM_ERR_MEMORY;
     }
     return CSGM_OK;

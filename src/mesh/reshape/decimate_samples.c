@@ -135,21 +135,27 @@ static bool is_over(const csg_facet *t, csg_vec3 p, double weights[3], double *s
     return true;
 }
 
-/* The triangle that answers for a sample from now on: the first that it is over, near enough, or
- * else the nearest; NONE: it would be too far away. */
+/* The triangle that answers for a sample from now on: the nearest of those that it is over, or the
+ * first that is near by far; if there is none, the nearest of all. NONE: it would be too far away.
+ */
 static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
 {
     const csg_collapse_room *room = d->room;
     double most = d->remesh->error * d->remesh->error, least = INFINITY, best[3] = {0, 0, 0};
     csg_vec3 p = csg_sample_at(d, sample);
     double weights[3], square;
-    for (uint32_t i = 0; i < room->count; i++) {
-        uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
-        if (is_over(&room->facet[k], p, weights, &square) && square <= most &&
-            looks_alike(d, sample, k, weights, kept))
-            return k;
-    }
     uint32_t owner = CSG_CORNER_NONE;
+    for (uint32_t i = 0; i < room->count && least > most / 256; i++) {
+        uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
+        if (!is_over(&room->facet[k], p, weights, &square) || !(square < least))
+            continue;
+        least = square;
+        owner = k;
+        memcpy(best, weights, sizeof best);
+    }
+    if (least <= most && looks_alike(d, sample, owner, best, kept))
+        return owner;
+    least = INFINITY;
     for (uint32_t k = 0; k < room->count; k++) {
         square = csg_triangle_nearest(room->after[k], p, weights);
         if (square < least) {

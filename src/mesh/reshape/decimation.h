@@ -89,8 +89,8 @@ void csg_decimation_hand_over(csg_decimation *d);
 
 /* The cost of collapsing an edge, before it is checked; negative: never. */
 double csg_collapse_cost(const csg_decimation *d, uint32_t from, uint32_t to);
-/* Collapses it if all checks allow. On true `to` stands for both. */
-bool csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
+/* Collapses it if all checks allow. The vertex that stands for both then; NONE: it stays. */
+uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {

@@ -124,8 +124,11 @@ csgm_status csg_refine_until_near(csg_remesh *r, double error, csg_distance_proo
         return csg_context_no_memory(r->context);
     memset(f.pending, 1, count);
     csgm_status status = csg_check_distance(r, error, f.pending, out);
-    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;
+    uint64_t before = UINT64_MAX / 10; /* a round that settles hardly any is the last */
+    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped &&
+                        out->open * 10 < before * 9;
          round++) {
+        before = out->open;
         if (!refine_open(&f))
             break;
         status = csg_check_distance(r, error, f.pending, out);

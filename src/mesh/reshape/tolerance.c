@@ -51,11 +51,17 @@ static csgm_status choose_cells(csg_remesh *r, csg_mesh_goal *goal)
 /* ---- one try ----------------------------------------------------------------------------------
  */
 
+static bool has_count(const csg_mesh_goal *goal)
+{
+    return goal->triangles || goal->share > 0;
+}
+
 /* With errors that double until few enough triangles are left. */
-static csgm_status reach_share(csg_decimation *d, csg_mesh_goal *goal)
+static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
 {
     csg_remesh *r = d->remesh;
-    uint32_t least = (uint32_t)ceil(goal->share * (double)goal->begun);
+    double wanted = goal->triangles ? (double)goal->triangles : goal->share * (double)goal->begun;
+    uint32_t least = wanted < (double)goal->begun ? (uint32_t)ceil(wanted) : (uint32_t)goal->begun;
     double most = 0.25 * csg_lattice_extent(r->marching->lattice);
     csgm_status status = CSGM_OK;
     r->error = r->cell / 64;
@@ -77,7 +83,7 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
     csgm_status status = csg_decimation_begin(&d, r, missed);
     if (status != CSGM_OK)
         return status;
-    status = goal->share > 0 ? reach_share(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
+    status = has_count(goal) ? reach_count(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
     goal->measured = csg_decimation_largest_distance(&d);
     csg_decimation_end(&d);
     return status;
@@ -90,9 +96,8 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
     csg_distance_proof proof;
     goal->allowed = goal->error > 0 ? goal->error : r->error;
     goal->bound = INFINITY;
-    if (goal->share >
-        0) /* a proof might refine it again: every collapse was checked, that is all */
-        return CSGM_OK;
+    if (has_count(goal) || !goal->proves)
+        return CSGM_OK; /* a proof might refine it again: every collapse was checked, that is all */
     csgm_status status = csg_refine_until_near(r, goal->allowed, &proof);
     if (status != CSGM_OK)
         return status;
@@ -108,7 +113,7 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
 {
     CSG_ZONE(r->context, "missed parts");
     *missed = (csg_missed){0};
-    if (!(goal->error > 0))
+    if (!(goal->error > 0) || !goal->proves)
         return CSGM_OK;
     csgm_status status = csg_missed_find(r, goal->error, missed);
     if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
@@ -123,7 +128,7 @@ static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
     csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;
-    bool thins = goal->error > 0 || goal->share > 0;
+    bool thins = goal->error > 0 || has_count(goal);
     csg_missed missed;
     status = find_missed(r, goal, &missed);
     if (status == CSGM_OK && thins && !(goal->cell_size > 0))

@@ -11,8 +11,10 @@
 
 /* What is wanted of one field's mesh, and what came of it. */
 typedef struct csg_mesh_goal {
-    double error; /* 0: as `share` has it, or nothing is taken away */
-    double share; /* of the triangles that may stay; 0: as few as `error` allows */
+    double error;       /* 0: as `share` has it, or nothing is taken away */
+    double share;       /* of the triangles that may stay; 0: as few as `error` allows */
+    uint64_t triangles; /* that may stay, in place of `share`; 0: as `share` has it */
+    bool proves;        /* the error holds everywhere, or it is said where not; else of samples */
     bool improve;
     bool chooses;         /* the cell size */
     csgm_normals normals; /* of the result */
