@@ -86,7 +86,8 @@ static double fillet_inside(const void *user, const csg_fillet_operand *operands
         for (uint32_t k = 0; k < subset->count; k++)
             reach = fmax(
                 reach, end->planes.reaches[operands[subset->at[k]].index * end->planes.count + i]);
-        double inside = reach - csg_vec3_dot(end->planes.normals[i], end->p);
+        csg_vec3 away;
+        double inside = reach - csg_fillet_towards(&end->planes.ends[i], end->p, &away);
         if (inside < least)
             *plane = (uint32_t)i;
         least = fmin(least, inside);
@@ -123,8 +124,10 @@ static csg_sample unite_fillet(const csg_reference_work *w, const csgm_scene *sc
     if (!(reach[0].f + best.excess > most))
         return out;
     out = (csg_sample){reach[0].f + best.excess, {0, 0, 0}};
-    if (best.is_ended)
-        out.gradient = csg_vec3_scale(end.planes.normals[best.plane], -1);
+    if (best.is_ended) {
+        csg_fillet_towards(&end.planes.ends[best.plane], p, &out.gradient);
+        out.gradient = csg_vec3_scale(out.gradient, -1);
+    }
     for (uint32_t i = 0; i < best.count && !best.is_ended; i++) {
         uint32_t k = reach[best.at[i]].index;
         double weight = operand_sign((csg_node_kind)node->kind, k) * best.share[i];

@@ -64,10 +64,21 @@ csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_nod
     const double *v = csg_scene_parameters(scene, node);
     csg_fillet_planes planes = {.count = (size_t)v[CSG_FILLET_PLANES]};
     if (planes.count) {
-        planes.normals = scene->normals + (size_t)v[CSG_FILLET_FIRST_NORMAL];
+        planes.ends = scene->ends + (size_t)v[CSG_FILLET_FIRST_NORMAL];
         planes.reaches = scene->reaches + (size_t)v[CSG_FILLET_FIRST_REACH];
     }
     return planes;
+}
+
+double csg_fillet_towards(const csg_fillet_end *end, csg_vec3 p, csg_vec3 *away)
+{
+    *away = end->normal;
+    if (!end->is_round)
+        return csg_vec3_dot(end->normal, p);
+    csg_vec3 v = csg_vec3_sub(p, end->foot);
+    v = csg_vec3_sub(v, csg_vec3_scale(end->normal, csg_vec3_dot(end->normal, v)));
+    *away = csg_vec3_normalize(v);
+    return csg_vec3_norm(v);
 }
 
 const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)

@@ -101,6 +101,13 @@ typedef struct csg_look {
 
 enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
 
+/* What holds operands of a fillet: half-spaces with this normal, or, where is_round, cylinders
+ * without end around the axis through `foot` along it. */
+typedef struct csg_fillet_end {
+    csg_vec3 normal, foot;
+    bool is_round;
+} csg_fillet_end;
+
 /* Parameters of an operator that takes fields, and of a sharp one with soft operands only. */
 enum { CSG_OPERATOR_RULE, CSG_OPERATOR_RANGE, CSG_OPERATOR_LAMBDA, CSG_OPERATOR_FIELD_PARAMETERS };
 /* Of a fillet: n, and of a union its planes (operators/fillet_planes.h) among the normals and
@@ -157,10 +164,10 @@ struct csgm_scene {
     csg_formula_step *steps; /* of all formulas */
     csg_shape **shapes;      /* one reference each */
     csg_warp *warps;
-    csg_rule *rules;   /* csg_blend.n of a rule is an index into them */
-    csg_vec3 *normals; /* once sealed: of the planes of all fillets */
-    double *reaches;   /* once sealed: how far each operand reaches along them */
-    double *softness;  /* once sealed: lambda of each soft node, else 0; NULL where none is soft */
+    csg_rule *rules;      /* csg_blend.n of a rule is an index into them */
+    csg_fillet_end *ends; /* once sealed: of all fillets */
+    double *reaches;      /* once sealed: how far each operand reaches towards them */
+    double *softness; /* once sealed: lambda of each soft node, else 0; NULL where none is soft */
     size_t node_count, child_count, parameter_count, transform_count, look_count, formula_count,
         step_count, shape_count, warp_count, rule_count;
     const char **part_names; /* once sealed owned by arena */
@@ -189,14 +196,17 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 
 /* Whether it is an operator that looks at its operands' gradients (operators/fillet.h). */
 bool csg_node_is_fillet(const csg_node *node);
-/* How far the operands of a fillet, a union, reach in its own frame: operand k lies within normal i
- * . p <= reaches[k * count + i]. */
+/* How far the operands of a fillet, a union, reach in its own frame: operand k lies within
+ * csg_fillet_towards(ends[i], p) <= reaches[k * count + i]. */
 typedef struct csg_fillet_planes {
-    const csg_vec3 *normals;
+    const csg_fillet_end *ends;
     const double *reaches; /* INFINITY: there is no end, or none is known */
     size_t count;
 } csg_fillet_planes;
 csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node);
+/* How far p lies along the plane's normal, or off the axis; *away: the direction in which it grows.
+ */
+double csg_fillet_towards(const csg_fillet_end *end, csg_vec3 p, csg_vec3 *away);
 
 /* The rule of an operator that has one, else NULL. */
 const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fillets keep dimensions: what a rolling ball adds, the box of the sharp union, nothing where plane faces continue or solids are apart;
+"""Fillets keep dimensions: what a rolling ball adds, the box of the sharp union, nothing where faces continue or solids are apart;
 the same bytes in any order, pruned or not; certified where faces are plane.
 """
 import itertools
@@ -14,6 +14,7 @@ SCENES = {
     "bracket": ("cube([40, 20, 5]); cube([5, 20, 40]);", 3, ARC * 9 * 20),
     "plates apart": ("cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]);", 8, 0),
     "box on box": ("cube([10, 8, 5]); translate([0, 0, 5]) cube([10, 8, 4]);", 2, 0),
+    "one axis": ("cylinder(h = 9, r = 4); translate([0, 0, 9]) cylinder(h = 6, r = 4);", 2, 0),
     "trough": ("cube([40, 20, 4]); cube([4, 20, 24]); translate([36, 0, 0]) cube([4, 20, 24]);", 2, 2 * ARC * 4 * 20),
     "post": ("cube([30, 20, 4]); translate([15, 10, 2]) cylinder(h = 20, r = 5);", 2, None),
     "rib": ("cube([40, 20, 4]); cube([4, 20, 24]); translate([36, 0, 0]) cube([4, 20, 24]); translate([2, 8, 2]) cube([36, 4, 14]);",

@@ -223,6 +223,30 @@ static void test_apart(void **state)
     csg_scene_destroy(scene);
 }
 
+static csg_node_id rod(double low, double high, double r)
+{
+    csg_affine place = csg_affine_translate(csg_vec3_make(3, 4, (low + high) / 2));
+    return csg_build_transform(&builder, &place,
+                               csg_build_primitive(&builder, CSG_NODE_FRUSTUM,
+                                                   (double[]){r, r, (high - low) / 2, 0}, NOWHERE),
+                               NOWHERE);
+}
+
+/* So are cylinders on one axis. */
+static void test_one_axis(void **state)
+{
+    csg_random random = {75};
+    csg_node_id rods[2] = {rod(0, 9, 4), rod(8, 15, 4)};
+    csgm_scene *scene = united(2, rods, 2);
+    for (int i = 0; i < 2000; i++) {
+        csg_vec3 p = csg_vec3_add(csg_vec3_make(3, 4, 8), test_point(&random, 9));
+        double whole = fmin(fmin(p.z, 15 - p.z), 4 - hypot(p.x - 3, p.y - 4));
+        if (whole < -1e-9)
+            assert_true(test_sample(scene, p).value < 0);
+    }
+    csg_scene_destroy(scene);
+}
+
 /* A third operand beyond a face that two share does not let their blend out of it. */
 static void test_ends_by_pairs(void **state)
 {
@@ -286,6 +310,7 @@ int main(void)
         cmocka_unit_test(test_reach),
         cmocka_unit_test_setup_teardown(test_bracket, begin, end),
         cmocka_unit_test_setup_teardown(test_apart, begin, end),
+        cmocka_unit_test_setup_teardown(test_one_axis, begin, end),
         cmocka_unit_test_setup_teardown(test_ends_by_pairs, begin, end),
         cmocka_unit_test_setup_teardown(test_flattened, begin, end),
         cmocka_unit_test_setup_teardown(test_planes_are_exact, begin, end),

@@ -62,13 +62,21 @@ bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *co
     csg_affine place = csg_compile_place(c, f);
     *count = 0;
     for (size_t i = 0; i < planes.count; i++) {
-        csg_vec3 n = planes.normals[i];
+        const csg_fillet_end *end = &planes.ends[i];
+        csg_vec3 n = end->normal;
         double d;
         if (!find_plane(c, node, i, &d))
             continue;
         csg_leaf l = {.raise = f->raise};
-        csg_leaf_primitive(&l, &place, f->factor, f->negate, CSG_NODE_PLANE,
-                           (double[]){n.x, n.y, n.z, d});
+        if (end->is_round) {
+            csg_affine at =
+                csg_affine_multiply(csg_affine_translate(end->foot), csg_affine_z_to(n));
+            at = csg_affine_multiply(place, at);
+            csg_leaf_primitive(&l, &at, f->factor, f->negate, CSG_NODE_CIRCLE, &d);
+        } else {
+            csg_leaf_primitive(&l, &place, f->factor, f->negate, CSG_NODE_PLANE,
+                               (double[]){n.x, n.y, n.z, d});
+        }
         l.magnitude += f->magnitude;
         if (!csg_compile_leaf(c, &l, f->color, f->warp))
             return false;

@@ -18,6 +18,7 @@
 enum {
     AXES = 6,             /* both sides of each */
     MOST_PLANES = 24,     /* of one fillet */
+    MOST_AXES = 8,        /* the same */
     MOST_WORK = 20000000, /* nodes times normals; above it the frame's own axes only */
 };
 
@@ -33,8 +34,10 @@ typedef struct search {
     /* those found */
     csg_vec3 *found;
     size_t found_count, found_capacity;
+    csg_fillet_end axes[MOST_AXES];
+    size_t axis_count;
     /* of all fillets so far */
-    csg_vec3 *made;
+    csg_fillet_end *made;
     double *reached;
     size_t made_count, made_capacity, reached_count, reached_capacity;
 } search;
@@ -131,6 +134,74 @@ static bool find_normals(search *s)
     return true;
 }
 
+/* ---- axes --------------------------------------------------------------------------------------
+ */
+
+static double least_positive(double x, double otherwise)
+{
+    return x != 0 ? x : otherwise;
+}
+
+/* The axis of a leaf in the fillet's frame: the same for all leaves around it. False: it has none,
+ * or its frame makes it no circle. */
+static bool axis_of(const search *s, size_t i, csg_fillet_end *out, double *scale)
+{
+    const csg_node *node = &s->scene->nodes[i];
+    csg_affine place;
+    if (!s->is_placed[i - s->first] ||
+        (node->kind != CSG_NODE_FRUSTUM && node->kind != CSG_NODE_CIRCLE) ||
+        !csg_affine_invert(s->to_own[i - s->first], &place) || !csg_affine_is_similarity(&place))
+        return false;
+    csg_vec3 n = csg_vec3_make(place.m[0][2], place.m[1][2], place.m[2][2]);
+    csg_vec3 foot = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
+    *scale = csg_vec3_norm(n);
+    n = csg_vec3_normalize(n);
+    n = csg_vec3_make(snapped(n.x), snapped(n.y), snapped(n.z));
+    if (least_positive(n.x, least_positive(n.y, n.z)) < 0)
+        n = csg_vec3_make(0 - n.x, 0 - n.y, 0 - n.z);
+    foot = csg_vec3_sub(foot, csg_vec3_scale(n, csg_vec3_dot(n, foot)));
+    *out = (csg_fillet_end){n, foot, true};
+    return true;
+}
+
+static bool is_same_axis(const csg_fillet_end *a, const csg_fillet_end *b)
+{
+    return is_near(a->normal, b->normal) &&
+           csg_vec3_norm(csg_vec3_sub(a->foot, b->foot)) < 1e-9 * (1 + csg_vec3_norm(a->foot));
+}
+
+static int compare_axes(const csg_fillet_end *a, const csg_fillet_end *b)
+{
+    int by_normal = compare_normals(&a->normal, &b->normal);
+    return by_normal ? by_normal : compare_normals(&a->foot, &b->foot);
+}
+
+/* The first ones in an order that is not that of the operands. */
+static void find_axes(search *s)
+{
+    s->axis_count = 0;
+    for (size_t i = s->first; i < s->root; i++) {
+        csg_fillet_end made;
+        double scale;
+        size_t at = 0;
+        if (!axis_of(s, i, &made, &scale))
+            continue;
+        while (at < s->axis_count && !is_same_axis(&s->axes[at], &made))
+            at++;
+        if (at < s->axis_count) {
+            if (compare_axes(&made, &s->axes[at]) < 0)
+                s->axes[at] = made;
+            continue;
+        }
+        for (at = s->axis_count; at > 0 && compare_axes(&made, &s->axes[at - 1]) < 0; at--)
+            if (at < MOST_AXES)
+                s->axes[at] = s->axes[at - 1];
+        if (at < MOST_AXES)
+            s->axes[at] = made;
+        s->axis_count += s->axis_count < MOST_AXES;
+    }
+}
+
 /* ---- how far the operands reach --------------------------------------------------------------- */
 
 static double side(double n, double low, double high)
@@ -218,6 +289,53 @@ static void find_reaches(search *s, csg_vec3 n)
     }
 }
 
+/* ---- how far they lie off an axis --------------------------------------------------------------
+ */
+
+/* Of a box in a node's own frame: its farthest corner. */
+static double corner_off(const search *s, size_t i, const csg_fillet_end *axis)
+{
+    csg_box box = s->scene->bounds[i];
+    csg_affine place;
+    csg_vec3 away;
+    double most = 0;
+    if (!s->is_placed[i - s->first] || !csg_box_is_finite(box) ||
+        !csg_affine_invert(s->to_own[i - s->first], &place))
+        return INFINITY;
+    for (int k = 0; k < 8; k++) {
+        csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                           k & 4 ? box.max.z : box.min.z};
+        most = fmax(most, csg_fillet_towards(axis, csg_affine_point(&place, corner), &away));
+    }
+    return most;
+}
+
+static double node_off(const search *s, size_t i, const csg_fillet_end *axis)
+{
+    const csg_node *node = &s->scene->nodes[i];
+    csg_fillet_end own;
+    double scale;
+    if (axis_of(s, i, &own, &scale) && is_same_axis(&own, axis)) {
+        const double *v = csg_scene_parameters(s->scene, node);
+        return scale * (node->kind == CSG_NODE_CIRCLE ? v[0] : fmax(v[0], v[1]) + v[3]);
+    }
+    if (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
+        return children_reach(s, node);
+    if (!csg_node_is_operator(node->kind) || !is_within(node) || is_extrusion(node))
+        return is_extrusion(node)
+                   ? fmin(s->reaches[csg_scene_children(s->scene, node)[0] - s->first],
+                          s->reaches[csg_scene_children(s->scene, node)[1] - s->first])
+                   : INFINITY;
+    bool adds = node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
+    return adds ? INFINITY : children_reach(s, node);
+}
+
+static void find_off(search *s, const csg_fillet_end *axis)
+{
+    for (size_t i = s->first; i < s->root; i++)
+        s->reaches[i - s->first] = fmin(corner_off(s, i, axis), node_off(s, i, axis));
+}
+
 /* ---- all of them ------------------------------------------------------------------------------ */
 
 /* Nodes below stand right before it. */
@@ -244,7 +362,10 @@ static bool find_planes(search *s)
         return false;
     if (nodes * s->found_count > MOST_WORK)
         s->found_count = AXES;
-    size_t count = s->found_count;
+    find_axes(s);
+    if (nodes * s->axis_count > MOST_WORK)
+        s->axis_count = 0;
+    size_t count = s->found_count + s->axis_count;
     void *made = s->made, *reached = s->reached;
     if (!csg_memory_reserve(s->scratch->memory, &made, &s->made_capacity, s->made_count + count,
                             sizeof *s->made))
@@ -255,8 +376,14 @@ static bool find_planes(search *s)
         return false;
     s->reached = reached;
     for (size_t i = 0; i < count; i++) {
-        s->made[s->made_count + i] = s->found[i];
-        find_reaches(s, s->found[i]);
+        bool is_round = i >= s->found_count;
+        if (is_round) {
+            s->made[s->made_count + i] = s->axes[i - s->found_count];
+            find_off(s, &s->axes[i - s->found_count]);
+        } else {
+            s->made[s->made_count + i] = (csg_fillet_end){.normal = s->found[i]};
+            find_reaches(s, s->found[i]);
+        }
         for (uint32_t k = 0; k < node->child_count; k++)
             s->reached[s->reached_count + k * count + i] = s->reaches[children[k] - s->first];
     }
@@ -280,11 +407,11 @@ static bool keep(search *s)
     csgm_scene *scene = s->scene;
     if (!s->made_count)
         return true;
-    scene->normals = csg_arena_calloc(&scene->arena, s->made_count, sizeof *s->made);
+    scene->ends = csg_arena_calloc(&scene->arena, s->made_count, sizeof *s->made);
     scene->reaches = csg_arena_calloc(&scene->arena, s->reached_count, sizeof *s->reached);
-    if (!scene->normals || !scene->reaches)
+    if (!scene->ends || !scene->reaches)
         return false;
-    memcpy(scene->normals, s->made, s->made_count * sizeof *s->made);
+    memcpy(scene->ends, s->made, s->made_count * sizeof *s->made);
     memcpy(scene->reaches, s->reached, s->reached_count * sizeof *s->reached);
     return true;
 }
