@@ -241,9 +241,9 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
 /* ---- eight at a time ---------------------------------------------------------------------------
  */
 
-/* Pieces begin with sides of so many cells. What has few leaves, whose gradients say by themselves
- * what does not take part, is cut without another tape. */
-enum { FIRST_SIDE = 8, DEEPEST = 8, FEW_NODES = 6 };
+/* Pieces begin with sides of so many cells, or errors where cells are small. What has few leaves,
+ * whose gradients say by themselves what does not take part, is cut without another tape. */
+enum { FIRST_SIDE = 8, FIRST_ERRORS = 64, DEEPEST = 8, FEW_NODES = 6 };
 
 /* Eight parts of a piece, by three bisections. */
 static void cut_in_eight(const piece *whole, piece parts[CSG_OCTANTS])
@@ -364,7 +364,7 @@ static csgm_status prove_triangle(proof *p, uint32_t triangle, uint8_t *pending,
                                   csg_distance_proof *out)
 {
     const csg_remesh *r = p->remesh;
-    double side = fmax(FIRST_SIDE * r->cell, 2 * p->error);
+    double side = fmax(FIRST_SIDE * r->cell, FIRST_ERRORS * p->error);
     csg_vec3 stack[STACK][3];
     size_t top = 1;
     for (uint32_t k = 0; k < 3; k++)

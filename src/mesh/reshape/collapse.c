@@ -169,7 +169,8 @@ static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 
 {
     csg_remesh *r = d->remesh;
     *at = p->at[i];
-    if ((!p->exact[i] && !csg_remesh_project(r, at, r->cell)) || !is_within(d, *at))
+    if ((!p->exact[i] && !csg_remesh_project(r, at, fmax(r->cell, 4 * r->error))) ||
+        !is_within(d, *at))
         return false;
     move_ring(d->room, *at);
     if (!has_shape(d->room))

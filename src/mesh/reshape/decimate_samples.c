@@ -42,11 +42,12 @@ static void project(csg_decimation *d, float (*at)[3], const uint32_t *triangles
                 at[i][axis] -= f[i] * g[i][axis] / square;
         }
     }
+    double reach = fmax(0.5 * r->cell, 2 * r->error); /* cells may be of any size there */
     float close = 4 * r->probe.noise + (float)(1e-3 * r->error);
     for (size_t i = 0; i < count; i++) {
         double x = (double)(at[i][0] - start[i][0]), y = (double)(at[i][1] - start[i][1]),
                z = (double)(at[i][2] - start[i][2]);
-        if (fabsf(f[i]) <= close && x * x + y * y + z * z <= 0.25 * r->cell * r->cell)
+        if (fabsf(f[i]) <= close && x * x + y * y + z * z <= reach * reach)
             add_sample(d, at[i], triangles[i]);
     }
 }

@@ -64,7 +64,7 @@ static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
     uint32_t least = wanted < (double)goal->begun ? (uint32_t)ceil(wanted) : (uint32_t)goal->begun;
     double most = 0.25 * csg_lattice_extent(r->marching->lattice);
     csgm_status status = CSGM_OK;
-    r->error = r->cell / 64;
+    r->error = goal->error > 0 ? goal->error : r->cell / 64;
     for (;;) {
         status = csg_decimate(d, least);
         if (status != CSGM_OK || r->corners.live <= least + 1 || r->error * 2 > most)
@@ -94,7 +94,7 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 {
     CSG_ZONE(r->context, "distance proof");
     csg_distance_proof proof;
-    goal->allowed = goal->error > 0 ? goal->error : r->error;
+    goal->allowed = goal->error > 0 && !has_count(goal) ? goal->error : r->error;
     goal->bound = INFINITY;
     if (has_count(goal) || !goal->proves)
         return CSGM_OK; /* a proof might refine it again: every collapse was checked, that is all */

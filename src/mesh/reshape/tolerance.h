@@ -13,7 +13,7 @@
 typedef struct csg_mesh_goal {
     double error;       /* 0: as `share` has it, or nothing is taken away */
     double share;       /* of the triangles that may stay; 0: as few as `error` allows */
-    uint64_t triangles; /* that may stay, in place of `share`; 0: as `share` has it */
+    uint64_t triangles; /* that may stay, in place of `share`; errors then grow from `error` on */
     bool proves;        /* the error holds everywhere, or it is said where not; else of samples */
     bool improve;
     bool chooses;         /* the cell size */
