@@ -103,8 +103,11 @@ typedef struct csg_tape_node {
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */
     uint32_t join_parameters; /* into the parameters, of the operator that joins */
-    uint32_t arity;           /* operators: children */
     uint32_t size;            /* nodes of the subtree, this one included */
+    union {
+        uint32_t arity;                    /* operators: children */
+        const struct csg_shape_near *near; /* shapes: what of it can matter; NULL: all */
+    };
 } csg_tape_node;
 
 /* Parameters of a leaf: sigma, raise, slack, color, then the frame (3 or 12 floats), then its own.
@@ -170,6 +173,14 @@ typedef struct csg_tape {
     float waver; /* how far the field strays from one that has the constant `lipschitz` */
     bool turns;  /* some value in the whole tape depends on its operands' gradients */
 } csg_tape;
+
+/* Of a CSG_OP_SHAPE. */
+static inline const csg_shape *csg_tape_shape(const csg_tape *tape, const csg_tape_node *node)
+{
+    const float *parameters = tape->parameters + node->parameters;
+    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
+    return tape->shapes[(uint32_t)parameters[own]];
+}
 
 static inline uint32_t csg_tape_leaf_count(const csg_tape *tape)
 {

@@ -16,6 +16,22 @@ typedef enum csg_shape_kind { CSG_SHAPE_REGION, CSG_SHAPE_POLYHEDRON } csg_shape
 
 typedef struct csg_shape csg_shape;
 
+/* A box in the shape's own frame, and how far from its surface distances matter there; infinite:
+ * all of them. */
+typedef struct csg_shape_cell {
+    csg_vec3 center, half;
+    double reach;
+} csg_shape_cell;
+
+enum { CSG_SHAPE_MOST_NEAR = 8 };
+
+/* What of a shape's geometry can matter in a cell, as numbers of its tree. */
+typedef struct csg_shape_near {
+    double limit; /* distances up to it are exact, others too large; the sign is right */
+    uint32_t count;
+    uint32_t items[];
+} csg_shape_near;
+
 /* Takes a unit vector; false ends what gives it. */
 typedef bool csg_shape_take_normal(void *user, csg_vec3 inward);
 
@@ -23,10 +39,13 @@ typedef bool csg_shape_take_normal(void *user, csg_vec3 inward);
 typedef struct csg_shape_operations {
     void (*destroy)(csg_shape *shape);
     double (*sample)(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
-    void (*values)(const csg_shape *shape, const float *x, const float *y, const float *z,
-                   size_t count, float *out);
-    void (*gradients)(const csg_shape *shape, const float *x, const float *y, const float *z,
-                      size_t count, float *out, float *gx, float *gy, float *gz);
+    void (*values)(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                   const float *y, const float *z, size_t count, float *out);
+    void (*gradients)(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                      const float *y, const float *z, size_t count, float *out, float *gx,
+                      float *gy, float *gz);
+    uint32_t (*narrow)(const csg_shape *shape, const csg_shape_near *among,
+                       const csg_shape_cell *cell, uint32_t *items);
     uint64_t (*hash)(const csg_shape *shape);
     bool (*normals)(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
                     void *user);
@@ -49,11 +68,19 @@ void csg_shape_release(csg_shape *shape); /* NULL is a no-op */
 double csg_shape_sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
 
 /* The same for many points, in the shape's own frame. Each result depends on its point alone, not
- * on its neighbours in the batch, and is the same on every machine. */
-void csg_shape_values(const csg_shape *shape, const float *x, const float *y, const float *z,
-                      size_t count, float *out);
-void csg_shape_gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
-                         size_t count, float *out, float *gx, float *gy, float *gz);
+ * on its neighbours in the batch, and is the same on every machine. near: of a cell that holds the
+ * points; up to its limit nothing depends on it. NULL: the whole shape. */
+void csg_shape_values(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                      const float *y, const float *z, size_t count, float *out);
+void csg_shape_gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                         const float *y, const float *z, size_t count, float *out, float *gx,
+                         float *gy, float *gz);
+
+/* What can matter in the cell, of what could in a larger one (NULL: of everything): how many, up to
+ * CSG_SHAPE_MOST_NEAR items; 0: not known. `reach` is at least the distance between the surface and
+ * some point of the cell, so there always is something. */
+uint32_t csg_shape_narrow(const csg_shape *shape, const csg_shape_near *among,
+                          const csg_shape_cell *cell, uint32_t *items);
 
 /* Gives the normals, into the solid, of all segments or faces that can be nearest to a point of the
  * ball around c; the same one may come again. At every point of the ball where there is a gradient

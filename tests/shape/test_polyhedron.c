@@ -210,16 +210,16 @@ static void test_batches(void **state)
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 1.2);
     make(&c);
     fill_points(&random, x, y, z);
-    csg_shape_values(c.shape, x, y, z, POINTS, all);
-    csg_shape_gradients(c.shape, x, y, z, POINTS, f, g[0], g[1], g[2]);
+    csg_shape_values(c.shape, NULL, x, y, z, POINTS, all);
+    csg_shape_gradients(c.shape, NULL, x, y, z, POINTS, f, g[0], g[1], g[2]);
     assert_memory_equal(all, f, sizeof f);
     for (int i = 0; i < POINTS; i++) {
         csg_vec3 gradient;
         csg_vec3 p = {(double)x[i], (double)y[i], (double)z[i]};
         float one, other[4];
-        csg_shape_values(c.shape, x + i, y + i, z + i, 1, &one);
+        csg_shape_values(c.shape, NULL, x + i, y + i, z + i, 1, &one);
         assert_memory_equal(&one, &all[i], sizeof one);
-        csg_shape_gradients(c.shape, x + i, y + i, z + i, 1, other, other + 1, other + 2,
+        csg_shape_gradients(c.shape, NULL, x + i, y + i, z + i, 1, other, other + 1, other + 2,
                             other + 3);
         for (int k = 0; k < 3; k++)
             assert_memory_equal(&other[k + 1], &g[k][i], sizeof one);
@@ -230,6 +230,90 @@ static void test_batches(void **state)
 }
 
 /* f(p + h g) - f(p) = h wherever there is one nearest point. */
+/* ---- parts that matter in a cell ---------------------------------------------------------------
+ */
+
+enum { CELL_POINTS = 48 };
+
+typedef struct near_list {
+    csg_shape_near *near;
+    size_t bytes;
+} near_list;
+
+static near_list narrow(solid_case *c, const csg_shape_near *among, const csg_shape_cell *cell)
+{
+    uint32_t items[CSG_SHAPE_MOST_NEAR];
+    uint32_t count = csg_shape_narrow(c->shape, among, cell, items);
+    assert_in_range(count, 1, CSG_SHAPE_MOST_NEAR);
+    near_list list = {.bytes = sizeof *list.near + count * sizeof *items};
+    list.near = csg_memory_alloc(&c->memory, list.bytes);
+    list.near->limit = cell->reach;
+    list.near->count = count;
+    memcpy(list.near->items, items, count * sizeof *items);
+    return list;
+}
+
+/* Up to its reach every bit as by the whole shape, the sign everywhere. */
+static void check_cell(const solid_case *c, const near_list *list, const csg_shape_cell *cell,
+                       csg_random *random)
+{
+    float x[CELL_POINTS], y[CELL_POINTS], z[CELL_POINTS], all[CELL_POINTS], g[8][CELL_POINTS];
+    for (int i = 0; i < CELL_POINTS; i++) {
+        csg_vec3 at = solid_random_point(random, 1);
+        x[i] = (float)(cell->center.x + 0.999 * at.x * cell->half.x);
+        y[i] = (float)(cell->center.y + 0.999 * at.y * cell->half.y);
+        z[i] = (float)(cell->center.z + 0.999 * at.z * cell->half.z);
+    }
+    csg_shape_values(c->shape, NULL, x, y, z, CELL_POINTS, all);
+    csg_shape_gradients(c->shape, NULL, x, y, z, CELL_POINTS, g[0], g[1], g[2], g[3]);
+    csg_shape_gradients(c->shape, list->near, x, y, z, CELL_POINTS, g[4], g[5], g[6], g[7]);
+    for (int i = 0; i < CELL_POINTS; i++) {
+        assert_int_equal(signbit(g[4][i]), signbit(all[i]));
+        assert_true(fabsf(g[4][i]) >= fabsf(all[i]));
+        for (int k = 0; k < 4 && fabs((double)all[i]) < cell->reach * (1 - 1e-6); k++)
+            assert_true(g[k][i] == g[4 + k][i]);
+        csg_shape_values(c->shape, list->near, x + i, y + i, z + i, 1, g[0]);
+        assert_true(g[0][0] == g[4][i]);
+    }
+}
+
+/* A cell and one within it. */
+static void check_cells(solid_case *c, csg_random *random)
+{
+    double half = csg_random_uniform(random, 0.02, 0.5);
+    csg_shape_cell large = {.center = solid_random_point(random, 1.2), .half = {half, half, half}};
+    csg_vec3 away = solid_random_point(random, half / 2), ignored;
+    csg_shape_cell small = {.center = csg_vec3_add(large.center, away),
+                            .half = csg_vec3_scale(large.half, 0.4)};
+    large.reach = fabs(csg_shape_sample(c->shape, large.center, &ignored)) + csg_vec3_norm(away) +
+                  csg_random_uniform(random, 0, half);
+    small.reach = fmax(fabs(csg_shape_sample(c->shape, small.center, &ignored)),
+                       csg_random_uniform(random, 0, large.reach));
+    near_list outer = narrow(c, NULL, &large), inner = narrow(c, outer.near, &small);
+    check_cell(c, &outer, &large, random);
+    check_cell(c, &inner, &small, random);
+    csg_memory_release(&c->memory, inner.near, inner.bytes);
+    csg_memory_release(&c->memory, outer.near, outer.bytes);
+}
+
+static void test_cells(void **state)
+{
+    csg_random random = {77};
+    for (uint32_t i = 0; i < 24; i++) {
+        solid_case c;
+        solid_begin(&c);
+        solid_add_ball(&c.triangles, csg_vec3_make(0.2, 0, 0), 0.7, 6 + 5 * i, 4 + 3 * i,
+                       i % 3 ? 0.3 : 0);
+        if (i % 2) /* shells that cross */
+            solid_add_fine_box(&c.triangles, csg_vec3_make(-0.9, -0.4, -0.3),
+                               csg_vec3_make(0.3, 0.5, 0.45), 1 + i / 4);
+        make(&c);
+        for (int k = 0; k < 25; k++)
+            check_cells(&c, &random);
+        end(&c);
+    }
+}
+
 static void test_gradients(void **state)
 {
     csg_random random = {7};
@@ -262,7 +346,7 @@ static void test_far_and_not_numbers(void **state)
     }
     float x[4] = {NAN, INFINITY, 3e38f, 0}, y[4] = {0, 0, -3e38f, -INFINITY}, z[4] = {0}, f[4],
           g[12];
-    csg_shape_gradients(c.shape, x, y, z, 4, f, g, g + 4, g + 8);
+    csg_shape_gradients(c.shape, NULL, x, y, z, 4, f, g, g + 4, g + 8);
     for (int i = 0; i < 4; i++)
         assert_true(f[i] < 0);
     for (int i = 0; i < 12; i++)
@@ -358,12 +442,19 @@ static void test_every_allocation_fails(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box),       cmocka_unit_test(test_near_edges),
-        cmocka_unit_test(test_ball),      cmocka_unit_test(test_solids_of_all_kinds),
-        cmocka_unit_test(test_needles),   cmocka_unit_test(test_batches),
-        cmocka_unit_test(test_gradients), cmocka_unit_test(test_far_and_not_numbers),
-        cmocka_unit_test(test_scales),    cmocka_unit_test(test_convex),
-        cmocka_unit_test(test_hash),      cmocka_unit_test(test_every_allocation_fails),
+        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_near_edges),
+        cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_solids_of_all_kinds),
+        cmocka_unit_test(test_needles),
+        cmocka_unit_test(test_batches),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_far_and_not_numbers),
+        cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_convex),
+        cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_every_allocation_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -86,13 +86,6 @@ static inline point in_frame(const csg_tape_node *node, const float *frame, csg_
                                            : affine_frame(frame, p.x[i], p.y[i], p.z[i]);
 }
 
-static const csg_shape *shape_of(const csg_tape *tape, const csg_tape_node *node)
-{
-    const float *parameters = tape->parameters + node->parameters;
-    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return tape->shapes[(uint32_t)parameters[own]];
-}
-
 /* p.count <= CSG_BATCH */
 static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
 {
@@ -104,7 +97,7 @@ static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_po
         y[i] = q.y;
         z[i] = q.z;
     }
-    csg_shape_values(shape_of(tape, node), x, y, z, p.count, out);
+    csg_shape_values(csg_tape_shape(tape, node), node->near, x, y, z, p.count, out);
     for (size_t i = 0; i < p.count; i++)
         out[i] *= parameters[CSG_LEAF_SIGMA];
 }
@@ -121,7 +114,7 @@ static void shape_gradients(const csg_tape *tape, const csg_tape_node *node, csg
         y[i] = q.y;
         z[i] = q.z;
     }
-    csg_shape_gradients(shape_of(tape, node), x, y, z, p.count, out, gx, gy, gz);
+    csg_shape_gradients(csg_tape_shape(tape, node), node->near, x, y, z, p.count, out, gx, gy, gz);
     for (size_t i = 0; i < p.count; i++) {
         point g = {gx[i], gy[i], gz[i]};
         if (node->frame == CSG_FRAME_AFFINE)

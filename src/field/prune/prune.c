@@ -8,6 +8,7 @@
 
 #include "field/gradients/cone_fillet.h"
 #include "field/prune/prune_fields.h"
+#include "field/prune/prune_shapes.h"
 #include "scene/operators/blend_kinds.h"
 
 void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
@@ -88,12 +89,15 @@ bool csg_prune_octants(csg_pruner *pruner, const csg_tape *tape, const float cx[
         return false;
     pruner->tape = tape;
     pruner->decided = false;
+    memcpy(pruner->center[0], cx, sizeof pruner->center[0]);
+    memcpy(pruner->center[1], cy, sizeof pruner->center[1]);
+    memcpy(pruner->center[2], cz, sizeof pruner->center[2]);
+    pruner->radius = radius + pruner->rounding;
     pruner->slack = pruner->rounding * tape->steepest;
     if (tape->turns)
-        find_turns(pruner, cx, cy, cz, radius + pruner->rounding);
-    pruner->kernel->intervals(tape, cx, cy, cz, radius + pruner->rounding,
-                              tape->turns ? pruner->turns : NULL, pruner->low, pruner->high,
-                              pruner->scratch);
+        find_turns(pruner, cx, cy, cz, pruner->radius);
+    pruner->kernel->intervals(tape, cx, cy, cz, pruner->radius, tape->turns ? pruner->turns : NULL,
+                              pruner->low, pruner->high, pruner->scratch);
     return true;
 }
 
@@ -167,17 +171,42 @@ static uint8_t below(const float *reach, float turn, const float threshold[CSG_O
     return (uint8_t)mask;
 }
 
+/* A demand takes the place of the interval, which nobody needs any more. */
+static void set_demand(csg_pruner *pruner, uint32_t node, const float *low, const float *high)
+{
+    const csg_tape_node *of = &pruner->tape->nodes[node];
+    float *to_low = lanes(pruner->low, node), *to_high = lanes(pruner->high, node);
+    if (of->op == CSG_OP_SHAPE) {
+        pruner->has_shapes = true;
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            csg_shape_demand demand =
+                csg_prune_shape_demand(pruner->tape, of, to_low[o], to_high[o], low[o], high[o]);
+            to_low[o] = demand.reach;
+            to_high[o] = demand.middle;
+        }
+    } else if (!csg_op_is_leaf(of->op)) {
+        memcpy(to_low, low, CSG_OCTANTS * sizeof *low);
+        memcpy(to_high, high, CSG_OCTANTS * sizeof *high);
+    }
+}
+
+static void fill(float lanes_of_one[CSG_OCTANTS], float value)
+{
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        lanes_of_one[o] = value;
+}
+
 /* Of fields combined by a formula any value may matter. */
 static void demand_all(csg_pruner *pruner, uint32_t node)
 {
     const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
     uint32_t child = node - 1;
+    float low[CSG_OCTANTS], high[CSG_OCTANTS];
+    fill(low, -INFINITY);
+    fill(high, INFINITY);
     for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
         pruner->dropped[child] = pruner->dropped[node];
-        for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(nodes[child].op); o++) {
-            lanes(pruner->low, child)[o] = -INFINITY;
-            lanes(pruner->high, child)[o] = INFINITY;
-        }
+        set_demand(pruner, child, low, high);
     }
 }
 
@@ -188,16 +217,15 @@ static void demand_fields(csg_pruner *pruner, uint32_t node)
     if (op->op != CSG_OP_SOFTEN) {
         csg_field_ranges ranges = {pruner->tape, pruner->low, pruner->high, pruner->dropped};
         pruner->dropped_any |= csg_prune_fields(ranges, node);
-        return;
+        return; /* what stands below are fields too: no shape */
     }
     uint32_t child = node - 1;
-    float low, high;
-    csg_soften_demand(pruner->tape, op, &low, &high);
+    float low[CSG_OCTANTS], high[CSG_OCTANTS];
+    csg_soften_demand(pruner->tape, op, &low[0], &high[0]);
+    fill(low, low[0]);
+    fill(high, high[0]);
     pruner->dropped[child] = pruner->dropped[node];
-    for (int o = 0; o < CSG_OCTANTS && !csg_op_is_leaf(pruner->tape->nodes[child].op); o++) {
-        lanes(pruner->low, child)[o] = low;
-        lanes(pruner->high, child)[o] = high;
-    }
+    set_demand(pruner, child, low, high);
 }
 
 /* How far any two operands together reach beyond the plane with this number, at least. */
@@ -245,8 +273,7 @@ static void decide_planes(csg_pruner *pruner, uint32_t node, const float *demand
 }
 
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
- * below the largest sibling, by the blend's support. Intersections are the mirror image. The
- * demand on an operand takes the place of its interval, which nobody needs any more. */
+ * below the largest sibling, by the blend's support. Intersections are the mirror image. */
 static void decide_operands(csg_pruner *pruner, uint32_t node, const float *demand_low,
                             const float *demand_high)
 {
@@ -270,24 +297,22 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
     float *lower = is_union ? pruner->low : pruner->high;
     float *upper = is_union ? pruner->high : pruner->low;
     uint32_t best_child[CSG_OCTANTS], child = node - 1 - op->planes;
+    float child_low[CSG_OCTANTS], child_high[CSG_OCTANTS];
     find_best(nodes, node, lower, turn, threshold, best_child);
     for (int o = 0; o < CSG_OCTANTS; o++) {
         float demand = is_union ? demand_low[o] : -demand_high[o];
         threshold[o] = (demand > threshold[o] ? demand : threshold[o]) - chi - pruner->slack;
         if (op->blend == CSG_BLEND_ORTHOGONAL) /* at the edge both matter */
             threshold[o] = fminf(threshold[o], edge);
+        child_low[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
+        child_high[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
     }
     for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
         uint8_t mask =
             pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
         pruner->dropped[child] = mask;
         pruner->dropped_any |= mask;
-        if (csg_op_is_leaf(nodes[child].op))
-            continue;
-        for (int o = 0; o < CSG_OCTANTS; o++) {
-            lanes(pruner->low, child)[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
-            lanes(pruner->high, child)[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
-        }
+        set_demand(pruner, child, child_low, child_high);
     }
 }
 
@@ -298,11 +323,11 @@ static void decide(csg_pruner *pruner, float tau)
     uint32_t root = tape->count - 1;
     float low[CSG_OCTANTS], high[CSG_OCTANTS];
     pruner->decided = true;
+    pruner->has_shapes = tape->nodes[root].op == CSG_OP_SHAPE;
     pruner->dropped_any = pruner->dropped[root] = 0;
-    for (int o = 0; o < CSG_OCTANTS; o++) { /* no Lipschitz constant bounds what wavers */
-        low[o] = -tau - tape->waver;
-        high[o] = tau + tape->waver;
-    }
+    pruner->tau = tau + tape->waver; /* no Lipschitz constant bounds what wavers */
+    fill(low, -pruner->tau);
+    fill(high, pruner->tau);
     for (uint32_t i = tape->count; i > 0;) {
         uint32_t node = i - 1, size = tape->nodes[node].size;
         if (pruner->dropped[node] == ALL_OCTANTS) {
@@ -380,21 +405,76 @@ static uint32_t emit(csg_pruner *pruner, int octant)
     return count;
 }
 
+/* The root keeps its interval, which says whether there is a surface. */
+static csg_shape_demand demand_on_shape(const csg_pruner *pruner, uint32_t node, int octant)
+{
+    const csg_tape *tape = pruner->tape;
+    csg_shape_demand known = {low_of(pruner, node, octant), high_of(pruner, node, octant)};
+    return node + 1 < tape->count ? known
+                                  : csg_prune_shape_demand(tape, &tape->nodes[node], known.reach,
+                                                           known.middle, -pruner->tau, pruner->tau);
+}
+
+/* Lists for the shapes that are left. */
+static bool narrow_shapes(csg_pruner *pruner, int octant, csg_arena *arena, bool *shortened)
+{
+    const csg_tape *tape = pruner->tape;
+    csg_shape_cube cube = {.half = (double)pruner->radius * 0.5773503}; /* 1 / sqrt 3, rounded up */
+    for (int axis = 0; axis < 3; axis++)
+        cube.center[axis] = (double)pruner->center[axis][octant];
+    uint32_t to = 0; /* leaves keep their order */
+    for (uint32_t i = 0; i < tape->count; i++) {
+        if (pruner->dropped[i] >> octant & 1 || tape->nodes[i].op != CSG_OP_SHAPE)
+            continue;
+        csg_shape_demand demand = demand_on_shape(pruner, i, octant);
+        while (pruner->nodes[to].op != CSG_OP_SHAPE)
+            to++;
+        if (!csg_prune_shape(tape, &pruner->nodes[to++], &cube, demand, arena, shortened))
+            return false;
+    }
+    return true;
+}
+
+static bool copy_nodes(csg_arena *arena, const csg_tape_node *nodes, uint32_t count, csg_tape *out)
+{
+    csg_tape_node *copy = csg_arena_alloc(arena, count * sizeof *copy);
+    if (!copy)
+        return false;
+    memcpy(copy, nodes, count * sizeof *copy);
+    out->nodes = copy;
+    out->count = count;
+    return true;
+}
+
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out)
 {
     *out = *pruner->tape;
-    if (out->count == 1)
+    if (out->count == 1 && out->nodes->op != CSG_OP_SHAPE)
         return true;
     if (!pruner->decided)
         decide(pruner, tau);
-    if (!(pruner->dropped_any >> octant & 1))
+    bool shortened = pruner->dropped_any >> octant & 1;
+    if (!shortened && !pruner->has_shapes)
         return true;
+    csg_arena_mark mark = csg_arena_get_mark(arena);
     uint32_t count = emit(pruner, octant);
-    csg_tape_node *nodes = csg_arena_alloc(arena, count * sizeof *nodes);
-    if (!nodes)
+    if (pruner->has_shapes && !narrow_shapes(pruner, octant, arena, &shortened))
         return false;
-    memcpy(nodes, pruner->nodes, count * sizeof *nodes);
-    out->nodes = nodes;
-    out->count = count;
+    if (shortened)
+        return copy_nodes(arena, pruner->nodes, count, out);
+    csg_arena_release_to(arena, mark);
+    return true;
+}
+
+bool csg_prune_copy(csg_tape *tape, csg_arena *arena)
+{
+    csg_tape_node *copy = csg_arena_alloc(arena, tape->count * sizeof *copy);
+    if (!copy)
+        return false;
+    memcpy(copy, tape->nodes, tape->count * sizeof *copy);
+    for (uint32_t i = 0; i < tape->count; i++)
+        if (copy[i].op == CSG_OP_SHAPE && !csg_prune_copy_shape(&copy[i], arena))
+            return false;
+    tape->nodes = copy;
     return true;
 }

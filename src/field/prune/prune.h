@@ -7,7 +7,9 @@
  * expression fields by interval arithmetic (formula_kernel.h); composed bottom-up through the
  * operators; a demand interval goes top-down: the root's value matters in
  * [-tau, tau]; an operand that stays below (above) what can matter through a union (intersection),
- * or below the largest sibling by the blend's support, is dropped.
+ * or below the largest sibling by the blend's support, is dropped. Shapes are pruned alike: what of
+ * their geometry can be nearest to a point of the cell, as far as distances matter there, is listed
+ * with the leaf (csg_shape_near).
  */
 #ifndef CSG_FIELD_PRUNE_H
 #define CSG_FIELD_PRUNE_H
@@ -26,13 +28,17 @@ typedef struct csg_emitted {
 typedef struct csg_pruner {
     csg_memory *memory;
     const csg_kernel *kernel;
-    float rounding;    /* slack of lengths: rounding error of any distance in the lattice */
+    float rounding; /* slack of lengths: rounding error of any distance in the lattice */
+    float center[3][CSG_OCTANTS], radius; /* of the last csg_prune_octants, rounding included */
     float slack;       /* of comparisons: the same of leaves' values; operators' own rounding is in
                           their intervals */
-    float *low, *high; /* of every node, eight lanes; later the demands on operators */
+    float *low, *high; /* of every node, eight lanes; later the demands on operators; of shapes,
+                          what csg_shape_demand has */
     float *turns;      /* of every node, where the tape has fillets: csg_kernel.intervals */
     uint8_t *dropped;  /* a bit for each octant */
     uint8_t dropped_any;
+    bool has_shapes;
+    float tau; /* half width of the band; what wavers included */
     bool decided;
     csg_emitted *stack;
     csg_tape_node *nodes; /* the shorter tape */
@@ -61,5 +67,9 @@ csg_cell_state csg_prune_state(const csg_pruner *pruner, int octant);
  * be dropped, else a shorter one in the arena. tau: half width of the band, the same for all eight.
  * False: out of memory. */
 bool csg_prune_shorten(csg_pruner *pruner, int octant, float tau, csg_arena *arena, csg_tape *out);
+
+/* Copies a tape's nodes, so that they no longer depend on the arena they came from. False: out of
+ * memory. */
+bool csg_prune_copy(csg_tape *tape, csg_arena *arena);
 
 #endif

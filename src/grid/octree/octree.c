@@ -245,19 +245,6 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
     return true;
 }
 
-/* A tape that outlives its parent's level. */
-static bool own_tape(csg_arena *arena, const csg_tape *parent, csg_tape *tape)
-{
-    if (tape->nodes != parent->nodes)
-        return true;
-    csg_tape_node *copy = csg_arena_alloc(arena, tape->count * sizeof *copy);
-    if (!copy)
-        return false;
-    memcpy(copy, parent->nodes, tape->count * sizeof *copy);
-    tape->nodes = copy;
-    return true;
-}
-
 static bool visit_octant(walk *w, worker *self, const csg_tape *parent, int octant,
                          const uint32_t at[3], const csg_tape **shared)
 {
@@ -276,7 +263,7 @@ static bool visit_octant(walk *w, worker *self, const csg_tape *parent, int octa
             tape = **shared; /* an elder sibling has copied it already */
         else if (tape.nodes == parent->nodes) {
             csg_tape *copy = csg_arena_alloc(arena, sizeof *copy);
-            if (!copy || !own_tape(arena, parent, &tape))
+            if (!copy || !csg_prune_copy(&tape, arena))
                 return false;
             *copy = tape;
             *shared = copy;

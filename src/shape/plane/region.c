@@ -106,9 +106,10 @@ static uint64_t key_of(float x, float y)
     return (uint64_t)bits[1] << 32 | bits[0];
 }
 
-static void values(const csg_shape *shape, const float *x, const float *y, const float *z,
-                   size_t count, float *out)
+static void values(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                   const float *y, const float *z, size_t count, float *out)
 {
+    (void)near;
     const region *r = (const region *)shape;
     kept places[KEPT];
     size_t place_count = count < FEW_POINTS ? FEW_KEPT : KEPT;
@@ -127,9 +128,11 @@ static void values(const csg_shape *shape, const float *x, const float *y, const
     }
 }
 
-static void gradients(const csg_shape *shape, const float *x, const float *y, const float *z,
-                      size_t count, float *out, float *gx, float *gy, float *gz)
+static void gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                      const float *y, const float *z, size_t count, float *out, float *gx,
+                      float *gy, float *gz)
 {
+    (void)near;
     for (size_t i = 0; i < count; i++) {
         answer a = answer_at((const region *)shape, (double)x[i], (double)y[i]);
         out[i] = (float)a.value;
@@ -208,7 +211,15 @@ static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape
                               take_segment, &t);
 }
 
-static const csg_shape_operations operations = {destroy, sample, values, gradients, hash, normals};
+static uint32_t narrow(const csg_shape *shape, const csg_shape_near *among,
+                       const csg_shape_cell *cell, uint32_t *items)
+{
+    (void)shape, (void)among, (void)cell, (void)items;
+    return 0;
+}
+
+static const csg_shape_operations operations = {destroy, sample, values, gradients,
+                                                narrow,  hash,   normals};
 
 /* Below that squares do not overflow. */
 static bool is_in_range(const csg_outline *outline)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * A polyhedron's field: distance by the tree, sign by the winding number. Of points that follow
- * each other in a batch most need no ray: where the ball to the nearest triangle around one of them
- * holds the other, no triangle is between them; along x only the stretch between them is
- * searched. Winding numbers are exact, so every way gives the same.
- * Points nearer than LEAST to a triangle are on it as far as anybody can tell; their sign is that
- * of the lattice point next to them.
+ * A polyhedron's field: distance by the tree, sign by the winding number. Most points need no ray.
+ * Where the ball to the nearest triangle around one point of a batch holds another, no triangle is
+ * between them. Beside a plain triangle (tree_plain.c) the side tells, and beside an edge of two
+ * the sum of their normals (Baerentzen and Aanaes 2005). Along x only the stretch between two
+ * points is searched. Winding numbers are exact, so every way gives the same. Points nearer than
+ * LEAST to a triangle are on it as far as anybody can tell; their sign is that of the lattice point
+ * next to them.
  */
 #include "shape/polyhedra/polyhedron.h"
 
@@ -22,6 +23,7 @@ typedef struct polyhedron {
     csg_tree tree;
     uint64_t hash;
     bool is_convex;
+    uint32_t (*beside)[3]; /* per triangle in the tree, along each edge: the other triangle there */
     atomic_uchar
         *plain; /* per triangle in the tree: whether csg_tree_is_plain, once it was asked */
 } polyhedron;
@@ -48,6 +50,8 @@ typedef struct known_point {
 /* Goes from point to point. */
 typedef struct walker {
     const polyhedron *solid;
+    const csg_shape_near *near; /* NULL: all of it */
+    double limit;               /* frame units: up to there distances are exact */
     known_point last, row; /* the last point, and the last that did not share a row with its last */
     uint32_t hint;
 } walker;
@@ -58,8 +62,24 @@ typedef struct found {
     bool inside;
 } found;
 
+/* No other triangle there, or several. */
+#define NOT_BESIDE UINT32_MAX
+
 /* More than points and their feet are moved by rounding. */
 static const double LEAST = 0x1p-36;
+
+/* Threads may find it twice; they find the same. */
+static bool is_plain(const polyhedron *solid, uint32_t place)
+{
+    if (solid->is_convex)
+        return !solid->tree.triangles[place].is_needle;
+    int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
+    if (known == PLAIN_UNKNOWN) {
+        known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
+        atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
+    }
+    return known == PLAIN_YES;
+}
 
 static bool reaches(const known_point *from, csg_vec3 p)
 {
@@ -78,28 +98,65 @@ static bool box_holds(csg_box box, csg_vec3 p)
            p.z >= box.min.z && p.z <= box.max.z;
 }
 
-/* p is in the box. */
-static int find_winding(walker *w, known_point *p)
+static csg_vec3 outward(const csg_tree_triangle *t)
 {
+    return csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac));
+}
+
+/* The winding number at p, from the triangle that is nearest to it; false: it does not tell. */
+static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *winding)
+{
+    /* cosines are off by less: the foot is more than LEAST away */
+    static const double UNCERTAIN = 1e-3;
+    const csg_tree_triangle *t = &solid->tree.triangles[place];
+    csg_triangle_part part;
+    csg_vec3 away = csg_vec3_sub(p, csg_triangle_locate(t, p, &part));
+    if (part == CSG_PART_CORNER || !is_plain(solid, place))
+        return false;
+    csg_vec3 normal = outward(t);
+    if (part != CSG_PART_FACE) {
+        uint32_t other = solid->beside[place][part];
+        if (other == NOT_BESIDE || !is_plain(solid, other))
+            return false;
+        normal = csg_vec3_add(normal, outward(&solid->tree.triangles[other]));
+    }
+    double along = csg_vec3_dot(away, normal);
+    *winding = along < 0;
+    return fabs(along) > UNCERTAIN * csg_vec3_norm(away);
+}
+
+/* Edges that count as convex may bend the other way by 2^-30: see convex.c. */
+static double nearest_told(const polyhedron *solid)
+{
+    return solid->is_convex ? 0x1p-28 : 0;
+}
+
+/* p is in the box. */
+static int find_winding(walker *w, known_point *p, uint32_t place)
+{
+    int winding;
     if (reaches(&w->last, p->at) || (w->last.is_set && reaches(p, w->last.at)))
         return w->last.winding;
     if (reaches(&w->row, p->at) || (w->row.is_set && reaches(p, w->row.at)))
         return w->row.winding;
+    if (p->free > nearest_told(w->solid) && p->free < w->limit &&
+        read_side(w->solid, p->at, place, &winding))
+        return winding;
     if (shares_row(&w->last, p->cell))
         return w->last.winding + csg_tree_winding_step(&w->solid->tree, p->cell, w->last.cell);
     return csg_tree_winding(&w->solid->tree, p->cell, NULL);
 }
 
-static bool is_inside(walker *w, csg_vec3 at, double distance)
+static bool is_inside(walker *w, csg_vec3 at, double distance, uint32_t place)
 {
     if (!box_holds(w->solid->tree.box, at))
         return false;
     known_point p = {.at = at,
                      .cell = {csg_triangle_frame_round(at.x), csg_triangle_frame_round(at.y),
                               csg_triangle_frame_round(at.z)},
-                     .free = distance * (1 - 0x1p-30) - LEAST,
+                     .free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST,
                      .is_set = true};
-    p.winding = find_winding(w, &p);
+    p.winding = find_winding(w, &p, place);
     if (!shares_row(&w->last, p.cell))
         w->row = p;
     w->last = p;
@@ -109,10 +166,23 @@ static bool is_inside(walker *w, csg_vec3 at, double distance)
 /* p is in frame units, within 2^60. */
 static found look_up(walker *w, csg_vec3 p)
 {
-    found f = {.at = p, .nearest = csg_tree_nearest(&w->solid->tree, p, w->hint)};
+    const csg_tree *tree = &w->solid->tree;
+    found f = {.at = p};
+    if (w->near)
+        f.nearest = csg_tree_nearest_of(tree, w->near->items, w->near->count, p, w->hint);
+    else
+        f.nearest = csg_tree_nearest(tree, p, w->hint);
     w->hint = f.nearest.place;
-    f.inside = is_inside(w, p, sqrt(f.nearest.squared));
+    f.inside = is_inside(w, p, sqrt(f.nearest.squared), f.nearest.place);
     return f;
+}
+
+static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
+{
+    return (walker){.solid = solid,
+                    .near = near,
+                    .limit = near ? near->limit * solid->frame.scale : INFINITY,
+                    .hint = near ? CSG_TREE_NO_HINT : 0};
 }
 
 /* So far away that the solid is a point; also whatever is not a number. */
@@ -162,7 +232,7 @@ static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gr
     csg_vec3 at = csg_triangle_frame_enter(&solid->frame, p), ignored;
     if (is_far(at))
         return far_value(solid, at, gradient ? gradient : &ignored);
-    walker w = {.solid = solid};
+    walker w = begin_walk(solid, NULL);
     found f = look_up(&w, at);
     if (gradient)
         *gradient = gradient_of(solid, &f);
@@ -174,10 +244,10 @@ static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
     return csg_triangle_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
 }
 
-static void polyhedron_values(const csg_shape *shape, const float *x, const float *y,
-                              const float *z, size_t count, float *out)
+static void polyhedron_values(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                              const float *y, const float *z, size_t count, float *out)
 {
-    walker w = {.solid = as_polyhedron(shape)};
+    walker w = begin_walk(as_polyhedron(shape), near);
     for (size_t i = 0; i < count; i++) {
         csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), ignored;
         if (is_far(at)) {
@@ -189,11 +259,11 @@ static void polyhedron_values(const csg_shape *shape, const float *x, const floa
     }
 }
 
-static void polyhedron_gradients(const csg_shape *shape, const float *x, const float *y,
-                                 const float *z, size_t count, float *out, float *gx, float *gy,
-                                 float *gz)
+static void polyhedron_gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
+                                 const float *y, const float *z, size_t count, float *out,
+                                 float *gx, float *gy, float *gz)
 {
-    walker w = {.solid = as_polyhedron(shape)};
+    walker w = begin_walk(as_polyhedron(shape), near);
     for (size_t i = 0; i < count; i++) {
         csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), gradient;
         if (is_far(at)) {
@@ -209,21 +279,24 @@ static void polyhedron_gradients(const csg_shape *shape, const float *x, const f
     }
 }
 
-/* ---- normals ----------------------------------------------------------------------------------
+/* ---- cells ------------------------------------------------------------------------------------
  */
 
-/* Threads may find it twice; they find the same. */
-static bool is_plain(const polyhedron *solid, uint32_t place)
+static uint32_t narrow_polyhedron(const csg_shape *shape, const csg_shape_near *among,
+                                  const csg_shape_cell *cell, uint32_t *items)
 {
-    if (solid->is_convex)
-        return !solid->tree.triangles[place].is_needle;
-    int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
-    if (known == PLAIN_UNKNOWN) {
-        known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
-        atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
-    }
-    return known == PLAIN_YES;
+    const polyhedron *solid = as_polyhedron(shape);
+    csg_vec3 center = csg_triangle_frame_enter(&solid->frame, cell->center);
+    csg_vec3 half = csg_vec3_scale(cell->half, solid->frame.scale);
+    double reach = cell->reach * solid->frame.scale + LEAST;
+    if (is_far(center) || !(reach < 0x1p60))
+        return 0;
+    return csg_tree_narrow(&solid->tree, among ? among->items : NULL, among ? among->count : 0,
+                           center, half, reach, items, CSG_SHAPE_MOST_NEAR);
 }
+
+/* ---- normals ----------------------------------------------------------------------------------
+ */
 
 typedef struct taking {
     const polyhedron *solid;
@@ -366,7 +439,40 @@ static void take_triangles(polyhedron *solid, csg_triangles *triangles)
     solid->hash = hash_triangles(&solid->mended);
 }
 
-/* Fills a shape whose tree is made, or takes the triangles' memory back. */
+/* What is known of each triangle of the tree. Edge k of a triangle of the chain is edge k of the
+ * same triangle in the tree. */
+static bool make_beside(csg_arena *scratch, polyhedron *solid, const csg_triangles *chain,
+                        const csg_triangle_edges *edges)
+{
+    size_t count = solid->tree.count;
+    uint32_t *places = csg_arena_alloc(scratch, count * sizeof *places);
+    solid->plain = csg_memory_alloc(solid->shape.memory, count * sizeof *solid->plain);
+    solid->beside = csg_memory_alloc(solid->shape.memory, count * sizeof *solid->beside);
+    if (!places || !solid->plain || !solid->beside)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        places[solid->tree.triangles[i].index] = (uint32_t)i;
+        atomic_init(&solid->plain[i], PLAIN_UNKNOWN);
+    }
+    for (uint32_t half = 0; half < 3 * chain->count; half++) {
+        const csg_edge *edge = &edges->edges[edges->of_half[half]];
+        const uint32_t *halves = edges->halves + edge->first;
+        uint32_t other = halves[halves[0] == half];
+        solid->beside[places[half / 3]][half % 3] =
+            edge->count == 2 ? places[other / 3] : NOT_BESIDE;
+    }
+    return true;
+}
+
+static void release_solid(polyhedron *solid)
+{
+    csg_memory *memory = solid->shape.memory;
+    csg_memory_release(memory, solid->plain, solid->tree.count * sizeof *solid->plain);
+    csg_memory_release(memory, solid->beside, solid->tree.count * sizeof *solid->beside);
+    csg_tree_release(&solid->tree);
+}
+
+/* Fills a shape whose tree is made. */
 static csgm_status fill_solid(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
                               csg_repairs *repairs)
 {
@@ -377,16 +483,9 @@ static csgm_status fill_solid(csg_arena *scratch, polyhedron *solid, csg_chain *
     repairs->overlapping = is_overlapping(solid);
     solid->is_convex = chain->piece_count == 1 && !repairs->overlapping && !repairs->holes &&
                        csg_chain_is_convex(&chain->triangles, &edges);
-    solid->plain = csg_memory_alloc(solid->shape.memory, solid->tree.count * sizeof *solid->plain);
-    if (!solid->plain)
+    if (!make_beside(scratch, solid, &chain->triangles, &edges) ||
+        !csg_repair_number(scratch, &chain->triangles))
         return CSGM_ERR_MEMORY;
-    for (size_t i = 0; i < solid->tree.count; i++)
-        atomic_init(&solid->plain[i], PLAIN_UNKNOWN);
-    if (!csg_repair_number(scratch, &chain->triangles)) {
-        csg_memory_release(solid->shape.memory, solid->plain,
-                           solid->tree.count * sizeof *solid->plain);
-        return CSGM_ERR_MEMORY;
-    }
     take_triangles(solid, &chain->triangles);
     return CSGM_OK;
 }
@@ -406,7 +505,7 @@ static csgm_status create(csg_memory *memory, csg_arena *scratch, const csg_tria
     if (csg_tree_make(memory, scratch, &chain.triangles, &solid->tree)) {
         status = fill_solid(scratch, solid, &chain, repairs);
         if (status != CSGM_OK)
-            csg_tree_release(&solid->tree);
+            release_solid(solid);
     }
     if (status != CSGM_OK)
         csg_triangles_release(&chain.triangles);
@@ -434,8 +533,7 @@ csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *trian
 static void destroy_polyhedron(csg_shape *shape)
 {
     polyhedron *solid = (polyhedron *)shape;
-    csg_memory_release(shape->memory, solid->plain, solid->tree.count * sizeof *solid->plain);
-    csg_tree_release(&solid->tree);
+    release_solid(solid);
     csg_triangles_release(&solid->mended);
     csg_memory_release(shape->memory, solid, sizeof *solid);
 }
@@ -449,6 +547,7 @@ static const csg_shape_operations OPERATIONS = {.destroy = destroy_polyhedron,
                                                 .sample = sample_polyhedron,
                                                 .values = polyhedron_values,
                                                 .gradients = polyhedron_gradients,
+                                                .narrow = narrow_polyhedron,
                                                 .hash = hash_polyhedron,
                                                 .normals = polyhedron_normals};
 

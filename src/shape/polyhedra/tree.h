@@ -56,8 +56,33 @@ typedef struct csg_triangle_hit {
 
 /* p within 2^60 of the frame. hint: a place to begin with, any will do, a near one is quicker. */
 csg_triangle_hit csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
+/* The same in parts of the tree: below nodes, or (CSG_TREE_LEAVES_ONLY) in the leaves right below.
+ * hint: in one of them, or CSG_TREE_NO_HINT. */
+csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                                     csg_vec3 p, uint32_t hint);
+#define CSG_TREE_LEAVES_ONLY 0x80000000u
+#define CSG_TREE_NO_HINT UINT32_MAX
+
+/* Edge k runs from corner k to the next one. */
+typedef enum csg_triangle_part {
+    CSG_PART_EDGE_0,
+    CSG_PART_EDGE_1,
+    CSG_PART_EDGE_2,
+    CSG_PART_FACE,
+    CSG_PART_CORNER
+} csg_triangle_part;
+
 /* The point of a triangle that is nearest to p. */
 csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *in_face);
+/* The same, and where in the triangle it is. */
+csg_vec3 csg_triangle_locate(const csg_tree_triangle *triangle, csg_vec3 p,
+                             csg_triangle_part *part);
+
+/* At most `most` parts in which all is that comes within `reach` of the box: of those given (NULL:
+ * of the whole tree), at most as many. Returns their number. */
+uint32_t csg_tree_narrow(const csg_tree *tree, const uint32_t *among, uint32_t among_count,
+                         csg_vec3 center, csg_vec3 half, double reach, uint32_t *out,
+                         uint32_t most);
 
 /* Triangles that come within `reach` of p, and perhaps a few more; false as soon as `visit` says
  * so. */

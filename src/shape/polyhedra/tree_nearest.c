@@ -16,24 +16,21 @@ static const float SLACK = 1 + 0x1p-18f;
 /* ---- one triangle -----------------------------------------------------------------------------
  */
 
-/* The point of a + [0, 1] edge that is nearest to p, given as p - a, as p - it. */
-static csg_vec3 from_segment(csg_vec3 ap, csg_vec3 edge)
-{
-    double along = csg_vec3_dot(ap, edge), length2 = csg_vec3_dot(edge, edge);
-    double t = along <= 0 ? 0 : along >= length2 ? 1 : along / length2;
-    return csg_vec3_sub(ap, csg_vec3_scale(edge, t));
-}
-
 typedef struct offset {
     csg_vec3 vector; /* p - foot */
     double squared;
+    csg_triangle_part part;
 } offset;
 
-static void take_nearer(offset *best, csg_vec3 vector)
+/* The point of a + [0, 1] edge that is nearest to p, given as p - a. */
+static void try_segment(offset *best, csg_vec3 ap, csg_vec3 edge, csg_triangle_part part)
 {
+    double along = csg_vec3_dot(ap, edge), length2 = csg_vec3_dot(edge, edge);
+    double t = along <= 0 ? 0 : along >= length2 ? 1 : along / length2;
+    csg_vec3 vector = csg_vec3_sub(ap, csg_vec3_scale(edge, t));
     double squared = csg_vec3_dot(vector, vector);
     if (squared < best->squared)
-        *best = (offset){vector, squared};
+        *best = (offset){vector, squared, t > 0 && t < 1 ? part : CSG_PART_CORNER};
 }
 
 /* u and v are barycentric coordinates times w. Outside of just one edge's line the foot is on that
@@ -42,11 +39,11 @@ static offset from_edges(const csg_tree_triangle *t, csg_vec3 ap, double u, doub
 {
     offset best = {.squared = INFINITY};
     if (u < 0 || t->is_needle)
-        take_nearer(&best, from_segment(ap, t->ac));
+        try_segment(&best, ap, t->ac, CSG_PART_EDGE_2);
     if (v < 0 || t->is_needle)
-        take_nearer(&best, from_segment(ap, t->ab));
+        try_segment(&best, ap, t->ab, CSG_PART_EDGE_0);
     if (!(u + v <= w) || t->is_needle)
-        take_nearer(&best, from_segment(csg_vec3_sub(ap, t->ab), csg_vec3_sub(t->ac, t->ab)));
+        try_segment(&best, csg_vec3_sub(ap, t->ab), csg_vec3_sub(t->ac, t->ab), CSG_PART_EDGE_1);
     return best;
 }
 
@@ -63,16 +60,26 @@ static inline double triangle_squared(const csg_tree_triangle *t, csg_vec3 p)
     return from_edges(t, ap, u, v, w).squared;
 }
 
-csg_vec3 csg_triangle_foot(const csg_tree_triangle *t, csg_vec3 p, bool *in_face)
+csg_vec3 csg_triangle_locate(const csg_tree_triangle *t, csg_vec3 p, csg_triangle_part *part)
 {
     csg_vec3 ap = csg_vec3_sub(p, t->a), normal = csg_vec3_cross(t->ab, t->ac);
     csg_vec3 side = csg_vec3_cross(normal, ap);
     double w = csg_vec3_dot(normal, normal);
     double u = csg_vec3_dot(side, t->ac), v = -csg_vec3_dot(side, t->ab);
-    *in_face = u >= 0 && v >= 0 && u + v <= w && !t->is_needle;
-    if (*in_face)
+    *part = CSG_PART_FACE;
+    if (u >= 0 && v >= 0 && u + v <= w && !t->is_needle)
         return csg_vec3_sub(p, csg_vec3_scale(normal, csg_vec3_dot(ap, normal) / w));
-    return csg_vec3_sub(p, from_edges(t, ap, u, v, w).vector);
+    offset beside = from_edges(t, ap, u, v, w);
+    *part = beside.part;
+    return csg_vec3_sub(p, beside.vector);
+}
+
+csg_vec3 csg_triangle_foot(const csg_tree_triangle *t, csg_vec3 p, bool *in_face)
+{
+    csg_triangle_part part;
+    csg_vec3 foot = csg_triangle_locate(t, p, &part);
+    *in_face = part == CSG_PART_FACE;
+    return foot;
 }
 
 /* ---- the tree ---------------------------------------------------------------------------------
@@ -100,10 +107,9 @@ static inline csg_four box_distances(const csg_tree_node *node, const float p[3]
 }
 
 /* Pushes the children that may hold something as near as the limit, the nearest last. */
-static inline size_t push_children(const csg_tree_node *node, const float p[3], float limit,
-                                   entry *stack, size_t depth)
+static inline size_t push_near(const csg_tree_node *node, csg_four squared, float limit,
+                               entry *stack, size_t depth)
 {
-    csg_four squared = box_distances(node, p);
     size_t bottom = depth;
     for (uint32_t i = 0; i < 4; i++) {
         if (squared[i] > limit)
@@ -157,25 +163,174 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
     }
 }
 
+/* Of what the stack holds. */
+static inline void search(const csg_tree *tree, csg_vec3 p, entry *stack, size_t depth, query *q,
+                          csg_triangle_hit *best)
+{
+    while (depth) {
+        entry next = stack[--depth];
+        if (next.squared > q->limit)
+            continue;
+        if (next.child & CSG_TREE_LEAF) {
+            try_leaf(tree, &tree->leaves[next.child & ~CSG_TREE_LEAF], p, q, best);
+            continue;
+        }
+        const csg_tree_node *node = &tree->nodes[next.child];
+        depth = push_near(node, box_distances(node, q->p), q->limit, stack, depth);
+    }
+}
+
+static query query_of(csg_vec3 p, double squared)
+{
+    query q = {.p = {(float)p.x, (float)p.y, (float)p.z}, .limit = (float)squared * SLACK};
+    q.error = 0x1p-20f * (1 + fabsf(q.p[0]) + fabsf(q.p[1]) + fabsf(q.p[2]));
+    return q;
+}
+
 csg_triangle_hit csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint)
 {
     csg_triangle_hit best = {triangle_squared(&tree->triangles[hint], p), hint, 0};
-    query q = {.p = {(float)p.x, (float)p.y, (float)p.z}};
-    q.error = 0x1p-20f * (1 + fabsf(q.p[0]) + fabsf(q.p[1]) + fabsf(q.p[2]));
-    q.limit = (float)best.squared * SLACK;
+    query q = query_of(p, best.squared);
     entry stack[STACK];
-    size_t depth = 0;
-    stack[depth++] = (entry){0, 0};
-    while (depth) {
-        entry next = stack[--depth];
-        if (next.squared > q.limit)
-            continue;
-        if (next.child & CSG_TREE_LEAF)
-            try_leaf(tree, &tree->leaves[next.child & ~CSG_TREE_LEAF], p, &q, &best);
-        else
-            depth = push_children(&tree->nodes[next.child], q.p, q.limit, stack, depth);
+    stack[0] = (entry){0, 0};
+    search(tree, p, stack, 1, &q, &best);
+    return best;
+}
+
+/* ---- parts of the tree ------------------------------------------------------------------------
+ */
+
+/* Per child, all ones where it is a leaf. */
+static inline csg_four_mask leaf_mask(const csg_tree_node *node)
+{
+    csg_four_mask children;
+    memcpy(&children, node->children, sizeof children);
+    return children >> 31;
+}
+
+/* Of the children that count as below an item; infinite for the others. */
+static inline csg_four item_distances(const csg_tree_node *node, uint32_t item, const float p[3])
+{
+    csg_four squared = box_distances(node, p);
+    if (!(item & CSG_TREE_LEAVES_ONLY))
+        return squared;
+    csg_four_mask is_leaf = leaf_mask(node);
+    return (csg_four)(((csg_four_mask)squared & is_leaf) |
+                      ((csg_four_mask)csg_four_all(INFINITY) & ~is_leaf));
+}
+
+static inline const csg_tree_node *node_of(const csg_tree *tree, uint32_t item)
+{
+    return &tree->nodes[item & ~CSG_TREE_LEAVES_ONLY];
+}
+
+/* A leaf to begin with: down the boxes that are nearest. */
+static const csg_tree_leaf *near_leaf(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                                      const float p[3])
+{
+    uint32_t child = 0, next = items[0];
+    for (float least = INFINITY; !(child & CSG_TREE_LEAF); least = INFINITY) {
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t item = child ? child : items[i];
+            const csg_tree_node *node = node_of(tree, item);
+            csg_four squared = item_distances(node, item, p);
+            for (uint32_t k = 0; k < 4; k++)
+                if (squared[k] < least) {
+                    least = squared[k];
+                    next = node->children[k];
+                }
+        }
+        child = next;
+        count = 1;
+    }
+    return &tree->leaves[child & ~CSG_TREE_LEAF];
+}
+
+csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                                     csg_vec3 p, uint32_t hint)
+{
+    csg_triangle_hit best = {INFINITY, UINT32_MAX, 0};
+    if (hint != CSG_TREE_NO_HINT)
+        best = (csg_triangle_hit){triangle_squared(&tree->triangles[hint], p), hint, 0};
+    query q = query_of(p, best.squared);
+    if (hint == CSG_TREE_NO_HINT)
+        try_leaf(tree, near_leaf(tree, items, count, q.p), p, &q, &best);
+    entry stack[STACK];
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_tree_node *node = node_of(tree, items[i]);
+        size_t depth = push_near(node, item_distances(node, items[i], q.p), q.limit, stack, 0);
+        search(tree, p, stack, depth, &q, &best);
     }
     return best;
+}
+
+/* A box, wider by more than its own rounding; the limit is a square. */
+typedef struct inquiry {
+    float low[3], high[3], limit;
+} inquiry;
+
+/* Per child, all ones where its box comes near. */
+static inline csg_four_mask comes_near(const csg_tree_node *node, const inquiry *q)
+{
+    csg_four sum = csg_four_all(0);
+    for (int k = 0; k < 3; k++) {
+        csg_four outside =
+            csg_four_positive(csg_four_load(node->low[k]) - csg_four_all(q->high[k])) +
+            csg_four_positive(csg_four_all(q->low[k]) - csg_four_load(node->high[k]));
+        sum += outside * outside;
+    }
+    return sum <= csg_four_all(q->limit);
+}
+
+static inquiry inquiry_of(csg_vec3 center, csg_vec3 half, double reach)
+{
+    const double c[3] = {center.x, center.y, center.z}, h[3] = {half.x, half.y, half.z};
+    inquiry q = {.limit = (float)(reach * reach) * SLACK + FLT_MIN};
+    for (int k = 0; k < 3; k++) {
+        double more = 0x1p-20 * (1 + fabs(c[k]) + h[k]);
+        q.low[k] = (float)(c[k] - h[k] - more);
+        q.high[k] = (float)(c[k] + h[k] + more);
+    }
+    return q;
+}
+
+/* Items in place of one: its near children, the leaves among them by the item itself. */
+static uint32_t open_item(const csg_tree *tree, uint32_t item, const inquiry *q, uint32_t out[5])
+{
+    const csg_tree_node *node = node_of(tree, item);
+    csg_four_mask near = comes_near(node, q), is_leaf = leaf_mask(node);
+    uint32_t count = 0;
+    if (near[0] & is_leaf[0] || near[1] & is_leaf[1] || near[2] & is_leaf[2] ||
+        near[3] & is_leaf[3])
+        out[count++] = item | CSG_TREE_LEAVES_ONLY;
+    for (uint32_t k = 0; k < 4 && !(item & CSG_TREE_LEAVES_ONLY); k++)
+        if (near[k] && !is_leaf[k])
+            out[count++] = node->children[k];
+    return count;
+}
+
+/* Opens items from the largest to smaller ones until there are too many. */
+uint32_t csg_tree_narrow(const csg_tree *tree, const uint32_t *among, uint32_t among_count,
+                         csg_vec3 center, csg_vec3 half, double reach, uint32_t *out, uint32_t most)
+{
+    enum { QUEUE = 256 };
+    uint32_t queue[QUEUE] = {0}, first = 0, end = 1, done = 0;
+    inquiry q = inquiry_of(center, half, reach);
+    if (among) {
+        memcpy(queue, among, among_count * sizeof *among);
+        end = among_count;
+    }
+    for (; first < end; first++) {
+        uint32_t opened[5], count = open_item(tree, queue[first], &q, opened);
+        bool is_last = count == 1 && opened[0] & CSG_TREE_LEAVES_ONLY;
+        if (is_last || done + (end - first - 1) + count > most || end + count > QUEUE) {
+            out[done++] = is_last ? opened[0] : queue[first];
+            continue;
+        }
+        for (uint32_t i = 0; i < count; i++)
+            queue[end++] = opened[i];
+    }
+    return done;
 }
 
 bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
