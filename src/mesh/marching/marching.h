@@ -7,6 +7,7 @@
 
 #include "base/table.h"
 #include "field/kernels/roots.h"
+#include "grid/adaptive/bricks.h"
 #include "grid/octree/octree.h"
 #include "mesh/marching/tables.h"
 
@@ -85,6 +86,7 @@ typedef struct csg_marching {
     const csg_marching_places *places;
     csg_block *const *blocks;
     const csg_table *index;
+    const csg_bricks *bricks; /* in place of blocks: of a lattice that follows the shape */
     csg_vec3 shift;     /* field frame -> relative to the mesh's origin */
     float noise;        /* of the field's values: rounding */
     float unit;         /* in the last place of the mesh's largest coordinates */

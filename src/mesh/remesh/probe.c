@@ -58,6 +58,15 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
     uint32_t cell[3];
     room->nodes[i] = m->field->tape.nodes;
     room->node_count[i] = m->field->tape.count;
+    if (m->bricks) {
+        uint32_t found = csg_bricks_leaf_at(m->bricks, at);
+        if (found != CSG_BRICK_NONE) {
+            csg_tape tape = csg_bricks_tape(m->bricks, &m->bricks->items[found]);
+            room->nodes[i] = tape.nodes;
+            room->node_count[i] = tape.count;
+        }
+        return;
+    }
     if (!csg_lattice_cell_of(m->lattice, at, cell))
         return;
     const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,

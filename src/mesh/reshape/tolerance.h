@@ -16,6 +16,7 @@ typedef struct csg_mesh_goal {
     uint64_t triangles; /* that may stay, in place of `share`; errors then grow from `error` on */
     bool proves;        /* the error holds everywhere, or it is said where not; else of samples */
     bool improve;
+    bool sharp;           /* creases are kept */
     bool chooses;         /* the cell size */
     csgm_normals normals; /* of the result */
     double care;          /* of the error: what changes may make, so that the proof has room */

@@ -1,0 +1,472 @@
+/* SPDX-License-Identifier: MIT
+ * Dividing, sampling and balancing; see bricks.h. Every round divides a set of bricks in parallel;
+ * their children are joined in the order of their parents.
+ */
+#include "grid/adaptive/bricks.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/pool.h"
+#include "base/trace.h"
+#include "field/kernels/dispatch.h"
+#include "grid/octree/octree.h"
+
+enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, BRICKS_PER_ITEM = 8 };
+
+/* One thread's part of a round. */
+typedef struct csg_bricks_worker {
+    csg_pruner pruner;
+    csg_arena tapes;
+    csg_brick *made;
+    size_t count, capacity;
+    csg_brick_samples *samples;
+    float *scratch;
+    csg_bricks_stats stats;
+} worker;
+
+typedef struct segment {
+    uint32_t worker;
+    size_t first, count;
+} segment;
+
+typedef struct round {
+    csg_bricks *bricks;
+    const uint32_t *queue;
+    size_t queue_count;
+    segment *segments; /* one per item */
+    size_t done_before;
+    atomic_bool out_of_memory, cancelled;
+} round_of_division;
+
+/* ---- places ------------------------------------------------------------------------------------
+ */
+
+static uint64_t hash_of_place(uint32_t level, const uint32_t at[3])
+{
+    return csg_lattice_hash(at) * CSG_BRICKS_MOST_LEVELS + level;
+}
+
+static uint64_t hash_of_brick(const void *entries, uint32_t number)
+{
+    const csg_brick *brick = (const csg_brick *)entries + number;
+    return hash_of_place(brick->level, brick->at);
+}
+
+uint32_t csg_bricks_find(const csg_bricks *b, uint32_t level, const uint32_t at[3])
+{
+    size_t slot;
+    uint32_t found = csg_table_first(&b->index, hash_of_place(level, at), &slot);
+    while (found != CSG_TABLE_NONE && (b->items[found].level != level ||
+                                       memcmp(b->items[found].at, at, sizeof b->items[found].at)))
+        found = csg_table_next(&b->index, &slot);
+    return found;
+}
+
+uint32_t csg_bricks_leaf_at(const csg_bricks *b, const float at[3])
+{
+    uint32_t cell[3];
+    if (!csg_lattice_cell_of(b->lattice, at, cell))
+        return CSG_BRICK_NONE;
+    for (uint32_t level = b->options.coarse; level <= b->finest; level++) {
+        uint32_t place[3];
+        for (int axis = 0; axis < 3; axis++)
+            place[axis] = cell[axis] / E >> (b->finest - level);
+        uint32_t found = csg_bricks_find(b, level, place);
+        if (found == CSG_BRICK_NONE || !b->items[found].divided)
+            return found;
+    }
+    return CSG_BRICK_NONE;
+}
+
+csg_tape csg_bricks_short_tape(const csg_bricks *b, const csg_brick *brick)
+{
+    csg_tape tape = b->field->tape;
+    tape.nodes = brick->nodes;
+    tape.count = brick->node_count;
+    return tape;
+}
+
+csg_tape csg_bricks_tape(const csg_bricks *b, const csg_brick *brick)
+{
+    return b->options.prune ? csg_bricks_short_tape(b, brick) : b->field->tape;
+}
+
+float csg_bricks_band(const csg_bricks *b, uint32_t level)
+{
+    double edge = csg_bricks_cell(b, level) * b->lattice->cell_size;
+    return (float)(2 * (double)b->field->tape.lipschitz *
+                   (edge * (1 + 0x1p-10) + (double)csg_octree_rounding(b->lattice)));
+}
+
+/* ---- one brick ---------------------------------------------------------------------------------
+ */
+
+/* All of its points; those on the border of the lattice are outside by decree. */
+static void sample(csg_bricks *b, worker *self, csg_brick *brick)
+{
+    csg_brick_samples *s = self->samples;
+    float line[3][N];
+    bool border[3][N];
+    for (int axis = 0; axis < 3; axis++)
+        for (uint32_t i = 0; i < N; i++) {
+            uint32_t index = csg_brick_point(b, brick, axis, i);
+            line[axis][i] = csg_lattice_coordinate(b->lattice, axis, index);
+            border[axis][i] = index == 0 || index >= b->lattice->cells[axis];
+        }
+    for (int i = 0; i < CSG_BRICK_POINTS_PADDED; i++) {
+        int p = i < CSG_BRICK_POINTS ? i : 0;
+        s->x[i] = line[0][p % N], s->y[i] = line[1][p / N % N], s->z[i] = line[2][p / (N * N)];
+    }
+    csg_tape tape = csg_bricks_tape(b, brick);
+    b->kernel->values(&tape, s->x, s->y, s->z, CSG_BRICK_POINTS, s->f, self->scratch,
+                      csg_kernel_scratch_floats(b->field->depth));
+    memset(brick->inside, 0, sizeof brick->inside);
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++)
+            for (int i = 0; i < N; i++) {
+                bool outer = border[0][i] || border[1][j] || border[2][k];
+                bool inside = s->f[(k * N + j) * N + i] >= 0 && !outer;
+                brick->inside[k][j] |= (uint8_t)((unsigned)inside << i);
+            }
+    brick->crossed = 0;
+    for (unsigned k = 0; k < E; k++)
+        for (unsigned j = 0; j < E; j++)
+            for (unsigned i = 0; i < E; i++) {
+                unsigned pattern = csg_brick_pattern(brick, i, j, k);
+                if (pattern != 0 && pattern != 0xFF)
+                    brick->crossed |= (uint64_t)1 << csg_brick_cell(i, j, k);
+            }
+    self->stats.sampled++;
+    self->stats.point_evaluations += CSG_BRICK_POINTS;
+    self->stats.primitive_evaluations += (uint64_t)CSG_BRICK_POINTS * csg_tape_leaf_count(&tape);
+}
+
+static bool is_in_lattice(const csg_bricks *b, uint32_t level, const uint32_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if ((uint64_t)at[axis] * E << (b->finest - level) >= b->lattice->cells[axis])
+            return false;
+    return true;
+}
+
+static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *parent, int octant)
+{
+    worker *self = &b->workers[worker_index];
+    csg_brick child = {.level = (uint8_t)(parent->level + 1)};
+    for (int axis = 0; axis < 3; axis++)
+        child.at[axis] = 2 * parent->at[axis] + (uint32_t)(octant >> axis & 1);
+    if (!is_in_lattice(b, child.level, child.at))
+        return true;
+    self->stats.visited++;
+    csg_cell_state state = csg_prune_state(&self->pruner, octant);
+    self->stats.pruned_outside += state == CSG_CELL_OUTSIDE;
+    self->stats.pruned_inside += state == CSG_CELL_INSIDE;
+    if (state != CSG_CELL_SURFACE)
+        return true;
+    csg_tape tape = csg_bricks_short_tape(b, parent);
+    uint32_t level = child.level > b->options.coarse ? child.level : b->options.coarse;
+    if (!csg_prune_shorten(&self->pruner, octant, csg_bricks_band(b, level), &self->tapes, &tape) ||
+        !csg_memory_reserve(&b->context->memory, (void **)&self->made, &self->capacity,
+                            self->count + 1, sizeof child))
+        return false;
+    child.nodes = tape.nodes;
+    child.node_count = tape.count;
+    child.wanted = child.level < b->options.coarse;
+    if (!child.wanted) {
+        sample(b, self, &child);
+        child.wanted = b->options.judge(b->options.judge_user, worker_index, b, &child,
+                                        self->samples) &&
+                       child.level < b->finest;
+    }
+    self->made[self->count++] = child;
+    return true;
+}
+
+static bool divide(csg_bricks *b, uint32_t worker_index, const csg_brick *parent)
+{
+    worker *self = &b->workers[worker_index];
+    csg_tape tape = csg_bricks_short_tape(b, parent);
+    float c[3][CSG_OCTANTS];
+    uint32_t half = (uint32_t)(E / 2) * csg_bricks_cell(b, parent->level); /* of the parent */
+    for (int octant = 0; octant < CSG_OCTANTS; octant++)
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t first = csg_brick_point(b, parent, axis, 0);
+            uint32_t at = first + (octant >> axis & 1 ? half : 0);
+            c[axis][octant] = csg_lattice_coordinate(b->lattice, axis, at) +
+                              (float)(0.5 * half * b->lattice->cell_size);
+        }
+    double reach = 0.5 * half * b->lattice->cell_size + (double)csg_octree_rounding(b->lattice);
+    float radius = (float)(reach * (sqrt(3.0) * (1 + 8 * (double)FLT_EPSILON)));
+    if (!csg_prune_octants(&self->pruner, &tape, c[0], c[1], c[2], radius))
+        return false;
+    self->stats.interval_evaluations += CSG_OCTANTS;
+    self->stats.primitive_evaluations += (uint64_t)CSG_OCTANTS * csg_tape_leaf_count(&tape);
+    for (int octant = 0; octant < CSG_OCTANTS; octant++)
+        if (!make_child(b, worker_index, parent, octant))
+            return false;
+    return true;
+}
+
+/* ---- one round ---------------------------------------------------------------------------------
+ */
+
+static bool divide_item(void *user, uint32_t worker_index, size_t item)
+{
+    round_of_division *r = user;
+    csg_bricks *b = r->bricks;
+    worker *self = &b->workers[worker_index];
+    if (b->options.cancelled && b->options.cancelled(b->options.user)) {
+        atomic_store(&r->cancelled, true);
+        return false;
+    }
+    segment *s = &r->segments[item];
+    *s = (segment){worker_index, self->count, 0};
+    size_t end = (item + 1) * BRICKS_PER_ITEM;
+    for (size_t i = item * BRICKS_PER_ITEM; i < end && i < r->queue_count; i++)
+        if (!divide(b, worker_index, &b->items[r->queue[i]])) {
+            atomic_store(&r->out_of_memory, true);
+            return false;
+        }
+    s->count = self->count - s->first;
+    return true;
+}
+
+static void report(void *user, size_t done, size_t count)
+{
+    round_of_division *r = user;
+    csg_bricks *b = r->bricks;
+    /* how many rounds there will be nobody knows: the share of what is known by now */
+    double all = (double)(r->done_before + count);
+    if (b->options.progress)
+        b->options.progress(b->options.user, 0.9 * ((double)(r->done_before + done) / all));
+}
+
+/* The children into the array and the index, in the order of the queue. */
+static bool join(round_of_division *r, size_t items)
+{
+    csg_bricks *b = r->bricks;
+    size_t total = 0;
+    for (size_t i = 0; i < items; i++)
+        total += r->segments[i].count;
+    if (!csg_memory_reserve(&b->context->memory, (void **)&b->items, &b->capacity,
+                            b->count + total + 1, sizeof *b->items) ||
+        !csg_table_reserve(&b->index, b->count + total + 1, hash_of_brick, b->items))
+        return false;
+    for (size_t i = 0; i < items; i++) {
+        const segment *s = &r->segments[i];
+        for (size_t k = 0; k < s->count; k++) {
+            b->items[b->count] = b->workers[s->worker].made[s->first + k];
+            csg_table_add(&b->index, hash_of_brick(b->items, (uint32_t)b->count),
+                          (uint32_t)b->count);
+            b->count++;
+        }
+    }
+    for (size_t i = 0; i < r->queue_count; i++) {
+        b->items[r->queue[i]].divided = true;
+        b->items[r->queue[i]].wanted = false;
+    }
+    for (uint32_t i = 0; i < b->worker_count; i++)
+        b->workers[i].count = 0;
+    return true;
+}
+
+static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count)
+{
+    size_t items = (count + BRICKS_PER_ITEM - 1) / BRICKS_PER_ITEM;
+    round_of_division r = {
+        .bricks = b, .queue = queue, .queue_count = count, .done_before = b->count / 8};
+    r.segments = csg_memory_alloc(&b->context->memory, (items + 1) * sizeof(segment));
+    if (!r.segments)
+        return csg_context_no_memory(b->context);
+    bool done = csg_pool_run(b->context->pool, items, divide_item, report, &r);
+    bool joined = done && join(&r, items);
+    csg_memory_release(&b->context->memory, r.segments, (items + 1) * sizeof(segment));
+    if (atomic_load(&r.out_of_memory) || (done && !joined))
+        return csg_context_no_memory(b->context);
+    return joined ? CSGM_OK : CSGM_CANCELLED;
+}
+
+/* ---- balance -----------------------------------------------------------------------------------
+ */
+
+/* Wants every leaf divided that touches this one and is larger by more than one level. */
+static void want_balance(csg_bricks *b, const csg_brick *brick)
+{
+    if (brick->level < b->options.coarse + 2)
+        return;
+    for (int d = 0; d < 27; d++) {
+        uint32_t at[3];
+        const int step[3] = {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
+        for (int axis = 0; axis < 3; axis++) /* below 0 is far beyond: nothing is found there */
+            at[axis] = brick->at[axis] + (uint32_t)step[axis];
+        uint32_t found = CSG_BRICK_NONE, level = brick->level;
+        while (level > b->options.coarse &&
+               (found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE) {
+            level--;
+            for (int axis = 0; axis < 3; axis++)
+                at[axis] /= 2;
+        }
+        if (found == CSG_BRICK_NONE)
+            found = csg_bricks_find(b, level, at);
+        if (found != CSG_BRICK_NONE && !b->items[found].divided && level + 1 < brick->level)
+            b->items[found].wanted = true;
+    }
+}
+
+csgm_status csg_bricks_refine(csg_bricks *b)
+{
+    CSG_ZONE(b->context, "refinement");
+    uint32_t *queue = NULL;
+    size_t capacity = 0, balanced = 0;
+    csgm_status status = CSGM_OK;
+    while (status == CSGM_OK) {
+        size_t count = 0;
+        for (size_t i = 0; i < b->count && status == CSGM_OK; i++) {
+            if (!b->items[i].wanted || b->items[i].divided)
+                continue;
+            if (csg_memory_reserve(&b->context->memory, (void **)&queue, &capacity, count + 1,
+                                   sizeof *queue))
+                queue[count++] = (uint32_t)i;
+            else
+                status = csg_context_no_memory(b->context);
+        }
+        if (status == CSGM_OK && count) {
+            status = divide_all(b, queue, count);
+            continue;
+        }
+        if (balanced == b->count)
+            break;
+        for (; balanced < b->count; balanced++)
+            if (!b->items[balanced].divided)
+                want_balance(b, &b->items[balanced]);
+    }
+    csg_memory_release(&b->context->memory, queue, capacity * sizeof *queue);
+    for (uint32_t i = 0; i < b->worker_count; i++) {
+        const csg_bricks_stats *part = &b->workers[i].stats;
+        b->stats.visited += part->visited;
+        b->stats.pruned_outside += part->pruned_outside;
+        b->stats.pruned_inside += part->pruned_inside;
+        b->stats.sampled += part->sampled;
+        b->stats.interval_evaluations += part->interval_evaluations;
+        b->stats.point_evaluations += part->point_evaluations;
+        b->stats.primitive_evaluations += part->primitive_evaluations;
+        b->workers[i].stats = (csg_bricks_stats){0};
+    }
+    return status;
+}
+
+/* ---- beginning and end -------------------------------------------------------------------------
+ */
+
+csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
+                              const csg_lattice *lattice, const csg_bricks_options *options,
+                              csg_bricks *out)
+{
+    csg_memory *memory = &context->memory;
+    uint32_t most = 1;
+    for (int axis = 0; axis < 3; axis++)
+        most = lattice->cells[axis] > most ? lattice->cells[axis] : most;
+    *out = (csg_bricks){.context = context,
+                        .field = field,
+                        .kernel = csg_kernel_for(context->isa),
+                        .lattice = lattice,
+                        .options = *options,
+                        .worker_count = csg_pool_threads(context->pool)};
+    while ((uint32_t)E << out->finest < most)
+        out->finest++;
+    csg_table_init(&out->index, memory);
+    out->workers = csg_memory_alloc(memory, out->worker_count * sizeof(worker));
+    bool done = out->workers != NULL;
+    if (done)
+        memset(out->workers, 0, out->worker_count * sizeof(worker));
+    for (uint32_t i = 0; i < out->worker_count && done; i++) {
+        worker *w = &out->workers[i];
+        csg_pruner_init(&w->pruner, memory, out->kernel, csg_octree_rounding(lattice));
+        csg_arena_init(&w->tapes, memory);
+        w->samples = csg_memory_alloc(memory, sizeof *w->samples);
+        w->scratch =
+            csg_memory_alloc(memory, csg_kernel_scratch_floats(field->depth) * sizeof(float));
+        done = w->samples && w->scratch;
+    }
+    done = done &&
+           csg_memory_reserve(memory, (void **)&out->items, &out->capacity, 1, sizeof(csg_brick)) &&
+           csg_table_reserve(&out->index, 1, NULL, NULL);
+    if (!done) {
+        csg_bricks_destroy(out);
+        return csg_context_no_memory(context);
+    }
+    out->items[out->count++] = (csg_brick){
+        .nodes = field->tape.nodes, .node_count = field->tape.count, .wanted = true};
+    csg_table_add(&out->index, hash_of_brick(out->items, 0), 0);
+    return CSGM_OK;
+}
+
+void csg_bricks_destroy(csg_bricks *b)
+{
+    if (!b->context)
+        return;
+    csg_memory *memory = &b->context->memory;
+    for (uint32_t i = 0; b->workers && i < b->worker_count; i++) {
+        worker *w = &b->workers[i];
+        if (!w->pruner.memory) /* creation ended before */
+            continue;
+        csg_pruner_release(&w->pruner);
+        csg_arena_reset(&w->tapes);
+        csg_memory_release(memory, w->made, w->capacity * sizeof *w->made);
+        csg_memory_release(memory, w->samples, sizeof *w->samples);
+        csg_memory_release(memory, w->scratch,
+                           csg_kernel_scratch_floats(b->field->depth) * sizeof(float));
+    }
+    csg_memory_release(memory, b->workers, b->worker_count * sizeof(worker));
+    csg_memory_release(memory, b->items, b->capacity * sizeof *b->items);
+    csg_table_release(&b->index);
+    *b = (csg_bricks){0};
+}
+
+/* Morton order with x lowest: the axis of the highest differing bit decides (Chan 2002). */
+typedef struct placed {
+    uint32_t brick, point[3];
+} placed;
+
+static int compare_placed(const void *a, const void *b)
+{
+    const placed *p = a, *q = b;
+    uint32_t most = 0;
+    int order = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t differ = p->point[axis] ^ q->point[axis];
+        if (differ && !(differ < most && differ < (differ ^ most))) {
+            order = p->point[axis] < q->point[axis] ? -1 : 1;
+            most = differ;
+        }
+    }
+    return order;
+}
+
+bool csg_bricks_leaves(const csg_bricks *b, uint32_t **out, size_t *count)
+{
+    csg_memory *memory = &b->context->memory;
+    size_t n = 0, capacity = b->count;
+    placed *leaves = csg_memory_alloc(memory, capacity * sizeof *leaves);
+    *out = NULL;
+    *count = 0;
+    if (!leaves)
+        return false;
+    for (size_t i = 0; i < b->count; i++)
+        if (!b->items[i].divided) {
+            leaves[n].brick = (uint32_t)i;
+            for (int axis = 0; axis < 3; axis++)
+                leaves[n].point[axis] = csg_brick_point(b, &b->items[i], axis, 0);
+            n++;
+        }
+    qsort(leaves, n, sizeof *leaves, compare_placed);
+    *out = n ? csg_memory_alloc(memory, n * sizeof **out) : NULL;
+    for (size_t i = 0; *out && i < n; i++)
+        (*out)[i] = leaves[i].brick;
+    *count = *out ? n : 0;
+    csg_memory_release(memory, leaves, capacity * sizeof *leaves);
+    return n == *count;
+}

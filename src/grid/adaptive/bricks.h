@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT
+ * A lattice whose cells have different sizes: an octree that ends in bricks of 4^3 cells, small
+ * where the shape asks for it. Bricks that touch, were it in a corner, differ by one level at most.
+ *
+ * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of the
+ * finest lattice, so every point has one index, and one coordinate, at all levels. A cube that the
+ * field proves free of surface is not there at all. What is there is divided or a leaf; leaves are
+ * what the mesh is made of. Which cubes are divided depends on the field and the lattice alone: the
+ * set is the least one that the judge asks for and that is balanced.
+ */
+#ifndef CSG_GRID_ADAPTIVE_BRICKS_H
+#define CSG_GRID_ADAPTIVE_BRICKS_H
+
+#include "base/table.h"
+#include "field/prune/prune.h"
+#include "grid/octree/lattice.h"
+
+enum {
+    CSG_BRICK_EDGE = 4, /* cells */
+    CSG_BRICK_SAMPLES = CSG_BRICK_EDGE + 1,
+    CSG_BRICK_POINTS = CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES,
+    CSG_BRICK_POINTS_PADDED = (CSG_BRICK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES,
+    CSG_BRICKS_MOST_LEVELS = 20
+};
+
+#define CSG_BRICK_NONE UINT32_MAX
+
+typedef struct csg_brick {
+    const csg_tape_node *nodes; /* of the tape that holds in it */
+    uint32_t node_count;
+    uint32_t at[3]; /* in bricks of its level */
+    uint8_t level;
+    bool divided, wanted;                                 /* wanted: it is to be divided */
+    uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
+    uint64_t crossed; /* cells whose corners do not all agree: bit 16 z + 4 y + x, as below */
+    uint64_t flat;    /* cells whose polygon is cut into triangles without a point inside */
+    uint64_t several; /* of the finest level: with several polygons */
+} csg_brick;
+
+/* Values at a brick's points, x fastest. */
+typedef struct csg_brick_samples {
+    float x[CSG_BRICK_POINTS_PADDED], y[CSG_BRICK_POINTS_PADDED], z[CSG_BRICK_POINTS_PADDED];
+    float f[CSG_BRICK_POINTS_PADDED];
+} csg_brick_samples;
+
+typedef struct csg_bricks csg_bricks;
+
+/* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat` and
+ * `several`. Any worker. */
+typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
+                             csg_brick *brick, const csg_brick_samples *samples);
+
+typedef struct csg_bricks_options {
+    bool prune;      /* false: values come from the whole tape; what is divided stays the same */
+    uint32_t coarse; /* the level of the largest leaves */
+    csg_brick_judge *judge;
+    void *judge_user;
+    void (*progress)(void *user, double fraction); /* calling thread; may be NULL */
+    bool (*cancelled)(void *user);                 /* any worker; may be NULL */
+    void *user;
+} csg_bricks_options;
+
+typedef struct csg_bricks_stats {
+    uint64_t visited, pruned_outside, pruned_inside, sampled;
+    uint64_t interval_evaluations, point_evaluations, primitive_evaluations;
+} csg_bricks_stats;
+
+struct csg_bricks {
+    csgm_context *context;
+    const csgm_field *field;
+    const csg_kernel *kernel;
+    const csg_lattice *lattice; /* the finest */
+    uint32_t finest;            /* its level */
+    csg_bricks_options options;
+    csg_brick *items;
+    size_t count, capacity;
+    csg_table index;
+    struct csg_bricks_worker *workers;
+    uint32_t worker_count;
+    csg_bricks_stats stats;
+};
+
+/* The root alone. lattice: of the finest cells, its origin where every level has its points.
+ * CSGM_OK or CSGM_ERR_MEMORY (reported). */
+csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
+                              const csg_lattice *lattice, const csg_bricks_options *options,
+                              csg_bricks *out);
+void csg_bricks_destroy(csg_bricks *bricks);
+
+/* Divides what the judge wants, then what the balance wants, until nobody wants anything. Bricks
+ * that are `wanted` already (csg_bricks_want) are divided, too. CSGM_OK, CSGM_CANCELLED or
+ * CSGM_ERR_MEMORY (reported). */
+csgm_status csg_bricks_refine(csg_bricks *bricks);
+
+/* The brick at a place of a level, CSG_BRICK_NONE where there is none. */
+uint32_t csg_bricks_find(const csg_bricks *bricks, uint32_t level, const uint32_t at[3]);
+/* The leaf that holds a point of the field's frame, CSG_BRICK_NONE where none does. */
+uint32_t csg_bricks_leaf_at(const csg_bricks *bricks, const float at[3]);
+/* Leaves in Morton order: an array of *count numbers, to be released by the caller. False: out of
+ * memory. */
+bool csg_bricks_leaves(const csg_bricks *bricks, uint32_t **out, size_t *count);
+
+/* The tape that values of a brick come from. */
+csg_tape csg_bricks_tape(const csg_bricks *bricks, const csg_brick *brick);
+/* The one that holds in it, for bounds. */
+csg_tape csg_bricks_short_tape(const csg_bricks *bricks, const csg_brick *brick);
+/* By how much f can change across a cell of this level, and more: the band where values hold. */
+float csg_bricks_band(const csg_bricks *bricks, uint32_t level);
+
+/* Cells of the finest lattice along an edge of a cell of this level. */
+static inline uint32_t csg_bricks_cell(const csg_bricks *bricks, uint32_t level)
+{
+    return 1u << (bricks->finest - level);
+}
+
+/* The index of a brick's point in the finest lattice. */
+static inline uint32_t csg_brick_point(const csg_bricks *bricks, const csg_brick *brick, int axis,
+                                       uint32_t i)
+{
+    return (brick->at[axis] * CSG_BRICK_EDGE + i) << (bricks->finest - brick->level);
+}
+
+static inline float csg_brick_coordinate(const csg_bricks *bricks, const csg_brick *brick, int axis,
+                                         uint32_t i)
+{
+    return csg_lattice_coordinate(bricks->lattice, axis, csg_brick_point(bricks, brick, axis, i));
+}
+
+/* The bit of a cell. */
+static inline unsigned csg_brick_cell(unsigned i, unsigned j, unsigned k)
+{
+    return i + CSG_BRICK_EDGE * (j + CSG_BRICK_EDGE * k);
+}
+
+/* Corner c of cell (i, j, k), at (c & 1, c >> 1 & 1, c >> 2): bit c of the pattern. */
+static inline unsigned csg_brick_pattern(const csg_brick *brick, unsigned i, unsigned j, unsigned k)
+{
+    return (brick->inside[k][j] >> i & 3u) | (brick->inside[k][j + 1] >> i & 3u) << 2 |
+           (brick->inside[k + 1][j] >> i & 3u) << 4 | (brick->inside[k + 1][j + 1] >> i & 3u) << 6;
+}
+
+#endif

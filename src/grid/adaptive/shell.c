@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ * What touches a leaf; see shell.h.
+ */
+#include "grid/adaptive/shell.h"
+
+#include <string.h>
+
+enum { E = CSG_BRICK_EDGE, N = CSG_BRICK_SAMPLES, S = CSG_SHELL_SAMPLES };
+
+static const int CENTER = 13;
+
+/* ---- finer leaves ------------------------------------------------------------------------------
+ */
+
+static void take_edges(csg_shell *s, int axis, const int q[3])
+{
+    for (int other = 0; other < 3; other++)
+        if (other != axis && q[other] % 2)
+            return; /* within a face */
+    s->divided_edges[axis][q[2] / 2][q[1] / 2] |= (uint8_t)(1u << q[0] / 2);
+}
+
+static bool is_on_shell(const int q[3])
+{
+    return q[0] >= 0 && q[0] < S && q[1] >= 0 && q[1] < S && q[2] >= 0 && q[2] < S;
+}
+
+/* Signs and edges that a finer leaf has on this one's border. */
+static void take_leaf(csg_shell *s, const csg_brick *fine)
+{
+    int first[3];
+    for (int axis = 0; axis < 3; axis++)
+        first[axis] = E * ((int)fine->at[axis] - 2 * (int)s->brick->at[axis]);
+    for (int p = 0; p < CSG_BRICK_POINTS; p++) {
+        const int local[3] = {p % N, p / N % N, p / (N * N)};
+        const int q[3] = {first[0] + local[0], first[1] + local[1], first[2] + local[2]};
+        if (!is_on_shell(q))
+            continue;
+        unsigned inside = fine->inside[local[2]][local[1]] >> local[0] & 1u;
+        s->inside[q[2]][q[1]] |= (uint16_t)(inside << q[0]);
+        for (int axis = 0; axis < 3; axis++)
+            if (local[axis] < E && q[axis] < S - 1)
+                take_edges(s, axis, q);
+    }
+}
+
+/* The four cells' faces that a finer leaf beyond a face covers. */
+static void take_face(csg_shell *s, int axis, int side, const csg_brick *fine)
+{
+    int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    unsigned i = fine->at[u] % 2 * (E / 2), j = fine->at[v] % 2 * (E / 2);
+    for (unsigned b = 0; b < E / 2; b++)
+        for (unsigned a = 0; a < E / 2; a++)
+            s->divided_faces[2 * axis + side] |= (uint16_t)(1u << (i + a + E * (j + b)));
+}
+
+/* The children of a divided neighbour that touch the brick. */
+static void take_children(csg_shell *s, const csg_bricks *b, const uint32_t at[3],
+                          const int step[3])
+{
+    int steps = (step[0] != 0) + (step[1] != 0) + (step[2] != 0);
+    for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
+        uint32_t child[3];
+        bool touches = true;
+        for (int axis = 0; axis < 3; axis++) {
+            unsigned bit = octant >> axis & 1;
+            touches = touches && (step[axis] == 0 || bit == (step[axis] < 0 ? 1u : 0u));
+            child[axis] = 2 * at[axis] + bit;
+        }
+        uint32_t found =
+            touches ? csg_bricks_find(b, s->brick->level + 1u, child) : CSG_BRICK_NONE;
+        if (found == CSG_BRICK_NONE)
+            continue;
+        s->has_finer = true;
+        take_leaf(s, &b->items[found]);
+        for (int axis = 0; axis < 3 && steps == 1; axis++)
+            if (step[axis])
+                take_face(s, axis, step[axis] > 0, &b->items[found]);
+    }
+}
+
+static void take_own(csg_shell *s)
+{
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++)
+            for (int i = 0; i < N; i++)
+                s->inside[2 * k][2 * j] |=
+                    (uint16_t)((s->brick->inside[k][j] >> i & 1u) << (2 * i));
+}
+
+void csg_shell_make(csg_shell *s, const csg_bricks *b, uint32_t number)
+{
+    const csg_brick *brick = &b->items[number];
+    memset(s, 0, sizeof *s);
+    s->brick = brick;
+    s->number = number;
+    for (int d = 0; d < 27; d++) {
+        const int step[3] = {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
+        uint32_t at[3];
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = brick->at[axis] + (uint32_t)step[axis];
+        uint32_t found = d == CENTER ? number : csg_bricks_find(b, brick->level, at);
+        bool is_leaf = found != CSG_BRICK_NONE && !b->items[found].divided;
+        s->around[d] = is_leaf ? found : CSG_BRICK_NONE;
+        if (found != CSG_BRICK_NONE && !is_leaf)
+            take_children(s, b, at, step);
+    }
+    if (s->has_finer)
+        take_own(s);
+}
+
+/* ---- cells -------------------------------------------------------------------------------------
+ */
+
+static uint32_t corners_of(unsigned pattern)
+{
+    uint32_t inside = 0;
+    for (unsigned c = 0; c < 8; c++)
+        inside |= (pattern >> c & 1u) << (2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2));
+    return inside;
+}
+
+static uint32_t divided_in_cell(const csg_shell *s, const unsigned at[3])
+{
+    uint32_t divided = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+        for (unsigned e = 0; e < 4; e++) {
+            unsigned low[3] = {at[0], at[1], at[2]}, middle[3] = {0, 0, 0};
+            low[u] += e & 1, low[v] += e >> 1;
+            middle[axis] = 1, middle[u] = 2 * (e & 1), middle[v] = 2 * (e >> 1);
+            if (s->divided_edges[axis][low[2]][low[1]] >> low[0] & 1)
+                divided |= 1u << (middle[0] + 3 * middle[1] + 9 * middle[2]);
+        }
+        for (unsigned side = 0; side < 2; side++) {
+            unsigned middle[3] = {1, 1, 1};
+            middle[axis] = 2 * side;
+            if (at[axis] == (side ? E - 1u : 0u) &&
+                s->divided_faces[2 * axis + (int)side] >> (at[u] + E * at[v]) & 1)
+                divided |= 1u << (middle[0] + 3 * middle[1] + 9 * middle[2]);
+        }
+    }
+    return divided;
+}
+
+csg_shell_cell csg_shell_cell_of(const csg_shell *s, unsigned i, unsigned j, unsigned k)
+{
+    if (!s->has_finer)
+        return (csg_shell_cell){corners_of(csg_brick_pattern(s->brick, i, j, k)), 0};
+    csg_shell_cell cell = {0, divided_in_cell(s, (const unsigned[3]){i, j, k})};
+    for (unsigned z = 0; z < 3; z++)
+        for (unsigned y = 0; y < 3; y++)
+            cell.inside |= (s->inside[2 * k + z][2 * j + y] >> (2 * i) & 7u) << (3 * y + 9 * z);
+    return cell;
+}
+
+/* ---- who owns what -----------------------------------------------------------------------------
+ */
+
+/* Whether no leaf with a lower number touches in the brick's lines and planes named by steps. */
+static bool is_lowest(const csg_shell *s, const int step[3])
+{
+    for (int part = 1; part < 8; part++) {
+        int d = CENTER, place = 1;
+        bool used = true;
+        for (int axis = 0; axis < 3; axis++, place *= 3) {
+            if (!(part >> axis & 1))
+                continue;
+            used = used && step[axis] != 0;
+            d += step[axis] * place;
+        }
+        if (used && s->around[d] != CSG_BRICK_NONE && s->around[d] < s->number)
+            return false;
+    }
+    return true;
+}
+
+static int border_step(unsigned at)
+{
+    return at == 0 ? -1 : at == E ? 1 : 0;
+}
+
+bool csg_shell_owns_edge(const csg_shell *s, int axis, const unsigned low[3])
+{
+    int step[3] = {border_step(low[0]), border_step(low[1]), border_step(low[2])};
+    step[axis] = 0;
+    return is_lowest(s, step);
+}
+
+bool csg_shell_owns_face(const csg_shell *s, int axis, const unsigned low[3])
+{
+    int step[3] = {0, 0, 0};
+    step[axis] = border_step(low[axis]);
+    return is_lowest(s, step);
+}

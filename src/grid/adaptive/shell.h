@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ * A leaf with what its neighbours have on their common faces and edges: where finer leaves touch it,
+ * its border has points between its own.
+ *
+ * Points of the shell are counted in half cells, 0 .. 8 along each axis. Balance sees to it that
+ * there are none in between.
+ */
+#ifndef CSG_GRID_ADAPTIVE_SHELL_H
+#define CSG_GRID_ADAPTIVE_SHELL_H
+
+#include "grid/adaptive/bricks.h"
+
+enum { CSG_SHELL_SAMPLES = 2 * CSG_BRICK_EDGE + 1 };
+
+typedef struct csg_shell {
+    const csg_brick *brick;
+    uint32_t number;     /* of the brick */
+    uint32_t around[27]; /* leaves of the same level, 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1
+                            to 1; CSG_BRICK_NONE: none */
+    bool has_finer;      /* some neighbour is finer; else what follows says nothing */
+    uint16_t inside[CSG_SHELL_SAMPLES][CSG_SHELL_SAMPLES]; /* [z][y]: bit x */
+    /* Edges of the brick's cells that finer leaves divide: [axis][z][y]: bit x, by lower point. */
+    uint8_t divided_edges[3][CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES];
+    /* Faces of border cells beyond which the leaf is finer: [2 axis + side], bit u + 4 v, u and v
+     * the cell on the other axes in increasing order. */
+    uint16_t divided_faces[6];
+} csg_shell;
+
+void csg_shell_make(csg_shell *shell, const csg_bricks *bricks, uint32_t number);
+
+/* One cell of it. Corners, middles of edges and of faces are the points (x, y, z), each 0 .. 2, of
+ * 3 x 3 x 3; bits x + 3 y + 9 z. */
+typedef struct csg_shell_cell {
+    uint32_t inside; /* of the points in between only those count that are there */
+    /* The edge whose middle is this point is divided, the face likewise. */
+    uint32_t divided;
+} csg_shell_cell;
+
+csg_shell_cell csg_shell_cell_of(const csg_shell *shell, unsigned i, unsigned j, unsigned k);
+
+/* Whether the brick has an edge, or a face, for its own among leaves of the same level that touch
+ * in it: the lowest number has. low: the edge's lower point, the face's lowest, in cells. */
+bool csg_shell_owns_edge(const csg_shell *shell, int axis, const unsigned low[3]);
+bool csg_shell_owns_face(const csg_shell *shell, int axis, const unsigned low[3]);
+
+#endif

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ * Cycles, segments and loops; see polygons.h.
+ */
+#include "mesh/adaptive/polygons.h"
+
+#include <string.h>
+
+enum { NOWHERE = 0xFF, MOST_POINTS = 8 };
+
+/* What is found face by face: for the vertex that a segment begins at, the rest of it. */
+typedef struct links {
+    uint8_t to[CSG_LOCAL_PLACES], face[CSG_LOCAL_PLACES];
+    uint8_t in_face[CSG_LOCAL_PLACES]; /* segments */
+} links;
+
+/* A point of 3 x 3 x 3. */
+typedef struct cycle {
+    uint8_t point[MOST_POINTS][3];
+    int count;
+} cycle;
+
+static unsigned bit_of(const uint8_t p[3])
+{
+    return p[0] + 3u * p[1] + 9u * p[2];
+}
+
+/* Halfway between two points of 3 x 3 x 3, in quarters. */
+static uint8_t middle_of(const uint8_t p[3], const uint8_t q[3])
+{
+    return (uint8_t)((p[0] + q[0]) + 5 * (p[1] + q[1]) + 25 * (p[2] + q[2]));
+}
+
+static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
+{
+    bool in[MOST_POINTS];
+    for (int i = 0; i < c->count; i++)
+        in[i] = inside >> bit_of(c->point[i]) & 1;
+    for (int i = 0; i < c->count; i++) {
+        int before = (i + c->count - 1) % c->count, last = i;
+        if (!in[i] || in[before])
+            continue; /* not the first of a run */
+        while (in[(last + 1) % c->count])
+            last = (last + 1) % c->count;
+        uint8_t enter = middle_of(c->point[before], c->point[i]);
+        uint8_t leave = middle_of(c->point[last], c->point[(last + 1) % c->count]);
+        l->to[enter] = leave;
+        l->face[enter] = face;
+        l->in_face[face]++;
+    }
+}
+
+/* The points around a face, or a quarter of it: from (u, v), `step` wide, counter-clockwise seen
+ * from outside the cell; the middles of divided edges between. */
+static void go_round(cycle *c, int axis, int side, unsigned u, unsigned v, unsigned step,
+                     uint32_t divided)
+{
+    static const uint8_t round[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    int b = (axis + 1) % 3, d = (axis + 2) % 3;
+    c->count = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t *at = round[side ? i : 3 - i], *next = round[side ? (i + 1) % 4 : (6 - i) % 4];
+        uint8_t *p = c->point[c->count++], to[3];
+        p[axis] = to[axis] = (uint8_t)(2 * side);
+        p[b] = (uint8_t)(u + step * at[0]), p[d] = (uint8_t)(v + step * at[1]);
+        to[b] = (uint8_t)(u + step * next[0]), to[d] = (uint8_t)(v + step * next[1]);
+        uint8_t middle[3];
+        for (int k = 0; k < 3; k++)
+            middle[k] = (uint8_t)((p[k] + to[k]) / 2);
+        if (step == 2 && divided >> bit_of(middle) & 1)
+            memcpy(c->point[c->count++], middle, sizeof middle);
+    }
+}
+
+static void link_face(links *l, const csg_shell_cell *cell, int axis, int side)
+{
+    int b = (axis + 1) % 3, d = (axis + 2) % 3;
+    uint8_t middle[3] = {1, 1, 1};
+    cycle c;
+    middle[axis] = (uint8_t)(2 * side);
+    if (!(cell->divided >> bit_of(middle) & 1)) {
+        go_round(&c, axis, side, 0, 0, 2, cell->divided);
+        link_cycle(l, &c, middle_of(middle, middle), cell->inside);
+        return;
+    }
+    for (unsigned quarter = 0; quarter < 4; quarter++) {
+        unsigned u = quarter & 1, v = quarter >> 1;
+        uint8_t low[3], high[3];
+        low[axis] = high[axis] = middle[axis];
+        low[b] = (uint8_t)u, low[d] = (uint8_t)v;
+        high[b] = (uint8_t)(u + 1), high[d] = (uint8_t)(v + 1);
+        go_round(&c, axis, side, u, v, 1, cell->divided);
+        link_cycle(l, &c, middle_of(low, high), cell->inside);
+    }
+}
+
+/* The edge of the cell that a vertex lies on, by its middle; NOWHERE: within a face. */
+static uint8_t edge_of(uint8_t place)
+{
+    unsigned at[3], between = 0;
+    csg_local_place(place, at);
+    for (int axis = 0; axis < 3; axis++)
+        if (at[axis] % 4) {
+            between++;
+            at[axis] = 2;
+        }
+    return between == 1 ? (uint8_t)(at[0] + 5 * at[1] + 25 * at[2]) : NOWHERE;
+}
+
+void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell)
+{
+    links l;
+    memset(l.to, NOWHERE, sizeof l.to);
+    memset(l.in_face, 0, sizeof l.in_face);
+    for (int face = 0; face < 6; face++)
+        link_face(&l, cell, face / 2, face % 2);
+    polygons->count = 0;
+    unsigned n = 0;
+    for (unsigned start = 0; start < CSG_LOCAL_PLACES; start++) {
+        unsigned first = n;
+        uint8_t at = (uint8_t)start;
+        while (l.to[at] != NOWHERE && n < CSG_CELL_MOST_SEGMENTS) {
+            csg_polygon_side *s = &polygons->side[n++];
+            uint8_t edge = edge_of(at);
+            *s = (csg_polygon_side){.from = at, .to = l.to[at], .face = l.face[at]};
+            s->along_edge = edge != NOWHERE && edge == edge_of(s->to);
+            s->alone = l.in_face[s->face] == 1;
+            l.to[at] = NOWHERE;
+            at = s->to;
+        }
+        if (n - first == 2 && polygons->side[first].along_edge)
+            n = first;
+        if (n > first && polygons->count < CSG_CELL_MOST_POLYGONS)
+            polygons->first[polygons->count++] = (uint8_t)first;
+    }
+    polygons->first[polygons->count] = (uint8_t)n;
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT
+ * Where sheets of the surface meet: in a point of a face of a cell, in a point within a cell. Each
+ * sheet stands in by its tangent plane at a point a little off the place sought, towards its own
+ * vertices, where the field is that sheet's alone. Planes meet in a better place, points move closer
+ * to it: on plane faces the first meeting is exact, on curved ones the error falls with the square
+ * of the distance.
+ *
+ * Nothing outside the cell is asked, so a place depends on the cell's own tape alone.
+ */
+#ifndef CSG_MESH_ADAPTIVE_SHEETS_H
+#define CSG_MESH_ADAPTIVE_SHEETS_H
+
+#include "field/kernels/kernel.h"
+
+enum { CSG_POLYGON_MOST = 64 /* vertices */, CSG_POLYGON_MOST_SHEETS = 12 };
+
+/* The field in a brick, one thread's. */
+typedef struct csg_sheet_probe {
+    const csg_kernel *kernel;
+    const csg_tape *tape;
+    float *scratch;
+    size_t scratch_floats;
+    double noise; /* of values: rounding */
+    uint64_t evaluations;
+} csg_sheet_probe;
+
+/* A cell, or a face of one: then low and high are equal on one axis. */
+typedef struct csg_cell_box {
+    double low[3], high[3], cell;
+} csg_cell_box;
+
+typedef struct csg_surface_point {
+    csg_vec3 at, gradient;
+} csg_surface_point;
+
+/* Whether a crease goes through a face between two points of its border, and where: within it, with
+ * a margin to its sides. */
+bool csg_sheets_meet_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
+                             const csg_surface_point ends[2], csg_vec3 *out);
+
+/* A loop on the faces of a cell: vertices on its edges, which have gradients, and crease points
+ * within its faces, which have none. */
+typedef struct csg_polygon {
+    int count;
+    uint32_t vertex[CSG_POLYGON_MOST];
+    csg_surface_point point[CSG_POLYGON_MOST];
+    bool is_crease[CSG_POLYGON_MOST];
+} csg_polygon;
+
+typedef enum csg_apex_kind {
+    CSG_APEX_SMOOTH, /* on the surface, or near it */
+    CSG_APEX_CREASE, /* where the sheets meet */
+    CSG_APEX_FAILED  /* sheets should meet, but not here: it is only near the surface */
+} csg_apex_kind;
+
+/* The point that a polygon's triangles meet in: strictly within the cell, so that the fan around it
+ * meets neither itself nor what is in other cells. */
+csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *probe, const csg_cell_box *box,
+                                    const csg_polygon *polygon, csg_vec3 *out);
+
+/* Cosine of the angle between two gradients; 1 where one is 0. */
+double csg_gradients_cosine(csg_vec3 a, csg_vec3 b);
+
+#endif

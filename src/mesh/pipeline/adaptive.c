@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT
+ * The stages in their order; see adaptive.h.
+ */
+#include "mesh/pipeline/adaptive.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mesh_codes.h"
+#include "base/pool.h"
+#include "base/trace.h"
+#include "mesh/adaptive/extract.h"
+#include "mesh/pipeline/workers.h"
+
+/* Cells along the longest side that refinement begins with, at least; how much of the tolerance
+ * triangles may use before they are thinned out. */
+enum { FIRST_CELLS = 24, LEAST_LEVELS = 3 };
+static const double SHARE_OF_CELLS = 0.5;
+
+typedef struct adaptive {
+    csg_mesh_input input;
+    csg_mesh_watch watch;
+    csg_mesh_workers workers;
+    csg_lattice lattice; /* the finest */
+    csg_bricks bricks;
+    csg_judge judge;
+    csg_extraction extraction;
+    csg_mesh_goal goal;
+    double refined_s;
+} adaptive;
+
+/* ---- the lattice -------------------------------------------------------------------------------
+ */
+
+/* The largest power of two that is at most this. */
+static double power_below(double size)
+{
+    return ldexp(1, (int)floor(log2(size)));
+}
+
+/* Cells and origin at absolute places that powers of two have, a third, a fifth and a seventh off
+ * them: whatever the level, faces at such places, and diagonals between them, keep a distance from
+ * lattice points. So an edit at one end of a part moves no cell at the other. */
+static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
+{
+    const csg_box bounds = a->input.bounds;
+    csg_vec3 size = csg_box_size(bounds), center = a->input.field->center;
+    double longest = fmax(size.x, fmax(size.y, size.z));
+    double first = power_below(longest / FIRST_CELLS);
+    double cell = fmin(power_below(a->goal.error) / 2, ldexp(first, -LEAST_LEVELS));
+    const double low[3] = {bounds.min.x, bounds.min.y, bounds.min.z};
+    const double high[3] = {bounds.max.x, bounds.max.y, bounds.max.z};
+    const double middle[3] = {center.x, center.y, center.z};
+    static const double share[3] = {1.0 / 3, 1.0 / 5, 1.0 / 7};
+    double origin[3], step = CSG_BRICK_EDGE * first;
+    for (int axis = 0; axis < 3; axis++) {
+        double shift = share[axis] * first, margin = 0.25 * first;
+        double begin = floor((low[axis] - margin - shift) / step) * step + shift;
+        double cells = ceil((high[axis] + margin - begin) / step) * (step / cell);
+        if (!(cells <= CSG_LATTICE_MOST_CELLS)) {
+            csg_diag_plain(&a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
+                           "a tolerance of %g over %g x %g x %g would take more than %d cells along "
+                           "a side",
+                           a->goal.error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
+            return CSGM_ERR_LIMIT;
+        }
+        a->lattice.cells[axis] = (uint32_t)cells;
+        a->lattice.blocks[axis] = (uint32_t)cells / CSG_BLOCK_EDGE;
+        origin[axis] = begin - middle[axis];
+    }
+    a->lattice.origin = csg_vec3_make(origin[0], origin[1], origin[2]);
+    a->lattice.cell_size = cell;
+    *coarse_levels = (uint32_t)lround(log2(first / cell));
+    return CSGM_OK;
+}
+
+/* ---- refinement --------------------------------------------------------------------------------
+ */
+
+static csgm_status create_judge(adaptive *a)
+{
+    csg_memory *memory = &a->input.context->memory;
+    const csg_marching *m = &a->workers.marching;
+    a->judge = (csg_judge){.tables = m->tables,
+                           .tolerance = SHARE_OF_CELLS * a->goal.error,
+                           .sharp = a->goal.sharp,
+                           .noise = m->noise,
+                           .end_distance = (float)fmin(
+                               fmax(4 * (double)m->unit / a->lattice.cell_size, 0x1p-10), 0.25)};
+    a->judge.rooms = csg_memory_alloc(memory, a->workers.count * sizeof(csg_judge_room));
+    if (!a->judge.rooms)
+        return csg_context_no_memory(a->input.context);
+    memset(a->judge.rooms, 0, a->workers.count * sizeof(csg_judge_room));
+    for (uint32_t i = 0; i < a->workers.count; i++) {
+        a->judge.rooms[i].scratch = a->workers.each[i].scratch;
+        a->judge.rooms[i].scratch_floats = a->workers.scratch_floats;
+    }
+    return CSGM_OK;
+}
+
+/* Until no border cell has several polygons. */
+static csgm_status refine(adaptive *a)
+{
+    csgm_status status = csg_bricks_refine(&a->bricks);
+    bool any = status == CSGM_OK;
+    while (status == CSGM_OK && any) {
+        status = csg_extraction_check_borders(&a->extraction, &any);
+        if (status == CSGM_OK && any)
+            status = csg_bricks_refine(&a->bricks);
+    }
+    return status;
+}
+
+/* ---- looks ------------------------------------------------------------------------------------- */
+
+static csgm_status paint(adaptive *a)
+{
+    csgm_mesh *mesh = a->extraction.mesh;
+    const csgm_mesh_options *options = a->input.options;
+    const csg_mesh_share *share = a->input.share;
+    bool materials =
+        options->colors && (share ? share->materials : a->input.field->has_materials);
+    csgm_status status = materials ? csg_mesh_add_materials(mesh) : CSGM_OK;
+    if (status != CSGM_OK || (!mesh->colors && !mesh->materials))
+        return status;
+    csg_probe probe;
+    if (!csg_probe_make(&probe, &a->workers.marching, &a->input.context->memory))
+        return csg_context_no_memory(a->input.context);
+    float at[CSG_PROBE_MOST][3];
+    csg_vec3 shift = a->workers.marching.shift;
+    for (uint64_t first = 0; first < mesh->vertex_count; first += CSG_PROBE_MOST) {
+        size_t count = (size_t)(mesh->vertex_count - first);
+        count = count < CSG_PROBE_MOST ? count : CSG_PROBE_MOST;
+        for (size_t i = 0; i < count; i++)
+            csg_vec3_to_floats(
+                at[i],
+                csg_vec3_sub(csg_vec3_from_floats(mesh->positions + 3 * (first + i)), shift));
+        csg_probe_looks(&probe, (const float(*)[3])at, count,
+                        mesh->colors ? (uint8_t(*)[4])(mesh->colors + 4 * first) : NULL,
+                        mesh->materials ? (uint16_t(*)[2])(mesh->materials + 2 * first) : NULL);
+    }
+    csg_probe_release(&probe);
+    return CSGM_OK;
+}
+
+/* ---- all of it --------------------------------------------------------------------------------- */
+
+static csgm_status walk(adaptive *a)
+{
+    uint32_t levels;
+    csgm_context *context = a->input.context;
+    csgm_status status = make_lattice(a, &levels);
+    if (status == CSGM_OK)
+        status = csg_mesh_workers_create(&a->workers, &a->input);
+    if (status == CSGM_OK)
+        status = create_judge(a);
+    if (status != CSGM_OK)
+        return status;
+    csg_bricks_options options = {.prune = a->input.options->prune,
+                                  .judge = csg_judge_brick,
+                                  .judge_user = &a->judge,
+                                  .progress = csg_mesh_report_progress,
+                                  .cancelled = csg_mesh_should_stop,
+                                  .user = &a->watch};
+    status = csg_bricks_create(context, a->input.field, &a->lattice, &options, &a->bricks);
+    if (status != CSGM_OK)
+        return status;
+    a->bricks.options.coarse = a->bricks.finest - levels;
+    a->workers.marching.bricks = &a->bricks;
+    a->extraction = (csg_extraction){
+        .context = context,
+        .watch = &a->watch,
+        .bricks = &a->bricks,
+        .judge = &a->judge,
+        .shift = a->workers.marching.shift,
+        .colors = a->input.options->colors && (a->input.share ? a->input.share->colors
+                                                             : csg_mesh_is_colored(a->input.field))};
+    status = refine(a);
+    a->refined_s = csg_clock_now_s();
+    return status;
+}
+
+static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
+{
+    const csg_bricks_stats *s = &a->bricks.stats;
+    *stats = (csgm_mesh_stats){
+        .octree_s = a->refined_s - a->watch.started_s,
+        .mesh_s = csg_clock_now_s() - a->refined_s,
+        .cell_size = a->lattice.cell_size,
+        .cells = {a->lattice.cells[0], a->lattice.cells[1], a->lattice.cells[2]},
+        .cells_visited = s->visited,
+        .pruned_outside = s->pruned_outside,
+        .pruned_inside = s->pruned_inside,
+        .leaf_blocks = s->sampled,
+        .point_evaluations = s->point_evaluations,
+        .interval_evaluations = s->interval_evaluations,
+        .primitive_evaluations = s->primitive_evaluations,
+        .memory_peak_bytes = atomic_load(&a->input.context->memory.peak_bytes),
+        .feature_vertices = a->extraction.creases,
+        .smooth_features = a->extraction.smooth,
+    };
+    for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++) {
+        stats->point_evaluations += a->judge.rooms[i].evaluations;
+        stats->gradient_evaluations += a->judge.rooms[i].gradients;
+    }
+}
+
+static void release(adaptive *a)
+{
+    csg_bricks_destroy(&a->bricks);
+    csg_memory_release(&a->input.context->memory, a->judge.rooms,
+                       a->workers.count * sizeof(csg_judge_room));
+    csg_mesh_workers_release(&a->workers);
+    csg_mesh_input_release(&a->input);
+}
+
+csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *field,
+                                    const csgm_mesh_options *options, const csg_mesh_share *share,
+                                    csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    CSG_ZONE(context, "adaptive build");
+    csgm_mesh_options base = *options;
+    base.resolution = 128; /* of the lattice that looks for what is missed */
+    base.features = CSGM_FEATURES_SMOOTH;
+    adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
+                  .goal = {.error = options->tolerance,
+                           .improve = options->improve,
+                           .normals = options->normals,
+                           .care = 0.85,
+                           .is_last = true,
+                           .sharp = options->features == CSGM_FEATURES_SHARP,
+                           .started_s = csg_clock_now_s()}};
+    csg_mesh_watch_begin(&a.watch, context, &options->monitor, share ? share->started_s : 0);
+    csgm_status status = csg_mesh_input_complete(&a.input);
+    if (status == CSGM_OK && csg_box_is_empty(a.input.bounds)) {
+        status = csg_mesh_create(context, 0, 0, options->normals != CSGM_NORMALS_NONE, false, out);
+        return status;
+    }
+    if (status == CSGM_OK)
+        status = walk(&a);
+    a.watch.stage = CSGM_STAGE_MESH;
+    if (status == CSGM_OK)
+        status = csg_extract(&a.extraction);
+    if (status == CSGM_OK) {
+        a.extraction.mesh->origin = csg_mesh_origin_of(&a.input);
+        status = paint(&a);
+    }
+    if (status == CSGM_OK && a.extraction.mesh->triangle_count)
+        status = csg_mesh_reshape(&a.goal, &a.extraction.mesh, &a.workers.marching, &a.watch);
+    if (status == CSGM_OK && stats)
+        fill_stats(&a, stats);
+    release(&a);
+    if (status == CSGM_OK)
+        *out = a.extraction.mesh;
+    else
+        csg_mesh_destroy(a.extraction.mesh);
+    return status;
+}
