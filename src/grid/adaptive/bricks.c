@@ -46,7 +46,7 @@ typedef struct round {
 
 static uint64_t hash_of_place(uint32_t level, const uint32_t at[3])
 {
-    return csg_lattice_hash(at) * CSG_BRICKS_MOST_LEVELS + level;
+    return csg_hash_word(level, csg_lattice_hash(at));
 }
 
 static uint64_t hash_of_brick(const void *entries, uint32_t number)
@@ -292,58 +292,95 @@ static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count
 /* ---- balance -----------------------------------------------------------------------------------
  */
 
-/* Wants every leaf divided that touches this one and is larger by more than one level. */
-static void want_balance(csg_bricks *b, const csg_brick *brick)
+/* Wants every leaf divided that touches this one and is larger by more than one level: around the
+ * cube that it is an octant of, on its own sides, there must be cubes of that level, or no surface.
+ * True: there was one, whose children may still be too large. */
+static bool want_balance(csg_bricks *b, const csg_brick *brick)
 {
+    bool any = false;
     if (brick->level < b->options.coarse + 2)
-        return;
-    for (int d = 0; d < 27; d++) {
-        uint32_t at[3];
-        const int step[3] = {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
-        for (int axis = 0; axis < 3; axis++) /* below 0 is far beyond: nothing is found there */
-            at[axis] = brick->at[axis] + (uint32_t)step[axis];
-        uint32_t found = CSG_BRICK_NONE, level = brick->level;
-        while (level > b->options.coarse &&
-               (found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE) {
+        return false;
+    for (unsigned part = 1; part < CSG_OCTANTS; part++) {
+        uint32_t at[3], level = brick->level - 1u, found;
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX; /* below 0 nothing is found */
+            at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
+        }
+        while ((found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE &&
+               level > b->options.coarse) {
             level--;
             for (int axis = 0; axis < 3; axis++)
                 at[axis] /= 2;
         }
-        if (found == CSG_BRICK_NONE)
-            found = csg_bricks_find(b, level, at);
         if (found != CSG_BRICK_NONE && !b->items[found].divided && level + 1 < brick->level)
-            b->items[found].wanted = true;
+            b->items[found].wanted = any = true;
     }
+    return any;
+}
+
+/* The numbers of bricks for which something is to be done. */
+typedef struct list {
+    uint32_t *number;
+    size_t count, capacity;
+} list;
+
+static bool append(csg_bricks *b, list *l, size_t number)
+{
+    if (!csg_memory_reserve(&b->context->memory, (void **)&l->number, &l->capacity, l->count + 1,
+                            sizeof *l->number))
+        return false;
+    l->number[l->count++] = (uint32_t)number;
+    return true;
+}
+
+/* Takes the bricks from `first` on that are wanted, all of them or leaves to be balanced. */
+static bool collect(csg_bricks *b, list *wanted, size_t first)
+{
+    for (size_t i = first; i < b->count; i++)
+        if (b->items[i].wanted && !b->items[i].divided && !append(b, wanted, i))
+            return false;
+    return true;
+}
+
+/* Wants what the bricks listed and those from *seen on ask for; those that asked stay listed. */
+static bool balance(csg_bricks *b, list *unbalanced, size_t *seen)
+{
+    size_t kept = 0;
+    for (; *seen < b->count; ++*seen)
+        if (!append(b, unbalanced, *seen))
+            return false;
+    for (size_t i = 0; i < unbalanced->count; i++) {
+        uint32_t number = unbalanced->number[i];
+        if (!b->items[number].divided && want_balance(b, &b->items[number]))
+            unbalanced->number[kept++] = number;
+    }
+    unbalanced->count = kept;
+    return true;
 }
 
 csgm_status csg_bricks_refine(csg_bricks *b)
 {
     CSG_ZONE(b->context, "refinement");
-    uint32_t *queue = NULL;
-    size_t capacity = 0, balanced = 0;
+    list wanted = {0}, unbalanced = {0};
     csgm_status status = CSGM_OK;
-    while (status == CSGM_OK) {
-        size_t count = 0;
-        for (size_t i = 0; i < b->count && status == CSGM_OK; i++) {
-            if (!b->items[i].wanted || b->items[i].divided)
-                continue;
-            if (csg_memory_reserve(&b->context->memory, (void **)&queue, &capacity, count + 1,
-                                   sizeof *queue))
-                queue[count++] = (uint32_t)i;
-            else
-                status = csg_context_no_memory(b->context);
+    size_t fresh = 0; /* the first brick that was not asked what it wants */
+    for (bool any = true; any && status == CSGM_OK;) {
+        wanted.count = 0;
+        bool done = collect(b, &wanted, fresh);
+        fresh = b->count;
+        if (done && !wanted.count) {
+            done = balance(b, &unbalanced, &b->balanced);
+            done = done && (!unbalanced.count || collect(b, &wanted, 0));
         }
-        if (status == CSGM_OK && count) {
-            status = divide_all(b, queue, count);
-            continue;
-        }
-        if (balanced == b->count)
-            break;
-        for (; balanced < b->count; balanced++)
-            if (!b->items[balanced].divided)
-                want_balance(b, &b->items[balanced]);
+        any = wanted.count > 0;
+        status = !done ? csg_context_no_memory(b->context)
+                 : any ? divide_all(b, wanted.number, wanted.count)
+                       : CSGM_OK;
     }
-    csg_memory_release(&b->context->memory, queue, capacity * sizeof *queue);
+    csg_memory_release(&b->context->memory, wanted.number,
+                       wanted.capacity * sizeof *wanted.number);
+    csg_memory_release(&b->context->memory, unbalanced.number,
+                       unbalanced.capacity * sizeof *unbalanced.number);
     for (uint32_t i = 0; i < b->worker_count; i++) {
         const csg_bricks_stats *part = &b->workers[i].stats;
         b->stats.visited += part->visited;

@@ -16,7 +16,7 @@
 #include "grid/octree/lattice.h"
 
 enum {
-    CSG_BRICK_EDGE = 4, /* cells */
+    CSG_BRICK_EDGE = 2, /* cells */
     CSG_BRICK_SAMPLES = CSG_BRICK_EDGE + 1,
     CSG_BRICK_POINTS = CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES,
     CSG_BRICK_POINTS_PADDED = (CSG_BRICK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES,
@@ -24,6 +24,8 @@ enum {
 };
 
 #define CSG_BRICK_NONE UINT32_MAX
+#define CSG_BRICK_ALL_CELLS                                                                      \
+    (~(uint64_t)0 >> (64 - CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE))
 
 typedef struct csg_brick {
     const csg_tape_node *nodes; /* of the tape that holds in it */
@@ -74,6 +76,7 @@ struct csg_bricks {
     csg_bricks_options options;
     csg_brick *items;
     size_t count, capacity;
+    size_t balanced; /* bricks before this one are, among themselves */
     csg_table index;
     struct csg_bricks_worker *workers;
     uint32_t worker_count;

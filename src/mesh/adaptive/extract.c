@@ -71,10 +71,15 @@ static uint64_t place_of(const csg_bricks *b, const csg_brick *brick, const unsi
     return place;
 }
 
+static uint64_t hash_of_place(uint64_t place)
+{
+    return csg_hash_word(CSG_HASH_START, place);
+}
+
 static uint32_t find_vertex(const work *w, uint64_t place)
 {
     size_t slot;
-    uint32_t found = csg_table_first(&w->index, place, &slot);
+    uint32_t found = csg_table_first(&w->index, hash_of_place(place), &slot);
     while (found != CSG_TABLE_NONE && w->vertices[found].place != place)
         found = csg_table_next(&w->index, &slot);
     return found;
@@ -174,7 +179,7 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
     csg_tape tape;
     csg_judge_room *room = &w->x->judge->rooms[worker_index];
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
-    uint64_t cells = s->has_finer ? ~(uint64_t)0 : s->brick->crossed;
+    uint64_t cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
     for (; cells; cells &= cells - 1) {
         unsigned bit = (unsigned)__builtin_ctzll(cells);
         cell_at_hand cell = {.w = w,
@@ -490,7 +495,7 @@ static bool enter(work *w, size_t first)
     if (!csg_table_reserve(&w->index, w->count + 1, NULL, NULL))
         return false;
     for (size_t i = first; i < w->count; i++)
-        csg_table_add(&w->index, w->vertices[i].place, (uint32_t)i);
+        csg_table_add(&w->index, hash_of_place(w->vertices[i].place), (uint32_t)i);
     return true;
 }
 

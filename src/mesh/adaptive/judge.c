@@ -8,6 +8,10 @@
 
 enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
 
+/* Where sheets do not meet although they should, and triangles are near the surface all the same,
+ * cells of so many tolerances are small enough. */
+static const double FAILURE = 4;
+
 typedef enum csg_face_state { FACE_UNKNOWN, FACE_PLAIN, FACE_CREASED } face_state;
 
 /* ---- edges -------------------------------------------------------------------------------------
@@ -260,7 +264,7 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
     }
     csg_vec3 apex;
     csg_apex_kind kind = csg_polygon_find_apex(&w->probe, &box, &p, &apex);
-    return kind != CSG_APEX_FAILED &&
+    return (kind != CSG_APEX_FAILED || box.cell <= FAILURE * tolerance) &&
            csg_polygon_distance(&w->probe, &p, &apex, NULL, least) <= tolerance;
 }
 

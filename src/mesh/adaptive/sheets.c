@@ -327,6 +327,19 @@ static bool find_tip(csg_sheet_probe *p, const csg_cell_box *box, const csg_poly
     return is_zero(p, box, kept, slope);
 }
 
+/* Whether the sheets on both sides of some crease point differ by more than 12 degrees: what is
+ * blunter may stay away, where the triangles are near the surface all the same. */
+static bool is_sharp(const csg_polygon *polygon)
+{
+    int n = polygon->count;
+    for (int i = 0; i < n; i++)
+        if (polygon->is_crease[i] &&
+            csg_gradients_cosine(polygon->point[(i + n - 1) % n].gradient,
+                                 polygon->point[(i + 1) % n].gradient) < ONE_POLYGON)
+            return true;
+    return false;
+}
+
 csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *p, const csg_cell_box *box,
                                     const csg_polygon *polygon, csg_vec3 *out)
 {
@@ -354,7 +367,7 @@ csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *p, const csg_cell_box *box,
             }
         }
         *out = onto_surface(p, box, middle);
-        return CSG_APEX_FAILED;
+        return is_sharp(polygon) ? CSG_APEX_FAILED : CSG_APEX_SMOOTH;
     }
     bool turns = least_cosine(polygon, &mean) < ONE_POLYGON;
     if (turns && find_tip(p, box, polygon, slope, &at)) {

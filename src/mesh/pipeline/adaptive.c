@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
+#include <stdlib.h>
 
 #include "base/clock.h"
 #include "base/mesh_codes.h"
@@ -17,7 +18,7 @@
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
  * triangles may use before they are thinned out. */
 enum { FIRST_CELLS = 24, LEAST_LEVELS = 3 };
-static const double SHARE_OF_CELLS = 0.5;
+static const double SHARE_OF_CELLS = 0.8;
 
 typedef struct adaptive {
     csg_mesh_input input;
@@ -247,7 +248,7 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
         a.extraction.mesh->origin = csg_mesh_origin_of(&a.input);
         status = paint(&a);
     }
-    if (status == CSGM_OK && a.extraction.mesh->triangle_count)
+    if (status == CSGM_OK && a.extraction.mesh->triangle_count && !getenv("CSG_RAW"))
         status = csg_mesh_reshape(&a.goal, &a.extraction.mesh, &a.workers.marching, &a.watch);
     if (status == CSGM_OK && stats)
         fill_stats(&a, stats);
