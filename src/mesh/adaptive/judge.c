@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/adaptive/hunt.h"
+#include "mesh/remesh/triangle.h"
+
 enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
 
 /* Where sheets do not meet although they should, and triangles are near the surface all the same,
@@ -228,13 +231,49 @@ static uint32_t edge_number(unsigned place)
     return 4 * axis + u + 2 * v;
 }
 
+static bool is_near_side(const csg_cell_box *box, csg_vec3 p, double reach)
+{
+    const double at[3] = {p.x, p.y, p.z};
+    for (int axis = 0; axis < 3; axis++)
+        if (at[axis] - box->low[axis] < reach || box->high[axis] - at[axis] < reach)
+            return true;
+    return false;
+}
+
 typedef struct cell_work {
     const csg_judge *judge;
     const csg_bricks *bricks;
     csg_brick *brick;
     csg_judge_room *room;
     csg_sheet_probe probe;
+    const csg_hunted *hunted;
 } cell_work;
+
+/* Whether all places of the surface that were found in the cell are near the polygon's triangles:
+ * around an apex, or as they are cut. */
+static bool has_all(const cell_work *w, unsigned cell, const csg_cell_box *box,
+                    const csg_polygon *p, const csg_vec3 *apex, const uint8_t *cut)
+{
+    double tolerance = w->judge->tolerance;
+    int triangles = apex ? p->count : p->count - 2;
+    for (int i = 0; i < w->hunted->count; i++) {
+        csg_vec3 at = w->hunted->at[i];
+        double nearest = INFINITY, weights[3];
+        if (w->hunted->cell[i] != cell || is_near_side(box, at, tolerance))
+            continue; /* it may be near a polygon of the next cell */
+        for (int t = 0; t < triangles; t++) {
+            int corner[3] = {-1, t, (t + 1) % p->count};
+            for (int k = 0; k < 3 && !apex; k++)
+                corner[k] = cut[3 * t + k];
+            const csg_vec3 v[3] = {corner_of(p, apex, corner[0]), corner_of(p, apex, corner[1]),
+                                   corner_of(p, apex, corner[2])};
+            nearest = fmin(nearest, csg_triangle_nearest(v, at, weights));
+        }
+        if (nearest > 2.25 * tolerance * tolerance)
+            return false;
+    }
+    return true;
+}
 
 /* Whether a cell with one polygon is good as it is. */
 static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
@@ -243,6 +282,7 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
     csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
     csg_polygon p = {.count = 0};
     double tolerance = w->judge->tolerance, least = 0.1 * tolerance;
+    unsigned cell = csg_brick_cell(at[0], at[1], at[2]);
     int creases = 0;
     for (int i = 0; i < polygons->first[1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
@@ -259,13 +299,14 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
     uint8_t cut[CSG_CELL_MOST_INDICES];
     if (!creases && cut_of(pattern, &p, cut) &&
         csg_polygon_distance(&w->probe, &p, NULL, cut, least) <= tolerance) {
-        w->brick->flat |= (uint64_t)1 << csg_brick_cell(at[0], at[1], at[2]);
-        return true;
+        w->brick->flat |= (uint64_t)1 << cell;
+        return has_all(w, cell, &box, &p, NULL, cut);
     }
     csg_vec3 apex;
     csg_apex_kind kind = csg_polygon_find_apex(&w->probe, &box, &p, &apex);
     return (kind != CSG_APEX_FAILED || box.cell <= FAILURE * tolerance) &&
-           csg_polygon_distance(&w->probe, &p, &apex, NULL, least) <= tolerance;
+           csg_polygon_distance(&w->probe, &p, &apex, NULL, least) <= tolerance &&
+           has_all(w, cell, &box, &p, &apex, NULL);
 }
 
 bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
@@ -275,8 +316,18 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     csg_judge_room *room = &judge->rooms[worker];
     bool is_finest = brick->level == b->finest;
     csg_tape tape;
-    cell_work w = {judge, b, brick, room, csg_judge_probe(judge, b, brick, room, &tape)};
+    csg_hunted hunted = {.count = 0};
+    cell_work w = {.judge = judge,
+                   .bricks = b,
+                   .brick = brick,
+                   .room = room,
+                   .probe = csg_judge_probe(judge, b, brick, room, &tape),
+                   .hunted = &hunted};
     (void)samples;
+    if (!is_finest && csg_hunt(&w.probe, b, brick, &hunted)) {
+        room->evaluations += w.probe.evaluations;
+        return true;
+    }
     if (!brick->crossed)
         return false;
     brick->flat = brick->several = 0;

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ * Points, steps and signs; see hunt.h.
+ */
+#include "mesh/adaptive/hunt.h"
+
+#include <math.h>
+
+#include "field/cones/cone.h"
+
+enum {
+    E = CSG_BRICK_EDGE,
+    HALVES = 2 * E + 1, /* points along an edge, those of the brick included */
+    POINTS = HALVES * HALVES * HALVES,
+    PADDED = (POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES
+};
+
+/* A step goes this much further than to where a field of constant slope would be 0, so that its end
+ * lies beyond the surface and not on it. */
+static const float BEYOND = 1.25f;
+
+typedef struct hunt {
+    float line[3][HALVES];
+    float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
+    float from[3][PADDED], before[PADDED]; /* where a step began, and the value there */
+} hunt;
+
+static bool is_one_sheet(const csg_bricks *b, const csg_brick *brick)
+{
+    csg_tape tape = csg_bricks_short_tape(b, brick);
+    csg_cone cone;
+    float c[3];
+    double half = 0.5 * E * csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
+    for (int axis = 0; axis < 3; axis++)
+        c[axis] = 0.5f * (csg_brick_coordinate(b, brick, axis, 0) +
+                          csg_brick_coordinate(b, brick, axis, E));
+    return csg_cone_find(NULL, &tape, c, sqrt(3.0) * half * (1 + 1e-6), &cone);
+}
+
+static void place_points(hunt *h, const csg_bricks *b, const csg_brick *brick)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (uint32_t i = 0; i < HALVES; i++) {
+            float at = csg_brick_coordinate(b, brick, axis, i / 2);
+            h->line[axis][i] =
+                i % 2 ? 0.5f * (at + csg_brick_coordinate(b, brick, axis, i / 2 + 1)) : at;
+        }
+    for (int i = 0; i < PADDED; i++) {
+        int p = i < POINTS ? i : 0;
+        h->x[i] = h->line[0][p % HALVES];
+        h->y[i] = h->line[1][p / HALVES % HALVES];
+        h->z[i] = h->line[2][p / (HALVES * HALVES)];
+    }
+}
+
+/* The sign of the brick's own point. */
+static bool own_sign(const csg_brick *brick, const int half[3])
+{
+    return brick->inside[half[2] / 2][half[1] / 2] >> (half[0] / 2) & 1;
+}
+
+/* Whether a point between the brick's own has another sign than all corners of the edge, face or
+ * cell that it is the middle of. */
+static bool differs(const csg_brick *brick, const int half[3], bool sign)
+{
+    for (int c = 0; c < 8; c++) {
+        int corner[3];
+        for (int axis = 0; axis < 3; axis++)
+            corner[axis] = half[axis] + (half[axis] % 2 ? (c >> axis & 1 ? 1 : -1) : 0);
+        if (own_sign(brick, corner) == sign)
+            return false;
+    }
+    return true;
+}
+
+static bool differs_between(const hunt *h, const csg_brick *brick)
+{
+    for (int p = 0; p < POINTS; p++) {
+        const int half[3] = {p % HALVES, p / HALVES % HALVES, p / (HALVES * HALVES)};
+        bool is_own = half[0] % 2 == 0 && half[1] % 2 == 0 && half[2] % 2 == 0;
+        if (!is_own && differs(brick, half, h->f[p] >= 0))
+            return true;
+    }
+    return false;
+}
+
+static void ask(csg_sheet_probe *p, hunt *h)
+{
+    p->kernel->values(p->tape, h->x, h->y, h->z, POINTS, h->f, p->scratch, p->scratch_floats);
+    p->evaluations += POINTS;
+}
+
+/* Moves every point across the surface that it is near, as far as that lies in the brick. */
+static void step_across(hunt *h)
+{
+    for (int i = 0; i < PADDED; i++) {
+        float square = h->g[0][i] * h->g[0][i] + h->g[1][i] * h->g[1][i] + h->g[2][i] * h->g[2][i];
+        float step = square > 1e-12f ? -BEYOND * h->f[i] / square : 0;
+        float *at[3] = {&h->x[i], &h->y[i], &h->z[i]};
+        h->before[i] = h->f[i];
+        for (int axis = 0; axis < 3; axis++) {
+            float to = *at[axis] + step * h->g[axis][i];
+            h->from[axis][i] = *at[axis];
+            to = to > h->line[axis][0] ? to : h->line[axis][0];
+            *at[axis] = to < h->line[axis][HALVES - 1] ? to : h->line[axis][HALVES - 1];
+        }
+    }
+}
+
+/* The cell that a point lies in. */
+static void cell_of(const hunt *h, int i, unsigned cell[3])
+{
+    const float at[3] = {h->x[i], h->y[i], h->z[i]};
+    for (int axis = 0; axis < 3; axis++) {
+        cell[axis] = 0;
+        while (cell[axis] + 1 < E && at[axis] > h->line[axis][2 * (cell[axis] + 1)])
+            cell[axis]++;
+    }
+}
+
+/* Whether a point has the other sign than all corners of its cell. */
+static bool differs_in_cell(const hunt *h, const csg_brick *brick, int i)
+{
+    unsigned cell[3];
+    cell_of(h, i, cell);
+    return csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (h->f[i] >= 0 ? 0u : 0xFFu);
+}
+
+/* Where the surface was crossed, by the secant between both ends of the step, twice. */
+static void step_back(csg_sheet_probe *p, hunt *h, bool *crossed)
+{
+    float end[3][PADDED], after[PADDED];
+    for (int i = 0; i < PADDED; i++) {
+        end[0][i] = h->x[i], end[1][i] = h->y[i], end[2][i] = h->z[i];
+        after[i] = h->f[i];
+        crossed[i] = i < POINTS && (h->before[i] >= 0) != (h->f[i] >= 0);
+    }
+    for (int step = 0; step < 2; step++) {
+        for (int i = 0; i < PADDED; i++) {
+            float t = crossed[i] ? h->before[i] / (h->before[i] - after[i]) : 0;
+            h->x[i] = h->from[0][i] + t * (end[0][i] - h->from[0][i]);
+            h->y[i] = h->from[1][i] + t * (end[1][i] - h->from[1][i]);
+            h->z[i] = h->from[2][i] + t * (end[2][i] - h->from[2][i]);
+        }
+        ask(p, h);
+        for (int i = 0; i < PADDED; i++) {
+            bool first = (h->f[i] >= 0) == (h->before[i] >= 0);
+            float *place[3] = {first ? &h->from[0][i] : &end[0][i],
+                               first ? &h->from[1][i] : &end[1][i],
+                               first ? &h->from[2][i] : &end[2][i]};
+            *place[0] = h->x[i], *place[1] = h->y[i], *place[2] = h->z[i];
+            *(first ? &h->before[i] : &after[i]) = h->f[i];
+        }
+    }
+}
+
+bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, csg_hunted *out)
+{
+    hunt h;
+    bool crossed[PADDED];
+    out->count = 0;
+    if (is_one_sheet(b, brick))
+        return false;
+    place_points(&h, b, brick);
+    ask(p, &h);
+    if (differs_between(&h, brick))
+        return true;
+    p->kernel->gradients(p->tape, h.x, h.y, h.z, POINTS, h.g[0], h.g[1], h.g[2], p->scratch,
+                         p->scratch_floats);
+    for (int i = POINTS; i < PADDED; i++)
+        h.f[i] = h.g[0][i] = h.g[1][i] = h.g[2][i] = 0;
+    step_across(&h);
+    ask(p, &h);
+    for (int i = 0; i < POINTS; i++)
+        if (differs_in_cell(&h, brick, i))
+            return true;
+    for (int i = POINTS; i < PADDED; i++)
+        h.f[i] = 0;
+    step_back(p, &h, crossed);
+    for (int i = 0; i < POINTS; i++) {
+        unsigned cell[3];
+        if (!crossed[i])
+            continue;
+        cell_of(&h, i, cell);
+        out->at[out->count] = csg_vec3_make((double)h.x[i], (double)h.y[i], (double)h.z[i]);
+        out->cell[out->count++] = (uint8_t)csg_brick_cell(cell[0], cell[1], cell[2]);
+    }
+    return false;
+}

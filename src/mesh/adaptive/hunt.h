@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ * Looking for what lies between the points of a brick: parts and gaps thinner than a cell.
+ *
+ * Where the gradients of a brick are within a cone there is one sheet, and nothing to look for.
+ * Elsewhere the points half way between its own are asked, and from each of them a step is made to
+ * where the surface should be and a little beyond: if the sign is another one there, in a cell whose
+ * corners agree, something was missed. What is thicker than a cell of the finest level is then found
+ * by dividing.
+ */
+#ifndef CSG_MESH_ADAPTIVE_HUNT_H
+#define CSG_MESH_ADAPTIVE_HUNT_H
+
+#include "grid/adaptive/bricks.h"
+#include "mesh/adaptive/sheets.h"
+
+enum { CSG_HUNT_MOST = (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) };
+
+/* Places of the surface in cells that it crosses, to be held against their polygons. */
+typedef struct csg_hunted {
+    int count;
+    csg_vec3 at[CSG_HUNT_MOST];
+    uint8_t cell[CSG_HUNT_MOST];
+} csg_hunted;
+
+/* True: something lies in a cell whose corners do not show it. */
+bool csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
+              csg_hunted *out);
+
+#endif
