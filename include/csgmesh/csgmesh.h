@@ -421,6 +421,17 @@ typedef enum csgm_features {
     CSGM_FEATURES_SMOOTH /* plain marching cubes: they are cut by up to a cell */
 } csgm_features;
 
+/* Meshes of a lattice that follows the shape: cells are small where it asks for that, and the mesh
+ * is thinned out. The tolerance T is the largest power of two that is at most a share of the longest
+ * side of the bounds. Every triangle is within T of the surface as sampled, and parts and gaps
+ * thicker than T are looked for; nothing is proven, which `tolerance` does. */
+typedef enum csgm_quality {
+    CSGM_QUALITY_NONE,   /* a lattice of equal cells, or as `tolerance` says */
+    CSGM_QUALITY_DRAFT,  /* T: a 250th of the longest side */
+    CSGM_QUALITY_NORMAL, /* a 1000th */
+    CSGM_QUALITY_FINE    /* a 4000th */
+} csgm_quality;
+
 /* How a field is meshed: where, how finely, and what is done to the triangles. Lengths are in scene
  * units. */
 typedef struct csgm_mesh_options {
@@ -449,6 +460,11 @@ typedef struct csgm_mesh_options {
     bool certify;
     double certify_size; /* cubes that are not settled are divided down to this; 0 = cell / 64 */
     csgm_monitor monitor;
+    /* With resolution and cell_size 0 and no tolerance; default NONE. */
+    csgm_quality quality;
+    /* > 0: at most so many triangles, the cheapest left out first; with resolution and cell_size 0,
+     * of the lattice that `quality` says (NONE: NORMAL); default 0 */
+    uint64_t triangles;
 } csgm_mesh_options;
 
 CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
@@ -511,6 +527,8 @@ typedef struct csgm_mesh_stats {
     uint64_t open_places;         /* pieces of triangles of which nothing could be proven */
     uint64_t unresolved_cells;    /* that the scan of samples doubts, or --certify could not tell */
     csgm_certify certify;         /* where csgm_mesh_options.certify asked for it */
+    double tolerance;     /* that cells which follow the shape were chosen for; 0: all are equal */
+    double cell_coarsest; /* of those; cell_size is the finest that there may be */
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a

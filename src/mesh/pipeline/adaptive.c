@@ -6,7 +6,6 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <stdlib.h>
 
 #include "base/clock.h"
 #include "base/mesh_codes.h"
@@ -18,6 +17,8 @@
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
  * triangles may use before they are thinned out. */
 enum { FIRST_CELLS = 24, LEAST_LEVELS = 3 };
+/* Cells along the longest side of the lattice that looks for what is missed. */
+enum { COMPARED_CELLS = 128 };
 static const double SHARE_OF_CELLS = 0.8;
 
 typedef struct adaptive {
@@ -28,7 +29,7 @@ typedef struct adaptive {
     csg_bricks bricks;
     csg_judge judge;
     csg_extraction extraction;
-    csg_mesh_goal goal;
+    csg_mesh_goal *goal;
     double refined_s;
 } adaptive;
 
@@ -50,7 +51,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
     csg_vec3 size = csg_box_size(bounds), center = a->input.field->center;
     double longest = fmax(size.x, fmax(size.y, size.z));
     double first = power_below(longest / FIRST_CELLS);
-    double cell = fmin(power_below(a->goal.error) / 2, ldexp(first, -LEAST_LEVELS));
+    double cell = fmin(power_below(a->goal->error) / 2, ldexp(first, -LEAST_LEVELS));
     const double low[3] = {bounds.min.x, bounds.min.y, bounds.min.z};
     const double high[3] = {bounds.max.x, bounds.max.y, bounds.max.z};
     const double middle[3] = {center.x, center.y, center.z};
@@ -64,7 +65,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
             csg_diag_plain(&a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
                            "a tolerance of %g over %g x %g x %g would take more than %d cells along "
                            "a side",
-                           a->goal.error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
+                           a->goal->error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
             return CSGM_ERR_LIMIT;
         }
         a->lattice.cells[axis] = (uint32_t)cells;
@@ -85,8 +86,9 @@ static csgm_status create_judge(adaptive *a)
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
     a->judge = (csg_judge){.tables = m->tables,
-                           .tolerance = SHARE_OF_CELLS * a->goal.error,
-                           .sharp = a->goal.sharp,
+                           .tolerance =
+                               (a->goal->tries ? 0.5 : 1) * SHARE_OF_CELLS * a->goal->error,
+                           .sharp = a->goal->sharp,
                            .noise = m->noise,
                            .end_distance = (float)fmin(
                                fmax(4 * (double)m->unit / a->lattice.cell_size, 0x1p-10), 0.25)};
@@ -146,6 +148,32 @@ static csgm_status paint(adaptive *a)
     return CSGM_OK;
 }
 
+/* ---- bounds ------------------------------------------------------------------------------------ */
+
+double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds)
+{
+    static const double shares[] = {[CSGM_QUALITY_NONE] = 1000,
+                                    [CSGM_QUALITY_DRAFT] = 250,
+                                    [CSGM_QUALITY_NORMAL] = 1000,
+                                    [CSGM_QUALITY_FINE] = 4000};
+    csg_vec3 size = csg_box_size(bounds);
+    return power_below(fmax(size.x, fmax(size.y, size.z)) / shares[quality]);
+}
+
+/* Whether a vertex lies on one of the planes that cut the solid. */
+static bool touches_bounds(const adaptive *a)
+{
+    const csgm_mesh *mesh = a->extraction.mesh;
+    csg_box inner = csg_box_grow(a->input.bounds, -a->lattice.cell_size);
+    for (uint64_t v = 0; v < mesh->vertex_count; v++) {
+        csg_vec3 at =
+            csg_vec3_add(csg_vec3_from_floats(mesh->positions + 3 * v), mesh->origin);
+        if (!csg_box_contains_box(inner, (csg_box){at, at}))
+            return true;
+    }
+    return false;
+}
+
 /* ---- all of it --------------------------------------------------------------------------------- */
 
 static csgm_status walk(adaptive *a)
@@ -190,6 +218,9 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
         .octree_s = a->refined_s - a->watch.started_s,
         .mesh_s = csg_clock_now_s() - a->refined_s,
         .cell_size = a->lattice.cell_size,
+        .tolerance = a->goal->error,
+        .cell_coarsest = csg_bricks_cell(&a->bricks, a->bricks.options.coarse) *
+                         a->lattice.cell_size,
         .cells = {a->lattice.cells[0], a->lattice.cells[1], a->lattice.cells[2]},
         .cells_visited = s->visited,
         .pruned_outside = s->pruned_outside,
@@ -217,45 +248,74 @@ static void release(adaptive *a)
     csg_mesh_input_release(&a->input);
 }
 
+/* What is said of a mesh without triangles, or one that the bounds have cut. */
+static void warn_of_result(const adaptive *a)
+{
+    csg_diag_sink *diags = &a->input.context->diags;
+    const csg_mesh_share *share = a->input.share;
+    bool is_empty = !a->extraction.mesh || !a->extraction.mesh->triangle_count;
+    if (is_empty && share)
+        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
+                       "it may lie outside the bounds, or be thinner than the tolerance",
+                       share->name ? "no surface of the part \"%.60s\" was found"
+                                   : "no surface was found of what is in no part%s",
+                       share->name ? share->name : "");
+    else if (is_empty && (a->input.clipped || !csg_box_is_empty(a->input.field->bounds)))
+        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
+                       "the solid may lie outside the bounds, or be thinner than the tolerance",
+                       "no surface was found with a tolerance of %g", a->goal->error);
+    else if (a->input.clipped && touches_bounds(a))
+        csg_diag_plain(diags, CSG_DIAG_CUT_BY_BOUNDS, NULL, NULL,
+                       "the solid reaches out of the bounds: it is cut and capped there");
+}
+
+static csgm_status make_mesh(adaptive *a)
+{
+    csgm_status status = walk(a);
+    a->watch.stage = CSGM_STAGE_MESH;
+    if (status == CSGM_OK)
+        status = csg_extract(&a->extraction);
+    if (status == CSGM_OK) {
+        a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
+        status = paint(a);
+    }
+    if (status == CSGM_OK && a->extraction.mesh->triangle_count)
+        status = csg_mesh_reshape(a->goal, &a->extraction.mesh, &a->workers.marching, &a->watch);
+    return status;
+}
+
 csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *field,
                                     const csgm_mesh_options *options, const csg_mesh_share *share,
-                                    csgm_mesh **out, csgm_mesh_stats *stats)
+                                    csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
 {
     CSG_ZONE(context, "adaptive build");
     csgm_mesh_options base = *options;
-    base.resolution = 128; /* of the lattice that looks for what is missed */
+    base.resolution = COMPARED_CELLS;
     base.features = CSGM_FEATURES_SMOOTH;
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
-                  .goal = {.error = options->tolerance,
-                           .improve = options->improve,
-                           .normals = options->normals,
-                           .care = 0.85,
-                           .is_last = true,
-                           .sharp = options->features == CSGM_FEATURES_SHARP,
-                           .started_s = csg_clock_now_s()}};
-    csg_mesh_watch_begin(&a.watch, context, &options->monitor, share ? share->started_s : 0);
+                  .goal = goal};
+    csg_mesh_watch_begin(&a.watch, context, &options->monitor,
+                         share ? share->started_s : goal->started_s);
+    a.watch.is_part = share != NULL;
+    if (share) {
+        a.watch.part_before = share->before;
+        a.watch.part_amount = share->amount;
+    }
     csgm_status status = csg_mesh_input_complete(&a.input);
-    if (status == CSGM_OK && csg_box_is_empty(a.input.bounds)) {
-        status = csg_mesh_create(context, 0, 0, options->normals != CSGM_NORMALS_NONE, false, out);
-        return status;
-    }
-    if (status == CSGM_OK)
-        status = walk(&a);
-    a.watch.stage = CSGM_STAGE_MESH;
-    if (status == CSGM_OK)
-        status = csg_extract(&a.extraction);
-    if (status == CSGM_OK) {
-        a.extraction.mesh->origin = csg_mesh_origin_of(&a.input);
-        status = paint(&a);
-    }
-    if (status == CSGM_OK && a.extraction.mesh->triangle_count && !getenv("CSG_RAW"))
-        status = csg_mesh_reshape(&a.goal, &a.extraction.mesh, &a.workers.marching, &a.watch);
+    if (status == CSGM_OK && csg_box_is_empty(a.input.bounds))
+        status = csg_mesh_create(context, 0, 0, goal->normals != CSGM_NORMALS_NONE, false,
+                                 &a.extraction.mesh);
+    else if (status == CSGM_OK)
+        status = make_mesh(&a);
+    if (status == CSGM_OK && !(goal->cell_size > 0))
+        warn_of_result(&a);
     if (status == CSGM_OK && stats)
         fill_stats(&a, stats);
+    csgm_mesh *mesh = a.extraction.mesh;
     release(&a);
     if (status == CSGM_OK)
-        *out = a.extraction.mesh;
+        *out = mesh;
     else
-        csg_mesh_destroy(a.extraction.mesh);
+        csg_mesh_destroy(mesh);
     return status;
 }

@@ -6,15 +6,20 @@
 
 #include "mesh/pipeline/build.h"
 
-/* Neither -r nor -s: cells are as small as the tolerance asks for. */
+/* Neither -r nor -s, but a tolerance or a quality: cells are as small as that asks for. To certify
+ * takes equal cells. */
 static inline bool csg_mesh_is_adaptive(const csgm_mesh_options *options)
 {
-    return !options->resolution && !(options->cell_size > 0);
+    return !options->resolution && !(options->cell_size > 0) && !options->certify &&
+           (options->tolerance > 0 || options->quality != CSGM_QUALITY_NONE || options->triangles);
 }
 
-/* csg_mesh_build_field for options that ask for it. */
+/* The tolerance of a quality, for a box to mesh. */
+double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds);
+
+/* csg_mesh_build_field for options that ask for it, towards a goal with an error. */
 csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *field,
                                     const csgm_mesh_options *options, const csg_mesh_share *share,
-                                    csgm_mesh **out, csgm_mesh_stats *stats);
+                                    csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats);
 
 #endif

@@ -9,7 +9,6 @@
 
 #include "base/clock.h"
 #include "base/mesh_codes.h"
-#include "mesh/pipeline/adaptive.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/tries.h"
 
@@ -18,8 +17,6 @@ static csgm_status build_part(csgm_context *context, const csgm_field *field,
                               const csgm_mesh_options *options, const csg_mesh_share *share,
                               csgm_mesh **out, csgm_mesh_stats *stats)
 {
-    if (csg_mesh_is_adaptive(options))
-        return csg_mesh_build_adaptive(context, field, options, share, out, stats);
     return csg_mesh_is_reshaped(options)
                ? csg_mesh_build_tries(context, field, options, share, out, stats)
                : csg_mesh_build_field(context, field, options, share, NULL, out, stats);

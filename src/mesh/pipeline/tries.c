@@ -51,10 +51,14 @@ static void fill_stats(csgm_mesh_stats *stats, const csg_mesh_goal *goal)
     stats->open_places = goal->open;
 }
 
+static csg_box box_of(const csgm_field *field, const csgm_mesh_options *options)
+{
+    return csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
+}
+
 static double longest_side(const csgm_field *field, const csgm_mesh_options *options)
 {
-    csg_box box = csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
-    csg_vec3 size = csg_box_size(box);
+    csg_vec3 size = csg_box_size(box_of(field, options));
     return fmax(size.x, fmax(size.y, size.z));
 }
 
@@ -64,16 +68,22 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
 {
     enum { MOST_TRIES = 6, FIRST_CELLS = 64, MOST_CELLS = 768 };
     csgm_mesh_options base = *options;
+    bool follows = csg_mesh_is_adaptive(options); /* its cells follow the shape */
     csg_mesh_goal goal = {
         .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,
         .share = options->simplify_share,
         .improve = options->improve,
-        .proves = true,
-        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0),
+        .triangles = options->triangles,
+        .proves = !follows || options->tolerance > 0,
+        .sharp = options->features == CSGM_FEATURES_SHARP,
+        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0) &&
+                   !follows,
         .normals = options->normals,
         .care = 0.85,
         .started_s = csg_clock_now_s()};
     base.normals = CSGM_NORMALS_NONE;
+    if (follows && !(goal.error > 0))
+        goal.error = csg_mesh_quality_tolerance(options->quality, box_of(field, options));
     if (goal.chooses)
         base.resolution = FIRST_CELLS;
     double least = longest_side(field, options) / MOST_CELLS;
@@ -84,7 +94,9 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                        (goal.chooses && base.cell_size > 0 && base.cell_size <= least) ||
                        (!goal.chooses && goal.tries + 1 >= 2);
         goal.cell_size = 0;
-        status = csg_mesh_build_field(context, field, &base, share, &goal, out, stats);
+        status = follows
+                     ? csg_mesh_build_adaptive(context, field, &base, share, &goal, out, stats)
+                     : csg_mesh_build_field(context, field, &base, share, &goal, out, stats);
         if (status != CSGM_OK || !(goal.cell_size > 0))
             break;
         csg_mesh_destroy(*out);
@@ -92,7 +104,8 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         if (was_open)
             goal.care *= 0.8;
         goal.open = 0;
-        base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
+        if (!follows)
+            base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
     }
     if (status != CSGM_OK)
         return status;

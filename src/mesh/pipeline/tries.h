@@ -4,12 +4,12 @@
 #ifndef CSG_MESH_PIPELINE_TRIES_H
 #define CSG_MESH_PIPELINE_TRIES_H
 
-#include "mesh/pipeline/build.h"
+#include "mesh/pipeline/adaptive.h"
 
 static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
 {
     return options->tolerance > 0 || options->simplify_error > 0 || options->simplify_share > 0 ||
-           options->improve;
+           options->improve || csg_mesh_is_adaptive(options);
 }
 
 /* csg_mesh_build_field for options that ask for it. */

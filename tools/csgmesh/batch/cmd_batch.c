@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "batch/batch_report.h"
+#include "core/work.h"
 #include "emit/emit.h"
 
 static int check_usage(cli_app *app)
@@ -15,8 +16,9 @@ static int check_usage(cli_app *app)
                                "no manifest and no scenes given");
     if (options->keep_going && options->fail_fast)
         return cli_usage_error(app, NULL, "--keep-going and --fail-fast exclude each other");
-    if (options->given[CLI_OPTION_resolution] && options->given[CLI_OPTION_cell_size])
-        return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
+    int status = cli_work_check(app);
+    if (status != CLI_DONE)
+        return status;
     if (options->cache && !batch_hash_available())
         return cli_usage_error(app, "install libb2 and build csgmesh again",
                                "--cache: this csgmesh was built without libb2");

@@ -13,6 +13,20 @@ int cli_work_check(cli_app *app)
     if (app->options.given[CLI_OPTION_tolerance] && app->options.given[CLI_OPTION_simplify])
         return cli_usage_error(app, NULL,
                                "-e and --simplify both say what may be taken away: give one");
+    const cli_options *o = &app->options;
+    bool equal_cells = o->given[CLI_OPTION_resolution] || o->given[CLI_OPTION_cell_size];
+    if (o->quality && (equal_cells || o->given[CLI_OPTION_tolerance]))
+        return cli_usage_error(app, NULL,
+                               "--quality chooses cells and tolerance: give it without -r, -s and -e");
+    if (o->triangles &&
+        (equal_cells || o->given[CLI_OPTION_tolerance] || o->given[CLI_OPTION_simplify]))
+        return cli_usage_error(
+            app, NULL, "--triangles chooses cells and tolerance: give it without -r, -s, -e and "
+                       "--simplify");
+    if ((o->quality || o->triangles) && (o->certify || o->certify_size > 0))
+        return cli_usage_error(app, "give -r",
+                               "--certify looks at cells of one size, not at those of --quality or "
+                               "--triangles");
     return CLI_DONE;
 }
 
@@ -33,7 +47,7 @@ static csgm_mesh_options mesh_options(cli_app *app)
         mesh.bounds = options->bounds;
     if (options->given[CLI_OPTION_resolution])
         mesh.resolution = (uint32_t)options->resolution;
-    else if (options->given[CLI_OPTION_tolerance])
+    else if (options->given[CLI_OPTION_tolerance] || options->quality || options->triangles)
         mesh.resolution = 0;
     mesh.cell_size = options->cell_size;
     mesh.tolerance = options->tolerance;
@@ -41,6 +55,8 @@ static csgm_mesh_options mesh_options(cli_app *app)
         mesh.simplify_share = options->simplify.value;
     else
         mesh.simplify_error = options->simplify.value;
+    mesh.quality = (csgm_quality)options->quality; /* in the enum's order */
+    mesh.triangles = (uint64_t)options->triangles;
     mesh.improve = options->improve;
     mesh.normals = cli_outputs_normals(options);
     mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
