@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * Meshes of a lattice that follows the shape: seeded random scenes of all families give closed
+ * oriented manifolds that do not run through themselves (CGAL), with the same bytes for any number
+ * of threads, instruction set, pruned or not; flat faces end in as few triangles as they need; what
+ * is small beside something large is found.
+ *
+ * Arguments: how many random scenes (default 12), the first one's seed (default 0).
+ */
+#include "mesh/mesh_support.h"
+#include "mesh/self_intersections.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static unsigned scene_count = 12, first_seed = 0;
+
+static csgm_mesh_options following(csgm_quality quality)
+{
+    csgm_mesh_options options = mesh_options(0);
+    options.quality = quality;
+    return options;
+}
+
+static void assert_uncrossed(const mesh_case *c, const char *what)
+{
+#ifdef HAVE_CGAL
+    const csgm_mesh *m = c->mesh;
+    long long count = test_self_intersections(m->positions, m->vertex_count, m->indices,
+                                              m->triangle_count, NULL, 0);
+    if (count)
+        fprintf(stderr, "%s: %lld crossings\n", what, count);
+    assert_int_equal(count, 0);
+#else
+    (void)c;
+    (void)what;
+#endif
+}
+
+/* ---- flat faces --------------------------------------------------------------------------------
+ */
+
+static void test_boxes(void **state)
+{
+    csg_random random = {5};
+    for (int i = 0; i < 6; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        double x = csg_random_uniform(&random, 0.5, 3), y = csg_random_uniform(&random, 0.5, 3);
+        csg_node_id box = make_box(&c, x, y, 1);
+        mesh_case_compile(&c, i < 2 ? box : posed_anyhow(&c, box, &random));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "box");
+        assert_int_equal(c.mesh->triangle_count, 12);
+        assert_true(fabs(c.check.volume - 8 * x * y) < 1e-4 * c.check.volume);
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- what is small -----------------------------------------------------------------------------
+ */
+
+/* Balls as small as two tolerances, beside, on and in a large block; the cells that refinement
+ * begins with are twenty times larger. */
+static void test_small_parts(void **state)
+{
+    csg_random random = {9};
+    for (int i = 0; i < 24; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        csg_node_id block = make_box(&c, 4, 3, 1);
+        double r = csg_random_uniform(&random, 0.008, 0.05);
+        double x = csg_random_uniform(&random, -3.5, 3.5), y = csg_random_uniform(&random, -2.5, 2.5);
+        double z = i % 3 == 0 ? 1 + 3 * r : i % 3 == 1 ? 1.0 : 0.3;
+        csg_node_id ball = moved(&c, make_sphere(&c, r), x, y, z);
+        bool cut = i % 3 == 2;
+        mesh_case_compile(
+            &c, joined(&c, cut ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION, SHARP, block, ball));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "a ball beside a block");
+        bool apart = i % 3 != 1;
+        assert_int_equal(c.check.components, apart ? 2 : 1);
+        assert_true(c.mesh->triangle_count > 12 + 8);
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- how many ----------------------------------------------------------------------------------
+ */
+
+static void test_triangle_count(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, make_box(&c, 1, 1, 1),
+                                 moved(&c, make_sphere(&c, 1), 1, 0.3, 0.2)));
+    csgm_mesh_options options = following(CSGM_QUALITY_NONE);
+    for (uint64_t most = 2000; most >= 125; most /= 4) {
+        options.triangles = most;
+        mesh_build_closed(&c, &options, "a number of triangles");
+        assert_true(c.mesh->triangle_count <= most + 1);
+        assert_true(c.mesh->triangle_count > most / 4);
+        assert_uncrossed(&c, "a number of triangles");
+    }
+    mesh_case_end(&c);
+}
+
+/* ---- random scenes -----------------------------------------------------------------------------
+ */
+
+static void compile_scene(mesh_case *c, unsigned seed, uint32_t threads)
+{
+    csg_random random = {seed + 3000};
+    test_random_shapes = seed % 3 == 0;
+    test_random_rules = seed % 4 == 1;
+    mesh_case_begin(c, threads);
+    mesh_case_compile(c, test_random_scene(&c->builder, &random, 1 + seed * 7 % 20));
+}
+
+static csgm_mesh_options options_of(const mesh_case *c, unsigned seed)
+{
+    csgm_mesh_options options = following(CSGM_QUALITY_DRAFT);
+    if (!csg_box_is_finite(c->field->bounds) && !csg_box_is_empty(c->field->bounds))
+        options.bounds = (csgm_box){{-2, -2, -2}, {2, 2, 2}};
+    options.features = seed % 5 == 4 ? CSGM_FEATURES_SMOOTH : CSGM_FEATURES_SHARP;
+    return options;
+}
+
+static void test_random_scenes(void **state)
+{
+    for (unsigned seed = first_seed; seed < first_seed + scene_count; seed++) {
+        mesh_case one, other;
+        char what[64];
+        snprintf(what, sizeof what, "random scene %u", seed);
+        compile_scene(&one, seed, 1);
+        csgm_mesh_options options = options_of(&one, seed);
+        mesh_build_closed(&one, &options, what);
+        assert_uncrossed(&one, what);
+        compile_scene(&other, seed, 3);
+        other.context.isa = csg_cpu_best_isa(CSGM_ISA_SCALAR);
+        options.prune = false;
+        mesh_build_closed(&other, &options, what);
+        mesh_assert_same(one.mesh, other.mesh, what);
+        mesh_case_end(&one);
+        mesh_case_end(&other);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_small_parts),
+        cmocka_unit_test(test_triangle_count),
+        cmocka_unit_test(test_random_scenes),
+    };
+    if (argc > 1)
+        scene_count = (unsigned)strtoul(argv[1], NULL, 10);
+    if (argc > 2)
+        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
