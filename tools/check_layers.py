@@ -18,8 +18,8 @@ PARTS = {
     "scene": ["formula", "primitives", "operators", "boxes", "tree", "lazy", "outlines"],
     "lang": ["parse", "evaluate", "functions", "modules", "parameters"],
     "field": ["kernels", "gradients", "prune", "compile", "cones"],
-    "grid": ["octree", "certify"],
-    "mesh": ["marching", "features", "remesh", "distance", "reshape", "pipeline"],
+    "grid": ["octree", "adaptive", "certify"],
+    "mesh": ["marching", "features", "remesh", "adaptive", "distance", "reshape", "pipeline"],
     "io": ["text", "formats", "gltf", "threemf", "drawings"],
 }
 

@@ -422,9 +422,9 @@ typedef enum csgm_features {
 } csgm_features;
 
 /* Meshes of a lattice that follows the shape: cells are small where it asks for that, and the mesh
- * is thinned out. The tolerance T is the largest power of two that is at most a share of the longest
- * side of the bounds. Every triangle is within T of the surface as sampled, and parts and gaps
- * thicker than T are looked for; nothing is proven, which `tolerance` does. */
+ * is thinned out. The tolerance T is the largest power of two that is at most a share of the
+ * longest side of the bounds. Every triangle is within T of the surface as sampled, and parts and
+ * gaps thicker than T are looked for; nothing is proven, which `tolerance` does. */
 typedef enum csgm_quality {
     CSGM_QUALITY_NONE,   /* a lattice of equal cells, or as `tolerance` says */
     CSGM_QUALITY_DRAFT,  /* T: a 250th of the longest side */

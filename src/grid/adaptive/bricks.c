@@ -177,9 +177,9 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
     child.wanted = child.level < b->options.coarse;
     if (!child.wanted) {
         sample(b, self, &child);
-        child.wanted = b->options.judge(b->options.judge_user, worker_index, b, &child,
-                                        self->samples) &&
-                       child.level < b->finest;
+        child.wanted =
+            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples) &&
+            child.level < b->finest;
     }
     self->made[self->count++] = child;
     return true;
@@ -245,7 +245,7 @@ static void report(void *user, size_t done, size_t count)
 }
 
 /* The children into the array and the index, in the order of the queue. */
-static bool join(round_of_division *r, size_t items)
+static bool join_children(round_of_division *r, size_t items)
 {
     csg_bricks *b = r->bricks;
     size_t total = 0;
@@ -282,7 +282,7 @@ static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count
     if (!r.segments)
         return csg_context_no_memory(b->context);
     bool done = csg_pool_run(b->context->pool, items, divide_item, report, &r);
-    bool joined = done && join(&r, items);
+    bool joined = done && join_children(&r, items);
     csg_memory_release(&b->context->memory, r.segments, (items + 1) * sizeof(segment));
     if (atomic_load(&r.out_of_memory) || (done && !joined))
         return csg_context_no_memory(b->context);
@@ -377,8 +377,7 @@ csgm_status csg_bricks_refine(csg_bricks *b)
                  : any ? divide_all(b, wanted.number, wanted.count)
                        : CSGM_OK;
     }
-    csg_memory_release(&b->context->memory, wanted.number,
-                       wanted.capacity * sizeof *wanted.number);
+    csg_memory_release(&b->context->memory, wanted.number, wanted.capacity * sizeof *wanted.number);
     csg_memory_release(&b->context->memory, unbalanced.number,
                        unbalanced.capacity * sizeof *unbalanced.number);
     for (uint32_t i = 0; i < b->worker_count; i++) {
@@ -435,8 +434,8 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
         csg_bricks_destroy(out);
         return csg_context_no_memory(context);
     }
-    out->items[out->count++] = (csg_brick){
-        .nodes = field->tape.nodes, .node_count = field->tape.count, .wanted = true};
+    out->items[out->count++] =
+        (csg_brick){.nodes = field->tape.nodes, .node_count = field->tape.count, .wanted = true};
     csg_table_add(&out->index, hash_of_brick(out->items, 0), 0);
     return CSGM_OK;
 }

@@ -2,11 +2,11 @@
  * A lattice whose cells have different sizes: an octree that ends in bricks of 4^3 cells, small
  * where the shape asks for it. Bricks that touch, were it in a corner, differ by one level at most.
  *
- * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of the
- * finest lattice, so every point has one index, and one coordinate, at all levels. A cube that the
- * field proves free of surface is not there at all. What is there is divided or a leaf; leaves are
- * what the mesh is made of. Which cubes are divided depends on the field and the lattice alone: the
- * set is the least one that the judge asks for and that is balanced.
+ * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of
+ * the finest lattice, so every point has one index, and one coordinate, at all levels. A cube that
+ * the field proves free of surface is not there at all. What is there is divided or a leaf; leaves
+ * are what the mesh is made of. Which cubes are divided depends on the field and the lattice alone:
+ * the set is the least one that the judge asks for and that is balanced.
  */
 #ifndef CSG_GRID_ADAPTIVE_BRICKS_H
 #define CSG_GRID_ADAPTIVE_BRICKS_H
@@ -24,7 +24,7 @@ enum {
 };
 
 #define CSG_BRICK_NONE UINT32_MAX
-#define CSG_BRICK_ALL_CELLS                                                                      \
+#define CSG_BRICK_ALL_CELLS                                                                        \
     (~(uint64_t)0 >> (64 - CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE))
 
 typedef struct csg_brick {

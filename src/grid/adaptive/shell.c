@@ -67,8 +67,7 @@ static void take_children(csg_shell *s, const csg_bricks *b, const uint32_t at[3
             touches = touches && (step[axis] == 0 || bit == (step[axis] < 0 ? 1u : 0u));
             child[axis] = 2 * at[axis] + bit;
         }
-        uint32_t found =
-            touches ? csg_bricks_find(b, s->brick->level + 1u, child) : CSG_BRICK_NONE;
+        uint32_t found = touches ? csg_bricks_find(b, s->brick->level + 1u, child) : CSG_BRICK_NONE;
         if (found == CSG_BRICK_NONE)
             continue;
         s->has_finer = true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A leaf with what its neighbours have on their common faces and edges: where finer leaves touch it,
- * its border has points between its own.
+ * A leaf with what its neighbours have on their common faces and edges: where finer leaves touch
+ * it, its border has points between its own.
  *
  * Points of the shell are counted in half cells, 0 .. 8 along each axis. Balance sees to it that
  * there are none in between.

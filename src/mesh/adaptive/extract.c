@@ -106,8 +106,8 @@ static bool add_vertex(work *w, worker *self, const placed_vertex *vertex)
 
 static bool add_triangle(work *w, worker *self, uint32_t a, uint32_t b, uint32_t c)
 {
-    if (!csg_memory_reserve(&w->x->context->memory, (void **)&self->corners,
-                            &self->corner_capacity, self->corner_count + 3, sizeof a))
+    if (!csg_memory_reserve(&w->x->context->memory, (void **)&self->corners, &self->corner_capacity,
+                            self->corner_count + 3, sizeof a))
         return csg_mesh_stop_without_memory(w->x->watch);
     self->corners[self->corner_count++] = a;
     self->corners[self->corner_count++] = b;
@@ -210,7 +210,8 @@ static csg_surface_point point_of(const placed_vertex *v)
 /* ---- faces -------------------------------------------------------------------------------------
  */
 
-/* The axis of a whole face by its middle, and its side; -1: of a quarter, which finer leaves have. */
+/* The axis of a whole face by its middle, and its side; -1: of a quarter, which finer leaves have.
+ */
 static int axis_of_face(unsigned local, unsigned *side)
 {
     unsigned q[3];
@@ -432,9 +433,8 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
     if (csg_mesh_should_stop(w->x->watch))
         return false;
     self->item = item;
-    w->segments[item] = (segment){.worker = worker_index,
-                                  .first = self->count,
-                                  .first_corner = self->corner_count};
+    w->segments[item] =
+        (segment){.worker = worker_index, .first = self->count, .first_corner = self->corner_count};
     size_t end = (item + 1) * LEAVES_PER_ITEM;
     for (size_t i = item * LEAVES_PER_ITEM; i < end && i < w->leaf_count; i++) {
         csg_shell_make(&shell, w->x->bricks, w->leaves[i]);
@@ -449,12 +449,11 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
 static void report(void *user, size_t done, size_t count)
 {
     work *w = user;
-    csg_mesh_report_progress(w->x->watch,
-                             w->before + w->amount * ((double)done / (double)count));
+    csg_mesh_report_progress(w->x->watch, w->before + w->amount * ((double)done / (double)count));
 }
 
 /* Vertices of all items behind those that are there, and corners, in the order of the leaves. */
-static bool join(work *w)
+static bool join_items(work *w)
 {
     csg_memory *memory = &w->x->context->memory;
     size_t vertices = 0, corners = 0;
@@ -508,7 +507,7 @@ static csgm_status go(work *w, bool (*visit)(work *, uint32_t, const csg_shell *
     bool done = csg_pool_run(w->x->context->pool, w->item_count, visit_item, report, w);
     if (!done)
         return atomic_load(&w->broken) ? CSGM_ERR_INTERNAL : csg_mesh_why_stopped(w->x->watch);
-    if (!join(w))
+    if (!join_items(w))
         return csg_context_no_memory(w->x->context);
     return w->count < OWN ? CSGM_OK : CSGM_ERR_LIMIT;
 }
@@ -559,8 +558,8 @@ csgm_status csg_extraction_check_borders(csg_extraction *x, bool *any)
 static csgm_status fill_mesh(work *w)
 {
     csg_extraction *x = w->x;
-    csgm_status status = csg_mesh_create(x->context, w->count, w->corner_count / 3, false,
-                                         x->colors, &x->mesh);
+    csgm_status status =
+        csg_mesh_create(x->context, w->count, w->corner_count / 3, false, x->colors, &x->mesh);
     if (status != CSGM_OK)
         return status;
     for (size_t i = 0; i < w->count; i++) {

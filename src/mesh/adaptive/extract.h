@@ -3,8 +3,8 @@
  * their faces, a fan around an apex in each cell.
  *
  * Why nothing meets: segments of a face do not cross, and both cells at the face have the same; a
- * fan around a point strictly within a convex cell does not meet itself, nor the cell's faces but in
- * its loop; a cell has one polygon, or, of the finest level, those of csg_cell_tables.
+ * fan around a point strictly within a convex cell does not meet itself, nor the cell's faces but
+ * in its loop; a cell has one polygon, or, of the finest level, those of csg_cell_tables.
  */
 #ifndef CSG_MESH_ADAPTIVE_EXTRACT_H
 #define CSG_MESH_ADAPTIVE_EXTRACT_H
@@ -22,14 +22,14 @@ typedef struct csg_extraction {
     csg_vec3 shift; /* field frame -> relative to the mesh's origin */
     bool colors;    /* the mesh has room for them */
     /* made */
-    csgm_mesh *mesh; /* positions and indices, the caller's; its origin is still to be set */
+    csgm_mesh *mesh;  /* positions and indices, the caller's; its origin is still to be set */
     uint64_t creases; /* vertices on creases, corners and tips */
     uint64_t smooth;  /* cells in which sheets should meet, and do not */
     csg_vec3 smooth_at;
 } csg_extraction;
 
-/* Wants those leaves divided whose border cells have several polygons; *any: there are some. CSGM_OK
- * or why it was stopped (reported). */
+/* Wants those leaves divided whose border cells have several polygons; *any: there are some.
+ * CSGM_OK or why it was stopped (reported). */
 csgm_status csg_extraction_check_borders(csg_extraction *extraction, bool *any);
 
 /* CSGM_OK or why it was stopped (reported); CSGM_ERR_LIMIT above 2^31 vertices. */

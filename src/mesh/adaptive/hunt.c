@@ -18,13 +18,24 @@ enum {
  * lies beyond the surface and not on it. */
 static const float BEYOND = 1.25f;
 
+/* Of the tolerance: how deep a place must lie in what was missed. */
+static const double DEPTH = 0.05, CREASE_DEPTH = 0.6;
+
 typedef struct hunt {
     float line[3][HALVES];
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
     float from[3][PADDED], before[PADDED]; /* where a step began, and the value there */
+    float least;                           /* a value that is nearer to 0 shows nothing */
 } hunt;
 
-static bool is_one_sheet(const csg_bricks *b, const csg_brick *brick)
+/* What the cone of the gradients says of a brick. */
+typedef enum brick_kind {
+    ONE_SHEET,
+    ONE_CREASE, /* sheets that are all climbed in one direction: only their edges can lie between */
+    ANYTHING
+} brick_kind;
+
+static brick_kind kind_of(const csg_bricks *b, const csg_brick *brick)
 {
     csg_tape tape = csg_bricks_short_tape(b, brick);
     csg_cone cone;
@@ -33,7 +44,9 @@ static bool is_one_sheet(const csg_bricks *b, const csg_brick *brick)
     for (int axis = 0; axis < 3; axis++)
         c[axis] = 0.5f * (csg_brick_coordinate(b, brick, axis, 0) +
                           csg_brick_coordinate(b, brick, axis, E));
-    return csg_cone_find(NULL, &tape, c, sqrt(3.0) * half * (1 + 1e-6), &cone);
+    if (!csg_cone_find(NULL, &tape, c, sqrt(3.0) * half * (1 + 1e-6), &cone))
+        return ANYTHING;
+    return cone.is_crease ? ONE_CREASE : ONE_SHEET;
 }
 
 static void place_points(hunt *h, const csg_bricks *b, const csg_brick *brick)
@@ -77,7 +90,7 @@ static bool differs_between(const hunt *h, const csg_brick *brick)
     for (int p = 0; p < POINTS; p++) {
         const int half[3] = {p % HALVES, p / HALVES % HALVES, p / (HALVES * HALVES)};
         bool is_own = half[0] % 2 == 0 && half[1] % 2 == 0 && half[2] % 2 == 0;
-        if (!is_own && differs(brick, half, h->f[p] >= 0))
+        if (!is_own && fabsf(h->f[p]) > h->least && differs(brick, half, h->f[p] >= 0))
             return true;
     }
     return false;
@@ -122,7 +135,8 @@ static bool differs_in_cell(const hunt *h, const csg_brick *brick, int i)
 {
     unsigned cell[3];
     cell_of(h, i, cell);
-    return csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (h->f[i] >= 0 ? 0u : 0xFFu);
+    return fabsf(h->f[i]) > h->least &&
+           csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (h->f[i] >= 0 ? 0u : 0xFFu);
 }
 
 /* Where the surface was crossed, by the secant between both ends of the step, twice. */
@@ -153,13 +167,17 @@ static void step_back(csg_sheet_probe *p, hunt *h, bool *crossed)
     }
 }
 
-bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, csg_hunted *out)
+bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
+              csg_hunted *out)
 {
     hunt h;
     bool crossed[PADDED];
     out->count = 0;
-    if (is_one_sheet(b, brick))
+    brick_kind kind = kind_of(b, brick);
+    if (kind == ONE_SHEET)
         return false;
+    h.least = (float)((kind == ONE_CREASE ? CREASE_DEPTH : DEPTH) * tolerance *
+                      (double)b->field->tape.lipschitz);
     place_points(&h, b, brick);
     ask(p, &h);
     if (differs_between(&h, brick))

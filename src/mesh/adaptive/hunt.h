@@ -3,9 +3,9 @@
  *
  * Where the gradients of a brick are within a cone there is one sheet, and nothing to look for.
  * Elsewhere the points half way between its own are asked, and from each of them a step is made to
- * where the surface should be and a little beyond: if the sign is another one there, in a cell whose
- * corners agree, something was missed. What is thicker than a cell of the finest level is then found
- * by dividing.
+ * where the surface should be and a little beyond: if the sign is another one there, in a cell
+ * whose corners agree, something was missed. What is thicker than a cell of the finest level is
+ * then found by dividing.
  */
 #ifndef CSG_MESH_ADAPTIVE_HUNT_H
 #define CSG_MESH_ADAPTIVE_HUNT_H
@@ -13,7 +13,9 @@
 #include "grid/adaptive/bricks.h"
 #include "mesh/adaptive/sheets.h"
 
-enum { CSG_HUNT_MOST = (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) };
+enum {
+    CSG_HUNT_MOST = (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1)
+};
 
 /* Places of the surface in cells that it crosses, to be held against their polygons. */
 typedef struct csg_hunted {
@@ -22,8 +24,9 @@ typedef struct csg_hunted {
     uint8_t cell[CSG_HUNT_MOST];
 } csg_hunted;
 
-/* True: something lies in a cell whose corners do not show it. */
+/* True: something lies in a cell whose corners do not show it, and deeper than a part of the
+ * tolerance. */
 bool csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
-              csg_hunted *out);
+              double tolerance, csg_hunted *out);
 
 #endif

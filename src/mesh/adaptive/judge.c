@@ -14,6 +14,8 @@ enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
 /* Where sheets do not meet although they should, and triangles are near the surface all the same,
  * cells of so many tolerances are small enough. */
 static const double FAILURE = 4;
+/* The same where a cell has several polygons. */
+static const double SEVERAL = 1;
 
 typedef enum csg_face_state { FACE_UNKNOWN, FACE_PLAIN, FACE_CREASED } face_state;
 
@@ -281,7 +283,8 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
 {
     csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
     csg_polygon p = {.count = 0};
-    double tolerance = w->judge->tolerance, least = 0.1 * tolerance;
+    double tolerance = w->judge->tolerance;
+    double least = box.cell <= FAILURE * tolerance ? tolerance : 0.1 * tolerance;
     unsigned cell = csg_brick_cell(at[0], at[1], at[2]);
     int creases = 0;
     for (int i = 0; i < polygons->first[1]; i++) {
@@ -324,7 +327,7 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
                    .probe = csg_judge_probe(judge, b, brick, room, &tape),
                    .hunted = &hunted};
     (void)samples;
-    if (!is_finest && csg_hunt(&w.probe, b, brick, &hunted)) {
+    if (!is_finest && csg_hunt(&w.probe, b, brick, judge->tolerance, &hunted)) {
         room->evaluations += w.probe.evaluations;
         return true;
     }
@@ -335,6 +338,7 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     memset(room->face, FACE_UNKNOWN, sizeof room->face);
     csg_judge_solve_edges(judge, b, brick, room);
     bool wants = false;
+    double edge = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
     for (uint64_t rest = brick->crossed; rest && (!wants || is_finest); rest &= rest - 1) {
         unsigned cell = (unsigned)__builtin_ctzll(rest);
         const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
@@ -345,7 +349,9 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
         csg_cell_polygons_make(&polygons, &place);
         if (polygons.count > 1)
             brick->several |= (uint64_t)1 << cell;
-        wants = polygons.count > 1 || !is_good(&w, at, pattern, &polygons) || wants;
+        bool good = polygons.count > 1 ? edge <= SEVERAL * judge->tolerance
+                                       : is_good(&w, at, pattern, &polygons);
+        wants = wants || !good;
     }
     room->evaluations += w.probe.evaluations;
     return wants;

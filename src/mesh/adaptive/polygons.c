@@ -58,7 +58,8 @@ static void go_round(cycle *c, int axis, int side, unsigned u, unsigned v, unsig
     int b = (axis + 1) % 3, d = (axis + 2) % 3;
     c->count = 0;
     for (int i = 0; i < 4; i++) {
-        const uint8_t *at = round[side ? i : 3 - i], *next = round[side ? (i + 1) % 4 : (6 - i) % 4];
+        const uint8_t *at = round[side ? i : 3 - i],
+                      *next = round[side ? (i + 1) % 4 : (6 - i) % 4];
         uint8_t *p = c->point[c->count++], to[3];
         p[axis] = to[axis] = (uint8_t)(2 * side);
         p[b] = (uint8_t)(u + step * at[0]), p[d] = (uint8_t)(v + step * at[1]);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * The polygons of a cell whose edges and faces may be divided: faces decide, as in cubical marching
- * squares (Ho, Wu, Chen, Chuang and Ouhyoung 2005). A face is a cycle of four points, of up to eight
- * where its edges are divided; a divided face is four such faces. Each run of inside points of a
- * cycle is cut off by its own segment. Both cells at a face see the same cycles, so segments match
- * at every border of levels, and around a cell they close to loops.
+ * squares (Ho, Wu, Chen, Chuang and Ouhyoung 2005). A face is a cycle of four points, of up to
+ * eight where its edges are divided; a divided face is four such faces. Each run of inside points
+ * of a cycle is cut off by its own segment. Both cells at a face see the same cycles, so segments
+ * match at every border of levels, and around a cell they close to loops.
  *
- * Where an edge is divided and only its middle differs, two faces of a cell cut that run off between
- * the same two vertices. Such a loop of two is left out: the triangles beyond its faces meet in that
- * edge directly.
+ * Where an edge is divided and only its middle differs, two faces of a cell cut that run off
+ * between the same two vertices. Such a loop of two is left out: the triangles beyond its faces
+ * meet in that edge directly.
  */
 #ifndef CSG_MESH_ADAPTIVE_POLYGONS_H
 #define CSG_MESH_ADAPTIVE_POLYGONS_H
@@ -21,8 +21,8 @@ enum {
 };
 
 /* A side of a polygon: from the vertex on one edge to that on another, through a face. Edges, whole
- * or halves, and faces, whole or quarters, are named by their middles: x + 5 y + 25 z in quarters of
- * the cell. */
+ * or halves, and faces, whole or quarters, are named by their middles: x + 5 y + 25 z in quarters
+ * of the cell. */
 typedef struct csg_polygon_side {
     uint8_t from, to, face;
     bool along_edge; /* both on the halves of one edge of the cell: it runs in that edge */

@@ -112,9 +112,9 @@ static bool meet_many(const plane *p, int count, csg_vec3 *x)
     double determinant = csg_vec3_dot(m[0], c[0]);
     if (!(determinant > 0))
         return false;
-    csg_vec3 s = csg_vec3_scale(csg_vec3_make(csg_vec3_dot(c[0], b), csg_vec3_dot(c[1], b),
-                                              csg_vec3_dot(c[2], b)),
-                                1 / determinant);
+    csg_vec3 s = csg_vec3_scale(
+        csg_vec3_make(csg_vec3_dot(c[0], b), csg_vec3_dot(c[1], b), csg_vec3_dot(c[2], b)),
+        1 / determinant);
     *x = csg_vec3_add(*x, s);
     return csg_vec3_dot(s, s) < INFINITY;
 }
@@ -159,7 +159,8 @@ static void look(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec
         if (square > 0 && flat_axis < 0)
             way = csg_vec3_sub(way, csg_vec3_scale(n, csg_vec3_dot(way, n) / square));
         double length = csg_vec3_norm(way), step = fmin(off * box->cell, 0.9 * length);
-        q[k] = keep_within(box, csg_vec3_add(from, csg_vec3_scale(way, length > 0 ? step / length : 0)), 0);
+        q[k] = keep_within(
+            box, csg_vec3_add(from, csg_vec3_scale(way, length > 0 ? step / length : 0)), 0);
     }
     ask(p, q, s->count, f, g);
     for (int k = 0; k < s->count; k++) {

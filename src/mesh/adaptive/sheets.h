@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Where sheets of the surface meet: in a point of a face of a cell, in a point within a cell. Each
  * sheet stands in by its tangent plane at a point a little off the place sought, towards its own
- * vertices, where the field is that sheet's alone. Planes meet in a better place, points move closer
- * to it: on plane faces the first meeting is exact, on curved ones the error falls with the square
- * of the distance.
+ * vertices, where the field is that sheet's alone. Planes meet in a better place, points move
+ * closer to it: on plane faces the first meeting is exact, on curved ones the error falls with the
+ * square of the distance.
  *
  * Nothing outside the cell is asked, so a place depends on the cell's own tape alone.
  */

@@ -62,10 +62,11 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
         double begin = floor((low[axis] - margin - shift) / step) * step + shift;
         double cells = ceil((high[axis] + margin - begin) / step) * (step / cell);
         if (!(cells <= CSG_LATTICE_MOST_CELLS)) {
-            csg_diag_plain(&a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
-                           "a tolerance of %g over %g x %g x %g would take more than %d cells along "
-                           "a side",
-                           a->goal->error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
+            csg_diag_plain(
+                &a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
+                "a tolerance of %g over %g x %g x %g would take more than %d cells along "
+                "a side",
+                a->goal->error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
             return CSGM_ERR_LIMIT;
         }
         a->lattice.cells[axis] = (uint32_t)cells;
@@ -86,8 +87,7 @@ static csgm_status create_judge(adaptive *a)
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
     a->judge = (csg_judge){.tables = m->tables,
-                           .tolerance =
-                               (a->goal->tries ? 0.5 : 1) * SHARE_OF_CELLS * a->goal->error,
+                           .tolerance = SHARE_OF_CELLS * a->goal->error,
                            .sharp = a->goal->sharp,
                            .noise = m->noise,
                            .end_distance = (float)fmin(
@@ -123,8 +123,7 @@ static csgm_status paint(adaptive *a)
     csgm_mesh *mesh = a->extraction.mesh;
     const csgm_mesh_options *options = a->input.options;
     const csg_mesh_share *share = a->input.share;
-    bool materials =
-        options->colors && (share ? share->materials : a->input.field->has_materials);
+    bool materials = options->colors && (share ? share->materials : a->input.field->has_materials);
     csgm_status status = materials ? csg_mesh_add_materials(mesh) : CSGM_OK;
     if (status != CSGM_OK || (!mesh->colors && !mesh->materials))
         return status;
@@ -166,8 +165,7 @@ static bool touches_bounds(const adaptive *a)
     const csgm_mesh *mesh = a->extraction.mesh;
     csg_box inner = csg_box_grow(a->input.bounds, -a->lattice.cell_size);
     for (uint64_t v = 0; v < mesh->vertex_count; v++) {
-        csg_vec3 at =
-            csg_vec3_add(csg_vec3_from_floats(mesh->positions + 3 * v), mesh->origin);
+        csg_vec3 at = csg_vec3_add(csg_vec3_from_floats(mesh->positions + 3 * v), mesh->origin);
         if (!csg_box_contains_box(inner, (csg_box){at, at}))
             return true;
     }
@@ -204,8 +202,8 @@ static csgm_status walk(adaptive *a)
         .bricks = &a->bricks,
         .judge = &a->judge,
         .shift = a->workers.marching.shift,
-        .colors = a->input.options->colors && (a->input.share ? a->input.share->colors
-                                                             : csg_mesh_is_colored(a->input.field))};
+        .colors = a->input.options->colors &&
+                  (a->input.share ? a->input.share->colors : csg_mesh_is_colored(a->input.field))};
     status = refine(a);
     a->refined_s = csg_clock_now_s();
     return status;
@@ -219,8 +217,8 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
         .mesh_s = csg_clock_now_s() - a->refined_s,
         .cell_size = a->lattice.cell_size,
         .tolerance = a->goal->error,
-        .cell_coarsest = csg_bricks_cell(&a->bricks, a->bricks.options.coarse) *
-                         a->lattice.cell_size,
+        .cell_coarsest =
+            csg_bricks_cell(&a->bricks, a->bricks.options.coarse) * a->lattice.cell_size,
         .cells = {a->lattice.cells[0], a->lattice.cells[1], a->lattice.cells[2]},
         .cells_visited = s->visited,
         .pruned_outside = s->pruned_outside,

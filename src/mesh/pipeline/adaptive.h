@@ -6,12 +6,13 @@
 
 #include "mesh/pipeline/build.h"
 
-/* Neither -r nor -s, but a tolerance or a quality: cells are as small as that asks for. To certify
- * takes equal cells. */
+/* A quality or a number of triangles, and neither -r nor -s: cells follow the shape. To certify,
+ * and to prove a tolerance, takes equal cells. */
 static inline bool csg_mesh_is_adaptive(const csgm_mesh_options *options)
 {
     return !options->resolution && !(options->cell_size > 0) && !options->certify &&
-           (options->tolerance > 0 || options->quality != CSGM_QUALITY_NONE || options->triangles);
+           !(options->tolerance > 0) &&
+           (options->quality != CSGM_QUALITY_NONE || options->triangles);
 }
 
 /* The tolerance of a quality, for a box to mesh. */

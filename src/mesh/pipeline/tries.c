@@ -74,10 +74,9 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         .share = options->simplify_share,
         .improve = options->improve,
         .triangles = options->triangles,
-        .proves = !follows || options->tolerance > 0,
+        .proves = !follows,
         .sharp = options->features == CSGM_FEATURES_SHARP,
-        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0) &&
-                   !follows,
+        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0),
         .normals = options->normals,
         .care = 0.85,
         .started_s = csg_clock_now_s()};
@@ -94,9 +93,8 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                        (goal.chooses && base.cell_size > 0 && base.cell_size <= least) ||
                        (!goal.chooses && goal.tries + 1 >= 2);
         goal.cell_size = 0;
-        status = follows
-                     ? csg_mesh_build_adaptive(context, field, &base, share, &goal, out, stats)
-                     : csg_mesh_build_field(context, field, &base, share, &goal, out, stats);
+        status = follows ? csg_mesh_build_adaptive(context, field, &base, share, &goal, out, stats)
+                         : csg_mesh_build_field(context, field, &base, share, &goal, out, stats);
         if (status != CSGM_OK || !(goal.cell_size > 0))
             break;
         csg_mesh_destroy(*out);

@@ -16,13 +16,14 @@ int cli_work_check(cli_app *app)
     const cli_options *o = &app->options;
     bool equal_cells = o->given[CLI_OPTION_resolution] || o->given[CLI_OPTION_cell_size];
     if (o->quality && (equal_cells || o->given[CLI_OPTION_tolerance]))
-        return cli_usage_error(app, NULL,
-                               "--quality chooses cells and tolerance: give it without -r, -s and -e");
+        return cli_usage_error(
+            app, NULL, "--quality chooses cells and tolerance: give it without -r, -s and -e");
     if (o->triangles &&
         (equal_cells || o->given[CLI_OPTION_tolerance] || o->given[CLI_OPTION_simplify]))
         return cli_usage_error(
-            app, NULL, "--triangles chooses cells and tolerance: give it without -r, -s, -e and "
-                       "--simplify");
+            app, NULL,
+            "--triangles chooses cells and tolerance: give it without -r, -s, -e and "
+            "--simplify");
     if ((o->quality || o->triangles) && (o->certify || o->certify_size > 0))
         return cli_usage_error(app, "give -r",
                                "--certify looks at cells of one size, not at those of --quality or "
