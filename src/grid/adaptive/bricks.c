@@ -177,9 +177,8 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
     child.wanted = child.level < b->options.coarse;
     if (!child.wanted) {
         sample(b, self, &child);
-        child.wanted =
-            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples) &&
-            child.level < b->finest;
+        child.wanted = b->options.judge(b->options.judge_user, worker_index, b, &child) &&
+                       child.level < b->finest;
     }
     self->made[self->count++] = child;
     return true;
@@ -240,8 +239,11 @@ static void report(void *user, size_t done, size_t count)
     csg_bricks *b = r->bricks;
     /* how many rounds there will be nobody knows: the share of what is known by now */
     double all = (double)(r->done_before + count);
-    if (b->options.progress)
-        b->options.progress(b->options.user, 0.9 * ((double)(r->done_before + done) / all));
+    double fraction = 0.9 * ((double)(r->done_before + done) / all);
+    if (b->options.progress && fraction > b->reported) {
+        b->reported = fraction;
+        b->options.progress(b->options.user, fraction);
+    }
 }
 
 /* The children into the array and the index, in the order of the queue. */

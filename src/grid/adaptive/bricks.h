@@ -50,7 +50,7 @@ typedef struct csg_bricks csg_bricks;
 /* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat` and
  * `several`. Any worker. */
 typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
-                             csg_brick *brick, const csg_brick_samples *samples);
+                             csg_brick *brick);
 
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */
@@ -76,6 +76,7 @@ struct csg_bricks {
     csg_bricks_options options;
     csg_brick *items;
     size_t count, capacity;
+    double reported; /* progress: it never falls */
     size_t balanced; /* bricks before this one are, among themselves */
     csg_table index;
     struct csg_bricks_worker *workers;

@@ -312,8 +312,7 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
            has_all(w, cell, &box, &p, &apex, NULL);
 }
 
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
-                     const csg_brick_samples *samples)
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick)
 {
     const csg_judge *judge = user;
     csg_judge_room *room = &judge->rooms[worker];
@@ -326,7 +325,6 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
                    .room = room,
                    .probe = csg_judge_probe(judge, b, brick, room, &tape),
                    .hunted = &hunted};
-    (void)samples;
     if (!is_finest && csg_hunt(&w.probe, b, brick, judge->tolerance, &hunted)) {
         room->evaluations += w.probe.evaluations;
         return true;

@@ -34,8 +34,7 @@ typedef struct csg_judge {
 } csg_judge;
 
 /* A csg_brick_judge; user: a csg_judge. */
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
-                     const csg_brick_samples *samples);
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick);
 
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 

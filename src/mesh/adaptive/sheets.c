@@ -26,7 +26,7 @@ typedef struct plane {
 double csg_gradients_cosine(csg_vec3 a, csg_vec3 b)
 {
     double length = sqrt(csg_vec3_dot(a, a) * csg_vec3_dot(b, b));
-    return length > 1e-12 ? csg_vec3_dot(a, b) / length : 1;
+    return length > 1e-150 ? csg_vec3_dot(a, b) / length : 1; /* whatever the unit */
 }
 
 static plane plane_at(csg_vec3 at, double f, csg_vec3 g)

@@ -206,7 +206,7 @@ static csgm_status walk(adaptive *a)
                   (a->input.share ? a->input.share->colors : csg_mesh_is_colored(a->input.field))};
     status = refine(a);
     a->refined_s = csg_clock_now_s();
-    return status;
+    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
 }
 
 static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)

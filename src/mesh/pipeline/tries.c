@@ -8,18 +8,20 @@
 #include "base/clock.h"
 #include "base/mesh_codes.h"
 
-static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool chooses)
+/* follows: the cells follow the shape, there is no -r to raise. */
+static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool follows)
 {
     if (goal->open)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
-                       chooses ? "raise the tolerance"
-                               : "raise -r, or give -e alone: it chooses the resolution",
+                       goal->chooses ? "raise the tolerance"
+                                     : "raise -r, or give -e alone: it chooses the resolution",
                        "at %llu places the mesh could not be shown to be within %g of the surface, "
                        "first at %g,%g,%g",
                        (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
                        goal->place.z);
-    if (goal->error > 0 && goal->measured > goal->error)
-        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL, "raise -r, or the tolerance",
+    if (goal->error > 0 && !goal->triangles && goal->measured > goal->error)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
+                       follows ? "raise the quality, or give -e" : "raise -r, or the tolerance",
                        "a place of the surface is %g from the mesh, more than %g", goal->measured,
                        goal->error);
     if (goal->unproven)
@@ -107,7 +109,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
     }
     if (status != CSGM_OK)
         return status;
-    report_misses(context, &goal, goal.chooses);
+    report_misses(context, &goal, follows);
     if (stats)
         fill_stats(stats, &goal);
     return CSGM_OK;

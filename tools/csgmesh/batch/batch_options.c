@@ -188,7 +188,8 @@ static bool is_fineness(const row *option)
 {
     return option->name &&
            (strcmp(option->name, "resolution") == 0 || strcmp(option->name, "cell-size") == 0 ||
-            strcmp(option->name, "tolerance") == 0);
+            strcmp(option->name, "tolerance") == 0 || strcmp(option->name, "quality") == 0 ||
+            strcmp(option->name, "triangles") == 0);
 }
 
 static size_t name_length(const char *define)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Cells that follow the shape: --quality and --triangles. Flat solids end in as few triangles as they need, fine letters on a large
+plate are there, bounds, parts, colours and formats are as on equal cells, and what excludes each other is said.
+"""
+import json
+
+import cli
+
+LETTERS = 'cube([400, 300, 5]);\ntranslate([20, 20, 5]) linear_extrude(1) text("Io", size = 4);\n'
+PAIR = 'part("a") color("red") cube(4);\npart("b") color("blue") translate([6, 0, 0]) sphere(3);\n'
+
+
+class Quality(cli.CliTest):
+    def stats(self, text, *options, status=0):
+        self.write("scene.txt", text)
+        result = cli.run("scene.txt", "-o", "out.ply", "--stats", *options, cwd=self.folder)
+        self.assert_status(result, status)
+        return json.loads(result.stdout)
+
+    def bytes(self, text, *options, name="out.ply"):
+        self.write("scene.txt", text)
+        self.assert_status(cli.run("scene.txt", "-q", "-o", name, *options, cwd=self.folder), 0)
+        return self.read(name)
+
+    def test_cube(self):
+        stats = self.stats("cube(10);", "--quality", "normal")
+        self.assertEqual(stats["mesh"]["triangles"], 12)
+        self.assertEqual(stats["quality"]["distance_allowed"], 2 ** -7)
+        self.assertEqual(len(self.bytes("cube(10);", "--quality", "draft", name="out.stl")), 84 + 12 * 50)
+
+    def test_any_unit(self):
+        for size in (1e-6, 1e7):
+            self.assertEqual(self.stats(f"cube({size});", "--quality", "draft")["mesh"]["triangles"], 12)
+
+    def test_letters_on_a_plate(self):
+        mesh = self.stats(LETTERS, "--quality", "normal")["mesh"]
+        self.assertGreater(mesh["triangles"], 60)
+        self.assertAlmostEqual(mesh["bounds"][1][2], 6, delta=0.25)
+        self.assertEqual((mesh["components"], mesh["euler"]), (1, 0 + 2))
+
+    def test_finer_is_nearer(self):
+        volumes = [self.stats("sphere(10);", "--quality", q)["mesh"]["volume"] for q in ("draft", "normal", "fine")]
+        errors = [4188.790 - v for v in volumes]
+        self.assertGreater(errors[0], 2 * errors[1])
+        self.assertGreater(errors[1], 2 * errors[2])
+
+    def test_triangles(self):
+        for most in (100, 1000):
+            mesh = self.stats("sphere(10);", "--triangles", most)["mesh"]
+            self.assertLessEqual(mesh["triangles"], most + 1)
+            self.assertGreater(mesh["triangles"], most // 2)
+            self.assertEqual(mesh["euler"], 2)
+
+    def test_bounds(self):
+        self.write("scene.txt", "sphere(10);")
+        result = cli.run("scene.txt", "-o", "out.ply", "--stats", "--quality", "draft", "--bounds=-20,-20,0,20,20,20", cwd=self.folder)
+        self.assert_status(result, 0)
+        self.assertIn("W0402", result.stderr)
+        self.assertAlmostEqual(json.loads(result.stdout)["mesh"]["bounds"][0][2], 0, delta=0.1)
+
+    def test_parts(self):
+        mesh = self.stats(PAIR, "--quality", "draft")["mesh"]
+        self.assertEqual(mesh["components"], 2)
+        self.assertIn(b"uchar red", self.bytes(PAIR, "--quality", "draft")[:400])
+
+    def test_same_bytes(self):
+        text = "difference() { rotate([20, 30, 40]) cube(10, center = true, round = 1); cylinder(h = 30, r = 3, center = true); }"
+        one = self.bytes(text, "--quality", "draft", "-j", "1")
+        for options in (["-j", "3"], ["--no-prune"]):
+            self.assertEqual(one, self.bytes(text, "--quality", "draft", *options), options)
+
+    def test_what_excludes_each_other(self):
+        self.write("scene.txt", "cube(1);")
+        for options in (["--quality", "fine", "-r", "9"], ["--quality", "draft", "-e", "1"], ["--triangles", "9", "-s", "1"],
+                        ["--triangles", "9", "--simplify", "1"], ["--quality", "fine", "--certify"]):
+            self.assert_status(cli.run("scene.txt", "-o", "out.ply", *options, cwd=self.folder), 2)
+
+
+if __name__ == "__main__":
+    cli.main()
