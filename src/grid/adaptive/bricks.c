@@ -16,13 +16,19 @@
 
 enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, BRICKS_PER_ITEM = 8 };
 
+/* Values at a brick's points, x fastest. */
+typedef struct brick_samples {
+    float x[CSG_BRICK_POINTS_PADDED], y[CSG_BRICK_POINTS_PADDED], z[CSG_BRICK_POINTS_PADDED];
+    float f[CSG_BRICK_POINTS_PADDED];
+} brick_samples;
+
 /* One thread's part of a round. */
 typedef struct csg_bricks_worker {
     csg_pruner pruner;
     csg_arena tapes;
     csg_brick *made;
     size_t count, capacity;
-    csg_brick_samples *samples;
+    brick_samples *samples;
     float *scratch;
     csg_bricks_stats stats;
 } worker;
@@ -107,7 +113,7 @@ float csg_bricks_band(const csg_bricks *b, uint32_t level)
 /* All of its points; those on the border of the lattice are outside by decree. */
 static void sample(csg_bricks *b, worker *self, csg_brick *brick)
 {
-    csg_brick_samples *s = self->samples;
+    brick_samples *s = self->samples;
     float line[3][N];
     bool border[3][N];
     for (int axis = 0; axis < 3; axis++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A lattice whose cells have different sizes: an octree that ends in bricks of 4^3 cells, small
+ * A lattice whose cells have different sizes: an octree that ends in bricks of 2^3 cells, small
  * where the shape asks for it. Bricks that touch, were it in a corner, differ by one level at most.
  *
  * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of
@@ -19,8 +19,7 @@ enum {
     CSG_BRICK_EDGE = 2, /* cells */
     CSG_BRICK_SAMPLES = CSG_BRICK_EDGE + 1,
     CSG_BRICK_POINTS = CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES,
-    CSG_BRICK_POINTS_PADDED = (CSG_BRICK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES,
-    CSG_BRICKS_MOST_LEVELS = 20
+    CSG_BRICK_POINTS_PADDED = (CSG_BRICK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES
 };
 
 #define CSG_BRICK_NONE UINT32_MAX
@@ -34,16 +33,10 @@ typedef struct csg_brick {
     uint8_t level;
     bool divided, wanted;                                 /* wanted: it is to be divided */
     uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
-    uint64_t crossed; /* cells whose corners do not all agree: bit 16 z + 4 y + x, as below */
+    uint64_t crossed; /* cells whose corners do not all agree: bits as csg_brick_cell has them */
     uint64_t flat;    /* cells whose polygon is cut into triangles without a point inside */
     uint64_t several; /* of the finest level: with several polygons */
 } csg_brick;
-
-/* Values at a brick's points, x fastest. */
-typedef struct csg_brick_samples {
-    float x[CSG_BRICK_POINTS_PADDED], y[CSG_BRICK_POINTS_PADDED], z[CSG_BRICK_POINTS_PADDED];
-    float f[CSG_BRICK_POINTS_PADDED];
-} csg_brick_samples;
 
 typedef struct csg_bricks csg_bricks;
 

@@ -2,7 +2,7 @@
  * A leaf with what its neighbours have on their common faces and edges: where finer leaves touch
  * it, its border has points between its own.
  *
- * Points of the shell are counted in half cells, 0 .. 8 along each axis. Balance sees to it that
+ * Points of the shell are counted in half cells along each axis. Balance sees to it that
  * there are none in between.
  */
 #ifndef CSG_GRID_ADAPTIVE_SHELL_H
@@ -21,8 +21,8 @@ typedef struct csg_shell {
     uint16_t inside[CSG_SHELL_SAMPLES][CSG_SHELL_SAMPLES]; /* [z][y]: bit x */
     /* Edges of the brick's cells that finer leaves divide: [axis][z][y]: bit x, by lower point. */
     uint8_t divided_edges[3][CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES];
-    /* Faces of border cells beyond which the leaf is finer: [2 axis + side], bit u + 4 v, u and v
-     * the cell on the other axes in increasing order. */
+    /* Faces of border cells beyond which the leaf is finer: [2 axis + side], bit u + CSG_BRICK_EDGE
+     * v, u and v the cell on the other axes in increasing order. */
     uint16_t divided_faces[6];
 } csg_shell;
 

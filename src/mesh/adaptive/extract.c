@@ -324,16 +324,6 @@ static bool gather(cell_at_hand *c, unsigned polygon, csg_polygon *out)
     return true;
 }
 
-/* The number that csg_cell_tables gives an edge of a whole cell, by its middle. */
-static uint8_t edge_number(unsigned local)
-{
-    unsigned q[3];
-    csg_local_place(local, q);
-    unsigned axis = q[0] == 2 ? 0 : q[1] == 2 ? 1 : 2;
-    unsigned u = axis == 0 ? q[1] / 4 : q[0] / 4, v = axis == 2 ? q[1] / 4 : q[2] / 4;
-    return (uint8_t)(4 * axis + u + 2 * v);
-}
-
 /* Triangles without a point inside, as csg_cell_tables cuts the cell's polygons. */
 static bool cut_as_tables(cell_at_hand *c)
 {
@@ -344,7 +334,7 @@ static bool cut_as_tables(cell_at_hand *c)
         uint32_t v = find_vertex(w, place_of(w->x->bricks, c->shell->brick, c->at, from));
         if (v == CSG_TABLE_NONE)
             return is_missing(c);
-        vertex[edge_number(from)] = v;
+        vertex[csg_local_edge(from)] = v;
     }
     const csg_cell_tables *t = w->x->judge->tables;
     unsigned pattern = csg_brick_pattern(c->shell->brick, c->at[0], c->at[1], c->at[2]);

@@ -223,16 +223,6 @@ static bool cut_of(unsigned pattern, const csg_polygon *p, uint8_t *cut)
     return true;
 }
 
-/* The number that csg_cell_tables gives an edge, by its middle. */
-static uint32_t edge_number(unsigned place)
-{
-    unsigned q[3];
-    csg_local_place(place, q);
-    unsigned axis = q[0] == 2 ? 0 : q[1] == 2 ? 1 : 2;
-    unsigned u = axis == 0 ? q[1] / 4 : q[0] / 4, v = axis == 2 ? q[1] / 4 : q[2] / 4;
-    return 4 * axis + u + 2 * v;
-}
-
 static bool is_near_side(const csg_cell_box *box, csg_vec3 p, double reach)
 {
     const double at[3] = {p.x, p.y, p.z};
@@ -290,7 +280,7 @@ static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
     for (int i = 0; i < polygons->first[1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
         csg_vec3 crease;
-        p.vertex[p.count] = edge_number(side->from);
+        p.vertex[p.count] = csg_local_edge(side->from);
         p.point[p.count++] = point_of(w->room, slot_of_place(side->from, at, false));
         if (!w->judge->sharp || !side->alone ||
             !find_crease(&w->probe, w->room, &box, at, side, &crease))

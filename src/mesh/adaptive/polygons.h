@@ -44,4 +44,14 @@ static inline void csg_local_place(unsigned place, unsigned out[3])
     out[0] = place % 5, out[1] = place / 5 % 5, out[2] = place / 25;
 }
 
+/* The number that csg_cell_tables gives an edge of a cell, by its middle. */
+static inline uint8_t csg_local_edge(unsigned place)
+{
+    unsigned q[3];
+    csg_local_place(place, q);
+    unsigned axis = q[0] == 2 ? 0 : q[1] == 2 ? 1 : 2;
+    unsigned u = axis == 0 ? q[1] / 4 : q[0] / 4, v = axis == 2 ? q[1] / 4 : q[2] / 4;
+    return (uint8_t)(4 * axis + u + 2 * v);
+}
+
 #endif
