@@ -63,8 +63,8 @@ static void test_boxes(void **state)
 /* ---- what is small -----------------------------------------------------------------------------
  */
 
-/* Balls as small as two tolerances, beside, on and in a large block; the cells that refinement
- * begins with are twenty times larger. */
+/* Balls as small as two tolerances, beside and in a large block, larger ones on it; the cells that
+ * refinement begins with are up to thirty times larger than the tolerance. */
 static void test_small_parts(void **state)
 {
     csg_random random = {9};
@@ -72,7 +72,7 @@ static void test_small_parts(void **state)
         mesh_case c;
         mesh_case_begin(&c, 2);
         csg_node_id block = make_box(&c, 4, 3, 1);
-        double r = csg_random_uniform(&random, 0.008, 0.05);
+        double r = csg_random_uniform(&random, 0.008, 0.05) * (i % 3 == 1 ? 8 : 1);
         double x = csg_random_uniform(&random, -3.5, 3.5),
                y = csg_random_uniform(&random, -2.5, 2.5);
         double z = i % 3 == 0 ? 1 + 3 * r : i % 3 == 1 ? 1.0 : 0.3;

@@ -53,7 +53,8 @@ static void test_boxes(void **state)
             assert_true(c.stats.triangles_before > 1000);
             assert_in_range(c.mesh->triangle_count, 12, i == 2 ? 100 : 12);
             double volume = 8 * h[0] * h[1] * h[2];
-            assert_true(fabs(c.check.volume - volume) < 1e-3 * volume);
+            /* the turned sheet may lose of its rim what the error allows */
+            assert_true(fabs(c.check.volume - volume) < (i == 2 ? 0.1 : 1e-3) * volume);
             assert_true(c.stats.max_distance_measured <= (i == 2 ? 0.02 : 0.002));
             assert_uncrossed(c.mesh, "box");
             mesh_case_end(&c);

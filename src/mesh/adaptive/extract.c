@@ -189,7 +189,8 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
                              .probe = &probe};
         csg_shell_cell place = csg_shell_cell_of(s, cell.at[0], cell.at[1], cell.at[2]);
         cell.is_whole = !place.divided;
-        csg_cell_polygons_make(&cell.polygons, &place);
+        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe};
+        csg_cell_polygons_make(&cell.polygons, &place, csg_cell_face_is_inside, &faces);
         if (cell.polygons.count && !visit(&cell))
             return false;
     }
@@ -324,25 +325,28 @@ static bool gather(cell_at_hand *c, unsigned polygon, csg_polygon *out)
     return true;
 }
 
-/* Triangles without a point inside, as csg_cell_tables cuts the cell's polygons. */
-static bool cut_as_tables(cell_at_hand *c)
+/* Triangles without a point inside, as csg_cell_cut cuts polygons of a whole cell. */
+static bool cut_whole(cell_at_hand *c)
 {
     work *w = c->w;
-    uint32_t vertex[CSG_CELL_EDGES] = {0};
-    for (unsigned i = 0; i < c->polygons.first[c->polygons.count]; i++) {
-        unsigned from = c->polygons.side[i].from;
-        uint32_t v = find_vertex(w, place_of(w->x->bricks, c->shell->brick, c->at, from));
-        if (v == CSG_TABLE_NONE)
+    for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
+        uint32_t vertex[CSG_CELL_EDGES] = {0};
+        uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES + 3 * CSG_CELL_EDGES];
+        int sides = 0;
+        for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
+            unsigned from = c->polygons.side[i].from;
+            uint32_t v = find_vertex(w, place_of(w->x->bricks, c->shell->brick, c->at, from));
+            if (v == CSG_TABLE_NONE)
+                return is_missing(c);
+            edge[sides] = csg_local_edge(from);
+            vertex[edge[sides++]] = v;
+        }
+        if (!csg_cell_cut(edge, sides, triangles))
             return is_missing(c);
-        vertex[csg_local_edge(from)] = v;
-    }
-    const csg_cell_tables *t = w->x->judge->tables;
-    unsigned pattern = csg_brick_pattern(c->shell->brick, c->at[0], c->at[1], c->at[2]);
-    for (int i = 0; i < t->count[pattern]; i++) {
-        const uint8_t *edge = &t->edge[pattern][3 * i];
-        if (!add_triangle(w, &w->workers[c->worker], vertex[edge[0]], vertex[edge[1]],
-                          vertex[edge[2]]))
-            return false;
+        for (int i = 0; i < 3 * (sides - 2); i += 3)
+            if (!add_triangle(w, &w->workers[c->worker], vertex[triangles[i]],
+                              vertex[triangles[i + 1]], vertex[triangles[i + 2]]))
+                return false;
     }
     return true;
 }
@@ -373,7 +377,7 @@ static bool make_triangles(cell_at_hand *c)
     const csg_brick *brick = c->shell->brick;
     csg_polygon p;
     if (has_several(brick, c->at) && c->is_whole)
-        return cut_as_tables(c);
+        return cut_whole(c);
     for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
         if (!gather(c, polygon, &p))
             return false;
@@ -381,7 +385,7 @@ static bool make_triangles(cell_at_hand *c)
         bool plain = c->is_whole && (unsigned)p.count == sides;
         bool flat = brick->flat >> csg_brick_cell(c->at[0], c->at[1], c->at[2]) & 1;
         if (plain && c->polygons.count == 1 && (flat || sides == 3))
-            return cut_as_tables(c);
+            return cut_whole(c);
         if (!fan(c, &p))
             return false;
     }

@@ -87,6 +87,33 @@ csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, con
                              .noise = (double)judge->noise};
 }
 
+/* ---- faces -------------------------------------------------------------------------------------
+ */
+
+bool csg_cell_face_is_inside(void *cell_faces, unsigned face)
+{
+    const csg_cell_faces *c = cell_faces;
+    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES], at[3];
+    uint32_t size = csg_bricks_cell(c->bricks, c->brick->level);
+    unsigned q[3];
+    csg_local_place(face, q);
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t first = csg_brick_point(c->bricks, c->brick, axis, c->at[axis]);
+        /* in half cells: between which points; a quarter's sides are halves of the cell's */
+        uint32_t low = q[axis] / 2 * size / 2, high = (q[axis] + 1) / 2 * size / 2;
+        if (q[axis] == 2)
+            low = 0, high = size;
+        at[axis] = 0.5f * (csg_lattice_coordinate(c->bricks->lattice, axis, first + low) +
+                           csg_lattice_coordinate(c->bricks->lattice, axis, first + high));
+    }
+    for (int i = 0; i < CSG_LANES; i++)
+        x[i] = at[0], y[i] = at[1], z[i] = at[2];
+    c->probe->kernel->values(c->probe->tape, x, y, z, 1, f, c->probe->scratch,
+                             c->probe->scratch_floats);
+    c->probe->evaluations++;
+    return f[0] >= 0;
+}
+
 /* ---- one cell ----------------------------------------------------------------------------------
  */
 
@@ -261,7 +288,7 @@ static bool has_all(const cell_work *w, unsigned cell, const csg_cell_box *box,
                                    corner_of(p, apex, corner[2])};
             nearest = fmin(nearest, csg_triangle_nearest(v, at, weights));
         }
-        if (nearest > 2.25 * tolerance * tolerance)
+        if (nearest > tolerance * tolerance)
             return false;
     }
     return true;
@@ -334,7 +361,8 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
         csg_shell shell = {.brick = brick};
         csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
         csg_cell_polygons polygons;
-        csg_cell_polygons_make(&polygons, &place);
+        csg_cell_faces faces = {b, brick, at, &w.probe};
+        csg_cell_polygons_make(&polygons, &place, csg_cell_face_is_inside, &faces);
         if (polygons.count > 1)
             brick->several |= (uint64_t)1 << cell;
         bool good = polygons.count > 1 ? edge <= SEVERAL * judge->tolerance

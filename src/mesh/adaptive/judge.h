@@ -48,6 +48,17 @@ csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *bricks
 void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *bricks, const csg_brick *brick,
                         int axis, const unsigned low[3]);
 
+/* A cell and who answers for its field: a csg_face_is_inside's user. */
+typedef struct csg_cell_faces {
+    const csg_bricks *bricks;
+    const csg_brick *brick;
+    const unsigned *at;
+    csg_sheet_probe *probe;
+} csg_cell_faces;
+
+/* The sign of the field there: the same whichever cell asks, fine or coarse. */
+bool csg_cell_face_is_inside(void *cell_faces, unsigned face);
+
 /* The box of a cell. */
 csg_cell_box csg_judge_cell_box(const csg_bricks *bricks, const csg_brick *brick,
                                 const unsigned at[3]);

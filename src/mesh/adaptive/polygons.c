@@ -11,6 +11,8 @@ enum { NOWHERE = 0xFF, MOST_POINTS = 8 };
 typedef struct links {
     uint8_t to[CSG_LOCAL_PLACES], face[CSG_LOCAL_PLACES];
     uint8_t in_face[CSG_LOCAL_PLACES]; /* segments */
+    csg_face_is_inside *is_inside;
+    void *user;
 } links;
 
 /* A point of 3 x 3 x 3. */
@@ -33,6 +35,8 @@ static uint8_t middle_of(const uint8_t p[3], const uint8_t q[3])
 static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
 {
     bool in[MOST_POINTS];
+    uint8_t enter[MOST_POINTS], leave[MOST_POINTS];
+    int runs = 0;
     for (int i = 0; i < c->count; i++)
         in[i] = inside >> bit_of(c->point[i]) & 1;
     for (int i = 0; i < c->count; i++) {
@@ -41,12 +45,15 @@ static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
             continue; /* not the first of a run */
         while (in[(last + 1) % c->count])
             last = (last + 1) % c->count;
-        uint8_t enter = middle_of(c->point[before], c->point[i]);
-        uint8_t leave = middle_of(c->point[last], c->point[(last + 1) % c->count]);
-        l->to[enter] = leave;
-        l->face[enter] = face;
-        l->in_face[face]++;
+        enter[runs] = middle_of(c->point[before], c->point[i]);
+        leave[runs++] = middle_of(c->point[last], c->point[(last + 1) % c->count]);
     }
+    int shift = runs > 1 && l->is_inside(l->user, face) ? runs - 1 : 0;
+    for (int r = 0; r < runs; r++) {
+        l->to[enter[r]] = leave[(r + shift) % runs];
+        l->face[enter[r]] = face;
+    }
+    l->in_face[face] = (uint8_t)runs;
 }
 
 /* The points around a face, or a quarter of it: from (u, v), `step` wide, counter-clockwise seen
@@ -107,9 +114,10 @@ static uint8_t edge_of(uint8_t place)
     return between == 1 ? (uint8_t)(at[0] + 5 * at[1] + 25 * at[2]) : NOWHERE;
 }
 
-void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell)
+void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
+                            csg_face_is_inside *is_inside, void *user)
 {
-    links l;
+    links l = {.is_inside = is_inside, .user = user};
     memset(l.to, NOWHERE, sizeof l.to);
     memset(l.in_face, 0, sizeof l.in_face);
     for (int face = 0; face < 6; face++)

@@ -2,8 +2,9 @@
  * The polygons of a cell whose edges and faces may be divided: faces decide, as in cubical marching
  * squares (Ho, Wu, Chen, Chuang and Ouhyoung 2005). A face is a cycle of four points, of up to
  * eight where its edges are divided; a divided face is four such faces. Each run of inside points
- * of a cycle is cut off by its own segment. Both cells at a face see the same cycles, so segments
- * match at every border of levels, and around a cell they close to loops.
+ * of a cycle is cut off by its own segment; where there are several, and the middle of the face is
+ * inside, too, the runs of outside points between them are. Both cells at a face see the same
+ * cycles, so segments match at every border of levels, and around a cell they close to loops.
  *
  * Where an edge is divided and only its middle differs, two faces of a cell cut that run off
  * between the same two vertices. Such a loop of two is left out: the triangles beyond its faces
@@ -36,7 +37,12 @@ typedef struct csg_cell_polygons {
     csg_polygon_side side[CSG_CELL_MOST_SEGMENTS];
 } csg_cell_polygons;
 
-void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell);
+/* Whether the middle of a face of the cell, or of a quarter of one, is inside; asked where it has
+ * several runs of inside points. */
+typedef bool csg_face_is_inside(void *user, unsigned face);
+
+void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
+                            csg_face_is_inside *is_inside, void *user);
 
 /* The place of a middle in quarters of the cell. */
 static inline void csg_local_place(unsigned place, unsigned out[3])
