@@ -133,6 +133,7 @@ bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, cons
         bends += bend;
     }
     double d = (double)csg_fillet_find_turns(tape, node, c, radius).most;
-    *stray = r * bends / 2 * sqrt(d / (2 - d));
+    *stray =
+        bends > 0 ? r * bends / 2 * sqrt(d / (2 - d)) : 0; /* d = 2: faces look at each other */
     return bends == 0 || (count == 2 && d < FARTHEST);
 }

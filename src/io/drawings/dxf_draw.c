@@ -21,11 +21,11 @@ static void put_real(csg_page *page, int code, double value)
     csg_page_text(page, "\n");
 }
 
-/* Letters, digits, '-', '_' and '$'; with the layer's number where an earlier one is the same. */
-static void name_layer(const csg_drawing *drawing, size_t index, char out[NAME_MOST + 1])
+/* Letters, digits, '-', '_' and '$'; the length. */
+static size_t base_name(const csg_drawing *drawing, size_t index, char out[NAME_MOST + 1])
 {
     static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_$";
-    char label[8], other[NAME_MOST + 1];
+    char label[8];
     const char *text = csg_layer_label(&drawing->layers[index], label);
     size_t length = 0;
     for (; *text && length < NAME_MOST - 6; text++) {
@@ -34,8 +34,16 @@ static void name_layer(const csg_drawing *drawing, size_t index, char out[NAME_M
             out[length++] = strchr(allowed, c) ? c : '_';
     }
     out[length] = '\0';
+    return length;
+}
+
+/* With the layer's number where an earlier one is the same. */
+static void name_layer(const csg_drawing *drawing, size_t index, char out[NAME_MOST + 1])
+{
+    char other[NAME_MOST + 1];
+    size_t length = base_name(drawing, index, out);
     for (size_t i = 0; i < index; i++) {
-        name_layer(drawing, i, other);
+        base_name(drawing, i, other);
         if (strcmp(other, out) == 0) {
             snprintf(out + length, NAME_MOST + 1 - length, "-%u", (unsigned)(index + 1) % 100000);
             return;

@@ -325,32 +325,6 @@ static bool gather(cell_at_hand *c, unsigned polygon, csg_polygon *out)
     return true;
 }
 
-/* Triangles without a point inside, as csg_cell_cut cuts polygons of a whole cell. */
-static bool cut_whole(cell_at_hand *c)
-{
-    work *w = c->w;
-    for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
-        uint32_t vertex[CSG_CELL_EDGES] = {0};
-        uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES + 3 * CSG_CELL_EDGES];
-        int sides = 0;
-        for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
-            unsigned from = c->polygons.side[i].from;
-            uint32_t v = find_vertex(w, place_of(w->x->bricks, c->shell->brick, c->at, from));
-            if (v == CSG_TABLE_NONE)
-                return is_missing(c);
-            edge[sides] = csg_local_edge(from);
-            vertex[edge[sides++]] = v;
-        }
-        if (!csg_cell_cut(edge, sides, triangles))
-            return is_missing(c);
-        for (int i = 0; i < 3 * (sides - 2); i += 3)
-            if (!add_triangle(w, &w->workers[c->worker], vertex[triangles[i]],
-                              vertex[triangles[i + 1]], vertex[triangles[i + 2]]))
-                return false;
-    }
-    return true;
-}
-
 /* A fan around a point of the cell. */
 static bool fan(cell_at_hand *c, const csg_polygon *p)
 {
@@ -369,6 +343,36 @@ static bool fan(cell_at_hand *c, const csg_polygon *p)
     for (int i = 0; i < p->count; i++)
         if (!add_triangle(w, self, number, p->vertex[i], p->vertex[(i + 1) % p->count]))
             return false;
+    return true;
+}
+
+/* Triangles without a point inside, as csg_cell_cut cuts polygons of a whole cell. */
+static bool cut_whole(cell_at_hand *c)
+{
+    work *w = c->w;
+    for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
+        uint32_t vertex[CSG_CELL_EDGES] = {0};
+        uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES + 3 * CSG_CELL_EDGES];
+        int sides = 0;
+        for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
+            unsigned from = c->polygons.side[i].from;
+            uint32_t v = find_vertex(w, place_of(w->x->bricks, c->shell->brick, c->at, from));
+            if (v == CSG_TABLE_NONE)
+                return is_missing(c);
+            edge[sides] = csg_local_edge(from);
+            vertex[edge[sides++]] = v;
+        }
+        if (!csg_cell_cut(edge, sides, triangles)) {
+            csg_polygon p; /* joined through faces: a loop that has no cut */
+            if (!gather(c, polygon, &p) || !fan(c, &p))
+                return false;
+            continue;
+        }
+        for (int i = 0; i < 3 * (sides - 2); i += 3)
+            if (!add_triangle(w, &w->workers[c->worker], vertex[triangles[i]],
+                              vertex[triangles[i + 1]], vertex[triangles[i + 2]]))
+                return false;
+    }
     return true;
 }
 
@@ -404,7 +408,7 @@ static bool want_simple(cell_at_hand *c)
 {
     csg_bricks *b = c->w->x->bricks;
     csg_brick *brick = &b->items[c->shell->number];
-    if (c->polygons.count > 1 && !c->is_whole) {
+    if (!c->is_whole && (c->polygons.count > 1 || has_several(brick, c->at))) {
         brick->wanted = true;
         atomic_store(&c->w->any, true);
     }
@@ -543,7 +547,7 @@ csgm_status csg_extraction_check_borders(csg_extraction *x, bool *any)
     work w;
     csgm_status status = begin(&w, x);
     if (status == CSGM_OK)
-        status = go(&w, visit_borders, 0, 0);
+        status = go(&w, visit_borders, x->bricks->reported, 0);
     *any = atomic_load(&w.any);
     end(&w);
     return status;

@@ -25,7 +25,8 @@ typedef struct hunt {
     float line[3][HALVES];
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
     float from[3][PADDED], before[PADDED]; /* where a step began, and the value there */
-    float least;                           /* a value that is nearer to 0 shows nothing */
+    float band;  /* beyond it only signs are exact: no step begins there */
+    float least; /* a value that is nearer to 0 shows nothing */
 } hunt;
 
 /* What the cone of the gradients says of a brick. */
@@ -107,7 +108,8 @@ static void step_across(hunt *h)
 {
     for (int i = 0; i < PADDED; i++) {
         float square = h->g[0][i] * h->g[0][i] + h->g[1][i] * h->g[1][i] + h->g[2][i] * h->g[2][i];
-        float step = square > 1e-12f ? -BEYOND * h->f[i] / square : 0;
+        bool known = square > 1e-12f && fabsf(h->f[i]) <= h->band;
+        float step = known ? -BEYOND * h->f[i] / square : 0;
         float *at[3] = {&h->x[i], &h->y[i], &h->z[i]};
         h->before[i] = h->f[i];
         for (int axis = 0; axis < 3; axis++) {
@@ -178,6 +180,7 @@ bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, d
         return false;
     h.least = (float)((kind == ONE_CREASE ? CREASE_DEPTH : DEPTH) * tolerance *
                       (double)b->field->tape.lipschitz);
+    h.band = csg_bricks_band(b, brick->level);
     place_points(&h, b, brick);
     ask(p, &h);
     if (differs_between(&h, brick))

@@ -94,8 +94,11 @@ static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec
         }
     p->remesh->probe.marching->kernel->values(&s->tape, at[0], at[1], at[2], n, f, s->scratch,
                                               p->scratch_floats);
-    for (size_t i = 0; i < n; i++)
-        least = !(turn * (double)f[i] >= least) ? turn * (double)f[i] : least;
+    for (size_t i = 0; i < n; i++) {
+        if (!(f[i] == f[i]))
+            return -INFINITY; /* no value, no proof */
+        least = fmin(least, turn * (double)f[i]);
+    }
     return least;
 }
 

@@ -87,10 +87,10 @@ typedef struct csg_marching {
     csg_block *const *blocks;
     const csg_table *index;
     const csg_bricks *bricks; /* in place of blocks: of a lattice that follows the shape */
-    csg_vec3 shift;     /* field frame -> relative to the mesh's origin */
-    float noise;        /* of the field's values: rounding */
-    float unit;         /* in the last place of the mesh's largest coordinates */
-    float end_distance; /* of vertices from lattice points: a part of a cell */
+    csg_vec3 shift;           /* field frame -> relative to the mesh's origin */
+    float noise;              /* of the field's values: rounding */
+    float unit;               /* in the last place of the mesh's largest coordinates */
+    float end_distance;       /* of vertices from lattice points: a part of a cell */
 } csg_marching;
 
 static inline void csg_marching_shift(const csg_marching *m, const float at[3], float out[3])

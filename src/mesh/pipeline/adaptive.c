@@ -48,7 +48,10 @@ static double power_below(double size)
 static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
 {
     const csg_box bounds = a->input.bounds;
-    csg_vec3 size = csg_box_size(bounds), center = a->input.field->center;
+    csg_box solid = csg_box_intersect(bounds, a->input.field->bounds); /* bounds may be generous */
+    if (!csg_box_is_finite(solid))
+        solid = bounds;
+    csg_vec3 size = csg_box_size(solid), center = a->input.field->center;
     double longest = fmax(size.x, fmax(size.y, size.z));
     double first = power_below(longest / FIRST_CELLS);
     double cell = fmin(power_below(a->goal->error) / 2, ldexp(first, -LEAST_LEVELS));
@@ -300,6 +303,7 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
         a.watch.part_amount = share->amount;
     }
     csgm_status status = csg_mesh_input_complete(&a.input);
+    a.refined_s = csg_clock_now_s();
     if (status == CSGM_OK && csg_box_is_empty(a.input.bounds))
         status = csg_mesh_create(context, 0, 0, goal->normals != CSGM_NORMALS_NONE, false,
                                  &a.extraction.mesh);

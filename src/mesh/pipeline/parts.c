@@ -65,6 +65,8 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->octree_s += part->octree_s;
     sum->mesh_s += part->mesh_s;
     sum->cell_size = part->cell_size;
+    sum->tolerance = part->tolerance;
+    sum->cell_coarsest = part->cell_coarsest;
     memcpy(sum->cells, part->cells, sizeof sum->cells);
     sum->cells_visited += part->cells_visited;
     sum->pruned_outside += part->pruned_outside;

@@ -83,8 +83,11 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         .care = 0.85,
         .started_s = csg_clock_now_s()};
     base.normals = CSGM_NORMALS_NONE;
+    csg_box solid = csg_box_intersect(box_of(field, options), field->bounds);
+    if (share || !csg_box_is_finite(solid)) /* parts have one tolerance */
+        solid = box_of(field, options);
     if (follows && !(goal.error > 0))
-        goal.error = csg_mesh_quality_tolerance(options->quality, box_of(field, options));
+        goal.error = csg_mesh_quality_tolerance(options->quality, solid);
     if (goal.chooses)
         base.resolution = FIRST_CELLS;
     double least = longest_side(field, options) / MOST_CELLS;
