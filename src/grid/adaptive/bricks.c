@@ -44,7 +44,7 @@ typedef struct round {
     size_t queue_count;
     segment *segments; /* one per item */
     size_t done_before;
-    atomic_bool out_of_memory, cancelled;
+    atomic_bool out_of_memory;
 } round_of_division;
 
 /* ---- places ------------------------------------------------------------------------------------
@@ -223,10 +223,8 @@ static bool divide_item(void *user, uint32_t worker_index, size_t item)
     round_of_division *r = user;
     csg_bricks *b = r->bricks;
     worker *self = &b->workers[worker_index];
-    if (b->options.cancelled && b->options.cancelled(b->options.user)) {
-        atomic_store(&r->cancelled, true);
+    if (b->options.cancelled && b->options.cancelled(b->options.user))
         return false;
-    }
     segment *s = &r->segments[item];
     *s = (segment){worker_index, self->count, 0};
     size_t end = (item + 1) * BRICKS_PER_ITEM;
@@ -470,7 +468,6 @@ void csg_bricks_destroy(csg_bricks *b)
     *b = (csg_bricks){0};
 }
 
-/* Morton order with x lowest: the axis of the highest differing bit decides (Chan 2002). */
 typedef struct placed {
     uint32_t brick, point[3];
 } placed;
@@ -478,16 +475,7 @@ typedef struct placed {
 static int compare_placed(const void *a, const void *b)
 {
     const placed *p = a, *q = b;
-    uint32_t most = 0;
-    int order = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        uint32_t differ = p->point[axis] ^ q->point[axis];
-        if (differ && !(differ < most && differ < (differ ^ most))) {
-            order = p->point[axis] < q->point[axis] ? -1 : 1;
-            most = differ;
-        }
-    }
-    return order;
+    return csg_lattice_compare_morton(p->point, q->point);
 }
 
 bool csg_bricks_leaves(const csg_bricks *b, uint32_t **out, size_t *count)

@@ -35,7 +35,7 @@ typedef struct csg_brick {
     uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
     uint64_t crossed; /* cells whose corners do not all agree: bits as csg_brick_cell has them */
     uint64_t flat;    /* cells whose polygon is cut into triangles without a point inside */
-    uint64_t several; /* of the finest level: with several polygons */
+    uint64_t several; /* with several polygons: cells that are small enough for them */
 } csg_brick;
 
 typedef struct csg_bricks csg_bricks;
@@ -85,7 +85,7 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
 void csg_bricks_destroy(csg_bricks *bricks);
 
 /* Divides what the judge wants, then what the balance wants, until nobody wants anything. Bricks
- * that are `wanted` already (csg_bricks_want) are divided, too. CSGM_OK, CSGM_CANCELLED or
+ * that are `wanted` already are divided, too. CSGM_OK, CSGM_CANCELLED or
  * CSGM_ERR_MEMORY (reported). */
 csgm_status csg_bricks_refine(csg_bricks *bricks);
 
@@ -134,6 +134,13 @@ static inline unsigned csg_brick_pattern(const csg_brick *brick, unsigned i, uns
 {
     return (brick->inside[k][j] >> i & 3u) | (brick->inside[k][j + 1] >> i & 3u) << 2 |
            (brick->inside[k + 1][j] >> i & 3u) << 4 | (brick->inside[k + 1][j + 1] >> i & 3u) << 6;
+}
+
+/* Whether the surface crosses the edge from a point (low[axis] < CSG_BRICK_EDGE) along an axis. */
+static inline bool csg_brick_is_crossed(const csg_brick *brick, int axis, const unsigned low[3])
+{
+    const unsigned x = low[0] + (axis == 0), y = low[1] + (axis == 1), z = low[2] + (axis == 2);
+    return ((brick->inside[low[2]][low[1]] >> low[0] ^ brick->inside[z][y] >> x) & 1) != 0;
 }
 
 #endif

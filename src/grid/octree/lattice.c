@@ -27,6 +27,26 @@ bool csg_lattice_make(csg_box bounds, csg_vec3 center, double cell_size, uint32_
     return true;
 }
 
+/* Whether the highest set bit of a is lower than that of b. */
+static bool is_shorter(uint32_t a, uint32_t b)
+{
+    return a < b && a < (a ^ b);
+}
+
+int csg_lattice_compare_morton(const uint32_t a[3], const uint32_t b[3])
+{
+    int deciding = 0;
+    uint32_t most = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t differ = a[axis] ^ b[axis];
+        if (!is_shorter(differ, most)) {
+            deciding = axis;
+            most = differ;
+        }
+    }
+    return a[deciding] < b[deciding] ? -1 : a[deciding] > b[deciding];
+}
+
 double csg_lattice_extent(const csg_lattice *lattice)
 {
     double most = 0;

@@ -54,6 +54,10 @@ static inline uint64_t csg_lattice_hash(const uint32_t block[3])
     return (uint64_t)block[0] | (uint64_t)block[1] << 21 | (uint64_t)block[2] << 42;
 }
 
+/* Morton order with x in the lowest bits: negative where a comes before b, 0 where they are one.
+ * The axis of the highest differing bit decides, the later axis among equals (Chan 2002). */
+int csg_lattice_compare_morton(const uint32_t a[3], const uint32_t b[3]);
+
 /* Largest absolute coordinate of a lattice point in the field's frame. */
 double csg_lattice_extent(const csg_lattice *lattice);
 

@@ -574,32 +574,10 @@ csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count)
     return octree->blocks;
 }
 
-/* Whether the highest set bit of a is lower than that of b (Chan 2002). */
-static bool is_shorter(uint32_t a, uint32_t b)
-{
-    return a < b && a < (a ^ b);
-}
-
-/* Morton order with x in the lowest bits: the axis of the highest differing bit decides, the later
- * axis among equals. */
-static bool is_before(const uint32_t a[3], const uint32_t b[3])
-{
-    int deciding = 0;
-    uint32_t most = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        uint32_t differ = a[axis] ^ b[axis];
-        if (!is_shorter(differ, most)) {
-            deciding = axis;
-            most = differ;
-        }
-    }
-    return a[deciding] < b[deciding];
-}
-
 bool csg_octree_is_before_sampled(const csg_octree *w, const uint32_t at[3])
 {
     uint32_t cube[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
-    return is_before(cube, w->cells[w->first_cell].at);
+    return csg_lattice_compare_morton(cube, w->cells[w->first_cell].at) < 0;
 }
 
 static int compare_doubts(const void *a, const void *b)

@@ -123,14 +123,6 @@ static bool is_divided(const csg_shell *s, int axis, const unsigned low[3])
     return s->has_finer && s->divided_edges[axis][low[2]][low[1]] >> low[0] & 1;
 }
 
-static bool is_crossed(const csg_brick *brick, int axis, const unsigned low[3])
-{
-    unsigned far[3] = {low[0], low[1], low[2]};
-    far[axis]++;
-    return (brick->inside[low[2]][low[1]] >> low[0] & 1) !=
-           (brick->inside[far[2]][far[1]] >> far[0] & 1);
-}
-
 static bool visit_edges(work *w, uint32_t worker_index, const csg_shell *s)
 {
     const csg_bricks *b = w->x->bricks;
@@ -140,8 +132,8 @@ static bool visit_edges(work *w, uint32_t worker_index, const csg_shell *s)
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS && s->brick->crossed; slot++) {
         int axis = (int)(slot / CSG_BRICK_POINTS);
         const unsigned low[3] = {slot % N, slot / N % N, slot % CSG_BRICK_POINTS / (N * N)};
-        if (low[axis] == E || !is_crossed(s->brick, axis, low) || is_divided(s, axis, low) ||
-            !csg_shell_owns_edge(s, axis, low))
+        if (low[axis] == E || !csg_brick_is_crossed(s->brick, axis, low) ||
+            is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
             continue;
         place[room->edges.count] = place_of(b, s->brick, low, middle_of_edge(axis));
         csg_judge_add_edge(room, b, s->brick, axis, low);

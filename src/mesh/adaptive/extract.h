@@ -25,7 +25,6 @@ typedef struct csg_extraction {
     csgm_mesh *mesh;  /* positions and indices, the caller's; its origin is still to be set */
     uint64_t creases; /* vertices on creases, corners and tips */
     uint64_t smooth;  /* cells in which sheets should meet, and do not */
-    csg_vec3 smooth_at;
 } csg_extraction;
 
 /* Wants those leaves divided whose border cells have several polygons; *any: there are some.

@@ -60,20 +60,14 @@ void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *b, const cs
 static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge_room *room)
 {
     room->edges.count = 0;
-    for (int axis = 0; axis < 3; axis++)
-        for (unsigned k = 0; k < N; k++)
-            for (unsigned j = 0; j < N; j++)
-                for (unsigned i = 0; i < N; i++) {
-                    const unsigned low[3] = {i, j, k};
-                    if (low[axis] == E)
-                        continue;
-                    const unsigned far[3] = {i + (axis == 0), j + (axis == 1), k + (axis == 2)};
-                    bool one = brick->inside[k][j] >> i & 1;
-                    if (one == (brick->inside[far[2]][far[1]] >> far[0] & 1))
-                        continue;
-                    room->edge[slot_of(axis, low)] = (uint16_t)room->edges.count;
-                    csg_judge_add_edge(room, b, brick, axis, low);
-                }
+    for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
+        int axis = (int)(slot / P);
+        const unsigned low[3] = {slot % N, slot / N % N, slot % P / (N * N)};
+        if (low[axis] == E || !csg_brick_is_crossed(brick, axis, low))
+            continue;
+        room->edge[slot] = (uint16_t)room->edges.count;
+        csg_judge_add_edge(room, b, brick, axis, low);
+    }
 }
 
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
@@ -175,9 +169,21 @@ static bool find_crease(csg_sheet_probe *probe, csg_judge_room *room, const csg_
     return room->face[slot] == FACE_CREASED;
 }
 
-static csg_vec3 corner_of(const csg_polygon *p, const csg_vec3 *apex, int i)
+/* Triangle t around the apex, or, apex NULL, of those that the polygon is cut into: its corners as
+ * vertices of the polygon, -1 for the apex, and their places. */
+static void find_triangle(const csg_polygon *p, const csg_vec3 *apex, const uint8_t *cut, int t,
+                          int corner[3], csg_vec3 at[3])
 {
-    return i < 0 ? *apex : p->point[i].at;
+    const int around[3] = {-1, t, (t + 1) % p->count};
+    for (int k = 0; k < 3; k++) {
+        corner[k] = apex ? around[k] : cut[3 * t + k];
+        at[k] = corner[k] < 0 ? *apex : p->point[corner[k]].at;
+    }
+}
+
+static int triangle_count(const csg_polygon *p, const csg_vec3 *apex)
+{
+    return apex ? p->count : p->count - 2;
 }
 
 /* The gradient that a triangle's sheet has: of a vertex of it that is on no crease. */
@@ -198,17 +204,16 @@ double csg_polygon_distance(csg_sheet_probe *probe, const csg_polygon *p, const 
     float x[MOST], y[MOST], z[MOST], f[MOST];
     size_t n = 0;
     x[0] = y[0] = z[0] = 0;
-    int triangles = apex ? p->count : p->count - 2;
+    int triangles = triangle_count(p, apex);
     double slope = INFINITY;
     for (int i = 0; i < p->count; i++)
         if (!p->is_crease[i])
             slope = fmin(slope, csg_vec3_norm(p->point[i].gradient));
     for (int t = 0; t < triangles; t++) {
-        int corner[3] = {-1, t, (t + 1) % p->count};
-        for (int k = 0; k < 3 && !apex; k++)
-            corner[k] = cut[3 * t + k];
-        csg_vec3 a = corner_of(p, apex, corner[0]), b = corner_of(p, apex, corner[1]),
-                 c = corner_of(p, apex, corner[2]), g = gradient_of(p, corner);
+        int corner[3];
+        csg_vec3 v[3];
+        find_triangle(p, apex, cut, t, corner, v);
+        csg_vec3 a = v[0], b = v[1], c = v[2], g = gradient_of(p, corner);
         csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
         csg_vec3 longest = csg_vec3_sub(b, c);
         double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
@@ -274,19 +279,17 @@ static bool has_all(const cell_work *w, unsigned cell, const csg_cell_box *box,
                     const csg_polygon *p, const csg_vec3 *apex, const uint8_t *cut)
 {
     double tolerance = w->judge->tolerance;
-    int triangles = apex ? p->count : p->count - 2;
+    int triangles = triangle_count(p, apex);
     for (int i = 0; i < w->hunted->count; i++) {
         csg_vec3 at = w->hunted->at[i];
         double nearest = INFINITY, weights[3];
         if (w->hunted->cell[i] != cell || is_near_side(box, at, tolerance))
             continue; /* it may be near a polygon of the next cell */
         for (int t = 0; t < triangles; t++) {
-            int corner[3] = {-1, t, (t + 1) % p->count};
-            for (int k = 0; k < 3 && !apex; k++)
-                corner[k] = cut[3 * t + k];
-            const csg_vec3 v[3] = {corner_of(p, apex, corner[0]), corner_of(p, apex, corner[1]),
-                                   corner_of(p, apex, corner[2])};
-            nearest = fmin(nearest, csg_triangle_nearest(v, at, weights));
+            int corner[3];
+            csg_vec3 v[3];
+            find_triangle(p, apex, cut, t, corner, v);
+            nearest = fmin(nearest, csg_triangle_nearest((const csg_vec3 *)v, at, weights));
         }
         if (nearest > tolerance * tolerance)
             return false;
