@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/plane.h"
+
 enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES };
 
 /* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
@@ -16,22 +18,15 @@ static const double ONE_SHEET = 0.9962, ONE_POLYGON = 0.978;
 static const double MARGIN = 0x1p-9, ZERO = 2e-3;
 static const double OFF[] = {0.25, 0.08, 0.02, 0.005, 0.001};
 enum { STEPS = sizeof OFF / sizeof *OFF };
+/* Of two sheets that meet: sin^2 of 0.2 degrees. */
+static const double LEAST_SINE_SQUARE = 1e-5;
 
-/* Where f would be 0 if it went on as it does at a point: g . x = d. */
-typedef struct plane {
-    csg_vec3 g;
-    double d;
-} plane;
+typedef csg_plane plane;
 
 double csg_gradients_cosine(csg_vec3 a, csg_vec3 b)
 {
     double length = sqrt(csg_vec3_dot(a, a) * csg_vec3_dot(b, b));
     return length > 1e-150 ? csg_vec3_dot(a, b) / length : 1; /* whatever the unit */
-}
-
-static plane plane_at(csg_vec3 at, double f, csg_vec3 g)
-{
-    return (plane){g, csg_vec3_dot(g, at) - f};
 }
 
 /* Values and gradients at a few points. */
@@ -76,19 +71,6 @@ static double way_out(const csg_cell_box *box, csg_vec3 at)
 /* ---- planes meet -------------------------------------------------------------------------------
  */
 
-/* Two planes: the nearest point of their line. */
-static bool meet_two(const plane *p, csg_vec3 *x)
-{
-    double a = csg_vec3_dot(p[0].g, p[0].g), b = csg_vec3_dot(p[0].g, p[1].g);
-    double c = csg_vec3_dot(p[1].g, p[1].g), determinant = a * c - b * b;
-    double r0 = p[0].d - csg_vec3_dot(p[0].g, *x), r1 = p[1].d - csg_vec3_dot(p[1].g, *x);
-    if (!(determinant > 1e-5 * a * c)) /* sin^2 of 0.2 degrees */
-        return false;
-    double s = (c * r0 - b * r1) / determinant, t = (a * r1 - b * r0) / determinant;
-    *x = csg_vec3_add(*x, csg_vec3_add(csg_vec3_scale(p[0].g, s), csg_vec3_scale(p[1].g, t)));
-    return true;
-}
-
 /* Least squares, drawn a little to where x was: what the planes leave open stays (Lindstrom 2000
  * cuts small singular values off instead). */
 static bool meet_many(const plane *p, int count, csg_vec3 *x)
@@ -121,7 +103,8 @@ static bool meet_many(const plane *p, int count, csg_vec3 *x)
 
 static bool meet(const plane *planes, int count, csg_vec3 *x)
 {
-    return count == 2 ? meet_two(planes, x) : meet_many(planes, count, x);
+    return count == 2 ? csg_planes_meet_in_line(planes, LEAST_SINE_SQUARE, x)
+                      : meet_many(planes, count, x);
 }
 
 /* ---- coming closer -----------------------------------------------------------------------------
@@ -167,7 +150,7 @@ static void look(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec
         if (flat_axis >= 0)
             *component(&g[k], flat_axis) = 0;
         if (is_own(s, k, g[k]))
-            s->plane[k] = plane_at(q[k], f[k], g[k]);
+            s->plane[k] = csg_plane_of(q[k], f[k], g[k]);
     }
 }
 
@@ -210,7 +193,7 @@ bool csg_sheets_meet_in_face(csg_sheet_probe *p, const csg_cell_box *face,
     for (int k = 0; k < 2; k++) {
         csg_vec3 g = ends[k].gradient;
         *component(&g, axis) = 0;
-        s.plane[k] = plane_at(ends[k].at, 0, g);
+        s.plane[k] = csg_plane_of(ends[k].at, 0, g);
         s.toward[k] = ends[k].at;
     }
     double slope = csg_vec3_norm(ends[0].gradient);
@@ -267,7 +250,7 @@ static bool gather_sheets(const csg_polygon *polygon, int creases, sheets *s)
         if (polygon->is_crease[v])
             sheet++;
         else if (seen[sheet]++ == members[sheet] / 2)
-            s->plane[sheet] = plane_at(polygon->point[v].at, 0, polygon->point[v].gradient);
+            s->plane[sheet] = csg_plane_of(polygon->point[v].at, 0, polygon->point[v].gradient);
     }
     for (int k = 0; k < creases; k++) {
         if (!members[k])
@@ -320,7 +303,7 @@ static bool find_tip(csg_sheet_probe *p, const csg_cell_box *box, const csg_poly
     int count = 0;
     for (int i = 0; i < polygon->count; i++)
         if (!polygon->is_crease[i])
-            planes[count++] = plane_at(polygon->point[i].at, 0, polygon->point[i].gradient);
+            planes[count++] = csg_plane_of(polygon->point[i].at, 0, polygon->point[i].gradient);
     if (!meet_many(planes, count, at) || way_out(box, *at) > 0)
         return false;
     csg_vec3 kept = keep_within(box, *at, MARGIN * box->cell);

@@ -25,15 +25,16 @@ typedef csg_apex apex;
 static const double REACH = 3, ZERO = 1e-3;
 /* 1 - cos of the angle between sheets next to each other at an apex: 0.8 degrees. */
 static const double LEAST_ANGLE = 1e-4;
+/* Of two planes that meet in a line: sin^2 of 0.6 degrees. */
+static const double LEAST_SINE_SQUARE = 1e-4;
 
 /* ---- planes ------------------------------------------------------------------------------------
  */
 
 csg_plane csg_plane_at(float x, float y, float z, float f, float gx, float gy, float gz)
 {
-    csg_plane p = {.g = {(double)gx, (double)gy, (double)gz}};
-    p.d = csg_vec3_dot(p.g, csg_vec3_make((double)x, (double)y, (double)z)) - (double)f;
-    return p;
+    return csg_plane_of(csg_vec3_make((double)x, (double)y, (double)z), (double)f,
+                        csg_vec3_make((double)gx, (double)gy, (double)gz));
 }
 
 /* Solves the system whose symmetric matrix has the rows m by its adjugate; false where it is all
@@ -50,23 +51,10 @@ static bool solve3(const csg_vec3 m[3], csg_vec3 b, csg_vec3 *s)
     return true;
 }
 
-static bool meet_two(const csg_plane *p, csg_vec3 *x)
-{
-    double a = csg_vec3_dot(p[0].g, p[0].g), b = csg_vec3_dot(p[0].g, p[1].g);
-    double c = csg_vec3_dot(p[1].g, p[1].g);
-    double r0 = p[0].d - csg_vec3_dot(p[0].g, *x), r1 = p[1].d - csg_vec3_dot(p[1].g, *x);
-    double determinant = a * c - b * b;
-    if (!(determinant > 1e-4 * a * c)) /* sin^2 of 0.6 degrees */
-        return false;
-    double s = (c * r0 - b * r1) / determinant, t = (a * r1 - b * r0) / determinant;
-    *x = csg_vec3_add(*x, csg_vec3_add(csg_vec3_scale(p[0].g, s), csg_vec3_scale(p[1].g, t)));
-    return true;
-}
-
 bool csg_planes_meet(const csg_plane *planes, int count, csg_vec3 *x)
 {
     if (count == 2)
-        return meet_two(planes, x);
+        return csg_planes_meet_in_line(planes, LEAST_SINE_SQUARE, x);
     csg_vec3 m[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, b = {0, 0, 0}, s;
     for (int k = 0; k < count; k++) {
         csg_vec3 g = planes[k].g;

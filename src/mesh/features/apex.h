@@ -5,15 +5,11 @@
 #define CSG_MESH_FEATURES_APEX_H
 
 #include "mesh/features/probe.h"
+#include "mesh/plane.h"
 
 enum { CSG_FEATURE_MOST_STARTS = 4 };
 
-/* Where f would be 0 if it went on as it does at a point: g . x = d. */
-typedef struct csg_plane {
-    csg_vec3 g;
-    double d;
-} csg_plane;
-
+/* From the floats of a probe. */
 csg_plane csg_plane_at(float x, float y, float z, float f, float gx, float gy, float gz);
 
 /* Moves x to the point nearest to it where the planes meet: on two, their line; on three and more,

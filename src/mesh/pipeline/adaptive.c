@@ -124,10 +124,8 @@ static csgm_status refine(adaptive *a)
 static csgm_status paint(adaptive *a)
 {
     csgm_mesh *mesh = a->extraction.mesh;
-    const csgm_mesh_options *options = a->input.options;
-    const csg_mesh_share *share = a->input.share;
-    bool materials = options->colors && (share ? share->materials : a->input.field->has_materials);
-    csgm_status status = materials ? csg_mesh_add_materials(mesh) : CSGM_OK;
+    csgm_status status =
+        csg_mesh_gets_materials(&a->input) ? csg_mesh_add_materials(mesh) : CSGM_OK;
     if (status != CSGM_OK || (!mesh->colors && !mesh->materials))
         return status;
     csg_probe probe;
@@ -199,14 +197,12 @@ static csgm_status walk(adaptive *a)
         return status;
     a->bricks.options.coarse = a->bricks.finest - levels;
     a->workers.marching.bricks = &a->bricks;
-    a->extraction = (csg_extraction){
-        .context = context,
-        .watch = &a->watch,
-        .bricks = &a->bricks,
-        .judge = &a->judge,
-        .shift = a->workers.marching.shift,
-        .colors = a->input.options->colors &&
-                  (a->input.share ? a->input.share->colors : csg_mesh_is_colored(a->input.field))};
+    a->extraction = (csg_extraction){.context = context,
+                                     .watch = &a->watch,
+                                     .bricks = &a->bricks,
+                                     .judge = &a->judge,
+                                     .shift = a->workers.marching.shift,
+                                     .colors = csg_mesh_gets_colors(&a->input)};
     status = refine(a);
     a->refined_s = csg_clock_now_s();
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
@@ -249,25 +245,16 @@ static void release(adaptive *a)
     csg_mesh_input_release(&a->input);
 }
 
-/* What is said of a mesh without triangles, or one that the bounds have cut. */
 static void warn_of_result(const adaptive *a)
 {
-    csg_diag_sink *diags = &a->input.context->diags;
-    const csg_mesh_share *share = a->input.share;
-    bool is_empty = !a->extraction.mesh || !a->extraction.mesh->triangle_count;
-    if (is_empty && share)
-        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
-                       "it may lie outside the bounds, or be thinner than the tolerance",
-                       share->name ? "no surface of the part \"%.60s\" was found"
-                                   : "no surface was found of what is in no part%s",
-                       share->name ? share->name : "");
-    else if (is_empty && (a->input.clipped || !csg_box_is_empty(a->input.field->bounds)))
-        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
-                       "the solid may lie outside the bounds, or be thinner than the tolerance",
-                       "no surface was found with a tolerance of %g", a->goal->error);
-    else if (a->input.clipped && touches_bounds(a))
-        csg_diag_plain(diags, CSG_DIAG_CUT_BY_BOUNDS, NULL, NULL,
-                       "the solid reaches out of the bounds: it is cut and capped there");
+    const csg_mesh_fineness tolerance = {
+        "a tolerance",
+        a->goal->error,
+        {"the solid may lie outside the bounds, or be thinner than the tolerance",
+         "it may lie outside the bounds, or be thinner than the tolerance"}};
+    bool is_empty = !a->extraction.mesh->triangle_count;
+    csg_mesh_warn_of_result(&a->input, &tolerance, is_empty,
+                            !is_empty && a->input.clipped && touches_bounds(a));
 }
 
 static csgm_status make_mesh(adaptive *a)
@@ -295,13 +282,7 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
     base.features = CSGM_FEATURES_SMOOTH;
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
                   .goal = goal};
-    csg_mesh_watch_begin(&a.watch, context, &options->monitor,
-                         share ? share->started_s : goal->started_s);
-    a.watch.is_part = share != NULL;
-    if (share) {
-        a.watch.part_before = share->before;
-        a.watch.part_amount = share->amount;
-    }
+    csg_mesh_input_watch(&a.input, goal->started_s, &a.watch);
     csgm_status status = csg_mesh_input_complete(&a.input);
     a.refined_s = csg_clock_now_s();
     if (status == CSGM_OK && csg_box_is_empty(a.input.bounds))

@@ -40,24 +40,16 @@ static bool touches_bounds(const build *b)
                                  box);
 }
 
-static void warn_of_result(build *b)
+static void warn_of_result(const build *b)
 {
-    csg_diag_sink *diags = &b->input.context->diags;
-    if (!b->output.counts.triangle_count && b->input.share)
-        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
-                       "it may lie outside the bounds, or be thinner than a cell: try a higher -r",
-                       b->input.share->name ? "no surface of the part \"%.60s\" was found"
-                                            : "no surface was found of what is in no part%s",
-                       b->input.share->name ? b->input.share->name : "");
-    else if (!b->output.counts.triangle_count &&
-             (b->input.clipped || !csg_box_is_empty(b->input.field->bounds)))
-        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL,
-                       "the solid may lie outside the bounds, or be thinner than a cell: try a "
-                       "higher -r",
-                       "no surface was found with cells of %g", b->input.lattice.cell_size);
-    else if (b->input.clipped && touches_bounds(b))
-        csg_diag_plain(diags, CSG_DIAG_CUT_BY_BOUNDS, NULL, NULL,
-                       "the solid reaches out of the bounds: it is cut and capped there");
+    const csg_mesh_fineness cells = {
+        "cells",
+        b->input.lattice.cell_size,
+        {"the solid may lie outside the bounds, or be thinner than a cell: try a higher -r",
+         "it may lie outside the bounds, or be thinner than a cell: try a higher -r"}};
+    bool is_empty = !b->output.counts.triangle_count;
+    csg_mesh_warn_of_result(&b->input, &cells, is_empty,
+                            !is_empty && b->input.clipped && touches_bounds(b));
 }
 
 static void fill_stats(const build *b, csgm_mesh_stats *stats)
@@ -98,16 +90,7 @@ static void fill_stats(const build *b, csgm_mesh_stats *stats)
 
 static void connect_stages(build *b, csgm_context *context, const csgm_mesh_options *options)
 {
-    const csg_mesh_share *share = b->input.share;
-    csg_mesh_watch_begin(&b->watch, context, &options->monitor,
-                         share     ? share->started_s
-                         : b->goal ? b->goal->started_s
-                                   : 0);
-    b->watch.is_part = share != NULL;
-    if (share) {
-        b->watch.part_before = share->before;
-        b->watch.part_amount = share->amount;
-    }
+    csg_mesh_input_watch(&b->input, b->goal ? b->goal->started_s : 0, &b->watch);
     b->creases = (csg_mesh_creases){.watch = &b->watch,
                                     .workers = &b->workers,
                                     .sharp = options->features == CSGM_FEATURES_SHARP,

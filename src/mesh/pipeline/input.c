@@ -95,3 +95,36 @@ csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds)
     double extent = fmax(size.x, fmax(size.y, size.z));
     return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
 }
+
+/* ---- the whole build ---------------------------------------------------------------------------
+ */
+
+void csg_mesh_input_watch(const csg_mesh_input *in, double started_s, csg_mesh_watch *watch)
+{
+    const csg_mesh_share *share = in->share;
+    csg_mesh_watch_begin(watch, in->context, &in->options->monitor,
+                         share ? share->started_s : started_s);
+    watch->is_part = share != NULL;
+    if (share) {
+        watch->part_before = share->before;
+        watch->part_amount = share->amount;
+    }
+}
+
+void csg_mesh_warn_of_result(const csg_mesh_input *in, const csg_mesh_fineness *fineness,
+                             bool is_empty, bool is_cut)
+{
+    csg_diag_sink *diags = &in->context->diags;
+    const csg_mesh_share *share = in->share;
+    if (is_empty && share)
+        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL, fineness->hints[1],
+                       share->name ? "no surface of the part \"%.60s\" was found"
+                                   : "no surface was found of what is in no part%s",
+                       share->name ? share->name : "");
+    else if (is_empty && (in->clipped || !csg_box_is_empty(in->field->bounds)))
+        csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL, fineness->hints[0],
+                       "no surface was found with %s of %g", fineness->of, fineness->size);
+    else if (!is_empty && in->clipped && is_cut)
+        csg_diag_plain(diags, CSG_DIAG_CUT_BY_BOUNDS, NULL, NULL,
+                       "the solid reaches out of the bounds: it is cut and capped there");
+}

@@ -6,6 +6,7 @@
 
 #include "field/field.h"
 #include "grid/octree/lattice.h"
+#include "mesh/watch.h"
 
 /* What the parts of one mesh have in common, and where in the whole one of them stands. */
 typedef struct csg_mesh_share {
@@ -42,5 +43,32 @@ static inline bool csg_mesh_is_colored(const csgm_field *field)
 {
     return field->has_colors && field->color_count > 1;
 }
+
+/* Whether the mesh gets them: as all parts have it, if there are several. */
+static inline bool csg_mesh_gets_colors(const csg_mesh_input *input)
+{
+    const csg_mesh_share *share = input->share;
+    return input->options->colors && (share ? share->colors : csg_mesh_is_colored(input->field));
+}
+static inline bool csg_mesh_gets_materials(const csg_mesh_input *input)
+{
+    const csg_mesh_share *share = input->share;
+    return input->options->colors && (share ? share->materials : input->field->has_materials);
+}
+
+/* csg_mesh_watch_begin for this input. started_s: of all tries, 0: now; where the mesh has parts,
+ * theirs counts. */
+void csg_mesh_input_watch(const csg_mesh_input *input, double started_s, csg_mesh_watch *watch);
+
+/* How fine a mesh is, as messages say it. */
+typedef struct csg_mesh_fineness {
+    const char *of;       /* "cells" */
+    double size;          /* of them */
+    const char *hints[2]; /* for what may be thinner than that: a whole mesh, a part */
+} csg_mesh_fineness;
+
+/* Warns of a mesh without triangles, or of one that the bounds have cut. */
+void csg_mesh_warn_of_result(const csg_mesh_input *input, const csg_mesh_fineness *fineness,
+                             bool is_empty, bool is_cut);
 
 #endif

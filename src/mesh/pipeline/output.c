@@ -157,15 +157,11 @@ csgm_status csg_mesh_begin_output(csg_mesh_output *o, uint64_t vertex_count,
                                   uint64_t triangle_count)
 {
     const csg_mesh_input *in = o->input;
-    const csg_mesh_share *share = in->share;
-    bool colors = in->options->colors;
-    bool materials = colors && (share ? share->materials : in->field->has_materials);
-    o->counts = (csg_mesh_counts){
-        .vertex_count = vertex_count,
-        .triangle_count = triangle_count,
-        .normals = in->options->normals != CSGM_NORMALS_NONE,
-        .colors = colors && (share ? share->colors : csg_mesh_is_colored(in->field)),
-        .origin = csg_mesh_origin_of(in)};
+    o->counts = (csg_mesh_counts){.vertex_count = vertex_count,
+                                  .triangle_count = triangle_count,
+                                  .normals = in->options->normals != CSGM_NORMALS_NONE,
+                                  .colors = csg_mesh_gets_colors(in),
+                                  .origin = csg_mesh_origin_of(in)};
     if (o->receiver)
         return o->receiver->begin(o->receiver->user, &o->counts);
     csgm_status status = csg_mesh_create(in->context, vertex_count, triangle_count,
@@ -174,7 +170,7 @@ csgm_status csg_mesh_begin_output(csg_mesh_output *o, uint64_t vertex_count,
         o->mesh->origin = o->counts.origin;
         o->mesh->split = o->creases->split;
     }
-    if (status == CSGM_OK && materials)
+    if (status == CSGM_OK && csg_mesh_gets_materials(in))
         status = csg_mesh_add_materials(o->mesh);
     return status;
 }
