@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "text/source.h"
+
 /* Folder `*index` of a list with colons between; counts *index down by what it has. */
 static const char *folder_of_list(const char *list, size_t *index, size_t *length)
 {
@@ -45,4 +47,28 @@ size_t csg_folder_name(const csgm_scene_options *options, size_t index, char *bu
     if (home && *home && index-- == 0)
         return (size_t)snprintf(buffer, size, "%s/%s", home, at_home);
     return index == 0 ? (size_t)snprintf(buffer, size, "%s", for_all) : 0;
+}
+
+const char *csg_folder_try(csg_arena *arena, const char *folder, size_t length, const char *name,
+                           bool *no_memory)
+{
+    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
+    const char *path = csg_arena_printf(arena, "%.*s%s%s", (int)length, folder, slash, name);
+    if (!path)
+        *no_memory = true;
+    return path && csg_source_exists(path) ? path : NULL;
+}
+
+const char *csg_folders_search(csg_arena *arena, const csgm_scene_options *options,
+                               const char *name, bool *no_memory)
+{
+    char folder[4096];
+    const char *found = NULL;
+    size_t length = 0;
+    for (size_t i = 0;
+         !found && !*no_memory && (length = csg_folder_name(options, i, folder, sizeof folder)) > 0;
+         i++)
+        if (length < sizeof folder)
+            found = csg_folder_try(arena, folder, length, name, no_memory);
+    return found;
 }

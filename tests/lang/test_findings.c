@@ -12,32 +12,7 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
-
-static bench b;
-static char folder[64] = "/tmp/csgmesh-lang-XXXXXX";
-
-static const char *path_of(const char *name)
-{
-    static char paths[4][256];
-    static int next;
-    char *path = paths[next++ & 3];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static void write_file(const char *name, const char *text, size_t length)
-{
-    FILE *file = fopen(path_of(name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, length, file), length);
-    assert_int_equal(fclose(file), 0);
-}
-
-static void write_text(const char *name, const char *text)
-{
-    write_file(name, text, strlen(text));
-}
+#include "lang/bench_folder.h"
 
 /* ---- golden text ----------------------------------------------------------------------- */
 
@@ -343,22 +318,6 @@ static void strange_bytes_have_a_place(void **state)
     assert_true(bench_has(&b, -114));
     assert_int_equal(bench_compile(&b, "\xEF\xBB\xBFsphere(1);"), CSGM_OK);
     assert_int_equal(b.code_count, 0);
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    bench_close(&b);
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
 }
 
 int main(void)

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "failing.h"
+#include "lang/bench_failing.h"
 #include "lang/bench_fixture.h"
 #include "shape/plane/drawing.h"
 
@@ -94,29 +94,18 @@ static void plates_and_drawings(void **state)
     assert_non_null(strstr(b.text, "no bounds"));
 }
 
-static void every_allocation_may_fail(void **state)
+static csgm_status draw_flat_scene(bench *poor)
 {
     static const char scene[] = "color(\"red\") square(10); part(\"a\") mirror([1, 1]) circle(5);"
                                 " union(blend = 1) { square(3); circle(2); }";
-    static bench poor;
-    failing f = {0};
-    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
     const csgm_scene_options options = by(CSGM_FLAT_DRAWING);
+    return bench_compile_bytes(poor, scene, strlen(scene), &options);
+}
+
+static void every_allocation_may_fail(void **state)
+{
     (void)state;
-    bench_open(&poor, &allocator);
-    for (long n = 0;; n += n < 300 ? 1 : 1 + n / 40) {
-        f.left = n;
-        csgm_status status = bench_compile_bytes(&poor, scene, strlen(scene), &options);
-        if (f.left >= 0) {
-            assert_int_equal(status, CSGM_OK);
-            break;
-        }
-        if (status != CSGM_ERR_MEMORY)
-            print_error("allocation %ld: status %d\n%s", n, status, poor.text);
-        assert_int_equal(status, CSGM_ERR_MEMORY);
-        assert_int_equal(f.live, 0);
-    }
-    bench_close(&poor);
+    assert_true(bench_fail_every(draw_flat_scene, 300, 40) > 100);
 }
 
 int main(void)

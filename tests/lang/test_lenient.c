@@ -10,21 +10,7 @@
 
 #include <cmocka.h>
 
-#include "lang/support.h"
-
-static bench b;
-static char folder[64] = "/tmp/csgmesh-lenient-XXXXXX";
-
-static const char *write_text(const char *name, const char *text)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-    return path;
-}
+#include "lang/bench_folder.h"
 
 static csgm_scene_options by(csgm_leniency leniency)
 {
@@ -143,22 +129,6 @@ static void none_is_summed_up(void **state)
     b.context.diags.warnings_as_errors = false;
 }
 
-static int open_bench(void **state)
-{
-    (void)state;
-    bench_open(&b, NULL);
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int close_bench(void **state)
-{
-    char command[128];
-    (void)state;
-    bench_close(&b);
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,5 +137,5 @@ int main(void)
         cmocka_unit_test(other_mistakes_stay_errors),
         cmocka_unit_test(none_is_summed_up),
     };
-    return cmocka_run_group_tests(tests, open_bench, close_bench);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

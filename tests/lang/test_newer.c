@@ -2,6 +2,7 @@
  * What OpenSCAD has besides 2021.01, and what it reads off files: bit operators, objects, import()
  * of JSON, measures of letters and of drawings, the level of the language.
  */
+#include <limits.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,25 +11,8 @@
 
 #include <cmocka.h>
 
-#include "failing.h"
-#include "lang/bench_fixture.h"
-
-static char folder[64] = "/tmp/csgmesh-newer-XXXXXX";
-
-static const char *path_of(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    FILE *file = fopen(path_of(name), "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
+#include "lang/bench_failing.h"
+#include "lang/bench_folder.h"
 
 /* Echoes of a scene that stands in the folder. */
 static void check(const char *scene, const char *echo)
@@ -39,6 +23,17 @@ static void check(const char *scene, const char *echo)
         print_error("%s\n%s%s", scene, b.echo, b.text);
     assert_int_equal(status, CSGM_OK);
     assert_string_equal(b.echo, echo);
+}
+
+/* Calls with arguments that warn (W0210) and have no value. */
+static void check_refused(const char *const *calls, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        char scene[128];
+        snprintf(scene, sizeof scene, "echo(%s);", calls[i]);
+        check(scene, "undef\n");
+        assert_true(bench_has(&b, -210));
+    }
 }
 
 static void bits_are_those_of_whole_numbers(void **state)
@@ -80,12 +75,7 @@ static void objects_have_entries(void **state)
     static const char *const refused[] = {"object(3)",          "object([3])",
                                           "object([[1, 2]])",   "object([[\"a\", 1, 2]])",
                                           "has_key([], \"a\")", "has_key(object(), 3)"};
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        char scene[64];
-        snprintf(scene, sizeof scene, "echo(%s);", refused[i]);
-        check(scene, "undef\n");
-        assert_true(bench_has(&b, -210));
-    }
+    check_refused(refused, sizeof refused / sizeof *refused);
     /* the last reference goes, with what it holds */
     check("x = [for (i = [1 : 1000]) object(a = [i], b = object(c = str(i)))]; echo(x[9].b.c);",
           "\"10\"\n");
@@ -147,12 +137,7 @@ static void drawings_are_measured(void **state)
                                           "dxf_dim(file = \"a.dxf\", name = \"other\")",
                                           "dxf_dim()", "dxf_cross(file = \"a.dxf\", layer = \"p\")",
                                           "dxf_cross(file = \"a.dxf\", layer = \"none\")"};
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        char scene[128];
-        snprintf(scene, sizeof scene, "echo(%s);", refused[i]);
-        check(scene, "undef\n");
-        assert_true(bench_has(&b, -210));
-    }
+    check_refused(refused, sizeof refused / sizeof *refused);
     check("import_dxf(\"a.dxf\", layer = \"c\"); dxf_linear_extrude(file = \"a.dxf\", height = 2);",
           "");
 }
@@ -182,44 +167,20 @@ static void the_level_can_be_set(void **state)
     check("assert(version_num() > 20230000);", "");
 }
 
+static csgm_status load_poor_scene(bench *poor)
+{
+    return bench_load(poor, path_of("poor.scad"), NULL);
+}
+
 static void every_allocation_may_fail(void **state)
 {
     static const char scene[] = "o = object(object(a = [1]), [[\"b\", 2], [\"a\"]], c = str(3));\n"
                                 "x = [for (k = o) [k, o[k]]]; d = import(\"a.json\");\n"
                                 "cube(len(x)); fill() square(2);";
-    static bench poor;
-    failing f = {0};
-    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
     (void)state;
     write_text("a.json", "{\"b\": [1, {\"x\": \"y\"}], \"a\": 1}");
     write_text("poor.scad", scene);
-    bench_open(&poor, &allocator);
-    for (long n = 0;; n++) {
-        f.left = n;
-        csgm_status status = bench_load(&poor, path_of("poor.scad"), NULL);
-        if (f.left >= 0) {
-            assert_int_equal(status, CSGM_OK);
-            break;
-        }
-        if (status != CSGM_ERR_MEMORY)
-            print_error("allocation %ld: status %d\n%s", n, status, poor.text);
-        assert_int_equal(status, CSGM_ERR_MEMORY);
-        assert_int_equal(f.live, 0);
-    }
-    bench_close(&poor);
-}
-
-static int make_folder(void **state)
-{
-    return open_bench(state) == 0 && mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    close_bench(state);
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
+    assert_true(bench_fail_every(load_poor_scene, LONG_MAX, 1) > 100);
 }
 
 int main(void)

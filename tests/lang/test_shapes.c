@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "failing.h"
+#include "lang/bench_failing.h"
 #include "lang/bench_fixture.h"
 #include "scene/boxes/bounds.h"
 #include "scene/reference.h"
@@ -540,7 +540,7 @@ static void flat_transforms_keep_the_plane(void **state)
 /* ---- memory ------------------------------------------------------------------------------------
  */
 
-static void every_allocation_may_fail(void **state)
+static csgm_status compile_all_shapes(bench *poor)
 {
     static const char scene[] =
         "linear_extrude(3, twist = 20, scale = 0.5) offset(r = -0.2) union() { square(3);"
@@ -553,29 +553,13 @@ static void every_allocation_may_fail(void **state)
         "linear_extrude(1) projection() rotate([20, 0, 0]) cube(2);\n"
         "translate([9, 0, 0]) { #cube(1); %union() { sphere(1); cube(2); } #circle(1); }\n"
         "shell(0.1) resize([1, 2, 3]) repeat([2, 0, 0], 2) tube([[0,0,0], [1,0,0]], 0.5);\n";
-    static bench poor;
-    failing f = {0};
-    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
-    long failures = 0;
+    return bench_compile(poor, scene);
+}
+
+static void every_allocation_may_fail(void **state)
+{
     (void)state;
-    bench_open(&poor, &allocator);
-    for (long n = 0;; n += n < 100 ? 1 : 1 + n / 60) {
-        f.left = n;
-        csgm_status status = bench_compile(&poor, scene);
-        if (f.left >= 0) {
-            if (status != CSGM_OK)
-                print_error("%s", poor.text);
-            assert_int_equal(status, CSGM_OK);
-            break;
-        }
-        if (status != CSGM_ERR_MEMORY)
-            print_error("allocation %ld: status %d\n%s", n, status, poor.text);
-        assert_int_equal(status, CSGM_ERR_MEMORY);
-        assert_int_equal(f.live, 0);
-        failures++;
-    }
-    bench_close(&poor);
-    assert_true(failures > 100);
+    assert_true(bench_fail_every(compile_all_shapes, 100, 60) > 100);
 }
 
 int main(void)

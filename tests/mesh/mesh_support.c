@@ -130,6 +130,19 @@ void mesh_assert_same(const csgm_mesh *a, const csgm_mesh *b, const char *what)
         fail_msg("%s: colours differ", what);
 }
 
+void mesh_assert_same_by(const mesh_case *a, csg_node_id make(mesh_case *c),
+                         const csgm_mesh_options *options, uint32_t threads, csgm_isa isa)
+{
+    mesh_case b;
+    mesh_case_begin(&b, threads);
+    if (isa != CSGM_ISA_AUTO)
+        b.context.isa = csg_cpu_best_isa(isa);
+    mesh_case_compile(&b, make(&b));
+    mesh_build_closed(&b, options, "threads");
+    mesh_assert_same(a->mesh, b.mesh, "threads");
+    mesh_case_end(&b);
+}
+
 csg_node_id make_sphere(mesh_case *c, double r)
 {
     return csg_build_primitive(&c->builder, CSG_NODE_SPHERE, &r, NOWHERE);

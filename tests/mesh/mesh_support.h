@@ -43,6 +43,9 @@ csg_vec3 mesh_vertex(const mesh_case *c, uint64_t i);
 /* Largest |f| of the reference over the vertices. */
 double mesh_largest_error(const mesh_case *c);
 void mesh_assert_same(const csgm_mesh *a, const csgm_mesh *b, const char *what);
+/* The mesh of the same scene by so many threads and, unless it is AUTO, that instruction set. */
+void mesh_assert_same_by(const mesh_case *a, csg_node_id make(mesh_case *c),
+                         const csgm_mesh_options *options, uint32_t threads, csgm_isa isa);
 
 /* ---- scenes in short ----------------------------------------------------------------------- */
 

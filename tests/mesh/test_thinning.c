@@ -7,7 +7,7 @@
  */
 #include "mesh/mesh_support.h"
 #include "mesh/pipeline/build.h"
-#include "mesh/self_intersections.h"
+#include "mesh/uncrossed.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,17 +20,6 @@ static csgm_mesh_options thinned(uint32_t resolution, double error)
     csgm_mesh_options options = mesh_options(resolution);
     options.simplify_error = error;
     return options;
-}
-
-static void assert_uncrossed(const csgm_mesh *mesh, const char *what)
-{
-#ifdef HAVE_CGAL
-    long long count = test_self_intersections(mesh->positions, mesh->vertex_count, mesh->indices,
-                                              mesh->triangle_count, NULL, 0);
-    if (count)
-        fail_msg("%s: %lld crossings of %llu triangles", what, count,
-                 (unsigned long long)mesh->triangle_count);
-#endif
 }
 
 /* ---- flat faces --------------------------------------------------------------------------------
@@ -100,14 +89,8 @@ static void test_same_for_all_threads(void **state)
     assert_true(a.stats.triangles_before > 30000); /* several cubes */
     assert_true(a.mesh->triangle_count < a.stats.triangles_before / 10);
     assert_uncrossed(a.mesh, "one thread");
-    for (int i = 0; i < 3; i++) {
-        mesh_case b;
-        mesh_case_begin(&b, threads[i]);
-        mesh_case_compile(&b, many_sided(&b));
-        mesh_build_closed(&b, &options, "threads");
-        mesh_assert_same(a.mesh, b.mesh, "threads");
-        mesh_case_end(&b);
-    }
+    for (int i = 0; i < 3; i++)
+        mesh_assert_same_by(&a, many_sided, &options, threads[i], CSGM_ISA_AUTO);
     mesh_case_end(&a);
 }
 

@@ -47,6 +47,17 @@ static inline double number(const char *text)
     return value;
 }
 
+/* Numbers with one character between; how many. */
+static inline int split_numbers(const char *text, double *values)
+{
+    int count = 0;
+    for (char *end; *text; text = *end ? end + 1 : end) {
+        values[count++] = strtod(text, &end);
+        assert_true(end != text);
+    }
+    return count;
+}
+
 static inline csg_vec3 point(const char *text)
 {
     csg_vec3 p;

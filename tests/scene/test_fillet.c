@@ -9,16 +9,6 @@
 
 enum { MOST = 24 };
 
-static int split_numbers(const char *text, double *values)
-{
-    int count = 0;
-    for (char *end; *text; text = *end ? end + 1 : end) {
-        values[count++] = strtod(text, &end);
-        assert_true(end != text);
-    }
-    return count;
-}
-
 /* Operands in their order; returns how many have a gradient. */
 static uint32_t arrange(const double *values, const double *gradients, uint32_t count,
                         csg_fillet_operand *out)

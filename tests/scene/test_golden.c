@@ -49,16 +49,6 @@ static void test_operators(void **state)
     for_each("dekkers", 54, check_operator);
 }
 
-static int split_numbers(const char *text, double *values)
-{
-    int count = 0;
-    for (char *end; *text; text = *end ? end + 1 : end) {
-        values[count++] = strtod(text, &end);
-        assert_true(end != text);
-    }
-    return count;
-}
-
 static void check_round(const row *r)
 {
     double values[8], expected[8], partials[8];

@@ -8,32 +8,18 @@
 #include "text/folders.h"
 #include "text/source.h"
 
-/* folder (up to length) + "/" + name, when it can be read. */
-static const char *try_path(csg_eval *e, const char *folder, size_t length, const char *name)
-{
-    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
-    const char *path =
-        csg_arena_printf(&e->program->arena, "%.*s%s%s", (int)length, folder, slash, name);
-    if (!path)
-        csg_eval_no_memory(e);
-    return path && csg_source_exists(path) ? path : NULL;
-}
-
 static const char *search(csg_eval *e, const char *name, csg_span asking)
 {
     const csg_program *program = e->program;
     const char *from = program->sources.items[asking.source].name;
     const char *slash = strrchr(from, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - from) + 1 : 0;
-    const char *found = try_path(e, from, folder, name);
-    if (name[0] == '/')
-        return found;
-    char where[4096];
-    size_t length = 0;
-    for (size_t i = 0;
-         !found && (length = csg_folder_name(program->options, i, where, sizeof where)) > 0; i++)
-        if (length < sizeof where)
-            found = try_path(e, where, length, name);
+    bool no_memory = false;
+    const char *found = csg_folder_try(&e->program->arena, from, folder, name, &no_memory);
+    if (!found && !no_memory && name[0] != '/')
+        found = csg_folders_search(&e->program->arena, program->options, name, &no_memory);
+    if (no_memory)
+        csg_eval_no_memory(e);
     return found;
 }
 

@@ -13,31 +13,6 @@
 
 /* ---- finding -------------------------------------------------------------------------------- */
 
-/* dir (up to length) + "/" + name, when it can be read; NULL otherwise. */
-static const char *try_path(csg_parser *parser, const char *folder, size_t length, const char *name)
-{
-    const char *path = length ? csg_arena_printf(&parser->program->arena, "%.*s%s%s", (int)length,
-                                                 folder, folder[length - 1] == '/' ? "" : "/", name)
-                              : name;
-    if (!path) {
-        csg_parser_no_memory(parser);
-        return NULL;
-    }
-    return csg_source_exists(path) ? path : NULL;
-}
-
-static const char *search_folders(csg_parser *parser, const char *name)
-{
-    char folder[4096];
-    const char *found = NULL;
-    size_t length = 0;
-    for (size_t i = 0;
-         !found && (length = csg_folder_name(parser->options, i, folder, sizeof folder)) > 0; i++)
-        if (length < sizeof folder)
-            found = try_path(parser, folder, length, name);
-    return found;
-}
-
 /* "BOSL2" of "BOSL2/std.scad", "std.scad" of itself. */
 static const char *library_of(csg_parser *parser, const char *name)
 {
@@ -61,12 +36,16 @@ static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code co
     const char *asking = parser->program->sources.items[parser->source].name;
     const char *slash = strrchr(asking, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - asking) + 1 : 0;
-    const char *found = try_path(parser, asking, folder, name);
+    csg_arena *arena = &parser->program->arena;
+    bool no_memory = false;
+    const char *found = csg_folder_try(arena, asking, folder, name, &no_memory);
     *library = parser->program->sources.items[parser->source].library;
     if (!found && name[0] != '/') {
-        found = search_folders(parser, name);
+        found = csg_folders_search(arena, parser->options, name, &no_memory);
         *library = found ? library_of(parser, name) : NULL;
     }
+    if (no_memory)
+        csg_parser_no_memory(parser);
     if (!found && !parser->stop) {
         bool is_lenient = csg_source_is_lenient(&parser->program->sources, code, path);
         csg_source_report(
