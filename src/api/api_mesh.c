@@ -100,7 +100,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     options = &joined;
     write_options = &own;
     bool streams =
-        csg_mesh_can_stream(field, options) && csg_stream_is_possible(path, format, write_options);
+        csg_mesh_can_stream(field, options) &&
+        csg_stream_is_possible(path, format, csg_mesh_distance(field, options), write_options);
     csgm_status status = (streams ? stream_file : build_and_write)(
         context, field, options, path, format, write_options, &made, stats ? stats : &ignored);
     if (counts) {

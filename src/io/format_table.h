@@ -30,6 +30,10 @@ const csg_format_row *csg_format_find(csgm_format format);
 /* The row whose files begin as these bytes do, or NULL. */
 const csg_format_row *csg_format_recognise(const uint8_t *bytes, size_t size_bytes);
 
+/* May the format put vertices together of a mesh with an origin so many times its size from zero?
+ * (0: it has none. Its floats are kept by all formats but Draco's, which rounds by itself.) */
+bool csg_format_rounds(const csg_format_row *row, double distance);
+
 /* Reports why this build cannot write (or read) files of the format: it is never done, or a library
  * is missing. CSGM_OK, or CSGM_ERR_UNSUPPORTED. */
 csgm_status csg_format_check(csgm_context *context, const char *file, const csg_format_row *row,

@@ -134,6 +134,16 @@ csgm_status csg_format_no_library(csgm_context *context, const char *file, const
     return CSGM_ERR_UNSUPPORTED;
 }
 
+/* glTF has the origin as a matrix. Doubles are 2^29 times as fine as the mesh's own floats: they
+ * may join what lies much nearer to each other than a float's step, as sharp features do. */
+bool csg_format_rounds(const csg_format_row *row, double distance)
+{
+    const double far = 0x1p18;
+    if (row->traits & CSGM_HEEDS_UP)
+        return false;
+    return distance > (row->traits & CSGM_KEEPS_DOUBLES ? far : 0);
+}
+
 csgm_status csg_format_check(csgm_context *context, const char *file, const csg_format_row *row,
                              bool for_reading)
 {

@@ -33,18 +33,18 @@ static csg_stream *stream_of(csg_stream_view *view)
     return (csg_stream *)view;
 }
 
-/* The kind of the format's row, NULL where it has none. */
-static const csg_stream_kind *kind_of(const char *path, csgm_format format)
+static const csg_format_row *row_of(const char *path, csgm_format format)
 {
-    const csg_format_row *row =
-        csg_format_find(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format);
-    return row ? row->stream : NULL;
+    return csg_format_find(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format);
 }
 
-bool csg_stream_is_possible(const char *path, csgm_format format, const csgm_write_options *options)
+bool csg_stream_is_possible(const char *path, csgm_format format, double distance,
+                            const csgm_write_options *options)
 {
-    const csg_stream_kind *kind = kind_of(path, format);
-    if (!kind || !kind->is_possible(options))
+    const csg_format_row *row = row_of(path, format);
+    if (!row || !row->stream || !row->stream->is_possible(options))
+        return false;
+    if (csg_format_rounds(row, distance))
         return false;
     struct stat target;
     return stat(path, &target) != 0 ? errno == ENOENT : S_ISREG(target.st_mode);
@@ -169,7 +169,7 @@ csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_form
         return csg_context_no_memory(context);
     *s = (csg_stream){
         .view = {.context = context, .path = path, .options = *options, .worker_count = workers},
-        .kind = kind_of(path, format)};
+        .kind = row_of(path, format)->stream};
     s->buffers = allocate_zeros(memory, workers * sizeof *s->buffers);
     s->view.workers = allocate_zeros(memory, workers * s->kind->worker_bytes);
     s->view.state = allocate_zeros(memory, s->kind->state_bytes);

@@ -11,8 +11,9 @@
 
 typedef struct csg_stream csg_stream;
 
-/* Binary PLY and STL, and GLB without Draco, to a regular file or one that does not exist yet. */
-bool csg_stream_is_possible(const char *path, csgm_format format,
+/* Binary PLY and STL, and GLB without Draco, to a regular file or one that does not exist yet.
+ * distance: csg_mesh_distance; what rounding could join is looked at as a whole mesh. */
+bool csg_stream_is_possible(const char *path, csgm_format format, double distance,
                             const csgm_write_options *options);
 
 /* workers: run.worker stays below. Failures are reported, as everywhere below. */

@@ -2,16 +2,19 @@
  * Writing a mesh: arguments and mesh are checked, the format's writer fills a sink, and the file
  * takes its name only when all of it is on disk.
  */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/geometry.h"
 #include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/file.h"
 #include "io/format_table.h"
 #include "io/formats.h"
 #include "io/parts.h"
+#include "io/rounding.h"
 #include "mesh/weld.h"
 
 csgm_write_options csg_write_options_default(void)
@@ -152,19 +155,48 @@ static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int f
     return status;
 }
 
+/* How many times its own size the mesh lies from zero, where it has an origin. */
+static double distance_of(const csgm_mesh_view *mesh)
+{
+    float size = FLT_MIN;
+    if (!csg_view_is_offset(mesh))
+        return 0;
+    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++)
+        size = fmaxf(size, fabsf(mesh->positions[i]));
+    return csg_vec3_norm(mesh->origin) / (double)size;
+}
+
+static csgm_status fill_rounded(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                                const char *name, const csg_format_row *row,
+                                const csgm_write_options *options)
+{
+    csg_rounding rounding = {.kind = CSG_ROUND_FLOAT};
+    csg_rounded rounded;
+    if (row->traits & CSGM_KEEPS_DOUBLES)
+        rounding.kind = CSG_ROUND_DOUBLE;
+    if (!csg_format_rounds(row, distance_of(mesh)))
+        return fill(context, mesh, fd, name, row, options);
+    csgm_status status = csg_round_mesh(context, mesh, &rounding, name, row->title, &rounded);
+    if (status)
+        return status;
+    status = fill(context, &rounded.mesh, fd, name, row, options);
+    csg_rounded_release(context, &rounded);
+    return status;
+}
+
 /* Formats that keep creases have a vertex for each sheet there, for the others they are joined. */
 static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                const char *name, const csg_format_row *row,
                                const csgm_write_options *options)
 {
     if (!mesh->split || row->traits & CSGM_KEEPS_CREASES)
-        return fill(context, mesh, fd, name, row, options);
+        return fill_rounded(context, mesh, fd, name, row, options);
     csgm_mesh *joined;
     csgm_status status = csg_weld_runs(context, mesh, &joined);
     if (status)
         return status;
     csgm_mesh_view view = csg_mesh_view(joined);
-    status = fill(context, &view, fd, name, row, options);
+    status = fill_rounded(context, &view, fd, name, row, options);
     csg_mesh_destroy(joined);
     return status;
 }

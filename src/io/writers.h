@@ -34,12 +34,11 @@ size_t csg_ply_vertex_bytes(const csgm_mesh_view *mesh);
 void csg_ply_pack_vertices(uint8_t *at, const csgm_mesh_view *mesh, uint64_t first, uint64_t count);
 void csg_ply_pack_faces(uint8_t *at, const uint32_t *indices, uint64_t count);
 
-/* Binary STL in pieces: 9 floats per triangle, relative to the origin. */
+/* Binary STL in pieces: 9 floats per triangle. */
 enum { CSG_STL_HEAD_BYTES = 84, CSG_STL_FACET_BYTES = 50 };
 csgm_status csg_stl_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh);
 void csg_stl_pack_head(uint8_t head[CSG_STL_HEAD_BYTES], uint64_t triangle_count);
-void csg_stl_pack_corners(uint8_t *at, const csgm_vec3 *origin, const float *corners,
-                          uint64_t count);
+void csg_stl_pack_corners(uint8_t *at, const float *corners, uint64_t count);
 
 /* Reports why this mesh cannot be written in this format. */
 csgm_status csg_write_refuse(csg_sink *sink, const char *hint, const char *format, ...)

@@ -130,8 +130,9 @@ class Statistics(cli.CliTest):
                        "unresolved_cells"],
             "features": ["vertices", "left_smooth", "fading"],
             "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
-                     "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices", "area",
-                     "volume", "bounds"],
+                     "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices",
+                     "degenerate_triangles", "zero_area_triangles", "closed", "area", "volume", "bounds"],
+            "files": None,
             "quality": ["max_abs_field", "vertices_measured", "min_angle_deg", "max_aspect",
                         "degenerate"],
             "time_s": ["parse", "evaluate", "compile", "octree", "mesh", "write", "total"],
@@ -156,6 +157,29 @@ class Statistics(cli.CliTest):
         for key in ("vertices", "triangles", "euler", "genus", "components"):
             self.assertEqual(mesh[key], stats[key])
         self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
+
+
+    def test_files(self):
+        """Each file as it is read back: what rounding and quantising have made of the mesh."""
+        self.write("far.txt", "translate([5000, 5000, 5000]) union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); }\n")
+        files = self.stats("far.txt", "-o", "a.stl", "-o", "a.ply", "-o", "a.drc")["files"]
+        self.assertEqual([file["name"] for file in files], ["a.stl", "a.ply", "a.drc"])
+        for file in files:
+            self.assertTrue(file["closed"], file["name"])
+            self.assertEqual((file["degenerate_triangles"], file["zero_area_triangles"]), (0, 0), file["name"])
+            self.assertEqual(file["triangles"], files[1]["triangles"])
+            self.assertEqual(self.info(file["name"])["mesh"]["area"], file["area"])
+        self.assertNotEqual(files[0]["area"], files[1]["area"])  # floats are 0.0005 apart there
+        self.assert_status(self.run_in("far.txt", "-o", "b.stl"), 0)  # streamed or not: the same bytes
+        self.assertEqual(self.read("a.stl"), self.read("b.stl"))
+
+    def test_too_far(self):
+        self.write("far.txt", "translate([1e10, 0, 0]) sphere(1);\n")
+        result = self.run_in("far.txt", "-o", "a.stl")
+        self.assert_status(result, 2)
+        self.assertIn("a.stl: error E0505: STL has floats in steps of 1.02e+03 near (1e+10, ", result.stderr)
+        self.assert_files("far.txt")
+        self.assert_status(self.run_in("far.txt", "-o", "a.ply"), 0)
 
 
 class Dependencies(cli.CliTest):

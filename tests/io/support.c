@@ -144,7 +144,7 @@ csgm_mesh *io_shape_make(csgm_context *context, io_shape shape)
         return io_sphere_make(context, 40, 26);
     case IO_FAR:
         mesh = io_sphere_make(context, 40, 26);
-        mesh->origin = (csgm_vec3){1e7, -2e7, 3e7};
+        mesh->origin = (csgm_vec3){1e5, -2e5, 3e5};
         return mesh;
     case IO_PARTS:
         return parts_make(context);

@@ -30,7 +30,7 @@ typedef enum io_shape {
     IO_CUBE,
     IO_SPHERE, /* about 2000 triangles, normals, colours */
     IO_EMPTY,
-    IO_FAR,       /* the sphere around (1e7, -2e7, 3e7) */
+    IO_FAR,       /* the sphere around (1e5, -2e5, 3e5) */
     IO_TWO_CUBES, /* sharing one edge: not a manifold */
     IO_PARTS,     /* a sphere without a name, two with; materials: one, mixed, another */
     IO_SHAPES

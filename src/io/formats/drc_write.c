@@ -4,6 +4,7 @@
  * Bare files keep sRGB colours; glTF hands in linear ones.
  */
 #include "base/mesh_codes.h"
+#include "io/rounding.h"
 #include "io/writers.h"
 
 csgm_status csg_write_draco(csg_sink *sink, const csgm_mesh_view *mesh,
@@ -44,32 +45,35 @@ static uint8_t snap(uint8_t value, uint32_t bits)
     return (uint8_t)((step * 510 + steps) / (2 * steps));
 }
 
-/* The whole mesh around the file's own origin, rounded to its floats; colours snapped. */
-typedef struct scratch {
-    float *positions;
-    uint8_t *colors;
-    size_t position_bytes, color_bytes;
-} scratch;
-
-static bool fill(scratch *s, csg_memory *memory, const csgm_mesh_view *mesh, uint32_t bits)
+static csgm_status compress(csg_sink *sink, const csgm_mesh_view *mesh, const uint8_t *bytes,
+                            const csgm_write_options *options)
 {
-    *s = (scratch){.position_bytes = 12 * (size_t)mesh->vertex_count,
-                   .color_bytes = 4 * (size_t)mesh->vertex_count};
-    if (csg_view_is_offset(mesh)) {
-        s->positions = csg_memory_alloc(memory, s->position_bytes);
-        if (!s->positions)
-            return false;
-        for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++)
-            s->positions[i] = (float)csg_view_coordinate(mesh, i / 3, (int)(i % 3));
-    }
-    if (mesh->colors && bits < 8) {
-        s->colors = csg_memory_alloc(memory, s->color_bytes);
-        if (!s->colors)
-            return false;
-        for (uint64_t i = 0; i < 4 * mesh->vertex_count; i++)
-            s->colors[i] = snap(mesh->colors[i], bits);
-    }
-    return true;
+    csg_draco_mesh colors = {.colors = bytes, .color_bytes = 1};
+    csg_draco_encoded encoded;
+    csgm_status status = csg_write_draco(sink, mesh, &colors, options, &encoded);
+    if (status)
+        return status;
+    csg_sink_put(sink, encoded.bytes, encoded.size_bytes);
+    csg_draco_release(&encoded);
+    return CSGM_OK;
+}
+
+/* With colours of fewer bits where they are asked for. */
+static csgm_status compress_snapped(csg_sink *sink, const csgm_mesh_view *mesh,
+                                    const csgm_write_options *options)
+{
+    uint32_t bits = options->draco_color_bits;
+    if (!mesh->colors || bits >= 8)
+        return compress(sink, mesh, mesh->colors, options);
+    size_t color_bytes = 4 * (size_t)mesh->vertex_count;
+    uint8_t *colors = csg_memory_alloc(&sink->context->memory, color_bytes);
+    if (!colors)
+        return csg_context_no_memory(sink->context);
+    for (size_t i = 0; i < color_bytes; i++)
+        colors[i] = snap(mesh->colors[i], bits);
+    csgm_status status = compress(sink, mesh, colors, options);
+    csg_memory_release(&sink->context->memory, colors, color_bytes);
+    return status;
 }
 
 csgm_status csg_drc_write(csg_sink *sink, const csgm_mesh_view *mesh,
@@ -78,23 +82,12 @@ csgm_status csg_drc_write(csg_sink *sink, const csgm_mesh_view *mesh,
     if (!mesh->triangle_count)
         return csg_write_refuse(sink, "write PLY or GLB, which can be empty",
                                 "Draco cannot hold a mesh without triangles");
-    csg_memory *memory = &sink->context->memory;
-    scratch s;
-    csgm_status status = CSGM_ERR_MEMORY;
-    if (!fill(&s, memory, mesh, options->draco_color_bits)) {
-        csg_context_no_memory(sink->context);
-    } else {
-        csgm_mesh_view moved = *mesh;
-        moved.positions = s.positions ? s.positions : mesh->positions;
-        csg_draco_mesh colors = {.colors = s.colors ? s.colors : mesh->colors, .color_bytes = 1};
-        csg_draco_encoded encoded;
-        status = csg_write_draco(sink, &moved, &colors, options, &encoded);
-        if (!status) {
-            csg_sink_put(sink, encoded.bytes, encoded.size_bytes);
-            csg_draco_release(&encoded);
-        }
-    }
-    csg_memory_release(memory, s.positions, s.position_bytes);
-    csg_memory_release(memory, s.colors, s.color_bytes);
+    csg_rounding grid = csg_rounding_of_draco(mesh, options->draco_position_bits, false);
+    csg_rounded rounded;
+    csgm_status status = csg_round_mesh(sink->context, mesh, &grid, sink->name, "Draco", &rounded);
+    if (status)
+        return status;
+    status = compress_snapped(sink, &rounded.mesh, options);
+    csg_rounded_release(sink->context, &rounded);
     return status;
 }

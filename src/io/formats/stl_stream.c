@@ -25,7 +25,7 @@ static bool put_run(csg_stream_view *s, const csg_mesh_run *run)
     uint8_t *bytes = csg_stream_room(s, run->worker, count);
     if (!bytes)
         return false;
-    csg_stl_pack_corners(bytes, &s->mesh.origin, run->corners, run->triangle_count);
+    csg_stl_pack_corners(bytes, run->corners, run->triangle_count);
     return csg_stream_write_at(s, bytes, count,
                                CSG_STL_HEAD_BYTES + run->first_triangle * CSG_STL_FACET_BYTES);
 }

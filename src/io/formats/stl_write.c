@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Mesh -> STL: triangles with their own corners, binary (80 bytes of header that must not begin
- * with "solid", a count, 50 bytes per triangle) or ASCII. STL holds floats only, so an origin is
- * added and rounded; it has no vertex normals and no colours. Written directly: OpenMesh takes
- * several times as long (README.md).
+ * with "solid", a count, 50 bytes per triangle) or ASCII. STL holds floats only, so what comes here
+ * has no origin (rounding.h); it has no vertex normals and no colours. Written directly: OpenMesh
+ * takes several times as long (README.md).
  */
 #include <math.h>
 #include <stdio.h>
@@ -29,13 +29,11 @@ static void face_normal(facet *f)
         f->normal[k] = length > 0 && isfinite(length) ? (float)(n[k] / length) : 0;
 }
 
-static void load_facet(facet *f, const csgm_mesh_view *mesh, uint64_t triangle, bool offset)
+static void load_facet(facet *f, const csgm_mesh_view *mesh, uint64_t triangle)
 {
     for (int c = 0; c < 3; c++) {
         uint64_t vertex = mesh->indices[3 * triangle + (uint64_t)c];
-        const float *position = mesh->positions + 3 * vertex;
-        for (int k = 0; k < 3; k++)
-            f->corner[c][k] = offset ? (float)csg_view_coordinate(mesh, vertex, k) : position[k];
+        memcpy(f->corner[c], mesh->positions + 3 * vertex, sizeof f->corner[c]);
     }
     face_normal(f);
 }
@@ -66,16 +64,11 @@ static uint8_t *pack_facet(uint8_t *at, const facet *f)
     return csg_store_u16(at, 0);
 }
 
-void csg_stl_pack_corners(uint8_t *at, const csgm_vec3 *origin, const float *corners,
-                          uint64_t count)
+void csg_stl_pack_corners(uint8_t *at, const float *corners, uint64_t count)
 {
-    const double shift[3] = {origin->x, origin->y, origin->z};
-    bool offset = origin->x != 0 || origin->y != 0 || origin->z != 0;
     facet f;
     for (uint64_t i = 0; i < count; i++, corners += 9) {
-        for (int k = 0; k < 9; k++)
-            f.corner[k / 3][k % 3] =
-                offset ? (float)(shift[k % 3] + (double)corners[k]) : corners[k];
+        memcpy(f.corner, corners, sizeof f.corner);
         face_normal(&f);
         at = pack_facet(at, &f);
     }
@@ -86,10 +79,9 @@ static void put_binary(csg_sink *sink, const csgm_mesh_view *mesh)
     uint8_t head[CSG_STL_HEAD_BYTES];
     csg_stl_pack_head(head, mesh->triangle_count);
     csg_sink_put(sink, head, sizeof head);
-    bool offset = csg_view_is_offset(mesh);
     facet f;
     for (uint64_t i = 0; i < mesh->triangle_count; i++) {
-        load_facet(&f, mesh, i, offset);
+        load_facet(&f, mesh, i);
         csg_sink_took(sink, pack_facet(csg_sink_room(sink, CSG_STL_FACET_BYTES), &f));
     }
 }
@@ -109,11 +101,10 @@ static char *put_triple(char *at, const char *word, const float *value)
 
 static void put_ascii(csg_sink *sink, const csgm_mesh_view *mesh)
 {
-    bool offset = csg_view_is_offset(mesh);
     facet f;
     csg_sink_text(sink, "solid csgmesh\n");
     for (uint64_t i = 0; i < mesh->triangle_count; i++) {
-        load_facet(&f, mesh, i, offset);
+        load_facet(&f, mesh, i);
         char *at = (char *)csg_sink_room(sink, 1024);
         at = put_triple(at, "facet normal", f.normal);
         csg_sink_took(sink, at);

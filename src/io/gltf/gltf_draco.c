@@ -6,6 +6,7 @@
 
 #include "io/color.h"
 #include "io/gltf/gltf_layout.h"
+#include "io/rounding.h"
 
 /* What the encoder gets of a part: its own arrays, from memory. */
 typedef struct extract {
@@ -99,38 +100,39 @@ static csgm_status compress_part(csg_sink *sink, const csg_gltf_layout *layout, 
     return status;
 }
 
-/* One grid for all parts, so that faces that met still meet: the low corner and the longest side.
- */
-static void common_grid(const csg_gltf_layout *layout, float grid[4])
+static csgm_status compress_parts(csg_sink *sink, csg_gltf_layout *layout, csg_gltf_part *parts,
+                                  const csgm_mesh_view *mesh, const csgm_write_options *options,
+                                  const csg_rounding *rounding)
 {
-    float high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (int k = 0; k < 3; k++)
-        grid[k] = INFINITY;
-    grid[3] = 0;
-    for (uint64_t i = 0; i < layout->part_count; i++)
-        for (int k = 0; k < 3; k++) {
-            grid[k] = fminf(grid[k], layout->parts[i].min[k]);
-            high[k] = fmaxf(high[k], layout->parts[i].max[k]);
-        }
-    for (int k = 0; k < 3; k++)
-        grid[3] = fmaxf(grid[3], high[k] - grid[k]);
-}
-
-csgm_status csg_gltf_compress(csg_sink *sink, csg_gltf_layout *layout, csg_gltf_part *parts,
-                              const csgm_mesh_view *mesh, const csgm_write_options *options)
-{
-    float grid[4];
+    const float grid[4] = {rounding->low[0], rounding->low[1], rounding->low[2], rounding->range};
     csgm_status status = CSGM_OK;
-    bool several = layout->part_count > 1;
-    common_grid(layout, grid);
     layout->compressed = layout->short_indices = true;
     layout->wide_colors = options->draco_color_bits > 8;
     layout->buffer_bytes = layout->image_bytes;
     for (uint64_t i = 0; i < layout->part_count && !status; i++) {
         parts[i].draco_at = layout->buffer_bytes - layout->image_bytes;
-        status = compress_part(sink, layout, &parts[i], mesh, options, several ? grid : NULL);
+        status =
+            compress_part(sink, layout, &parts[i], mesh, options, rounding->is_told ? grid : NULL);
         layout->buffer_bytes += ((uint64_t)parts[i].draco.size_bytes + 3) & ~(uint64_t)3;
         layout->short_indices &= parts[i].vertex_count <= UINT16_MAX;
     }
+    return status;
+}
+
+/* One grid for all parts, so that faces that met still meet. */
+csgm_status csg_gltf_compress(csg_sink *sink, csg_gltf_layout *layout, csg_gltf_part *parts,
+                              const csgm_mesh_view *mesh, const csgm_write_options *options)
+{
+    csgm_mesh_view local = *mesh;
+    local.origin = (csgm_vec3){0, 0, 0}; /* it is in the node's matrix */
+    csg_rounding grid =
+        csg_rounding_of_draco(&local, options->draco_position_bits, layout->part_count > 1);
+    csg_rounded rounded;
+    csgm_status status =
+        csg_round_mesh(sink->context, &local, &grid, sink->name, "Draco", &rounded);
+    if (status)
+        return status;
+    status = compress_parts(sink, layout, parts, &rounded.mesh, options, &grid);
+    csg_rounded_release(sink->context, &rounded);
     return status;
 }

@@ -5,6 +5,7 @@
  */
 #include "mesh/pipeline/parts.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -201,4 +202,13 @@ bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *optio
 {
     return !field->part_count && !(field->has_materials && options->colors) &&
            !csg_mesh_is_reshaped(options);
+}
+
+double csg_mesh_distance(const csgm_field *field, const csgm_mesh_options *options)
+{
+    csg_box bounds = csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
+    if (csg_box_is_empty(bounds) || !csg_box_is_finite(bounds))
+        return 0;
+    csg_vec3 size = csg_box_size(bounds), origin = csg_mesh_origin(field->center, bounds);
+    return csg_vec3_norm(origin) / fmax(size.x, fmax(size.y, size.z));
 }

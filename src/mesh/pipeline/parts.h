@@ -14,5 +14,8 @@ csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
 
 /* Whether csg_mesh_stream makes the same mesh. */
 bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *options);
+/* How many times its size a mesh with an origin of its own will be from that of the scene, 0: it
+ * has none. (Of a field that can be streamed.) */
+double csg_mesh_distance(const csgm_field *field, const csgm_mesh_options *options);
 
 #endif

@@ -33,6 +33,9 @@ void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_
     cli_json_count(json, "nonmanifold_edges", check->nonmanifold_edges);
     cli_json_count(json, "misoriented_edges", check->misoriented_edges);
     cli_json_count(json, "nonmanifold_vertices", check->nonmanifold_vertices);
+    cli_json_count(json, "degenerate_triangles", check->degenerate_triangles);
+    cli_json_count(json, "zero_area_triangles", check->zero_area_triangles);
+    cli_json_bool(json, "closed", is_closed(check));
     cli_json_number(json, "area", check->area);
     cli_json_number(json, "volume", check->volume);
     cli_json_box(json, "bounds", check->bounds);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include "core/facts.h"
 #include "core/textfile.h"
@@ -103,8 +104,29 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
     cli_json_end(json, '}');
 }
 
-static void put_statistics(FILE *out, const cli_app *app, const cli_work *work,
-                           const run_report *report)
+/* What each file holds, by reading it: formats round, weld and split. */
+static void put_file(cli_json *json, cli_app *app, size_t index)
+{
+    const char *path = app->options.outputs.items[index];
+    csgm_format format = cli_outputs_format(&app->options, index);
+    csgm_mesh *mesh;
+    csgm_mesh_check check;
+    struct stat info;
+    if (strcmp(path, "-") == 0 || !csgm_format_available(format, true) || stat(path, &info) != 0 ||
+        !S_ISREG(info.st_mode) || csgm_mesh_read(app->context, path, format, &mesh) != CSGM_OK)
+        return;
+    csgm_mesh_view view = csgm_mesh_get_view(mesh);
+    if (csgm_mesh_inspect(app->context, &view, &check) == CSGM_OK) {
+        cli_json_open(json, NULL, '{');
+        cli_json_string(json, "name", path);
+        cli_json_string(json, "format", csgm_format_name(format));
+        cli_facts_mesh_json(json, &view, &check);
+        cli_json_end(json, '}');
+    }
+    csgm_mesh_destroy(mesh);
+}
+
+static void put_statistics(FILE *out, cli_app *app, const cli_work *work, const run_report *report)
 {
     cli_json json = cli_json_make(out, true);
     cli_json_begin(&json, '{');
@@ -114,6 +136,10 @@ static void put_statistics(FILE *out, const cli_app *app, const cli_work *work,
     cli_json_end(&json, '}');
     put_work(&json, work);
     put_results(&json, work, report);
+    cli_json_open(&json, "files", '[');
+    for (size_t i = 0; i < app->options.outputs.count; i++)
+        put_file(&json, app, i);
+    cli_json_end(&json, ']');
     cli_json_count(&json, "peak_rss_bytes", report->peak_rss_bytes);
     cli_json_count(&json, "threads", csgm_context_threads(app->context));
     cli_json_string(&json, "simd", csgm_context_isa(app->context));
