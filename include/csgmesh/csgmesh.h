@@ -733,6 +733,11 @@ CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_fiel
  * STL corners with equal position bits become one vertex. */
 CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
                                     csgm_mesh **out);
+/* The mesh as a file of this format gives it back: rounded, welded or split, and without what the
+ * format does not keep. */
+CSGM_API csgm_status csgm_mesh_as_file(csgm_context *context, const csgm_mesh_view *mesh,
+                                       csgm_format format, const csgm_write_options *options,
+                                       csgm_mesh **out);
 
 /* ---- pictures ---------------------------------------------------------------------- */
 

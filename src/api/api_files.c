@@ -66,6 +66,19 @@ csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh
     return csg_io_write_fd(context, mesh, fd, name, format, &own);
 }
 
+csgm_status csgm_mesh_as_file(csgm_context *context, const csgm_mesh_view *mesh, csgm_format format,
+                              const csgm_write_options *options, csgm_mesh **out)
+{
+    csgm_write_options own = csgm_write_options_default();
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || !csg_view_is_sound(mesh) || format == CSGM_FORMAT_AUTO ||
+        format >= CSGM_FORMAT_COUNT || !csg_options_adopt(&own, sizeof own, options))
+        return CSGM_ERR_ARGUMENT;
+    return csg_io_as_file(context, mesh, format, &own, out);
+}
+
 csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
                            csgm_mesh **out)
 {

@@ -63,7 +63,7 @@ static void set_tolerance(comparison *c)
     double relative = o->tolerance_relative > 0 ? o->tolerance_relative * diagonal : 0;
     r->tolerance = fmax(o->tolerance, relative);
     r->precision = to_scene(c, pair->precision);
-    c->limit = r->tolerance * pair->frame.scale + pair->precision;
+    c->limit = fmax(r->tolerance * pair->frame.scale, pair->precision);
     r->is_turned = pair->sides[1].turn != CSG_DIFF_AS_IT_IS;
     r->turn = (int)pair->sides[1].turn;
     c->counts_all =
@@ -96,9 +96,11 @@ static void set_first_place(comparison *c, const csg_diff_maximum *search, csgm_
 static void take_maximum(comparison *c, const csg_diff_maximum *search, csgm_diff_distance *out)
 {
     out->is_measured = true;
-    out->is_refined = search->is_refined;
     out->lower = to_scene(c, fmax(0, search->lower - c->slack));
     out->upper = to_scene(c, search->upper + c->slack);
+    out->is_refined = search->is_refined &&
+                      (out->upper <= 1.01 * out->lower || out->upper <= to_scene(c, c->limit) ||
+                       search->upper <= search->floor);
     set_first_place(c, search, out);
 }
 
@@ -290,6 +292,15 @@ static uint32_t reasons_of(const comparison *c)
     return reasons;
 }
 
+/* What counts is not told from nothing: neither is anything known to count. */
+static bool is_uncounted(const comparison *c)
+{
+    const csgm_diff_report *r = c->report;
+    double most = fmax(r->distance[0].upper, r->distance[1].upper);
+    return r->counted.lower <= to_scene(c, c->limit) &&
+           r->counted.upper <= 1.01 * COUNTED_FLOOR * most + to_scene(c, c->slack);
+}
+
 static void judge(comparison *c)
 {
     csgm_diff_report *r = c->report;
@@ -298,7 +309,8 @@ static void judge(comparison *c)
         r->hausdorff_lower = fmax(r->hausdorff_lower, r->distance[i].lower);
         r->hausdorff_upper = fmax(r->hausdorff_upper, r->distance[i].upper);
     }
-    bool is_within = c->counts_all ? r->hausdorff_upper <= limit : r->counted.lower <= limit;
+    bool is_within =
+        c->counts_all ? r->hausdorff_upper <= limit : r->counted.upper <= limit || is_uncounted(c);
     if (c->same)
         r->level = CSGM_DIFF_SAME_TRIANGLES;
     else if (is_within && !c->is_empty[0] && !c->is_empty[1])

@@ -26,8 +26,9 @@ enum {
 };
 /* Cuts of one search: minutes; real meshes need a few for each triangle. */
 static const uint64_t CUTS_MOST = (uint64_t)1 << 27;
-/* Relative width that is aimed at; a little less than the 1 % that is promised. */
-static const double WIDTH = 0.009;
+/* Relative width that is aimed at; a little less than the 1 % that is promised. And how near to the
+ * tolerance a maximum is settled: nearer, it would take minutes where much is equally far. */
+static const double WIDTH = 0.009, NEAR_TOLERANCE = 1e-4;
 
 typedef struct outcome {
     double lower, upper; /* upper: of what needs no more cuts */
@@ -55,7 +56,10 @@ typedef struct engine {
 static double target_of(const engine *e, double lower)
 {
     double target = fmax(lower * (1 + WIDTH), lower + 0.5 * e->pair->precision);
-    return fmax(target, fmax(e->search->tolerance, e->search->floor));
+    double tolerance = e->search->tolerance;
+    if (lower <= tolerance) /* on which side of it the maximum lies is the question */
+        target = fmin(target, tolerance * (1 + NEAR_TOLERANCE));
+    return fmax(target, fmax(tolerance, e->search->floor));
 }
 
 /* ---- bounds of whole triangles -------------------------------------------------------------- */

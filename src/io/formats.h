@@ -36,6 +36,10 @@ csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm
 csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *bytes, size_t size_bytes,
                                const char *path, csgm_format format, csgm_mesh **out);
 
+/* The mesh as a file of this format gives it back: written to a file without a name, and read. */
+csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, csgm_format format,
+                           const csgm_write_options *options, csgm_mesh **out);
+
 /* Removes the temporary files of writes in progress; async-signal-safe, for a handler that is about
  * to end the process. */
 void csg_io_cleanup_pending(void);

@@ -2,6 +2,7 @@
  * Writing a mesh: arguments and mesh are checked, the format's writer fills a sink, and the file
  * takes its name only when all of it is on disk.
  */
+#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -230,5 +231,24 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
     if (!status)
         return csg_file_commit(&file);
     csg_file_abandon(&file);
+    return status;
+}
+
+csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, csgm_format format,
+                           const csgm_write_options *options, csgm_mesh **out)
+{
+    const char *name = "a temporary file";
+    FILE *file = tmpfile();
+    if (!file) {
+        csg_diag_plain(&context->diags, CSG_DIAG_CANNOT_WRITE, name, NULL, "cannot write: %s",
+                       strerror(errno));
+        return CSGM_ERR_IO;
+    }
+    csgm_status status = csg_io_write_fd(context, mesh, fileno(file), name, format, options);
+    if (!status) {
+        rewind(file);
+        status = csg_io_read_fd(context, fileno(file), name, format, out);
+    }
+    fclose(file);
     return status;
 }

@@ -52,6 +52,27 @@ class Diff(diff_support.DiffTest):
         self.diff(0, "golden.ply", "ball.txt", "-D", "unused=1", "-r", 32)
         self.assert_refused(self.run_in("diff", "golden.ply", "golden.ply", "--field"), 2, "--field")
 
+    def test_scene_against_its_own_file(self):
+        """As the file was made: its format's rounding, colours and normals, and what is asked for."""
+        parts = ('part("a") color("red") difference(blend = 1) { cube(10); translate([10, 10, 10]) sphere(4); } '
+                 'part("b") translate([8, 2, 2]) color([0.2, 0.4, 0.6, 0.5]) cylinder(h = 9, r = 2);\n')
+        formats = cli.formats_read()
+        ways = [(name, "--normals", "auto") for name in formats]
+        ways += [(name, "--normals", normals) for name in {"obj", "glb"} & set(formats) for normals in ("vertex", "none")]
+        ways += [("glb", "--draco"), ("gltf", "--draco")] if "drc" in formats else []
+        for extension, *options in ways:
+            self.write("s.txt", parts)
+            self.assert_status(self.run_in("s.txt", "-q", "-r", "24", "-o", "s." + extension, *options), 0)
+            self.assertIn(b"the same triangles", self.diff(0, "s." + extension, "s.txt", "-r", "24").stdout, options)
+        self.assert_status(self.run_in("s.txt", "-q", "--unit", "mm", "-o", "u.glb", "-e", "0.1"), 0)
+        self.diff(0, "u.glb", "s.txt", "--unit", "mm", "-e", "0.1")
+        self.diff(1, "u.glb", "s.txt", "-e", "0.1")
+        self.assert_status(self.run_in("s.txt", "-q", "-o", "q.ply", "--quality", "draft"), 0)
+        self.diff(0, "q.ply", "s.txt", "--quality", "draft")
+        self.assert_status(self.run_in("s.txt", "-q", "-r", "24", "-o", "v.glb", "--normals", "vertex"), 0)
+        self.assertIn(b"normals differ", self.diff(1, "v.glb", "s.txt", "-r", "24", "--normals", "crease").stdout)
+        self.assertIn(b"colours differ", self.diff(1, "s.ply", "s.txt", "-r", "24", "--colors", "none").stdout)
+
     def test_one_sided(self):
         self.mesh(BALL, "a.ply")
         self.mesh(KNOB, "b.ply")
@@ -146,6 +167,8 @@ class Diff(diff_support.DiffTest):
                                  (("a.ply", "broken.stl"), "broken.stl"),
                                  (("a.ply", "a.ply", "--ignore", "paint"), "paint"),
                                  (("a.ply", "a.ply", "--tol", "-1"), "--tol"),
+                                 (("a.ply", "a.ply", "--normals", "none"), "--normals wants a scene"),
+                                 (("a.ply", "a.ply", "-e", "1"), "-e wants a scene"),
                                  (("a.ply", "a.ply", "--heatmap", "h.stl"), "heat map")):
             result = self.run_in("diff", *arguments)
             self.assert_clean(result)

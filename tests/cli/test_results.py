@@ -131,7 +131,7 @@ class Statistics(cli.CliTest):
             "features": ["vertices", "left_smooth", "fading"],
             "mesh": ["vertices", "triangles", "components", "euler", "genus", "boundary_edges",
                      "nonmanifold_edges", "misoriented_edges", "nonmanifold_vertices",
-                     "degenerate_triangles", "zero_area_triangles", "closed", "area", "volume", "bounds"],
+                     "degenerate_triangles", "zero_area_triangles", "manifold", "area", "volume", "bounds"],
             "files": None,
             "quality": ["max_abs_field", "vertices_measured", "min_angle_deg", "max_aspect",
                         "degenerate"],
@@ -165,7 +165,7 @@ class Statistics(cli.CliTest):
         files = self.stats("far.txt", "-o", "a.stl", "-o", "a.ply", "-o", "a.drc")["files"]
         self.assertEqual([file["name"] for file in files], ["a.stl", "a.ply", "a.drc"])
         for file in files:
-            self.assertTrue(file["closed"], file["name"])
+            self.assertTrue(file["manifold"], file["name"])
             self.assertEqual((file["degenerate_triangles"], file["zero_area_triangles"]), (0, 0), file["name"])
             self.assertEqual(file["triangles"], files[1]["triangles"])
             self.assertEqual(self.info(file["name"])["mesh"]["area"], file["area"])

@@ -381,6 +381,25 @@ static void test_tolerances(void **state)
     diff_shape_release(&b);
 }
 
+/* Far from zero floats are coarse: what that does is in the bound, not added to the tolerance. */
+static void test_never_same_above_tolerance(void **state)
+{
+    const csgm_vec3 low[2] = {{1e5, 1e5, 1e5}, {1e5 + 0.5078125, 1e5, 1e5}},
+                    high[2] = {{1e5 + 1, 1e5 + 1, 1e5 + 1}, {1e5 + 1.5078125, 1e5 + 1, 1e5 + 1}};
+    diff_shape a = diff_box(low[0], high[0], 3), b = diff_box(low[1], high[1], 2);
+    csgm_diff_options options = few_samples();
+    int same = 0;
+    for (options.tolerance = 0.48; options.tolerance < 0.56; options.tolerance += 0.002) {
+        csgm_diff_report report = compare_with(&a, &b, &options, 2);
+        assert_true(report.hausdorff_upper >= 0.5078125);
+        assert_int_equal(report.is_different, report.hausdorff_upper > options.tolerance);
+        same += !report.is_different;
+    }
+    assert_true(same > 0);
+    diff_shape_release(&a);
+    diff_shape_release(&b);
+}
+
 static void test_turned(void **state)
 {
     const csgm_vec3 high = {1, 2, 3};
@@ -495,6 +514,7 @@ int main(void)
         cmocka_unit_test(test_open),
         cmocka_unit_test(test_bad_views),
         cmocka_unit_test(test_tolerances),
+        cmocka_unit_test(test_never_same_above_tolerance),
         cmocka_unit_test(test_turned),
         cmocka_unit_test(test_attributes),
         cmocka_unit_test(test_each_allocation_fails),

@@ -14,7 +14,7 @@ void cli_facts_scene_json(cli_json *json, const csgm_scene_info *info)
     cli_json_box(json, "bounds", info->bounds);
 }
 
-static bool is_closed(const csgm_mesh_check *check)
+static bool is_manifold(const csgm_mesh_check *check)
 {
     return check->boundary_edges == 0 && check->nonmanifold_edges == 0 &&
            check->misoriented_edges == 0 && check->nonmanifold_vertices == 0 &&
@@ -27,7 +27,7 @@ void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_
     cli_json_count(json, "triangles", view->triangle_count);
     cli_json_count(json, "components", check->components);
     cli_json_integer(json, "euler", check->euler);
-    if (is_closed(check))
+    if (is_manifold(check))
         cli_json_integer(json, "genus", check->genus);
     cli_json_count(json, "boundary_edges", check->boundary_edges);
     cli_json_count(json, "nonmanifold_edges", check->nonmanifold_edges);
@@ -35,7 +35,7 @@ void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_
     cli_json_count(json, "nonmanifold_vertices", check->nonmanifold_vertices);
     cli_json_count(json, "degenerate_triangles", check->degenerate_triangles);
     cli_json_count(json, "zero_area_triangles", check->zero_area_triangles);
-    cli_json_bool(json, "closed", is_closed(check));
+    cli_json_bool(json, "manifold", is_manifold(check));
     cli_json_number(json, "area", check->area);
     cli_json_number(json, "volume", check->volume);
     cli_json_box(json, "bounds", check->bounds);
@@ -77,7 +77,7 @@ static void print_soundness(const csgm_mesh_check *check)
 {
     const char *separator = "no: ";
     printf("  closed       ");
-    if (is_closed(check)) {
+    if (is_manifold(check)) {
         printf("yes, an oriented 2-manifold\n");
         return;
     }
@@ -102,7 +102,7 @@ void cli_facts_mesh_text(const csgm_mesh_view *view, const csgm_mesh_check *chec
            check->boundary_edges ? " (of an open mesh)" : "");
     printf("  components   %" PRIu64 "\n", check->components);
     printf("  euler        %" PRId64 "\n", check->euler);
-    if (is_closed(check))
+    if (is_manifold(check))
         printf("  genus        %" PRId64 "\n", check->genus);
     print_soundness(check);
     printf("  min angle    %.4g degrees\n", check->min_angle_deg);

@@ -40,7 +40,7 @@ int cli_work_load(cli_app *app, cli_work *work, const char *path)
     return cli_sources_guard_scene(app, work->scene);
 }
 
-static csgm_mesh_options mesh_options(cli_app *app)
+static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
 {
     const cli_options *options = &app->options;
     csgm_mesh_options mesh = csgm_mesh_options_default();
@@ -59,7 +59,7 @@ static csgm_mesh_options mesh_options(cli_app *app)
     mesh.quality = (csgm_quality)options->quality; /* in the enum's order */
     mesh.triangles = (uint64_t)options->triangles;
     mesh.improve = options->improve;
-    mesh.normals = cli_outputs_normals(options);
+    mesh.normals = work->normals ? *work->normals : cli_outputs_normals(options);
     mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
     mesh.colors = options->colors == 0;
     mesh.prune = !options->no_prune;
@@ -79,8 +79,8 @@ static csgm_status compile(cli_app *app, cli_work *work)
 
 int cli_work_mesh(cli_app *app, cli_work *work)
 {
-    csgm_mesh_options options = mesh_options(app);
-    csgm_status status = compile(app, work);
+    csgm_mesh_options options = mesh_options(app, work);
+    csgm_status status = work->field ? CSGM_OK : compile(app, work);
     if (status == CSGM_OK)
         status = csgm_mesh_build(app->context, work->field, &options, &work->mesh, &work->stats);
     cli_console_end_progress(&app->console);
@@ -92,7 +92,7 @@ int cli_work_mesh(cli_app *app, cli_work *work)
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
                        const csgm_write_options *write_options, uint64_t *triangle_count)
 {
-    csgm_mesh_options options = mesh_options(app);
+    csgm_mesh_options options = mesh_options(app, work);
     uint32_t errors = app->console.errors;
     uint64_t counts[2] = {0};
     csgm_status status = compile(app, work);

@@ -13,6 +13,7 @@ typedef struct cli_work {
     csgm_scene_info info;
     csgm_mesh_stats stats;
     double compile_s;
+    const csgm_normals *normals; /* instead of those that the outputs want, NULL: none */
 } cli_work;
 
 /* Usage faults of -r, -s and --bounds. CLI_DONE or CLI_TROUBLE. */

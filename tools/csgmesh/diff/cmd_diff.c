@@ -87,6 +87,31 @@ static int refuse_heatmap(cli_app *app, const char *path)
     return cli_usage_error(app, hint, "%s cannot hold a heat map", path);
 }
 
+/* Options that say how a scene is meshed need one. */
+static int check_scene_options(cli_app *app)
+{
+    static const struct {
+        cli_option_id id;
+        const char *name;
+    } rows[] = {{CLI_OPTION_normals, "--normals"},
+                {CLI_OPTION_colors, "--colors"},
+                {CLI_OPTION_up, "--up"},
+                {CLI_OPTION_unit, "--unit"},
+                {CLI_OPTION_draco, "--draco"},
+                {CLI_OPTION_draco_bits, "--draco-bits"},
+                {CLI_OPTION_draco_level, "--draco-level"},
+                {CLI_OPTION_features, "--features"},
+                {CLI_OPTION_tolerance, "-e"},
+                {CLI_OPTION_quality, "--quality"},
+                {CLI_OPTION_triangles, "--triangles"},
+                {CLI_OPTION_simplify, "--simplify"},
+                {CLI_OPTION_improve, "--improve"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (app->options.given[rows[i].id])
+            return cli_usage_error(app, NULL, "%s wants a scene: both are meshes", rows[i].name);
+    return CLI_DONE;
+}
+
 static int check_usage(cli_app *app)
 {
     const cli_options *o = &app->options;
@@ -107,6 +132,9 @@ static int check_usage(cli_app *app)
     if (o->diff_field && !diff_is_folder(paths[0]) && !diff_path_is_scene(paths[0]) &&
         !diff_path_is_scene(paths[1]))
         return cli_usage_error(app, NULL, "--field wants a scene: both are meshes");
+    if (!diff_is_folder(paths[0]) && !diff_path_is_scene(paths[0]) &&
+        !diff_path_is_scene(paths[1]) && check_scene_options(app) != CLI_DONE)
+        return CLI_TROUBLE;
     return cli_work_check(app);
 }
 
@@ -147,8 +175,28 @@ static void warn(cli_app *app, const csgm_diff_report *r)
     for (int i = 0; i < 2; i++)
         if (r->distance[i].is_measured && !r->distance[i].is_refined && !app->options.quiet)
             cli_console_say(&app->console, CSGM_NOTE, NULL,
-                            "the maximum is known between bounds only: the search was ended");
+                            "%s: the maximum is only known to be between %.6g and %.6g",
+                            i ? "B to A" : "A to B", r->distance[i].lower, r->distance[i].upper);
     hint_at_units(app, r);
+}
+
+/* A scene whose normals alone differ from a file's is tried with the other kind, too. */
+static int compare_meshes(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
+                          csgm_diff **diff)
+{
+    int status = cli_exit_status(
+        csgm_diff_meshes(app->context, &sides[0].view, &sides[1].view, options, diff));
+    for (int i = 0; i < 2 && status == CLI_DONE; i++) {
+        if (csgm_diff_get_report(*diff)->reasons != CSGM_DIFF_REASON_NORMALS ||
+            !diff_side_mesh_otherwise(app, &sides[i], &status))
+            continue;
+        csgm_diff_destroy(*diff);
+        *diff = NULL;
+        if (status == CLI_DONE)
+            status = cli_exit_status(
+                csgm_diff_meshes(app->context, &sides[0].view, &sides[1].view, options, diff));
+    }
+    return status;
 }
 
 static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_side sides[2],
@@ -161,9 +209,7 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
         options.scene_a = sides[0].work.scene;
         options.scene_b = sides[1].work.scene;
     }
-    csgm_status status =
-        csgm_diff_meshes(app->context, &sides[0].view, &sides[1].view, &options, &diff);
-    if (status != CSGM_OK)
+    if (compare_meshes(app, &options, sides, &diff) != CLI_DONE)
         return CLI_TROUBLE;
     result->report = *csgm_diff_get_report(diff);
     result->outcome = result->report.is_different ? DIFF_DIFFERENT : DIFF_SAME;
@@ -174,7 +220,7 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
         cli_console_say(&app->console, CSGM_ERROR, NULL, "no heat map: a mesh is empty");
         exit_status = CLI_TROUBLE;
     } else if (heatmap) {
-        status =
+        csgm_status status =
             csgm_diff_write_heatmap(app->context, diff, 1, heatmap, heatmap_format(heatmap), NULL);
         exit_status = status == CSGM_OK ? CLI_DONE : CLI_TROUBLE;
     }
@@ -195,7 +241,8 @@ static int compare(cli_app *app, const csgm_diff_options *options, diff_side sid
         return CLI_DONE;
     }
     for (int i = 0; i < 2; i++)
-        if (diff_side_load(app, &sides[i], i ? result->b : result->a) != CLI_DONE)
+        if (diff_side_load(app, &sides[i], i ? result->b : result->a, i ? result->a : result->b) !=
+            CLI_DONE)
             return CLI_TROUBLE;
     return compare_sides(app, options, sides, result);
 }

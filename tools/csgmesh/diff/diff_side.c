@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "core/textfile.h"
+#include "mesh/outputs.h"
 
 bool diff_path_is_nothing(const char *path)
 {
@@ -21,7 +22,75 @@ bool diff_path_is_scene(const char *path)
     return csgm_format_from_path(path) == CSGM_FORMAT_AUTO && !diff_path_is_nothing(path);
 }
 
-int diff_side_load(cli_app *app, diff_side *side, const char *path)
+/* Does the file name the extension? It may stand behind a whole buffer in base64. */
+static bool is_compressed(const char *path)
+{
+    static const char wanted[] = "KHR_draco_mesh_compression";
+    enum { CHUNK = 1 << 16, KEPT = sizeof wanted - 2 };
+    static char bytes[KEPT + CHUNK];
+    FILE *file = fopen(path, "rb");
+    size_t kept = 0, got;
+    bool found = false;
+    while (file && !found && (got = fread(bytes + kept, 1, CHUNK, file)) > 0) {
+        found = memmem(bytes, kept + got, wanted, sizeof wanted - 1);
+        size_t left = kept + got < KEPT ? kept + got : KEPT;
+        memmove(bytes, bytes + kept + got - left, left);
+        kept = left;
+    }
+    if (file)
+        fclose(file);
+    return found;
+}
+
+/* The scene's mesh as the other file would hold it. */
+static int mesh_scene(cli_app *app, diff_side *side)
+{
+    csgm_write_options options = cli_outputs_options(&app->options);
+    side->work.normals = side->as == CSGM_FORMAT_AUTO ? NULL : &side->normals;
+    int status = cli_work_mesh(app, &side->work);
+    if (status != CLI_DONE)
+        return status;
+    side->view = csgm_mesh_get_view(side->work.mesh);
+    if (side->as == CSGM_FORMAT_AUTO || !side->view.triangle_count)
+        return CLI_DONE;
+    options.draco |= side->draco;
+    csgm_status made =
+        csgm_mesh_as_file(app->context, &side->view, side->as, &options, &side->mesh);
+    if (made == CSGM_OK)
+        side->view = csgm_mesh_get_view(side->mesh);
+    return cli_exit_status(made);
+}
+
+static int load_scene(cli_app *app, diff_side *side, const char *other)
+{
+    int status = cli_work_load(app, &side->work, side->path);
+    if (status != CLI_DONE)
+        return status;
+    csgm_format format = csgm_format_from_path(other);
+    uint32_t traits = csgm_format_traits(format);
+    bool creases = traits & CSGM_KEEPS_CREASES;
+    side->as = csgm_format_available(format, false) ? format : CSGM_FORMAT_AUTO;
+    side->normals = app->options.given[CLI_OPTION_normals] ? cli_outputs_normals(&app->options)
+                    : creases                              ? CSGM_NORMALS_CREASE
+                                                           : CSGM_NORMALS_VERTEX;
+    side->draco = traits & CSGM_HEEDS_DRACO && is_compressed(other);
+    return mesh_scene(app, side);
+}
+
+bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
+{
+    if (!side->work.scene || side->as == CSGM_FORMAT_AUTO || side->normals != CSGM_NORMALS_CREASE ||
+        app->options.given[CLI_OPTION_normals])
+        return false;
+    csgm_mesh_destroy(side->mesh);
+    csgm_mesh_destroy(side->work.mesh);
+    side->mesh = side->work.mesh = NULL;
+    side->normals = CSGM_NORMALS_VERTEX;
+    *status = mesh_scene(app, side);
+    return true;
+}
+
+int diff_side_load(cli_app *app, diff_side *side, const char *path, const char *other)
 {
     *side = (diff_side){.path = path, .format = csgm_format_from_path(path)};
     if (diff_path_is_nothing(path))
@@ -32,12 +101,7 @@ int diff_side_load(cli_app *app, diff_side *side, const char *path)
             side->view = csgm_mesh_get_view(side->mesh);
         return cli_exit_status(status);
     }
-    int status = cli_work_load(app, &side->work, path);
-    if (status == CLI_DONE)
-        status = cli_work_mesh(app, &side->work);
-    if (status == CLI_DONE)
-        side->view = csgm_mesh_get_view(side->work.mesh);
-    return status;
+    return load_scene(app, side, other);
 }
 
 void diff_side_release(diff_side *side)
@@ -129,8 +193,11 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
     if (format == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, NULL, "%s is a scene, which no mesh can be written to", path_a);
     if (!b->path)
-        status = diff_side_load(app, b, path_b);
-    return status == CLI_DONE ? cli_exit_status(csgm_mesh_write(app->context, &b->view, path_a,
-                                                                CSGM_FORMAT_AUTO, NULL))
-                              : status;
+        status = diff_side_load(app, b, path_b, path_a);
+    if (status != CLI_DONE)
+        return status;
+    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_mesh_view view = b->work.mesh ? csgm_mesh_get_view(b->work.mesh) : b->view;
+    return cli_exit_status(
+        csgm_mesh_write(app->context, &view, path_a, CSGM_FORMAT_AUTO, &options));
 }

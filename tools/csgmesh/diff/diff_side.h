@@ -10,14 +10,21 @@ typedef struct diff_side {
     const char *path;
     csgm_format format; /* AUTO: a scene, or nothing */
     cli_work work;      /* of a scene */
-    csgm_mesh *mesh;    /* of a file */
+    csgm_mesh *mesh;    /* of a file, or a scene's as a file of the other's format has it */
     csgm_mesh_view view;
+    csgm_format as;       /* of a scene: the other's format, AUTO: none */
+    csgm_normals normals; /* of a scene: as the other is thought to have them */
+    bool draco;           /* the other is compressed glTF */
 } diff_side;
 
 bool diff_path_is_nothing(const char *path); /* as git names a file that is not there */
 bool diff_path_is_scene(const char *path);
-/* An exit status; failures are reported. Release it either way. */
-int diff_side_load(cli_app *app, diff_side *side, const char *path);
+/* A scene is meshed as the other file may have been made: in its format, with the normals that are
+ * usual there. An exit status; failures are reported. Release it either way. */
+int diff_side_load(cli_app *app, diff_side *side, const char *path, const char *other);
+/* Meshes a scene again, as a file with one normal for each place. false: there is nothing else that
+ * the file could have been. *status: an exit status. */
+bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status);
 void diff_side_release(diff_side *side);
 /* Mesh files of one format that say the same wherever they lie. */
 bool diff_same_bytes(const char *a, const char *b);

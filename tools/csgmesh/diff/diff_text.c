@@ -19,8 +19,13 @@ static void explain_distance(const csgm_diff_report *r, char *text, size_t size)
     char line[160];
     bool is_counted = r->counted.is_measured;
     double lower = is_counted ? r->counted.lower : r->hausdorff_lower;
-    snprintf(line, sizeof line, "%.4g apart%s, more than %.4g", lower,
-             is_counted ? " where it counts" : "", r->tolerance);
+    double upper = is_counted ? r->counted.upper : r->hausdorff_upper;
+    const char *where = is_counted ? " where it counts" : "";
+    if (lower > r->tolerance)
+        snprintf(line, sizeof line, "%.4g apart%s, more than %.4g", lower, where, r->tolerance);
+    else
+        snprintf(line, sizeof line, "%.6g to %.6g apart%s, not shown to be at most %.6g", lower,
+                 upper, where, r->tolerance);
     append(text, size, line);
 }
 
