@@ -128,6 +128,8 @@ typedef struct csg_package csg_package;
  * last, named so too where they have a namespace. Anything but CSGM_OK (reported) ends the parse.
  */
 typedef struct csg_xml_calls {
+    /* A prefix of a namespace, before the element that declares it; NULL = nobody asks. */
+    csgm_status (*declare)(void *user, const char *prefix, const char *space);
     csgm_status (*start)(void *user, const char *name, const char *const *attributes);
     csgm_status (*end)(void *user, const char *name);
     void *user;

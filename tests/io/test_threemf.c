@@ -235,6 +235,37 @@ static const lie lies[] = {
      "no no.model"},
 };
 
+#define NEEDS(prefixes)                                                                            \
+    "<model xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "                  \
+    "xmlns:i=\"http://schemas.3mf.io/3dmanufacturing/implicit/2023/12\" "                          \
+    "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\" "                   \
+    "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "                 \
+    "requiredextensions=\"" prefixes "\"><resources>" ONE END
+
+/* What a model requires is read, or it is refused by name. */
+static void required_extensions_are_heeded(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *model, *said;
+    } cases[] = {{NEEDS("p m"), NULL},
+                 {NEEDS(""), NULL},
+                 {NEEDS("m i"), "'http://schemas.3mf.io/3dmanufacturing/implicit/2023/12'"},
+                 {NEEDS("\t i "), "implicit/2023/12"},
+                 {NEEDS("x"), "prefix is not declared"}};
+    io_context io;
+    io_context_init(&io, MEMORY_LIMIT);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        csgm_mesh *mesh;
+        csgm_status status = read_model(&io, cases[i].model, &mesh);
+        assert_int_equal(status == CSGM_OK, cases[i].said == NULL);
+        if (cases[i].said && !strstr(io.last, cases[i].said))
+            fail_msg("'%s' does not say '%s'", io.last, cases[i].said);
+        csg_mesh_destroy(mesh);
+    }
+    io_context_check(&io);
+}
+
 static void lies_are_told(void **state)
 {
     (void)state;
@@ -318,8 +349,8 @@ int main(void)
         return 77; /* skipped: the build has no libzip or expat */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_placed),   cmocka_unit_test(colors_are_read),
-        cmocka_unit_test(models_in_several_files), cmocka_unit_test(lies_are_told),
-        cmocka_unit_test(bombs_do_not_go_off),
+        cmocka_unit_test(models_in_several_files), cmocka_unit_test(required_extensions_are_heeded),
+        cmocka_unit_test(lies_are_told),           cmocka_unit_test(bombs_do_not_go_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
  */
 #include "io/adapter.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
@@ -72,10 +73,19 @@ struct document {
 /* ---- before tinygltf: a smaller document ------------------------------------------------------
  */
 
-/* The parser itself does not recurse, but what walks its result may. */
-void check_depth(const char *text, size_t size)
+/* The parser itself does not recurse, but what walks its result may. And neither it nor tinygltf
+ * can be told how much memory there is: what they will take is bounded from what is in the text. */
+void check_document(const char *text, size_t size, uint64_t most_bytes)
 {
     constexpr int most = 64; /* our documents need 9 */
+    /* arrays that grow hold half as much again as they had, beside it */
+    constexpr uint64_t element =
+        3 * std::max({sizeof(tinygltf::Node), sizeof(tinygltf::Mesh), sizeof(tinygltf::Primitive),
+                      sizeof(tinygltf::Scene), sizeof(tinygltf::Accessor),
+                      sizeof(tinygltf::BufferView)});
+    /* as trees of nlohmann's, twice at the same time */
+    constexpr uint64_t value = 2 * 3 * sizeof(json), key = 2 * (sizeof(std::string) + 64);
+    uint64_t bytes = 4 * size;
     int depth = 0;
     bool quoted = false;
     for (size_t i = 0; i < size; i++) {
@@ -88,15 +98,23 @@ void check_depth(const char *text, size_t size)
         } else if (c == '[' || c == '{') {
             if (++depth > most)
                 refuse(CSGM_ERR_FORMAT, "the JSON is nested more than %d deep", most);
+            bytes += c == '{' ? element + value : value;
+        } else if (c == ',') {
+            bytes += value;
+        } else if (c == ':') {
+            bytes += key;
         } else if (c == ']' || c == '}') {
             depth--;
         }
     }
+    if (most_bytes && bytes > most_bytes)
+        refuse(CSGM_ERR_MEMORY, "the document may need %llu MiB",
+               static_cast<unsigned long long>(bytes >> 20));
 }
 
-json parse(const char *text, size_t size)
+json parse(const char *text, size_t size, uint64_t most_bytes)
 {
-    check_depth(text, size);
+    check_document(text, size, most_bytes);
     try {
         json root = json::parse(text, text + size);
         if (!root.is_object())
@@ -631,7 +649,7 @@ void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
 {
     document doc;
     doc.calls = calls;
-    json root = parse(text, size);
+    json root = parse(text, size, calls->most_bytes);
     check_version(root);
     check_extensions(root);
     resolve_buffers(doc, root, bin);

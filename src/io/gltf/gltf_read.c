@@ -3,11 +3,14 @@
  * parts that come back, each moved by its node and turned from glTF's Y up to our Z up. Linear
  * colours become sRGB. Parts without normals leave the whole mesh without.
  */
+#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/mesh_codes.h"
 #include "io/adapter.h"
+#include "io/beneath.h"
 #include "io/color.h"
 #include "io/reader.h"
 
@@ -114,23 +117,42 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
 
 /* ---- files beside it -------------------------------------------------------------- */
 
+/* The file that the document names, below the document's own folder: nowhere else is looked. *fd is
+ * open when CSGM_OK. */
+static csgm_status open_beside(const gltf *g, const char *uri, int *fd)
+{
+    char folder[4096];
+    const char *slash = strrchr(g->input->path, '/');
+    size_t length = slash ? (size_t)(slash - g->input->path) + 1 : 0;
+    if (length >= sizeof folder)
+        return csg_read_broken(g->input, 0, "its folder has too long a name");
+    memcpy(folder, g->input->path, length);
+    folder[length] = '\0';
+    *fd = strstr(uri, "://") ? -1 : csg_open_beneath(folder, uri);
+    if (*fd >= 0)
+        return CSGM_OK;
+    if (strstr(uri, "://") || uri[0] == '/' || errno == EXDEV || errno == ELOOP)
+        return csg_read_unsupported(g->input, "it names '%.100s', which is not a file beside it",
+                                    uri);
+    csg_diag_plain(&g->input->context->diags, CSG_DIAG_MESH_UNREADABLE, g->input->path, NULL,
+                   "cannot read '%.100s', which it names: %s", uri, strerror(errno));
+    return CSGM_ERR_IO;
+}
+
 static csgm_status load(void *user, const char *uri, const uint8_t **bytes, size_t *size_bytes)
 {
     gltf *g = user;
     csg_memory *memory = &g->input->context->memory;
-    char path[4096];
-    const char *slash = strrchr(g->input->path, '/');
-    int folder = slash ? (int)(slash - g->input->path) + 1 : 0;
-    if (uri[0] == '/' || strstr(uri, "://"))
-        return csg_read_unsupported(g->input, "it names '%.100s', which is not a file beside it",
-                                    uri);
-    if (snprintf(path, sizeof path, "%.*s%s", folder, g->input->path, uri) >= (int)sizeof path)
-        return csg_read_broken(g->input, 0, "it names a file with too long a name");
+    int fd;
+    csgm_status status = open_beside(g, uri, &fd);
+    if (status)
+        return status;
     loaded *file = csg_memory_alloc(memory, sizeof *file);
+    status = file ? csg_input_load(g->input->context, uri, fd, &file->bytes, &file->size_bytes)
+                  : csg_context_no_memory(g->input->context);
+    close(fd);
     if (!file)
-        return csg_context_no_memory(g->input->context);
-    csgm_status status =
-        csg_input_load(g->input->context, path, -1, &file->bytes, &file->size_bytes);
+        return status;
     if (status) {
         csg_memory_release(memory, file, sizeof *file);
         return status;

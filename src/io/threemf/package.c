@@ -108,6 +108,16 @@ static void XMLCALL on_start(void *user, const char *name, const char **attribut
         stop(p, status, "");
 }
 
+static void XMLCALL on_namespace(void *user, const char *prefix, const char *space)
+{
+    parse *p = user;
+    if (p->status != CSGM_OK || !p->calls->declare || !prefix || !space)
+        return;
+    csgm_status status = p->calls->declare(p->calls->user, prefix, space);
+    if (status != CSGM_OK)
+        stop(p, status, "");
+}
+
 static void XMLCALL on_end(void *user, const char *name)
 {
     parse *p = user;
@@ -185,6 +195,7 @@ csgm_status csg_package_parse(csg_package *package, const char *name, const csg_
     if (p.parser) {
         XML_SetUserData(p.parser, &p);
         XML_SetElementHandler(p.parser, on_start, on_end);
+        XML_SetStartNamespaceDeclHandler(p.parser, on_namespace);
         XML_SetDefaultHandler(p.parser, on_other);
         XML_SetStartDoctypeDeclHandler(p.parser, on_doctype);
         status = feed(package, file, &p);

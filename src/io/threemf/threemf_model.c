@@ -10,6 +10,12 @@
 
 #include "io/adapter.h"
 
+/* A namespace that the file's root element may name by its prefix. */
+typedef struct prefix {
+    struct prefix *next;
+    const char *name, *space;
+} prefix;
+
 typedef struct parser {
     csg_3mf *m;
     uint32_t file;
@@ -17,11 +23,14 @@ typedef struct parser {
     uint32_t object_group, object_color;
     const csg_3mf_group *last_group;
     const char *target; /* of the relationships: the root model */
+    prefix *prefixes;   /* declared before the file's first element */
+    bool has_begun;
 } parser;
 
 #define CORE "http://schemas.microsoft.com/3dmanufacturing/core/"
 #define MATERIAL "http://schemas.microsoft.com/3dmanufacturing/material/"
-#define PRODUCTION_PATH "http://schemas.microsoft.com/3dmanufacturing/production/2015/06|path"
+#define PRODUCTION "http://schemas.microsoft.com/3dmanufacturing/production/"
+#define PRODUCTION_PATH PRODUCTION "2015/06|path"
 
 /* ---- names and numbers ------------------------------------------------------------------------
  */
@@ -363,8 +372,58 @@ static csgm_status start_core(parser *p, const char *element, const char *const 
     return CSGM_OK;
 }
 
+static csgm_status on_namespace(void *user, const char *name, const char *space)
+{
+    parser *p = user;
+    csg_arena *names = &p->m->names;
+    if (p->has_begun)
+        return CSGM_OK;
+    prefix *declared = csg_arena_alloc(names, sizeof *declared);
+    if (!declared)
+        return no_memory(p);
+    *declared = (prefix){.next = p->prefixes,
+                         .name = csg_arena_strndup(names, name, strlen(name)),
+                         .space = csg_arena_strndup(names, space, strlen(space))};
+    p->prefixes = declared;
+    return declared->name && declared->space ? CSGM_OK : no_memory(p);
+}
+
+/* What a model requires must be read, or the mesh is not what is meant. Colours are read, of
+ * materials else only the triangles. */
+static csgm_status check_required(parser *p, const char *prefixes)
+{
+    enum { MOST = 64 };
+    int count = 0;
+    for (const char *at = prefixes; at && *at;) {
+        if (count++ == MOST)
+            return broken(p, "it requires too many extensions");
+        size_t length = strcspn(at, " \t\r\n");
+        const prefix *known = p->prefixes;
+        while (known && (strlen(known->name) != length || memcmp(known->name, at, length) != 0))
+            known = known->next;
+        if (length && !known)
+            return broken(p, "a required extension's prefix is not declared");
+        if (length && strncmp(known->space, MATERIAL, strlen(MATERIAL)) != 0 &&
+            strncmp(known->space, PRODUCTION, strlen(PRODUCTION)) != 0)
+            return csg_read_unsupported(
+                p->m->input, "it requires the extension '%.200s', which is not read", known->space);
+        at += length + (at[length] != '\0');
+    }
+    return CSGM_OK;
+}
+
+static csgm_status begin_file(parser *p, const char *const *attributes)
+{
+    p->has_begun = true;
+    return check_required(p, find(attributes, "requiredextensions"));
+}
+
 static csgm_status on_start(void *user, const char *element, const char *const *attributes)
 {
+    parser *p = user;
+    csgm_status status = p->has_begun ? CSGM_OK : begin_file(p, attributes);
+    if (status)
+        return status;
     if (is(element, MATERIAL, "colorgroup"))
         return add_group(user, attributes);
     if (is(element, MATERIAL, "color"))
@@ -413,8 +472,8 @@ static csgm_status read_files(parser *p, csg_package *package)
 {
     csg_3mf *m = p->m;
     csg_adapter_error error = {{0}};
-    csg_xml_calls relationships = {on_relationship, on_nothing, p};
-    csg_xml_calls model = {on_start, on_end, p};
+    csg_xml_calls relationships = {NULL, on_relationship, on_nothing, p};
+    csg_xml_calls model = {on_namespace, on_start, on_end, p};
     csgm_status status =
         report(m->input, csg_package_parse(package, "_rels/.rels", &relationships, &error), &error);
     uint32_t root;
@@ -425,6 +484,8 @@ static csgm_status read_files(parser *p, csg_package *package)
     for (; !status && p->file < m->file_count; p->file++) {
         p->object = NULL;
         p->last_group = NULL;
+        p->prefixes = NULL;
+        p->has_begun = false;
         error.text[0] = 0;
         status =
             report(m->input, csg_package_parse(package, m->files[p->file], &model, &error), &error);

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ * Opening beneath a folder; see beneath.h. The kernel does it where it has openat2 (Linux 5.6);
+ * else the path is walked one name at a time, and no link is followed at all.
+ */
+#include "io/beneath.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#ifdef __linux__
+#include <linux/openat2.h>
+#include <sys/syscall.h>
+#endif
+
+static int open_by_kernel(int folder, const char *name)
+{
+#ifdef SYS_openat2
+    struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY,
+                           .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
+    return (int)syscall(SYS_openat2, folder, name, &how, sizeof how);
+#else
+    (void)folder, (void)name;
+    errno = ENOSYS;
+    return -1;
+#endif
+}
+
+/* One name after the other, without `..` and without links. Takes the folder. */
+static int open_by_names(int folder, const char *path)
+{
+    char name[NAME_MAX + 1];
+    if (*path == '/') {
+        errno = EXDEV;
+        return -1;
+    }
+    int at = dup(folder);
+    while (at >= 0) {
+        path += strspn(path, "/");
+        size_t length = strcspn(path, "/");
+        int below = -1, flags = path[length] ? O_DIRECTORY : 0;
+        if (length > NAME_MAX || !length)
+            errno = length ? ENAMETOOLONG : EISDIR;
+        else if (length == 2 && memcmp(path, "..", 2) == 0)
+            errno = EXDEV;
+        else {
+            memcpy(name, path, length);
+            name[length] = '\0';
+            below = openat(at, name, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NOFOLLOW | flags);
+        }
+        int error = errno;
+        close(at);
+        errno = error;
+        path += length;
+        if (below < 0 || !*path)
+            return below;
+        at = below;
+    }
+    return -1;
+}
+
+int csg_open_beneath(const char *folder, const char *name)
+{
+    int at = open(*folder ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (at < 0)
+        return -1;
+    int file = open_by_kernel(at, name);
+    if (file < 0 && (errno == ENOSYS || errno == EPERM))
+        file = open_by_names(at, name);
+    int error = errno;
+    close(at);
+    errno = error;
+    return file;
+}
