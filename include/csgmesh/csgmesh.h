@@ -438,8 +438,9 @@ typedef struct csgm_mesh_options {
     uint32_t struct_size; /* set by csgm_mesh_options_default; do not touch */
     csgm_box bounds;      /* what to mesh, the solid is cut and capped there; empty (the default) =
                              the scene's own bounds */
-    double cell_size;     /* edge of a marching-cubes cell; 0 = derive from resolution */
-    uint32_t resolution;  /* cells along the longest side when cell_size is 0; default 128 */
+    double cell_size;     /* edge of a marching-cubes cell; 0 (the default): as resolution says */
+    uint32_t resolution;  /* cells along the longest side when cell_size is 0; 0 (the default): as
+                             tolerance, quality or triangles choose them, else 128 */
     csgm_normals normals; /* default VERTEX */
     csgm_features features; /* default SHARP */
     bool colors;            /* vertex colours where the scene has any; default true */

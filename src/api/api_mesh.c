@@ -21,7 +21,6 @@ csgm_mesh_options csgm_mesh_options_default(void)
 {
     return (csgm_mesh_options){.struct_size = sizeof(csgm_mesh_options),
                                .bounds = csg_box_empty(),
-                               .resolution = 128,
                                .normals = CSGM_NORMALS_VERTEX,
                                .features = CSGM_FEATURES_SHARP,
                                .colors = true,

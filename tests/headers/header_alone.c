@@ -9,5 +9,6 @@ int header_alone(void)
 {
     csgm_mesh_options options = csgm_mesh_options_default();
     csgm_diag_fn *on_diag = 0;
-    return options.resolution == 128 && !on_diag && CSGM_OK == 0 ? CSGM_VERSION_MAJOR : 1;
+    return options.resolution == 0 && options.prune && !on_diag && CSGM_OK == 0 ? CSGM_VERSION_MAJOR
+                                                                                : 1;
 }

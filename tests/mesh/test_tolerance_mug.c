@@ -70,7 +70,6 @@ static void a_tenth_of_the_triangles(void **state)
     csgm_mesh_options options = csgm_mesh_options_default();
     options.normals = CSGM_NORMALS_NONE;
     options.tolerance = error;
-    options.resolution = 0; /* as it chooses */
     csgm_mesh *mesh = mesh_of(context, field, &options, &stats, &few);
     print_message("cells of %g, %llu triangles, bound %g, measured %g, open %llu\n",
                   stats.cell_size, (unsigned long long)few, stats.max_distance_bound,

@@ -28,21 +28,19 @@ static csgm_status choose_bounds(csg_mesh_input *in)
 
 static csgm_status check_cells(csg_mesh_input *in)
 {
-    const csgm_mesh_options *options = in->options;
-    bool good = options->cell_size == 0 ? options->resolution > 0
-                                        : options->cell_size > 0 && isfinite(options->cell_size);
-    if (good)
+    double size = in->options->cell_size; /* 0: as the resolution says */
+    if (size >= 0 && isfinite(size))
         return CSGM_OK;
     csg_diag_plain(&in->context->diags, CSG_DIAG_BAD_BOUNDS, NULL, NULL,
-                   "the resolution or the cell size must be a positive number");
+                   "the cell size must be a positive number");
     return CSGM_ERR_ARGUMENT;
 }
 
 static csgm_status make_lattice(csg_mesh_input *in)
 {
     const csgm_mesh_options *options = in->options;
-    if (csg_lattice_make(in->bounds, in->field->center, options->cell_size, options->resolution,
-                         &in->lattice))
+    uint32_t cells = options->resolution ? options->resolution : CSG_MESH_DEFAULT_CELLS;
+    if (csg_lattice_make(in->bounds, in->field->center, options->cell_size, cells, &in->lattice))
         return CSGM_OK;
     csg_vec3 size = csg_box_size(in->bounds);
     if (!(size.x > 0 || size.y > 0 || size.z > 0)) {

@@ -38,12 +38,12 @@ static const double LARGE_S = 1.0; /* more than this of one thread is worth all 
  * time. What this says is not shown: the real mesh will say it again. */
 static bool is_long_work(maker *m)
 {
-    enum { EIGHTH = 8, LEAST = 64, FEW = 500 };
+    enum { EIGHTH = 8, LEAST = 64, FEW = 500, SUPPOSED = 128 }; /* where -r does not say */
     const cli_options *options = &m->app.options;
     csgm_mesh_options mesh = csgm_mesh_options_default();
     csgm_field *field = NULL;
     csgm_mesh *probe = NULL;
-    uint64_t resolution = options->resolution ? options->resolution : mesh.resolution;
+    uint64_t resolution = options->resolution ? options->resolution : SUPPOSED;
     if (!options->given[CLI_OPTION_cell_size] && resolution <= LEAST &&
         m->work.info.primitive_count <= FEW)
         return false;

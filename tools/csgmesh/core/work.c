@@ -46,10 +46,7 @@ static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
     csgm_mesh_options mesh = csgm_mesh_options_default();
     if (options->given[CLI_OPTION_bounds])
         mesh.bounds = options->bounds;
-    if (options->given[CLI_OPTION_resolution])
-        mesh.resolution = (uint32_t)options->resolution;
-    else if (options->given[CLI_OPTION_tolerance] || options->quality || options->triangles)
-        mesh.resolution = 0;
+    mesh.resolution = (uint32_t)options->resolution;
     mesh.cell_size = options->cell_size;
     mesh.tolerance = options->tolerance;
     if (options->simplify.is_share)
