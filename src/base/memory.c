@@ -29,6 +29,7 @@ void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64
     memory->limit_bytes = limit_bytes;
     atomic_init(&memory->used_bytes, 0);
     atomic_init(&memory->peak_bytes, 0);
+    atomic_init(&memory->limit_refused, false);
 }
 
 static void raise_peak(csg_memory *memory, uint64_t used)
@@ -38,11 +39,25 @@ static void raise_peak(csg_memory *memory, uint64_t used)
     }
 }
 
+/* used: with what is asked for. */
+static bool is_within_limit(csg_memory *memory, uint64_t used)
+{
+    bool within = !memory->limit_bytes || used <= memory->limit_bytes;
+    if (!within)
+        atomic_store(&memory->limit_refused, true);
+    return within;
+}
+
+bool csg_memory_allows(csg_memory *memory, uint64_t size_bytes)
+{
+    return is_within_limit(memory, atomic_load(&memory->used_bytes) + size_bytes);
+}
+
 void *csg_memory_alloc(csg_memory *memory, size_t size_bytes)
 {
     uint64_t used = atomic_fetch_add(&memory->used_bytes, size_bytes) + size_bytes;
     void *pointer = NULL;
-    if (!memory->limit_bytes || used <= memory->limit_bytes)
+    if (is_within_limit(memory, used))
         pointer = memory->allocator.alloc(memory->allocator.user, size_bytes);
     if (!pointer) {
         atomic_fetch_sub(&memory->used_bytes, size_bytes);
@@ -65,7 +80,7 @@ static void *grow_by_default(csg_memory *memory, void *data, size_t before, size
 {
     uint64_t more = after - before, used = atomic_fetch_add(&memory->used_bytes, more) + more;
     void *fresh = NULL;
-    if (!memory->limit_bytes || used <= memory->limit_bytes)
+    if (is_within_limit(memory, used))
         fresh = realloc(data, after);
     if (fresh)
         raise_peak(memory, used);

@@ -17,12 +17,15 @@ typedef struct csg_memory {
     csgm_allocator allocator;
     uint64_t limit_bytes; /* 0 = none */
     atomic_uint_fast64_t used_bytes, peak_bytes;
+    atomic_bool limit_refused; /* something that the system might have given; for messages */
 } csg_memory;
 
 void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64_t limit_bytes);
 
 /* size_bytes must be > 0. Thread safe. */
 void *csg_memory_alloc(csg_memory *memory, size_t size_bytes);
+/* Would the limit allow so many bytes that others allocate? Else it is noted as refused. */
+bool csg_memory_allows(csg_memory *memory, uint64_t size_bytes);
 /* size_bytes as allocated; NULL is a no-op. */
 void csg_memory_release(csg_memory *memory, void *pointer, size_t size_bytes);
 

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "diff/attributes.h"
 #include "diff/diff.h"
@@ -26,6 +27,8 @@ typedef struct comparison {
     double limit;    /* the tolerance as applied, frame units */
     double slack;
     csg_box differing;
+    double started_s;
+    atomic_bool *timed_out;
 } comparison;
 
 static double to_scene(const comparison *c, double length)
@@ -364,6 +367,9 @@ static csgm_status compare(comparison *c, const csgm_mesh_view *a, const csgm_me
     csgm_status status =
         csg_diff_pair_make(pair, pair->context, a, b, c->options->ignored & CSGM_DIFF_IGNORE_UP);
     pair->monitor = &c->options->monitor;
+    pair->timed_out = c->timed_out;
+    if (pair->context->limits.timeout_s > 0)
+        pair->deadline_s = c->started_s + pair->context->limits.timeout_s;
     if (status == CSGM_OK)
         status = csg_diff_match_make(pair, &c->match, &c->same);
     if (status == CSGM_OK)
@@ -391,6 +397,13 @@ static csgm_status compare(comparison *c, const csgm_mesh_view *a, const csgm_me
     return status;
 }
 
+static csgm_status tell_timeout(csgm_context *context)
+{
+    csg_diag_plain(&context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout, or give a --tol",
+                   "comparing took longer than the limit of %g s", context->limits.timeout_s);
+    return CSGM_ERR_LIMIT;
+}
+
 csgm_status csg_diff_run(csgm_context *context, const csgm_mesh_view *a, const csgm_mesh_view *b,
                          const csgm_diff_options *options, csgm_diff **out)
 {
@@ -403,8 +416,13 @@ csgm_status csg_diff_run(csgm_context *context, const csgm_mesh_view *a, const c
                     .options = options,
                     .diff = diff,
                     .report = &diff->report,
-                    .differing = csg_box_empty()};
+                    .differing = csg_box_empty(),
+                    .started_s = csg_clock_now_s()};
+    atomic_bool timed_out = false;
+    c.timed_out = &timed_out;
     csgm_status status = compare(&c, a, b);
+    if (status != CSGM_OK && atomic_load(&timed_out))
+        status = tell_timeout(context);
     csg_diff_pair_release(&c.pair);
     if (status == CSGM_OK)
         *out = diff;

@@ -21,6 +21,7 @@ enum {
     RUN = 4096,         /* triangles bounded at a time */
     CUTS_OF_ITEM = 512, /* before the rest is handed on; more where much is handed on */
     STACK = 160,
+    LOOK_UP_EVERY = 4096, /* cuts: some milliseconds */
     FIRST_BATCH = 256,
     LAST_BATCH = 1 << 14
 };
@@ -262,6 +263,8 @@ static bool work_on_item(void *user, uint32_t worker, size_t index)
         else
             out->upper = fmax(out->upper, piece.bound);
         out->cuts++;
+        if (out->cuts % LOOK_UP_EVERY == 0 && csg_diff_is_cancelled(e->pair))
+            break;
     }
     return keep_rest(e, out, stack, depth) && !csg_diff_is_cancelled(e->pair);
 }

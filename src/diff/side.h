@@ -6,6 +6,9 @@
 #ifndef CSG_DIFF_SIDE_H
 #define CSG_DIFF_SIDE_H
 
+#include <stdatomic.h>
+
+#include "base/clock.h"
 #include "base/context.h"
 #include "shape/polyhedra/tree.h"
 
@@ -44,6 +47,8 @@ typedef struct csg_diff_pair {
     csg_box box;      /* of both, scene units */
     double precision; /* frame units: csgm_diff_report.precision */
     const csgm_monitor *monitor;
+    double deadline_s; /* 0: there is none */
+    atomic_bool *timed_out;
 } csg_diff_pair;
 
 /* may_turn_b: B is turned as csg_diff_find_turn says. Sides are released by csg_diff_pair_release
@@ -62,6 +67,10 @@ csg_diff_turn csg_diff_find_turn(const csgm_mesh_view *a, const csgm_mesh_view *
 
 static inline bool csg_diff_is_cancelled(const csg_diff_pair *pair)
 {
+    if (pair->deadline_s > 0 && csg_clock_now_s() > pair->deadline_s) {
+        atomic_store(pair->timed_out, true);
+        return true;
+    }
     return pair->monitor->cancelled && pair->monitor->cancelled(pair->monitor->user);
 }
 

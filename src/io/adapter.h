@@ -36,6 +36,7 @@ const char *csg_number_parse(const char *text, const char *end, double *value);
 
 typedef struct csg_adapter_error {
     char text[240]; /* one sentence, terminated */
+    bool is_limit;  /* CSGM_ERR_MEMORY for the limit that was given, not for the system */
 } csg_adapter_error;
 
 /* One indexed part of a mesh, borrowed. */
@@ -111,6 +112,8 @@ typedef struct csg_gltf_calls {
     csg_gltf_part_fn *part;
     csg_gltf_load_fn *load;
     void *user;
+    /* May so many bytes of memory be taken? */
+    bool (*allows)(void *user, uint64_t bytes);
     uint64_t most_bytes; /* of memory that decoding may take */
 } csg_gltf_calls;
 

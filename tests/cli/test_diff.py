@@ -73,6 +73,14 @@ class Diff(diff_support.DiffTest):
         self.assertIn(b"normals differ", self.diff(1, "v.glb", "s.txt", "-r", "24", "--normals", "crease").stdout)
         self.assertIn(b"colours differ", self.diff(1, "s.ply", "s.txt", "-r", "24", "--colors", "none").stdout)
 
+    def test_timeout(self):
+        """However little time there is: it ends with the limit's message, in any stage."""
+        self.mesh(BALL, "a.ply")
+        self.mesh("translate([0.003, 0, 0]) sphere(10.1);", "b.ply")
+        for limit in ("1e-9", "0.001"):
+            self.assertIn("E0902: comparing took longer than the limit of " + limit.replace("1e-9", "1e-09"),
+                          self.diff(2, "a.ply", "b.ply", "--timeout", limit).stderr)
+
     def test_one_sided(self):
         self.mesh(BALL, "a.ply")
         self.mesh(KNOB, "b.ply")

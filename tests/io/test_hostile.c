@@ -229,7 +229,7 @@ static const lie lies[] = {
           "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]"),
      "beyond the end of its bufferView", 0},
     {"a.gltf", GLTF("\"buffers\":[{\"byteLength\":12,\"uri\":\"../../../../no/such/file.bin\"}]"),
-     "No such file", 0},
+     "not a file beside it", 0},
     {"a.gltf", GLTF("\"buffers\":[{\"byteLength\":12,\"uri\":\"http://127.0.0.1/a.bin\"}]"),
      "not a file", 0},
     {"a.gltf", GLTF("\"extensionsRequired\":[\"EXT_meshopt_compression\"]"),

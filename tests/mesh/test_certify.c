@@ -214,9 +214,34 @@ static void runs_out_and_stops(void **state)
     assert_true(refused > 0 && stopped > 0);
 }
 
+static bool count_calls(void *user)
+{
+    ++*(uint64_t *)user;
+    return false;
+}
+
+/* A block may take minutes: who asks to stop is heard in it, before each of its cubes. */
+static void a_block_can_be_stopped(void **state)
+{
+    (void)state;
+    lattice_case c;
+    csgm_vec3 middle;
+    csg_random random = {.state = 5};
+    uint64_t calls = 0;
+    mesh_case_begin(&c.base, 1);
+    mesh_case_compile(&c.base, plant(&c.base, SHEET, &random, &middle));
+    assert_true(csg_lattice_make(c.base.field->bounds, c.base.field->center, 0.125, 0, &c.lattice));
+    csg_certify_options options = {.size = 0.002, .user = &calls, .cancelled = count_calls};
+    assert_int_equal(
+        csg_certify_run(&c.base.context, c.base.field, &c.lattice, &options, &c.report), CSGM_OK);
+    assert_true(c.report.cubes > 0 && calls > c.report.cubes);
+    mesh_case_end(&c.base);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_block_can_be_stopped),
         cmocka_unit_test(planted_parts_are_found),
         cmocka_unit_test(clean_scenes_are_clean),
         cmocka_unit_test(reports_do_not_depend_on_threads),

@@ -83,7 +83,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t item)
     segment *s = &w->segments[item];
     *s = (segment){.worker = worker_index, .first = self->finding_count};
     if (!look_at_blocks(w, self, at, &tape)) {
-        atomic_store(&w->out_of_memory, true);
+        atomic_store(self->is_stopped ? &w->cancelled : &w->out_of_memory, true);
         return false;
     }
     s->count = self->finding_count - s->first;
@@ -217,6 +217,8 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
     *self = (csg_certify_worker){.context = w->context,
                                  .lattice = w->lattice,
                                  .size = w->options->size,
+                                 .cancelled = w->options->cancelled,
+                                 .user = w->options->user,
                                  .most_block_visits = block_budget(w->cube_count)};
     csg_pruner_init(&self->plain, memory, kernel, rounding);
     csg_pruner_init(&self->wide, memory, kernel, rounding);

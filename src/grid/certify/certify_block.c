@@ -532,6 +532,12 @@ static void place_reach(csg_certify_worker *w, const csg_tape *tape)
     }
 }
 
+static bool should_stop(csg_certify_worker *w)
+{
+    w->is_stopped = w->is_stopped || (w->cancelled && w->cancelled(w->user));
+    return w->is_stopped;
+}
+
 bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_tape *tape)
 {
     double h = w->lattice->cell_size;
@@ -555,7 +561,7 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
             w->lattice, axis, at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
     w->stack_count = 0;
     bool done = stack_cube(w, &root);
-    while (done && w->stack_count) {
+    while (done && w->stack_count && !should_stop(w)) {
         csg_certify_cube cube = w->stack[--w->stack_count];
         csg_arena_release_to(&w->tapes, cube.mark); /* what its elder siblings' parts needed */
         done = look_at(w, &cube);
@@ -564,5 +570,5 @@ bool csg_certify_block(csg_certify_worker *w, const uint32_t at[3], const csg_ta
     for (int i = 0; i < CSG_CELLS_PER_BLOCK; i++)
         if (w->kinds[i])
             w->cells[w->kinds[i]]++;
-    return done && !w->out_of_memory;
+    return done && !w->out_of_memory && !w->is_stopped;
 }

@@ -53,10 +53,13 @@ typedef struct csg_certify_worker {
     size_t finding_count, finding_capacity;
     uint64_t cells[CSG_CELL_KINDS], cubes;
     bool reached_size, out_of_memory;
+    bool (*cancelled)(void *user); /* asked before each cube: one may take long; or NULL */
+    void *user;
+    bool is_stopped; /* it said yes */
 } csg_certify_worker;
 
 /* Looks at all cells of a block, with a tape valid in it and CSG_CERTIFY_MARGIN cells around it.
- * False: out of memory. */
+ * False: out of memory, or stopped. */
 bool csg_certify_block(csg_certify_worker *worker, const uint32_t at[3], const csg_tape *tape);
 
 #endif

@@ -165,7 +165,8 @@ csgm_status decode(const uint8_t *bytes, size_t size, const csg_draco_ids *ids, 
         return fail(error, CSGM_ERR_FORMAT, result.status().error_msg());
     const draco::Mesh &mesh = *result.value();
     const uint64_t points = mesh.num_points(), faces = mesh.num_faces();
-    if (most && (points * 40 + faces * 12) > most)
+    error->is_limit = most && (points * 40 + faces * 12) > most;
+    if (error->is_limit)
         return fail(error, CSGM_ERR_MEMORY, "the decoded mesh is larger than the memory limit");
     auto owner = std::make_unique<decoded_owner>();
     *out = {};

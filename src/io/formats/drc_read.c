@@ -31,10 +31,12 @@ static csgm_status add_vertices(const csg_input *input, csg_mesh_builder *builde
 csgm_status csg_drc_read(csg_input *input, csg_mesh_builder *builder)
 {
     csg_draco_decoded decoded;
-    csg_adapter_error error = {{0}};
+    csg_adapter_error error = {.text = ""};
     csgm_status status =
         csg_draco_decode(input->bytes, input->size_bytes, NULL,
                          csg_memory_left(&input->context->memory), &decoded, &error);
+    if (error.is_limit)
+        csg_memory_allows(&input->context->memory, UINT64_MAX / 2); /* it is noted as refused */
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(input->context);
     if (status)

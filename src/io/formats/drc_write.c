@@ -19,7 +19,7 @@ csgm_status csg_write_draco(csg_sink *sink, const csgm_mesh_view *mesh,
     source.triangle_count = mesh->triangle_count;
     csg_draco_settings settings = {options->draco_position_bits, options->draco_normal_bits,
                                    options->draco_level};
-    csg_adapter_error error = {{0}};
+    csg_adapter_error error = {.text = ""};
     csgm_status status = csg_draco_encode(&source, &settings, out, &error);
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(sink->context);

@@ -75,7 +75,7 @@ struct document {
 
 /* The parser itself does not recurse, but what walks its result may. And neither it nor tinygltf
  * can be told how much memory there is: what they will take is bounded from what is in the text. */
-void check_document(const char *text, size_t size, uint64_t most_bytes)
+void check_document(const char *text, size_t size, const csg_gltf_calls *calls)
 {
     constexpr int most = 64; /* our documents need 9 */
     /* arrays that grow hold half as much again as they had, beside it */
@@ -107,14 +107,13 @@ void check_document(const char *text, size_t size, uint64_t most_bytes)
             depth--;
         }
     }
-    if (most_bytes && bytes > most_bytes)
-        refuse(CSGM_ERR_MEMORY, "the document may need %llu MiB",
-               static_cast<unsigned long long>(bytes >> 20));
+    if (!calls->allows(calls->user, bytes))
+        refuse(CSGM_ERR_MEMORY, "the document takes too much memory");
 }
 
-json parse(const char *text, size_t size, uint64_t most_bytes)
+json parse(const char *text, size_t size, const csg_gltf_calls *calls)
 {
-    check_document(text, size, most_bytes);
+    check_document(text, size, calls);
     try {
         json root = json::parse(text, text + size);
         if (!root.is_object())
@@ -500,6 +499,8 @@ void emit_compressed(const document &doc, const compressed &from, const origin &
                                      "without Draco");
     csgm_status status = csg_draco_decode(bytes.bytes, bytes.size, &from.ids, doc.calls->most_bytes,
                                           &decoded, &error);
+    if (error.is_limit)
+        doc.calls->allows(doc.calls->user, UINT64_MAX / 2); /* it is noted as refused */
     if (status)
         refuse(status, "a compressed primitive: %s", error.text);
     decoded.part.begins = at.begins;
@@ -649,7 +650,7 @@ void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
 {
     document doc;
     doc.calls = calls;
-    json root = parse(text, size, calls->most_bytes);
+    json root = parse(text, size, calls);
     check_version(root);
     check_extensions(root);
     resolve_buffers(doc, root, bin);

@@ -175,6 +175,12 @@ static void release_files(gltf *g)
     }
 }
 
+static bool allows(void *user, uint64_t bytes)
+{
+    gltf *g = user;
+    return csg_memory_allows(&g->input->context->memory, bytes);
+}
+
 /* ---- the container ---------------------------------------------------------------- */
 
 typedef struct chunks {
@@ -230,9 +236,10 @@ csgm_status csg_gltf_read(csg_input *input, csg_mesh_builder *builder)
     }
     csg_gltf_calls calls = {.part = add_part,
                             .load = load,
+                            .allows = allows,
                             .user = &g,
                             .most_bytes = csg_memory_left(&input->context->memory)};
-    csg_adapter_error error = {{0}};
+    csg_adapter_error error = {.text = ""};
     csgm_status status = csg_gltf_parse((const char *)parts.json, parts.json_bytes, parts.bin,
                                         parts.bin_bytes, &calls, &error);
     release_files(&g);

@@ -471,7 +471,7 @@ static csgm_status report(const csg_input *input, csgm_status status,
 static csgm_status read_files(parser *p, csg_package *package)
 {
     csg_3mf *m = p->m;
-    csg_adapter_error error = {{0}};
+    csg_adapter_error error = {.text = ""};
     csg_xml_calls relationships = {NULL, on_relationship, on_nothing, p};
     csg_xml_calls model = {on_namespace, on_start, on_end, p};
     csgm_status status =
@@ -497,7 +497,7 @@ csgm_status csg_3mf_load(csg_3mf *model, csg_input *input)
 {
     *model = (csg_3mf){.input = input};
     csg_arena_init(&model->names, &input->context->memory);
-    csg_adapter_error error = {{0}};
+    csg_adapter_error error = {.text = ""};
     csg_package *package = NULL;
     parser p = {.m = model};
     csgm_status status =
