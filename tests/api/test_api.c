@@ -321,6 +321,7 @@ static void test_cancel(void **state)
 {
     watch w = {0};
     csgm_mesh_options options = csgm_mesh_options_default();
+    options.resolution = 128;
     options.monitor = (csgm_monitor){on_progress, on_look, &w};
     run r;
     assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);

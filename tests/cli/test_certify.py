@@ -73,12 +73,12 @@ class Certify(cli.CliTest):
 
     def test_clean(self):
         self.write("drilled.txt", DRILLED)
-        result = self.run_in("drilled.txt", "-o", "out.ply", "--certify")
+        result = self.run_in("drilled.txt", "-r", "128", "-o", "out.ply", "--certify")
         self.assert_status(result, 0)
         self.assertNotIn("warning", result.stderr)
         self.assertIn("certify: every part of the surface is in the mesh\n", result.stderr)
         self.assertIn(" 0 refined, 0 unresolved, 0 missed\n", result.stderr)
-        plain = self.run_in("drilled.txt", "-o", "plain.ply")
+        plain = self.run_in("drilled.txt", "-r", "128", "-o", "plain.ply")
         self.assertEqual(plain.stderr, "")
         self.assertEqual(self.read("out.ply"), self.read("plain.ply"))
 

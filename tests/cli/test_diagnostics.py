@@ -55,7 +55,7 @@ class Text(cli.CliTest):
     def test_parts_that_are_missing_are_told_behind_many_warnings(self):
         self.write("a.txt", "".join(f"a{i} = b{i};\n" for i in range(50)) +
                    "rotate([70, 0, 315]) cube([10, 10, 0.01]); cube(2);\n")
-        result = self.run_in("a.txt", "-o", "a.stl")
+        result = self.run_in("a.txt", "-r", "128", "-o", "a.stl")
         self.assertIn("warning W0406", result.stderr)
 
     def test_warnings_inside_libraries_are_one_line(self):

@@ -40,7 +40,7 @@ class Diff(diff_support.DiffTest):
         self.mesh(BALL, "golden.ply")
         self.write("ball.txt", BALL)
         self.diff(0, "golden.ply", "ball.txt", "-r", 32)
-        report = self.report(0, "golden.ply", "ball.txt", "--tol", "0.1", "--field")
+        report = self.report(0, "golden.ply", "ball.txt", "-r", 128, "--tol", "0.1", "--field")
         field = report["a_to_field_of_b"]
         self.assertEqual(field["lambda"], 1)
         # facets of an inscribed polyhedron: their middles are off, the sagitta of a cell at most
@@ -48,7 +48,7 @@ class Diff(diff_support.DiffTest):
         self.assertLess(field["distance_upper"], 0.1)
         self.assertLessEqual(field["distance_lower"], field["distance_upper"])
         self.write("knob.txt", KNOB)
-        self.assertIn(b"apart", self.diff(1, "golden.ply", "knob.txt", "--tol", "0.1").stdout)
+        self.assertIn(b"apart", self.diff(1, "golden.ply", "knob.txt", "-r", 128, "--tol", "0.1").stdout)
         self.diff(0, "golden.ply", "ball.txt", "-D", "unused=1", "-r", 32)
         self.assert_refused(self.run_in("diff", "golden.ply", "golden.ply", "--field"), 2, "--field")
 
