@@ -500,6 +500,8 @@ typedef struct csgm_certify {
     csgm_certify_place places[CSGM_CERTIFY_PLACES_MOST]; /* the missed ones first */
 } csgm_certify;
 
+enum { CSGM_LEVELS_MOST = 24 }; /* sizes of cells in one mesh: each half as large as the last */
+
 /* What a mesh build did and found: times in seconds of wall time, counts, and distances in scene
  * units. */
 typedef struct csgm_mesh_stats {
@@ -529,7 +531,9 @@ typedef struct csgm_mesh_stats {
     uint64_t unresolved_cells;    /* that the scan of samples doubts, or --certify could not tell */
     csgm_certify certify;         /* where csgm_mesh_options.certify asked for it */
     double tolerance;     /* that cells which follow the shape were chosen for; 0: all are equal */
-    double cell_coarsest; /* of those; cell_size is the finest that there may be */
+    double cell_coarsest; /* the largest that they may be; cell_size is the finest */
+    /* Blocks of 2^3 cells that follow the shape, by the size of these: cell_coarsest / 2^i. */
+    uint64_t blocks[CSGM_LEVELS_MOST];
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a

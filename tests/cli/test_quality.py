@@ -63,6 +63,26 @@ class Quality(cli.CliTest):
         self.assertEqual(mesh["components"], 2)
         self.assertIn(b"uchar red", self.bytes(PAIR, "--quality", "draft")[:400])
 
+    def test_lattice(self):
+        lattice = self.stats("sphere(10);", "--quality", "normal")["lattice"]
+        self.assertEqual((lattice["adaptive"], lattice["tolerance"]), (True, 2 ** -6))
+        self.assertEqual(lattice["cell_finest"] * 2 ** (len(lattice["blocks"]) - 1), lattice["cell_coarsest"])
+        self.assertGreater(lattice["blocks"][-1], 0)
+        self.assertEqual(self.stats("sphere(10);", "-r", "32")["lattice"],
+                         {"adaptive": False, "cell_coarsest": 20 / 32, "cell_finest": 20 / 32, "blocks": [80]})
+        self.write("scene.txt", "sphere(10);")
+        for options, words in ((["-r", "32"], "with cells of 0.625\n"), (["--quality", "normal"], "within 0.015625, of cells of ")):
+            self.assertIn(words, cli.run("info", "scene.txt", *options, cwd=self.folder).stdout.decode())
+
+    def test_lattice_of_parts(self):
+        """Small parts begin with smaller cells; blocks of one size are counted together."""
+        alone = [self.stats(part + ";", "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]
+                 for part in ("cube(100)", "cube(1)")]
+        both = self.stats('part("a") cube(1); part("b") cube(100);', "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]
+        self.assertGreater(alone[0]["cell_coarsest"], alone[1]["cell_coarsest"])
+        self.assertEqual(both["cell_coarsest"], alone[0]["cell_coarsest"])
+        self.assertEqual(sum(both["blocks"]), sum(map(sum, (lattice["blocks"] for lattice in alone))))
+
     def test_same_bytes(self):
         text = "difference() { rotate([20, 30, 40]) cube(10, center = true, round = 1); cylinder(h = 30, r = 3, center = true); }"
         one = self.bytes(text, "--quality", "draft", "-j", "1")

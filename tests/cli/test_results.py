@@ -125,6 +125,7 @@ class Statistics(cli.CliTest):
             "csgmesh": None, "peak_rss_bytes": None, "threads": None, "simd": None,
             "scene": ["primitives", "operators", "lambda", "bounds"],
             "grid": ["cell_size", "cells"],
+            "lattice": ["adaptive", "cell_coarsest", "cell_finest", "blocks"],
             "evaluations": ["interval", "points", "gradient", "primitive", "mean_tape_length"],
             "octree": ["visited", "pruned_outside", "pruned_inside", "leaf_blocks",
                        "unresolved_cells"],
@@ -162,7 +163,7 @@ class Statistics(cli.CliTest):
     def test_files(self):
         """Each file as it is read back: what rounding and quantising have made of the mesh."""
         self.write("far.txt", "translate([5000, 5000, 5000]) union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); }\n")
-        files = self.stats("far.txt", "-o", "a.stl", "-o", "a.ply", "-o", "a.drc")["files"]
+        files = self.stats("far.txt", "-r", "128", "-o", "a.stl", "-o", "a.ply", "-o", "a.drc")["files"]
         self.assertEqual([file["name"] for file in files], ["a.stl", "a.ply", "a.drc"])
         for file in files:
             self.assertTrue(file["manifold"], file["name"])
@@ -170,7 +171,7 @@ class Statistics(cli.CliTest):
             self.assertEqual(file["triangles"], files[1]["triangles"])
             self.assertEqual(self.info(file["name"])["mesh"]["area"], file["area"])
         self.assertNotEqual(files[0]["area"], files[1]["area"])  # floats are 0.0005 apart there
-        self.assert_status(self.run_in("far.txt", "-o", "b.stl"), 0)  # streamed or not: the same bytes
+        self.assert_status(self.run_in("far.txt", "-r", "128", "-o", "b.stl"), 0)  # streamed or not: the same bytes
         self.assertEqual(self.read("a.stl"), self.read("b.stl"))
 
     def test_too_far(self):

@@ -208,6 +208,15 @@ static csgm_status walk(adaptive *a)
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
 }
 
+static void count_blocks(const csg_bricks *bricks, uint64_t blocks[CSGM_LEVELS_MOST])
+{
+    for (size_t i = 0; i < bricks->count; i++) {
+        const csg_brick *brick = &bricks->items[i];
+        if (!brick->divided && brick->crossed && brick->level >= bricks->options.coarse)
+            blocks[brick->level - bricks->options.coarse]++;
+    }
+}
+
 static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
 {
     const csg_bricks_stats *s = &a->bricks.stats;
@@ -234,6 +243,7 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
         stats->point_evaluations += a->judge.rooms[i].evaluations;
         stats->gradient_evaluations += a->judge.rooms[i].gradients;
     }
+    count_blocks(&a->bricks, stats->blocks);
 }
 
 static void release(adaptive *a)

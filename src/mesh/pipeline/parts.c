@@ -58,6 +58,22 @@ static void begin(assembly *a)
     }
 }
 
+/* By the size of their cells; a small part begins with smaller ones. */
+static void add_blocks(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
+{
+    const csgm_mesh_stats *both[] = {sum, part};
+    double coarsest = fmax(sum->cell_coarsest, part->cell_coarsest);
+    uint64_t blocks[CSGM_LEVELS_MOST] = {0};
+    for (int k = 0; k < 2; k++) {
+        double own = both[k]->cell_coarsest;
+        int down = own > 0 ? (int)lround(log2(coarsest / own)) : CSGM_LEVELS_MOST;
+        for (int i = 0; i + down < CSGM_LEVELS_MOST; i++)
+            blocks[i + down] += both[k]->blocks[i];
+    }
+    sum->cell_coarsest = coarsest;
+    memcpy(sum->blocks, blocks, sizeof blocks);
+}
+
 /* Counts add up; the lattice is the same; the tape's mean is weighted. */
 static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
 {
@@ -67,7 +83,7 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->mesh_s += part->mesh_s;
     sum->cell_size = part->cell_size;
     sum->tolerance = part->tolerance;
-    sum->cell_coarsest = part->cell_coarsest;
+    add_blocks(sum, part);
     memcpy(sum->cells, part->cells, sizeof sum->cells);
     sum->cells_visited += part->cells_visited;
     sum->pruned_outside += part->pruned_outside;

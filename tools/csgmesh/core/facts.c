@@ -41,6 +41,41 @@ void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_
     cli_json_box(json, "bounds", check->bounds);
 }
 
+/* Levels of cells that follow the shape, up to the finest that occurs. */
+static int levels_of(const csgm_mesh_stats *stats)
+{
+    int count = CSGM_LEVELS_MOST;
+    while (count > 1 && !stats->blocks[count - 1])
+        count--;
+    return count;
+}
+
+static double finest_of(const csgm_mesh_stats *stats)
+{
+    return ldexp(stats->cell_coarsest, 1 - levels_of(stats));
+}
+
+static bool is_adaptive(const csgm_mesh_stats *stats)
+{
+    return stats->tolerance > 0;
+}
+
+void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats)
+{
+    bool adaptive = is_adaptive(stats);
+    cli_json_open(json, "lattice", '{');
+    cli_json_bool(json, "adaptive", adaptive);
+    if (adaptive)
+        cli_json_number(json, "tolerance", stats->tolerance);
+    cli_json_number(json, "cell_coarsest", adaptive ? stats->cell_coarsest : stats->cell_size);
+    cli_json_number(json, "cell_finest", adaptive ? finest_of(stats) : stats->cell_size);
+    cli_json_open(json, "blocks", '[');
+    for (int i = 0; i < (adaptive ? levels_of(stats) : 1); i++)
+        cli_json_count(json, NULL, adaptive ? stats->blocks[i] : stats->leaf_blocks);
+    cli_json_end(json, ']');
+    cli_json_end(json, '}');
+}
+
 /* ---- for people ------------------------------------------------------------------------ */
 
 static void print_bounds(csgm_box box)
@@ -63,6 +98,15 @@ void cli_facts_scene_text(const csgm_scene_info *info)
     printf("  lambda       %.9g\n", info->lipschitz);
     printf("  colours      %s\n", info->has_colors ? "yes" : "no");
     print_bounds(info->bounds);
+}
+
+void cli_facts_lattice_text(const csgm_mesh_stats *stats)
+{
+    if (is_adaptive(stats))
+        printf("its mesh within %.9g, of cells of %.9g to %.9g\n", stats->tolerance,
+               stats->cell_coarsest, finest_of(stats));
+    else
+        printf("its mesh with cells of %.9g\n", stats->cell_size);
 }
 
 static void print_fault(uint64_t count, const char *what, const char **separator)

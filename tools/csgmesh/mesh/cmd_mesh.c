@@ -42,6 +42,7 @@ static void put_work(cli_json *json, const cli_work *work)
         cli_json_count(json, NULL, stats->cells[i]);
     cli_json_end(json, ']');
     cli_json_end(json, '}');
+    cli_facts_lattice_json(json, stats);
     cli_json_open(json, "evaluations", '{');
     cli_json_count(json, "interval", stats->interval_evaluations);
     cli_json_count(json, "points", stats->point_evaluations);

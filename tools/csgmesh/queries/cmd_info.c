@@ -74,6 +74,7 @@ static void print_scene_json(const char *path, const cli_work *work, const csgm_
     cli_json_end(&json, ']');
     if (view) {
         cli_json_number(&json, "cell_size", work->stats.cell_size);
+        cli_facts_lattice_json(&json, &work->stats);
         put_mesh_member(&json, view, check);
     }
     cli_json_end(&json, '}');
@@ -88,7 +89,7 @@ static void print_scene_text(const char *path, const cli_work *work, const csgm_
     for (size_t i = 0; (file = csgm_scene_dependency(work->scene, i)); i++)
         printf("  %-12s %s\n", i ? "" : "files", file);
     if (view) {
-        printf("its mesh with cells of %.9g\n", work->stats.cell_size);
+        cli_facts_lattice_text(&work->stats);
         cli_facts_mesh_text(view, check);
     }
 }
