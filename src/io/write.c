@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/mman.h>
 
 #include "base/geometry.h"
 #include "base/mesh_codes.h"
@@ -239,6 +240,12 @@ csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, cs
 {
     const char *name = "a temporary file";
     FILE *file = tmpfile();
+#ifdef __linux__
+    if (!file) { /* as below --root */
+        int fd = memfd_create("csgmesh", MFD_CLOEXEC);
+        file = fd < 0 ? NULL : fdopen(fd, "w+b");
+    }
+#endif
     if (!file) {
         csg_diag_plain(&context->diags, CSG_DIAG_CANNOT_WRITE, name, NULL, "cannot write: %s",
                        strerror(errno));

@@ -99,7 +99,7 @@ class Mistakes(cli.CliTest):
         self.refused("a.txt", "-o", "a.glb", "-f", "doc", words=["unknown format 'doc'"])
 
     def test_collisions(self):
-        self.refused("a.txt", "-o", "a.glb", "-o", "a.glb", words=["given twice"])
+        self.refused("a.txt", "-o", "a.glb", "-o", "a.glb", words=["both write to"])
         self.refused("a.txt", "-f", "ply", "-o", "-", "--stats", words=["standard output"])
         self.refused("a.txt", "-f", "ply", "-o", "-", "-M", "a.d", words=["-M needs an output"])
 

@@ -8,6 +8,7 @@
 #include "batch/batch_hash.h"
 #include "core/cli.h"
 #include "core/interrupt.h"
+#include "core/roots.h"
 #include "core/trace.h"
 
 static const struct {
@@ -62,7 +63,9 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
         return print_version(app);
     if (app->options.help)
         return help(app, is_named ? commands[command].name : NULL);
-    int status = cli_trace_begin(app);
+    int status = cli_roots_confine(app);
+    if (status == CLI_DONE)
+        status = cli_trace_begin(app);
     if (status == CLI_DONE)
         status = commands[command].run(app);
     if (app->options.summary)

@@ -60,7 +60,8 @@ static const char *output_at(const cli_options *o, size_t index, const char **op
                   {"--junit", o->diff_junit},
                   {"--heatmap", o->diff_heatmap},
                   {"--png", o->diff_png},
-                  {"--html", o->diff_html}};
+                  {"--html", o->diff_html},
+                  {"--json", o->json ? "-" : NULL}};
     enum { OTHERS = sizeof others / sizeof *others };
     bool is_other = index >= o->outputs.count;
     *is_last = index + 1 >= o->outputs.count + OTHERS;
@@ -104,9 +105,12 @@ static int guard_outputs(cli_app *app)
         is_last_other = is_last || !path;
         for (size_t j = i + 1; !is_last_other; j++) {
             const char *other = output_at(&app->options, j, &other_option, &is_last_other);
-            if (other && strcmp(path, "-") == 0 && strcmp(other, "-") == 0)
-                return cli_usage_error(app, NULL, "%s and %s both write to standard output", option,
+            if (other && strcmp(path, "-") == 0 && strcmp(other, "-") == 0) {
+                app->would_overwrite = true;
+                return cli_usage_error(app, "write one of them to a file",
+                                       "%s and %s both write to standard output", option,
                                        other_option);
+            }
             identity two = identify(other);
             if (!are_same(&one, &two))
                 continue;

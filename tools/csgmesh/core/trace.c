@@ -8,34 +8,11 @@
 #include "core/textfile.h"
 #include "mesh/outputs.h"
 
-/* What else this run writes to that path, as the user has named it; NULL: nothing. */
-static const char *other_at(const cli_options *o, const char *path)
-{
-    const struct {
-        const char *path, *name;
-    } rows[] = {
-        {o->stats, "--stats"},    {o->depfile, "-M"},         {o->junit, "--junit"},
-        {o->diff_json, "--json"}, {o->diff_junit, "--junit"}, {o->diff_heatmap, "--heatmap"},
-        {o->diff_png, "--png"},   {o->diff_html, "--html"},   {o->json ? "-" : NULL, "--json"}};
-    for (size_t i = 0; i < o->outputs.count; i++)
-        if (strcmp(o->outputs.items[i], path) == 0)
-            return "-o";
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (rows[i].path && strcmp(rows[i].path, path) == 0)
-            return rows[i].name;
-    return NULL;
-}
-
 int cli_trace_begin(cli_app *app)
 {
     const char *path = app->options.trace;
     if (!path)
         return CLI_DONE;
-    const char *other = other_at(&app->options, path);
-    if (other)
-        return cli_usage_error(app, "write one of them to another file",
-                               "--trace and %s both write to %s", other,
-                               strcmp(path, "-") ? path : "standard output");
     if (cli_outputs_check_place(app, path) != CLI_DONE)
         return CLI_TROUBLE;
     if (csgm_trace_create(NULL, 0, &app->trace) == CSGM_OK)

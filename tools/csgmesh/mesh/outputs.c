@@ -85,23 +85,6 @@ int cli_outputs_check_place(cli_app *app, const char *path)
     return access(folder, W_OK | X_OK) == 0 ? CLI_DONE : refuse_path(app, path, errno);
 }
 
-/* Twice the same file, or two results on one stream. */
-static int check_collisions(cli_app *app)
-{
-    const cli_options *options = &app->options;
-    for (size_t i = 0; i < options->outputs.count; i++) {
-        const char *path = options->outputs.items[i];
-        for (size_t j = 0; j < i; j++)
-            if (strcmp(path, options->outputs.items[j]) == 0)
-                return cli_usage_error(app, NULL, "-o %s is given twice", path);
-        if (options->stats && strcmp(path, options->stats) == 0)
-            return cli_usage_error(app, "write one of them to a file",
-                                   "-o and --stats both write to %s",
-                                   strcmp(path, "-") ? path : "standard output");
-    }
-    return CLI_DONE;
-}
-
 /* The values of --normals, in their order. */
 enum { AUTO, VERTEX, CREASE, NONE };
 
@@ -153,7 +136,6 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
     }
     if (!options->outputs.count && !options->stats)
         return refuse_no_output(app, scene_path);
-    status = check_collisions(app);
     for (size_t i = 0; i < options->outputs.count && status == CLI_DONE; i++) {
         status = cli_outputs_check_place(app, options->outputs.items[i]);
         if (status == CLI_DONE)

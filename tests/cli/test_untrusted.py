@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""--root: whatever a scene or a command line names, nothing outside is read or written. Over 100 escapes."""
+import os
+import unittest
+
+import cli
+
+SECRET = "a_secret_word_4711"
+TRIANGLE = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+GLTF = ('{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"uri":"%s",'
+        '"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,'
+        '"count":3,"type":"VEC3"}],"nodes":[{"mesh":0}]}')
+
+
+class Untrusted(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        for folder in ("in", "in/below", "out"):
+            os.mkdir(self.path(folder))
+        self.write("out/s.txt", f"echo(\"{SECRET}\"); module ball() sphere(1); cube(1); /* {SECRET} */\n")
+        self.write("out/a.stl", TRIANGLE)
+        self.write("out/t.svg", '<svg xmlns="http://www.w3.org/2000/svg"><rect width="3" height="3"/></svg>')
+        self.write("out/t.csv", "1 2 3\n4 5 6\n7 8 9\n")
+        self.write("out/t.json", f'{{"parameterSets": {{"{SECRET}": {{"x": "1"}}}}}}')
+        self.write("out/a.bin", b"\0" * 36)
+        self.write("in/ok.txt", "cube(1);\n")
+        self.write("in/below/part.txt", "module ball() sphere(1);\n")
+        os.symlink("../out", self.path("in/door"))
+        for name in ("s.txt", "a.stl", "t.svg", "t.csv", "t.json", "a.bin"):
+            os.symlink("../out/" + name, self.path("in/link-" + name))
+        if "Landlock" in self.rooted("check", "ok.txt").stderr:
+            self.skipTest("this kernel has no Landlock")
+
+    def rooted(self, *arguments, **options):
+        return cli.run(*arguments, "--root", self.path("in"), cwd=self.path("in"), **options)
+
+    def ways_to(self, name):
+        """Names of a file of out/, as seen from in/."""
+        out = self.path("out")
+        return [f"{out}/{name}", f"../out/{name}", f"./below/../../out/{name}", f"door/{name}", f"link-{name}",
+                f"/proc/self/cwd/../out/{name}", f"/proc/self/root{out}/{name}"]
+
+    def outside(self):
+        found = {}
+        for name in sorted(os.listdir(self.path("out"))):
+            with open(self.path("out/" + name), "rb") as file:
+                found[name] = file.read()
+        return found, sorted(os.listdir(self.folder))
+
+    def inside(self):
+        text = b""
+        for folder, _, names in os.walk(self.path("in")):
+            for name in names:
+                path = os.path.join(folder, name)
+                if not os.path.islink(path) and name != "evil.txt" and not name.startswith("evil"):
+                    with open(path, "rb") as file:
+                        text += file.read()
+        return text
+
+    def escapes(self):
+        """What to run, with the text of in/evil.txt or in/evil.gltf."""
+        for path in self.ways_to("s.txt"):
+            yield f"include <{path}>\n", ["evil.txt", "-o", "r.stl"]
+            yield f"use <{path}>\nball();\n", ["evil.txt", "-o", "r.stl"]
+            yield None, [path, "-o", "r.stl"]
+            yield None, ["check", path]
+            yield None, ["render", path, "-o", "r.ppm", "--size", "8x8"]
+            yield None, ["dump", "--scene", path]
+        for name in ("a.stl", "t.svg", "t.json"):
+            for path in self.ways_to(name):
+                yield f"import(\"{path}\");\n", ["evil.txt", "-o", "r.stl"]
+        for path in self.ways_to("t.csv"):
+            yield f"surface(\"{path}\");\n", ["evil.txt", "-o", "r.stl"]
+        for path in self.ways_to("a.stl"):
+            yield None, ["info", path]
+            yield None, ["diff", "ok.txt", path]
+            yield None, ["render", path, "-o", "r.ppm", "--size", "8x8"]
+        for path in self.ways_to("t.json"):
+            yield None, ["ok.txt", "-p", path, "-P", SECRET, "-o", "r.stl"]
+        for path in self.ways_to("a.bin") + ["%2e%2e/out/a.bin", "..%2fout%2Fa.bin", "file:///etc/passwd"]:
+            yield GLTF % path, ["info", "evil.gltf"]
+        for path in [way for way in self.ways_to("new.stl") if way != "link-new.stl"] + self.ways_to("a.stl"):
+            yield None, ["ok.txt", "-r", "8", "-o", path]
+            yield None, ["ok.txt", "-r", "8", "-o", "r.stl", "--stats=" + path]
+            yield None, ["ok.txt", "-r", "8", "-o", "r.stl", "-M", path]
+            yield None, ["ok.txt", "-r", "8", "-o", "r.stl", "--trace", path]
+            yield None, ["diff", "ok.txt", "ok.txt", "-r", "8", "--json", path]
+        for folder in ("../out", self.path("out"), "door", "../new"):
+            yield None, ["batch", "ok.txt", "-r", "8", "-d", folder, "-f", "stl"]
+
+    def test_escapes(self):
+        before, count = self.outside(), 0
+        for text, arguments in self.escapes():
+            if text:
+                self.write("in/evil.gltf" if "evil.gltf" in arguments else "in/evil.txt", text)
+            result = self.rooted(*arguments)
+            self.assertNotEqual(result.returncode, 0, arguments)
+            self.assertGreaterEqual(result.returncode, 0, arguments)
+            self.assertNotIn(SECRET, result.stdout.decode() + result.stderr.replace(f"'{SECRET}'", ""), arguments)
+            self.assertEqual(self.outside(), before, arguments)
+            count += 1
+        self.assertGreaterEqual(count, 100)
+        self.assertNotIn(SECRET.encode(), self.inside())
+
+    def test_what_is_inside_works(self):
+        self.write("in/good.txt", "use <below/part.txt>\nball(); translate([2, 0, 0]) import(\"a.stl\");\n")
+        cli.run("ok.txt", "-r", "8", "-o", "a.stl", cwd=self.path("in"))
+        self.assert_status(self.rooted("good.txt", "-r", "16", "-o", "below/r.glb", "--stats=s.json"), 0)
+        self.assert_status(self.rooted("diff", "below/r.glb", "good.txt", "-r", "16", "--json", "d.json"), 0)
+        self.assert_status(self.rooted("info", self.path("in/below/r.glb")), 0)
+        self.assert_status(self.rooted("-", "-r", "8", "-f", "stl", "-o", "-", stdin=b"cube(1);"), 0)
+
+    def test_roots_from_the_environment(self):
+        result = cli.run("check", self.path("out/s.txt"), env={"CSGMESH_ROOT": self.path("in")})
+        self.assertNotEqual(result.returncode, 0)
+        both = self.path("in") + ":" + self.path("out")
+        self.assert_status(cli.run("check", self.path("out/s.txt"), env={"CSGMESH_ROOT": both}), 0)
+        self.assert_status(cli.run("check", "s.txt", "--root", ".", cwd=self.path("out")), 0)
+
+    def test_a_root_that_is_none(self):
+        result = cli.run("check", "ok.txt", "--root", "none", cwd=self.path("in"))
+        self.assert_status(result, 2)
+        self.assertIn("--root none: No such file or directory", result.stderr)
+
+
+if __name__ == "__main__":
+    cli.main()
