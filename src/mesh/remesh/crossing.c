@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * Two triangles, and some against all; see crossing.h. Nearly all pairs are told apart by a plane:
  * that is looked at first.
+ *
+ * Most changes need no pairs at all. If all triangles that meet a box face along one direction d,
+ * those in the box are the graph of a function over the plane across d: of two places on one line
+ * along d, both in the box, the solid would have to begin again between them, on a triangle that
+ * faces the other way, in the box too. So the triangles that go, in such a box, lie over a simple
+ * polygon, once. What takes their place has the same border: if all of it faces along d and lies in
+ * the box, it lies over that polygon once, and over nothing else that is there.
  */
 #include "mesh/remesh/crossing.h"
 
@@ -220,19 +227,116 @@ static bool crosses_rest(const csg_triangle_tree *t, const csg_crossing_change *
     return false;
 }
 
-bool csg_crossing_is_made(const csg_triangle_tree *t, const csg_crossing_change *c)
+/* ---- one sheet ---------------------------------------------------------------------------------
+ */
+
+static void include_box(csg_triangle_box *all, const csg_triangle_box *box)
+{
+    for (int k = 0; k < 3; k++) {
+        all->min[k] = box->min[k] < all->min[k] ? box->min[k] : all->min[k];
+        all->max[k] = box->max[k] > all->max[k] ? box->max[k] : all->max[k];
+    }
+}
+
+static void include_triangle(csg_triangle_box *all, const csg_triangle_tree *t, uint32_t triangle)
+{
+    csg_vec3 v[3];
+    csg_triangle_tree_corners(t, triangle, v);
+    csg_triangle_box box = csg_triangle_box_of(v);
+    include_box(all, &box);
+}
+
+/* The box around what goes and what comes. The neighbours of vertices that go are corners of what
+ * comes, or of a triangle that goes. */
+static csg_triangle_box box_of_change(const csg_triangle_tree *t, const csg_crossing_change *c,
+                                      const csg_triangle_box *new)
+{
+    csg_triangle_box all = *new;
+    for (int i = 0; i < 2; i++) {
+        if (c->triangles[i] != CSG_CORNER_NONE)
+            include_triangle(&all, t, c->triangles[i]);
+        if (c->vertices[i] == CSG_CORNER_NONE)
+            continue;
+        uint32_t first = t->corners->corner[c->vertices[i]], corner = first;
+        do {
+            include_triangle(&all, t, corner / 3);
+            corner = csg_corner_swing(t->corners, corner);
+        } while (corner != first);
+    }
+    return all;
+}
+
+static int count_bits(uint32_t word)
+{
+    int count = 0;
+    for (; word; word &= word - 1)
+        count++;
+    return count;
+}
+
+static uint32_t facing_of_leaf(const csg_triangle_tree *t, size_t leaf, const csg_triangle_box *box)
+{
+    uint32_t facing = CSG_FACING_ALL;
+    for (size_t i = leaf * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, leaf); i < end;
+         i++) {
+        csg_vec3 v[3];
+        uint32_t triangle = csg_triangle_tree_item(t, i);
+        if (!csg_corners_is_live(t->corners, triangle))
+            continue;
+        csg_triangle_tree_corners(t, triangle, v);
+        csg_triangle_box own = csg_triangle_box_of(v);
+        if (csg_triangle_boxes_overlap(box, &own))
+            facing &= csg_triangle_facing(csg_triangle_cross(v[0], v[1], v[2]));
+    }
+    return facing;
+}
+
+/* Whether all that meets the box faces along one of these directions. Large parts of the mesh are
+ * taken as one while they leave several. */
+static bool is_one_sheet(const csg_triangle_tree *t, const csg_triangle_box *box, uint32_t facing)
+{
+    enum { SEVERAL = 4 };
+    size_t stack[CSG_TRIANGLE_TREE_STACK], top = 0;
+    stack[top++] = 1;
+    while (top && facing) {
+        size_t i = stack[--top];
+        if (!csg_triangle_boxes_overlap(box, &t->nodes[i]))
+            continue;
+        uint32_t left = facing & t->facing[i];
+        if (left == facing)
+            continue;
+        if (count_bits(left) >= SEVERAL) {
+            facing = left;
+            continue;
+        }
+        if (i >= t->leaf_count) {
+            facing &= facing_of_leaf(t, i - t->leaf_count, box);
+            continue;
+        }
+        stack[top++] = 2 * i + 1;
+        stack[top++] = 2 * i;
+    }
+    return facing;
+}
+
+bool csg_crossing_is_made(const csg_triangle_tree *t, const csg_crossing_change *c, bool *one_sheet)
 {
     newcomers n; /* not filled: it is large */
     n.all = csg_triangle_box_of(c->at[0]);
+    uint32_t facing = CSG_FACING_ALL;
     for (size_t i = 0; i < c->count; i++) {
         csg_triangle_box box = csg_triangle_box_of(c->at[i]);
         n.plates[i] = plate_of(c->at[i], c->vertex[i]);
         n.extents[i] = extent_of(c->at[i]);
-        for (int k = 0; k < 3; k++) {
-            n.all.min[k] = box.min[k] < n.all.min[k] ? box.min[k] : n.all.min[k];
-            n.all.max[k] = box.max[k] > n.all.max[k] ? box.max[k] : n.all.max[k];
-        }
+        facing &= csg_triangle_facing(n.plates[i].normal);
+        include_box(&n.all, &box);
     }
+    csg_triangle_box box = box_of_change(t, c, &n.all);
+    bool sheet = is_one_sheet(t, &box, facing);
+    if (one_sheet)
+        *one_sheet = sheet;
+    if (sheet)
+        return false;
     if (!c->is_fan || !is_unfolded(c, n.plates))
         for (size_t i = 0; i < c->count; i++)
             for (size_t k = i + 1; k < c->count; k++)

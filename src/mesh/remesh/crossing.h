@@ -20,7 +20,9 @@ typedef struct csg_crossing_change {
 
 /* Whether an edge goes through a triangle, or comes as near to it as the tree's noise: of the new
  * ones, or of one of them and one that stays. What they share, a corner or an edge, does not
- * count. */
-bool csg_crossing_is_made(const csg_triangle_tree *tree, const csg_crossing_change *change);
+ * count: triangles that lie in one another there are found only where all that is near faces one
+ * way, which *one_sheet says; it may be NULL. */
+bool csg_crossing_is_made(const csg_triangle_tree *tree, const csg_crossing_change *change,
+                          bool *one_sheet);
 
 #endif

@@ -18,6 +18,7 @@ typedef struct csg_probe_room {
     uint32_t last[3]; /* the block looked up last, and what was found: neighbours follow */
     const csg_block *found;
     bool has_last;
+    uint32_t leaf; /* the same of bricks; NONE: there is none */
 } csg_probe_room;
 
 bool csg_probe_make(csg_probe *probe, const csg_marching *marching, csg_memory *memory)
@@ -31,8 +32,10 @@ bool csg_probe_make(csg_probe *probe, const csg_marching *marching, csg_memory *
     probe->tau = (float)(0.99 * (double)field->tape.lipschitz * marching->lattice->cell_size);
     probe->room = csg_memory_alloc(probe->memory, sizeof *probe->room);
     probe->scratch = csg_memory_alloc(probe->memory, probe->scratch_floats * sizeof(float));
-    if (probe->room)
+    if (probe->room) {
         probe->room->has_last = false;
+        probe->room->leaf = CSG_BRICK_NONE;
+    }
     if (probe->room && probe->scratch)
         return true;
     csg_probe_release(probe);
@@ -51,6 +54,26 @@ void csg_probe_release(csg_probe *probe)
 /* ---- which tape -------------------------------------------------------------------------------
  */
 
+static bool is_in_leaf(const csg_bricks *b, uint32_t leaf, const uint32_t cell[3])
+{
+    const csg_brick *brick = &b->items[leaf];
+    uint32_t shift = b->finest - brick->level;
+    for (int axis = 0; axis < 3; axis++)
+        if (cell[axis] / CSG_BRICK_EDGE >> shift != brick->at[axis])
+            return false;
+    return true;
+}
+
+/* The leaf at a place: that of the place before, as a rule. */
+static uint32_t leaf_at(csg_probe_room *room, const csg_bricks *b, const float at[3])
+{
+    uint32_t cell[3];
+    if (room->leaf == CSG_BRICK_NONE || !csg_lattice_cell_of(b->lattice, at, cell) ||
+        !is_in_leaf(b, room->leaf, cell))
+        room->leaf = csg_bricks_leaf_at(b, at);
+    return room->leaf;
+}
+
 static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
 {
     const csg_marching *m = probe->marching;
@@ -59,7 +82,7 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
     room->nodes[i] = m->field->tape.nodes;
     room->node_count[i] = m->field->tape.count;
     if (m->bricks) {
-        uint32_t found = csg_bricks_leaf_at(m->bricks, at);
+        uint32_t found = leaf_at(room, m->bricks, at);
         if (found != CSG_BRICK_NONE) {
             csg_tape tape = csg_bricks_tape(m->bricks, &m->bricks->items[found]);
             room->nodes[i] = tape.nodes;

@@ -21,43 +21,42 @@ typedef struct face {
     bool flat;       /* on the surface, and no sliver */
 } face;
 
-static face face_of(const csg_remesh *r, uint32_t triangle, float value)
+static csg_vec3 normal_of(const csg_remesh *r, uint32_t triangle)
 {
-    csg_vec3 a = csg_remesh_corner(r, 3 * triangle), b = csg_remesh_corner(r, 3 * triangle + 1),
-             c = csg_remesh_corner(r, 3 * triangle + 2);
-    csg_vec3 cross = csg_triangle_cross(a, b, c);
-    double longest = csg_triangle_longest_side((const csg_vec3[3]){a, b, c});
+    return csg_vec3_normalize(csg_triangle_cross(csg_remesh_corner(r, 3 * triangle),
+                                                 csg_remesh_corner(r, 3 * triangle + 1),
+                                                 csg_remesh_corner(r, 3 * triangle + 2)));
+}
+
+static bool is_flat(const csg_remesh *r, uint32_t triangle, float value)
+{
+    const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * triangle),
+                           csg_remesh_corner(r, 3 * triangle + 1),
+                           csg_remesh_corner(r, 3 * triangle + 2)};
+    double longest = csg_triangle_longest_side(v);
     double slope = (double)r->probe.marching->field->tape.lipschitz;
     bool near = fabs((double)value) <= ON_SURFACE * longest * slope + 4 * (double)r->probe.noise;
-    return (face){csg_vec3_normalize(cross), near && csg_triangle_quality(a, b, c) > 0.05};
+    return near && csg_triangle_quality(v[0], v[1], v[2]) > 0.05;
 }
 
-/* Centroids of the triangles that are there, of at most a batch from `first` on. */
-static size_t centroids_of(const csg_remesh *r, uint32_t first, float (*at)[3], uint32_t *of)
-{
-    size_t n = 0;
-    for (uint32_t t = first; t < r->corners.triangle_count && t - first < BATCH; t++) {
-        if (!csg_corners_is_live(&r->corners, t))
-            continue;
-        csg_vec3 sum = csg_vec3_add(
-            csg_remesh_corner(r, 3 * t),
-            csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
-        csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
-        of[n++] = t;
-    }
-    return n;
-}
-
-void csg_remesh_values_at_centroids(csg_remesh *r, float *value)
+void csg_remesh_values_at_centroids(csg_remesh *r, const uint8_t *wanted, float *value)
 {
     float at[BATCH][3], f[BATCH];
-    uint32_t of[BATCH];
-    for (uint32_t first = 0; first < r->corners.triangle_count; first += BATCH) {
-        size_t n = centroids_of(r, first, at, of);
-        if (n)
-            csg_probe_values(&r->probe, (const float(*)[3])at, n, f);
-        for (size_t i = 0; i < n; i++)
+    uint32_t of[BATCH], count = r->corners.triangle_count, n = 0;
+    for (uint32_t t = 0; t < count; t++) {
+        if (csg_corners_is_live(&r->corners, t) && (!wanted || wanted[t])) {
+            csg_vec3 sum = csg_vec3_add(
+                csg_remesh_corner(r, 3 * t),
+                csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
+            csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+            of[n++] = t;
+        }
+        if (n < BATCH && t + 1 < count)
+            continue;
+        csg_probe_values(&r->probe, (const float(*)[3])at, n, f);
+        for (uint32_t i = 0; i < n; i++)
             value[of[i]] = f[i];
+        n = 0;
     }
 }
 
@@ -95,22 +94,46 @@ static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const face 
     return creases <= 2 && straight ? CSG_VERTEX_CREASE : CSG_VERTEX_CORNER;
 }
 
+/* Triangles at edges where normals turn: of these alone it matters whether they are flat. */
+static void find_turns(const csg_remesh *r, const face *faces, uint8_t *turns)
+{
+    const csg_corners *m = &r->corners;
+    memset(turns, 0, m->triangle_count);
+    for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
+        if (!csg_corners_is_live(m, c / 3))
+            continue;
+        uint32_t other = m->across[c] / 3;
+        if (csg_vec3_dot(faces[c / 3].normal, faces[other].normal) < CREASE_COS)
+            turns[c / 3] = turns[other] = 1;
+    }
+}
+
+static void find_kinds(csg_remesh *r, face *faces, uint8_t *turns, float *value)
+{
+    uint32_t count = r->corners.triangle_count;
+    for (uint32_t t = 0; t < count; t++)
+        faces[t].normal =
+            csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
+    find_turns(r, faces, turns);
+    csg_remesh_values_at_centroids(r, turns, value);
+    for (uint32_t t = 0; t < count; t++)
+        faces[t].flat = turns[t] && is_flat(r, t, value[t]);
+    for (uint32_t v = 0; v < r->corners.vertex_count; v++)
+        r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, faces);
+}
+
 static bool find_creases(csg_remesh *r)
 {
     size_t count = r->corners.triangle_count;
     float *value = csg_memory_alloc(r->memory, count * sizeof *value);
     face *faces = csg_memory_alloc(r->memory, count * sizeof *faces);
-    if (value && faces) {
-        csg_remesh_values_at_centroids(r, value);
-        for (uint32_t t = 0; t < count; t++)
-            faces[t] = face_of(r, t, value[t]);
-        for (uint32_t v = 0; v < r->corners.vertex_count; v++)
-            r->kind[v] =
-                r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, faces);
-    }
-    bool done = value && faces;
+    uint8_t *turns = csg_memory_alloc(r->memory, count);
+    bool done = value && faces && turns;
+    if (done)
+        find_kinds(r, faces, turns, value);
     csg_memory_release(r->memory, value, count * sizeof *value);
     csg_memory_release(r->memory, faces, count * sizeof *faces);
+    csg_memory_release(r->memory, turns, count);
     return done;
 }
 

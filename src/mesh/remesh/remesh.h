@@ -57,8 +57,9 @@ static inline csg_vec3 csg_remesh_corner(const csg_remesh *remesh, uint32_t c)
     return remesh->at[remesh->corners.vertex[c]];
 }
 
-/* The field at the centroids of all triangles; out[t] of one that is gone stays as it is. */
-void csg_remesh_values_at_centroids(csg_remesh *remesh, float *out);
+/* The field at the centroids of all triangles, or, if `wanted` is not NULL, of those t with
+ * wanted[t]; out[t] of others, and of one that is gone, stays as it is. */
+void csg_remesh_values_at_centroids(csg_remesh *remesh, const uint8_t *wanted, float *out);
 /* What only a fiftieth of the values exceed, 0 of none; they get sorted. */
 double csg_remesh_common_value(float *values, size_t count);
 

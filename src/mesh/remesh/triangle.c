@@ -32,6 +32,34 @@ double csg_triangle_least_sine(const csg_vec3 v[3])
     return csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2])) * shortest / others;
 }
 
+uint32_t csg_triangle_facing(csg_vec3 n)
+{
+    static const double LEAST_COS = 0.05;
+    const double along[13] = {n.x,
+                              n.y,
+                              n.z,
+                              n.x + n.y,
+                              n.x - n.y,
+                              n.y + n.z,
+                              n.y - n.z,
+                              n.z + n.x,
+                              n.z - n.x,
+                              n.x + n.y + n.z,
+                              n.x + n.y - n.z,
+                              n.x - n.y + n.z,
+                              n.y + n.z - n.x};
+    double least = LEAST_COS * csg_vec3_norm(n);
+    const double leasts[3] = {least, least * sqrt(2),
+                              least * sqrt(3)}; /* by the directions' lengths */
+    uint32_t facing = 0;
+    for (int i = 0; i < 13; i++) {
+        double most = leasts[i < 3 ? 0 : i < 9 ? 1 : 2];
+        facing |= (uint32_t)(along[i] > most) << (2 * i);
+        facing |= (uint32_t)(along[i] < -most) << (2 * i + 1);
+    }
+    return facing;
+}
+
 /* ---- the nearest place -------------------------------------------------------------------------
  */
 

@@ -44,15 +44,27 @@ static csg_triangle_box box_around(const csg_triangle_box *a, const csg_triangle
     return box;
 }
 
+static bool contains(const csg_triangle_box *a, const csg_triangle_box *b)
+{
+    return (a->min[0] <= b->min[0]) & (b->max[0] <= a->max[0]) & (a->min[1] <= b->min[1]) &
+           (b->max[1] <= a->max[1]) & (a->min[2] <= b->min[2]) & (b->max[2] <= a->max[2]);
+}
+
 void csg_triangle_tree_corners(const csg_triangle_tree *t, uint32_t triangle, csg_vec3 out[3])
 {
     for (uint32_t k = 0; k < 3; k++)
         out[k] = t->at[t->corners->vertex[3 * triangle + k]];
 }
 
-static csg_triangle_box box_of_leaf(const csg_triangle_tree *t, size_t leaf)
+/* What is known of some triangles. */
+typedef struct summary {
+    csg_triangle_box box;
+    uint32_t facing;
+} summary;
+
+static summary of_leaf(const csg_triangle_tree *t, size_t leaf)
 {
-    csg_triangle_box box = NOTHING;
+    summary s = {NOTHING, CSG_FACING_ALL};
     for (size_t i = leaf * CSG_TRIANGLES_A_LEAF, end = csg_triangle_tree_end(t, leaf); i < end;
          i++) {
         csg_vec3 v[3];
@@ -61,23 +73,42 @@ static csg_triangle_box box_of_leaf(const csg_triangle_tree *t, size_t leaf)
             continue;
         csg_triangle_tree_corners(t, triangle, v);
         for (int k = 0; k < 3; k++)
-            include(&box, v[k]);
+            include(&s.box, v[k]);
+        s.facing &= csg_triangle_facing(csg_triangle_cross(v[0], v[1], v[2]));
     }
-    return box;
+    return s;
+}
+
+static summary of_children(const csg_triangle_tree *t, size_t i)
+{
+    return (summary){box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]),
+                     t->facing[2 * i] & t->facing[2 * i + 1]};
+}
+
+/* Whether it was another one. */
+static bool set_node(csg_triangle_tree *t, size_t i, summary s)
+{
+    bool same = t->facing[i] == s.facing && !memcmp(&s.box, &t->nodes[i], sizeof s.box);
+    t->nodes[i] = s.box;
+    t->facing[i] = s.facing;
+    return !same;
 }
 
 static bool fill(csg_triangle_tree *t)
 {
+    csg_memory *memory = t->corners->memory;
     t->leaf_count = 1;
     while (t->leaf_count * CSG_TRIANGLES_A_LEAF < t->count)
         t->leaf_count *= 2;
-    if (!csg_memory_reserve(t->corners->memory, (void **)&t->nodes, &t->node_capacity,
-                            2 * t->leaf_count, sizeof *t->nodes))
+    if (!csg_memory_reserve(memory, (void **)&t->nodes, &t->node_capacity, 2 * t->leaf_count,
+                            sizeof *t->nodes) ||
+        !csg_memory_reserve(memory, (void **)&t->facing, &t->facing_capacity, 2 * t->leaf_count,
+                            sizeof *t->facing))
         return false;
     for (size_t i = 0; i < t->leaf_count; i++)
-        t->nodes[t->leaf_count + i] = box_of_leaf(t, i);
+        set_node(t, t->leaf_count + i, of_leaf(t, i));
     for (size_t i = t->leaf_count - 1; i; i--)
-        t->nodes[i] = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
+        set_node(t, i, of_children(t, i));
     return true;
 }
 
@@ -85,8 +116,10 @@ bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, co
 {
     static const double ROUNDING = 1e-7; /* of the whole */
     *t = (csg_triangle_tree){.corners = corners, .at = at, .count = corners->triangle_count};
-    if (!fill(t))
+    if (!fill(t)) {
+        csg_triangle_tree_release(t);
         return false;
+    }
     const csg_triangle_box *all = &t->nodes[1];
     for (int k = 0; k < 3 && all->max[k] >= all->min[k]; k++)
         t->noise = fmax(t->noise, ROUNDING * ((double)all->max[k] - (double)all->min[k]));
@@ -108,24 +141,38 @@ bool csg_triangle_tree_make_of(csg_triangle_tree *t, const csg_triangle_tree *wh
 
 void csg_triangle_tree_release(csg_triangle_tree *t)
 {
-    if (t->corners)
-        csg_memory_release(t->corners->memory, t->nodes, t->node_capacity * sizeof *t->nodes);
+    if (t->corners) {
+        csg_memory *memory = t->corners->memory;
+        csg_memory_release(memory, t->nodes, t->node_capacity * sizeof *t->nodes);
+        csg_memory_release(memory, t->facing, t->facing_capacity * sizeof *t->facing);
+    }
     *t = (csg_triangle_tree){0};
+}
+
+static size_t node_of(const csg_triangle_tree *t, uint32_t triangle)
+{
+    return t->leaf_count + (t->slots ? t->slots[triangle] : triangle) / CSG_TRIANGLES_A_LEAF;
 }
 
 void csg_triangle_tree_update(csg_triangle_tree *t, uint32_t triangle)
 {
-    size_t leaf = (t->slots ? t->slots[triangle] : triangle) / CSG_TRIANGLES_A_LEAF;
-    size_t i = t->leaf_count + leaf;
-    csg_triangle_box own = box_of_leaf(t, leaf);
-    if (!memcmp(&own, &t->nodes[i], sizeof own))
-        return;
-    t->nodes[i] = own;
-    for (i /= 2; i; i /= 2) {
-        csg_triangle_box box = box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]);
-        if (!memcmp(&box, &t->nodes[i], sizeof box))
+    size_t i = node_of(t, triangle);
+    bool changed = set_node(t, i, of_leaf(t, i - t->leaf_count));
+    for (i /= 2; i && changed; i /= 2)
+        changed = set_node(t, i, of_children(t, i));
+}
+
+void csg_triangle_tree_include(csg_triangle_tree *t, uint32_t triangle)
+{
+    csg_vec3 v[3];
+    csg_triangle_tree_corners(t, triangle, v);
+    csg_triangle_box own = csg_triangle_box_of(v);
+    uint32_t facing = csg_triangle_facing(csg_triangle_cross(v[0], v[1], v[2]));
+    for (size_t i = node_of(t, triangle); i; i /= 2) {
+        if (contains(&t->nodes[i], &own) && !(t->facing[i] & ~facing))
             return;
-        t->nodes[i] = box;
+        t->nodes[i] = box_around(&t->nodes[i], &own);
+        t->facing[i] &= facing;
     }
 }
 

@@ -23,8 +23,9 @@ typedef struct csg_triangle_tree {
     const csg_corners *corners;
     const csg_vec3 *at;
     csg_triangle_box *nodes; /* a heap: the children of i are 2 i and 2 i + 1 */
+    uint32_t *facing;        /* per node: the directions along which all of its triangles face */
     size_t leaf_count;       /* a power of two */
-    size_t node_capacity;
+    size_t node_capacity, facing_capacity;
     const uint32_t *items; /* its triangles, in order; NULL: all of them */
     const uint32_t *slots; /* where a triangle stands in items; NULL with these */
     uint32_t count;        /* of triangles */
@@ -44,6 +45,10 @@ void csg_triangle_tree_release(csg_triangle_tree *tree);
 /* After a triangle has changed, or is gone. */
 void csg_triangle_tree_update(csg_triangle_tree *tree, uint32_t triangle);
 void csg_triangle_tree_update_around(csg_triangle_tree *tree, uint32_t vertex);
+
+/* The same of one that is still there, in less time: boxes do not get smaller, and directions do
+ * not come back. */
+void csg_triangle_tree_include(csg_triangle_tree *tree, uint32_t triangle);
 
 /* Behind the last triangle of a leaf. */
 static inline size_t csg_triangle_tree_end(const csg_triangle_tree *tree, size_t leaf)

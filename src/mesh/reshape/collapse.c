@@ -21,9 +21,11 @@ static void propose(proposal *p, csg_vec3 at, bool exact)
     p->exact[p->count++] = exact;
 }
 
-/* Creases are not left, corners do not move. */
+/* Creases are not left, corners do not move. Where the error is small an end does: the place of
+ * least error would have to be brought back to the surface. */
 static proposal places_of(const csg_decimation *d, const csg_quadric *q, uint32_t from, uint32_t to)
 {
+    static const double SMALL = 0.25; /* of the error, in the mean of squares */
     const csg_remesh *r = d->remesh;
     csg_vec3 a = r->at[from], b = r->at[to];
     uint8_t kind_a = r->kind[from], kind_b = r->kind[to];
@@ -33,16 +35,21 @@ static proposal places_of(const csg_decimation *d, const csg_quadric *q, uint32_
     if (kind_a != CSG_VERTEX_SMOOTH && kind_b != CSG_VERTEX_SMOOTH &&
         !csg_remesh_is_crease(r, csg_corners_find_edge(&r->corners, from, to)))
         return p;
-    bool a_first = csg_quadric_error(q, a) < csg_quadric_error(q, b);
+    double error_a = csg_quadric_error(q, a), error_b = csg_quadric_error(q, b);
+    bool a_first = error_a < error_b;
     if (kind_a != kind_b) {
         propose(&p, kind_a > kind_b ? a : b, true);
         return p;
     }
-    csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5), best;
-    double reach = 2 * csg_vec3_norm(csg_vec3_sub(a, b));
-    if (kind_a == CSG_VERTEX_SMOOTH && csg_quadric_least(q, middle, &best) &&
-        csg_vec3_norm(csg_vec3_sub(best, middle)) <= reach)
-        propose(&p, best, false);
+    double small = SMALL * r->error;
+    bool is_small = fmin(error_a, error_b) <= small * small * (q->xx + q->yy + q->zz);
+    if (kind_a == CSG_VERTEX_SMOOTH && !is_small) {
+        csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5), best;
+        double reach = 2 * csg_vec3_norm(csg_vec3_sub(a, b));
+        if (csg_quadric_least(q, middle, &best) &&
+            csg_vec3_norm(csg_vec3_sub(best, middle)) <= reach)
+            propose(&p, best, false);
+    }
     propose(&p, a_first ? a : b, true);
     if (kind_a == CSG_VERTEX_CREASE)
         propose(&p, a_first ? b : a, true);
@@ -120,33 +127,52 @@ static void move_ring(csg_collapse_room *room, csg_vec3 at)
     }
 }
 
-/* No triangle turns over, and none becomes a worse sliver than there is, or than is useful. */
-static bool has_shape(const csg_collapse_room *room)
+/* The squared length of a normal, and that of the longest side. */
+typedef struct shape {
+    double normal, longest;
+} shape;
+
+static shape shape_of(const csg_vec3 v[3], csg_vec3 *normal)
 {
-    static const double USEFUL = 0.004, TURN_COS = 0.1, SOUND = 0.02;
-    double worst = 1;
+    csg_vec3 a = csg_vec3_sub(v[1], v[0]), b = csg_vec3_sub(v[2], v[0]), c = csg_vec3_sub(b, a);
+    double a2 = csg_vec3_dot(a, a), b2 = csg_vec3_dot(b, b), c2 = csg_vec3_dot(c, c);
+    double most = a2 > b2 ? a2 : b2;
+    *normal = csg_vec3_cross(a, b);
+    return (shape){csg_vec3_dot(*normal, *normal), most > c2 ? most : c2};
+}
+
+/* Its quality as csg_triangle_quality has it, squared. */
+static double quality_of(shape s)
+{
+    return s.longest > 0 ? s.normal / (s.longest * s.longest) : 0;
+}
+
+/* No triangle turns over, and none becomes a worse sliver than there is, or than is useful. */
+static bool has_shape(csg_collapse_room *room)
+{
+    static const double USEFUL = 0.004 * 0.004, TURN_COS = 0.1, SOUND = 0.02 * 0.02;
+    double worst = USEFUL, least = 1;
     for (uint32_t i = 0; i < room->count; i++) {
-        const csg_vec3 *v = room->before[i];
-        worst = fmin(worst, csg_triangle_quality(v[0], v[1], v[2]));
-    }
-    for (uint32_t i = 0; i < room->count; i++) {
-        const csg_vec3 *v = room->before[i], *w = room->after[i];
-        double after = csg_triangle_quality(w[0], w[1], w[2]);
-        if (!(after >= fmin(worst, USEFUL)))
+        csg_vec3 old;
+        shape before = shape_of(room->before[i], &old);
+        shape after = shape_of(room->after[i], &room->normal[i]);
+        double quality = quality_of(before), own = quality_of(after);
+        double dot = csg_vec3_dot(old, room->normal[i]);
+        if (quality > SOUND &&
+            (!(dot > 0) || dot * dot < TURN_COS * TURN_COS * before.normal * after.normal))
             return false;
-        csg_vec3 old = csg_triangle_cross(v[0], v[1], v[2]);
-        csg_vec3 new = csg_triangle_cross(w[0], w[1], w[2]);
-        if (csg_triangle_quality(v[0], v[1], v[2]) > SOUND &&
-            csg_vec3_dot(old, new) < TURN_COS * csg_vec3_norm(old) * csg_vec3_norm(new))
+        worst = quality < worst ? quality : worst;
+        least = own < least ? own : least;
+        if (!(own > 0))
             return false;
     }
-    return true;
+    return least >= worst;
 }
 
 /* ---- the collapse ------------------------------------------------------------------------------
  */
 
-static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
+static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to, bool *one_sheet)
 {
     const csg_collapse_room *room = d->room;
     const csg_crossing_change change = {.at = (const csg_vec3(*)[3])room->after,
@@ -155,7 +181,7 @@ static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to)
                                         .vertices = {from, to},
                                         .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE},
                                         .is_fan = true};
-    return csg_crossing_is_made(&d->remesh->tree, &change);
+    return csg_crossing_is_made(&d->remesh->tree, &change, one_sheet);
 }
 
 static bool is_within(const csg_decimation *d, csg_vec3 p)
@@ -164,13 +190,27 @@ static bool is_within(const csg_decimation *d, csg_vec3 p)
            p.y < d->high.y && p.z < d->high.z;
 }
 
+/* As it is written: so what is checked is what comes out. */
+static csg_vec3 round_place(const csg_remesh *r, csg_vec3 at)
+{
+    csg_vec3 shift = r->marching->shift;
+    float written[3];
+    csg_vec3_to_floats(written, csg_vec3_add(at, shift));
+    return csg_vec3_sub(csg_vec3_from_floats(written), shift);
+}
+
 static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
                           uint32_t to)
 {
+    static const double NEAR = 0.5; /* of the error: the field is not asked on one sheet */
     csg_remesh *r = d->remesh;
     *at = p->at[i];
-    if ((!p->exact[i] && !csg_remesh_project(r, at, fmax(r->cell, 4 * r->error))) ||
-        !is_within(d, *at))
+    if (!p->exact[i]) {
+        if (!csg_remesh_project(r, at, fmax(r->cell, 4 * r->error)))
+            return false;
+        *at = round_place(r, *at);
+    }
+    if (!is_within(d, *at))
         return false;
     move_ring(d->room, *at);
     if (!has_shape(d->room))
@@ -179,20 +219,23 @@ static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 
         d->room->look = memcmp(at, &r->at[from], sizeof *at) ? r->looks[to] : r->looks[from];
     else if (r->looks)
         d->room->look = csg_remesh_look(r, *at);
-    return csg_decimation_can_hand_over(d, to) &&
-           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count) &&
-           !crosses(d, from, to);
+    bool one_sheet;
+    if (!csg_decimation_can_hand_over(d, to) || crosses(d, from, to, &one_sheet))
+        return false;
+    double near = NEAR * r->error;
+    return (one_sheet && d->room->farthest <= near * near) ||
+           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count);
 }
 
 static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t to, csg_vec3 at)
 {
     csg_remesh *r = d->remesh;
+    const csg_collapse_room *room = d->room;
     csg_decimation_hand_over(d);
     csg_corners_collapse(&r->corners, corner);
     r->at[to] = at;
-    csg_triangle_tree_update_around(&r->tree, to);
-    for (uint32_t i = 0; i < 2; i++)
-        csg_triangle_tree_update(&r->tree, d->room->triangle[d->room->count + i]);
+    for (uint32_t i = 0; i < room->count; i++)
+        csg_triangle_tree_include(&r->tree, room->triangle[i]);
     if (r->looks)
         r->looks[to] = d->room->look;
     d->quadrics[to] = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
@@ -228,9 +271,8 @@ static bool is_flat(const csg_remesh *r, uint32_t vertex, uint32_t neighbour)
 static bool faces_as_before(const csg_collapse_room *room)
 {
     for (uint32_t i = 0; i < room->count; i++) {
-        const csg_vec3 *v = room->before[i], *w = room->after[i];
-        if (!(csg_vec3_dot(csg_triangle_cross(v[0], v[1], v[2]),
-                           csg_triangle_cross(w[0], w[1], w[2])) > 0))
+        const csg_vec3 *v = room->before[i];
+        if (!(csg_vec3_dot(csg_triangle_cross(v[0], v[1], v[2]), room->normal[i]) > 0))
             return false;
     }
     return true;
@@ -250,7 +292,7 @@ static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
     move_ring(room, r->at[to]);
     if (r->looks)
         room->look = r->looks[to];
-    if (!faces_as_before(room) || !has_shape(room) || !csg_decimation_can_hand_over(d, to))
+    if (!has_shape(room) || !faces_as_before(room) || !csg_decimation_can_hand_over(d, to))
         return false;
     collapse(d, corner, from, to, r->at[to]);
     return true;

@@ -111,62 +111,119 @@ static bool add_edges_around(csg_decimation *d, uint32_t vertex)
 
 enum { BATCH = CSG_PROBE_MOST };
 
+static csg_vec3 triangle_normal(const csg_remesh *r, uint32_t triangle)
+{
+    return csg_triangle_cross(csg_remesh_corner(r, 3 * triangle),
+                              csg_remesh_corner(r, 3 * triangle + 1),
+                              csg_remesh_corner(r, 3 * triangle + 2));
+}
+
+/* The mean normal of the triangles at each vertex, by their areas. */
+static void find_normals(const csg_remesh *r, csg_vec3 *out)
+{
+    const csg_corners *m = &r->corners;
+    memset(out, 0, m->vertex_count * sizeof *out);
+    for (uint32_t t = 0; t < m->triangle_count; t++) {
+        if (!csg_corners_is_live(m, t))
+            continue;
+        csg_vec3 normal = triangle_normal(r, t);
+        for (uint32_t k = 0; k < 3; k++)
+            out[m->vertex[3 * t + k]] = csg_vec3_add(out[m->vertex[3 * t + k]], normal);
+    }
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        out[v] = csg_vec3_normalize(out[v]);
+}
+
+/* Whether triangles at a smooth vertex face far from their mean: they may cut off a crease or a
+ * tight curve. */
+static bool is_bent(const csg_remesh *r, uint32_t vertex, csg_vec3 mean)
+{
+    static const double BENT_COS = 0.998;
+    const csg_corners *m = &r->corners;
+    uint32_t first = m->corner[vertex], c = first;
+    if (first == CSG_CORNER_NONE || r->kind[vertex] != CSG_VERTEX_SMOOTH)
+        return false;
+    do {
+        csg_vec3 normal = triangle_normal(r, c / 3);
+        double dot = csg_vec3_dot(normal, mean);
+        if (!(dot > 0 && dot * dot > BENT_COS * BENT_COS * csg_vec3_dot(normal, normal)))
+            return true;
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+    return false;
+}
+
 /* A triangle on the surface is its own plane. One that cuts off a crease or a tight curve is
- * replaced by the tangent planes at its corners: those lead back to the crease. */
+ * replaced by the tangent planes at its corners: those lead back to the crease. tangents: zero
+ * where the triangles' own planes are good enough. */
 static void add_triangle(csg_decimation *d, uint32_t triangle, const csg_vec3 *tangents)
 {
     csg_remesh *r = d->remesh;
-    csg_vec3 v[3], cross;
-    for (uint32_t k = 0; k < 3; k++)
-        v[k] = csg_remesh_corner(r, 3 * triangle + k);
-    cross = csg_triangle_cross(v[0], v[1], v[2]);
+    const uint32_t *ids = r->corners.vertex + 3 * (size_t)triangle;
+    csg_vec3 cross = triangle_normal(r, triangle);
     double weight = csg_vec3_norm(cross) / 6;
     csg_vec3 normal = csg_vec3_normalize(cross);
     csg_quadric sum = {0};
+    int flat = 0; /* corners at which the plane is the triangle's own */
     for (uint32_t k = 0; k < 3; k++) {
-        uint32_t vertex = r->corners.vertex[3 * triangle + k];
-        csg_vec3 plane = r->kind[vertex] == CSG_VERTEX_SMOOTH ? tangents[vertex] : normal;
-        if (!(csg_vec3_dot(plane, plane) > 0.5))
-            plane = normal;
-        sum = csg_quadric_add(sum, csg_quadric_of_plane(v[k], plane, weight));
+        csg_vec3 plane = tangents[ids[k]];
+        if (csg_vec3_dot(plane, plane) > 0.5)
+            sum = csg_quadric_add(sum, csg_quadric_of_plane(r->at[ids[k]], plane, weight));
+        else
+            flat++;
     }
+    if (flat)
+        sum = csg_quadric_add(sum, csg_quadric_of_plane(r->at[ids[0]], normal, flat * weight));
     for (uint32_t k = 0; k < 3; k++) {
-        csg_quadric *q = &d->quadrics[r->corners.vertex[3 * triangle + k]];
+        csg_quadric *q = &d->quadrics[ids[k]];
         *q = csg_quadric_add(*q, sum);
     }
 }
 
-/* Unit normals of the field at all vertices, zero at critical points. */
-static void find_tangents(csg_remesh *r, csg_vec3 *out)
+/* In place of the normals of vertices whose triangles are bent: the field's, zero at critical
+ * points; zero for all others. */
+static void find_tangents(csg_remesh *r, csg_vec3 *normals)
 {
     float at[BATCH][3], g[BATCH][3];
-    for (uint32_t first = 0; first < r->corners.vertex_count; first += BATCH) {
-        uint32_t n = r->corners.vertex_count - first;
-        n = n < BATCH ? n : BATCH;
-        for (uint32_t i = 0; i < n; i++) {
-            csg_vec3 p = r->at[first + i];
-            at[i][0] = (float)p.x, at[i][1] = (float)p.y, at[i][2] = (float)p.z;
+    uint32_t of[BATCH], n = 0, count = r->corners.vertex_count;
+    for (uint32_t v = 0; v < count; v++) {
+        if (is_bent(r, v, normals[v])) {
+            csg_vec3_to_floats(at[n], r->at[v]);
+            of[n++] = v;
         }
+        normals[v] = csg_vec3_make(0, 0, 0);
+        if (n < BATCH && v + 1 < count)
+            continue;
         csg_probe_gradients(&r->probe, (const float(*)[3])at, n, g);
         for (uint32_t i = 0; i < n; i++)
-            out[first + i] = csg_vec3_normalize(
+            normals[of[i]] = csg_vec3_normalize(
                 csg_vec3_make(-(double)g[i][0], -(double)g[i][1], -(double)g[i][2]));
+        n = 0;
     }
 }
 
-static bool make_quadrics(csg_decimation *d)
+static void make_quadrics(csg_decimation *d, const csg_vec3 *tangents)
 {
     csg_remesh *r = d->remesh;
-    size_t count = r->corners.vertex_count;
-    csg_vec3 *tangents = csg_memory_alloc(r->memory, count * sizeof *tangents);
-    if (!tangents)
-        return false;
-    find_tangents(r, tangents);
-    memset(d->quadrics, 0, count * sizeof *d->quadrics);
+    memset(d->quadrics, 0, r->corners.vertex_count * sizeof *d->quadrics);
     for (uint32_t t = 0; t < r->corners.triangle_count; t++)
         if (csg_corners_is_live(&r->corners, t))
             add_triangle(d, t, tangents);
-    csg_memory_release(r->memory, tangents, count * sizeof *tangents);
+}
+
+/* Samples and quadrics. */
+static bool look_at_mesh(csg_decimation *d)
+{
+    csg_remesh *r = d->remesh;
+    size_t count = r->corners.vertex_count;
+    csg_vec3 *normals = csg_memory_alloc(r->memory, count * sizeof *normals);
+    if (!normals)
+        return false;
+    find_normals(r, normals);
+    csg_decimation_make_samples(d, normals);
+    find_tangents(r, normals);
+    make_quadrics(d, normals);
+    csg_memory_release(r->memory, normals, count * sizeof *normals);
     return true;
 }
 
@@ -196,7 +253,6 @@ static bool take_arrays(csg_decimation *d)
     d->state = csg_memory_alloc(memory, vertices);
     d->sample_capacity = vertices + triangles + (d->missed ? d->missed->count : 0);
     d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
-    d->next_sample = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->next_sample);
     d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
     d->queue = csg_memory_alloc(memory, sizeof *d->queue);
     d->room = csg_memory_alloc(memory, sizeof *d->room);
@@ -206,14 +262,14 @@ static bool take_arrays(csg_decimation *d)
         memset(d->room, 0, sizeof *d->room);
     if (d->version)
         memset(d->version, 0, vertices * sizeof *d->version);
-    return d->quadrics && d->version && d->state && d->samples && d->next_sample &&
-           d->first_sample && d->queue && d->room && keep_looks(d);
+    return d->quadrics && d->version && d->state && d->samples && d->first_sample && d->queue &&
+           d->room && keep_looks(d);
 }
 
 csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed)
 {
     *d = (csg_decimation){.remesh = remesh, .missed = missed};
-    if (take_arrays(d) && make_quadrics(d) && csg_decimation_make_samples(d))
+    if (take_arrays(d) && look_at_mesh(d))
         return CSGM_OK;
     csg_decimation_end(d);
     return csg_context_no_memory(remesh->context);
@@ -230,7 +286,6 @@ void csg_decimation_end(csg_decimation *d)
     csg_memory_release(memory, d->version, vertices * sizeof *d->version);
     csg_memory_release(memory, d->state, vertices);
     csg_memory_release(memory, d->samples, d->sample_capacity * sizeof *d->samples);
-    csg_memory_release(memory, d->next_sample, d->sample_capacity * sizeof *d->next_sample);
     csg_memory_release(memory, d->first_sample, triangles * sizeof *d->first_sample);
     csg_memory_release(memory, (void *)d->originals, vertices * sizeof *d->originals);
     if (d->queue)

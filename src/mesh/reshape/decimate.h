@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Fewer triangles within an error: edges are collapsed, cheapest first by quadrics of the true
- * tangent planes, and every collapse is checked both ways before it is made: the triangles against
- * the field (remesh/remesh.h), and against samples of the surface that each triangle answers for.
+ * Fewer triangles within an error: edges are collapsed, cheapest first by quadrics, and every
+ * collapse is checked before it is made: against samples of the surface that each triangle answers
+ * for, and where these come near the error, or sheets near each other, the triangles against the
+ * field (remesh/remesh.h).
  */
 #ifndef CSG_MESH_RESHAPE_DECIMATE_H
 #define CSG_MESH_RESHAPE_DECIMATE_H
@@ -19,7 +20,7 @@ enum { CSG_DECIMATE_ALL = 4 /* of triangles: fewer there are never */ };
  * stopped (reported). */
 csgm_status csg_decimate(csg_decimation *decimation, uint32_t least);
 
-/* Largest distance of a sample to its triangle, as the mesh is now. */
+/* Largest distance of a sample to the mesh as it is now. */
 double csg_decimation_largest_distance(const csg_decimation *decimation);
 
 #endif

@@ -18,8 +18,8 @@ enum { COLOR_STEP = 12, MATERIAL_STEP = 500 };
 static void add_sample(csg_decimation *d, const float at[3], uint32_t triangle)
 {
     uint32_t s = d->sample_count++;
-    memcpy(d->samples[s], at, sizeof d->samples[s]);
-    d->next_sample[s] = d->first_sample[triangle];
+    memcpy(d->samples[s].at, at, sizeof d->samples[s].at);
+    d->samples[s].next = d->first_sample[triangle];
     d->first_sample[triangle] = s;
 }
 
@@ -52,14 +52,37 @@ static void project(csg_decimation *d, float (*at)[3], const uint32_t *triangles
     }
 }
 
-static void sample_triangles(csg_decimation *d)
+/* Whether the surface may bulge out of the triangle between its corners by so much of the error
+ * that these do not speak for it. An edge along which normals turn bulges by an eighth of what its
+ * ends' tangents differ by. At creases the mean normal tells nothing: there it is size that does.
+ */
+static bool may_bulge(const csg_decimation *d, uint32_t triangle, const csg_vec3 *normals)
+{
+    static const double SHARE = 0.125, LARGE = 4; /* of the error */
+    const csg_remesh *r = d->remesh;
+    const uint32_t *v = r->corners.vertex + 3 * (size_t)triangle;
+    double most = 0;
+    bool at_crease = false;
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t a = v[k], b = v[k == 2 ? 0 : k + 1];
+        csg_vec3 edge = csg_vec3_sub(r->at[b], r->at[a]);
+        most = fmax(most, fabs(csg_vec3_dot(edge, csg_vec3_sub(normals[b], normals[a]))) / 8);
+        at_crease |= r->kind[a] != CSG_VERTEX_SMOOTH;
+    }
+    if (!at_crease)
+        return most > SHARE * r->error;
+    const csg_vec3 at[3] = {r->at[v[0]], r->at[v[1]], r->at[v[2]]};
+    return csg_triangle_longest_side(at) > LARGE * r->error;
+}
+
+static void sample_triangles(csg_decimation *d, const csg_vec3 *normals)
 {
     csg_remesh *r = d->remesh;
     float at[BATCH][3];
     uint32_t triangles[BATCH];
     size_t n = 0;
     for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
-        if (csg_corners_is_live(&r->corners, t)) {
+        if (csg_corners_is_live(&r->corners, t) && may_bulge(d, t, normals)) {
             csg_vec3 sum = csg_vec3_add(
                 csg_remesh_corner(r, 3 * t),
                 csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
@@ -75,7 +98,7 @@ static void sample_triangles(csg_decimation *d)
     }
 }
 
-bool csg_decimation_make_samples(csg_decimation *d)
+void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
 {
     const csg_remesh *r = d->remesh;
     memset(d->first_sample, 0xFF, r->corners.triangle_count * sizeof *d->first_sample);
@@ -85,10 +108,9 @@ bool csg_decimation_make_samples(csg_decimation *d)
         add_sample(d, at, r->corners.corner[v] / 3);
     }
     d->vertex_samples = d->sample_count;
-    sample_triangles(d);
+    sample_triangles(d, normals);
     for (size_t i = 0; d->missed && i < d->missed->count; i++)
         add_sample(d, d->missed->points[i].at, d->missed->points[i].triangle);
-    return true;
 }
 
 /* ---- handing over ------------------------------------------------------------------------------
@@ -104,6 +126,8 @@ static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t trian
                         const double weights[3], uint32_t kept)
 {
     if (!d->originals || sample >= d->vertex_samples)
+        return true;
+    if (d->room->one_look && !memcmp(&d->originals[sample], &d->room->look, sizeof d->room->look))
         return true;
     double color[4] = {0}, material[2] = {0};
     for (int k = 0; k < 3; k++) {
@@ -137,16 +161,17 @@ static bool is_over(const csg_facet *t, csg_vec3 p, double weights[3], double *s
 }
 
 /* The triangle that answers for a sample from now on: the nearest of those that it is over, or the
- * first that is near by far; if there is none, the nearest of all. NONE: it would be too far away.
+ * first that is near enough; if there is none, the nearest of all. NONE: it would be too far away.
  */
-static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
+static uint32_t choose_owner(csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
 {
-    const csg_collapse_room *room = d->room;
+    static const double NEAR = 1.0 / 16; /* of the error, squared */
+    csg_collapse_room *room = d->room;
     double most = d->remesh->error * d->remesh->error, least = INFINITY, best[3] = {0, 0, 0};
     csg_vec3 p = csg_sample_at(d, sample);
     double weights[3], square;
     uint32_t owner = CSG_CORNER_NONE;
-    for (uint32_t i = 0; i < room->count && least > most / 256; i++) {
+    for (uint32_t i = 0; i < room->count && least > NEAR * most; i++) {
         uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
         if (!is_over(&room->facet[k], p, weights, &square) || !(square < least))
             continue;
@@ -154,8 +179,10 @@ static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t 
         owner = k;
         memcpy(best, weights, sizeof best);
     }
-    if (least <= most && looks_alike(d, sample, owner, best, kept))
+    if (least <= most && looks_alike(d, sample, owner, best, kept)) {
+        room->farthest = least > room->farthest ? least : room->farthest;
         return owner;
+    }
     least = INFINITY;
     for (uint32_t k = 0; k < room->count; k++) {
         square = csg_triangle_nearest(room->after[k], p, weights);
@@ -165,13 +192,13 @@ static uint32_t choose_owner(const csg_decimation *d, uint32_t sample, uint32_t 
             memcpy(best, weights, sizeof best);
         }
     }
+    room->farthest = least > room->farthest ? least : room->farthest;
     return least <= most && looks_alike(d, sample, owner, best, kept) ? owner : CSG_CORNER_NONE;
 }
 
-static csg_facet facet_of(const csg_vec3 v[3])
+static csg_facet facet_of(const csg_vec3 v[3], csg_vec3 n)
 {
     csg_vec3 s = csg_vec3_sub(v[1], v[0]), t = csg_vec3_sub(v[2], v[0]);
-    csg_vec3 n = csg_vec3_cross(s, t);
     double square = csg_vec3_dot(n, n);
     csg_facet f = {.at = v[0]};
     if (!(square > 0)) /* nothing is over it */
@@ -182,23 +209,53 @@ static csg_facet facet_of(const csg_vec3 v[3])
     return f;
 }
 
+static bool has_one_look(const csg_decimation *d, uint32_t kept)
+{
+    const csg_collapse_room *room = d->room;
+    const csg_look_at_vertex *looks = d->remesh->looks;
+    for (uint32_t i = 0; looks && i < room->count; i++)
+        for (int k = 1; k < 3; k++)
+            if (room->vertex[i][k] != kept &&
+                memcmp(&looks[room->vertex[i][k]], &room->look, sizeof room->look))
+                return false;
+    return looks != NULL;
+}
+
+/* Finds who answers for a triangle's samples. One that nobody can answer for comes first in its
+ * list from then on: the next try is likely to fail at it, too. */
+static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t hint, uint32_t kept)
+{
+    csg_collapse_room *room = d->room;
+    uint32_t before = CSG_CORNER_NONE, s = d->first_sample[triangle];
+    for (; s != CSG_CORNER_NONE; before = s, s = d->samples[s].next) {
+        uint32_t owner = choose_owner(d, s, hint, kept);
+        if (owner == CSG_CORNER_NONE)
+            break;
+        if (!csg_memory_reserve(d->remesh->memory, (void **)&room->owner, &room->owner_capacity,
+                                room->owner_count + 1, sizeof *room->owner))
+            return false;
+        hint = owner;
+        room->owner[room->owner_count++] = owner;
+    }
+    if (s != CSG_CORNER_NONE && before != CSG_CORNER_NONE) {
+        d->samples[before].next = d->samples[s].next;
+        d->samples[s].next = d->first_sample[triangle];
+        d->first_sample[triangle] = s;
+    }
+    return s == CSG_CORNER_NONE;
+}
+
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept)
 {
     csg_collapse_room *room = d->room;
-    uint32_t hint = 0;
     room->owner_count = 0;
+    room->farthest = 0;
+    room->one_look = has_one_look(d, kept);
     for (uint32_t i = 0; i < room->count; i++)
-        room->facet[i] = facet_of((const csg_vec3 *)room->after[i]);
+        room->facet[i] = facet_of((const csg_vec3 *)room->after[i], room->normal[i]);
     for (uint32_t i = 0; i < room->count + 2; i++)
-        for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
-             s = d->next_sample[s]) {
-            hint = choose_owner(d, s, i < room->count ? i : hint, kept);
-            if (hint == CSG_CORNER_NONE ||
-                !csg_memory_reserve(d->remesh->memory, (void **)&room->owner, &room->owner_capacity,
-                                    room->owner_count + 1, sizeof *room->owner))
-                return false;
-            room->owner[room->owner_count++] = hint;
-        }
+        if (!find_owners(d, room->triangle[i], i < room->count ? i : 0, kept))
+            return false;
     return true;
 }
 
@@ -210,12 +267,12 @@ void csg_decimation_hand_over(csg_decimation *d)
         *end = d->first_sample[room->triangle[i]];
         d->first_sample[room->triangle[i]] = CSG_CORNER_NONE;
         while (*end != CSG_CORNER_NONE)
-            end = &d->next_sample[*end];
+            end = &d->samples[*end].next;
     }
     for (size_t i = 0; chain != CSG_CORNER_NONE; i++) {
         uint32_t s = chain, triangle = room->triangle[room->owner[i]];
-        chain = d->next_sample[s];
-        d->next_sample[s] = d->first_sample[triangle];
+        chain = d->samples[s].next;
+        d->samples[s].next = d->first_sample[triangle];
         d->first_sample[triangle] = s;
     }
 }
@@ -223,15 +280,18 @@ void csg_decimation_hand_over(csg_decimation *d)
 double csg_decimation_largest_distance(const csg_decimation *d)
 {
     const csg_remesh *r = d->remesh;
-    double most = 0;
+    double most = 0, weights[3];
     for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
         if (!csg_corners_is_live(&r->corners, t))
             continue;
         const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
                                csg_remesh_corner(r, 3 * t + 2)};
-        double weights[3];
-        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->next_sample[s])
-            most = fmax(most, csg_triangle_nearest(v, csg_sample_at(d, s), weights));
+        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->samples[s].next) {
+            csg_vec3 p = csg_sample_at(d, s);
+            double own = sqrt(csg_triangle_nearest(v, p, weights));
+            if (own > most) /* another one may be nearer than the one that answers for it */
+                most = fmax(most, fmin(own, csg_triangle_tree_nearest(&r->tree, p, own, NULL)));
+        }
     }
-    return sqrt(most);
+    return most;
 }

@@ -28,14 +28,22 @@ typedef struct csg_facet {
     csg_vec3 at, toward[2], normal;
 } csg_facet;
 
+typedef struct csg_surface_sample {
+    float at[3];
+    uint32_t next; /* in its triangle's list */
+} csg_surface_sample;
+
 /* The triangles around an edge, as they would be after its collapse. */
 typedef struct csg_collapse_room {
     uint32_t triangle[CSG_RING_MOST + 2]; /* those that stay, then the two that go */
     csg_vec3 before[CSG_RING_MOST][3], after[CSG_RING_MOST][3];
     csg_facet facet[CSG_RING_MOST]; /* of after */
+    csg_vec3 normal[CSG_RING_MOST]; /* of after, twice the area long */
     uint32_t vertex[CSG_RING_MOST][3];
-    uint32_t count; /* that stay */
+    uint32_t count;  /* that stay */
+    double farthest; /* of the samples handed over, squared */
     csg_look_at_vertex look;
+    bool one_look;   /* all vertices have it */
     uint32_t *owner; /* of the samples of these triangles, in the order of their lists: who takes
                         them, as an index into triangle */
     size_t owner_count, owner_capacity;
@@ -45,12 +53,11 @@ typedef struct csg_decimation {
     csg_remesh *remesh;
     csg_quadric *quadrics; /* per vertex */
     uint32_t *version;     /* per vertex: grows with each change */
-    /* Points of the true surface: the vertices the mesh began with, then one per triangle, then
-     * those that it may have missed. Each belongs to the triangle that is nearest to it among those
-     * that took its first one's place. */
-    float (*samples)[3];
-    uint32_t *next_sample;               /* NONE ends a triangle's list */
-    uint32_t *first_sample;              /* per triangle */
+    /* Points of the true surface: the vertices the mesh began with, then one for each triangle that
+     * the surface may bulge out of, then those that it may have missed. Each belongs to a triangle
+     * that is near it, among those that took its first one's place. */
+    csg_surface_sample *samples;
+    uint32_t *first_sample;              /* per triangle; NONE ends its list */
     const csg_look_at_vertex *originals; /* of the vertices' samples; NULL as remesh->looks */
     const csg_missed *missed;            /* may be NULL */
     uint32_t sample_count, vertex_samples;
@@ -77,7 +84,8 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
     return d->region_of[vertex] == d->region;
 }
 
-bool csg_decimation_make_samples(csg_decimation *d);
+/* normals: the mean of the triangles at each vertex. */
+void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
 /* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
  * left. items: its triangles, of which some may be of others; NULL: all there are. CSGM_OK,
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */
@@ -94,7 +102,7 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {
-    return csg_vec3_from_floats(d->samples[sample]);
+    return csg_vec3_from_floats(d->samples[sample].at);
 }
 
 #endif

@@ -27,7 +27,7 @@ bool csg_improver_measure(csg_improver *m)
     float *values = csg_memory_alloc(r->memory, count * sizeof *values);
     if (!values)
         return false;
-    csg_remesh_values_at_centroids(r, values);
+    csg_remesh_values_at_centroids(r, NULL, values);
     for (uint32_t t = 0; t < count; t++)
         if (csg_corners_is_live(&r->corners, t))
             values[n++] = fabsf(values[t]);
@@ -91,7 +91,7 @@ bool csg_patch_is_sound(csg_improver *m)
                                         .count = p->then_count,
                                         .vertices = {p->vertices[0], p->vertices[1]},
                                         .triangles = {p->triangles[0], p->triangles[1]}};
-    return !csg_crossing_is_made(&r->tree, &change);
+    return !csg_crossing_is_made(&r->tree, &change, NULL);
 }
 
 bool csg_improve_looks_alike(csg_improver *m, uint32_t vertex, csg_vec3 at,

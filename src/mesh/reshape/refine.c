@@ -74,7 +74,7 @@ static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
                                         .count = 4,
                                         .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
                                         .triangles = {corner / 3, r->corners.across[apex] / 3}};
-    return !csg_crossing_is_made(&r->tree, &change);
+    return !csg_crossing_is_made(&r->tree, &change, NULL);
 }
 
 static bool halve(refiner *f, uint32_t corner)

@@ -215,6 +215,13 @@ static bool thin_out_region(void *user, uint32_t worker_index, size_t index)
     return false;
 }
 
+/* Collapses leave boxes larger than they have to be. */
+static csgm_status make_tree_again(csg_remesh *r)
+{
+    csg_triangle_tree_release(&r->tree);
+    return csg_triangle_tree_make(&r->tree, &r->corners, r->at) ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
 static csgm_status run_round(cutting *c, int round)
 {
     csg_remesh *r = c->d->remesh;
@@ -227,8 +234,7 @@ static csgm_status run_round(cutting *c, int round)
         return (csgm_status)atomic_load(&c->status);
     for (size_t i = 0; i < c->region_count; i++)
         r->corners.live -= c->regions[i].removed;
-    csg_triangle_tree_release(&r->tree);
-    return csg_triangle_tree_make(&r->tree, &r->corners, r->at) ? CSGM_OK : CSGM_ERR_MEMORY;
+    return make_tree_again(r);
 }
 
 /* What is left, as one region. */
@@ -332,6 +338,8 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);
     }
+    if (status == CSGM_OK)
+        status = make_tree_again(r);
     end(&c);
     return status == CSGM_ERR_MEMORY  ? csg_context_no_memory(r->context)
            : status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch)

@@ -23,7 +23,7 @@ static bool find_deviation(csg_remesh *r, double *out)
     float *values = csg_memory_alloc(r->memory, count * sizeof *values);
     if (!values)
         return false;
-    csg_remesh_values_at_centroids(r, values);
+    csg_remesh_values_at_centroids(r, NULL, values);
     for (uint32_t t = 0; t < count; t++) {
         csg_vec3 a = csg_remesh_corner(r, 3 * t), b = csg_remesh_corner(r, 3 * t + 1);
         double side = csg_vec3_norm(csg_vec3_sub(a, b)), f = fabs((double)values[t]);
@@ -84,7 +84,8 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
     if (status != CSGM_OK)
         return status;
     status = has_count(goal) ? reach_count(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
-    goal->measured = csg_decimation_largest_distance(&d);
+    if (status == CSGM_OK)
+        goal->measured = csg_decimation_largest_distance(&d);
     csg_decimation_end(&d);
     return status;
 }
