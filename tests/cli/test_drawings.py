@@ -111,6 +111,17 @@ class Drawings(cli.CliTest):
         self.assert_files("a.d", "a.stl", "a.svg", "scene.scad")
         self.assertIn("W0322", self.draw(PLATE, "b.stl").stderr)
 
+    def test_names_of_layers(self):
+        """Numbers of layers with one name cannot be another's name; what XML cannot hold is left out."""
+        self.draw('part("a") square(1); part("A-2") square(2); part("A") square(3); part("x\\uFFFEy\\uFFFF") square(4);',
+                  "a.dxf", "a.svg")
+        lines = self.read("a.dxf").decode().split("\n")
+        names = [lines[i + 2] for i in range(len(lines) - 2) if lines[i] == "LAYER" and lines[i + 1] == "2"]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertIn("A$3", names)
+        self.assertEqual(len(names), 4)
+        self.assertIn(b'inkscape:label="x?y?"', self.read("a.svg"))
+
     def test_pipes_and_bytes(self):
         self.draw(PLATE, "a.svg", "a.dxf", "a.pdf")
         for name in ("svg", "dxf", "pdf"):

@@ -230,6 +230,11 @@ class Dependencies(cli.CliTest):
 
 
 class Looking(cli.CliTest):
+    def test_long_numbers_in_json(self):
+        self.write("n.json", '{"a": 3.' + 80 * "1" + ', "b": -0.' + 70 * "0" + '25, "c": 1' + 65 * "0" + "}")
+        self.write("n.txt", 'n = import("n.json"); echo(n.a, n.b, n.c); cube(1);\n')
+        self.assertIn("ECHO: 3.11111, -2.5e-71, 1e+65\n", self.run_in("check", "n.txt").stderr)
+
     def setUp(self):
         super().setUp()
         self.write("a.txt", cli.BLEND)

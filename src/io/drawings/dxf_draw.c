@@ -21,10 +21,10 @@ static void put_real(csg_page *page, int code, double value)
     csg_page_text(page, "\n");
 }
 
-/* Letters, digits, '-', '_' and '$'; the length. */
+/* Letters, digits, '-' and '_'; the length. '$' is kept for numbers. */
 static size_t base_name(const csg_drawing *drawing, size_t index, char out[NAME_MOST + 1])
 {
-    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_$";
+    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
     char label[8];
     const char *text = csg_layer_label(&drawing->layers[index], label);
     size_t length = 0;
@@ -37,7 +37,7 @@ static size_t base_name(const csg_drawing *drawing, size_t index, char out[NAME_
     return length;
 }
 
-/* With the layer's number where an earlier one is the same. */
+/* With '$' and the layer's number where an earlier one is the same: no other can be called so. */
 static void name_layer(const csg_drawing *drawing, size_t index, char out[NAME_MOST + 1])
 {
     char other[NAME_MOST + 1];
@@ -45,7 +45,7 @@ static void name_layer(const csg_drawing *drawing, size_t index, char out[NAME_M
     for (size_t i = 0; i < index; i++) {
         base_name(drawing, i, other);
         if (strcmp(other, out) == 0) {
-            snprintf(out + length, NAME_MOST + 1 - length, "-%u", (unsigned)(index + 1) % 100000);
+            snprintf(out + length, NAME_MOST + 1 - length, "$%u", (unsigned)(index + 1) % 100000);
             return;
         }
     }

@@ -2,12 +2,19 @@
  * SVG 1.1: a group for each layer (Inkscape shows them as layers), one path in it. y points down
  * there, so it changes its sign; width and height are in mm and the viewBox has the same numbers.
  */
+#include <string.h>
+
 #include "io/drawings/drawings.h"
 
 /* As text between tags or in quotes; what XML cannot hold is a question mark. */
 static void put_escaped(csg_page *page, const char *text)
 {
     for (char one[2] = ""; *text; text++) {
+        if (strncmp(text, "\xEF\xBF\xBE", 3) == 0 || strncmp(text, "\xEF\xBF\xBF", 3) == 0) {
+            csg_page_text(page, "?"); /* U+FFFE and U+FFFF */
+            text += 2;
+            continue;
+        }
         one[0] = (unsigned char)*text < 0x20 ? '?' : *text;
         csg_page_text(page, *text == '&'   ? "&amp;"
                             : *text == '<' ? "&lt;"

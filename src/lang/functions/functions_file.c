@@ -11,6 +11,7 @@
 #include "outline/dxf/dxf_measure.h"
 #include "text/folders.h"
 #include "text/json.h"
+#include "text/lexer.h"
 
 enum { BYTES_A_STEP = 64 }; /* that are read */
 
@@ -112,11 +113,9 @@ static csg_value value_of_word(const char *text)
 
 static csg_value value_of_number(const char *text, size_t length)
 {
-    char buffer[64];
-    size_t kept = length < sizeof buffer ? length : sizeof buffer - 1;
-    memcpy(buffer, text, kept);
-    buffer[kept] = '\0';
-    return csg_value_number(strtod(buffer, NULL));
+    bool negative = length && *text == '-';
+    double value = csg_token_number(text + negative, (uint32_t)(length - negative));
+    return csg_value_number(negative ? -value : value);
 }
 
 static bool take_json(void *user, csg_json_kind kind, const char *text, size_t length)
