@@ -199,26 +199,41 @@ static csg_vec3 round_place(const csg_remesh *r, csg_vec3 at)
     return csg_vec3_sub(csg_vec3_from_floats(written), shift);
 }
 
+/* The field is asked only where not all around look the same. */
+static csg_look_at_vertex look_at(const csg_decimation *d, csg_vec3 at, uint32_t from, uint32_t to)
+{
+    const csg_collapse_room *room = d->room;
+    const csg_look_at_vertex *looks = d->remesh->looks;
+    bool same = !memcmp(&looks[from], &looks[to], sizeof *looks);
+    for (uint32_t i = 0; i < room->count && same; i++)
+        for (int k = 1; k < 3 && same; k++)
+            same = !memcmp(&looks[room->vertex[i][k]], &looks[to], sizeof *looks);
+    return same ? looks[to] : csg_remesh_look(d->remesh, at);
+}
+
 static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
                           uint32_t to)
 {
     static const double NEAR = 0.5; /* of the error: the field is not asked on one sheet */
     csg_remesh *r = d->remesh;
     *at = p->at[i];
+    move_ring(d->room, *at);
+    if (!has_shape(d->room))
+        return false;
     if (!p->exact[i]) {
         if (!csg_remesh_project(r, at, fmax(r->cell, 4 * r->error)))
             return false;
         *at = round_place(r, *at);
+        move_ring(d->room, *at);
+        if (!has_shape(d->room))
+            return false;
     }
     if (!is_within(d, *at))
-        return false;
-    move_ring(d->room, *at);
-    if (!has_shape(d->room))
         return false;
     if (r->looks && p->exact[i])
         d->room->look = memcmp(at, &r->at[from], sizeof *at) ? r->looks[to] : r->looks[from];
     else if (r->looks)
-        d->room->look = csg_remesh_look(r, *at);
+        d->room->look = look_at(d, *at, from, to);
     bool one_sheet;
     if (!csg_decimation_can_hand_over(d, to) || crosses(d, from, to, &one_sheet))
         return false;
