@@ -74,6 +74,52 @@ static void test_small_parts(void **state)
     }
 }
 
+/* Bumps on a face of a large block, and dents in it, from two tolerances wide: the points between
+ * which they lie all say the same without them. */
+static void test_bumps_and_dents(void **state)
+{
+    csg_random random = {11};
+    for (int i = 0; i < 40; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        bool cut = i % 2;
+        double r = csg_random_uniform(&random, 0.008, 0.04);
+        double x = csg_random_uniform(&random, -3.8, 3.8);
+        double y = csg_random_uniform(&random, -2.8, 2.8);
+        csg_node_id block = make_box(&c, 4, 3, 1);
+        csg_node_id small = moved(&c, make_box(&c, r, r, 2 * r), x, y, 1);
+        mesh_case_compile(
+            &c, joined(&c, cut ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION, SHARP, block, small));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "a bump on a block");
+        assert_true(c.mesh->triangle_count >= 18);
+        double change = (cut ? -1 : 1) * (c.check.volume - 96);
+        assert_true(change > 0);
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- edges that a wedge pokes through ----------------------------------------------------------
+ */
+
+/* However a box is turned, its edges and corners are found in large cells: the mesh is exact. */
+static void test_tilted_boxes(void **state)
+{
+    csg_random random = {17};
+    for (int i = 0; i < 8; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, posed_anyhow(&c, make_box(&c, 2, 1.5, 1), &random));
+        csgm_mesh_options options = following(CSGM_QUALITY_DRAFT);
+        mesh_build_closed(&c, &options, "a tilted box");
+        assert_int_equal(c.check.components, 1);
+        assert_int_equal(c.check.euler, 2);
+        assert_true(fabs(c.check.volume - 24) < 2e-3 * 24);
+        assert_uncrossed(c.mesh, "a tilted box");
+        mesh_case_end(&c);
+    }
+}
+
 /* ---- how many ----------------------------------------------------------------------------------
  */
 
@@ -138,10 +184,9 @@ static void test_random_scenes(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_small_parts),
-        cmocka_unit_test(test_triangle_count),
-        cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_boxes),           cmocka_unit_test(test_small_parts),
+        cmocka_unit_test(test_bumps_and_dents), cmocka_unit_test(test_tilted_boxes),
+        cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

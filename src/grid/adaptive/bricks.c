@@ -107,6 +107,20 @@ float csg_bricks_band(const csg_bricks *b, uint32_t level)
                    (edge * (1 + 0x1p-10) + (double)csg_octree_rounding(b->lattice)));
 }
 
+bool csg_brick_is_pierced(const csg_brick *brick, const unsigned from[3], const unsigned to[3])
+{
+    for (int axis = 0; axis < 3 && brick->pierced; axis++) {
+        unsigned p[3], end[3] = {to[0] + 1, to[1] + 1, to[2] + 1};
+        end[axis]--;
+        for (p[2] = from[2]; p[2] < end[2]; p[2]++)
+            for (p[1] = from[1]; p[1] < end[1]; p[1]++)
+                for (p[0] = from[0]; p[0] < end[0]; p[0]++)
+                    if (brick->pierced >> csg_brick_edge(axis, p) & 1)
+                        return true;
+    }
+    return false;
+}
+
 /* ---- one brick ---------------------------------------------------------------------------------
  */
 
@@ -183,8 +197,9 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
     child.wanted = child.level < b->options.coarse;
     if (!child.wanted) {
         sample(b, self, &child);
-        child.wanted = b->options.judge(b->options.judge_user, worker_index, b, &child) &&
-                       child.level < b->finest;
+        child.wanted =
+            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f) &&
+            child.level < b->finest;
     }
     self->made[self->count++] = child;
     return true;

@@ -36,14 +36,16 @@ typedef struct csg_brick {
     uint64_t crossed; /* cells whose corners do not all agree: bits as csg_brick_cell has them */
     uint64_t flat;    /* cells whose polygon is cut into triangles without a point inside */
     uint64_t several; /* with several polygons: cells that are small enough for them */
+    uint64_t pierced; /* edges that the surface crosses twice: bits as csg_brick_edge has them */
 } csg_brick;
 
 typedef struct csg_bricks csg_bricks;
 
-/* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat` and
- * `several`. Any worker. */
+/* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat`,
+ * `several` and `pierced`, and what is crossed because of it. f: values at its points, x fastest.
+ * Any worker. */
 typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
-                             csg_brick *brick);
+                             csg_brick *brick, const float *f);
 
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */
@@ -128,6 +130,17 @@ static inline unsigned csg_brick_cell(unsigned i, unsigned j, unsigned k)
 {
     return i + CSG_BRICK_EDGE * (j + CSG_BRICK_EDGE * k);
 }
+
+/* The bit of the edge from a point (low[axis] < CSG_BRICK_EDGE) along an axis. */
+static inline unsigned csg_brick_edge(int axis, const unsigned low[3])
+{
+    const unsigned u = axis == 0 ? low[1] : low[0], v = axis == 2 ? low[1] : low[2];
+    enum { PER_AXIS = CSG_BRICK_EDGE * CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES };
+    return (unsigned)axis * PER_AXIS + low[axis] + CSG_BRICK_EDGE * (u + CSG_BRICK_SAMPLES * v);
+}
+
+/* Whether an edge in the box from one of the brick's points to another is pierced. */
+bool csg_brick_is_pierced(const csg_brick *brick, const unsigned from[3], const unsigned to[3]);
 
 /* Corner c of cell (i, j, k), at (c & 1, c >> 1 & 1, c >> 2): bit c of the pattern. */
 static inline unsigned csg_brick_pattern(const csg_brick *brick, unsigned i, unsigned j, unsigned k)

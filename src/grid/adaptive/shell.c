@@ -38,9 +38,13 @@ static void take_leaf(csg_shell *s, const csg_brick *fine)
             continue;
         unsigned inside = fine->inside[local[2]][local[1]] >> local[0] & 1u;
         s->inside[q[2]][q[1]] |= (uint16_t)(inside << q[0]);
-        for (int axis = 0; axis < 3; axis++)
-            if (local[axis] < E && q[axis] < S - 1)
-                take_edges(s, axis, q);
+        for (int axis = 0; axis < 3; axis++) {
+            if (local[axis] == E || q[axis] == S - 1)
+                continue;
+            const unsigned low[3] = {(unsigned)local[0], (unsigned)local[1], (unsigned)local[2]};
+            take_edges(s, axis, q);
+            s->pierced_beyond |= fine->pierced >> csg_brick_edge(axis, low) & 1;
+        }
     }
 }
 
@@ -142,14 +146,38 @@ static uint32_t divided_in_cell(const csg_shell *s, const unsigned at[3])
     return divided;
 }
 
+/* Pierced edges that are not divided anyway have a point in between whose sign their ends have not.
+ */
+static void add_pierced(csg_shell_cell *cell, const csg_brick *brick, const unsigned at[3])
+{
+    for (unsigned e = 0; e < 12 && brick->pierced; e++) {
+        int axis = (int)(e / 4), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+        unsigned low[3] = {at[0], at[1], at[2]}, end[3] = {0, 0, 0};
+        low[u] += e & 1, low[v] += e >> 1 & 1;
+        end[u] = 2 * (e & 1), end[v] = 2 * (e >> 1 & 1);
+        static const unsigned stride[3] = {1, 3, 9};
+        unsigned bit = end[0] + 3 * end[1] + 9 * end[2], middle = bit + stride[axis];
+        if (!(brick->pierced >> csg_brick_edge(axis, low) & 1) || cell->divided >> middle & 1)
+            continue;
+        cell->divided |= 1u << middle;
+        cell->pierced |= 1u << middle;
+        cell->inside |= (~cell->inside >> bit & 1u) << middle;
+    }
+}
+
 csg_shell_cell csg_shell_cell_of(const csg_shell *s, unsigned i, unsigned j, unsigned k)
 {
-    if (!s->has_finer)
-        return (csg_shell_cell){corners_of(csg_brick_pattern(s->brick, i, j, k)), 0};
-    csg_shell_cell cell = {0, divided_in_cell(s, (const unsigned[3]){i, j, k})};
-    for (unsigned z = 0; z < 3; z++)
-        for (unsigned y = 0; y < 3; y++)
-            cell.inside |= (s->inside[2 * k + z][2 * j + y] >> (2 * i) & 7u) << (3 * y + 9 * z);
+    const unsigned at[3] = {i, j, k};
+    csg_shell_cell cell = {0};
+    if (s->has_finer) {
+        cell.divided = divided_in_cell(s, at);
+        for (unsigned z = 0; z < 3; z++)
+            for (unsigned y = 0; y < 3; y++)
+                cell.inside |= (s->inside[2 * k + z][2 * j + y] >> (2 * i) & 7u) << (3 * y + 9 * z);
+    } else {
+        cell.inside = corners_of(csg_brick_pattern(s->brick, i, j, k));
+    }
+    add_pierced(&cell, s->brick, at);
     return cell;
 }
 

@@ -17,6 +17,7 @@ typedef struct csg_shell {
     uint32_t number;     /* of the brick */
     uint32_t around[27]; /* leaves of the same level, 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1
                             to 1; CSG_BRICK_NONE: none */
+    bool pierced_beyond; /* a finer leaf has a pierced edge here, and so may have this one */
     bool has_finer;      /* some neighbour is finer; else what follows says nothing */
     uint16_t inside[CSG_SHELL_SAMPLES][CSG_SHELL_SAMPLES]; /* [z][y]: bit x */
     /* Edges of the brick's cells that finer leaves divide: [axis][z][y]: bit x, by lower point. */
@@ -34,6 +35,8 @@ typedef struct csg_shell_cell {
     uint32_t inside; /* of the points in between only those count that are there */
     /* The edge whose middle is this point is divided, the face likewise. */
     uint32_t divided;
+    uint32_t pierced; /* of the divided edges those that no finer leaf divides: the point in between
+                         is where the brick's surface has its sheets meet */
 } csg_shell_cell;
 
 csg_shell_cell csg_shell_cell_of(const csg_shell *shell, unsigned i, unsigned j, unsigned k);

@@ -85,11 +85,11 @@ static uint32_t find_vertex(const work *w, uint64_t place)
     return found;
 }
 
-/* The middle of an edge along an axis, in quarters of the cell at its lower point. */
-static unsigned middle_of_edge(int axis)
+/* A point of an edge along an axis, both in quarters of the cell at its lower point. */
+static unsigned local_on_edge(int axis, unsigned quarters)
 {
-    static const unsigned middle[3] = {2, 2 * 5, 2 * 25};
-    return middle[axis];
+    static const unsigned stride[3] = {1, 5, 25};
+    return quarters * stride[axis];
 }
 
 /* ---- what is made ------------------------------------------------------------------------------
@@ -127,16 +127,23 @@ static bool visit_edges(work *w, uint32_t worker_index, const csg_shell *s)
 {
     const csg_bricks *b = w->x->bricks;
     csg_judge_room *room = &w->x->judge->rooms[worker_index];
-    uint64_t place[CSG_BRICK_SLOTS];
+    uint64_t place[2 * CSG_BRICK_SLOTS];
+    csg_tape tape;
+    csg_sheet_probe probe = csg_judge_probe(w->x->judge, b, s->brick, room, &tape);
+    csg_pierce(&probe, b, s->brick, NULL, &room->pierced);
     room->edges.count = 0;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS && s->brick->crossed; slot++) {
         int axis = (int)(slot / CSG_BRICK_POINTS);
         const unsigned low[3] = {slot % N, slot / N % N, slot % CSG_BRICK_POINTS / (N * N)};
-        if (low[axis] == E || !csg_brick_is_crossed(s->brick, axis, low) ||
+        if (low[axis] == E || !csg_judge_has_edge(room, s->brick, axis, low) ||
             is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
             continue;
-        place[room->edges.count] = place_of(b, s->brick, low, middle_of_edge(axis));
+        uint32_t first = room->edges.count;
         csg_judge_add_edge(room, b, s->brick, axis, low);
+        bool pierced = room->edges.count - first == 2;
+        for (unsigned i = 0; first + i < room->edges.count; i++)
+            place[first + i] =
+                place_of(b, s->brick, low, local_on_edge(axis, pierced ? 1 + 2 * i : 2));
     }
     csg_judge_solve_edges(w->x->judge, b, s->brick, room);
     for (uint32_t i = 0; i < room->edges.count; i++) {
@@ -171,6 +178,7 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
     csg_tape tape;
     csg_judge_room *room = &w->x->judge->rooms[worker_index];
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
+    csg_pierce(&probe, w->x->bricks, s->brick, NULL, &room->pierced);
     uint64_t cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
     for (; cells; cells &= cells - 1) {
         unsigned bit = (unsigned)__builtin_ctzll(cells);
@@ -181,7 +189,7 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
                              .probe = &probe};
         csg_shell_cell place = csg_shell_cell_of(s, cell.at[0], cell.at[1], cell.at[2]);
         cell.is_whole = !place.divided;
-        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe};
+        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe, &room->pierced};
         csg_cell_polygons_make(&cell.polygons, &place, csg_cell_face_is_inside, &faces);
         if (cell.polygons.count && !visit(&cell))
             return false;
@@ -221,22 +229,22 @@ static int axis_of_face(unsigned local, unsigned *side)
 }
 
 /* Whether the face is for this cell to look into: of two cells the lower one's, of two leaves that
- * of the lower number, and not where one cell has several polygons. */
-static bool is_for(const cell_at_hand *c, int axis, unsigned side)
+ * of the lower number, and, but beside a pierced edge, not where one cell has several polygons. */
+static bool is_for(const cell_at_hand *c, int axis, unsigned side, bool pierced)
 {
     const csg_shell *s = c->shell;
     unsigned low[3] = {c->at[0], c->at[1], c->at[2]}, next[3] = {c->at[0], c->at[1], c->at[2]};
     low[axis] += side;
-    if (has_several(s->brick, c->at))
+    if (!pierced && has_several(s->brick, c->at))
         return false;
     if (low[axis] > 0 && low[axis] < E) {
         next[axis] = side ? low[axis] : low[axis] - 1;
-        return side && !has_several(s->brick, next);
+        return side && (pierced || !has_several(s->brick, next));
     }
     static const uint32_t stride[3] = {1, 3, 9};
     uint32_t beyond = s->around[side ? 13 + stride[axis] : 13 - stride[axis]];
     next[axis] = side ? 0 : E - 1;
-    if (beyond != CSG_BRICK_NONE && has_several(&c->w->x->bricks->items[beyond], next))
+    if (!pierced && beyond != CSG_BRICK_NONE && has_several(&c->w->x->bricks->items[beyond], next))
         return false;
     return csg_shell_owns_face(s, axis, low);
 }
@@ -251,7 +259,8 @@ static bool look_into_faces(cell_at_hand *c)
         const csg_polygon_side *side = &c->polygons.side[i];
         unsigned upper;
         int axis = axis_of_face(side->face, &upper);
-        if (axis < 0 || !side->alone || side->along_edge || !is_for(c, axis, upper))
+        if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
+            (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
             continue;
         csg_cell_box face = box;
         double plane = upper ? box.high[axis] : box.low[axis];
@@ -264,9 +273,11 @@ static bool look_into_faces(cell_at_hand *c)
             continue; /* the cell will say so */
         const csg_surface_point ends[2] = {point_of(&w->vertices[a]), point_of(&w->vertices[z])};
         csg_vec3 at;
-        if (!csg_sheets_meet_in_face(c->probe, &face, ends, &at))
+        if (side->pierced)
+            at = csg_wedge_in_face(c->probe, &face, ends);
+        else if (!csg_sheets_meet_in_face(c->probe, &face, ends, &at))
             continue;
-        placed_vertex v = {.place = place_of(b, brick, c->at, side->face), .is_crease = true};
+        placed_vertex v = {.place = place_of(b, brick, c->at, side->crease), .is_crease = true};
         csg_vec3_to_floats(v.at, at);
         w->workers[c->worker].creases++;
         if (!add_vertex(w, &w->workers[c->worker], &v))
@@ -306,8 +317,10 @@ static bool gather(cell_at_hand *c, unsigned polygon, csg_polygon *out)
         out->is_crease[out->count] = false;
         out->point[out->count++] = point_of(&w->vertices[v]);
         uint32_t crease = CSG_TABLE_NONE;
-        if (creased && side->alone && !side->along_edge)
-            crease = find_vertex(w, place_of(w->x->bricks, brick, c->at, side->face));
+        if (side->pierced || (creased && side->alone && !side->along_edge))
+            crease = find_vertex(w, place_of(w->x->bricks, brick, c->at, side->crease));
+        if (side->pierced && crease == CSG_TABLE_NONE)
+            return is_missing(c);
         if (crease == CSG_TABLE_NONE)
             continue;
         out->vertex[out->count] = crease;
@@ -400,7 +413,8 @@ static bool want_simple(cell_at_hand *c)
 {
     csg_bricks *b = c->w->x->bricks;
     csg_brick *brick = &b->items[c->shell->number];
-    if (!c->is_whole && (c->polygons.count > 1 || has_several(brick, c->at))) {
+    if (!c->is_whole && (c->polygons.count > 1 || has_several(brick, c->at) ||
+                         csg_cell_polygons_are_mixed(&c->polygons))) {
         brick->wanted = true;
         atomic_store(&c->w->any, true);
     }
@@ -409,6 +423,11 @@ static bool want_simple(cell_at_hand *c)
 
 static bool visit_borders(work *w, uint32_t worker_index, const csg_shell *s)
 {
+    if (s->pierced_beyond) {
+        w->x->bricks->items[s->number].wanted = true;
+        atomic_store(&w->any, true);
+        return true;
+    }
     return !s->has_finer || each_cell(w, worker_index, s, want_simple);
 }
 
@@ -571,7 +590,7 @@ csgm_status csg_extract(csg_extraction *x)
     if (status == CSGM_OK && !enter(&w, 0))
         status = csg_context_no_memory(x->context);
     size_t edges = w.count;
-    if (status == CSGM_OK && x->judge->sharp)
+    if (status == CSGM_OK)
         status = go(&w, visit_faces, 0.3, 0.3);
     if (status == CSGM_OK && w.count > edges && !enter(&w, 0))
         status = csg_context_no_memory(x->context);

@@ -21,6 +21,9 @@ static const float BEYOND = 1.25f;
 /* Of the tolerance: how deep a place must lie in what was missed. */
 static const double DEPTH = 0.05, CREASE_DEPTH = 0.6;
 
+/* Towards a place of the surface, at most. */
+enum { STEPS = 24 };
+
 typedef struct hunt {
     float line[3][HALVES];
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
@@ -83,7 +86,12 @@ static bool differs(const csg_brick *brick, const int half[3], bool sign)
         if (own_sign(brick, corner) == sign)
             return false;
     }
-    return true;
+    unsigned from[3], to[3]; /* a pierced edge shows it */
+    for (int axis = 0; axis < 3; axis++) {
+        from[axis] = (unsigned)half[axis] / 2;
+        to[axis] = from[axis] + (unsigned)half[axis] % 2;
+    }
+    return !csg_brick_is_pierced(brick, from, to);
 }
 
 static bool differs_between(const hunt *h, const csg_brick *brick)
@@ -137,49 +145,81 @@ static bool differs_in_cell(const hunt *h, const csg_brick *brick, int i)
 {
     unsigned cell[3];
     cell_of(h, i, cell);
+    const unsigned end[3] = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
     return fabsf(h->f[i]) > h->least &&
-           csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (h->f[i] >= 0 ? 0u : 0xFFu);
+           csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (h->f[i] >= 0 ? 0u : 0xFFu) &&
+           !csg_brick_is_pierced(brick, cell, end);
 }
 
-/* Where the surface was crossed, by the secant between both ends of the step, twice. */
-static void step_back(csg_sheet_probe *p, hunt *h, bool *crossed)
+/* Steps that crossed the surface: points with values of different signs. */
+typedef struct crossings {
+    int count;
+    float from[3][PADDED], to[3][PADDED], before[PADDED], after[PADDED];
+} crossings;
+
+static void collect_crossings(const hunt *h, crossings *c)
 {
-    float end[3][PADDED], after[PADDED];
-    for (int i = 0; i < PADDED; i++) {
-        end[0][i] = h->x[i], end[1][i] = h->y[i], end[2][i] = h->z[i];
-        after[i] = h->f[i];
-        crossed[i] = i < POINTS && (h->before[i] >= 0) != (h->f[i] >= 0);
-    }
-    for (int step = 0; step < 2; step++) {
-        for (int i = 0; i < PADDED; i++) {
-            float t = crossed[i] ? h->before[i] / (h->before[i] - after[i]) : 0;
-            h->x[i] = h->from[0][i] + t * (end[0][i] - h->from[0][i]);
-            h->y[i] = h->from[1][i] + t * (end[1][i] - h->from[1][i]);
-            h->z[i] = h->from[2][i] + t * (end[2][i] - h->from[2][i]);
+    const float *end[3] = {h->x, h->y, h->z};
+    c->count = 0;
+    for (int i = 0; i < POINTS; i++) {
+        if ((h->before[i] >= 0) == (h->f[i] >= 0))
+            continue;
+        for (int axis = 0; axis < 3; axis++) {
+            c->from[axis][c->count] = h->from[axis][i];
+            c->to[axis][c->count] = end[axis][i];
         }
-        ask(p, h);
-        for (int i = 0; i < PADDED; i++) {
-            bool first = (h->f[i] >= 0) == (h->before[i] >= 0);
-            float *place[3] = {first ? &h->from[0][i] : &end[0][i],
-                               first ? &h->from[1][i] : &end[1][i],
-                               first ? &h->from[2][i] : &end[2][i]};
-            *place[0] = h->x[i], *place[1] = h->y[i], *place[2] = h->z[i];
-            *(first ? &h->before[i] : &after[i]) = h->f[i];
-        }
+        c->before[c->count] = h->before[i];
+        c->after[c->count++] = h->f[i];
     }
+}
+
+/* One step closer for each crossing: by the secant, or, every other time, by halves, since the
+ * field has kinks. Those whose value is near enough are put into `out`, the others stay. */
+static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, float near_enough,
+                        csg_hunted *out)
+{
+    int kept = 0, n = c->count, padded = (n + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
+    float *at[3] = {h->x, h->y, h->z};
+    for (int i = 0; i < padded; i++) {
+        int k = i < n ? i : 0;
+        float t = halve ? 0.5f : c->before[k] / (c->before[k] - c->after[k]);
+        for (int axis = 0; axis < 3; axis++)
+            at[axis][i] = c->from[axis][k] + t * (c->to[axis][k] - c->from[axis][k]);
+    }
+    p->kernel->values(p->tape, h->x, h->y, h->z, (size_t)n, h->f, p->scratch, p->scratch_floats);
+    p->evaluations += (uint64_t)n;
+    for (int i = 0; i < n; i++) {
+        if (fabsf(h->f[i]) <= near_enough) {
+            unsigned cell[3];
+            cell_of(h, i, cell);
+            out->at[out->count] = csg_vec3_make((double)h->x[i], (double)h->y[i], (double)h->z[i]);
+            out->cell[out->count++] = (uint8_t)csg_brick_cell(cell[0], cell[1], cell[2]);
+            continue;
+        }
+        bool first = (h->f[i] >= 0) == (c->before[i] >= 0);
+        float before = first ? h->f[i] : c->before[i], after = first ? c->after[i] : h->f[i];
+        for (int axis = 0; axis < 3; axis++) {
+            float from = c->from[axis][i], to = c->to[axis][i];
+            c->from[axis][kept] = first ? at[axis][i] : from;
+            c->to[axis][kept] = first ? to : at[axis][i];
+        }
+        c->before[kept] = before;
+        c->after[kept++] = after;
+    }
+    c->count = kept;
 }
 
 bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
               csg_hunted *out)
 {
     hunt h;
-    bool crossed[PADDED];
     out->count = 0;
     brick_kind kind = kind_of(b, brick);
     if (kind == ONE_SHEET)
         return false;
     h.least = (float)((kind == ONE_CREASE ? CREASE_DEPTH : DEPTH) * tolerance *
                       (double)b->field->tape.lipschitz);
+    float near_enough = (float)(DEPTH * tolerance * (double)b->field->tape.lipschitz);
     h.band = csg_bricks_band(b, brick->level);
     place_points(&h, b, brick);
     ask(p, &h);
@@ -194,16 +234,11 @@ bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, d
     for (int i = 0; i < POINTS; i++)
         if (differs_in_cell(&h, brick, i))
             return true;
-    for (int i = POINTS; i < PADDED; i++)
-        h.f[i] = 0;
-    step_back(p, &h, crossed);
-    for (int i = 0; i < POINTS; i++) {
-        unsigned cell[3];
-        if (!crossed[i])
-            continue;
-        cell_of(&h, i, cell);
-        out->at[out->count] = csg_vec3_make((double)h.x[i], (double)h.y[i], (double)h.z[i]);
-        out->cell[out->count++] = (uint8_t)csg_brick_cell(cell[0], cell[1], cell[2]);
-    }
+    if (kind == ANYTHING && csg_hunt_leaves(p, b, brick, tolerance, out))
+        return true;
+    crossings c;
+    collect_crossings(&h, &c);
+    for (int step = 0; step < STEPS && c.count; step++)
+        come_closer(p, &h, &c, step % 2 == 1, near_enough, out);
     return false;
 }

@@ -14,7 +14,10 @@
 #include "mesh/adaptive/sheets.h"
 
 enum {
-    CSG_HUNT_MOST = (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1)
+    CSG_HUNT_POINTS =
+        (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1) * (2 * CSG_BRICK_EDGE + 1),
+    CSG_HUNT_LEAF_POINTS = 128,
+    CSG_HUNT_MOST = CSG_HUNT_POINTS + CSG_HUNT_LEAF_POINTS
 };
 
 /* Places of the surface in cells that it crosses, to be held against their polygons. */
@@ -28,5 +31,9 @@ typedef struct csg_hunted {
  * tolerance. */
 bool csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
               double tolerance, csg_hunted *out);
+
+/* The same of what single leaves put there (hunt_leaves.c); adds places to `out`. */
+bool csg_hunt_leaves(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
+                     double tolerance, csg_hunted *out);
 
 #endif

@@ -16,6 +16,8 @@ enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
 static const double FAILURE = 4;
 /* The same where a cell has several polygons. */
 static const double SEVERAL = 1;
+/* Of a cell: how far beside each other's triangles its polygons are. */
+static const double APART = 1e-3;
 
 typedef enum csg_face_state { FACE_UNKNOWN, FACE_PLAIN, FACE_CREASED } face_state;
 
@@ -27,19 +29,33 @@ static unsigned slot_of(int axis, const unsigned low[3])
     return (unsigned)axis * P + low[0] + N * (low[1] + N * low[2]);
 }
 
+/* From a point along an axis. */
+static void add_span(csg_edges *e, int axis, const float from[3], float to, bool inside)
+{
+    uint32_t n = e->count++;
+    float step[3] = {0, 0, 0};
+    step[axis] = to - from[axis];
+    e->ax[n] = from[0], e->ay[n] = from[1], e->az[n] = from[2];
+    e->dx[n] = step[0], e->dy[n] = step[1], e->dz[n] = step[2];
+    e->a_inside[n] = inside;
+    e->rank[n] = (uint16_t)n;
+}
+
 void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *b, const csg_brick *brick, int axis,
                         const unsigned low[3])
 {
-    csg_edges *e = &room->edges;
-    uint32_t n = e->count++;
-    float from[3], step[3] = {0, 0, 0};
+    float from[3], to = csg_brick_coordinate(b, brick, axis, low[axis] + 1);
     for (int k = 0; k < 3; k++)
         from[k] = csg_brick_coordinate(b, brick, k, low[k]);
-    step[axis] = csg_brick_coordinate(b, brick, axis, low[axis] + 1) - from[axis];
-    e->ax[n] = from[0], e->ay[n] = from[1], e->az[n] = from[2];
-    e->dx[n] = step[0], e->dy[n] = step[1], e->dz[n] = step[2];
-    e->a_inside[n] = brick->inside[low[2]][low[1]] >> low[0] & 1;
-    e->rank[n] = (uint16_t)n;
+    bool inside = brick->inside[low[2]][low[1]] >> low[0] & 1;
+    unsigned edge = csg_brick_edge(axis, low);
+    if (room->pierced.edges >> edge & 1) {
+        float between = room->pierced.at[edge];
+        add_span(&room->edges, axis, from, between, inside);
+        from[axis] = between;
+        inside = !inside;
+    }
+    add_span(&room->edges, axis, from, to, inside);
 }
 
 void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
@@ -49,12 +65,22 @@ void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *b, const cs
     csg_tape tape = csg_bricks_tape(b, brick);
     if (!e->count)
         return;
+    /* of the whole edge; spans of a pierced one are shorter, by CSG_LEAST_SPAN at most */
     e->end_distance = judge->end_distance / (float)csg_bricks_cell(b, brick->level);
+    if (room->pierced.edges)
+        e->end_distance = fminf(e->end_distance / CSG_LEAST_SPAN, 0.25f);
     room->evaluations +=
         b->kernel->roots(&tape, e, judge->noise, room->scratch, room->scratch_floats);
     b->kernel->gradients(&tape, e->x, e->y, e->z, e->count, room->gradient[0], room->gradient[1],
                          room->gradient[2], room->scratch, room->scratch_floats);
     room->gradients += e->count;
+}
+
+bool csg_judge_has_edge(const csg_judge_room *room, const csg_brick *brick, int axis,
+                        const unsigned low[3])
+{
+    return csg_brick_is_crossed(brick, axis, low) ||
+           (room->pierced.edges >> csg_brick_edge(axis, low) & 1);
 }
 
 static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge_room *room)
@@ -63,10 +89,11 @@ static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
         int axis = (int)(slot / P);
         const unsigned low[3] = {slot % N, slot / N % N, slot % P / (N * N)};
-        if (low[axis] == E || !csg_brick_is_crossed(brick, axis, low))
+        if (low[axis] == E || !csg_judge_has_edge(room, brick, axis, low))
             continue;
-        room->edge[slot] = (uint16_t)room->edges.count;
+        room->edge[0][slot] = (uint16_t)room->edges.count;
         csg_judge_add_edge(room, b, brick, axis, low);
+        room->edge[1][slot] = (uint16_t)(room->edges.count - 1);
     }
 }
 
@@ -84,10 +111,9 @@ csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, con
 /* ---- faces -------------------------------------------------------------------------------------
  */
 
-bool csg_cell_face_is_inside(void *cell_faces, unsigned face)
+/* The middle of a face, or of a quarter of one. */
+static void middle_of_face(const csg_cell_faces *c, unsigned face, float at[3])
 {
-    const csg_cell_faces *c = cell_faces;
-    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES], at[3];
     uint32_t size = csg_bricks_cell(c->bricks, c->brick->level);
     unsigned q[3];
     csg_local_place(face, q);
@@ -99,6 +125,39 @@ bool csg_cell_face_is_inside(void *cell_faces, unsigned face)
             low = 0, high = size;
         at[axis] = 0.5f * (csg_lattice_coordinate(c->bricks->lattice, axis, first + low) +
                            csg_lattice_coordinate(c->bricks->lattice, axis, first + high));
+    }
+}
+
+/* A corner of the cell, or a point between two: where the edge is pierced. */
+static float coordinate_of(const csg_cell_faces *c, const uint8_t point[3], int axis)
+{
+    unsigned low[3], edge_axis = 3;
+    for (unsigned k = 0; k < 3; k++) {
+        low[k] = c->at[k] + point[k] / 2u;
+        if (point[k] == 1)
+            edge_axis = k;
+    }
+    if ((int)edge_axis != axis)
+        return csg_brick_coordinate(c->bricks, c->brick, axis, low[axis]);
+    unsigned edge = csg_brick_edge(axis, low);
+    if (c->pierced->edges >> edge & 1)
+        return c->pierced->at[edge];
+    uint32_t size = csg_bricks_cell(c->bricks, c->brick->level);
+    return csg_lattice_coordinate(c->bricks->lattice, axis,
+                                  csg_brick_point(c->bricks, c->brick, axis, low[axis]) + size / 2);
+}
+
+bool csg_cell_face_is_inside(void *cell_faces, const csg_face_look *look)
+{
+    const csg_cell_faces *c = cell_faces;
+    float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES], at[3];
+    if (!look->count)
+        middle_of_face(c, look->face, at);
+    for (int axis = 0; axis < 3 && look->count; axis++) {
+        double sum = 0;
+        for (int i = 0; i < look->count; i++)
+            sum += look->weight[i] * (double)coordinate_of(c, look->point[i], axis);
+        at[axis] = (float)sum;
     }
     for (int i = 0; i < CSG_LANES; i++)
         x[i] = at[0], y[i] = at[1], z[i] = at[2];
@@ -122,7 +181,7 @@ csg_cell_box csg_judge_cell_box(const csg_bricks *b, const csg_brick *brick, con
     return box;
 }
 
-/* The slot of an edge or a face of a cell by its middle. */
+/* The slot of an edge, or a half of one, or of a face of a cell by its middle. */
 static unsigned slot_of_place(unsigned place, const unsigned cell[3], bool is_face)
 {
     unsigned q[3], low[3];
@@ -130,27 +189,33 @@ static unsigned slot_of_place(unsigned place, const unsigned cell[3], bool is_fa
     csg_local_place(place, q);
     for (int k = 0; k < 3; k++) {
         low[k] = cell[k] + (q[k] == 4);
-        if ((q[k] == 2) != is_face)
+        if ((q[k] % 4 != 0) != is_face)
             axis = k;
     }
     return slot_of(axis, low);
 }
 
-static csg_surface_point point_of(const csg_judge_room *room, unsigned slot)
+/* The vertex on an edge of a cell, or on a half of one, by its middle. */
+static csg_surface_point point_of(const csg_judge_room *room, unsigned place,
+                                  const unsigned cell[3])
 {
-    uint32_t n = room->edge[slot];
+    unsigned q[3];
+    csg_local_place(place, q);
+    bool upper = q[0] == 3 || q[1] == 3 || q[2] == 3;
+    uint32_t n = room->edge[upper][slot_of_place(place, cell, false)];
     const csg_edges *e = &room->edges;
     return (csg_surface_point){
         {(double)e->x[n], (double)e->y[n], (double)e->z[n]},
         {(double)room->gradient[0][n], (double)room->gradient[1][n], (double)room->gradient[2][n]}};
 }
 
-/* Looks for the crease in the face that a side runs through, once for both cells. */
+/* Looks for the crease in the face that a side runs through, once for both cells but where an edge
+ * is pierced. */
 static bool find_crease(csg_sheet_probe *probe, csg_judge_room *room, const csg_cell_box *box,
                         const unsigned cell[3], const csg_polygon_side *side, csg_vec3 *out)
 {
     unsigned slot = slot_of_place(side->face, cell, true), q[3];
-    if (room->face[slot] == FACE_UNKNOWN) {
+    if (side->pierced || room->face[slot] == FACE_UNKNOWN) {
         csg_cell_box face = *box;
         csg_local_place(side->face, q);
         for (int k = 0; k < 3; k++) {
@@ -160,8 +225,12 @@ static bool find_crease(csg_sheet_probe *probe, csg_judge_room *room, const csg_
         /* ends in the order of their edges, whichever of both cells asks */
         uint8_t lower = side->from < side->to ? side->from : side->to;
         uint8_t upper = side->from < side->to ? side->to : side->from;
-        const csg_surface_point ends[2] = {point_of(room, slot_of_place(lower, cell, false)),
-                                           point_of(room, slot_of_place(upper, cell, false))};
+        const csg_surface_point ends[2] = {point_of(room, lower, cell),
+                                           point_of(room, upper, cell)};
+        if (side->pierced) {
+            *out = csg_wedge_in_face(probe, &face, ends);
+            return true;
+        }
         bool found = csg_sheets_meet_in_face(probe, &face, ends, &room->crease[slot]);
         room->face[slot] = found ? FACE_CREASED : FACE_PLAIN;
     }
@@ -169,21 +238,40 @@ static bool find_crease(csg_sheet_probe *probe, csg_judge_room *room, const csg_
     return room->face[slot] == FACE_CREASED;
 }
 
-/* Triangle t around the apex, or, apex NULL, of those that the polygon is cut into: its corners as
- * vertices of the polygon, -1 for the apex, and their places. */
-static void find_triangle(const csg_polygon *p, const csg_vec3 *apex, const uint8_t *cut, int t,
-                          int corner[3], csg_vec3 at[3])
+/* A polygon as it is cut into triangles: around an apex, or without a point inside. */
+typedef struct cut_polygon {
+    csg_polygon polygon;
+    bool is_fan;
+    csg_vec3 apex;
+    uint8_t cut[CSG_CELL_MOST_INDICES]; /* three corners per triangle */
+} cut_polygon;
+
+enum { MOST_PIECES = 4 };
+
+typedef struct cell_work {
+    const csg_judge *judge;
+    const csg_bricks *bricks;
+    csg_brick *brick;
+    csg_judge_room *room;
+    csg_sheet_probe probe;
+    const csg_hunted *hunted;
+    cut_polygon pieces[MOST_PIECES]; /* of the cell at hand */
+    int count;
+} cell_work;
+
+static int triangle_count(const cut_polygon *p)
 {
-    const int around[3] = {-1, t, (t + 1) % p->count};
-    for (int k = 0; k < 3; k++) {
-        corner[k] = apex ? around[k] : cut[3 * t + k];
-        at[k] = corner[k] < 0 ? *apex : p->point[corner[k]].at;
-    }
+    return p->is_fan ? p->polygon.count : p->polygon.count - 2;
 }
 
-static int triangle_count(const csg_polygon *p, const csg_vec3 *apex)
+/* The corners of a triangle as vertices of the polygon, -1 for the apex, and their places. */
+static void find_triangle(const cut_polygon *p, int t, int corner[3], csg_vec3 at[3])
 {
-    return apex ? p->count : p->count - 2;
+    const int around[3] = {-1, t, (t + 1) % p->polygon.count};
+    for (int k = 0; k < 3; k++) {
+        corner[k] = p->is_fan ? around[k] : p->cut[3 * t + k];
+        at[k] = corner[k] < 0 ? p->apex : p->polygon.point[corner[k]].at;
+    }
 }
 
 /* The gradient that a triangle's sheet has: of a vertex of it that is on no crease. */
@@ -195,29 +283,30 @@ static csg_vec3 gradient_of(const csg_polygon *p, const int corner[3])
     return csg_vec3_make(0, 0, 0);
 }
 
-double csg_polygon_distance(csg_sheet_probe *probe, const csg_polygon *p, const csg_vec3 *apex,
-                            const uint8_t *cut, double least_length)
+/* The largest distance from the surface, as |f| over the slope, at points of the triangles.
+ * INFINITY: a triangle higher than `least_height` looks inwards. */
+static double find_distance(csg_sheet_probe *probe, const cut_polygon *piece, double least_height)
 {
     enum { MOST = 3 * CSG_POLYGON_MOST + CSG_LANES };
     /* of the normals of a triangle and of its sheet */
     const double looks_away = 0.17;
+    const csg_polygon *p = &piece->polygon;
     float x[MOST], y[MOST], z[MOST], f[MOST];
     size_t n = 0;
     x[0] = y[0] = z[0] = 0;
-    int triangles = triangle_count(p, apex);
     double slope = INFINITY;
     for (int i = 0; i < p->count; i++)
         if (!p->is_crease[i])
             slope = fmin(slope, csg_vec3_norm(p->point[i].gradient));
-    for (int t = 0; t < triangles; t++) {
+    for (int t = 0; t < triangle_count(piece); t++) {
         int corner[3];
         csg_vec3 v[3];
-        find_triangle(p, apex, cut, t, corner, v);
+        find_triangle(piece, t, corner, v);
         csg_vec3 a = v[0], b = v[1], c = v[2], g = gradient_of(p, corner);
         csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
         csg_vec3 longest = csg_vec3_sub(b, c);
         double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
-        if (height > least_length && -csg_gradients_cosine(cross, g) < looks_away)
+        if (height > least_height && -csg_gradients_cosine(cross, g) < looks_away)
             return INFINITY;
         csg_vec3 at[3] = {csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3),
                           csg_vec3_scale(csg_vec3_add(a, b), 0.5),
@@ -235,24 +324,47 @@ double csg_polygon_distance(csg_sheet_probe *probe, const csg_polygon *p, const 
     return slope > 0 ? fmax(worst - 4 * probe->noise, 0) / slope : INFINITY;
 }
 
-/* The polygon's corners in the order of csg_cell_cut, which numbers edges. False: it is none that
- * a whole cell has. */
-static bool cut_of(unsigned pattern, const csg_polygon *p, uint8_t *cut)
+/* Cuts the polygon without a point inside, as csg_cell_cut does, which numbers edges. False: it is
+ * none that a whole cell has. */
+static bool cut_without_apex(unsigned pattern, cut_polygon *piece)
 {
     csg_cell_loops loops = csg_cell_loops_of(pattern, 0);
+    const csg_polygon *p = &piece->polygon;
     uint8_t triangles[CSG_CELL_MOST_INDICES];
-    if (loops.count != 1 || loops.sides[0] != p->count ||
-        !csg_cell_cut(loops.edge[0], p->count, triangles))
-        return false;
-    for (int i = 0; i < 3 * (p->count - 2); i++) {
-        int at = 0;
-        while (at < p->count && p->vertex[at] != triangles[i])
-            at++;
-        if (at == p->count)
+    for (int loop = 0; loop < loops.count; loop++) {
+        bool is_own = false;
+        for (int i = 0; i < loops.sides[loop]; i++)
+            is_own = is_own || loops.edge[loop][i] == p->vertex[0];
+        if (!is_own)
+            continue;
+        if (loops.sides[loop] != p->count || !csg_cell_cut(loops.edge[loop], p->count, triangles))
             return false;
-        cut[i] = (uint8_t)at;
+        for (int i = 0; i < 3 * (p->count - 2); i++) {
+            int at = 0;
+            while (at < p->count && p->vertex[at] != triangles[i])
+                at++;
+            if (at == p->count)
+                return false;
+            piece->cut[i] = (uint8_t)at;
+        }
+        return true;
     }
-    return true;
+    return false;
+}
+
+/* Keeps the triangles of a cell that is good. */
+static void keep_triangles(cell_work *w, unsigned cell)
+{
+    csg_judge_room *room = w->room;
+    room->first_triangle[cell] = room->triangle_count;
+    for (int k = 0; k < w->count; k++)
+        for (int t = 0; t < triangle_count(&w->pieces[k]); t++) {
+            int corner[3];
+            if (room->triangle_count == CSG_JUDGE_MOST_TRIANGLES)
+                return;
+            find_triangle(&w->pieces[k], t, corner, room->triangles[room->triangle_count++]);
+        }
+    room->end_triangle[cell] = room->triangle_count;
 }
 
 static bool is_near_side(const csg_cell_box *box, csg_vec3 p, double reach)
@@ -264,75 +376,154 @@ static bool is_near_side(const csg_cell_box *box, csg_vec3 p, double reach)
     return false;
 }
 
-typedef struct cell_work {
-    const csg_judge *judge;
-    const csg_bricks *bricks;
-    csg_brick *brick;
-    csg_judge_room *room;
-    csg_sheet_probe probe;
-    const csg_hunted *hunted;
-} cell_work;
+static bool is_near_triangles(const csg_judge_room *room, uint32_t first, uint32_t end, csg_vec3 at,
+                              double reach)
+{
+    double weights[3];
+    for (uint32_t t = first; t < end; t++)
+        if (csg_triangle_nearest((const csg_vec3 *)room->triangles[t], at, weights) <=
+            reach * reach)
+            return true;
+    return false;
+}
 
-/* Whether all places of the surface that were found in the cell are near the polygon's triangles:
- * around an apex, or as they are cut. */
-static bool has_all(const cell_work *w, unsigned cell, const csg_cell_box *box,
-                    const csg_polygon *p, const csg_vec3 *apex, const uint8_t *cut)
+/* Whether all places of the surface that were found in the brick are near its triangles. */
+static bool has_all(const cell_work *w)
 {
     double tolerance = w->judge->tolerance;
-    int triangles = triangle_count(p, apex);
+    const csg_judge_room *room = w->room;
+    csg_cell_box box;
+    for (int axis = 0; axis < 3; axis++) {
+        box.low[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, 0);
+        box.high[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, E);
+    }
     for (int i = 0; i < w->hunted->count; i++) {
         csg_vec3 at = w->hunted->at[i];
-        double nearest = INFINITY, weights[3];
-        if (w->hunted->cell[i] != cell || is_near_side(box, at, tolerance))
-            continue; /* it may be near a polygon of the next cell */
-        for (int t = 0; t < triangles; t++) {
-            int corner[3];
-            csg_vec3 v[3];
-            find_triangle(p, apex, cut, t, corner, v);
-            nearest = fmin(nearest, csg_triangle_nearest((const csg_vec3 *)v, at, weights));
-        }
-        if (nearest > tolerance * tolerance)
+        unsigned cell = w->hunted->cell[i];
+        if (is_near_side(&box, at, tolerance))
+            continue; /* it may be near triangles of the next brick */
+        if (!is_near_triangles(room, room->first_triangle[cell], room->end_triangle[cell], at,
+                               tolerance) &&
+            !is_near_triangles(room, 0, room->triangle_count, at, tolerance))
             return false;
     }
     return true;
 }
 
-/* Whether a cell with one polygon is good as it is. */
-static bool is_good(cell_work *w, const unsigned at[3], unsigned pattern,
+/* Whether all triangles of a piece have the other piece on one side: then they do not meet. */
+static bool is_beside(const cut_polygon *p, const cut_polygon *other, double margin)
+{
+    for (int t = 0; t < triangle_count(p); t++) {
+        int corner[3];
+        csg_vec3 v[3];
+        find_triangle(p, t, corner, v);
+        csg_vec3 n =
+            csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
+        double low = INFINITY, high = -INFINITY;
+        for (int i = other->is_fan ? -1 : 0; i < other->polygon.count; i++) {
+            csg_vec3 at = i < 0 ? other->apex : other->polygon.point[i].at;
+            double d = csg_vec3_dot(n, csg_vec3_sub(at, v[0]));
+            low = fmin(low, d);
+            high = fmax(high, d);
+        }
+        if (!(low > margin || high < -margin))
+            return false;
+    }
+    return true;
+}
+
+static bool are_apart(const cell_work *w, double margin)
+{
+    for (int i = 0; i < w->count; i++)
+        for (int k = 0; k < i; k++)
+            if (!is_beside(&w->pieces[i], &w->pieces[k], margin) &&
+                !is_beside(&w->pieces[k], &w->pieces[i], margin))
+                return false;
+    return true;
+}
+
+/* The vertices of a polygon, and, creased, what is found in the faces between them. */
+static int gather(cell_work *w, const unsigned at[3], const csg_cell_polygons *polygons,
+                  unsigned polygon, bool creased, csg_polygon *p)
+{
+    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
+    int creases = 0;
+    p->count = 0;
+    for (int i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
+        const csg_polygon_side *side = &polygons->side[i];
+        csg_vec3 crease;
+        p->vertex[p->count] = csg_local_edge(side->from);
+        p->is_crease[p->count] = false;
+        p->point[p->count++] = point_of(w->room, side->from, at);
+        if (!side->pierced && (!creased || !side->alone))
+            continue;
+        if (!find_crease(&w->probe, w->room, &box, at, side, &crease))
+            continue;
+        p->is_crease[p->count] = true;
+        p->point[p->count++].at = crease;
+        creases++;
+    }
+    return creases;
+}
+
+/* Cuts one of a cell's polygons. False: its triangles are not what they should be. */
+static bool cut_into_triangles(cell_work *w, const unsigned at[3], bool is_whole,
+                               const csg_cell_polygons *polygons, unsigned polygon)
+{
+    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
+    double tolerance = w->judge->tolerance;
+    bool is_small = box.cell <= FAILURE * tolerance, alone = polygons->count == 1;
+    double least = is_small ? tolerance : 0.1 * tolerance;
+    if (w->count == MOST_PIECES)
+        return false;
+    cut_polygon *piece = &w->pieces[w->count++];
+    int creases = gather(w, at, polygons, polygon, alone && w->judge->sharp, &piece->polygon);
+    piece->is_fan = false;
+    if (!creases && is_whole &&
+        cut_without_apex(csg_brick_pattern(w->brick, at[0], at[1], at[2]), piece) &&
+        find_distance(&w->probe, piece, least) <= tolerance) {
+        if (alone)
+            w->brick->flat |= (uint64_t)1 << csg_brick_cell(at[0], at[1], at[2]);
+        return true;
+    }
+    if (is_whole && !alone)
+        return false;
+    piece->is_fan = true;
+    csg_apex_kind kind = csg_polygon_find_apex(&w->probe, &box, &piece->polygon, &piece->apex);
+    return (kind != CSG_APEX_FAILED || is_small) &&
+           find_distance(&w->probe, piece, least) <= tolerance;
+}
+
+/* Whether a cell is small enough. Several polygons must be on their own sides of each other where
+ * the cell has pierced edges; those of a whole cell are whatever their vertices. */
+static bool is_good(cell_work *w, const unsigned at[3], const csg_shell_cell *place,
                     const csg_cell_polygons *polygons)
 {
     csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
-    csg_polygon p = {.count = 0};
-    double tolerance = w->judge->tolerance;
-    double least = box.cell <= FAILURE * tolerance ? tolerance : 0.1 * tolerance;
-    unsigned cell = csg_brick_cell(at[0], at[1], at[2]);
-    int creases = 0;
-    for (int i = 0; i < polygons->first[1]; i++) {
-        const csg_polygon_side *side = &polygons->side[i];
-        csg_vec3 crease;
-        p.vertex[p.count] = csg_local_edge(side->from);
-        p.point[p.count++] = point_of(w->room, slot_of_place(side->from, at, false));
-        if (!w->judge->sharp || !side->alone ||
-            !find_crease(&w->probe, w->room, &box, at, side, &crease))
-            continue;
-        p.is_crease[p.count] = true;
-        p.point[p.count++].at = crease;
-        creases++;
-    }
-    uint8_t cut[CSG_CELL_MOST_INDICES];
-    if (!creases && cut_of(pattern, &p, cut) &&
-        csg_polygon_distance(&w->probe, &p, NULL, cut, least) <= tolerance) {
-        w->brick->flat |= (uint64_t)1 << cell;
-        return has_all(w, cell, &box, &p, NULL, cut);
-    }
-    csg_vec3 apex;
-    csg_apex_kind kind = csg_polygon_find_apex(&w->probe, &box, &p, &apex);
-    return (kind != CSG_APEX_FAILED || box.cell <= FAILURE * tolerance) &&
-           csg_polygon_distance(&w->probe, &p, &apex, NULL, least) <= tolerance &&
-           has_all(w, cell, &box, &p, &apex, NULL);
+    bool good = !csg_cell_polygons_are_mixed(polygons);
+    w->count = 0;
+    for (unsigned i = 0; i < polygons->count && good; i++)
+        good = cut_into_triangles(w, at, !place->divided, polygons, i);
+    good = good && (!place->divided || are_apart(w, APART * box.cell));
+    if (good)
+        keep_triangles(w, csg_brick_cell(at[0], at[1], at[2]));
+    bool is_small = box.cell <= SEVERAL * w->judge->tolerance && !place->pierced;
+    return good || (polygons->count > 1 && is_small);
 }
 
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick)
+/* Cells that a pierced edge belongs to are crossed whatever their corners say. */
+static void cross_pierced(csg_brick *brick)
+{
+    for (unsigned cell = 0; cell < E * E * E && brick->pierced; cell++) {
+        const unsigned low[3] = {cell % E, cell / E % E, cell / (E * E)};
+        const unsigned high[3] = {low[0] + 1, low[1] + 1, low[2] + 1};
+        if (csg_brick_is_pierced(brick, low, high))
+            brick->crossed |= (uint64_t)1 << cell;
+    }
+}
+
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
+                     const float *f)
 {
     const csg_judge *judge = user;
     csg_judge_room *room = &judge->rooms[worker];
@@ -345,33 +536,33 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
                    .room = room,
                    .probe = csg_judge_probe(judge, b, brick, room, &tape),
                    .hunted = &hunted};
+    csg_pierce(&w.probe, b, brick, f, &room->pierced);
+    brick->pierced = room->pierced.edges;
+    cross_pierced(brick);
     if (!is_finest && csg_hunt(&w.probe, b, brick, judge->tolerance, &hunted)) {
         room->evaluations += w.probe.evaluations;
         return true;
     }
-    if (!brick->crossed)
-        return false;
     brick->flat = brick->several = 0;
     collect_edges(b, brick, room);
     memset(room->face, FACE_UNKNOWN, sizeof room->face);
     csg_judge_solve_edges(judge, b, brick, room);
+    room->triangle_count = 0;
+    memset(room->first_triangle, 0, sizeof room->first_triangle);
+    memset(room->end_triangle, 0, sizeof room->end_triangle);
     bool wants = false;
-    double edge = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
     for (uint64_t rest = brick->crossed; rest && (!wants || is_finest); rest &= rest - 1) {
         unsigned cell = (unsigned)__builtin_ctzll(rest);
         const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
-        unsigned pattern = csg_brick_pattern(brick, at[0], at[1], at[2]);
         csg_shell shell = {.brick = brick};
         csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
         csg_cell_polygons polygons;
-        csg_cell_faces faces = {b, brick, at, &w.probe};
+        csg_cell_faces faces = {b, brick, at, &w.probe, &room->pierced};
         csg_cell_polygons_make(&polygons, &place, csg_cell_face_is_inside, &faces);
         if (polygons.count > 1)
             brick->several |= (uint64_t)1 << cell;
-        bool good = polygons.count > 1 ? edge <= SEVERAL * judge->tolerance
-                                       : is_good(&w, at, pattern, &polygons);
-        wants = wants || !good;
+        wants = !is_good(&w, at, &place, &polygons) || wants;
     }
     room->evaluations += w.probe.evaluations;
-    return wants;
+    return wants || !has_all(&w);
 }

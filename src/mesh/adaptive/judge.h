@@ -6,19 +6,28 @@
 #define CSG_MESH_ADAPTIVE_JUDGE_H
 
 #include "field/kernels/roots.h"
+#include "mesh/adaptive/pierce.h"
 #include "mesh/adaptive/polygons.h"
 #include "mesh/adaptive/sheets.h"
 #include "mesh/marching/tables.h"
 
-enum { CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS };
+enum {
+    CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS,
+    CSG_BRICK_CELLS = CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE,
+    CSG_JUDGE_MOST_TRIANGLES = 64 * CSG_BRICK_CELLS
+};
 
 /* One thread's room; slots of edges and faces: axis * CSG_BRICK_POINTS + lower (lowest) point. */
 typedef struct csg_judge_room {
     csg_edges edges;
     float gradient[3][CSG_BLOCK_MOST_EDGES];
-    uint16_t edge[CSG_BRICK_SLOTS]; /* place in `edges`, of those crossed */
-    uint8_t face[CSG_BRICK_SLOTS];  /* csg_face_state */
+    csg_pierced pierced;
+    /* Place in `edges`, of those crossed; of pierced ones the lower half's, and the upper's. */
+    uint16_t edge[2][CSG_BRICK_SLOTS];
+    uint8_t face[CSG_BRICK_SLOTS]; /* csg_face_state */
     csg_vec3 crease[CSG_BRICK_SLOTS];
+    csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
+    uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
     float *scratch;
     size_t scratch_floats;
     uint64_t evaluations, gradients;
@@ -34,7 +43,8 @@ typedef struct csg_judge {
 } csg_judge;
 
 /* A csg_brick_judge; user: a csg_judge. */
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick);
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
+                     const float *f);
 
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 
@@ -44,7 +54,11 @@ void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *bricks, con
 /* The probe of a brick; *tape is filled. */
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *bricks,
                                 const csg_brick *brick, csg_judge_room *room, csg_tape *tape);
-/* Appends an edge of the brick to room->edges. */
+/* Whether an edge of the brick has a vertex, or, pierced, two. */
+bool csg_judge_has_edge(const csg_judge_room *room, const csg_brick *brick, int axis,
+                        const unsigned low[3]);
+/* Appends an edge of the brick to room->edges; of a pierced one its lower half, then its upper.
+ */
 void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *bricks, const csg_brick *brick,
                         int axis, const unsigned low[3]);
 
@@ -54,19 +68,14 @@ typedef struct csg_cell_faces {
     const csg_brick *brick;
     const unsigned *at;
     csg_sheet_probe *probe;
+    const csg_pierced *pierced;
 } csg_cell_faces;
 
 /* The sign of the field there: the same whichever cell asks, fine or coarse. */
-bool csg_cell_face_is_inside(void *cell_faces, unsigned face);
+bool csg_cell_face_is_inside(void *cell_faces, const csg_face_look *look);
 
 /* The box of a cell. */
 csg_cell_box csg_judge_cell_box(const csg_bricks *bricks, const csg_brick *brick,
                                 const unsigned at[3]);
-
-/* The largest distance from the surface, as |f| over the slope, at points of the triangles that the
- * polygon is cut into: around an apex, or, apex NULL, as `cut` says (three corners per triangle,
- * two triangles fewer than corners). INFINITY: a triangle looks inwards. */
-double csg_polygon_distance(csg_sheet_probe *probe, const csg_polygon *polygon,
-                            const csg_vec3 *apex, const uint8_t *cut, double least_length);
 
 #endif

@@ -9,6 +9,7 @@ enum { NOWHERE = 0xFF, MOST_POINTS = 8 };
 
 /* What is found face by face: for the vertex that a segment begins at, the rest of it. */
 typedef struct links {
+    const csg_shell_cell *cell;
     uint8_t to[CSG_LOCAL_PLACES], face[CSG_LOCAL_PLACES];
     uint8_t in_face[CSG_LOCAL_PLACES]; /* segments */
     csg_face_is_inside *is_inside;
@@ -32,6 +33,63 @@ static uint8_t middle_of(const uint8_t p[3], const uint8_t q[3])
     return (uint8_t)((p[0] + q[0]) + 5 * (p[1] + q[1]) + 25 * (p[2] + q[2]));
 }
 
+/* Numbers the runs of equal points, which alternate, along the cycle. */
+static int number_runs(const cycle *c, const bool *in, int *run)
+{
+    int runs = 0, first = 0;
+    while (in[first] == in[(first + c->count - 1) % c->count])
+        first++;
+    for (int i = 0; i < c->count; i++) {
+        int p = (first + i) % c->count;
+        if (i && in[p] != in[(p + c->count - 1) % c->count])
+            runs++;
+        run[p] = runs;
+    }
+    return runs + 1;
+}
+
+/* The point of a pierced edge in the cycle, of those there are the one of the lowest bit; -1. */
+static int find_pierced(const links *l, const cycle *c)
+{
+    int found = -1;
+    for (int i = 0; i < c->count; i++)
+        if (l->cell->pierced >> bit_of(c->point[i]) & 1 &&
+            (found < 0 || bit_of(c->point[i]) < bit_of(c->point[found])))
+            found = i;
+    return found;
+}
+
+static void add_point(csg_face_look *look, const uint8_t p[3], double weight)
+{
+    int at = look->count++;
+    for (; at > 0 && bit_of(look->point[at - 1]) > bit_of(p); at--) {
+        memcpy(look->point[at], look->point[at - 1], sizeof look->point[at]);
+        look->weight[at] = look->weight[at - 1];
+    }
+    memcpy(look->point[at], p, sizeof look->point[at]);
+    look->weight[at] = weight;
+}
+
+/* Whether several runs of inside points are one within the face. */
+static bool is_joined(const links *l, const cycle *c, const bool *in, unsigned face)
+{
+    csg_face_look look = {.face = face};
+    int run[MOST_POINTS], runs = number_runs(c, in, run), own = find_pierced(l, c), other = -1;
+    int lowest = 27;
+    for (int i = 0; own >= 0 && i < c->count; i++) /* that of the lowest bit */
+        if (in[i] == in[own] && run[i] != run[own] && (int)bit_of(c->point[i]) < lowest) {
+            lowest = (int)bit_of(c->point[i]);
+            other = run[i];
+        }
+    int members = 0;
+    for (int i = 0; i < c->count && other >= 0; i++)
+        members += run[i] == other;
+    for (int i = 0; i < c->count && other >= 0 && runs > 1; i++)
+        if (i == own || run[i] == other)
+            add_point(&look, c->point[i], i == own ? 0.5 : 0.5 / members);
+    return l->is_inside(l->user, &look);
+}
+
 static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
 {
     bool in[MOST_POINTS];
@@ -48,7 +106,7 @@ static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
         enter[runs] = middle_of(c->point[before], c->point[i]);
         leave[runs++] = middle_of(c->point[last], c->point[(last + 1) % c->count]);
     }
-    int shift = runs > 1 && l->is_inside(l->user, face) ? runs - 1 : 0;
+    int shift = runs > 1 && is_joined(l, c, in, face) ? runs - 1 : 0;
     for (int r = 0; r < runs; r++) {
         l->to[enter[r]] = leave[(r + shift) % runs];
         l->face[enter[r]] = face;
@@ -114,10 +172,17 @@ static uint8_t edge_of(uint8_t place)
     return between == 1 ? (uint8_t)(at[0] + 5 * at[1] + 25 * at[2]) : NOWHERE;
 }
 
+static bool is_pierced(const csg_shell_cell *cell, uint8_t edge)
+{
+    unsigned at[3];
+    csg_local_place(edge, at);
+    return cell->pierced >> (at[0] / 2 + 3 * (at[1] / 2) + 9 * (at[2] / 2)) & 1;
+}
+
 void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
                             csg_face_is_inside *is_inside, void *user)
 {
-    links l = {.is_inside = is_inside, .user = user};
+    links l = {.cell = cell, .is_inside = is_inside, .user = user};
     memset(l.to, NOWHERE, sizeof l.to);
     memset(l.in_face, 0, sizeof l.in_face);
     for (int face = 0; face < 6; face++)
@@ -131,8 +196,11 @@ void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *c
             csg_polygon_side *s = &polygons->side[n++];
             uint8_t edge = edge_of(at);
             *s = (csg_polygon_side){.from = at, .to = l.to[at], .face = l.face[at]};
-            s->along_edge = edge != NOWHERE && edge == edge_of(s->to);
+            bool is_on_edge = edge != NOWHERE && edge == edge_of(s->to);
+            s->pierced = is_on_edge && is_pierced(cell, edge);
+            s->along_edge = is_on_edge && !s->pierced;
             s->alone = l.in_face[s->face] == 1;
+            s->crease = s->pierced ? (uint8_t)((edge + s->face) / 2) : s->face;
             l.to[at] = NOWHERE;
             at = s->to;
         }
@@ -142,4 +210,12 @@ void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *c
             polygons->first[polygons->count++] = (uint8_t)first;
     }
     polygons->first[polygons->count] = (uint8_t)n;
+}
+
+bool csg_cell_polygons_are_mixed(const csg_cell_polygons *polygons)
+{
+    for (unsigned i = 0; i < polygons->first[polygons->count]; i++)
+        if (polygons->side[i].pierced && !polygons->side[i].alone)
+            return true;
+    return false;
 }

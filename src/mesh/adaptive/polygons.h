@@ -2,13 +2,14 @@
  * The polygons of a cell whose edges and faces may be divided: faces decide, as in cubical marching
  * squares (Ho, Wu, Chen, Chuang and Ouhyoung 2005). A face is a cycle of four points, of up to
  * eight where its edges are divided; a divided face is four such faces. Each run of inside points
- * of a cycle is cut off by its own segment; where there are several, and the middle of the face is
- * inside, too, the runs of outside points between them are. Both cells at a face see the same
+ * of a cycle is cut off by its own segment; where there are several, and the face is inside between
+ * them, too, the runs of outside points between them are. Both cells at a face see the same
  * cycles, so segments match at every border of levels, and around a cell they close to loops.
  *
  * Where an edge is divided and only its middle differs, two faces of a cell cut that run off
  * between the same two vertices. Such a loop of two is left out: the triangles beyond its faces
- * meet in that edge directly.
+ * meet in that edge directly. A side that cuts off the point of a pierced edge has a vertex of its
+ * own in the face, always, so that no two such sides are one.
  */
 #ifndef CSG_MESH_ADAPTIVE_POLYGONS_H
 #define CSG_MESH_ADAPTIVE_POLYGONS_H
@@ -26,7 +27,9 @@ enum {
  * of the cell. */
 typedef struct csg_polygon_side {
     uint8_t from, to, face;
-    bool along_edge; /* both on the halves of one edge of the cell: it runs in that edge */
+    uint8_t crease;  /* a place in the face for a vertex between both: of pierced sides their own */
+    bool along_edge; /* both on the halves of one edge that finer leaves divide: it runs in it */
+    bool pierced;    /* both on the halves of a pierced edge */
     bool alone;      /* no other segment is in that face */
 } csg_polygon_side;
 
@@ -37,12 +40,26 @@ typedef struct csg_cell_polygons {
     csg_polygon_side side[CSG_CELL_MOST_SEGMENTS];
 } csg_cell_polygons;
 
-/* Whether the middle of a face of the cell, or of a quarter of one, is inside; asked where it has
- * several runs of inside points. */
-typedef bool csg_face_is_inside(void *user, unsigned face);
+/* Where a face of the cell, or a quarter of one, that has several runs of inside points is looked
+ * at: in its middle; or, where a run is the point of a pierced edge, half way from there to the
+ * middle of another run of its sign (then count is not 0). Points are those of csg_shell_cell, in
+ * the order of their bits. */
+typedef struct csg_face_look {
+    unsigned face;
+    int count;
+    uint8_t point[8][3];
+    double weight[8]; /* together 1 */
+} csg_face_look;
+
+/* Whether the place is inside. */
+typedef bool csg_face_is_inside(void *user, const csg_face_look *look);
 
 void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
                             csg_face_is_inside *is_inside, void *user);
+
+/* Whether some side that cuts off the point of a pierced edge is in a face with others, which its
+ * vertex may lie beyond. */
+bool csg_cell_polygons_are_mixed(const csg_cell_polygons *polygons);
 
 /* The place of a middle in quarters of the cell. */
 static inline void csg_local_place(unsigned place, unsigned out[3])

@@ -212,6 +212,43 @@ bool csg_sheets_meet_in_face(csg_sheet_probe *p, const csg_cell_box *face,
     return true;
 }
 
+/* From between the points straight into the face, to where the sign is another one. */
+static csg_vec3 step_beside(csg_sheet_probe *p, const csg_cell_box *face,
+                            const csg_surface_point ends[2])
+{
+    enum { LOOKS = 6, HALVINGS = 6 };
+    csg_vec3 from = csg_vec3_scale(csg_vec3_add(ends[0].at, ends[1].at), 0.5), way = {0, 0, 0}, g;
+    for (int axis = 0; axis < 3; axis++) { /* the one along which neither ends nor face extend */
+        double at = *component(&from, axis), low = face->low[axis], high = face->high[axis];
+        if (low < high && (at == low || at == high))
+            *component(&way, axis) = at == low ? face->cell : -face->cell;
+    }
+    double least = 0, most = 0, f, first;
+    ask(p, &from, 1, &first, &g);
+    for (int look = LOOKS; look > 0 && !(most > 0); look--) {
+        double part = ldexp(0.9, 1 - look);
+        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
+        ask(p, &at, 1, &f, &g);
+        *((f >= 0) == (first >= 0) ? &least : &most) = part;
+    }
+    for (int halving = 0; halving < HALVINGS && most > 0; halving++) {
+        double part = 0.5 * (least + most);
+        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
+        ask(p, &at, 1, &f, &g);
+        *((f >= 0) == (first >= 0) ? &least : &most) = part;
+    }
+    return csg_vec3_add(from, csg_vec3_scale(way, most > 0 ? most : 0.5));
+}
+
+csg_vec3 csg_wedge_in_face(csg_sheet_probe *p, const csg_cell_box *face,
+                           const csg_surface_point ends[2])
+{
+    csg_vec3 at;
+    if (csg_sheets_meet_in_face(p, face, ends, &at))
+        return at;
+    return keep_within(face, step_beside(p, face, ends), MARGIN * face->cell);
+}
+
 /* ---- in a cell ---------------------------------------------------------------------------------
  */
 

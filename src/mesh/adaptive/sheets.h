@@ -38,6 +38,11 @@ typedef struct csg_surface_point {
 bool csg_sheets_meet_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
                              const csg_surface_point ends[2], csg_vec3 *out);
 
+/* The same where both points are on one edge of the face, which a wedge pokes through: where its
+ * sheets meet, else where the surface is beside the edge. */
+csg_vec3 csg_wedge_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
+                           const csg_surface_point ends[2]);
+
 /* A loop on the faces of a cell: vertices on its edges, which have gradients, and crease points
  * within its faces, which have none. */
 typedef struct csg_polygon {

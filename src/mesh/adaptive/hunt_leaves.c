@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ * What a single leaf puts into a brick: a bump on a face, a dent, a part in a corner of it, all too
+ * small for points half way between the brick's own. A leaf by itself is near to a distance, so a
+ * step along its gradient ends on its surface, however small it is; a little inside and a little
+ * outside of that place the whole field is asked.
+ */
+#include "mesh/adaptive/hunt.h"
+
+#include <math.h>
+
+enum {
+    E = CSG_BRICK_EDGE,
+    MOST_STARTS = 9, /* the corners of the brick and its middle */
+    FEW_LEAVES = 8,  /* of more than these only one step each is made, from the middle */
+    MOST_LEAVES = 64,
+    BATCH = 3 * MOST_STARTS, /* on a leaf's surface, and on either side of it */
+    PADDED = (BATCH + CSG_LANES - 1) / CSG_LANES * CSG_LANES
+};
+
+/* Of the tolerance: how deep a place is asked for, and how deep it must be. */
+static const double STEP = 0.5, DEPTH = 0.01;
+
+typedef struct batch {
+    float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
+} batch;
+
+static void fill_lanes(batch *b, int count)
+{
+    for (int i = count; i < PADDED; i++)
+        b->x[i] = b->x[0], b->y[i] = b->y[0], b->z[i] = b->z[0];
+}
+
+/* The places that steps begin at: the middle first. */
+static void place_starts(const csg_bricks *b, const csg_brick *brick, batch *out)
+{
+    float *at[3] = {out->x, out->y, out->z};
+    for (int axis = 0; axis < 3; axis++) {
+        float low = csg_brick_coordinate(b, brick, axis, 0);
+        float high = csg_brick_coordinate(b, brick, axis, E);
+        at[axis][0] = 0.5f * (low + high);
+        for (int corner = 0; corner < 8; corner++)
+            at[axis][1 + corner] = corner >> axis & 1 ? high : low;
+    }
+}
+
+typedef struct leaf_look {
+    csg_sheet_probe *probe;
+    csg_tape_node node;
+    csg_tape tape; /* the leaf alone */
+    double low[3], high[3];
+} leaf_look;
+
+static leaf_look look_at(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick)
+{
+    leaf_look l = {.probe = p, .tape = *p->tape};
+    for (int axis = 0; axis < 3; axis++) {
+        l.low[axis] = (double)csg_brick_coordinate(b, brick, axis, 0);
+        l.high[axis] = (double)csg_brick_coordinate(b, brick, axis, E);
+    }
+    return l;
+}
+
+/* Values and gradients of the leaf. */
+static void ask_leaf(leaf_look *l, batch *at, int count)
+{
+    csg_sheet_probe *p = l->probe;
+    l->tape.nodes = &l->node;
+    l->tape.count = 1;
+    fill_lanes(at, count);
+    p->kernel->values(&l->tape, at->x, at->y, at->z, (size_t)count, at->f, p->scratch,
+                      p->scratch_floats);
+    p->kernel->gradients(&l->tape, at->x, at->y, at->z, (size_t)count, at->g[0], at->g[1], at->g[2],
+                         p->scratch, p->scratch_floats);
+    p->evaluations += (uint64_t)count;
+}
+
+/* Where a field of constant slope would be 0, and the direction of the slope. False: there is none.
+ */
+static bool find_zero(const batch *at, int i, double zero[3], double way[3])
+{
+    const float from[3] = {at->x[i], at->y[i], at->z[i]};
+    double square = 0, f = (double)at->f[i];
+    for (int axis = 0; axis < 3; axis++)
+        square += (double)at->g[axis][i] * (double)at->g[axis][i];
+    if (!(square > 1e-12) || !(fabs(f) < INFINITY))
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        double g = (double)at->g[axis][i];
+        zero[axis] = (double)from[axis] - f / square * g;
+        way[axis] = g / sqrt(square);
+    }
+    return true;
+}
+
+/* Moves those points whose step would end beyond or close to a side of the brick to a place within
+ * that side, and on towards the middle, so that the next step ends elsewhere. Others stay: on the
+ * surface itself a gradient may be none. */
+static void step_closer(leaf_look *l, batch *at, int count, double margin)
+{
+    ask_leaf(l, at, count);
+    for (int i = 0; i < count; i++) {
+        double zero[3], way[3];
+        float *place[3] = {&at->x[i], &at->y[i], &at->z[i]};
+        if (!find_zero(at, i, zero, way))
+            continue;
+        bool leaves = false;
+        for (int axis = 0; axis < 3; axis++)
+            leaves =
+                leaves || zero[axis] < l->low[axis] + margin || zero[axis] > l->high[axis] - margin;
+        for (int axis = 0; axis < 3 && leaves; axis++) {
+            double within = fmin(fmax(zero[axis], l->low[axis] + margin), l->high[axis] - margin);
+            double middle = 0.5 * (l->low[axis] + l->high[axis]);
+            *place[axis] = (float)(within + fmin(fmax(middle - within, -margin), margin));
+        }
+    }
+}
+
+/* Below, on and above the leaf's surface. */
+enum { BELOW, ON, ABOVE, SIDES };
+
+/* Such places by threes, all in the brick; how many there are. */
+static int find_places(leaf_look *l, batch *starts, int count, double step, batch *out)
+{
+    int found = 0;
+    double edge = l->high[0] - l->low[0];
+    step_closer(l, starts, count, fmin(3 * step, 0.25 * edge));
+    ask_leaf(l, starts, count);
+    for (int i = 0; i < count; i++) {
+        double zero[3], way[3];
+        if (!find_zero(starts, i, zero, way))
+            continue;
+        bool is_within = true;
+        for (int side = BELOW; side < SIDES; side++) {
+            float *to[3] = {&out->x[found + side], &out->y[found + side], &out->z[found + side]};
+            for (int axis = 0; axis < 3; axis++) {
+                double place = zero[axis] + (side - ON) * step * way[axis];
+                is_within = is_within && place >= l->low[axis] && place <= l->high[axis];
+                *to[axis] = (float)place;
+            }
+        }
+        found += is_within ? SIDES : 0;
+    }
+    return found;
+}
+
+static void find_cell(const csg_bricks *b, const csg_brick *brick, const float at[3],
+                      unsigned cell[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        cell[axis] = 0;
+        while (cell[axis] + 1 < E &&
+               at[axis] > csg_brick_coordinate(b, brick, axis, cell[axis] + 1))
+            cell[axis]++;
+    }
+}
+
+/* Whether a place has another sign than all corners of its cell, and none of the cell's edges is
+ * pierced. */
+static bool is_hidden(const csg_brick *brick, const unsigned cell[3], bool sign)
+{
+    const unsigned end[3] = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+    return csg_brick_pattern(brick, cell[0], cell[1], cell[2]) == (sign ? 0u : 0xFFu) &&
+           !csg_brick_is_pierced(brick, cell, end);
+}
+
+/* Whether what three places show is hidden by their cells; where the surface goes through between
+ * the outer two, the middle one is put into `out`. */
+static bool judge_places(const csg_bricks *b, const csg_brick *brick, const batch *at, int first,
+                         double least, csg_hunted *out)
+{
+    bool is_deep[SIDES];
+    unsigned cell[3];
+    for (int side = BELOW; side < SIDES; side++) {
+        int k = first + side;
+        const float place[3] = {at->x[k], at->y[k], at->z[k]};
+        is_deep[side] = fabs((double)at->f[k]) > least;
+        find_cell(b, brick, place, cell);
+        if (is_deep[side] && is_hidden(brick, cell, at->f[k] >= 0))
+            return true;
+    }
+    int on = first + ON;
+    if (is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] || out->count == CSG_HUNT_MOST ||
+        (at->f[first + BELOW] >= 0) == (at->f[first + ABOVE] >= 0))
+        return false;
+    const float place[3] = {at->x[on], at->y[on], at->z[on]};
+    find_cell(b, brick, place, cell);
+    out->at[out->count] = csg_vec3_from_floats(place);
+    out->cell[out->count++] = (uint8_t)csg_brick_cell(cell[0], cell[1], cell[2]);
+    return false;
+}
+
+bool csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick,
+                     double tolerance, csg_hunted *out)
+{
+    csg_tape tape = csg_bricks_short_tape(b, brick);
+    uint32_t leaves = csg_tape_leaf_count(&tape);
+    int starts = leaves <= FEW_LEAVES ? MOST_STARTS : 1;
+    double least = DEPTH * tolerance * (double)tape.lipschitz + 4 * p->noise;
+    if (leaves < 2 || leaves > MOST_LEAVES)
+        return false; /* one alone is what all other looks are for */
+    leaf_look look = look_at(p, b, brick);
+    for (uint32_t i = 0; i < tape.count; i++) {
+        const csg_tape_node *leaf = &tape.nodes[i];
+        batch from, at;
+        if (!csg_op_is_leaf(leaf->op) || leaf->op == CSG_OP_EMPTY)
+            continue;
+        look.node = *leaf;
+        look.node.join = CSG_JOIN_NONE;
+        place_starts(b, brick, &from);
+        int count = find_places(&look, &from, starts, STEP * tolerance, &at);
+        if (!count)
+            continue;
+        fill_lanes(&at, count);
+        p->kernel->values(p->tape, at.x, at.y, at.z, (size_t)count, at.f, p->scratch,
+                          p->scratch_floats);
+        p->evaluations += (uint64_t)count;
+        for (int k = 0; k < count; k += SIDES)
+            if (judge_places(b, brick, &at, k, least, out))
+                return true;
+    }
+    return false;
+}
