@@ -10,8 +10,9 @@ enum { NOWHERE = 0xFF, MOST_POINTS = 8 };
 /* What is found face by face: for the vertex that a segment begins at, the rest of it. */
 typedef struct links {
     const csg_shell_cell *cell;
+    uint64_t begins[2]; /* places that a segment begins at: of those only there is more */
     uint8_t to[CSG_LOCAL_PLACES], face[CSG_LOCAL_PLACES];
-    uint8_t in_face[CSG_LOCAL_PLACES]; /* segments */
+    uint8_t in_face[CSG_LOCAL_PLACES]; /* segments, of faces that have some */
     csg_face_is_inside *is_inside;
     void *user;
 } links;
@@ -108,6 +109,7 @@ static void link_cycle(links *l, const cycle *c, uint8_t face, uint32_t inside)
     }
     int shift = runs > 1 && is_joined(l, c, in, face) ? runs - 1 : 0;
     for (int r = 0; r < runs; r++) {
+        l->begins[enter[r] / 64] |= (uint64_t)1 << enter[r] % 64;
         l->to[enter[r]] = leave[(r + shift) % runs];
         l->face[enter[r]] = face;
     }
@@ -179,20 +181,31 @@ static bool is_pierced(const csg_shell_cell *cell, uint8_t edge)
     return cell->pierced >> (at[0] / 2 + 3 * (at[1] / 2) + 9 * (at[2] / 2)) & 1;
 }
 
+/* Whether a segment begins there, once. */
+static bool take_beginning(links *l, uint8_t place)
+{
+    uint64_t bit = (uint64_t)1 << place % 64;
+    bool is_there = (l->begins[place / 64] & bit) != 0;
+    l->begins[place / 64] &= ~bit;
+    return is_there;
+}
+
 void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
                             csg_face_is_inside *is_inside, void *user)
 {
-    links l = {.cell = cell, .is_inside = is_inside, .user = user};
-    memset(l.to, NOWHERE, sizeof l.to);
-    memset(l.in_face, 0, sizeof l.in_face);
+    links l; /* its arrays are filled where begins says so */
+    l.begins[0] = l.begins[1] = 0;
+    l.cell = cell;
+    l.is_inside = is_inside;
+    l.user = user;
     for (int face = 0; face < 6; face++)
         link_face(&l, cell, face / 2, face % 2);
     polygons->count = 0;
     unsigned n = 0;
-    for (unsigned start = 0; start < CSG_LOCAL_PLACES; start++) {
-        unsigned first = n;
-        uint8_t at = (uint8_t)start;
-        while (l.to[at] != NOWHERE && n < CSG_CELL_MOST_SEGMENTS) {
+    while (l.begins[0] | l.begins[1]) {
+        unsigned first = n, half = l.begins[0] ? 0 : 1;
+        uint8_t at = (uint8_t)(64 * half + (unsigned)__builtin_ctzll(l.begins[half]));
+        while (take_beginning(&l, at) && n < CSG_CELL_MOST_SEGMENTS) {
             csg_polygon_side *s = &polygons->side[n++];
             uint8_t edge = edge_of(at);
             *s = (csg_polygon_side){.from = at, .to = l.to[at], .face = l.face[at]};
@@ -201,7 +214,6 @@ void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *c
             s->along_edge = is_on_edge && !s->pierced;
             s->alone = l.in_face[s->face] == 1;
             s->crease = s->pierced ? (uint8_t)((edge + s->face) / 2) : s->face;
-            l.to[at] = NOWHERE;
             at = s->to;
         }
         if (n - first == 2 && polygons->side[first].along_edge)
