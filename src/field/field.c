@@ -53,17 +53,6 @@ void csg_field_count(const csgm_scene *scene, csgm_field *field)
     }
 }
 
-uint32_t csg_tape_held_count(const csg_tape_node *node)
-{
-    uint32_t count = 0;
-    for (const csg_tape_node *at = node - 1, *end = node - node->size; at != end;) {
-        bool is_piece = at->held == CSG_HELD_PIECE;
-        count += is_piece;
-        at -= is_piece ? at->size : 1;
-    }
-    return count;
-}
-
 uint32_t csg_tape_depth(const csg_tape *tape)
 {
     uint32_t top = 0, most = 1;
@@ -71,13 +60,11 @@ uint32_t csg_tape_depth(const csg_tape *tape)
         const csg_tape_node *node = &tape->nodes[i];
         if (csg_op_is_leaf(node->op))
             top++;
-        else if (csg_tape_takes_held(node))
-            top -= csg_tape_held_count(node) - 1;
-        else if (csg_op_takes_all(node->op) && node->held != CSG_HELD_LATTICE)
+        else if (csg_op_takes_all(node->op))
             top -= node->arity - 1;
         if (top > most)
             most = top;
-        if (node->join && !node->held)
+        if (node->join)
             top--;
     }
     return most;

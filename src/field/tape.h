@@ -24,7 +24,7 @@ typedef enum csg_op {
     CSG_OP_INTERSECTION,
     CSG_OP_ROUND_UNION, /* takes `arity` values from the stack */
     CSG_OP_ROUND_INTERSECTION,
-    CSG_OP_FILLET_UNION, /* takes the values of all pieces below it that are held */
+    CSG_OP_FILLET_UNION, /* takes `arity` values, the last `planes` of them those of planes */
     CSG_OP_FILLET_INTERSECTION,
     CSG_OP_COMBINE,    /* takes `arity` values from the stack, x, y, z of a formula */
     CSG_OP_SOFTEN,     /* one child: its value becomes a field in [0, 1] */
@@ -91,14 +91,6 @@ static inline bool csg_op_delivers(uint8_t op)
 /* How a node's value merges with the value of its elder siblings. */
 typedef enum csg_join { CSG_JOIN_NONE, CSG_JOIN_UNION, CSG_JOIN_INTERSECTION } csg_join;
 
-/* Where values are walked, what is below a fillet does not join: its pieces wait for the outermost
- * fillet, which looks at the whole tree (scene/operators/fillet.h). Intervals join as usual. */
-typedef enum csg_held {
-    CSG_HELD_NOT,
-    CSG_HELD_PIECE,
-    CSG_HELD_LATTICE /* an operator that hands up its operands */
-} csg_held;
-
 typedef struct csg_tape_node {
     uint8_t op;    /* csg_op */
     uint8_t join;  /* csg_join */
@@ -106,7 +98,8 @@ typedef struct csg_tape_node {
                       csg_tape_curve */
     uint8_t join_blend;
     uint8_t frame;            /* leaves: csg_leaf_frame */
-    uint8_t held;             /* csg_held */
+    bool is_plane;            /* leaves: at which a fillet ends, none of its operands */
+    uint16_t planes;          /* fillets: how many of the last children are such */
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */
     uint32_t join_parameters; /* into the parameters, of the operator that joins */
@@ -116,15 +109,6 @@ typedef struct csg_tape_node {
         const struct csg_shape_near *near; /* shapes: what of it can matter; NULL: all */
     };
 } csg_tape_node;
-
-/* A fillet at which values that are held are taken. */
-static inline bool csg_tape_takes_held(const csg_tape_node *node)
-{
-    return csg_op_is_fillet(node->op) && node->held != CSG_HELD_LATTICE;
-}
-
-/* Pieces that a fillet takes: node is the last one of its subtree. */
-uint32_t csg_tape_held_count(const csg_tape_node *node);
 
 /* Parameters of a leaf: sigma, raise, slack, color, then the frame (3 or 12 floats), then its own.
  *   sigma  +-1, or +-(smallest singular value) where the frame is no similarity

@@ -4,16 +4,14 @@
  */
 #include "scene/reference.h"
 
-#include "scene/operators/fillet.h"
-
 #include "scene/operators/choice.h"
+#include "scene/operators/fillet.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 
 typedef struct workspace {
     csg_vec3 *points; /* per node, in its own frame */
     csg_sample *samples;
-    csg_fillet_room fillets;
     csg_reference_work node;
     void *heap;
     size_t heap_bytes;
@@ -26,13 +24,8 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     size_t nodes = scene->node_count, steps = 0;
     for (size_t i = 0; i < scene->formula_count; i++)
         steps = scene->formulas[i].count > steps ? scene->formulas[i].count : steps;
-    size_t of_fillets = 0;
-    for (size_t i = 0; i < nodes && !of_fillets; i++)
-        if (csg_node_is_fillet(&scene->nodes[i]))
-            of_fillets = CSG_FILLET_ROOM_BYTES;
-    size_t bytes =
-        nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double) + of_fillets) +
-        steps * sizeof *w->node.steps;
+    size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double)) +
+                   steps * sizeof *w->node.steps;
     *w = (workspace){0};
     if (bytes > STACK_BYTES) {
         w->heap = stack = csg_memory_alloc(&scene->context->memory, bytes);
@@ -45,12 +38,6 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     w->node.values = (double *)(w->points + nodes); /* no operator has as many children as nodes */
     w->node.partials = w->node.values + nodes;
     w->node.steps = (csg_formula_dual *)(w->node.partials + nodes);
-    if (of_fillets) {
-        w->fillets.terms = (csg_fillet_term *)(w->node.steps + steps);
-        w->fillets.pieces = (csg_fillet_piece *)(w->fillets.terms + nodes);
-        w->fillets.bounds = (double(*)[2])(w->fillets.pieces + nodes);
-        w->fillets.nodes = (csg_fillet_node *)(w->fillets.bounds + nodes);
-    }
     return true;
 }
 
@@ -66,11 +53,10 @@ csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node
     return node->kind == CSG_NODE_WARP ? csg_warp_at(&scene->warps[node->payload], p).at : p;
 }
 
-static void place_points(workspace *w, const csgm_scene *scene, csg_node_id first, csg_node_id root,
-                         csg_vec3 p)
+static void place_points(workspace *w, const csgm_scene *scene, csg_vec3 p)
 {
-    w->points[root] = p;
-    for (size_t i = (size_t)root + 1; i-- > first;) {
+    w->points[scene->root] = p;
+    for (size_t i = scene->node_count; i-- > 0;) {
         const csg_node *node = &scene->nodes[i];
         csg_vec3 inner = csg_reference_inner_point(scene, node, w->points[i]);
         for (uint32_t k = 0; k < node->child_count; k++)
@@ -85,20 +71,88 @@ static double operand_sign(csg_node_kind kind, uint32_t index)
     return kind == CSG_NODE_INTERSECTION || (kind == CSG_NODE_DIFFERENCE && index == 0) ? -1 : 1;
 }
 
+typedef struct fillet_end {
+    csg_fillet_planes planes;
+    csg_vec3 p;
+} fillet_end;
+
+static double fillet_inside(const void *user, const csg_fillet_operand *operands,
+                            const csg_fillet_choice *subset, uint32_t *plane)
+{
+    const fillet_end *end = user;
+    double least = INFINITY;
+    for (size_t i = 0; i < end->planes.count; i++) {
+        double reach = -INFINITY;
+        for (uint32_t k = 0; k < subset->count; k++)
+            reach = fmax(
+                reach, end->planes.reaches[operands[subset->at[k]].index * end->planes.count + i]);
+        csg_vec3 away;
+        double inside = reach - csg_fillet_towards(&end->planes.ends[i], end->p, &away);
+        if (inside < least)
+            *plane = (uint32_t)i;
+        least = fmin(least, inside);
+    }
+    return least;
+}
+
+/* Of operands whose values are in w->values, with their signs; p: the point, in the node's own
+ * frame. */
+static csg_sample unite_fillet(const csg_reference_work *w, const csgm_scene *scene,
+                               const csg_node *node, csg_vec3 p, const csg_sample *samples,
+                               const csg_node_id *at)
+{
+    csg_fillet_operand reach[CSG_FILLET_MOST];
+    fillet_end end = {csg_scene_fillet_planes(scene, node), p};
+    csg_fillet_ends ends = {end.planes.count ? fillet_inside : NULL, &end};
+    uint32_t count = 0;
+    double r = csg_scene_parameters(scene, node)[CSG_FILLET_N];
+    size_t top = csg_largest_of(w->values, node->child_count);
+    double most = csg_choose(w->values, node->child_count, top, w->partials);
+    for (uint32_t k = 0; k < node->child_count && isfinite(most); k++) {
+        csg_vec3 g = samples[at[k]].gradient;
+        double sign = operand_sign((csg_node_kind)node->kind, k);
+        csg_fillet_operand made = {.index = k};
+        if (most - w->values[k] < 2 * r &&
+            csg_fillet_set(&made, w->values[k], sign * g.x, sign * g.y, sign * g.z))
+            count = csg_fillet_insert(reach, count, &made);
+    }
+    csg_sample out = {most, csg_vec3_scale(samples[at[top]].gradient,
+                                           operand_sign((csg_node_kind)node->kind, (uint32_t)top))};
+    if (count < 2)
+        return out;
+    csg_fillet_choice best = csg_fillet_solve(r, reach, count, &ends);
+    if (!(reach[0].f + best.excess > most))
+        return out;
+    out = (csg_sample){reach[0].f + best.excess, {0, 0, 0}};
+    if (best.is_ended) {
+        csg_fillet_towards(&end.planes.ends[best.plane], p, &out.gradient);
+        out.gradient = csg_vec3_scale(out.gradient, -1);
+    }
+    for (uint32_t i = 0; i < best.count && !best.is_ended; i++) {
+        uint32_t k = reach[best.at[i]].index;
+        double weight = operand_sign((csg_node_kind)node->kind, k) * best.share[i];
+        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[k]].gradient, weight));
+    }
+    return out;
+}
+
 static csg_sample combine(const csg_reference_work *w, const csgm_scene *scene,
-                          const csg_node *node, const csg_sample *samples, const csg_node_id *at)
+                          const csg_node *node, csg_vec3 p, const csg_sample *samples,
+                          const csg_node_id *at)
 {
     csg_node_kind kind = node->kind;
     for (uint32_t k = 0; k < node->child_count; k++)
         w->values[k] = operand_sign(kind, k) * samples[at[k]].value;
     double outer = operand_sign(kind, 0);
+    if (csg_blend_is_fillet(node->blend)) {
+        csg_sample made = unite_fillet(w, scene, node, p, samples, at);
+        return (csg_sample){outer * made.value, csg_vec3_scale(made.gradient, outer)};
+    }
     const csg_rule *rule = csg_scene_rule(scene, node);
-    csg_blend blend = csg_scene_blend(scene, node);
-    if (csg_blend_is_fillet(blend.kind)) /* a held one: what it is made of is asked above it */
-        blend = (csg_blend){CSG_BLEND_SHARP, 0};
     double value =
         outer * (rule ? csg_rule_apply(rule, true, w->values, node->child_count, 0, w->partials)
-                      : csg_reference_union(blend, w->values, node->child_count, w->partials));
+                      : csg_reference_union(csg_scene_blend(scene, node), w->values,
+                                            node->child_count, w->partials));
     csg_vec3 gradient = {0, 0, 0};
     for (uint32_t k = 0; k < node->child_count; k++) {
         double weight = outer * operand_sign(kind, k) * w->partials[k];
@@ -237,43 +291,15 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
         if (!csg_node_is_operator(node->kind))
             return sample_leaf(work, scene, node, p);
         return csg_blend_takes_fields(node->blend) ? combine_fields(work, scene, node, samples, at)
-                                                   : combine(work, scene, node, samples, at);
+                                                   : combine(work, scene, node, p, samples, at);
     }
 }
 
-csg_sample csg_reference_wrap(const csgm_scene *scene, const csg_node *node, csg_vec3 p,
-                              csg_sample inner)
+static void evaluate(workspace *w, const csgm_scene *scene)
 {
-    switch ((csg_node_kind)node->kind) {
-    case CSG_NODE_TRANSFORM:
-        return transform(scene, node, inner);
-    case CSG_NODE_OFFSET:
-        return offset(scene, node, inner);
-    case CSG_NODE_WARP:
-        return warp(scene, node, p, inner);
-    default:
-        return inner;
-    }
-}
-
-static void evaluate(workspace *w, const csgm_scene *scene, csg_node_id first, csg_node_id last)
-{
-    for (size_t i = first; i <= last; i++) {
-        const csg_node *node = &scene->nodes[i];
-        if (csg_fillet_is_outermost(node))
-            w->samples[i] =
-                csg_reference_fillet(scene, (csg_node_id)i, w->points, w->samples, &w->fillets);
-        else
-            w->samples[i] = csg_reference_node(scene, node, w->points[i], w->samples,
-                                               csg_scene_children(scene, node), &w->node);
-    }
-}
-
-csg_node_id csg_scene_first_below(const csgm_scene *scene, csg_node_id id)
-{
-    while (scene->nodes[id].child_count)
-        id = csg_scene_children(scene, &scene->nodes[id])[0];
-    return id;
+    for (size_t i = 0; i < scene->node_count; i++)
+        w->samples[i] = csg_reference_node(scene, &scene->nodes[i], w->points[i], w->samples,
+                                           csg_scene_children(scene, &scene->nodes[i]), &w->node);
 }
 
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
@@ -284,25 +310,11 @@ csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *
         *status = CSGM_ERR_MEMORY;
         return (csg_sample){NAN, {0, 0, 0}};
     }
-    place_points(&w, scene, 0, scene->root, p);
-    evaluate(&w, scene, 0, scene->root);
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
     csg_sample root = w.samples[scene->root];
     workspace_end(&w, scene);
     return root;
-}
-
-csg_sample csg_reference_eval_below(const csgm_scene *scene, csg_node_id root, csg_vec3 p)
-{
-    double stack[STACK_BYTES / sizeof(double)];
-    workspace w;
-    csg_node_id first = csg_scene_first_below(scene, root);
-    if (!workspace_begin(&w, scene, stack))
-        return (csg_sample){NAN, {0, 0, 0}};
-    place_points(&w, scene, first, root, p);
-    evaluate(&w, scene, first, root);
-    csg_sample out = w.samples[root];
-    workspace_end(&w, scene);
-    return out;
 }
 
 /* Marks the node's children that can change its value by setting points[child].x to 1. */
@@ -334,8 +346,8 @@ uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, cs
         *status = CSGM_ERR_MEMORY;
         return 0;
     }
-    place_points(&w, scene, 0, scene->root, p);
-    evaluate(&w, scene, 0, scene->root);
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
     for (size_t i = 0; i < scene->node_count; i++)
         w.points[i].x = i == scene->root; /* the points have done their work: marks instead */
     uint32_t active = 0;
@@ -376,8 +388,8 @@ csg_node_id csg_reference_deciding_leaf(const csgm_scene *scene, csg_vec3 p, csg
         *status = CSGM_ERR_MEMORY;
         return CSG_NODE_NONE;
     }
-    place_points(&w, scene, 0, scene->root, p);
-    evaluate(&w, scene, 0, scene->root);
+    place_points(&w, scene, p);
+    evaluate(&w, scene);
     csg_node_id id = scene->root;
     while (scene->nodes[id].child_count)
         id = csg_scene_children(scene,

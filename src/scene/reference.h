@@ -25,9 +25,6 @@ double csg_reference_union(csg_blend blend, const double *values, size_t count, 
  */
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
-/* The same for what stands below `root`, at p in its frame; NAN: no memory. */
-csg_sample csg_reference_eval_below(const csgm_scene *scene, csg_node_id root, csg_vec3 p);
-
 /* Scratch for one node at a time. */
 typedef struct csg_reference_work {
     csg_formula_dual *steps;   /* room for the longest formula */
@@ -43,12 +40,6 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
                               const csg_sample *samples, const csg_node_id *at,
                               const csg_reference_work *work);
 
-/* A node with one child, a transform, colour, offset or warp: its sample at p from the child's. */
-csg_sample csg_reference_wrap(const csgm_scene *scene, const csg_node *node, csg_vec3 p,
-                              csg_sample inner);
-/* The first of the nodes that stand below this one, right before it. */
-csg_node_id csg_scene_first_below(const csgm_scene *scene, csg_node_id id);
-
 /* Primitives whose value can change the root's there: those not dropped by an operator's support.
  */
 uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
@@ -56,17 +47,5 @@ uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, cs
 /* The leaf that decides the value there: of operators the operand that counts most, of combinations
  * the one nearest to its surface. CSG_NODE_NONE: no room, with *status. */
 csg_node_id csg_reference_deciding_leaf(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
-
-/* ---- fillets: a whole tree of held nodes at a point (CSG_FLAG_HELD) ---------------------------
- */
-
-struct csg_fillet_room; /* operators/fillet.h */
-
-/* A fillet that is not held, or as a whole. */
-bool csg_fillet_is_outermost(const csg_node *node);
-
-/* points, samples: of all nodes below. room: of as many as the scene has. */
-csg_sample csg_reference_fillet(const csgm_scene *scene, csg_node_id root, const csg_vec3 *points,
-                                const csg_sample *samples, const struct csg_fillet_room *room);
 
 #endif

@@ -49,6 +49,8 @@ uint32_t csg_node_parameter_count(const csg_node *node)
         return csg_primitive_parameter_count(node->kind);
     bool fields = csg_blend_takes_fields(node->blend) ||
                   (node->blend == CSG_BLEND_SHARP && (node->flags & CSG_FLAG_SOFT));
+    if (csg_blend_is_fillet(node->blend))
+        return CSG_FILLET_PARAMETERS;
     return fields ? CSG_OPERATOR_FIELD_PARAMETERS : 1;
 }
 
@@ -57,13 +59,26 @@ bool csg_node_is_fillet(const csg_node *node)
     return csg_node_is_operator(node->kind) && csg_blend_is_fillet(node->blend);
 }
 
-bool csg_node_is_lattice(const csg_node *node)
+csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node)
 {
-    bool is_sharp = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_SHARP &&
-                    !(node->flags & CSG_FLAG_SOFT);
-    bool is_wrapper = node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
-                      node->kind == CSG_NODE_OFFSET || node->kind == CSG_NODE_WARP;
-    return is_sharp || is_wrapper || csg_node_is_fillet(node);
+    const double *v = csg_scene_parameters(scene, node);
+    csg_fillet_planes planes = {.count = (size_t)v[CSG_FILLET_PLANES]};
+    if (planes.count) {
+        planes.ends = scene->ends + (size_t)v[CSG_FILLET_FIRST_NORMAL];
+        planes.reaches = scene->reaches + (size_t)v[CSG_FILLET_FIRST_REACH];
+    }
+    return planes;
+}
+
+double csg_fillet_towards(const csg_fillet_end *end, csg_vec3 p, csg_vec3 *away)
+{
+    *away = end->normal;
+    if (!end->is_round)
+        return csg_vec3_dot(end->normal, p);
+    csg_vec3 v = csg_vec3_sub(p, end->foot);
+    v = csg_vec3_sub(v, csg_vec3_scale(end->normal, csg_vec3_dot(end->normal, v)));
+    *away = csg_vec3_normalize(v);
+    return csg_vec3_norm(v);
 }
 
 const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node)

@@ -16,10 +16,9 @@
  *                  K >= 1 a bound on the sum of its partial derivatives' sizes
  *   soft           (F - 1/2) / lambda, F = P(d) in [0, 1] of its child's f (csg_soft): a soft node
  *   operator       scene/operators/operators.def; difference is the intersection of the first child
- *                  with the negated others. A fillet looks at its operands' gradients (fillet.h).
- *                  One that takes fields (csg_rule, FIELDS) gives a soft node again, (G(F1, F2,
- *                  ...) - 1/2) / lambda
- *   empty          -infinity
+ *                  with the negated others. A fillet looks at its operands' gradients, and its
+ * value may jump where an operand's gradient does. One that takes fields (csg_rule, FIELDS) gives a
+ * soft node again, (G(F1, F2, ...) - 1/2) / lambda empty          -infinity
  *
  * A flat node's field does not depend on z: a figure of the plane. A soft node's f + 1/2 times its
  * softness lambda is a field F in [0, 1] (before an operator's excess); transforms, colours and
@@ -100,17 +99,26 @@ typedef struct csg_look {
     uint32_t part; /* 1 + index into part_names; 0 = none (parts.h) */
 } csg_look;
 
-enum {
-    CSG_FLAG_FLAT = 1,
-    CSG_FLAG_SOFT = 2,
-    CSG_FLAG_HELD = 4,   /* once sealed: its parent hands it up to a fillet above, or is that one */
-    CSG_FLAG_PIECE = 16, /* and does so as a whole */
-    CSG_FLAG_FACES = 8   /* a sharp intersection of its first child with half-spaces and others that
-                           hold it (tree/faces.h): the same field, and what fillets look at */
-};
+enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
+
+/* What holds operands of a fillet: half-spaces with this normal, or, where is_round, cylinders
+ * without end around the axis through `foot` along it. */
+typedef struct csg_fillet_end {
+    csg_vec3 normal, foot;
+    bool is_round;
+} csg_fillet_end;
 
 /* Parameters of an operator that takes fields, and of a sharp one with soft operands only. */
 enum { CSG_OPERATOR_RULE, CSG_OPERATOR_RANGE, CSG_OPERATOR_LAMBDA, CSG_OPERATOR_FIELD_PARAMETERS };
+/* Of a fillet: n, and of a union its planes (operators/fillet_planes.h) among the normals and
+ * reaches of the scene. */
+enum {
+    CSG_FILLET_N,
+    CSG_FILLET_FIRST_NORMAL,
+    CSG_FILLET_FIRST_REACH,
+    CSG_FILLET_PLANES,
+    CSG_FILLET_PARAMETERS
+};
 /* Of a soft node. */
 enum { CSG_SOFT_RANGE, CSG_SOFT_FALLOFF, CSG_SOFT_LAMBDA, CSG_SOFT_PARAMETERS };
 
@@ -156,7 +164,9 @@ struct csgm_scene {
     csg_formula_step *steps; /* of all formulas */
     csg_shape **shapes;      /* one reference each */
     csg_warp *warps;
-    csg_rule *rules;  /* csg_blend.n of a rule is an index into them */
+    csg_rule *rules;      /* csg_blend.n of a rule is an index into them */
+    csg_fillet_end *ends; /* once sealed: of all fillets */
+    double *reaches;      /* once sealed: how far each operand reaches towards them */
     double *softness; /* once sealed: lambda of each soft node, else 0; NULL where none is soft */
     size_t node_count, child_count, parameter_count, transform_count, look_count, formula_count,
         step_count, shape_count, warp_count, rule_count;
@@ -186,9 +196,17 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 
 /* Whether it is an operator that looks at its operands' gradients (operators/fillet.h). */
 bool csg_node_is_fillet(const csg_node *node);
-/* Whether a node that is held hands its operands up as well, so that it is no piece: a sharp
- * operator, a fillet, a node with one child. */
-bool csg_node_is_lattice(const csg_node *node);
+/* How far the operands of a fillet, a union, reach in its own frame: operand k lies within
+ * csg_fillet_towards(ends[i], p) <= reaches[k * count + i]. */
+typedef struct csg_fillet_planes {
+    const csg_fillet_end *ends;
+    const double *reaches; /* INFINITY: there is no end, or none is known */
+    size_t count;
+} csg_fillet_planes;
+csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node);
+/* How far p lies along the plane's normal, or off the axis; *away: the direction in which it grows.
+ */
+double csg_fillet_towards(const csg_fillet_end *end, csg_vec3 p, csg_vec3 *away);
 
 /* The rule of an operator that has one, else NULL. */
 const csg_rule *csg_scene_rule(const csgm_scene *scene, const csg_node *node);

@@ -190,13 +190,15 @@ static void mark_join(compiler *c, task *group)
         node->join_blend = (uint8_t)group->blend.kind;
         node->join_parameters = group->parameters;
     }
-    if (group->holds)
-        node->held = node->held == CSG_HELD_LATTICE ? CSG_HELD_LATTICE : CSG_HELD_PIECE;
+    if (csg_blend_is_fillet(group->blend.kind))
+        node->join_parameters = csg_compile_reaches(c, group);
     group->written++;
 }
 
 static bool begin_blend(compiler *c, task *t)
 {
+    if (csg_blend_is_fillet(t->blend.kind))
+        return csg_compile_fillet(c, t);
     float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
                                                                               : (float)t->blend.n,
                                              (float)csg_blend_support(t->blend)};
@@ -223,6 +225,9 @@ static uint8_t op_of(const task *t)
 /* After its operands. */
 static bool write_operator(compiler *c, const task *t)
 {
+    uint32_t planes = 0;
+    if (csg_blend_is_fillet(t->blend.kind) && !csg_compile_planes(c, t, &planes))
+        return false;
     csg_tape_node *node = push_node(c);
     if (!node)
         return false;
@@ -231,11 +236,9 @@ static bool write_operator(compiler *c, const task *t)
         node->frame = CSG_FRAME_AFFINE;
     node->blend = (uint8_t)(t->softens ? (int)t->curve : (int)t->blend.kind);
     node->parameters = t->parameters;
-    node->arity = t->written;
+    node->arity = t->written + planes;
+    node->planes = (uint16_t)planes;
     node->size = (uint32_t)c->node_count - t->begin;
-    bool is_held = t->holds && c->scene->nodes[t->node].flags & CSG_FLAG_HELD &&
-                   !(c->scene->nodes[t->node].flags & CSG_FLAG_PIECE);
-    node->held = is_held ? CSG_HELD_LATTICE : CSG_HELD_NOT;
     return true;
 }
 
@@ -245,8 +248,7 @@ static bool write_curve(compiler *c, const csg_node *node, const frame *f, task 
     csg_curve pieces[CSG_CURVE_MOST_PIECES];
     csg_affine place = csg_compile_place(c, f);
     size_t count = csg_curve_cut(&curve, pieces);
-    bool alike = count == 1 ||
-                 (f->form == CSG_FORM_VALUE && is_alike(c, above, !f->negate) && !above->holds);
+    bool alike = count == 1 || (f->form == CSG_FORM_VALUE && is_alike(c, above, !f->negate));
     task own = {.begin = (uint32_t)c->node_count, .is_union = !f->negate};
     if (!alike && !begin_blend(c, &own))
         return false;
@@ -362,11 +364,7 @@ static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, ta
     if (rule)
         return begin_rule(c, node, rule, t);
     const task *above = outer != UINT32_MAX ? &c->tasks[outer] : NULL;
-    bool is_piece = node->flags & CSG_FLAG_PIECE;
-    t->holds = csg_node_is_fillet(node) ||
-               (csg_node_is_lattice(node) && node->flags & CSG_FLAG_HELD && !is_piece);
-    bool is_nested =
-        t->blend.kind == CSG_BLEND_SHARP && !is_piece && is_alike(c, above, t->is_union);
+    bool is_nested = t->blend.kind == CSG_BLEND_SHARP && is_alike(c, above, t->is_union);
     if (is_nested) {
         t->group = outer; /* max of max, min of min: one operator */
         return true;

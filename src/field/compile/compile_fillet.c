@@ -1,17 +1,97 @@
 /* SPDX-License-Identifier: MIT
- * Fillets on the tape: how far the field strays because of them from one with a Lipschitz constant.
+ * Fillets on the tape: the planes behind their operands, and how far the field strays because of
+ * them from one with a Lipschitz constant.
  */
 #include "field/compile/compile_private.h"
 
 #include <math.h>
 
+#include "field/rule_layout.h"
 #include "scene/operators/fillet.h"
+
+/* The plane with this number lies where the operand ends that reaches farthest, of those that end.
+ * False: fewer than two do, so that none of the operands' unions ends there. */
+static bool find_plane(const csg_compiler *c, const csg_node *node, size_t number, double *d)
+{
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    uint32_t ending = 0;
+    *d = -INFINITY;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        double reach = planes.reaches[k * planes.count + number];
+        ending += isfinite(reach);
+        *d = isfinite(reach) ? fmax(*d, reach) : *d;
+    }
+    return ending > 1;
+}
+
+bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t)
+{
+    const csg_node *node = &c->scene->nodes[t->node];
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    const float own[CSG_OPERATOR_PARAMETERS] = {(float)t->blend.n,
+                                                (float)csg_blend_support(t->blend)};
+    const float unknown = INFINITY;
+    uint32_t at;
+    if (!csg_compile_push(c, own, CSG_OPERATOR_PARAMETERS, &t->parameters))
+        return false;
+    for (size_t i = 0; i < planes.count * node->child_count; i++)
+        if (!csg_compile_push(c, &unknown, 1, &at))
+            return false;
+    float *beyond = c->parameters + t->parameters + CSG_OPERATOR_PARAMETERS;
+    for (size_t i = 0; i < planes.count; i++) {
+        double d;
+        bool is_known = find_plane(c, node, i, &d);
+        for (size_t k = i; is_known && k < planes.count * node->child_count; k += planes.count)
+            if (isfinite(planes.reaches[k]))
+                beyond[k] = (float)((planes.reaches[k] - d) * t->frame.factor);
+    }
+    return true;
+}
+
+uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t)
+{
+    size_t planes = csg_scene_fillet_planes(c->scene, &c->scene->nodes[t->node]).count;
+    return t->parameters + CSG_OPERATOR_PARAMETERS + t->written * (uint32_t)planes;
+}
+
+bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count)
+{
+    const csg_node *node = &c->scene->nodes[t->node];
+    const csg_compile_frame *f = &t->frame;
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
+    csg_affine place = csg_compile_place(c, f);
+    *count = 0;
+    for (size_t i = 0; i < planes.count; i++) {
+        const csg_fillet_end *end = &planes.ends[i];
+        csg_vec3 n = end->normal;
+        double d;
+        if (!find_plane(c, node, i, &d))
+            continue;
+        csg_leaf l = {.raise = f->raise};
+        if (end->is_round) {
+            csg_affine at =
+                csg_affine_multiply(csg_affine_translate(end->foot), csg_affine_z_to(n));
+            at = csg_affine_multiply(place, at);
+            csg_leaf_primitive(&l, &at, f->factor, f->negate, CSG_NODE_CIRCLE, &d);
+        } else {
+            csg_leaf_primitive(&l, &place, f->factor, f->negate, CSG_NODE_PLANE,
+                               (double[]){n.x, n.y, n.z, d});
+        }
+        l.magnitude += f->magnitude;
+        if (!csg_compile_leaf(c, &l, f->color, f->warp))
+            return false;
+        c->nodes[c->node_count - 1].is_plane = true;
+        c->nodes[c->node_count - 1].join_parameters = (uint32_t)i;
+        ++*count;
+    }
+    return true;
+}
 
 /* Of a fillet alone: it lies between its largest operand and that plus this. */
 static float excess_of(const csg_tape *tape, const csg_tape_node *node)
 {
     float r = tape->parameters[node->parameters + CSG_OPERATOR_N];
-    return node->arity > 2 ? r : (float)CSG_FILLET_PAIR_EXCESS * r;
+    return node->arity - node->planes > 2 ? r : (float)CSG_FILLET_PAIR_EXCESS * r;
 }
 
 /* Operators of lengths hand on how far their operands stray. */

@@ -39,7 +39,6 @@ typedef struct csg_compile_task {
     bool is_union;
     bool combines; /* by a formula */
     bool softens;
-    bool holds;           /* hands its children up to a fillet, or is one */
     csg_tape_curve curve; /* where it softens */
     csg_blend blend;
 } csg_compile_task;
@@ -65,6 +64,13 @@ typedef struct csg_compiler {
 csg_affine csg_compile_place(const csg_compiler *c, const csg_compile_frame *f);
 bool csg_compile_leaf(csg_compiler *c, const csg_leaf *l, uint32_t color, uint32_t warp);
 bool csg_compile_push(csg_compiler *c, const float *values, size_t count, uint32_t *at);
+/* The parameters of a fillet: those of an operator, and behind them how far each operand reaches
+ * beyond each of its planes. */
+bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t);
+/* Where those of the operand are that is written next. */
+uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t);
+/* Behind the operands of a fillet: the planes at which it ends; *count of them. */
+bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count);
 /* Sets `waver` of a whole tape, and `turns` where it has a fillet. False: no memory. */
 bool csg_compile_waver(csg_memory *memory, csg_tape *tape);
 

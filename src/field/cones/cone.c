@@ -99,10 +99,9 @@ static bool widen_operands(const csg_tape *tape, uint32_t n, const float c[3], d
 {
     const csg_tape_node *node = &tape->nodes[n];
     double stray;
-    if (!csg_fillet_find_stray(tape, node, c, radius, &stray))
+    if (node->size != node->arity + 1 || !csg_fillet_find_stray(tape, node, c, radius, &stray))
         return false;
-    for (uint32_t i = leaves->first[leaves->count - csg_tape_held_count(node)];
-         i < leaves->balls.count; i++)
+    for (uint32_t i = leaves->first[leaves->count - node->arity]; i < leaves->balls.count; i++)
         leaves->balls.items[i].spread += stray;
     return true;
 }
@@ -123,7 +122,7 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
         } else if (csg_op_is_fillet(node->op)) {
             if (!widen_operands(tape, i, c, radius, leaves))
                 return false;
-            out->is_crease |= csg_tape_held_count(node) > node->arity;
+            out->is_crease |= node->planes > 0;
         } else {
             *is_simple = *is_simple && operator_combines(node);
             out->is_crease |= is_sharp(node);

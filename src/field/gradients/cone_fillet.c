@@ -15,7 +15,7 @@
 
 enum { MOST_OPERANDS = 8 };
 
-static const csg_fillet_turns any_turn = {0, 2, true};
+static const csg_fillet_turns any_turn = {0, 2};
 
 /* A unit vector within `spread` of `at`. */
 static bool unit_ball(const csg_cone_ball *ball, csg_cone_ball *out)
@@ -39,31 +39,24 @@ static csg_fillet_turns between(const csg_cone_ball *a, const csg_cone_ball *b)
         square += (a->at[k] - b->at[k]) * (a->at[k] - b->at[k]);
     double chord = sqrt(square), room = a->spread + b->spread;
     double least = fmax(chord - room, 0), most = fmin(chord + room, 2);
-    bool fades = most * most / 2 > CSG_FILLET_FADE && least * least / 2 < 1.999;
-    return (csg_fillet_turns){(float)(least * least / 2), (float)(most * most / 2), fades};
+    return (csg_fillet_turns){(float)(least * least / 2), (float)(most * most / 2)};
 }
 
-/* One operand's gradients. */
+/* One leaf's gradients. */
 typedef struct turning {
     csg_cone_balls balls;
     bool is_joined; /* combinations of the balls' vectors, of unit length again, are among them */
 } turning;
 
-/* A leaf, or all pieces of a lattice of leaves. */
-static bool find_turning(const csg_tape *tape, const csg_tape_node *operand, const float c[3],
+static bool find_turning(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                          double radius, turning *out)
 {
     out->balls.count = 0;
-    out->balls.has_edges = out->is_joined = false;
-    for (const csg_tape_node *at = operand, *end = operand - operand->size; at != end; at--) {
-        uint32_t before = out->balls.count;
-        if (at->held == CSG_HELD_LATTICE && !csg_op_is_fillet(at->op))
-            continue;
-        if (!csg_op_is_leaf(at->op) || !csg_cone_add_leaf(&out->balls, tape, at, c, radius) ||
-            out->balls.count == before)
-            return false;
-        out->is_joined |= out->balls.count - before > 1;
-    }
+    out->balls.has_edges = false;
+    if (!csg_op_is_leaf(leaf->op) || !csg_cone_add_leaf(&out->balls, tape, leaf, c, radius) ||
+        !out->balls.count)
+        return false;
+    out->is_joined = out->balls.count > 1;
     for (uint32_t i = 0; i < out->balls.count; i++)
         if (!unit_ball(&out->balls.items[i], &out->balls.items[i]))
             return false;
@@ -75,20 +68,18 @@ static bool find_turning(const csg_tape *tape, const csg_tape_node *operand, con
  * sqrt(3) times that. */
 static csg_fillet_turns turn_between(const turning *a, const turning *b)
 {
-    csg_fillet_turns all = {2, 0, false};
+    csg_fillet_turns all = {2, 0};
     for (uint32_t i = 0; i < a->balls.count; i++)
         for (uint32_t k = 0; k < b->balls.count; k++) {
             csg_fillet_turns one = between(&a->balls.items[i], &b->balls.items[k]);
             all.least = fminf(all.least, one.least);
             all.most = fmaxf(all.most, one.most);
-            all.fades |= one.fades;
         }
     if (!a->is_joined && !b->is_joined)
         return all;
     bool both = a->is_joined && b->is_joined;
     float beyond = both ? 3.0f : 1.7320509f;
     all.most = all.most > 1 ? fminf(1 + beyond * (all.most - 1), 2) : all.most;
-    all.fades = (double)all.most > CSG_FILLET_FADE;
     all.least = 0; /* a combination may be anything between */
     return all;
 }
@@ -97,9 +88,9 @@ csg_fillet_turns csg_fillet_find_turns(const csg_tape *tape, const csg_tape_node
                                        const float c[3], double radius)
 {
     turning found[MOST_OPERANDS];
-    uint32_t count = node->arity;
-    const csg_tape_node *child = node - 1;
-    csg_fillet_turns all = {2, 0, false};
+    uint32_t count = node->arity - node->planes;
+    const csg_tape_node *child = node - 1 - node->planes;
+    csg_fillet_turns all = {2, 0};
     if (count > MOST_OPERANDS)
         return any_turn;
     for (uint32_t k = 0; k < count; k++, child -= child->size) {
@@ -109,7 +100,6 @@ csg_fillet_turns csg_fillet_find_turns(const csg_tape *tape, const csg_tape_node
             csg_fillet_turns one = turn_between(&found[i], &found[k]);
             all.least = fminf(all.least, one.least);
             all.most = fmaxf(all.most, one.most);
-            all.fades |= one.fades;
         }
     }
     return count > 1 ? all : any_turn;
@@ -129,38 +119,21 @@ static bool find_bend(const csg_tape *tape, const csg_tape_node *leaf, const flo
     return true;
 }
 
-/* The largest among the pieces of an operand. */
-static bool find_most_bend(const csg_tape *tape, const csg_tape_node *operand, const float c[3],
-                           double radius, double *most)
-{
-    *most = 0;
-    for (const csg_tape_node *at = operand, *end = operand - operand->size; at != end; at--) {
-        double bend;
-        if (at->held == CSG_HELD_LATTICE && !csg_op_is_fillet(at->op))
-            continue;
-        if (!csg_op_is_leaf(at->op) || !find_bend(tape, at, c, radius, &bend))
-            return false;
-        *most = fmax(*most, bend);
-    }
-    return true;
-}
-
 bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, const float c[3],
                            double radius, double *stray)
 {
     static const double FARTHEST = 1.65; /* before the radius fades */
-    const csg_tape_node *child = node - 1;
-    uint32_t count = node->arity;
+    const csg_tape_node *child = node - 1 - node->planes;
+    uint32_t count = node->arity - node->planes;
     double bends = 0, r = (double)tape->parameters[node->parameters + CSG_OPERATOR_N];
     for (uint32_t k = 0; k < count; k++, child -= child->size) {
         double bend;
-        if (!find_most_bend(tape, child, c, radius, &bend))
+        if (!csg_op_is_leaf(child->op) || !find_bend(tape, child, c, radius, &bend))
             return false;
         bends += bend;
     }
-    csg_fillet_turns turns = csg_fillet_find_turns(tape, node, c, radius);
-    double d = (double)turns.most;
+    double d = (double)csg_fillet_find_turns(tape, node, c, radius).most;
     *stray =
         bends > 0 ? r * bends / 2 * sqrt(d / (2 - d)) : 0; /* d = 2: faces look at each other */
-    return !turns.fades && (bends == 0 || (count == 2 && d < FARTHEST));
+    return bends == 0 || (count == 2 && d < FARTHEST);
 }

@@ -10,15 +10,14 @@
 /* Of any two operands: 1 - cos of the angle between their gradients, 0..2. */
 typedef struct csg_fillet_turns {
     float least, most;
-    bool fades; /* some may look at each other, but not exactly: what fills gaps changes there */
 } csg_fillet_turns;
 
 /* node: of the tape, a fillet. */
 csg_fillet_turns csg_fillet_find_turns(const csg_tape *tape, const csg_tape_node *node,
                                        const float c[3], double radius);
 
-/* The gradient of the fillet in the ball lies within *stray of the convex hull of its operands':
- * they turn, and the blend with them. False: no bound. */
+/* The gradient of the fillet in the ball lies within *stray of the convex hull of its operands'
+ * (and its planes'): they turn, and the blend with them. False: no bound. */
 bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, const float c[3],
                            double radius, double *stray);
 

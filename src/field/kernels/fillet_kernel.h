@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The fillet operator: all pieces of all operands at once, with their gradients
- * (scene/operators/fillet.h, operators.md 16). Part of kernel.c, in a file of its own.
+ * The fillet operator: all operands at once, with their gradients, and behind them the planes at
+ * which a union ends (scene/operators/fillet.h, operators.md 16). Part of kernel.c, in a file of
+ * its own.
  *
- * A point at a time, in double: what comes out depends on the pieces in reach alone, not on which
+ * A point at a time, in double: what comes out depends on the operands in reach alone, not on which
  * others pruning has left, nor on their order.
  */
 #ifndef CSG_FIELD_FILLET_KERNEL_H
@@ -14,102 +15,166 @@
 #include "field/kernels/batch.h"
 #include "scene/operators/fillet.h"
 
-/* Value of piece k: values[k * stride + i], its channels channels[(k * per + c) * stride + i], of
- * which the first three are its gradient. */
+/* The operator's arrays: value k is values[k * stride + i], its channels are channels[(k * per +
+ * c) * stride + i], of which the first three are its gradient. Planes follow the operands: number
+ * numbers[operands + p] of those that the operator had once; an operand reaches beyond it by
+ * parameters[numbers[operand] + number]. */
 typedef struct fillet_arrays {
     float *values, *channels;
+    const uint32_t *numbers;
+    const float *parameters;
     size_t stride;
-    uint32_t per;
+    uint32_t per, operands, planes;
+    float turn; /* -1: an intersection, the union of what is negated */
+    double radius;
 } fillet_arrays;
 
-/* The tree below a fillet. All of it fits into the work of csg_kernel_arrays: two terms with their
- * bounds for each piece. */
-typedef struct fillet_tree {
-    csg_fillet_term *terms;
-    csg_fillet_piece *of_piece;
-    double (*bounds)[2];
-    uint32_t count, pieces;
-} fillet_tree;
-
-static csg_fillet_term fillet_operator(const csg_tape *tape, const csg_tape_node *node)
+/* Where the operator's children, the last of which is the node before it, have their numbers. */
+static void fillet_numbers(const csg_tape *tape, const csg_tape_node *node, uint32_t *numbers)
 {
-    static const uint8_t kinds[] = {
-        [CSG_OP_UNION] = CSG_FILLET_MAX,
-        [CSG_OP_INTERSECTION] = CSG_FILLET_MIN,
-        [CSG_OP_FILLET_UNION] = CSG_FILLET_UNITE,
-        [CSG_OP_FILLET_INTERSECTION] = CSG_FILLET_MEET,
-    };
-    const float *p = tape->parameters + node->parameters;
-    csg_fillet_term term = {.kind = kinds[node->op], .size = node->arity};
-    if (csg_op_is_fillet(node->op))
-        term.radius = (double)p[CSG_OPERATOR_N];
-    return term;
+    const csg_tape_node *child = node - 1;
+    for (uint32_t k = node->arity; k-- > 0 && node->planes; child -= child->size)
+        numbers[k] = child->join_parameters;
 }
 
-/* Terms have their operands' number for a size to begin with. */
-static void fillet_find_sizes(fillet_tree *tree)
+static inline float *fillet_channel(const fillet_arrays *a, uint32_t operand, uint32_t channel)
 {
-    for (uint32_t i = 0; i < tree->count; i++) {
-        csg_fillet_term *term = &tree->terms[i];
-        uint32_t operands = term->kind == CSG_FILLET_PIECE ? 0 : term->size;
-        term->size = 1;
-        for (; operands > 0; operands--)
-            term->size += tree->terms[i - term->size].size;
+    return a->channels + ((size_t)operand * a->per + channel) * a->stride;
+}
+
+/* How the operands mix at a point: nothing but the first where the count is 1. Where it is ended,
+ * the gradient is that of a plane. */
+typedef struct fillet_mix {
+    float value, share[3];
+    uint32_t at[3], count, plane;
+    int is_ended;
+} fillet_mix;
+
+typedef struct fillet_place {
+    const fillet_arrays *arrays;
+    size_t i;
+} fillet_place;
+
+static double fillet_inside(const void *user, const csg_fillet_operand *operands,
+                            const csg_fillet_choice *subset, uint32_t *plane)
+{
+    const fillet_place *place = user;
+    const fillet_arrays *a = place->arrays;
+    double least = INFINITY;
+    for (uint32_t p = a->operands; p < a->operands + a->planes; p++) {
+        float beyond = -INFINITY;
+        for (uint32_t k = 0; k < subset->count; k++)
+            beyond = larger(
+                beyond, a->parameters[a->numbers[operands[subset->at[k]].index] + a->numbers[p]]);
+        double inside = (double)(a->turn * a->values[p * a->stride + place->i]) + (double)beyond;
+        *plane = inside < least ? p : *plane;
+        least = inside < least ? inside : least;
     }
+    return least;
 }
 
-static fillet_tree fillet_tree_of(const csg_tape *tape, const csg_tape_node *root, float *work)
+static fillet_mix fillet_largest(const fillet_arrays *a, size_t i)
 {
-    uint32_t pieces = csg_tape_held_count(root), piece = pieces, most = 2 * pieces, at = most;
-    fillet_tree tree = {.pieces = pieces};
-    tree.bounds = (double(*)[2])(void *)work;
-    tree.of_piece = (csg_fillet_piece *)(void *)(tree.bounds + most);
-    tree.terms = (csg_fillet_term *)(void *)(tree.of_piece + pieces);
-    for (const csg_tape_node *n = root, *end = root - root->size; n != end;) {
-        int is_piece = n != root && n->held == CSG_HELD_PIECE;
-        if (is_piece) {
-            tree.terms[--at] =
-                (csg_fillet_term){.kind = CSG_FILLET_PIECE, .piece = --piece, .size = 1};
-        } else if (n->arity > 1) { /* one operand stands for its operator */
-            tree.terms[--at] = fillet_operator(tape, n);
-        }
-        n -= is_piece ? n->size : 1;
+    fillet_mix mix = {.value = a->turn * a->values[i], .share = {1, 0, 0}, .count = 1};
+    for (uint32_t k = 1; k < a->operands; k++) {
+        float v = a->turn * a->values[k * a->stride + i];
+        mix.at[0] = v > mix.value ? k : mix.at[0];
+        mix.value = v > mix.value ? v : mix.value;
     }
-    tree.terms += at;
-    tree.count = most - at;
-    fillet_find_sizes(&tree);
-    return tree;
+    return mix;
 }
 
-/* The result takes the place of the first piece: value, gradient and `colors` more channels. */
-static void fillet_combine(const fillet_tree *tree, const fillet_arrays *a, int colors,
-                           size_t count)
+/* Operands within reach of the largest, in the order of fillet.h; returns how many. */
+static uint32_t fillet_gather(const fillet_arrays *a, size_t i, float largest,
+                              csg_fillet_operand reach[CSG_FILLET_MOST])
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < a->operands; k++) {
+        double v = (double)(a->turn * a->values[k * a->stride + i]);
+        csg_fillet_operand made = {.index = k};
+        double x = (double)fillet_channel(a, k, 0)[i], y = (double)fillet_channel(a, k, 1)[i],
+               z = (double)fillet_channel(a, k, 2)[i];
+        if ((double)largest - v < 2 * a->radius &&
+            csg_fillet_set(&made, v, (double)a->turn * x, (double)a->turn * y, (double)a->turn * z))
+            count = csg_fillet_insert(reach, count, &made);
+    }
+    return count;
+}
+
+static fillet_mix fillet_at(const fillet_arrays *a, size_t i)
+{
+    csg_fillet_operand reach[CSG_FILLET_MOST];
+    fillet_mix mix = fillet_largest(a, i);
+    uint32_t count = fillet_gather(a, i, mix.value, reach);
+    if (!count)
+        return mix;
+    fillet_place place = {a, i};
+    csg_fillet_ends ends = {a->planes ? fillet_inside : NULL, &place};
+    csg_fillet_choice best = csg_fillet_solve(a->radius, reach, count, &ends);
+    double level = reach[0].f + best.excess;
+    if (!(level > (double)mix.value)) {
+        if ((float)reach[0].f == mix.value) /* of equal ones the first in order */
+            mix.at[0] = reach[0].index;
+        return mix;
+    }
+    mix.value = (float)level;
+    mix.count = best.count;
+    mix.is_ended = best.is_ended;
+    mix.plane = best.plane;
+    float rest = 1;
+    for (uint32_t k = best.count; k-- > 0;) {
+        mix.at[k] = reach[best.at[k]].index;
+        mix.share[k] = k ? (float)best.share[k] : rest;
+        rest -= mix.share[k];
+    }
+    return mix;
+}
+
+static float fillet_mean(const fillet_arrays *a, const fillet_mix *mix, uint32_t channel, size_t i)
+{
+    float out = fillet_channel(a, mix->at[0], channel)[i];
+    if (mix->count > 1)
+        out = mix->share[0] * out + mix->share[1] * fillet_channel(a, mix->at[1], channel)[i];
+    if (mix->count > 2)
+        out += mix->share[2] * fillet_channel(a, mix->at[2], channel)[i];
+    return out;
+}
+
+/* The result takes the place of the first operand: value, gradient and `colors` more channels. */
+static void fillet_combine(const fillet_arrays *a, int colors, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        for (uint32_t k = 0; k < tree->pieces; k++) {
-            csg_fillet_piece *p = &tree->of_piece[k];
-            const float *channels = a->channels + (size_t)k * a->per * a->stride + i;
-            p->f = (double)a->values[k * a->stride + i];
-            for (int c = 0; c < 3; c++)
-                p->g[c] = (double)channels[(size_t)c * a->stride];
-            p->paint = colors ? (double)channels[3 * a->stride] : 0;
-        }
-        csg_fillet_piece made =
-            csg_fillet_evaluate(tree->terms, tree->count, tree->of_piece, tree->bounds);
-        a->values[i] = (float)made.f;
-        for (int c = 0; c < 3; c++)
-            a->channels[(size_t)c * a->stride + i] = (float)made.g[c];
-        if (colors)
-            a->channels[3 * a->stride + i] = (float)made.paint;
+        fillet_mix mix = fillet_at(a, i);
+        for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++)
+            fillet_channel(a, 0, c)[i] = mix.is_ended && c < 3 ? fillet_channel(a, mix.plane, c)[i]
+                                                               : fillet_mean(a, &mix, c, i);
+        a->values[i] = a->turn * mix.value;
     }
+}
+
+/* How far the operand that reaches farthest does so beyond the plane. */
+static float fillet_beyond(const fillet_arrays *a, uint32_t plane)
+{
+    float most = -INFINITY;
+    for (uint32_t k = 0; k < a->operands; k++)
+        most = larger(most, a->parameters[a->numbers[k] + a->numbers[plane]]);
+    return most;
+}
+
+static float fillet_least_beyond(const fillet_arrays *a, uint32_t plane)
+{
+    float least = INFINITY;
+    for (uint32_t k = 0; k < a->operands; k++)
+        least = smaller(least, a->parameters[a->numbers[k] + a->numbers[plane]]);
+    return least;
 }
 
 /* The three largest of the operands' ends in cube o. */
-static void fillet_three(const float *ends, uint32_t operands, float turn, size_t o, float most[3])
+static void fillet_three(const fillet_arrays *a, const float *ends, size_t o, float most[3])
 {
     most[0] = most[1] = most[2] = -INFINITY;
-    for (uint32_t k = 0; k < operands; k++) {
-        float v = turn * ends[k * CSG_OCTANTS + o];
+    for (uint32_t k = 0; k < a->operands; k++) {
+        float v = a->turn * ends[k * a->stride + o];
         for (int place = 0; place < 3; place++)
             if (v > most[place]) {
                 float next = most[place];
@@ -119,26 +184,30 @@ static void fillet_three(const float *ends, uint32_t operands, float turn, size_
     }
 }
 
-/* What the operands' ranges allow, for eight cubes; low and high: a slot per operand, the result in
- * the first. turns: least and most 1 - cos of the operands' angles for each cube; NULL: any. */
-static void fillet_intervals(const csg_tape *tape, const csg_tape_node *node, const float *turns,
-                             float *low, float *high)
+/* What the operands' ranges allow, for eight cubes; low and high: a slot per operand and plane, the
+ * result in the first. turns: least and most 1 - cos of the operands' angles for each cube; NULL:
+ * any. */
+static void fillet_intervals(const fillet_arrays *a, const float *turns, float *low, float *high)
 {
-    const float turn = csg_op_is_union(node->op) ? 1.0f : -1.0f;
-    const double r = (double)tape->parameters[node->parameters + CSG_OPERATOR_N];
+    const float turn = a->turn;
     float *lower = turn > 0 ? low : high, *upper = turn > 0 ? high : low;
     for (size_t o = 0; o < CSG_OCTANTS; o++) {
-        float most[3], least[3];
-        fillet_three(upper, node->arity, turn, o, most);
-        fillet_three(lower, node->arity, turn, o, least);
+        float most[3], least[3], end = INFINITY, first_end = INFINITY;
+        fillet_three(a, upper, o, most);
+        fillet_three(a, lower, o, least);
+        for (uint32_t p = a->operands; p < a->operands + a->planes; p++) {
+            end = smaller(end, turn * upper[p * a->stride + o] + fillet_beyond(a, p));
+            first_end =
+                smaller(first_end, turn * lower[p * a->stride + o] + fillet_least_beyond(a, p));
+        }
         double from = turns ? (double)turns[2 * o] : 0, to = turns ? (double)turns[2 * o + 1] : 2;
-        double bound = csg_fillet_bound(r, (double)most[0] - (double)most[1],
+        double bound = csg_fillet_bound(a->radius, (double)most[0] - (double)most[1],
                                         (double)most[0] - (double)most[2], to);
-        double sure = csg_fillet_least(r, (double)least[0] - (double)least[1], from, to);
-        float top = bound > 0 ? most[0] + (float)(bound + 1e-6 * r) : most[0];
-        float bottom = sure > 0 ? least[0] + (float)(sure - 1e-6 * r) : least[0];
-        lower[o] = turn * larger(least[0], bottom);
-        upper[o] = turn * top;
+        double sure = csg_fillet_least(a->radius, (double)least[0] - (double)least[1], from, to);
+        float top = bound > 0 ? most[0] + (float)(bound + 1e-6 * a->radius) : most[0];
+        float bottom = sure > 0 ? least[0] + (float)(sure - 1e-6 * a->radius) : least[0];
+        lower[o] = turn * larger(least[0], smaller(bottom, first_end));
+        upper[o] = turn * larger(most[0], smaller(top, end));
     }
 }
 

@@ -189,7 +189,7 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
         } else if (csg_op_delivers(node->op)) {
             CSG_THIS_RULE_KERNEL.deliver(tape, node, slot(s, top - 1), NULL, NULL, p.count);
         }
-        if (node->join && !node->held) {
+        if (node->join) {
             top--;
             join_siblings(node, tape->parameters + node->join_parameters, slot(s, top - 1),
                           slot(s, top), p.count);
@@ -327,6 +327,24 @@ static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots
         out[i] = work[i] + raise;
 }
 
+/* work: room for a number per operand and plane. */
+static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, slots s,
+                               size_t first, float *work)
+{
+    fillet_numbers(tape, node, (uint32_t *)(void *)work);
+    return (fillet_arrays){
+        .values = slot(s, first),
+        .numbers = (const uint32_t *)(const void *)work,
+        .parameters = tape->parameters,
+        .stride = s.stride,
+        .per = MOST_CHANNELS,
+        .operands = node->arity - node->planes,
+        .planes = node->planes,
+        .turn = csg_op_is_union(node->op) ? 1.0f : -1.0f,
+        .radius = (double)tape->parameters[node->parameters + CSG_OPERATOR_N],
+    };
+}
+
 static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
                        uint32_t depth, size_t index, plan wanted)
 {
@@ -434,20 +452,18 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_mixed(tape, node, s, depth, top++, channels_of(wanted), p.count, work);
-        } else if (csg_tape_takes_held(node)) {
-            fillet_tree tree = fillet_tree_of(tape, node, work);
-            top -= tree.pieces;
-            const fillet_arrays arrays = {slot(s, top), channel(s, depth, top, 0), s.stride,
-                                          MOST_CHANNELS};
-            fillet_combine(&tree, &arrays, wanted.colors, p.count);
-            top++;
+        } else if (csg_op_is_fillet(node->op)) {
+            top -= node->arity;
+            fillet_arrays arrays = fillet_of(tape, node, s, top, work);
+            arrays.channels = channel(s, depth, top++, 0);
+            fillet_combine(&arrays, wanted.colors, p.count);
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
             combine_mixed(tape, node, s, depth, top++, wanted, p.count, work);
         } else if (csg_op_delivers(node->op)) {
             deliver_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
-        if (node->join && !node->held) {
+        if (node->join) {
             top--;
             join_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
@@ -597,8 +613,9 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
             top++;
         } else if (csg_op_is_fillet(node->op)) {
             top -= node->arity;
+            fillet_arrays arrays = fillet_of(tape, node, lows, top, work);
             const float *of_node = turns ? turns + (size_t)n * 2 * CSG_OCTANTS : NULL;
-            fillet_intervals(tape, node, of_node, slot(lows, top), slot(highs, top));
+            fillet_intervals(&arrays, of_node, slot(lows, top), slot(highs, top));
             top++;
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;

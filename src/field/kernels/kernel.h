@@ -8,11 +8,10 @@
 #include "field/kernels/batch.h"
 
 /* Arrays of one batch that a walk over a tape of this depth needs: values, up to four channels, and
- * the work of operators: those of a round one again and six more, trees of fillets in double
- * (fillet_kernel.h). */
+ * the round operator's work (its operands again and six more). */
 static inline size_t csg_kernel_arrays(uint32_t depth)
 {
-    return (size_t)depth * 8 + 8;
+    return (size_t)depth * 6 + 8;
 }
 /* Floats of scratch for every function below: whole batches for ordinary depths, smaller ones for
  * tapes that would need megabytes. */

@@ -10,7 +10,6 @@
 #include "field/prune/prune_fields.h"
 #include "field/prune/prune_shapes.h"
 #include "scene/operators/blend_kinds.h"
-#include "scene/operators/fillet.h"
 
 void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
                      float rounding)
@@ -24,11 +23,10 @@ static void release_arrays(csg_pruner *pruner)
     csg_memory_release(pruner->memory, pruner->low, n * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->high, n * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->turns, n * 2 * CSG_OCTANTS * sizeof(float));
-    csg_memory_release(pruner->memory, pruner->windows, n * CSG_OCTANTS * sizeof(float));
     csg_memory_release(pruner->memory, pruner->dropped, n);
     csg_memory_release(pruner->memory, pruner->stack, n * sizeof(csg_emitted));
     csg_memory_release(pruner->memory, pruner->nodes, n * sizeof(csg_tape_node));
-    pruner->low = pruner->high = pruner->turns = pruner->windows = NULL;
+    pruner->low = pruner->high = pruner->turns = NULL;
     pruner->dropped = NULL;
     pruner->stack = NULL;
     pruner->nodes = NULL;
@@ -57,15 +55,13 @@ static bool make_room(csg_pruner *pruner, const csg_tape *tape)
     pruner->capacity = n;
     pruner->low = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
     pruner->high = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
-    if (tape->turns) { /* no other tape needs them */
+    if (tape->turns) /* no other tape needs them */
         pruner->turns = csg_memory_alloc(pruner->memory, n * 2 * CSG_OCTANTS * sizeof(float));
-        pruner->windows = csg_memory_alloc(pruner->memory, n * CSG_OCTANTS * sizeof(float));
-    }
     pruner->dropped = csg_memory_alloc(pruner->memory, n);
     pruner->stack = csg_memory_alloc(pruner->memory, n * sizeof(csg_emitted));
     pruner->nodes = csg_memory_alloc(pruner->memory, n * sizeof(csg_tape_node));
     if (pruner->low && pruner->high && pruner->dropped && pruner->stack && pruner->nodes &&
-        ((pruner->turns && pruner->windows) || !tape->turns))
+        (pruner->turns || !tape->turns))
         return true;
     release_arrays(pruner);
     return false;
@@ -148,12 +144,12 @@ static float *lanes(float *of_nodes, uint32_t node)
 static void find_best(const csg_tape_node *nodes, uint32_t node, float *lower, float turn,
                       float best[CSG_OCTANTS], uint32_t best_child[CSG_OCTANTS])
 {
-    uint32_t child = node - 1;
+    uint32_t child = node - 1 - nodes[node].planes; /* these are leaves */
     for (int o = 0; o < CSG_OCTANTS; o++) {
         best[o] = -INFINITY;
         best_child[o] = child;
     }
-    for (uint32_t k = 0; k < nodes[node].arity; k++, child -= nodes[child].size) {
+    for (uint32_t k = nodes[node].planes; k < nodes[node].arity; k++, child -= nodes[child].size) {
         const float *bound = lanes(lower, child);
         for (int o = 0; o < CSG_OCTANTS; o++) {
             bool more = turn * bound[o] > best[o];
@@ -232,30 +228,48 @@ static void demand_fields(csg_pruner *pruner, uint32_t node)
     set_demand(pruner, child, low, high);
 }
 
-/* How far beside those that decide an operator's operands matter to fillets above it. */
-static void find_windows(const csg_pruner *pruner, uint32_t node, float windows[CSG_OCTANTS])
-{
-    bool is_held = pruner->tape->turns && pruner->tape->nodes[node].held == CSG_HELD_LATTICE;
-    for (int o = 0; o < CSG_OCTANTS; o++)
-        windows[o] = is_held ? pruner->windows[(size_t)node * CSG_OCTANTS + (size_t)o] : 0;
-}
-
-/* A fillet of which more than one operand is left widens them. */
-static void hand_windows_down(csg_pruner *pruner, uint32_t node, float windows[CSG_OCTANTS])
+/* How far any two operands together reach beyond the plane with this number, at least. */
+static float least_beyond(const csg_pruner *pruner, uint32_t node, uint32_t number)
 {
     const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    float least = INFINITY, next = INFINITY;
+    uint32_t child = node - 1 - op->planes;
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
+        float beyond = pruner->tape->parameters[nodes[child].join_parameters + number];
+        next = fminf(next, fmaxf(least, beyond));
+        least = fminf(least, beyond);
+    }
+    return next;
+}
+
+/* Drops planes at which a fillet does not end there: the operands, grown by what the fillet can add
+ * to them, do not reach them, or the parent cannot see so far. */
+static void decide_planes(csg_pruner *pruner, uint32_t node, const float *demand_low,
+                          const float *demand_high)
+{
+    const csg_tape_node *nodes = pruner->tape->nodes, *op = &nodes[node];
+    bool is_union = csg_op_is_union(op->op);
+    float turn = is_union ? 1.0f : -1.0f, reach[CSG_OCTANTS];
     float r = pruner->tape->parameters[op->parameters + CSG_OPERATOR_N];
-    int left[CSG_OCTANTS] = {0};
-    uint32_t child = node - 1;
-    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size)
-        for (int o = 0; o < CSG_OCTANTS; o++)
-            left[o] += !(pruner->dropped[child] >> o & 1);
+    float *upper = is_union ? pruner->high : pruner->low;
+    float *lower = is_union ? pruner->low : pruner->high;
+    uint32_t child = node - 1 - op->planes;
     for (int o = 0; o < CSG_OCTANTS; o++)
-        if (csg_op_is_fillet(op->op) && left[o] > 1)
-            windows[o] += (float)csg_fillet_window((double)r) * 1.00001f;
-    child = node - 1;
-    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size)
-        memcpy(lanes(pruner->windows, child), windows, CSG_OCTANTS * sizeof *windows);
+        reach[o] = -INFINITY;
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size)
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            reach[o] = fmaxf(reach[o], turn * lanes(upper, child)[o] + r);
+    for (uint32_t plane = node - op->planes; plane < node; plane++) {
+        float beyond = least_beyond(pruner, node, nodes[plane].join_parameters) - pruner->slack;
+        uint8_t mask = pruner->dropped[node];
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            float seen = is_union ? demand_high[o] : -demand_low[o];
+            float from = turn * lanes(lower, plane)[o] + beyond;
+            mask |= (uint8_t)((from > fminf(reach[o], seen)) << o);
+        }
+        pruner->dropped[plane] = mask;
+        pruner->dropped_any |= mask;
+    }
 }
 
 /* Drops operands of a union that cannot matter: those that stay below what the parent can see, or
@@ -272,36 +286,34 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
         demand_fields(pruner, node);
         return;
     }
+    if (op->planes)
+        decide_planes(pruner, node, demand_low, demand_high);
     bool is_union = csg_op_is_union(op->op);
     /* INTERIOR is not above its larger operand. */
     bool is_smooth = op->blend == CSG_BLEND_EXTERIOR || op->blend == CSG_BLEND_INTERIOR;
     float chi = pruner->tape->parameters[op->parameters + CSG_OPERATOR_SUPPORT];
-    float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS], windows[CSG_OCTANTS];
+    float turn = is_union ? 1.0f : -1.0f, threshold[CSG_OCTANTS];
     float edge = turn * pruner->tape->parameters[op->parameters + CSG_OPERATOR_N] - pruner->slack;
     float *lower = is_union ? pruner->low : pruner->high;
     float *upper = is_union ? pruner->high : pruner->low;
-    uint32_t best_child[CSG_OCTANTS], child = node - 1;
+    uint32_t best_child[CSG_OCTANTS], child = node - 1 - op->planes;
     float child_low[CSG_OCTANTS], child_high[CSG_OCTANTS];
     find_best(nodes, node, lower, turn, threshold, best_child);
-    find_windows(pruner, node, windows);
     for (int o = 0; o < CSG_OCTANTS; o++) {
         float demand = is_union ? demand_low[o] : -demand_high[o];
-        threshold[o] =
-            (demand > threshold[o] ? demand : threshold[o]) - chi - windows[o] - pruner->slack;
+        threshold[o] = (demand > threshold[o] ? demand : threshold[o]) - chi - pruner->slack;
         if (op->blend == CSG_BLEND_ORTHOGONAL) /* at the edge both matter */
             threshold[o] = fminf(threshold[o], edge);
-        child_low[o] = demand_low[o] - (is_union || is_smooth ? chi : 0) - windows[o];
-        child_high[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi) + windows[o];
+        child_low[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
+        child_high[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
     }
-    for (uint32_t k = 0; k < op->arity; k++, child -= nodes[child].size) {
+    for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
         uint8_t mask =
             pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
         pruner->dropped[child] = mask;
         pruner->dropped_any |= mask;
         set_demand(pruner, child, child_low, child_high);
     }
-    if (pruner->tape->turns)
-        hand_windows_down(pruner, node, windows);
 }
 
 /* Marks every node that cannot matter, all octants at once: long tapes are read only twice. */
@@ -333,30 +345,19 @@ static void decide(csg_pruner *pruner, float tau)
 
 /* ---- the shorter tape ------------------------------------------------------------------------ */
 
-/* Below a fillet of which one operand is left, nothing is held any more but what is below others.
- */
-static void release_held(csg_tape_node *nodes, uint32_t root, uint32_t begin)
-{
-    for (uint32_t i = root + 1; i > begin;) {
-        csg_tape_node *node = &nodes[i - 1];
-        bool is_lattice = node->held == CSG_HELD_LATTICE && !csg_op_is_fillet(node->op);
-        node->held = CSG_HELD_NOT;
-        i -= is_lattice ? 1 : node->size;
-    }
-}
-
 /* Writes an operator over the last `kept` subtrees: its joins and, unless only one is left, itself.
  */
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
                           uint32_t *count, csg_emitted *stack, uint32_t *top)
 {
     csg_tape_node *nodes = pruner->nodes;
-    if (kept == 1 && csg_prune_is_identity(pruner->tape, op)) {
-        const csg_emitted *only = &stack[*top - 1];
-        if (csg_tape_takes_held(op))
-            release_held(nodes, only->root, only->begin);
-        if (op->held != CSG_HELD_LATTICE)
-            nodes[only->root].held = op->held;
+    uint32_t planes = 0;
+    while (op->planes && nodes[stack[*top - 1 - planes].root].is_plane)
+        planes++;
+    if (kept - planes == 1 && csg_prune_is_identity(pruner->tape, op)) {
+        *count -= planes;
+        *top -= planes;
+        nodes[stack[*top - 1].root].join_parameters = op->join_parameters;
         return; /* the operand stands for its operator */
     }
     csg_emitted *first = &stack[*top - kept];
@@ -372,6 +373,7 @@ static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t 
     *node = *op;
     node->join = CSG_JOIN_NONE;
     node->arity = kept;
+    node->planes = (uint16_t)planes;
     node->size = *count + 1 - first->begin;
     first->root = (*count)++;
     *top -= kept - 1;

@@ -35,8 +35,6 @@ typedef struct csg_pruner {
     float *low, *high; /* of every node, eight lanes; later the demands on operators; of shapes,
                           what csg_shape_demand has */
     float *turns;      /* of every node, where the tape has fillets: csg_kernel.intervals */
-    float *windows;    /* the same: how far from the one that decides an operand matters to fillets
-                          above (csg_fillet_window) */
     uint8_t *dropped;  /* a bit for each octant */
     uint8_t dropped_any;
     bool has_shapes;

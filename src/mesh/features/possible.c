@@ -81,9 +81,9 @@ static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t
             !widen(tape, CSG_BLEND_ROUND, node->parameters, csg_op_is_union(node->op), cell, b))
             return false;
         if (csg_op_is_fillet(node->op) &&
-            (csg_tape_held_count(node) > node->arity ||
+            (node->planes ||
              !widen(tape, CSG_BLEND_FILLET, node->parameters, csg_op_is_union(node->op), cell, b)))
-            return false; /* it ends in edges, as its operands do */
+            return false; /* it ends in an edge */
         if (node->op == CSG_OP_COMBINE || csg_op_delivers(node->op))
             return false;
     }

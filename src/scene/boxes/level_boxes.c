@@ -281,8 +281,8 @@ static csg_box box_at(const table *t, csg_node_id node, double level)
     return t->whole ? csg_box_intersect(box, t->regions[slot]) : box;
 }
 
-/* A fillet stands within the hull of the operands' boxes (tree/faces.h): it is above -level where
- * one operand is, or within the hull grown by level. */
+/* A fillet adds nothing beyond the hull of the operands' boxes, whose sides are among its planes:
+ * it is above -level where one operand is, or within the hull grown by level. */
 static csg_box filleted_box(const table *t, const csg_node *node, double level)
 {
     const csg_node_id *children = csg_scene_children(t->scene, node);

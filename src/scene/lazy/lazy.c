@@ -337,8 +337,6 @@ static bool ask_next(evaluation *e, frame *f)
     const csg_node_id *children = csg_scene_children(&lazy->tree, node);
     bool choosy = lazy->lazy && !isnan(lazy->supports[f->node]);
     bool begins = choosy && f->first == UINT32_MAX;
-    if (csg_fillet_is_outermost(node))
-        return false; /* all below at once */
     if (begins)
         f->first = choose_first(lazy, f, node);
     while (begins || f->next < node->child_count) {
@@ -362,8 +360,6 @@ static bool ask_next(evaluation *e, frame *f)
 static csg_sample sample_of(const evaluation *e, const frame *f)
 {
     const csg_lazy *lazy = e->lazy;
-    if (csg_fillet_is_outermost(&lazy->tree.nodes[f->node]))
-        return csg_reference_eval_below(&lazy->tree, f->node, f->at);
     csg_sample out = csg_reference_node(&lazy->tree, &lazy->tree.nodes[f->node], f->at,
                                         e->samples + f->slot, lazy->identity, &e->work);
     if (f->bound < out.value) {

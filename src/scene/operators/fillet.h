@@ -6,14 +6,9 @@
  * of it were touched, with multipliers >= 0.
  *
  * How far two faces turn from each other is d = 1 - cos = |g_1 - g_2|^2 / 2: 0 where one continues
- * the other, 1 at a right angle, 2 where they look at each other.
- *
- * That needs operands whose gradients do not jump. One with edges of its own is a lattice, maxima
- * and minima of smooth pieces, and the fillet of lattices is the lattice of the fillets of their
- * pieces: every pair of faces has its own (csg_fillet_evaluate, for a whole tree at a point).
- *
- * All is in double, also where kernels use it: the same bits for the reference, for every
- * instruction set, and whether or not operands out of reach have been dropped.
+ * the other, 1 at a right angle, 2 where they look at each other. All is in double, also where
+ * kernels use it: the same bits for the reference, for every instruction set, and whether or not
+ * operands out of reach have been dropped.
  */
 #ifndef CSG_SCENE_FILLET_H
 #define CSG_SCENE_FILLET_H
@@ -34,12 +29,6 @@ enum { CSG_FILLET_MOST = 16 };
  */
 #define CSG_FILLET_PAIR_EXCESS 0.6199
 #define CSG_FILLET_PAIR_REACH 1.7037
-/* Faces that look at each other and touch fill space together, as much as nothing exceeds there:
- * the cap of a post that stands on a plate is no face of both. Over gaps of CSG_FILLET_GAP radii
- * none of that is left, nor from CSG_FILLET_FILLED_REACH on. */
-#define CSG_FILLET_FILLED 0.6
-#define CSG_FILLET_FILLED_REACH 1.7
-#define CSG_FILLET_GAP 0.1
 
 /* Below this the normals of three operands lie in one plane, and pairs say all. */
 #define CSG_FILLET_FLAT 1e-9
@@ -92,26 +81,23 @@ typedef struct csg_fillet_operand {
 typedef struct csg_fillet_choice {
     double excess, share[3];
     uint32_t at[3], count;
+    bool is_ended; /* at a plane that holds the subset: the gradient is the plane's */
+    uint32_t plane;
 } csg_fillet_choice;
+
+/* How far inside of the nearest of those half-spaces that hold all of a subset the point is, and
+ * which it is: what a ball fills that rolls along some operands lies in the convex hull of these
+ * (fillet_planes.h). */
+typedef struct csg_fillet_ends {
+    double (*inside)(const void *user, const csg_fillet_operand *operands,
+                     const csg_fillet_choice *subset, uint32_t *plane);
+    const void *user;
+} csg_fillet_ends;
 
 static inline double csg_fillet_turn(const csg_fillet_operand *a, const csg_fillet_operand *b)
 {
     double x = a->g[0] - b->g[0], y = a->g[1] - b->g[1], z = a->g[2] - b->g[2];
     return 0.5 * (x * x + y * y + z * z);
-}
-
-/* Two operands whose values add up to -gap, which is how far apart they are where they look at each
- * other. */
-static inline csg_fillet_pair csg_fillet_of_faces(double r, const csg_fillet_operand *a,
-                                                  const csg_fillet_operand *b)
-{
-    double d = csg_fillet_turn(a, b), x = a->f - b->f, gap = -(a->f + b->f);
-    csg_fillet_pair made = csg_fillet_of_two(r, x, d);
-    double near = 1 - csg_fillet_larger(gap, 0) / (CSG_FILLET_GAP * r);
-    double within = 1 - x / (CSG_FILLET_FILLED_REACH * r);
-    double filled = (1 - csg_fillet_fade(d)) * CSG_FILLET_FILLED * r * csg_fillet_larger(near, 0) *
-                    csg_fillet_larger(within, 0);
-    return filled > made.excess ? (csg_fillet_pair){filled, 0} : made;
 }
 
 /* Makes the gradient (x, y, z) of a value that of an operand; false: it has none, and does not
@@ -193,32 +179,42 @@ static inline bool csg_fillet_of_three(double radius, const csg_fillet_operand *
     return sum > 0;
 }
 
-static inline void csg_fillet_take(csg_fillet_choice *best, csg_fillet_choice made)
+/* Takes a subset that reaches higher than the best so far, once it is cut where it ends. */
+static inline void csg_fillet_take(csg_fillet_choice *best, const csg_fillet_operand *o,
+                                   csg_fillet_choice made, const csg_fillet_ends *ends)
 {
+    if (!(made.excess > best->excess))
+        return;
+    if (ends->inside) {
+        double end = ends->inside(ends->user, o, &made, &made.plane) - o[0].f;
+        made.is_ended = end < made.excess;
+        made.excess = made.is_ended ? end : made.excess;
+    }
     if (made.excess > best->excess)
         *best = made;
 }
 
 /* Of operands in their order (csg_fillet_insert), the first of which is the largest of all. */
 static inline csg_fillet_choice csg_fillet_solve(double r, const csg_fillet_operand *o,
-                                                 uint32_t count)
+                                                 uint32_t count, const csg_fillet_ends *ends)
 {
     csg_fillet_choice best = {.share = {1, 0, 0}, .count = 1};
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = i + 1; k < count; k++) {
             csg_fillet_choice made = {.at = {i, k, 0}, .count = 2};
-            csg_fillet_pair pair = csg_fillet_of_faces(r, &o[i], &o[k]);
+            csg_fillet_pair pair =
+                csg_fillet_of_two(r, o[i].f - o[k].f, csg_fillet_turn(&o[i], &o[k]));
             made.excess = o[i].f - o[0].f + pair.excess;
             made.share[0] = 1 - pair.lower;
             made.share[1] = pair.lower;
-            csg_fillet_take(&best, made);
+            csg_fillet_take(&best, o, made, ends);
         }
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = i + 1; k < count; k++)
             for (uint32_t l = k + 1; l < count; l++) {
                 csg_fillet_choice made = {.at = {i, k, l}, .count = 3};
                 if (csg_fillet_of_three(r, o, made.at, &made.excess, made.share))
-                    csg_fillet_take(&best, made);
+                    csg_fillet_take(&best, o, made, ends);
             }
     return best;
 }
@@ -245,71 +241,5 @@ static inline double csg_fillet_least(double r, double second, double least, dou
     bool is_known = most < CSG_FILLET_FADE && second < 2 * r;
     return is_known ? csg_fillet_of_two(r, second, least).excess : 0;
 }
-
-/* ---- trees of operands at a point --------------------------------------------------------------
- */
-
-/* A smooth part of an operand. */
-typedef struct csg_fillet_piece {
-    double f, g[3];
-    double paint;  /* mixes as gradients do */
-    uint32_t rank; /* its place among the pieces, once it is looked at; 0: a mean */
-} csg_fillet_piece;
-
-typedef enum csg_fillet_kind {
-    CSG_FILLET_PIECE,
-    CSG_FILLET_MAX,
-    CSG_FILLET_MIN,
-    CSG_FILLET_UNITE, /* with a fillet of its radius */
-    CSG_FILLET_MEET
-} csg_fillet_kind;
-
-/* A tree, in postorder. */
-typedef struct csg_fillet_term {
-    uint8_t kind;   /* csg_fillet_kind */
-    uint32_t piece; /* of a piece: which one */
-    uint32_t size;  /* terms of the subtree, this one included */
-    double radius;  /* of a fillet */
-} csg_fillet_term;
-
-/* How far from the one that decides another value can lie below fillets whose radii add up to
- * this, and still matter: within 2 r it blends, and what blends adds up to r. */
-static inline double csg_fillet_window(double radii)
-{
-    return 3 * radii;
-}
-
-/* The same piece of the complement. */
-csg_fillet_piece csg_fillet_negated(csg_fillet_piece p);
-
-/* Operators within operators that a tree may have. */
-enum { CSG_FILLET_DEEPEST = 16 };
-
-/* The root's value there; pieces: in the order of their terms. bounds: room for `count`. */
-csg_fillet_piece csg_fillet_evaluate(const csg_fillet_term *terms, uint32_t count,
-                                     const csg_fillet_piece *pieces, double (*bounds)[2]);
-
-/* ---- scratch of the reference ------------------------------------------------------------------
- */
-
-/* Of a node of the tree. */
-typedef struct csg_fillet_node {
-    double factor;         /* lengths of the outermost fillet in one of the node */
-    uint32_t listed;       /* the nodes of the tree, the root first */
-    uint32_t begin[2];     /* first term and first piece of a subtree that is written */
-    bool node_is_negated;  /* of a node */
-    bool piece_is_negated; /* of a piece */
-} csg_fillet_node;
-
-/* Of everything one per node of the scene. */
-typedef struct csg_fillet_room {
-    csg_fillet_term *terms;
-    csg_fillet_piece *pieces;
-    double (*bounds)[2];
-    csg_fillet_node *nodes;
-} csg_fillet_room;
-#define CSG_FILLET_ROOM_BYTES                                                                      \
-    (sizeof(csg_fillet_term) + sizeof(csg_fillet_piece) + sizeof(double[2]) +                      \
-     sizeof(csg_fillet_node))
 
 #endif

@@ -438,7 +438,7 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
 {
     csgm_scene *scene = builder->scene;
     if (!csg_build_reserve_node(builder) || !csg_build_reserve_children(builder, count) ||
-        !csg_build_reserve_parameters(builder, CSG_OPERATOR_FIELD_PARAMETERS)) /* the most */
+        !csg_build_reserve_parameters(builder, CSG_FILLET_PARAMETERS)) /* the most */
         return CSG_NODE_NONE;
     csg_node node = {.kind = (uint8_t)kind,
                      .blend = (uint8_t)blend.kind,
@@ -451,7 +451,10 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
     bool all_soft = true;
     for (size_t i = 0; i < count; i++)
         all_soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
-    if (own > 1) {
+    if (csg_blend_is_fillet(blend.kind)) { /* planes are found when the scene is sealed */
+        parameters[CSG_FILLET_FIRST_NORMAL] = parameters[CSG_FILLET_FIRST_REACH] = 0;
+        parameters[CSG_FILLET_PLANES] = 0;
+    } else if (own > 1) {
         parameters[CSG_OPERATOR_RANGE] = all_soft ? 1 : range; /* nothing is converted */
         parameters[CSG_OPERATOR_LAMBDA] = 0;
     }

@@ -281,10 +281,6 @@ static bool open_children(walk *w, csg_node_id id)
     const csgm_scene *scene = w->out.scene;
     const csg_node *node = &scene->nodes[id];
     void *open = w->open;
-    if (node->flags & CSG_FLAG_FACES) { /* the same as its first child */
-        id = csg_scene_children(scene, node)[0];
-        node = &scene->nodes[id];
-    }
     put_indent(&w->out, w->open_count);
     if (!put_node(&w->out, node))
         return false;

@@ -5,9 +5,9 @@
  * of each node are computed once, here.
  */
 #include "scene/boxes/bounds.h"
+#include "scene/operators/fillet_planes.h"
 #include "scene/operators/rule.h"
 #include "scene/tree/build.h"
-#include "scene/tree/faces.h"
 #include "scene/tree/softness.h"
 
 #include <string.h>
@@ -87,8 +87,7 @@ static bool is_flattened(const csgm_scene *scene, csg_node_id inner, csg_node_id
 {
     const csg_node *a = &scene->nodes[inner], *b = &scene->nodes[outer];
     return a->kind == b->kind && (a->kind == CSG_NODE_UNION || a->kind == CSG_NODE_INTERSECTION) &&
-           a->blend == CSG_BLEND_SHARP && b->blend == CSG_BLEND_SHARP &&
-           !((a->flags | b->flags) & CSG_FLAG_FACES);
+           a->blend == CSG_BLEND_SHARP && b->blend == CSG_BLEND_SHARP;
 }
 
 /* False when a node is reached twice. */
@@ -311,7 +310,7 @@ static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scrat
 }
 
 static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
-                        csg_node_id *origins, csgm_scene *out)
+                        csgm_scene *out)
 {
     walk w;
     csgm_status status = walk_begin(&w, scratch, builder->scene, root);
@@ -324,17 +323,14 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
         return CSGM_ERR_MEMORY;
     }
     copy_nodes(out, builder->scene, &w);
-    for (uint32_t i = 0; origins && i < w.count; i++)
-        origins[i] = w.order[w.count - 1 - i].node;
     bool done = copy_part_names(out, builder->scene) && copy_rules(out, builder->scene, scratch);
     if (done && (out->rule_count || has_soft_nodes(out)))
         done = csg_softness_settle(out, scratch);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
-/* origins: of every node the builder's, or NULL. */
-static csgm_status seal_wrapped(csg_scene_builder *builder, csg_node_id root, csg_node_id *origins,
-                                csgm_scene **out)
+/* A sealed copy of what stands below root, without bounds. */
+static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_scene **out)
 {
     csg_memory *memory = &builder->context->memory;
     csgm_scene *scene = csg_memory_alloc(memory, sizeof *scene);
@@ -344,7 +340,7 @@ static csgm_status seal_wrapped(csg_scene_builder *builder, csg_node_id root, cs
     csg_arena_init(&scene->arena, memory);
     csg_arena scratch;
     csg_arena_init(&scratch, memory);
-    csgm_status status = seal(builder, root, &scratch, origins, scene);
+    csgm_status status = seal(builder, root, &scratch, scene);
     csg_arena_reset(&scratch);
     if (status == CSGM_OK)
         *out = scene;
@@ -353,48 +349,10 @@ static csgm_status seal_wrapped(csg_scene_builder *builder, csg_node_id root, cs
     return status;
 }
 
-/* Boxes of the builder's nodes below root. */
-static csgm_status find_boxes(csg_scene_builder *builder, csg_node_id root, csg_node_id *origins,
-                              csg_box *boxes)
-{
-    csgm_scene *scene;
-    csgm_status status = seal_wrapped(builder, root, origins, &scene);
-    if (status != CSGM_OK)
-        return status;
-    status = csg_bounds_fill(scene);
-    for (size_t i = 0; status == CSGM_OK && i < scene->node_count; i++)
-        boxes[origins[i]] = scene->bounds[i];
-    csg_scene_destroy(scene);
-    return status;
-}
-
-/* A sealed copy of what stands below root, without bounds. */
-static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_scene **out)
-{
-    if (!csg_faces_are_needed(builder->scene))
-        return seal_wrapped(builder, root, NULL, out);
-    csg_arena scratch;
-    csg_faces faces = {0};
-    csg_arena_init(&scratch, &builder->context->memory);
-    size_t nodes = builder->scene->node_count;
-    csg_box *boxes = csg_arena_calloc(&scratch, nodes, sizeof *boxes);
-    csg_node_id *origins = csg_arena_calloc(&scratch, nodes, sizeof *origins);
-    csgm_status status =
-        boxes && origins ? find_boxes(builder, root, origins, boxes) : CSGM_ERR_MEMORY;
-    if (status == CSGM_OK) {
-        status = csg_faces_add(builder, &root, boxes, &faces);
-        if (status == CSGM_OK)
-            status = seal_wrapped(builder, root, NULL, out);
-        csg_faces_remove(builder, &faces);
-    }
-    csg_arena_reset(&scratch);
-    return status;
-}
-
 static csgm_status measure(csgm_scene *scene)
 {
     csgm_status status = csg_bounds_fill(scene);
-    return status == CSGM_OK ? csg_faces_mark(scene) : status;
+    return status == CSGM_OK ? csg_fillet_planes_find(scene) : status;
 }
 
 csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csgm_scene **out)

@@ -1,0 +1,439 @@
+/* SPDX-License-Identifier: MIT
+ * Supporting half-spaces of a fillet's operands; see fillet_planes.h. Their normals are those of
+ * the axes of every leaf below and of the fillet's own frame: faces of boxes, caps of cylinders,
+ * slabs and extrusions are among them. How far the operands reach along a normal is found from the
+ * leaves up, by their support functions and by the boxes of all nodes: never too little. Sorted, so
+ * that the order of the operands does not matter.
+ *
+ * Faces of polyhedra and of outlines that are along no axis of theirs are not looked at.
+ */
+#include "scene/operators/fillet_planes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/operators/blend_kinds.h"
+#include "scene/primitives/primitive.h"
+
+enum {
+    AXES = 6,             /* both sides of each */
+    MOST_PLANES = 24,     /* of one fillet */
+    MOST_AXES = 8,        /* the same */
+    MOST_WORK = 20000000, /* nodes times normals; above it the frame's own axes only */
+};
+
+typedef struct search {
+    csgm_scene *scene;
+    csg_arena *scratch;
+    csg_node_id root, first; /* the fillet, and the first node below it */
+    /* per node from `first` on */
+    csg_affine *to_own; /* from the fillet's frame */
+    bool *is_placed;    /* to_own is known: no warp stands between */
+    csg_vec3 *normals;
+    double *reaches;
+    /* those found */
+    csg_vec3 *found;
+    size_t found_count, found_capacity;
+    csg_fillet_end axes[MOST_AXES];
+    size_t axis_count;
+    /* of all fillets so far */
+    csg_fillet_end *made;
+    double *reached;
+    size_t made_count, made_capacity, reached_count, reached_capacity;
+} search;
+
+/* ---- normals ---------------------------------------------------------------------------------- */
+
+static double snapped(double x)
+{
+    static const double ROOM = 1e-12;
+    return fabs(x) < ROOM ? 0 : fabs(x - 1) < ROOM ? 1 : fabs(x + 1) < ROOM ? -1 : x;
+}
+
+static bool add_normal(search *s, csg_vec3 n)
+{
+    void *found = s->found;
+    n = csg_vec3_normalize(n);
+    if (!csg_memory_reserve(s->scratch->memory, &found, &s->found_capacity, s->found_count + 2,
+                            sizeof *s->found))
+        return false;
+    s->found = found;
+    csg_vec3 made = csg_vec3_make(snapped(n.x), snapped(n.y), snapped(n.z));
+    s->found[s->found_count++] = made;
+    s->found[s->found_count++] = csg_vec3_make(0 - made.x, 0 - made.y, 0 - made.z);
+    return true;
+}
+
+static int compare_normals(const void *a, const void *b)
+{
+    const csg_vec3 *l = a, *r = b;
+    if (l->x != r->x)
+        return l->x < r->x ? -1 : 1;
+    if (l->y != r->y)
+        return l->y < r->y ? -1 : 1;
+    return (l->z > r->z) - (l->z < r->z);
+}
+
+static bool is_near(csg_vec3 a, csg_vec3 b)
+{
+    return csg_vec3_norm(csg_vec3_sub(a, b)) < 1e-9;
+}
+
+/* The frame's own axes first, then the others in their order. */
+static void sort_normals(search *s)
+{
+    size_t kept = AXES;
+    qsort(s->found + AXES, s->found_count - AXES, sizeof *s->found, compare_normals);
+    for (size_t i = AXES; i < s->found_count && kept < MOST_PLANES; i++) {
+        bool is_new = true;
+        for (size_t k = 0; k < kept && is_new; k++)
+            is_new = !is_near(s->found[k], s->found[i]);
+        if (is_new)
+            s->found[kept++] = s->found[i];
+    }
+    s->found_count = kept;
+}
+
+static bool add_leaf_normals(search *s, const csg_node *node, const csg_affine *to_own)
+{
+    if (node->kind == CSG_NODE_PLANE) {
+        const double *v = csg_scene_parameters(s->scene, node);
+        return add_normal(s, csg_affine_covector(to_own, csg_vec3_make(v[0], v[1], v[2])));
+    }
+    return add_normal(s, csg_affine_covector(to_own, csg_vec3_make(1, 0, 0))) &&
+           add_normal(s, csg_affine_covector(to_own, csg_vec3_make(0, 1, 0))) &&
+           add_normal(s, csg_affine_covector(to_own, csg_vec3_make(0, 0, 1)));
+}
+
+static bool find_normals(search *s)
+{
+    const csgm_scene *scene = s->scene;
+    const csg_affine identity = csg_affine_identity();
+    s->found_count = 0;
+    if (!add_leaf_normals(s, &scene->nodes[s->root], &identity))
+        return false;
+    s->to_own[s->root - s->first] = identity;
+    s->is_placed[s->root - s->first] = true;
+    for (size_t i = s->root + 1; i-- > s->first;) {
+        const csg_node *node = &scene->nodes[i];
+        csg_affine inner = s->to_own[i - s->first];
+        bool is_placed = s->is_placed[i - s->first] && node->kind != CSG_NODE_WARP;
+        if (node->kind == CSG_NODE_TRANSFORM)
+            inner = csg_affine_multiply(scene->inverses[node->payload], inner);
+        for (uint32_t k = 0; k < node->child_count; k++) {
+            size_t child = csg_scene_children(scene, node)[k] - s->first;
+            s->to_own[child] = inner;
+            s->is_placed[child] =
+                is_placed && !(node->kind == CSG_NODE_DIFFERENCE && k > 0); /* no face of it */
+        }
+        if (node->child_count == 0 && is_placed && csg_node_is_primitive(node->kind) &&
+            !add_leaf_normals(s, node, &inner))
+            return false;
+    }
+    sort_normals(s);
+    return true;
+}
+
+/* ---- axes --------------------------------------------------------------------------------------
+ */
+
+static double least_positive(double x, double otherwise)
+{
+    return x != 0 ? x : otherwise;
+}
+
+/* The axis of a leaf in the fillet's frame: the same for all leaves around it. False: it has none,
+ * or its frame makes it no circle. */
+static bool axis_of(const search *s, size_t i, csg_fillet_end *out, double *scale)
+{
+    const csg_node *node = &s->scene->nodes[i];
+    csg_affine place;
+    if (!s->is_placed[i - s->first] ||
+        (node->kind != CSG_NODE_FRUSTUM && node->kind != CSG_NODE_CIRCLE) ||
+        !csg_affine_invert(s->to_own[i - s->first], &place) || !csg_affine_is_similarity(&place))
+        return false;
+    csg_vec3 n = csg_vec3_make(place.m[0][2], place.m[1][2], place.m[2][2]);
+    csg_vec3 foot = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
+    *scale = csg_vec3_norm(n);
+    n = csg_vec3_normalize(n);
+    n = csg_vec3_make(snapped(n.x), snapped(n.y), snapped(n.z));
+    if (least_positive(n.x, least_positive(n.y, n.z)) < 0)
+        n = csg_vec3_make(0 - n.x, 0 - n.y, 0 - n.z);
+    foot = csg_vec3_sub(foot, csg_vec3_scale(n, csg_vec3_dot(n, foot)));
+    *out = (csg_fillet_end){n, foot, true};
+    return true;
+}
+
+static bool is_same_axis(const csg_fillet_end *a, const csg_fillet_end *b)
+{
+    return is_near(a->normal, b->normal) &&
+           csg_vec3_norm(csg_vec3_sub(a->foot, b->foot)) < 1e-9 * (1 + csg_vec3_norm(a->foot));
+}
+
+static int compare_axes(const csg_fillet_end *a, const csg_fillet_end *b)
+{
+    int by_normal = compare_normals(&a->normal, &b->normal);
+    return by_normal ? by_normal : compare_normals(&a->foot, &b->foot);
+}
+
+/* The first ones in an order that is not that of the operands. */
+static void find_axes(search *s)
+{
+    s->axis_count = 0;
+    for (size_t i = s->first; i < s->root; i++) {
+        csg_fillet_end made;
+        double scale;
+        size_t at = 0;
+        if (!axis_of(s, i, &made, &scale))
+            continue;
+        while (at < s->axis_count && !is_same_axis(&s->axes[at], &made))
+            at++;
+        if (at < s->axis_count) {
+            if (compare_axes(&made, &s->axes[at]) < 0)
+                s->axes[at] = made;
+            continue;
+        }
+        for (at = s->axis_count; at > 0 && compare_axes(&made, &s->axes[at - 1]) < 0; at--)
+            if (at < MOST_AXES)
+                s->axes[at] = s->axes[at - 1];
+        if (at < MOST_AXES)
+            s->axes[at] = made;
+        s->axis_count += s->axis_count < MOST_AXES;
+    }
+}
+
+/* ---- how far the operands reach --------------------------------------------------------------- */
+
+static double side(double n, double low, double high)
+{
+    return n == 0 ? 0 : n > 0 ? n * high : n * low;
+}
+
+static double box_reach(csg_box box, csg_vec3 n)
+{
+    return side(n.x, box.min.x, box.max.x) + side(n.y, box.min.y, box.max.y) +
+           side(n.z, box.min.z, box.max.z);
+}
+
+static bool is_extrusion(const csg_node *node)
+{
+    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
+}
+
+/* An extrusion reaches as far as its figure and its height do together. */
+static void hand_down(search *s, size_t i)
+{
+    const csgm_scene *scene = s->scene;
+    const csg_node *node = &scene->nodes[i];
+    csg_vec3 n = s->normals[i - s->first];
+    if (node->kind == CSG_NODE_TRANSFORM)
+        n = csg_affine_covector(&scene->transforms[node->payload], n);
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        csg_node_id child = csg_scene_children(scene, node)[k];
+        csg_vec3 inner = n;
+        if (is_extrusion(node))
+            inner = scene->nodes[child].flags & CSG_FLAG_FLAT ? csg_vec3_make(n.x, n.y, 0)
+                                                              : csg_vec3_make(0, 0, n.z);
+        s->normals[child - s->first] = inner;
+    }
+}
+
+/* Operators within all of their operands, or within the first. */
+static bool is_within(const csg_node *node)
+{
+    return node->blend <= CSG_BLEND_ORTHOGONAL;
+}
+
+static double children_reach(const search *s, const csg_node *node)
+{
+    const csg_node_id *children = csg_scene_children(s->scene, node);
+    bool meets = node->kind == CSG_NODE_INTERSECTION;
+    double reach = s->reaches[children[0] - s->first];
+    for (uint32_t k = 1; k < node->child_count && node->kind != CSG_NODE_DIFFERENCE; k++) {
+        double one = s->reaches[children[k] - s->first];
+        reach = is_extrusion(node) ? reach + one : meets ? fmin(reach, one) : fmax(reach, one);
+    }
+    return reach;
+}
+
+/* Of what stands below the fillet: INFINITY where it is not known. */
+static double node_reach(const search *s, size_t i)
+{
+    const csgm_scene *scene = s->scene;
+    const csg_node *node = &scene->nodes[i];
+    csg_vec3 n = s->normals[i - s->first];
+    if (csg_node_is_named_primitive(node->kind))
+        return csg_primitive_of(node->kind)->support(csg_scene_parameters(scene, node), n);
+    if (node->kind == CSG_NODE_TRANSFORM)
+        return children_reach(s, node) +
+               csg_vec3_dot(n, csg_vec3_make(scene->transforms[node->payload].t[0],
+                                             scene->transforms[node->payload].t[1],
+                                             scene->transforms[node->payload].t[2]));
+    if (node->kind == CSG_NODE_COLOR)
+        return children_reach(s, node);
+    if (!csg_node_is_operator(node->kind) || !is_within(node))
+        return INFINITY;
+    bool adds = node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
+    return adds ? INFINITY : children_reach(s, node);
+}
+
+static void find_reaches(search *s, csg_vec3 n)
+{
+    s->normals[s->root - s->first] = n;
+    for (size_t i = s->root + 1; i-- > s->first;)
+        hand_down(s, i);
+    for (size_t i = s->first; i < s->root; i++) {
+        double box = box_reach(s->scene->bounds[i], s->normals[i - s->first]);
+        double reach = node_reach(s, i);
+        s->reaches[i - s->first] = reach < box ? reach : box; /* a NaN is no bound */
+    }
+}
+
+/* ---- how far they lie off an axis --------------------------------------------------------------
+ */
+
+/* Of a box in a node's own frame: its farthest corner. */
+static double corner_off(const search *s, size_t i, const csg_fillet_end *axis)
+{
+    csg_box box = s->scene->bounds[i];
+    csg_affine place;
+    csg_vec3 away;
+    double most = 0;
+    if (!s->is_placed[i - s->first] || !csg_box_is_finite(box) ||
+        !csg_affine_invert(s->to_own[i - s->first], &place))
+        return INFINITY;
+    for (int k = 0; k < 8; k++) {
+        csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                           k & 4 ? box.max.z : box.min.z};
+        most = fmax(most, csg_fillet_towards(axis, csg_affine_point(&place, corner), &away));
+    }
+    return most;
+}
+
+static double node_off(const search *s, size_t i, const csg_fillet_end *axis)
+{
+    const csg_node *node = &s->scene->nodes[i];
+    csg_fillet_end own;
+    double scale;
+    if (axis_of(s, i, &own, &scale) && is_same_axis(&own, axis)) {
+        const double *v = csg_scene_parameters(s->scene, node);
+        return scale * (node->kind == CSG_NODE_CIRCLE ? v[0] : fmax(v[0], v[1]) + v[3]);
+    }
+    if (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
+        return children_reach(s, node);
+    if (!csg_node_is_operator(node->kind) || !is_within(node) || is_extrusion(node))
+        return is_extrusion(node)
+                   ? fmin(s->reaches[csg_scene_children(s->scene, node)[0] - s->first],
+                          s->reaches[csg_scene_children(s->scene, node)[1] - s->first])
+                   : INFINITY;
+    bool adds = node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
+    return adds ? INFINITY : children_reach(s, node);
+}
+
+static void find_off(search *s, const csg_fillet_end *axis)
+{
+    for (size_t i = s->first; i < s->root; i++)
+        s->reaches[i - s->first] = fmin(corner_off(s, i, axis), node_off(s, i, axis));
+}
+
+/* ---- all of them ------------------------------------------------------------------------------ */
+
+/* Nodes below stand right before it. */
+static csg_node_id first_below(const csgm_scene *scene, csg_node_id id)
+{
+    while (scene->nodes[id].child_count)
+        id = csg_scene_children(scene, &scene->nodes[id])[0];
+    return id;
+}
+
+/* The planes of a fillet, behind those found before. */
+static bool find_planes(search *s)
+{
+    csgm_scene *scene = s->scene;
+    const csg_node *node = &scene->nodes[s->root];
+    const csg_node_id *children = csg_scene_children(scene, node);
+    size_t nodes = s->root + 1 - s->first;
+    csg_arena_mark mark = csg_arena_get_mark(s->scratch);
+    s->to_own = csg_arena_calloc(s->scratch, nodes, sizeof *s->to_own);
+    s->is_placed = csg_arena_calloc(s->scratch, nodes, sizeof *s->is_placed);
+    s->normals = csg_arena_calloc(s->scratch, nodes, sizeof *s->normals);
+    s->reaches = csg_arena_calloc(s->scratch, nodes, sizeof *s->reaches);
+    if (!s->to_own || !s->is_placed || !s->normals || !s->reaches || !find_normals(s))
+        return false;
+    if (nodes * s->found_count > MOST_WORK)
+        s->found_count = AXES;
+    find_axes(s);
+    if (nodes * s->axis_count > MOST_WORK)
+        s->axis_count = 0;
+    size_t count = s->found_count + s->axis_count;
+    void *made = s->made, *reached = s->reached;
+    if (!csg_memory_reserve(s->scratch->memory, &made, &s->made_capacity, s->made_count + count,
+                            sizeof *s->made))
+        return false;
+    s->made = made;
+    if (!csg_memory_reserve(s->scratch->memory, &reached, &s->reached_capacity,
+                            s->reached_count + count * node->child_count, sizeof *s->reached))
+        return false;
+    s->reached = reached;
+    for (size_t i = 0; i < count; i++) {
+        bool is_round = i >= s->found_count;
+        if (is_round) {
+            s->made[s->made_count + i] = s->axes[i - s->found_count];
+            find_off(s, &s->axes[i - s->found_count]);
+        } else {
+            s->made[s->made_count + i] = (csg_fillet_end){.normal = s->found[i]};
+            find_reaches(s, s->found[i]);
+        }
+        for (uint32_t k = 0; k < node->child_count; k++)
+            s->reached[s->reached_count + k * count + i] = s->reaches[children[k] - s->first];
+    }
+    double *v = scene->parameters + node->payload;
+    v[CSG_FILLET_FIRST_NORMAL] = (double)s->made_count;
+    v[CSG_FILLET_FIRST_REACH] = (double)s->reached_count;
+    v[CSG_FILLET_PLANES] = (double)count;
+    s->made_count += count;
+    s->reached_count += count * node->child_count;
+    csg_arena_release_to(s->scratch, mark);
+    return true;
+}
+
+static bool has_planes(const csg_node *node)
+{
+    return node->kind == CSG_NODE_UNION && csg_blend_is_fillet(node->blend);
+}
+
+static bool keep(search *s)
+{
+    csgm_scene *scene = s->scene;
+    if (!s->made_count)
+        return true;
+    scene->ends = csg_arena_calloc(&scene->arena, s->made_count, sizeof *s->made);
+    scene->reaches = csg_arena_calloc(&scene->arena, s->reached_count, sizeof *s->reached);
+    if (!scene->ends || !scene->reaches)
+        return false;
+    memcpy(scene->ends, s->made, s->made_count * sizeof *s->made);
+    memcpy(scene->reaches, s->reached, s->reached_count * sizeof *s->reached);
+    return true;
+}
+
+csgm_status csg_fillet_planes_find(csgm_scene *scene)
+{
+    csg_arena scratch;
+    csg_memory *memory = &scene->context->memory;
+    csg_arena_init(&scratch, memory);
+    search s = {.scene = scene, .scratch = &scratch};
+    bool done = true;
+    for (size_t i = 0; done && i < scene->node_count; i++) {
+        if (!has_planes(&scene->nodes[i]))
+            continue;
+        s.root = (csg_node_id)i;
+        s.first = first_below(scene, s.root);
+        done = find_planes(&s);
+    }
+    done = done && keep(&s);
+    csg_memory_release(memory, s.found, s.found_capacity * sizeof *s.found);
+    csg_memory_release(memory, s.made, s.made_capacity * sizeof *s.made);
+    csg_memory_release(memory, s.reached, s.reached_capacity * sizeof *s.reached);
+    csg_arena_reset(&scratch);
+    return done ? CSGM_OK : CSGM_ERR_MEMORY;
+}
