@@ -213,7 +213,7 @@ void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *c
             s->pierced = is_on_edge && is_pierced(cell, edge);
             s->along_edge = is_on_edge && !s->pierced;
             s->alone = l.in_face[s->face] == 1;
-            s->crease = s->pierced ? (uint8_t)((edge + s->face) / 2) : s->face;
+            s->crease = (uint8_t)(s->pierced ? (edge + s->face) / 2 : s->face);
             at = s->to;
         }
         if (n - first == 2 && polygons->side[first].along_edge)
