@@ -71,3 +71,11 @@ csgm_status csg_mesh_why_stopped(csg_mesh_watch *w)
                    "meshing took longer than the limit of %g s", w->context->limits.timeout_s);
     return CSGM_ERR_LIMIT;
 }
+
+csgm_status csg_mesh_report_open(csg_mesh_watch *w)
+{
+    csg_diag_plain(&w->context->diags, CSG_DIAG_OPEN_MESH, NULL,
+                   "please report this with the scene; -r N makes the mesh in another way",
+                   "the mesh that was made is not closed, which is a bug in csgmesh");
+    return CSGM_ERR_INTERNAL;
+}

@@ -515,10 +515,15 @@ static csgm_status go(work *w, bool (*visit)(work *, uint32_t, const csg_shell *
     w->amount = amount;
     bool done = csg_pool_run(w->x->context->pool, w->item_count, visit_item, report, w);
     if (!done)
-        return atomic_load(&w->broken) ? CSGM_ERR_INTERNAL : csg_mesh_why_stopped(w->x->watch);
+        return atomic_load(&w->broken) ? csg_mesh_report_open(w->x->watch)
+                                       : csg_mesh_why_stopped(w->x->watch);
     if (!join_items(w))
         return csg_context_no_memory(w->x->context);
-    return w->count < OWN ? CSGM_OK : CSGM_ERR_LIMIT;
+    if (w->count < OWN)
+        return CSGM_OK;
+    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower the quality",
+                   "the mesh would have more than %u vertices", OWN - 1);
+    return CSGM_ERR_LIMIT;
 }
 
 static csgm_status begin(work *w, csg_extraction *x)

@@ -192,7 +192,7 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching 
     csg_corners_result result = csg_corners_make(&r->corners, r->memory, mesh->indices,
                                                  mesh->triangle_count, mesh->vertex_count);
     if (result == CSG_CORNERS_NOT_CLOSED)
-        return CSGM_ERR_INTERNAL;
+        return csg_mesh_report_open(watch);
     bool done = result == CSG_CORNERS_MADE && take_arrays(r) &&
                 csg_probe_make(&r->probe, marching, r->memory);
     if (done) {
