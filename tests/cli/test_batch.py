@@ -149,6 +149,7 @@ class Manifests(BatchTest):
                 ([{"scene": "ball.txt", "draco": 5}], "jobs[0]", "true or false"),
                 ([{"scene": "ball.txt", "defines": 5}], "jobs[0]", "object"),
                 ([{"scene": "no*.txt"}], "jobs[0]", "no scene matches"),
+                ([{"scene": "ball.txt", "root": ["out"]}], "jobs[0]", '"root"'),
                 ([5], "jobs[0]", "no job"), ({"jobs": []}, "lists no jobs"), ({}, "lists no jobs")):
             self.manifest(content)
             result = self.run_in("batch", "parts.json", "-d", "out")
@@ -167,7 +168,7 @@ class Manifests(BatchTest):
             rows = re.findall(r'OPTION\(\w+,\s*[^,]+,\s*"([^"]+)",\s*(\w+),\s*(?:"[^"]*"|NULL),\s*'
                               r"([A-Z_| ]+),", file.read())
         of_batches = {"format", "parameter-file", "parameter-set", "quiet", "progress", "color",
-                      "diagnostics", "threads", "help", "version", "json", "define", "include", "trace"}
+                      "diagnostics", "threads", "help", "version", "json", "define", "include", "trace", "root"}
         wanted = {name.replace("-", "_") for name, _, commands in rows
                   if ("ANY" in commands or {"MESH", "BATCH"} <= set(commands.split(" | ")))
                   and name not in of_batches}

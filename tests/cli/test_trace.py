@@ -173,7 +173,7 @@ class Trouble(cli.CliTest):
         for arguments in (["a.txt", "-o", "x.ply", "--trace", "x.ply"], ["a.txt", "-o", "x.ply", "--stats", "--trace", "-"],
                           ["a.txt", "-o", "x.ply", "-M", "x.d", "--trace", "x.d"],
                           ["diff", "a.txt", "a.txt", "--json", "-", "--trace", "-"]):
-            self.assert_refused(self.run_in(*arguments), 2, "and --trace both write to")
+            self.assert_refused(self.run_in(*arguments), 2, "--trace", "both write to")
         self.assert_files("a.txt")
 
     def test_commands_without(self):

@@ -397,6 +397,8 @@ csgm_status csg_bricks_refine(csg_bricks *b)
         status = !done ? csg_context_no_memory(b->context)
                  : any ? divide_all(b, wanted.number, wanted.count)
                        : CSGM_OK;
+        if (status == CSGM_OK && b->count > b->options.most)
+            status = CSGM_ERR_LIMIT;
     }
     csg_memory_release(&b->context->memory, wanted.number, wanted.capacity * sizeof *wanted.number);
     csg_memory_release(&b->context->memory, unbalanced.number,

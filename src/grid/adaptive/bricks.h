@@ -50,6 +50,7 @@ typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bric
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */
     uint32_t coarse; /* the level of the largest leaves */
+    size_t most;     /* bricks: beyond them refinement ends */
     csg_brick_judge *judge;
     void *judge_user;
     void (*progress)(void *user, double fraction); /* calling thread; may be NULL */
@@ -87,8 +88,9 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
 void csg_bricks_destroy(csg_bricks *bricks);
 
 /* Divides what the judge wants, then what the balance wants, until nobody wants anything. Bricks
- * that are `wanted` already are divided, too. CSGM_OK, CSGM_CANCELLED or
- * CSGM_ERR_MEMORY (reported). */
+ * that are `wanted` already are divided, too. CSGM_OK; CSGM_CANCELLED, or
+ * CSGM_ERR_LIMIT where there are too many, neither of them reported; or CSGM_ERR_MEMORY
+ * (reported). */
 csgm_status csg_bricks_refine(csg_bricks *bricks);
 
 /* The brick at a place of a level, CSG_BRICK_NONE where there is none. */

@@ -20,6 +20,9 @@ enum { FIRST_CELLS = 24, LEAST_LEVELS = 3 };
 /* Cells along the longest side of the lattice that looks for what is missed. */
 enum { COMPARED_CELLS = 128 };
 static const double SHARE_OF_CELLS = 0.8;
+/* Bricks that a tolerance may take: what needs more of them gets twice the tolerance. A sheet that
+ * is hardly thicker than the tolerance and lies across the cells takes the square of its length. */
+enum { MOST_BRICKS = 1 << 19 };
 
 typedef struct adaptive {
     csg_mesh_input input;
@@ -31,6 +34,7 @@ typedef struct adaptive {
     csg_extraction extraction;
     csg_mesh_goal *goal;
     double refined_s;
+    bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
 
 /* ---- the lattice -------------------------------------------------------------------------------
@@ -187,6 +191,7 @@ static csgm_status walk(adaptive *a)
     if (status != CSGM_OK)
         return status;
     csg_bricks_options options = {.prune = a->input.options->prune,
+                                  .most = MOST_BRICKS,
                                   .judge = csg_judge_brick,
                                   .judge_user = &a->judge,
                                   .progress = csg_mesh_report_progress,
@@ -204,6 +209,7 @@ static csgm_status walk(adaptive *a)
                                      .shift = a->workers.marching.shift,
                                      .colors = csg_mesh_gets_colors(&a->input)};
     status = refine(a);
+    a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
     a->refined_s = csg_clock_now_s();
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
 }
@@ -282,11 +288,12 @@ static csgm_status make_mesh(adaptive *a)
     return status;
 }
 
-csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *field,
-                                    const csgm_mesh_options *options, const csg_mesh_share *share,
-                                    csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
+/* With the tolerance of the goal; *is_too_fine: it takes too many bricks, nothing was made. */
+static csgm_status build_within(csgm_context *context, const csgm_field *field,
+                                const csgm_mesh_options *options, const csg_mesh_share *share,
+                                csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats,
+                                bool *is_too_fine)
 {
-    CSG_ZONE(context, "adaptive build");
     csgm_mesh_options base = *options;
     base.resolution = COMPARED_CELLS;
     base.features = CSGM_FEATURES_SMOOTH;
@@ -305,10 +312,32 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
     if (status == CSGM_OK && stats)
         fill_stats(&a, stats);
     csgm_mesh *mesh = a.extraction.mesh;
+    *is_too_fine = a.is_too_fine;
     release(&a);
     if (status == CSGM_OK)
         *out = mesh;
     else
         csg_mesh_destroy(mesh);
+    return status;
+}
+
+csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *field,
+                                    const csgm_mesh_options *options, const csg_mesh_share *share,
+                                    csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    CSG_ZONE(context, "adaptive build");
+    const double asked = goal->error;
+    bool is_too_fine;
+    csgm_status status =
+        build_within(context, field, options, share, goal, out, stats, &is_too_fine);
+    while (is_too_fine) { /* ends: the largest cells are few */
+        goal->error *= 2;
+        status = build_within(context, field, options, share, goal, out, stats, &is_too_fine);
+    }
+    if (status == CSGM_OK && goal->error > asked)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
+                       "mesh thin or intricate parts by themselves, or give -r",
+                       "a tolerance of %g would take too many cells: the mesh is within %g", asked,
+                       goal->error);
     return status;
 }

@@ -30,11 +30,11 @@ enum { ROWS = sizeof rows / sizeof *rows };
 static bool is_of_batch(cli_option_id id)
 {
     static const cli_option_id ids[] = {
-        CLI_OPTION_format,       CLI_OPTION_parameter_file, CLI_OPTION_parameter_set,
-        CLI_OPTION_quiet,        CLI_OPTION_progress,       CLI_OPTION_color,
-        CLI_OPTION_diagnostics,  CLI_OPTION_threads,        CLI_OPTION_help,
-        CLI_OPTION_version,      CLI_OPTION_json,           CLI_OPTION_defines,
-        CLI_OPTION_include_dirs, CLI_OPTION_trace,
+        CLI_OPTION_format,      CLI_OPTION_parameter_file, CLI_OPTION_parameter_set,
+        CLI_OPTION_quiet,       CLI_OPTION_progress,       CLI_OPTION_color,
+        CLI_OPTION_diagnostics, CLI_OPTION_threads,        CLI_OPTION_roots,
+        CLI_OPTION_help,        CLI_OPTION_version,        CLI_OPTION_json,
+        CLI_OPTION_defines,     CLI_OPTION_include_dirs,   CLI_OPTION_trace,
     };
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
         if (ids[i] == id)

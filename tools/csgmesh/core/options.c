@@ -529,5 +529,6 @@ void cli_options_release(cli_options *options)
     free(options->include_dirs.items);
     free(options->diff_ignore.items);
     free(options->points.items);
+    free(options->roots.items);
     free(options->operands.items);
 }
