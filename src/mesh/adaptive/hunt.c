@@ -157,6 +157,12 @@ typedef struct crossings {
     float from[3][PADDED], to[3][PADDED], before[PADDED], after[PADDED];
 } crossings;
 
+/* Beyond the band only signs are the same for a tape and a shorter one. */
+static float within_band(const hunt *h, float f)
+{
+    return f > h->band ? h->band : f < -h->band ? -h->band : f;
+}
+
 static void collect_crossings(const hunt *h, crossings *c)
 {
     const float *end[3] = {h->x, h->y, h->z};
@@ -169,7 +175,7 @@ static void collect_crossings(const hunt *h, crossings *c)
             c->to[axis][c->count] = end[axis][i];
         }
         c->before[c->count] = h->before[i];
-        c->after[c->count++] = h->f[i];
+        c->after[c->count++] = within_band(h, h->f[i]);
     }
 }
 
@@ -189,6 +195,7 @@ static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, f
     p->kernel->values(p->tape, h->x, h->y, h->z, (size_t)n, h->f, p->scratch, p->scratch_floats);
     p->evaluations += (uint64_t)n;
     for (int i = 0; i < n; i++) {
+        h->f[i] = within_band(h, h->f[i]);
         if (fabsf(h->f[i]) <= near_enough) {
             unsigned cell[3];
             cell_of(h, i, cell);

@@ -179,7 +179,7 @@ static bool judge_places(const csg_bricks *b, const csg_brick *brick, const batc
             return true;
     }
     int on = first + ON;
-    if (is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] || out->count == CSG_HUNT_MOST ||
+    if (is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] || out->count == CSG_HUNT_LEAF_POINTS ||
         (at->f[first + BELOW] >= 0) == (at->f[first + ABOVE] >= 0))
         return false;
     const float place[3] = {at->x[on], at->y[on], at->z[on]};
