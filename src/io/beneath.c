@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #ifdef __linux__
@@ -20,7 +21,7 @@
 static int open_by_kernel(int folder, const char *name)
 {
 #ifdef SYS_openat2
-    struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY,
+    struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK,
                            .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
     return (int)syscall(SYS_openat2, folder, name, &how, sizeof how);
 #else
@@ -50,7 +51,8 @@ static int open_by_names(int folder, const char *path)
         else {
             memcpy(name, path, length);
             name[length] = '\0';
-            below = openat(at, name, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NOFOLLOW | flags);
+            below =
+                openat(at, name, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK | O_NOFOLLOW | flags);
         }
         int error = errno;
         close(at);
@@ -60,6 +62,17 @@ static int open_by_names(int folder, const char *path)
             return below;
         at = below;
     }
+    return -1;
+}
+
+/* Pipes and devices are closed: reading one may never end (so none is waited for when opened). */
+static int keep_file(int file)
+{
+    struct stat about;
+    if (fstat(file, &about) == 0 && (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)))
+        return file;
+    close(file);
+    errno = EINVAL;
     return -1;
 }
 
@@ -74,5 +87,5 @@ int csg_open_beneath(const char *folder, const char *name)
     int error = errno;
     close(at);
     errno = error;
-    return file;
+    return file < 0 ? file : keep_file(file);
 }

@@ -176,6 +176,14 @@ class Trouble(cli.CliTest):
             self.assert_refused(self.run_in(*arguments), 2, "--trace", "both write to")
         self.assert_files("a.txt")
 
+    def test_no_result_is_lost_to_a_wrong_command(self):
+        self.write("a.txt", cli.BALL)
+        self.write("x.ply", "what was there")
+        self.assertNotEqual(self.run_in("a.txt", "-o", "x.ply", "--trace", "x.ply", "-r", "5", "-s", "1").returncode, 0)
+        self.assertNotEqual(self.run_in("a.txt", "--trace", "a.txt").returncode, 0)
+        self.assertEqual(self.read("x.ply"), b"what was there")
+        self.assertEqual(self.read("a.txt"), cli.BALL.encode())
+
     def test_commands_without(self):
         self.write("a.txt", cli.BALL)
         self.assert_refused(self.run_in("check", "a.txt", "--trace", "t.json"), 2, "--trace")

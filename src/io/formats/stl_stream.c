@@ -12,6 +12,8 @@ static bool is_binary(const csgm_write_options *options)
 static csgm_status put_head(csg_stream_view *s)
 {
     uint8_t head[CSG_STL_HEAD_BYTES];
+    if (csg_view_is_offset(&s->mesh))
+        return CSGM_ERR_INTERNAL; /* corners would be written without the mesh's origin */
     csgm_status status = csg_stl_check(s->context, s->path, &s->mesh);
     csg_stl_pack_head(head, s->mesh.triangle_count);
     if (status == CSGM_OK)

@@ -9,6 +9,7 @@
 #include "core/cli.h"
 #include "core/interrupt.h"
 #include "core/roots.h"
+#include "core/sources.h"
 #include "core/trace.h"
 
 static const struct {
@@ -64,6 +65,8 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
     if (app->options.help)
         return help(app, is_named ? commands[command].name : NULL);
     int status = cli_roots_confine(app);
+    if (status == CLI_DONE && app->options.trace) /* it is written whatever the command says */
+        status = cli_sources_guard(app);
     if (status == CLI_DONE)
         status = cli_trace_begin(app);
     if (status == CLI_DONE)
