@@ -175,7 +175,7 @@ static bool is_in_lattice(const csg_bricks *b, uint32_t level, const uint32_t at
 static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *parent, int octant)
 {
     worker *self = &b->workers[worker_index];
-    csg_brick child = {.level = (uint8_t)(parent->level + 1)};
+    csg_brick child = {.level = (uint8_t)(parent->level + 1), .searched = parent->searched};
     for (int axis = 0; axis < 3; axis++)
         child.at[axis] = 2 * parent->at[axis] + (uint32_t)(octant >> axis & 1);
     if (!is_in_lattice(b, child.level, child.at))

@@ -24,7 +24,9 @@ static const double DEPTH = 0.05, CREASE_DEPTH = 0.6;
 /* Towards a place of the surface, at most. */
 enum { STEPS = 24 };
 
+/* Points half way between, then those of them that are near the surface. */
 typedef struct hunt {
+    int count;
     float line[3][HALVES];
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
     float from[3][PADDED], before[PADDED]; /* where a step began, and the value there */
@@ -53,7 +55,7 @@ static brick_kind kind_of(const csg_bricks *b, const csg_brick *brick)
     return cone.is_crease ? ONE_CREASE : ONE_SHEET;
 }
 
-static void place_points(hunt *h, const csg_bricks *b, const csg_brick *brick)
+static void place_lines(hunt *h, const csg_bricks *b, const csg_brick *brick)
 {
     for (int axis = 0; axis < 3; axis++)
         for (uint32_t i = 0; i < HALVES; i++) {
@@ -61,11 +63,64 @@ static void place_points(hunt *h, const csg_bricks *b, const csg_brick *brick)
             h->line[axis][i] =
                 i % 2 ? 0.5f * (at + csg_brick_coordinate(b, brick, axis, i / 2 + 1)) : at;
         }
-    for (int i = 0; i < PADDED; i++) {
-        int p = i < POINTS ? i : 0;
-        h->x[i] = h->line[0][p % HALVES];
-        h->y[i] = h->line[1][p / HALVES % HALVES];
-        h->z[i] = h->line[2][p / (HALVES * HALVES)];
+}
+
+static void place_point(hunt *h, int i, int point)
+{
+    h->x[i] = h->line[0][point % HALVES];
+    h->y[i] = h->line[1][point / HALVES % HALVES];
+    h->z[i] = h->line[2][point / (HALVES * HALVES)];
+}
+
+/* The place of a point half way between among the brick's own; -1: it is none of them. */
+static int own_point(int point)
+{
+    const int half[3] = {point % HALVES, point / HALVES % HALVES, point / (HALVES * HALVES)};
+    if (half[0] % 2 || half[1] % 2 || half[2] % 2)
+        return -1;
+    return half[0] / 2 + (E + 1) * (half[1] / 2 + (E + 1) * (half[2] / 2));
+}
+
+static void fill_lanes(hunt *h)
+{
+    for (int i = h->count; i % CSG_LANES; i++)
+        h->x[i] = h->x[0], h->y[i] = h->y[0], h->z[i] = h->z[0];
+}
+
+static void ask(csg_sheet_probe *p, hunt *h)
+{
+    fill_lanes(h);
+    p->kernel->values(p->tape, h->x, h->y, h->z, (size_t)h->count, h->f, p->scratch,
+                      p->scratch_floats);
+    p->evaluations += (uint64_t)h->count;
+}
+
+/* Values at all points: at the brick's own they are known. */
+static void ask_between(csg_sheet_probe *p, hunt *h, const float *own)
+{
+    h->count = 0;
+    for (int point = 0; point < POINTS; point++)
+        if (own_point(point) < 0)
+            place_point(h, h->count++, point);
+    ask(p, h);
+    for (int point = POINTS - 1, from = h->count; point >= 0; point--)
+        h->f[point] = own_point(point) < 0 ? h->f[--from] : own[own_point(point)];
+    h->count = POINTS;
+}
+
+/* Keeps the points whose cube, half a cell wide, the surface may come into: there is none in the
+ * cubes of the others. */
+static void keep_near(hunt *h, const csg_bricks *b, const csg_brick *brick)
+{
+    double cell = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
+    float reach = (float)(0.25 * sqrt(3.0) * (1 + 0x1p-10) * cell *
+                          (double)b->field->tape.lipschitz);
+    h->count = 0;
+    for (int point = 0; point < POINTS; point++) {
+        if (!(fabsf(h->f[point]) < reach))
+            continue;
+        place_point(h, h->count, point);
+        h->f[h->count++] = h->f[point];
     }
 }
 
@@ -105,16 +160,10 @@ static bool differs_between(const hunt *h, const csg_brick *brick)
     return false;
 }
 
-static void ask(csg_sheet_probe *p, hunt *h)
-{
-    p->kernel->values(p->tape, h->x, h->y, h->z, POINTS, h->f, p->scratch, p->scratch_floats);
-    p->evaluations += POINTS;
-}
-
 /* Moves every point across the surface that it is near, as far as that lies in the brick. */
 static void step_across(hunt *h)
 {
-    for (int i = 0; i < PADDED; i++) {
+    for (int i = 0; i < h->count; i++) {
         float square = h->g[0][i] * h->g[0][i] + h->g[1][i] * h->g[1][i] + h->g[2][i] * h->g[2][i];
         bool known = square > 1e-12f && fabsf(h->f[i]) <= h->band;
         float step = known ? -BEYOND * h->f[i] / square : 0;
@@ -167,7 +216,7 @@ static void collect_crossings(const hunt *h, crossings *c)
 {
     const float *end[3] = {h->x, h->y, h->z};
     c->count = 0;
-    for (int i = 0; i < POINTS; i++) {
+    for (int i = 0; i < h->count; i++) {
         if ((h->before[i] >= 0) == (h->f[i] >= 0))
             continue;
         for (int axis = 0; axis < 3; axis++) {
@@ -216,8 +265,22 @@ static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, f
     c->count = kept;
 }
 
+/* Whether a step across the surface ends in what its cell does not show. */
+static bool differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *brick)
+{
+    fill_lanes(h);
+    p->kernel->gradients(p->tape, h->x, h->y, h->z, (size_t)h->count, h->g[0], h->g[1], h->g[2],
+                         p->scratch, p->scratch_floats);
+    step_across(h);
+    ask(p, h);
+    for (int i = 0; i < h->count; i++)
+        if (differs_in_cell(h, brick, i))
+            return true;
+    return false;
+}
+
 bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
-              csg_hunted *out)
+              const float *f, csg_hunted *out)
 {
     hunt h;
     out->count = 0;
@@ -228,19 +291,13 @@ bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, d
                       (double)b->field->tape.lipschitz);
     float near_enough = (float)(DEPTH * tolerance * (double)b->field->tape.lipschitz);
     h.band = csg_bricks_band(b, brick->level);
-    place_points(&h, b, brick);
-    ask(p, &h);
+    place_lines(&h, b, brick);
+    ask_between(p, &h, f);
     if (differs_between(&h, brick))
         return true;
-    p->kernel->gradients(p->tape, h.x, h.y, h.z, POINTS, h.g[0], h.g[1], h.g[2], p->scratch,
-                         p->scratch_floats);
-    for (int i = POINTS; i < PADDED; i++)
-        h.f[i] = h.g[0][i] = h.g[1][i] = h.g[2][i] = 0;
-    step_across(&h);
-    ask(p, &h);
-    for (int i = 0; i < POINTS; i++)
-        if (differs_in_cell(&h, brick, i))
-            return true;
+    keep_near(&h, b, brick);
+    if (h.count && differs_across(p, &h, brick))
+        return true;
     if (kind == ANYTHING && csg_hunt_leaves(p, b, brick, tolerance, out))
         return true;
     crossings c;

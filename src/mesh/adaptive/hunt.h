@@ -28,9 +28,9 @@ typedef struct csg_hunted {
 } csg_hunted;
 
 /* True: something lies in a cell whose corners do not show it, and deeper than a part of the
- * tolerance. */
+ * tolerance. f: values at the brick's points. */
 bool csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
-              double tolerance, csg_hunted *out);
+              double tolerance, const float *f, csg_hunted *out);
 
 /* The same of what single leaves put there (hunt_leaves.c); adds places to `out`. */
 bool csg_hunt_leaves(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,

@@ -539,10 +539,6 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     csg_pierce(&w.probe, b, brick, f, &room->pierced);
     brick->pierced = room->pierced.edges;
     cross_pierced(brick);
-    if (!is_finest && csg_hunt(&w.probe, b, brick, judge->tolerance, &hunted)) {
-        room->evaluations += w.probe.evaluations;
-        return true;
-    }
     brick->flat = brick->several = 0;
     collect_edges(b, brick, room);
     memset(room->face, FACE_UNKNOWN, sizeof room->face);
@@ -563,6 +559,12 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
             brick->several |= (uint64_t)1 << cell;
         wants = !is_good(&w, at, &place, &polygons) || wants;
     }
+    /* Where nothing is hidden in the cube that this is an octant of, nothing is here; such a cube
+     * is divided for the balance only. */
+    if (!wants && !is_finest && !brick->searched) {
+        wants = csg_hunt(&w.probe, b, brick, judge->tolerance, f, &hunted) || !has_all(&w);
+        brick->searched = !wants;
+    }
     room->evaluations += w.probe.evaluations;
-    return wants || !has_all(&w);
+    return wants;
 }

@@ -13,6 +13,8 @@ enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES };
 /* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
  * differ by 12 in all may go round a tip. */
 static const double ONE_SHEET = 0.9962, ONE_POLYGON = 0.978;
+/* Radians: two sheets whose angle would fall below 2 degrees where they meet are one. */
+static const double LEAST_TURN = 0.035;
 /* Of a cell: how far from its sides a place is kept; how far off the sheets are looked at; what |f|
  * may be there. */
 static const double MARGIN = 0x1p-9, ZERO = 2e-3;
@@ -114,6 +116,7 @@ static bool meet(const plane *planes, int count, csg_vec3 *x)
 typedef struct sheets {
     int count;
     plane plane[MOST];
+    csg_vec3 from[MOST]; /* where the plane was found */
     csg_vec3 toward[MOST];
 } sheets;
 
@@ -149,9 +152,32 @@ static void look(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec
     for (int k = 0; k < s->count; k++) {
         if (flat_axis >= 0)
             *component(&g[k], flat_axis) = 0;
-        if (is_own(s, k, g[k]))
-            s->plane[k] = csg_plane_of(q[k], f[k], g[k]);
+        if (!is_own(s, k, g[k]))
+            continue;
+        s->plane[k] = csg_plane_of(q[k], f[k], g[k]);
+        s->from[k] = q[k];
     }
+}
+
+/* By how much the gradients of two sheets differ, in radians, and how far apart they were found. */
+typedef struct turn {
+    double angle, distance;
+} turn;
+
+static turn turn_of(const sheets *s)
+{
+    double cosine = csg_gradients_cosine(s->plane[0].g, s->plane[1].g);
+    return (turn){acos(fmin(fmax(cosine, -1), 1)),
+                  csg_vec3_norm(csg_vec3_sub(s->from[1], s->from[0]))};
+}
+
+/* Whether two sheets are one that is curved: the angle falls with the distance, and nothing of it
+ * would be left where they meet. */
+static bool is_curved_only(turn before, turn now)
+{
+    double nearer = before.distance - now.distance;
+    return nearer > 0.1 * before.distance &&
+           now.angle - (before.angle - now.angle) * now.distance / nearer < LEAST_TURN;
 }
 
 /* Moves `at` to where the sheets meet. False: they do not, near the box. */
@@ -160,11 +186,14 @@ static bool come_closer(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, 
 {
     if (!meet(s->plane, s->count, at))
         return false;
+    turn first = turn_of(s);
     for (int step = 0; step < STEPS; step++) {
         csg_vec3 before = *at;
         if (!(way_out(box, *at) < box->cell))
             return false;
         look(p, box, s, *at, OFF[step], flat_axis);
+        if (flat_axis >= 0 && is_curved_only(first, turn_of(s)))
+            return false;
         if (!meet(s->plane, s->count, at))
             return false;
         csg_vec3 moved = csg_vec3_sub(*at, before);
@@ -194,7 +223,7 @@ bool csg_sheets_meet_in_face(csg_sheet_probe *p, const csg_cell_box *face,
         csg_vec3 g = ends[k].gradient;
         *component(&g, axis) = 0;
         s.plane[k] = csg_plane_of(ends[k].at, 0, g);
-        s.toward[k] = ends[k].at;
+        s.from[k] = s.toward[k] = ends[k].at;
     }
     double slope = csg_vec3_norm(ends[0].gradient);
     if (csg_gradients_cosine(s.plane[0].g, s.plane[1].g) > ONE_SHEET)
