@@ -113,8 +113,8 @@ static void ask_between(csg_sheet_probe *p, hunt *h, const float *own)
 static void keep_near(hunt *h, const csg_bricks *b, const csg_brick *brick)
 {
     double cell = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
-    float reach = (float)(0.25 * sqrt(3.0) * (1 + 0x1p-10) * cell *
-                          (double)b->field->tape.lipschitz);
+    float reach =
+        (float)(0.25 * sqrt(3.0) * (1 + 0x1p-10) * cell * (double)b->field->tape.lipschitz);
     h->count = 0;
     for (int point = 0; point < POINTS; point++) {
         if (!(fabsf(h->f[point]) < reach))

@@ -10,15 +10,18 @@
 
 enum {
     E = CSG_BRICK_EDGE,
-    MOST_STARTS = 9, /* the corners of the brick and its middle */
+    STARTS = 9,      /* the corners of the brick and its middle */
+    DIRECTIONS = 14, /* the axes and the diagonals, all ways */
     FEW_LEAVES = 8,  /* of more than these only one step each is made, from the middle */
     MOST_LEAVES = 64,
-    BATCH = 3 * MOST_STARTS, /* on a leaf's surface, and on either side of it */
+    BATCH = 3 * DIRECTIONS, /* on a leaf's surface, and on either side of it */
     PADDED = (BATCH + CSG_LANES - 1) / CSG_LANES * CSG_LANES
 };
 
 /* Of the tolerance: how deep a place is asked for, and how deep it must be. */
 static const double STEP = 0.5, DEPTH = 0.01;
+/* Cosine to the mean direction: a leaf that climbs in others is not plane in the brick. */
+static const double PLANE = 0.9;
 
 typedef struct batch {
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
@@ -143,6 +146,39 @@ static int find_places(leaf_look *l, batch *starts, int count, double step, batc
     return found;
 }
 
+/* Places all around what a leaf has in the brick: the points of its surface that are nearest to
+ * them are its ends, which those nearest to the corners of the brick need not be. False: the leaf
+ * is plane there, and has none. starts: where the surface was found from. */
+static bool place_around(const leaf_look *l, batch *starts, int count)
+{
+    csg_vec3 mean = {0, 0, 0}, climb = {0, 0, 0}, directions[DIRECTIONS];
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        double zero[3], way[3];
+        if (!find_zero(starts, i, zero, way))
+            continue;
+        mean = csg_vec3_add(mean, csg_vec3_make(zero[0], zero[1], zero[2]));
+        directions[found] = csg_vec3_make(way[0], way[1], way[2]);
+        climb = csg_vec3_add(climb, directions[found++]);
+    }
+    bool is_plane = true;
+    for (int i = 0; i < found; i++)
+        is_plane = is_plane && csg_gradients_cosine(directions[i], climb) > PLANE;
+    if (is_plane)
+        return false;
+    double reach = l->high[0] - l->low[0];
+    for (int i = 0; i < DIRECTIONS; i++) {
+        csg_vec3 way = {0, 0, 0};
+        if (i < 8)
+            way = csg_vec3_make(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        else
+            *(i < 10 ? &way.x : i < 12 ? &way.y : &way.z) = i % 2 ? 1 : -1;
+        csg_vec3 at = csg_vec3_add(csg_vec3_scale(mean, 1.0 / found), csg_vec3_scale(way, reach));
+        starts->x[i] = (float)at.x, starts->y[i] = (float)at.y, starts->z[i] = (float)at.z;
+    }
+    return true;
+}
+
 static void find_cell(const csg_bricks *b, const csg_brick *brick, const float at[3],
                       unsigned cell[3])
 {
@@ -189,34 +225,48 @@ static bool judge_places(const csg_bricks *b, const csg_brick *brick, const batc
     return false;
 }
 
+/* Whether a step from one of the starts to the leaf's surface shows what is hidden. */
+static bool is_seen_from(leaf_look *l, const csg_bricks *b, const csg_brick *brick, batch *starts,
+                         int count, double tolerance, csg_hunted *out)
+{
+    csg_sheet_probe *p = l->probe;
+    batch at;
+    double least = DEPTH * tolerance * (double)l->tape.lipschitz + 4 * p->noise;
+    int places = find_places(l, starts, count, STEP * tolerance, &at);
+    if (!places)
+        return false;
+    fill_lanes(&at, places);
+    p->kernel->values(p->tape, at.x, at.y, at.z, (size_t)places, at.f, p->scratch,
+                      p->scratch_floats);
+    p->evaluations += (uint64_t)places;
+    for (int k = 0; k < places; k += SIDES)
+        if (judge_places(b, brick, &at, k, least, out))
+            return true;
+    return false;
+}
+
 bool csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick,
                      double tolerance, csg_hunted *out)
 {
     csg_tape tape = csg_bricks_short_tape(b, brick);
     uint32_t leaves = csg_tape_leaf_count(&tape);
-    int starts = leaves <= FEW_LEAVES ? MOST_STARTS : 1;
-    double least = DEPTH * tolerance * (double)tape.lipschitz + 4 * p->noise;
+    bool few = leaves <= FEW_LEAVES;
     if (leaves < 2 || leaves > MOST_LEAVES)
         return false; /* one alone is what all other looks are for */
     leaf_look look = look_at(p, b, brick);
     for (uint32_t i = 0; i < tape.count; i++) {
         const csg_tape_node *leaf = &tape.nodes[i];
-        batch from, at;
+        batch starts;
         if (!csg_op_is_leaf(leaf->op) || leaf->op == CSG_OP_EMPTY)
             continue;
         look.node = *leaf;
         look.node.join = CSG_JOIN_NONE;
-        place_starts(b, brick, &from);
-        int count = find_places(&look, &from, starts, STEP * tolerance, &at);
-        if (!count)
-            continue;
-        fill_lanes(&at, count);
-        p->kernel->values(p->tape, at.x, at.y, at.z, (size_t)count, at.f, p->scratch,
-                          p->scratch_floats);
-        p->evaluations += (uint64_t)count;
-        for (int k = 0; k < count; k += SIDES)
-            if (judge_places(b, brick, &at, k, least, out))
-                return true;
+        place_starts(b, brick, &starts);
+        int count = few ? STARTS : 1;
+        if (is_seen_from(&look, b, brick, &starts, count, tolerance, out) ||
+            (few && place_around(&look, &starts, count) &&
+             is_seen_from(&look, b, brick, &starts, DIRECTIONS, tolerance, out)))
+            return true;
     }
     return false;
 }
