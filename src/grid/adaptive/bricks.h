@@ -31,7 +31,7 @@ typedef struct csg_brick {
     uint32_t node_count;
     uint32_t at[3]; /* in bricks of its level */
     uint8_t level;
-    bool divided, wanted;                                 /* wanted: it is to be divided */
+    bool divided, wanted; /* wanted: it is to be divided */
     bool searched; /* nothing is hidden between its points; children have it from their parent */
     uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
     uint64_t crossed; /* cells whose corners do not all agree: bits as csg_brick_cell has them */
@@ -43,8 +43,8 @@ typedef struct csg_brick {
 typedef struct csg_bricks csg_bricks;
 
 /* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat`,
- * `several`, `searched` and `pierced`, and what is crossed because of it. f: values at its points, x fastest.
- * Any worker. */
+ * `several`, `searched` and `pierced`, and what is crossed because of it. f: values at its points,
+ * x fastest. Any worker. */
 typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
                              csg_brick *brick, const float *f);
 
