@@ -77,11 +77,13 @@ uint32_t csg_bricks_leaf_at(const csg_bricks *b, const float at[3])
     if (!csg_lattice_cell_of(b->lattice, at, cell))
         return CSG_BRICK_NONE;
     for (uint32_t level = b->options.coarse; level <= b->finest; level++) {
-        uint32_t place[3];
-        for (int axis = 0; axis < 3; axis++)
-            place[axis] = cell[axis] / E >> (b->finest - level);
+        uint32_t place[3], own[3];
+        for (int axis = 0; axis < 3; axis++) {
+            own[axis] = cell[axis] >> (b->finest - level);
+            place[axis] = own[axis] / E;
+        }
         uint32_t found = csg_bricks_find(b, level, place);
-        if (found == CSG_BRICK_NONE || !b->items[found].divided)
+        if (found == CSG_BRICK_NONE || !(b->items[found].divided >> csg_brick_octant(own) & 1))
             return found;
     }
     return CSG_BRICK_NONE;
@@ -157,7 +159,7 @@ static void sample(csg_bricks *b, worker *self, csg_brick *brick)
             for (unsigned i = 0; i < E; i++) {
                 unsigned pattern = csg_brick_pattern(brick, i, j, k);
                 if (pattern != 0 && pattern != 0xFF)
-                    brick->crossed |= (uint64_t)1 << csg_brick_cell(i, j, k);
+                    brick->crossed |= (uint8_t)(1u << csg_brick_cell(i, j, k));
             }
     self->stats.sampled++;
     self->stats.point_evaluations += CSG_BRICK_POINTS;
@@ -175,7 +177,9 @@ static bool is_in_lattice(const csg_bricks *b, uint32_t level, const uint32_t at
 static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *parent, int octant)
 {
     worker *self = &b->workers[worker_index];
-    csg_brick child = {.level = (uint8_t)(parent->level + 1), .searched = parent->searched};
+    csg_brick child = {.level = (uint8_t)(parent->level + 1),
+                       .wanted = CSG_BRICK_ALL_CELLS,
+                       .searched = parent->searched >> octant & 1 ? CSG_BRICK_ALL_CELLS : 0};
     for (int axis = 0; axis < 3; axis++)
         child.at[axis] = 2 * parent->at[axis] + (uint32_t)(octant >> axis & 1);
     if (!is_in_lattice(b, child.level, child.at))
@@ -194,15 +198,20 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
         return false;
     child.nodes = tape.nodes;
     child.node_count = tape.count;
-    child.wanted = child.level < b->options.coarse;
-    if (!child.wanted) {
+    if (child.level >= b->options.coarse) {
         sample(b, self, &child);
         child.wanted =
-            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f) &&
-            child.level < b->finest;
+            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f);
+        child.wanted = child.level < b->finest ? child.wanted : 0;
     }
     self->made[self->count++] = child;
     return true;
+}
+
+/* Cells that are to be divided and are not. */
+static uint8_t new_cells(const csg_brick *brick)
+{
+    return (uint8_t)(brick->wanted & ~brick->divided);
 }
 
 static bool divide(csg_bricks *b, uint32_t worker_index, const csg_brick *parent)
@@ -225,7 +234,7 @@ static bool divide(csg_bricks *b, uint32_t worker_index, const csg_brick *parent
     self->stats.interval_evaluations += CSG_OCTANTS;
     self->stats.primitive_evaluations += (uint64_t)CSG_OCTANTS * csg_tape_leaf_count(&tape);
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
-        if (!make_child(b, worker_index, parent, octant))
+        if (new_cells(parent) >> octant & 1 && !make_child(b, worker_index, parent, octant))
             return false;
     return true;
 }
@@ -286,8 +295,8 @@ static bool join_children(round_of_division *r, size_t items)
         }
     }
     for (size_t i = 0; i < r->queue_count; i++) {
-        b->items[r->queue[i]].divided = true;
-        b->items[r->queue[i]].wanted = false;
+        b->items[r->queue[i]].divided |= b->items[r->queue[i]].wanted;
+        b->items[r->queue[i]].wanted = 0;
     }
     for (uint32_t i = 0; i < b->worker_count; i++)
         b->workers[i].count = 0;
@@ -313,9 +322,9 @@ static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count
 /* ---- balance -----------------------------------------------------------------------------------
  */
 
-/* Wants every leaf divided that touches this one and is larger by more than one level: around the
- * cube that it is an octant of, on its own sides, there must be cubes of that level, or no surface.
- * True: there was one, whose children may still be too large. */
+/* Wants every leaf divided that touches this brick and is larger than its cells by more than one
+ * level: around the cube that it is an octant of, on its own sides, there must be bricks of that
+ * level, or no surface. True: there was one, whose children may still be too large. */
 static bool want_balance(csg_bricks *b, const csg_brick *brick)
 {
     bool any = false;
@@ -323,18 +332,23 @@ static bool want_balance(csg_bricks *b, const csg_brick *brick)
         return false;
     for (unsigned part = 1; part < CSG_OCTANTS; part++) {
         uint32_t at[3], level = brick->level - 1u, found;
+        unsigned octant = 0; /* of the brick at hand, the way was down */
         for (int axis = 0; axis < 3; axis++) {
             uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX; /* below 0 nothing is found */
             at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
         }
         while ((found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE &&
                level > b->options.coarse) {
+            octant = csg_brick_octant(at);
             level--;
             for (int axis = 0; axis < 3; axis++)
                 at[axis] /= 2;
         }
-        if (found != CSG_BRICK_NONE && !b->items[found].divided && level + 1 < brick->level)
-            b->items[found].wanted = any = true;
+        if (found != CSG_BRICK_NONE && level + 1 < brick->level &&
+            !(b->items[found].divided >> octant & 1)) {
+            b->items[found].wanted |= (uint8_t)(1u << octant);
+            any = true;
+        }
     }
     return any;
 }
@@ -354,11 +368,11 @@ static bool append(csg_bricks *b, list *l, size_t number)
     return true;
 }
 
-/* Takes the bricks from `first` on that are wanted, all of them or leaves to be balanced. */
+/* Takes the bricks from `first` on that have cells to be divided. */
 static bool collect(csg_bricks *b, list *wanted, size_t first)
 {
     for (size_t i = first; i < b->count; i++)
-        if (b->items[i].wanted && !b->items[i].divided && !append(b, wanted, i))
+        if (new_cells(&b->items[i]) && !append(b, wanted, i))
             return false;
     return true;
 }
@@ -372,7 +386,7 @@ static bool balance(csg_bricks *b, list *unbalanced, size_t *seen)
             return false;
     for (size_t i = 0; i < unbalanced->count; i++) {
         uint32_t number = unbalanced->number[i];
-        if (!b->items[number].divided && want_balance(b, &b->items[number]))
+        if (b->items[number].divided != CSG_BRICK_ALL_CELLS && want_balance(b, &b->items[number]))
             unbalanced->number[kept++] = number;
     }
     unbalanced->count = kept;
@@ -457,8 +471,8 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
         csg_bricks_destroy(out);
         return csg_context_no_memory(context);
     }
-    out->items[out->count++] =
-        (csg_brick){.nodes = field->tape.nodes, .node_count = field->tape.count, .wanted = true};
+    out->items[out->count++] = (csg_brick){
+        .nodes = field->tape.nodes, .node_count = field->tape.count, .wanted = CSG_BRICK_ALL_CELLS};
     csg_table_add(&out->index, hash_of_brick(out->items, 0), 0);
     return CSGM_OK;
 }
@@ -505,7 +519,7 @@ bool csg_bricks_leaves(const csg_bricks *b, uint32_t **out, size_t *count)
     if (!leaves)
         return false;
     for (size_t i = 0; i < b->count; i++)
-        if (!b->items[i].divided) {
+        if (b->items[i].divided != CSG_BRICK_ALL_CELLS) {
             leaves[n].brick = (uint32_t)i;
             for (int axis = 0; axis < 3; axis++)
                 leaves[n].point[axis] = csg_brick_point(b, &b->items[i], axis, 0);

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * A lattice whose cells have different sizes: an octree that ends in bricks of 2^3 cells, small
- * where the shape asks for it. Bricks that touch, were it in a corner, differ by one level at most.
+ * A lattice whose cells have different sizes: an octree of bricks, each 2^3 cells that are sampled,
+ * judged and kept together. A cell is a leaf, or divided: then a brick of the next level is in its
+ * place, or nothing where the field proves it free of surface. Leaves that touch, were it in a
+ * corner, differ by one level at most; the mesh is made of them.
  *
  * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of
- * the finest lattice, so every point has one index, and one coordinate, at all levels. A cube that
- * the field proves free of surface is not there at all. What is there is divided or a leaf; leaves
- * are what the mesh is made of. Which cubes are divided depends on the field and the lattice alone:
- * the set is the least one that the judge asks for and that is balanced.
+ * the finest lattice, so every point has one index, and one coordinate, at all levels. Which cells
+ * are divided depends on the field and the lattice alone: the set is the least one that the judge
+ * asks for and that is balanced.
  */
 #ifndef CSG_GRID_ADAPTIVE_BRICKS_H
 #define CSG_GRID_ADAPTIVE_BRICKS_H
@@ -23,30 +24,32 @@ enum {
 };
 
 #define CSG_BRICK_NONE UINT32_MAX
-#define CSG_BRICK_ALL_CELLS                                                                        \
-    (~(uint64_t)0 >> (64 - CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE))
+#define CSG_BRICK_ALL_CELLS UINT8_C(0xFF)
+_Static_assert(CSG_BRICK_EDGE == 2, "cells are octants, a byte has a bit for each");
 
 typedef struct csg_brick {
     const csg_tape_node *nodes; /* of the tape that holds in it */
     uint32_t node_count;
     uint32_t at[3]; /* in bricks of its level */
     uint8_t level;
-    bool divided, wanted; /* wanted: it is to be divided */
-    bool searched; /* nothing is hidden between its points; children have it from their parent */
+    /* Cells, bits as csg_brick_cell has them: */
+    uint8_t divided;  /* no leaves */
+    uint8_t wanted;   /* to be divided */
+    uint8_t searched; /* nothing is hidden between their points; of a cell it holds for all in it */
+    uint8_t crossed;  /* their corners do not all agree */
+    uint8_t flat;     /* their polygon is cut into triangles without a point inside */
+    uint8_t several;  /* with several polygons: they are small enough for them */
     uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
-    uint64_t crossed; /* cells whose corners do not all agree: bits as csg_brick_cell has them */
-    uint64_t flat;    /* cells whose polygon is cut into triangles without a point inside */
-    uint64_t several; /* with several polygons: cells that are small enough for them */
     uint64_t pierced; /* edges that the surface crosses twice: bits as csg_brick_edge has them */
 } csg_brick;
 
 typedef struct csg_bricks csg_bricks;
 
-/* Whether a brick, sampled and valid as a leaf, is to be divided; it may set the brick's `flat`,
- * `several`, `searched` and `pierced`, and what is crossed because of it. f: values at its points,
- * x fastest. Any worker. */
-typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
-                             csg_brick *brick, const float *f);
+/* The cells of a brick, sampled and all leaves, that are to be divided; it may set the brick's
+ * `flat`, `several`, `searched` and `pierced`, and what is crossed because of it. f: values at the
+ * brick's points, x fastest. Any worker. */
+typedef uint8_t csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
+                                csg_brick *brick, const float *f);
 
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */
@@ -88,7 +91,7 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
                               csg_bricks *out);
 void csg_bricks_destroy(csg_bricks *bricks);
 
-/* Divides what the judge wants, then what the balance wants, until nobody wants anything. Bricks
+/* Divides what the judge wants, then what the balance wants, until nobody wants anything. Cells
  * that are `wanted` already are divided, too. CSGM_OK; CSGM_CANCELLED, or
  * CSGM_ERR_LIMIT where there are too many, neither of them reported; or CSGM_ERR_MEMORY
  * (reported). */
@@ -96,10 +99,10 @@ csgm_status csg_bricks_refine(csg_bricks *bricks);
 
 /* The brick at a place of a level, CSG_BRICK_NONE where there is none. */
 uint32_t csg_bricks_find(const csg_bricks *bricks, uint32_t level, const uint32_t at[3]);
-/* The leaf that holds a point of the field's frame, CSG_BRICK_NONE where none does. */
+/* The brick whose leaf holds a point of the field's frame, CSG_BRICK_NONE where none does. */
 uint32_t csg_bricks_leaf_at(const csg_bricks *bricks, const float at[3]);
-/* Leaves in Morton order: an array of *count numbers, to be released by the caller. False: out of
- * memory. */
+/* Bricks that have leaves, in Morton order: an array of *count numbers, to be released by the
+ * caller. False: out of memory. */
 bool csg_bricks_leaves(const csg_bricks *bricks, uint32_t **out, size_t *count);
 
 /* The tape that values of a brick come from. */
@@ -132,6 +135,12 @@ static inline float csg_brick_coordinate(const csg_bricks *bricks, const csg_bri
 static inline unsigned csg_brick_cell(unsigned i, unsigned j, unsigned k)
 {
     return i + CSG_BRICK_EDGE * (j + CSG_BRICK_EDGE * k);
+}
+
+/* The bit of a cell that is the octant of its brick at a place, counted in cells. */
+static inline unsigned csg_brick_octant(const uint32_t cell[3])
+{
+    return csg_brick_cell(cell[0] & 1, cell[1] & 1, cell[2] & 1);
 }
 
 /* The bit of the edge from a point (low[axis] < CSG_BRICK_EDGE) along an axis. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What touches a leaf; see shell.h.
+ * What touches the leaves of a brick; see shell.h.
  */
 #include "grid/adaptive/shell.h"
 
@@ -25,8 +25,23 @@ static bool is_on_shell(const int q[3])
     return q[0] >= 0 && q[0] < S && q[1] >= 0 && q[1] < S && q[2] >= 0 && q[2] < S;
 }
 
-/* Signs and edges that a finer leaf has on this one's border. */
-static void take_leaf(csg_shell *s, const csg_brick *fine)
+/* The cells at which half an edge is, from `q` along an axis. */
+static uint8_t cells_at(int axis, const int q[3])
+{
+    unsigned cells = 0;
+    for (int cell = 0; cell < CSG_OCTANTS; cell++) {
+        bool holds = true;
+        for (int k = 0; k < 3; k++) {
+            int low = 2 * (cell >> k & 1);
+            holds = holds && q[k] >= low && q[k] + (k == axis) <= low + 2;
+        }
+        cells |= (unsigned)holds << cell;
+    }
+    return (uint8_t)cells;
+}
+
+/* Signs and edges that a finer brick has on this one's leaves. */
+static void take_brick(csg_shell *s, const csg_brick *fine)
 {
     int first[3];
     for (int axis = 0; axis < 3; axis++)
@@ -43,42 +58,45 @@ static void take_leaf(csg_shell *s, const csg_brick *fine)
                 continue;
             const unsigned low[3] = {(unsigned)local[0], (unsigned)local[1], (unsigned)local[2]};
             take_edges(s, axis, q);
-            s->pierced_beyond |= fine->pierced >> csg_brick_edge(axis, low) & 1;
+            if (fine->pierced >> csg_brick_edge(axis, low) & 1)
+                s->pierced_beyond |= cells_at(axis, q);
         }
     }
 }
 
-/* The four cells' faces that a finer leaf beyond a face covers. */
-static void take_face(csg_shell *s, int axis, int side, const csg_brick *fine)
+/* The faces of the cell that a finer brick is in the place of. */
+static void take_faces(csg_shell *s, const csg_brick *fine)
 {
-    int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    unsigned i = fine->at[u] % 2 * (E / 2), j = fine->at[v] % 2 * (E / 2);
-    for (unsigned b = 0; b < E / 2; b++)
-        for (unsigned a = 0; a < E / 2; a++)
-            s->divided_faces[2 * axis + side] |= (uint16_t)(1u << (i + a + E * (j + b)));
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            int low[3];
+            bool is_own = true;
+            for (int k = 0; k < 3; k++) {
+                low[k] = (int)fine->at[k] - 2 * (int)s->brick->at[k] + (k == axis ? side : 0);
+                is_own = is_own && low[k] >= 0 && low[k] < (k == axis ? N : E);
+            }
+            if (is_own)
+                s->divided_faces[axis][low[2]][low[1]] |= (uint8_t)(1u << low[0]);
+        }
 }
 
-/* The children of a divided neighbour that touch the brick. */
-static void take_children(csg_shell *s, const csg_bricks *b, const uint32_t at[3],
-                          const int step[3])
+/* The divided cells of a brick of the same level, of those that touch this one, were it itself. */
+static void take_cells(csg_shell *s, const csg_bricks *b, const csg_brick *brick, const int step[3])
 {
-    int steps = (step[0] != 0) + (step[1] != 0) + (step[2] != 0);
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
         uint32_t child[3];
-        bool touches = true;
+        bool touches = brick->divided >> octant & 1;
         for (int axis = 0; axis < 3; axis++) {
             unsigned bit = octant >> axis & 1;
             touches = touches && (step[axis] == 0 || bit == (step[axis] < 0 ? 1u : 0u));
-            child[axis] = 2 * at[axis] + bit;
+            child[axis] = 2 * brick->at[axis] + bit;
         }
         uint32_t found = touches ? csg_bricks_find(b, s->brick->level + 1u, child) : CSG_BRICK_NONE;
         if (found == CSG_BRICK_NONE)
             continue;
         s->has_finer = true;
-        take_leaf(s, &b->items[found]);
-        for (int axis = 0; axis < 3 && steps == 1; axis++)
-            if (step[axis])
-                take_face(s, axis, step[axis] > 0, &b->items[found]);
+        take_brick(s, &b->items[found]);
+        take_faces(s, &b->items[found]);
     }
 }
 
@@ -102,11 +120,9 @@ void csg_shell_make(csg_shell *s, const csg_bricks *b, uint32_t number)
         uint32_t at[3];
         for (int axis = 0; axis < 3; axis++)
             at[axis] = brick->at[axis] + (uint32_t)step[axis];
-        uint32_t found = d == CENTER ? number : csg_bricks_find(b, brick->level, at);
-        bool is_leaf = found != CSG_BRICK_NONE && !b->items[found].divided;
-        s->around[d] = is_leaf ? found : CSG_BRICK_NONE;
-        if (found != CSG_BRICK_NONE && !is_leaf)
-            take_children(s, b, at, step);
+        s->around[d] = d == CENTER ? number : csg_bricks_find(b, brick->level, at);
+        if (s->around[d] != CSG_BRICK_NONE && b->items[s->around[d]].divided)
+            take_cells(s, b, &b->items[s->around[d]], step);
     }
     if (s->has_finer)
         take_own(s);
@@ -136,10 +152,10 @@ static uint32_t divided_in_cell(const csg_shell *s, const unsigned at[3])
                 divided |= 1u << (middle[0] + 3 * middle[1] + 9 * middle[2]);
         }
         for (unsigned side = 0; side < 2; side++) {
-            unsigned middle[3] = {1, 1, 1};
+            unsigned low[3] = {at[0], at[1], at[2]}, middle[3] = {1, 1, 1};
+            low[axis] += side;
             middle[axis] = 2 * side;
-            if (at[axis] == (side ? E - 1u : 0u) &&
-                s->divided_faces[2 * axis + (int)side] >> (at[u] + E * at[v]) & 1)
+            if (s->divided_faces[axis][low[2]][low[1]] >> low[0] & 1)
                 divided |= 1u << (middle[0] + 3 * middle[1] + 9 * middle[2]);
         }
     }
@@ -184,7 +200,7 @@ csg_shell_cell csg_shell_cell_of(const csg_shell *s, unsigned i, unsigned j, uns
 /* ---- who owns what -----------------------------------------------------------------------------
  */
 
-/* Whether no leaf with a lower number touches in the brick's lines and planes named by steps. */
+/* Whether no brick with a lower number touches in the brick's lines and planes named by steps. */
 static bool is_lowest(const csg_shell *s, const int step[3])
 {
     for (int part = 1; part < 8; part++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A leaf with what its neighbours have on their common faces and edges: where finer leaves touch
- * it, its border has points between its own.
+ * The leaves of a brick with what finer leaves, of other bricks or in place of its own divided
+ * cells, have on common faces and edges: there they have points between their own.
  *
  * Points of the shell are counted in half cells along each axis. Balance sees to it that
  * there are none in between.
@@ -15,16 +15,16 @@ enum { CSG_SHELL_SAMPLES = 2 * CSG_BRICK_EDGE + 1 };
 typedef struct csg_shell {
     const csg_brick *brick;
     uint32_t number;     /* of the brick */
-    uint32_t around[27]; /* leaves of the same level, 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1
+    uint32_t around[27]; /* bricks of the same level, 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1
                             to 1; CSG_BRICK_NONE: none */
-    bool pierced_beyond; /* a finer leaf has a pierced edge here, and so may have this one */
-    bool has_finer;      /* some neighbour is finer; else what follows says nothing */
+    uint8_t pierced_beyond; /* cells at which finer leaves have pierced edges, bits as
+                               csg_brick_cell has them */
+    bool has_finer;         /* finer leaves touch the brick; else what follows says nothing */
     uint16_t inside[CSG_SHELL_SAMPLES][CSG_SHELL_SAMPLES]; /* [z][y]: bit x */
     /* Edges of the brick's cells that finer leaves divide: [axis][z][y]: bit x, by lower point. */
     uint8_t divided_edges[3][CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES];
-    /* Faces of border cells beyond which the leaf is finer: [2 axis + side], bit u + CSG_BRICK_EDGE
-     * v, u and v the cell on the other axes in increasing order. */
-    uint16_t divided_faces[6];
+    /* Faces of the brick's cells beyond which leaves are finer: the same, by lowest point. */
+    uint8_t divided_faces[3][CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES];
 } csg_shell;
 
 void csg_shell_make(csg_shell *shell, const csg_bricks *bricks, uint32_t number);
@@ -41,8 +41,8 @@ typedef struct csg_shell_cell {
 
 csg_shell_cell csg_shell_cell_of(const csg_shell *shell, unsigned i, unsigned j, unsigned k);
 
-/* Whether the brick has an edge, or a face, for its own among leaves of the same level that touch
- * in it: the lowest number has. low: the edge's lower point, the face's lowest, in cells. */
+/* Whether the brick has an edge, or a face, for its own among those of the same level that touch in
+ * it: the lowest number has. low: the edge's lower point, the face's lowest, in cells. */
 bool csg_shell_owns_edge(const csg_shell *shell, int axis, const unsigned low[3]);
 bool csg_shell_owns_face(const csg_shell *shell, int axis, const unsigned low[3]);
 

@@ -40,7 +40,7 @@ typedef struct worker {
 typedef struct work {
     csg_extraction *x;
     uint32_t *leaves;
-    size_t leaf_count, item_count;
+    size_t leaf_count, leaf_capacity, item_count;
     worker *workers;
     uint32_t worker_count;
     segment *segments;
@@ -179,9 +179,9 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
     csg_judge_room *room = &w->x->judge->rooms[worker_index];
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
     csg_pierce(&probe, w->x->bricks, s->brick, NULL, &room->pierced);
-    uint64_t cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
-    for (; cells; cells &= cells - 1) {
-        unsigned bit = (unsigned)__builtin_ctzll(cells);
+    unsigned cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
+    for (cells &= ~(unsigned)s->brick->divided; cells; cells &= cells - 1) {
+        unsigned bit = (unsigned)__builtin_ctz(cells);
         cell_at_hand cell = {.w = w,
                              .worker = worker_index,
                              .shell = s,
@@ -262,23 +262,25 @@ static bool look_into_faces(cell_at_hand *c)
         if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
             (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
             continue;
-        csg_cell_box face = box;
+        csg_face_crease face = {.face = box};
         double plane = upper ? box.high[axis] : box.low[axis];
-        face.low[axis] = face.high[axis] = plane;
+        face.face.low[axis] = face.face.high[axis] = plane;
         unsigned first = side->from < side->to ? side->from : side->to;
         unsigned last = side->from < side->to ? side->to : side->from;
         uint32_t a = find_vertex(w, place_of(b, brick, c->at, first));
         uint32_t z = find_vertex(w, place_of(b, brick, c->at, last));
         if (a == CSG_TABLE_NONE || z == CSG_TABLE_NONE)
             continue; /* the cell will say so */
-        const csg_surface_point ends[2] = {point_of(&w->vertices[a]), point_of(&w->vertices[z])};
-        csg_vec3 at;
+        face.ends[0] = point_of(&w->vertices[a]);
+        face.ends[1] = point_of(&w->vertices[z]);
         if (side->pierced)
-            at = csg_wedge_in_face(c->probe, &face, ends);
-        else if (!csg_sheets_meet_in_face(c->probe, &face, ends, &at))
+            face.at = csg_wedge_in_face(c->probe, &face.face, face.ends);
+        else
+            csg_sheets_meet_in_faces(c->probe, &face, 1);
+        if (!side->pierced && !face.is_there)
             continue;
         placed_vertex v = {.place = place_of(b, brick, c->at, side->crease), .is_crease = true};
-        csg_vec3_to_floats(v.at, at);
+        csg_vec3_to_floats(v.at, face.at);
         w->workers[c->worker].creases++;
         if (!add_vertex(w, &w->workers[c->worker], &v))
             return false;
@@ -415,7 +417,7 @@ static bool want_simple(cell_at_hand *c)
     csg_brick *brick = &b->items[c->shell->number];
     if (!c->is_whole && (c->polygons.count > 1 || has_several(brick, c->at) ||
                          csg_cell_polygons_are_mixed(&c->polygons))) {
-        brick->wanted = true;
+        brick->wanted |= (uint8_t)(1u << csg_brick_cell(c->at[0], c->at[1], c->at[2]));
         atomic_store(&c->w->any, true);
     }
     return true;
@@ -423,12 +425,59 @@ static bool want_simple(cell_at_hand *c)
 
 static bool visit_borders(work *w, uint32_t worker_index, const csg_shell *s)
 {
-    if (s->pierced_beyond) {
-        w->x->bricks->items[s->number].wanted = true;
+    csg_brick *brick = &w->x->bricks->items[s->number];
+    if (s->pierced_beyond & ~brick->divided) {
+        brick->wanted |= s->pierced_beyond & (uint8_t)~brick->divided;
         atomic_store(&w->any, true);
-        return true;
     }
     return !s->has_finer || each_cell(w, worker_index, s, want_simple);
+}
+
+/* Marks what a new brick, in the place of a cell, changes the border of: itself, and the bricks
+ * around that cell. */
+static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
+{
+    const csg_brick *brick = &b->items[number];
+    changed[number] = 1;
+    if (brick->level <= b->options.coarse)
+        return;
+    for (unsigned part = 0; part < CSG_OCTANTS; part++) {
+        uint32_t at[3];
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX;
+            at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
+        }
+        uint32_t found = csg_bricks_find(b, brick->level - 1u, at);
+        if (found != CSG_BRICK_NONE)
+            changed[found] = 1;
+    }
+}
+
+/* Lists the bricks whose borders are not known to be simple. False: out of memory. */
+static bool list_unchecked(work *w)
+{
+    csg_memory *memory = &w->x->context->memory;
+    const csg_bricks *b = w->x->bricks;
+    uint8_t *changed = csg_memory_alloc(memory, b->count);
+    if (!changed)
+        return false;
+    memset(changed, 0, b->count);
+    for (size_t i = w->x->checked; i < b->count; i++)
+        mark_changed(b, i, changed);
+    bool done = true;
+    for (size_t i = 0; i < b->count && done; i++) {
+        bool has_leaves =
+            b->items[i].divided != CSG_BRICK_ALL_CELLS && b->items[i].level >= b->options.coarse;
+        if (!changed[i] || !has_leaves)
+            continue;
+        done = csg_memory_reserve(memory, (void **)&w->leaves, &w->leaf_capacity, w->leaf_count + 1,
+                                  sizeof *w->leaves);
+        if (done)
+            w->leaves[w->leaf_count++] = (uint32_t)i;
+    }
+    csg_memory_release(memory, changed, b->count);
+    w->x->checked = b->count;
+    return done;
 }
 
 /* ---- loops -------------------------------------------------------------------------------------
@@ -521,13 +570,21 @@ static csgm_status go(work *w, bool (*visit)(work *, uint32_t, const csg_shell *
         return csg_context_no_memory(w->x->context);
     if (w->count < OWN)
         return CSGM_OK;
-    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL,
-                   "mesh more coarsely: --quality draft, or -r",
+    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower the quality",
                    "the mesh would have more than %u vertices", OWN - 1);
     return CSGM_ERR_LIMIT;
 }
 
-static csgm_status begin(work *w, csg_extraction *x)
+/* Of all leaves in Morton order. */
+static bool list_all(work *w)
+{
+    bool done = csg_bricks_leaves(w->x->bricks, &w->leaves, &w->leaf_count);
+    w->leaf_capacity = w->leaf_count;
+    return done;
+}
+
+/* What is visited is listed by `list`. */
+static csgm_status begin(work *w, csg_extraction *x, bool (*list)(work *))
 {
     csg_memory *memory = &x->context->memory;
     *w = (work){.x = x, .worker_count = csg_pool_threads(x->context->pool)};
@@ -535,7 +592,7 @@ static csgm_status begin(work *w, csg_extraction *x)
     w->workers = csg_memory_alloc(memory, w->worker_count * sizeof(worker));
     if (w->workers)
         memset(w->workers, 0, w->worker_count * sizeof(worker));
-    bool done = w->workers && csg_bricks_leaves(x->bricks, &w->leaves, &w->leaf_count);
+    bool done = w->workers && list(w);
     w->item_count = (w->leaf_count + LEAVES_PER_ITEM - 1) / LEAVES_PER_ITEM;
     w->segments = done ? csg_memory_alloc(memory, (w->item_count + 1) * sizeof(segment)) : NULL;
     return w->segments ? CSGM_OK : csg_context_no_memory(x->context);
@@ -552,7 +609,7 @@ static void end(work *w)
         w->x->smooth += self->smooth;
     }
     csg_memory_release(memory, w->workers, w->worker_count * sizeof(worker));
-    csg_memory_release(memory, w->leaves, w->leaf_count * sizeof *w->leaves);
+    csg_memory_release(memory, w->leaves, w->leaf_capacity * sizeof *w->leaves);
     csg_memory_release(memory, w->segments, (w->item_count + 1) * sizeof(segment));
     csg_memory_release(memory, w->vertices, w->capacity * sizeof *w->vertices);
     csg_memory_release(memory, w->corners, w->corner_count * sizeof *w->corners);
@@ -562,7 +619,7 @@ static void end(work *w)
 csgm_status csg_extraction_check_borders(csg_extraction *x, bool *any)
 {
     work w;
-    csgm_status status = begin(&w, x);
+    csgm_status status = begin(&w, x, list_unchecked);
     if (status == CSGM_OK)
         status = go(&w, visit_borders, x->bricks->reported, 0);
     *any = atomic_load(&w.any);
@@ -590,7 +647,7 @@ csgm_status csg_extract(csg_extraction *x)
 {
     CSG_ZONE(x->context, "extraction");
     work w;
-    csgm_status status = begin(&w, x);
+    csgm_status status = begin(&w, x, list_all);
     if (status == CSGM_OK)
         status = go(&w, visit_edges, 0, 0.3);
     if (status == CSGM_OK && !enter(&w, 0))

@@ -21,14 +21,16 @@ typedef struct csg_extraction {
     const csg_judge *judge;
     csg_vec3 shift; /* field frame -> relative to the mesh's origin */
     bool colors;    /* the mesh has room for them */
+    size_t checked; /* bricks: the borders of those before it, among themselves, are simple */
     /* made */
     csgm_mesh *mesh;  /* positions and indices, the caller's; its origin is still to be set */
     uint64_t creases; /* vertices on creases, corners and tips */
     uint64_t smooth;  /* cells in which sheets should meet, and do not */
 } csg_extraction;
 
-/* Wants those leaves divided whose border cells have several polygons; *any: there are some.
- * CSGM_OK or why it was stopped (reported). */
+/* Wants those leaves divided that have several polygons beside finer ones; *any: there are some. Of
+ * bricks that were checked only those are again that new ones touch. CSGM_OK or why it was stopped
+ * (reported). */
 csgm_status csg_extraction_check_borders(csg_extraction *extraction, bool *any);
 
 /* CSGM_OK or why it was stopped (reported); CSGM_ERR_LIMIT above 2^31 vertices. */

@@ -30,8 +30,9 @@ typedef struct hunt {
     float line[3][HALVES];
     float x[PADDED], y[PADDED], z[PADDED], f[PADDED], g[3][PADDED];
     float from[3][PADDED], before[PADDED]; /* where a step began, and the value there */
-    float band;  /* beyond it only signs are exact: no step begins there */
-    float least; /* a value that is nearer to 0 shows nothing */
+    float band;    /* beyond it only signs are exact: no step begins there */
+    float least;   /* a value that is nearer to 0 shows nothing */
+    uint8_t cells; /* that are searched */
 } hunt;
 
 /* What the cone of the gradients says of a brick. */
@@ -81,6 +82,22 @@ static int own_point(int point)
     return half[0] / 2 + (E + 1) * (half[1] / 2 + (E + 1) * (half[2] / 2));
 }
 
+/* The cells that a point half way between is in. */
+static uint8_t cells_of(int point)
+{
+    const int half[3] = {point % HALVES, point / HALVES % HALVES, point / (HALVES * HALVES)};
+    unsigned cells = 0;
+    for (unsigned cell = 0; cell < CSG_OCTANTS; cell++) {
+        bool holds = true;
+        for (int axis = 0; axis < 3; axis++) {
+            int low = 2 * (int)(cell >> axis & 1);
+            holds = holds && half[axis] >= low && half[axis] <= low + 2;
+        }
+        cells |= (unsigned)holds << cell;
+    }
+    return (uint8_t)cells;
+}
+
 static void fill_lanes(hunt *h)
 {
     for (int i = h->count; i % CSG_LANES; i++)
@@ -95,16 +112,18 @@ static void ask(csg_sheet_probe *p, hunt *h)
     p->evaluations += (uint64_t)h->count;
 }
 
-/* Values at all points: at the brick's own they are known. */
+/* Values at the points of the cells searched: at the brick's own they are known. */
 static void ask_between(csg_sheet_probe *p, hunt *h, const float *own)
 {
     h->count = 0;
     for (int point = 0; point < POINTS; point++)
-        if (own_point(point) < 0)
+        if (own_point(point) < 0 && cells_of(point) & h->cells)
             place_point(h, h->count++, point);
     ask(p, h);
     for (int point = POINTS - 1, from = h->count; point >= 0; point--)
-        h->f[point] = own_point(point) < 0 ? h->f[--from] : own[own_point(point)];
+        h->f[point] = !(cells_of(point) & h->cells) ? INFINITY
+                      : own_point(point) < 0        ? h->f[--from]
+                                                    : own[own_point(point)];
     h->count = POINTS;
 }
 
@@ -117,7 +136,7 @@ static void keep_near(hunt *h, const csg_bricks *b, const csg_brick *brick)
         (float)(0.25 * sqrt(3.0) * (1 + 0x1p-10) * cell * (double)b->field->tape.lipschitz);
     h->count = 0;
     for (int point = 0; point < POINTS; point++) {
-        if (!(fabsf(h->f[point]) < reach))
+        if (!(fabsf(h->f[point]) < reach) || !(cells_of(point) & h->cells))
             continue;
         place_point(h, h->count, point);
         h->f[h->count++] = h->f[point];
@@ -149,15 +168,16 @@ static bool differs(const csg_brick *brick, const int half[3], bool sign)
     return !csg_brick_is_pierced(brick, from, to);
 }
 
-static bool differs_between(const hunt *h, const csg_brick *brick)
+static uint8_t differs_between(const hunt *h, const csg_brick *brick)
 {
+    unsigned cells = 0;
     for (int p = 0; p < POINTS; p++) {
         const int half[3] = {p % HALVES, p / HALVES % HALVES, p / (HALVES * HALVES)};
-        bool is_own = half[0] % 2 == 0 && half[1] % 2 == 0 && half[2] % 2 == 0;
-        if (!is_own && fabsf(h->f[p]) > h->least && differs(brick, half, h->f[p] >= 0))
-            return true;
+        bool is_asked = own_point(p) < 0 && cells_of(p) & h->cells;
+        if (is_asked && fabsf(h->f[p]) > h->least && differs(brick, half, h->f[p] >= 0))
+            cells |= cells_of(p);
     }
-    return false;
+    return (uint8_t)(cells & h->cells);
 }
 
 /* Moves every point across the surface that it is near, as far as that lies in the brick. */
@@ -265,44 +285,49 @@ static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, f
     c->count = kept;
 }
 
-/* Whether a step across the surface ends in what its cell does not show. */
-static bool differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *brick)
+/* Where steps across the surface end in what their cells do not show. */
+static uint8_t differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *brick)
 {
+    unsigned cells = 0;
     fill_lanes(h);
     p->kernel->gradients(p->tape, h->x, h->y, h->z, (size_t)h->count, h->g[0], h->g[1], h->g[2],
                          p->scratch, p->scratch_floats);
     step_across(h);
     ask(p, h);
     for (int i = 0; i < h->count; i++)
-        if (differs_in_cell(h, brick, i))
-            return true;
-    return false;
+        if (differs_in_cell(h, brick, i)) {
+            unsigned cell[3];
+            cell_of(h, i, cell);
+            cells |= 1u << csg_brick_cell(cell[0], cell[1], cell[2]);
+        }
+    return (uint8_t)(cells & h->cells);
 }
 
-bool csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
-              const float *f, csg_hunted *out)
+uint8_t csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
+                 const float *f, uint8_t cells, csg_hunted *out)
 {
     hunt h;
-    out->count = 0;
+    crossings c;
+    out->count = c.count = 0;
+    h.cells = cells;
     brick_kind kind = kind_of(b, brick);
     if (kind == ONE_SHEET)
-        return false;
+        return 0;
     h.least = (float)((kind == ONE_CREASE ? CREASE_DEPTH : DEPTH) * tolerance *
                       (double)b->field->tape.lipschitz);
     float near_enough = (float)(DEPTH * tolerance * (double)b->field->tape.lipschitz);
     h.band = csg_bricks_band(b, brick->level);
     place_lines(&h, b, brick);
     ask_between(p, &h, f);
-    if (differs_between(&h, brick))
-        return true;
+    h.cells &= (uint8_t)~differs_between(&h, brick);
     keep_near(&h, b, brick);
-    if (h.count && differs_across(p, &h, brick))
-        return true;
-    if (kind == ANYTHING && csg_hunt_leaves(p, b, brick, tolerance, out))
-        return true;
-    crossings c;
-    collect_crossings(&h, &c);
-    for (int step = 0; step < STEPS && c.count; step++)
+    if (h.count) {
+        h.cells &= (uint8_t)~differs_across(p, &h, brick);
+        collect_crossings(&h, &c);
+    }
+    if (kind == ANYTHING && h.cells)
+        h.cells &= (uint8_t)~csg_hunt_leaves(p, b, brick, tolerance, h.cells, out);
+    for (int step = 0; step < STEPS && c.count && h.cells; step++)
         come_closer(p, &h, &c, step % 2 == 1, near_enough, out);
-    return false;
+    return (uint8_t)(cells & ~h.cells);
 }

@@ -27,13 +27,13 @@ typedef struct csg_hunted {
     uint8_t cell[CSG_HUNT_MOST];
 } csg_hunted;
 
-/* True: something lies in a cell whose corners do not show it, and deeper than a part of the
- * tolerance. f: values at the brick's points. */
-bool csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
-              double tolerance, const float *f, csg_hunted *out);
+/* Those of the cells (bits as csg_brick_cell has them) in which something lies that their corners
+ * do not show, deeper than a part of the tolerance. f: values at the brick's points. */
+uint8_t csg_hunt(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
+                 double tolerance, const float *f, uint8_t cells, csg_hunted *out);
 
-/* The same of what single leaves put there (hunt_leaves.c); adds places to `out`. */
-bool csg_hunt_leaves(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
-                     double tolerance, csg_hunted *out);
+/* The same of what single leaves of the tape put there (hunt_leaves.c); adds places to `out`. */
+uint8_t csg_hunt_leaves(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
+                        double tolerance, uint8_t cells, csg_hunted *out);
 
 #endif

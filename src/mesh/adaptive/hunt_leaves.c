@@ -199,62 +199,64 @@ static bool is_hidden(const csg_brick *brick, const unsigned cell[3], bool sign)
            !csg_brick_is_pierced(brick, cell, end);
 }
 
-/* Whether what three places show is hidden by their cells; where the surface goes through between
- * the outer two, the middle one is put into `out`. */
-static bool judge_places(const csg_bricks *b, const csg_brick *brick, const batch *at, int first,
-                         double least, csg_hunted *out)
+/* The cells that hide what three places show; where the surface goes through between the outer two,
+ * the middle one is put into `out`. */
+static uint8_t judge_places(const csg_bricks *b, const csg_brick *brick, const batch *at, int first,
+                            double least, csg_hunted *out)
 {
     bool is_deep[SIDES];
-    unsigned cell[3];
+    unsigned cell[3], cells = 0;
     for (int side = BELOW; side < SIDES; side++) {
         int k = first + side;
         const float place[3] = {at->x[k], at->y[k], at->z[k]};
         is_deep[side] = fabs((double)at->f[k]) > least;
         find_cell(b, brick, place, cell);
         if (is_deep[side] && is_hidden(brick, cell, at->f[k] >= 0))
-            return true;
+            cells |= 1u << csg_brick_cell(cell[0], cell[1], cell[2]);
     }
     int on = first + ON;
-    if (is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] || out->count == CSG_HUNT_LEAF_POINTS ||
+    if (cells || is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] ||
+        out->count == CSG_HUNT_LEAF_POINTS ||
         (at->f[first + BELOW] >= 0) == (at->f[first + ABOVE] >= 0))
-        return false;
+        return (uint8_t)cells;
     const float place[3] = {at->x[on], at->y[on], at->z[on]};
     find_cell(b, brick, place, cell);
     out->at[out->count] = csg_vec3_from_floats(place);
     out->cell[out->count++] = (uint8_t)csg_brick_cell(cell[0], cell[1], cell[2]);
-    return false;
+    return 0;
 }
 
-/* Whether a step from one of the starts to the leaf's surface shows what is hidden. */
-static bool is_seen_from(leaf_look *l, const csg_bricks *b, const csg_brick *brick, batch *starts,
+/* The cells that hide what steps from the starts to the leaf's surface show. */
+static uint8_t look_from(leaf_look *l, const csg_bricks *b, const csg_brick *brick, batch *starts,
                          int count, double tolerance, csg_hunted *out)
 {
     csg_sheet_probe *p = l->probe;
     batch at;
     double least = DEPTH * tolerance * (double)l->tape.lipschitz + 4 * p->noise;
+    unsigned cells = 0;
     int places = find_places(l, starts, count, STEP * tolerance, &at);
     if (!places)
-        return false;
+        return 0;
     fill_lanes(&at, places);
     p->kernel->values(p->tape, at.x, at.y, at.z, (size_t)places, at.f, p->scratch,
                       p->scratch_floats);
     p->evaluations += (uint64_t)places;
     for (int k = 0; k < places; k += SIDES)
-        if (judge_places(b, brick, &at, k, least, out))
-            return true;
-    return false;
+        cells |= judge_places(b, brick, &at, k, least, out);
+    return (uint8_t)cells;
 }
 
-bool csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick,
-                     double tolerance, csg_hunted *out)
+uint8_t csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick,
+                        double tolerance, uint8_t cells, csg_hunted *out)
 {
     csg_tape tape = csg_bricks_short_tape(b, brick);
     uint32_t leaves = csg_tape_leaf_count(&tape);
     bool few = leaves <= FEW_LEAVES;
     if (leaves < 2 || leaves > MOST_LEAVES)
-        return false; /* one alone is what all other looks are for */
+        return 0; /* one alone is what all other looks are for */
     leaf_look look = look_at(p, b, brick);
-    for (uint32_t i = 0; i < tape.count; i++) {
+    unsigned hidden = 0;
+    for (uint32_t i = 0; i < tape.count && cells & ~hidden; i++) {
         const csg_tape_node *leaf = &tape.nodes[i];
         batch starts;
         if (!csg_op_is_leaf(leaf->op) || leaf->op == CSG_OP_EMPTY)
@@ -263,10 +265,9 @@ bool csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *b
         look.node.join = CSG_JOIN_NONE;
         place_starts(b, brick, &starts);
         int count = few ? STARTS : 1;
-        if (is_seen_from(&look, b, brick, &starts, count, tolerance, out) ||
-            (few && place_around(&look, &starts, count) &&
-             is_seen_from(&look, b, brick, &starts, DIRECTIONS, tolerance, out)))
-            return true;
+        hidden |= look_from(&look, b, brick, &starts, count, tolerance, out);
+        if (few && place_around(&look, &starts, count))
+            hidden |= look_from(&look, b, brick, &starts, DIRECTIONS, tolerance, out);
     }
-    return false;
+    return (uint8_t)(hidden & cells);
 }

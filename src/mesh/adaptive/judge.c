@@ -19,8 +19,6 @@ static const double SEVERAL = 1;
 /* Of a cell: how far beside each other's triangles its polygons are. */
 static const double APART = 1e-3;
 
-typedef enum csg_face_state { FACE_UNKNOWN, FACE_PLAIN, FACE_CREASED } face_state;
-
 /* ---- edges -------------------------------------------------------------------------------------
  */
 
@@ -209,33 +207,46 @@ static csg_surface_point point_of(const csg_judge_room *room, unsigned place,
         {(double)room->gradient[0][n], (double)room->gradient[1][n], (double)room->gradient[2][n]}};
 }
 
-/* Looks for the crease in the face that a side runs through, once for both cells but where an edge
- * is pierced. */
-static bool find_crease(csg_sheet_probe *probe, csg_judge_room *room, const csg_cell_box *box,
-                        const unsigned cell[3], const csg_polygon_side *side, csg_vec3 *out)
+/* The face that a side runs through, and its ends in the order of their edges, whichever of both
+ * cells asks. */
+static csg_face_crease face_of(const csg_judge_room *room, const csg_cell_box *box,
+                               const unsigned cell[3], const csg_polygon_side *side)
 {
-    unsigned slot = slot_of_place(side->face, cell, true), q[3];
-    if (side->pierced || room->face[slot] == FACE_UNKNOWN) {
-        csg_cell_box face = *box;
-        csg_local_place(side->face, q);
-        for (int k = 0; k < 3; k++) {
-            face.low[k] = q[k] == 4 ? box->high[k] : box->low[k];
-            face.high[k] = q[k] == 0 ? box->low[k] : box->high[k];
-        }
-        /* ends in the order of their edges, whichever of both cells asks */
-        uint8_t lower = side->from < side->to ? side->from : side->to;
-        uint8_t upper = side->from < side->to ? side->to : side->from;
-        const csg_surface_point ends[2] = {point_of(room, lower, cell),
-                                           point_of(room, upper, cell)};
-        if (side->pierced) {
-            *out = csg_wedge_in_face(probe, &face, ends);
-            return true;
-        }
-        bool found = csg_sheets_meet_in_face(probe, &face, ends, &room->crease[slot]);
-        room->face[slot] = found ? FACE_CREASED : FACE_PLAIN;
+    csg_face_crease f = {.face = *box};
+    unsigned q[3];
+    csg_local_place(side->face, q);
+    for (int k = 0; k < 3; k++) {
+        f.face.low[k] = q[k] == 4 ? box->high[k] : box->low[k];
+        f.face.high[k] = q[k] == 0 ? box->low[k] : box->high[k];
     }
-    *out = room->crease[slot];
-    return room->face[slot] == FACE_CREASED;
+    uint8_t lower = side->from < side->to ? side->from : side->to;
+    uint8_t upper = side->from < side->to ? side->to : side->from;
+    f.ends[0] = point_of(room, lower, cell);
+    f.ends[1] = point_of(room, upper, cell);
+    return f;
+}
+
+/* Looks for creases in the faces of cells with one polygon, in each once for both cells. */
+static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg_bricks *b,
+                         const csg_brick *brick)
+{
+    memset(room->face, CSG_NO_FACE, sizeof room->face);
+    room->face_count = 0;
+    for (unsigned rest = brick->crossed; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest);
+        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        const csg_cell_polygons *polygons = &room->polygons[cell];
+        csg_cell_box box = csg_judge_cell_box(b, brick, at);
+        for (unsigned i = 0; polygons->count == 1 && i < polygons->first[1]; i++) {
+            const csg_polygon_side *side = &polygons->side[i];
+            unsigned slot = slot_of_place(side->face, at, true);
+            if (!side->alone || side->pierced || room->face[slot] != CSG_NO_FACE)
+                continue;
+            room->face[slot] = (uint8_t)room->face_count;
+            room->faces[room->face_count++] = face_of(room, &box, at, side);
+        }
+    }
+    csg_sheets_meet_in_faces(probe, room->faces, room->face_count);
 }
 
 /* A polygon as it is cut into triangles: around an apex, or without a point inside. */
@@ -387,27 +398,32 @@ static bool is_near_triangles(const csg_judge_room *room, uint32_t first, uint32
     return false;
 }
 
-/* Whether all places of the surface that were found in the brick are near its triangles. */
-static bool has_all(const cell_work *w)
+/* The cells in which the surface was found away from triangles. Beside cells that are not searched,
+ * and beside other bricks, it may be near triangles that are not there yet. */
+static uint8_t find_uncovered(const cell_work *w, uint8_t cells)
 {
     double tolerance = w->judge->tolerance;
     const csg_judge_room *room = w->room;
-    csg_cell_box box;
-    for (int axis = 0; axis < 3; axis++) {
-        box.low[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, 0);
-        box.high[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, E);
-    }
+    bool all = cells == CSG_BRICK_ALL_CELLS;
+    unsigned uncovered = 0;
     for (int i = 0; i < w->hunted->count; i++) {
         csg_vec3 at = w->hunted->at[i];
         unsigned cell = w->hunted->cell[i];
-        if (is_near_side(&box, at, tolerance))
-            continue; /* it may be near triangles of the next brick */
-        if (!is_near_triangles(room, room->first_triangle[cell], room->end_triangle[cell], at,
-                               tolerance) &&
-            !is_near_triangles(room, 0, room->triangle_count, at, tolerance))
-            return false;
+        csg_cell_box box;
+        for (int axis = 0; axis < 3; axis++) {
+            uint32_t low = all ? 0 : cell >> axis & 1;
+            box.low[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, low);
+            box.high[axis] =
+                (double)csg_brick_coordinate(w->bricks, w->brick, axis, low + (all ? E : 1));
+        }
+        if (!(cells >> cell & 1) || is_near_side(&box, at, tolerance) ||
+            is_near_triangles(room, room->first_triangle[cell], room->end_triangle[cell], at,
+                              tolerance) ||
+            is_near_triangles(room, 0, room->triangle_count, at, tolerance))
+            continue;
+        uncovered |= 1u << cell;
     }
-    return true;
+    return (uint8_t)uncovered;
 }
 
 /* Whether all triangles of a piece have the other piece on one side: then they do not meet. */
@@ -446,19 +462,25 @@ static bool are_apart(const cell_work *w, double margin)
 static int gather(cell_work *w, const unsigned at[3], const csg_cell_polygons *polygons,
                   unsigned polygon, bool creased, csg_polygon *p)
 {
+    const csg_judge_room *room = w->room;
     csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
     int creases = 0;
     p->count = 0;
     for (int i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
         csg_vec3 crease;
+        uint8_t face = room->face[slot_of_place(side->face, at, true)];
         p->vertex[p->count] = csg_local_edge(side->from);
         p->is_crease[p->count] = false;
-        p->point[p->count++] = point_of(w->room, side->from, at);
-        if (!side->pierced && (!creased || !side->alone))
+        p->point[p->count++] = point_of(room, side->from, at);
+        if (side->pierced) {
+            csg_face_crease wedge = face_of(room, &box, at, side);
+            crease = csg_wedge_in_face(&w->probe, &wedge.face, wedge.ends);
+        } else if (creased && side->alone && room->faces[face].is_there) {
+            crease = room->faces[face].at;
+        } else {
             continue;
-        if (!find_crease(&w->probe, w->room, &box, at, side, &crease))
-            continue;
+        }
         p->is_crease[p->count] = true;
         p->point[p->count++].at = crease;
         creases++;
@@ -483,7 +505,7 @@ static bool cut_into_triangles(cell_work *w, const unsigned at[3], bool is_whole
         cut_without_apex(csg_brick_pattern(w->brick, at[0], at[1], at[2]), piece) &&
         find_distance(&w->probe, piece, least) <= tolerance) {
         if (alone)
-            w->brick->flat |= (uint64_t)1 << csg_brick_cell(at[0], at[1], at[2]);
+            w->brick->flat |= (uint8_t)(1u << csg_brick_cell(at[0], at[1], at[2]));
         return true;
     }
     if (is_whole && !alone)
@@ -494,36 +516,58 @@ static bool cut_into_triangles(cell_work *w, const unsigned at[3], bool is_whole
            find_distance(&w->probe, piece, least) <= tolerance;
 }
 
-/* Whether a cell is small enough. Several polygons must be on their own sides of each other where
- * the cell has pierced edges; those of a whole cell are whatever their vertices. */
-static bool is_good(cell_work *w, const unsigned at[3], const csg_shell_cell *place,
-                    const csg_cell_polygons *polygons)
+static bool has_pierced_edge(const csg_brick *brick, const unsigned low[3])
 {
-    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
-    bool good = !csg_cell_polygons_are_mixed(polygons);
-    w->count = 0;
-    for (unsigned i = 0; i < polygons->count && good; i++)
-        good = cut_into_triangles(w, at, !place->divided, polygons, i);
-    good = good && (!place->divided || are_apart(w, APART * box.cell));
-    if (good)
-        keep_triangles(w, csg_brick_cell(at[0], at[1], at[2]));
-    bool is_small = box.cell <= SEVERAL * w->judge->tolerance && !place->pierced;
-    return good || (polygons->count > 1 && is_small);
+    const unsigned high[3] = {low[0] + 1, low[1] + 1, low[2] + 1};
+    return csg_brick_is_pierced(brick, low, high);
 }
 
 /* Cells that a pierced edge belongs to are crossed whatever their corners say. */
 static void cross_pierced(csg_brick *brick)
 {
-    for (unsigned cell = 0; cell < E * E * E && brick->pierced; cell++) {
+    for (unsigned cell = 0; cell < CSG_BRICK_CELLS && brick->pierced; cell++) {
         const unsigned low[3] = {cell % E, cell / E % E, cell / (E * E)};
-        const unsigned high[3] = {low[0] + 1, low[1] + 1, low[2] + 1};
-        if (csg_brick_is_pierced(brick, low, high))
-            brick->crossed |= (uint64_t)1 << cell;
+        brick->crossed |= (uint8_t)((unsigned)has_pierced_edge(brick, low) << cell);
     }
 }
 
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
-                     const float *f)
+/* The polygons of all cells; notes which have several. */
+static void make_polygons(cell_work *w)
+{
+    csg_shell shell = {.brick = w->brick};
+    for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest);
+        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
+        csg_cell_faces faces = {w->bricks, w->brick, at, &w->probe, &w->room->pierced};
+        csg_cell_polygons *polygons = &w->room->polygons[cell];
+        csg_cell_polygons_make(polygons, &place, csg_cell_face_is_inside, &faces);
+        if (polygons->count > 1)
+            w->brick->several |= (uint8_t)(1u << cell);
+    }
+}
+
+/* Whether a cell is small enough. Several polygons must be on their own sides of each other where
+ * the cell has pierced edges; those of a whole cell are whatever their vertices. */
+static bool is_good(cell_work *w, unsigned cell)
+{
+    const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+    const csg_cell_polygons *polygons = &w->room->polygons[cell];
+    bool pierced = has_pierced_edge(w->brick, at);
+    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
+    bool good = !csg_cell_polygons_are_mixed(polygons);
+    w->count = 0;
+    for (unsigned i = 0; i < polygons->count && good; i++)
+        good = cut_into_triangles(w, at, !pierced, polygons, i);
+    good = good && (!pierced || are_apart(w, APART * box.cell));
+    if (good)
+        keep_triangles(w, cell);
+    bool is_small = box.cell <= SEVERAL * w->judge->tolerance && !pierced;
+    return good || (polygons->count > 1 && is_small);
+}
+
+uint8_t csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
+                        const float *f)
 {
     const csg_judge *judge = user;
     csg_judge_room *room = &judge->rooms[worker];
@@ -541,30 +585,25 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     cross_pierced(brick);
     brick->flat = brick->several = 0;
     collect_edges(b, brick, room);
-    memset(room->face, FACE_UNKNOWN, sizeof room->face);
     csg_judge_solve_edges(judge, b, brick, room);
     room->triangle_count = 0;
     memset(room->first_triangle, 0, sizeof room->first_triangle);
     memset(room->end_triangle, 0, sizeof room->end_triangle);
-    bool wants = false;
-    for (uint64_t rest = brick->crossed; rest && (!wants || is_finest); rest &= rest - 1) {
-        unsigned cell = (unsigned)__builtin_ctzll(rest);
-        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
-        csg_shell shell = {.brick = brick};
-        csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
-        csg_cell_polygons polygons;
-        csg_cell_faces faces = {b, brick, at, &w.probe, &room->pierced};
-        csg_cell_polygons_make(&polygons, &place, csg_cell_face_is_inside, &faces);
-        if (polygons.count > 1)
-            brick->several |= (uint64_t)1 << cell;
-        wants = !is_good(&w, at, &place, &polygons) || wants;
+    make_polygons(&w);
+    if (judge->sharp)
+        find_creases(&w.probe, room, b, brick);
+    unsigned wanted = 0;
+    for (unsigned rest = brick->crossed; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest);
+        wanted |= (unsigned)!is_good(&w, cell) << cell;
     }
-    /* Where nothing is hidden in the cube that this is an octant of, nothing is here; such a cube
-     * is divided for the balance only. */
-    if (!wants && !is_finest && !brick->searched) {
-        wants = csg_hunt(&w.probe, b, brick, judge->tolerance, f, &hunted) || !has_all(&w);
-        brick->searched = !wants;
+    /* Where nothing is hidden in a cell, nothing is in a brick in its place. */
+    uint8_t cells = (uint8_t)(CSG_BRICK_ALL_CELLS & ~(wanted | brick->searched));
+    if (cells && !is_finest) {
+        wanted |= csg_hunt(&w.probe, b, brick, judge->tolerance, f, cells, &hunted);
+        wanted |= find_uncovered(&w, cells & (uint8_t)~wanted);
+        brick->searched |= cells & (uint8_t)~wanted;
     }
     room->evaluations += w.probe.evaluations;
-    return wants;
+    return (uint8_t)wanted;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Whether the cells of a brick are small enough: each has one polygon, whose triangles are near the
- * surface and look outwards, and sheets that should meet in it do.
+ * Which cells of a brick are small enough: they have one polygon, whose triangles are near the
+ * surface and look outwards, and sheets that should meet in them do.
  */
 #ifndef CSG_MESH_ADAPTIVE_JUDGE_H
 #define CSG_MESH_ADAPTIVE_JUDGE_H
@@ -14,7 +14,8 @@
 enum {
     CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS,
     CSG_BRICK_CELLS = CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE,
-    CSG_JUDGE_MOST_TRIANGLES = 64 * CSG_BRICK_CELLS
+    CSG_JUDGE_MOST_TRIANGLES = 64 * CSG_BRICK_CELLS,
+    CSG_NO_FACE = 0xFF
 };
 
 /* One thread's room; slots of edges and faces: axis * CSG_BRICK_POINTS + lower (lowest) point. */
@@ -24,8 +25,10 @@ typedef struct csg_judge_room {
     csg_pierced pierced;
     /* Place in `edges`, of those crossed; of pierced ones the lower half's, and the upper's. */
     uint16_t edge[2][CSG_BRICK_SLOTS];
-    uint8_t face[CSG_BRICK_SLOTS]; /* csg_face_state */
-    csg_vec3 crease[CSG_BRICK_SLOTS];
+    csg_cell_polygons polygons[CSG_BRICK_CELLS]; /* of crossed cells */
+    uint8_t face[CSG_BRICK_SLOTS];               /* place in `faces`, or CSG_NO_FACE */
+    csg_face_crease faces[CSG_MOST_FACES];       /* that creases are looked for in */
+    int face_count;
     csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
     uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
     float *scratch;
@@ -43,8 +46,8 @@ typedef struct csg_judge {
 } csg_judge;
 
 /* A csg_brick_judge; user: a csg_judge. */
-bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
-                     const float *f);
+uint8_t csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
+                        const float *f);
 
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 

@@ -8,7 +8,11 @@
 
 #include "mesh/plane.h"
 
-enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES };
+enum {
+    MOST = CSG_POLYGON_MOST_SHEETS,
+    LANES = CSG_LANES,
+    MOST_ASKED = (2 * CSG_MOST_FACES + LANES - 1) / LANES * LANES
+};
 
 /* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
  * differ by 12 in all may go round a tip. */
@@ -31,11 +35,12 @@ double csg_gradients_cosine(csg_vec3 a, csg_vec3 b)
     return length > 1e-150 ? csg_vec3_dot(a, b) / length : 1; /* whatever the unit */
 }
 
-/* Values and gradients at a few points. */
+/* Values and gradients at some points. */
 static void ask(csg_sheet_probe *p, const csg_vec3 *at, int count, double *f, csg_vec3 *g)
 {
-    float x[LANES], y[LANES], z[LANES], v[LANES], gx[LANES], gy[LANES], gz[LANES];
-    for (int i = 0; i < LANES; i++) {
+    float x[MOST_ASKED], y[MOST_ASKED], z[MOST_ASKED], v[MOST_ASKED];
+    float gx[MOST_ASKED], gy[MOST_ASKED], gz[MOST_ASKED];
+    for (int i = 0; i < count || i % LANES; i++) {
         const csg_vec3 *q = &at[i < count ? i : 0];
         x[i] = (float)q->x, y[i] = (float)q->y, z[i] = (float)q->z;
     }
@@ -133,12 +138,10 @@ static bool is_own(const sheets *s, int sheet, csg_vec3 g)
 }
 
 /* A point of each sheet, `off` from the place towards its vertices. */
-static void look(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec3 at, double off,
-                 int flat_axis)
+static void place_looks(const csg_cell_box *box, const sheets *s, csg_vec3 at, double off,
+                        int flat_axis, csg_vec3 *q)
 {
-    csg_vec3 q[MOST], g[MOST], from = keep_within(box, at, 0);
-    double f[MOST];
-    q[0] = from;
+    csg_vec3 from = keep_within(box, at, 0);
     for (int k = 0; k < s->count; k++) {
         csg_vec3 way = csg_vec3_sub(s->toward[k], from), n = s->plane[k].g;
         double square = csg_vec3_dot(n, n);
@@ -148,7 +151,11 @@ static void look(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec
         q[k] = keep_within(
             box, csg_vec3_add(from, csg_vec3_scale(way, length > 0 ? step / length : 0)), 0);
     }
-    ask(p, q, s->count, f, g);
+}
+
+/* The planes that were found there, where they are the sheets' own. */
+static void take_looks(sheets *s, const csg_vec3 *q, const double *f, csg_vec3 *g, int flat_axis)
+{
     for (int k = 0; k < s->count; k++) {
         if (flat_axis >= 0)
             *component(&g[k], flat_axis) = 0;
@@ -180,65 +187,142 @@ static bool is_curved_only(turn before, turn now)
            now.angle - (before.angle - now.angle) * now.distance / nearer < LEAST_TURN;
 }
 
-/* Moves `at` to where the sheets meet. False: they do not, near the box. */
-static bool come_closer(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec3 *at,
-                        int flat_axis)
+/* Whether a step was so short that there is nothing to learn from closer by: faces are plane. */
+static bool has_arrived(const csg_cell_box *box, int step, csg_vec3 before, csg_vec3 at)
 {
+    return step > 0 && csg_vec3_norm(csg_vec3_sub(at, before)) < 1e-5 * box->cell;
+}
+
+/* Moves `at` to where the sheets meet. False: they do not, near the box. */
+static bool come_closer(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec3 *at)
+{
+    csg_vec3 q[MOST], g[MOST], before = *at;
+    double f[MOST];
     if (!meet(s->plane, s->count, at))
         return false;
-    turn first = turn_of(s);
-    for (int step = 0; step < STEPS; step++) {
-        csg_vec3 before = *at;
+    for (int step = 0; step < STEPS && !has_arrived(box, step - 1, before, *at); step++) {
+        before = *at;
         if (!(way_out(box, *at) < box->cell))
             return false;
-        look(p, box, s, *at, OFF[step], flat_axis);
-        if (flat_axis >= 0 && is_curved_only(first, turn_of(s)))
-            return false;
+        place_looks(box, s, *at, OFF[step], -1, q);
+        ask(p, q, s->count, f, g);
+        take_looks(s, q, f, g, -1);
         if (!meet(s->plane, s->count, at))
             return false;
-        csg_vec3 moved = csg_vec3_sub(*at, before);
-        if (step > 0 && csg_vec3_norm(moved) < 1e-5 * box->cell)
-            break; /* plane faces: there is nothing to learn from closer by */
     }
     return true;
 }
 
-static bool is_zero(csg_sheet_probe *p, const csg_cell_box *box, csg_vec3 at, double slope)
+/* Whether a value is that of a place on the surface. */
+static bool is_zero(const csg_sheet_probe *p, const csg_cell_box *box, double f, double slope)
+{
+    return fabs(f) <= ZERO * box->cell * slope + 4 * p->noise;
+}
+
+static bool is_zero_at(csg_sheet_probe *p, const csg_cell_box *box, csg_vec3 at, double slope)
 {
     double f;
     csg_vec3 g;
     ask(p, &at, 1, &f, &g);
-    return fabs(f) <= ZERO * box->cell * slope + 4 * p->noise;
+    return is_zero(p, box, f, slope);
 }
 
 /* ---- in a face ---------------------------------------------------------------------------------
  */
 
-bool csg_sheets_meet_in_face(csg_sheet_probe *p, const csg_cell_box *face,
-                             const csg_surface_point ends[2], csg_vec3 *out)
+/* One face's way to where its two sheets meet. */
+typedef struct approach {
+    csg_face_crease *face;
+    int axis; /* the face's own */
+    sheets sheets;
+    turn first;
+    csg_vec3 at, before;
+    bool is_there;
+} approach;
+
+/* False: there are no two sheets, or they do not meet. */
+static bool set_out(approach *a, csg_face_crease *face)
 {
-    sheets s = {.count = 2};
-    int axis = face->low[0] == face->high[0] ? 0 : face->low[1] == face->high[1] ? 1 : 2;
+    const csg_cell_box *box = &face->face;
+    face->is_there = a->is_there = false;
+    a->face = face;
+    a->axis = box->low[0] == box->high[0] ? 0 : box->low[1] == box->high[1] ? 1 : 2;
+    a->sheets.count = 2;
     for (int k = 0; k < 2; k++) {
-        csg_vec3 g = ends[k].gradient;
-        *component(&g, axis) = 0;
-        s.plane[k] = csg_plane_of(ends[k].at, 0, g);
-        s.from[k] = s.toward[k] = ends[k].at;
+        csg_vec3 g = face->ends[k].gradient;
+        *component(&g, a->axis) = 0;
+        a->sheets.plane[k] = csg_plane_of(face->ends[k].at, 0, g);
+        a->sheets.from[k] = a->sheets.toward[k] = face->ends[k].at;
     }
-    double slope = csg_vec3_norm(ends[0].gradient);
-    if (csg_gradients_cosine(s.plane[0].g, s.plane[1].g) > ONE_SHEET)
+    a->first = turn_of(&a->sheets);
+    a->at = a->before = csg_vec3_scale(csg_vec3_add(face->ends[0].at, face->ends[1].at), 0.5);
+    return csg_gradients_cosine(a->sheets.plane[0].g, a->sheets.plane[1].g) <= ONE_SHEET &&
+           meet(a->sheets.plane, 2, &a->at) && way_out(box, a->at) < box->cell;
+}
+
+/* Takes what a look showed. False: the sheets do not meet. */
+static bool go_on(approach *a, int step, const csg_vec3 *q, const double *f, csg_vec3 *g)
+{
+    const csg_cell_box *box = &a->face->face;
+    a->before = a->at;
+    take_looks(&a->sheets, q, f, g, a->axis);
+    if (is_curved_only(a->first, turn_of(&a->sheets)) || !meet(a->sheets.plane, 2, &a->at))
         return false;
-    csg_vec3 at = csg_vec3_scale(csg_vec3_add(ends[0].at, ends[1].at), 0.5);
-    if (!come_closer(p, face, &s, &at, axis) ||
-        csg_gradients_cosine(s.plane[0].g, s.plane[1].g) > ONE_SHEET)
-        return false;
-    *component(&at, axis) = face->low[axis];
-    csg_vec3 kept = keep_within(face, at, MARGIN * face->cell);
-    if (csg_vec3_norm(csg_vec3_sub(kept, at)) > MARGIN * face->cell ||
-        !is_zero(p, face, kept, slope))
-        return false;
-    *out = kept;
-    return true;
+    a->is_there = step + 1 == STEPS || has_arrived(box, step, a->before, a->at);
+    return a->is_there || way_out(box, a->at) < box->cell;
+}
+
+/* The place kept within the face. False: it is not in the face, or not a crease's. */
+static bool keep_in_face(approach *a)
+{
+    const csg_cell_box *box = &a->face->face;
+    *component(&a->at, a->axis) = box->low[a->axis];
+    a->face->at = keep_within(box, a->at, MARGIN * box->cell);
+    return csg_gradients_cosine(a->sheets.plane[0].g, a->sheets.plane[1].g) <= ONE_SHEET &&
+           csg_vec3_norm(csg_vec3_sub(a->face->at, a->at)) <= MARGIN * box->cell;
+}
+
+void csg_sheets_meet_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int count)
+{
+    approach on_way[CSG_MOST_FACES];
+    csg_vec3 q[2 * CSG_MOST_FACES], g[2 * CSG_MOST_FACES];
+    double f[2 * CSG_MOST_FACES];
+    int going = 0, there = 0;
+    for (int i = 0; i < count; i++)
+        going += set_out(&on_way[going], &faces[i]);
+    for (int step = 0; step < STEPS && there < going; step++) {
+        int looks = 0, kept = 0;
+        for (int i = 0; i < going; i++) {
+            approach *a = &on_way[i];
+            if (!a->is_there)
+                place_looks(&a->face->face, &a->sheets, a->at, OFF[step], a->axis, &q[looks]);
+            looks += a->is_there ? 0 : 2;
+        }
+        ask(p, q, looks, f, g);
+        looks = there = 0;
+        for (int i = 0; i < going; i++) {
+            approach a = on_way[i];
+            int own = looks;
+            looks += a.is_there ? 0 : 2;
+            if (!a.is_there && !go_on(&a, step, &q[own], &f[own], &g[own]))
+                continue;
+            there += a.is_there;
+            on_way[kept++] = a;
+        }
+        going = kept;
+    }
+    int kept = 0;
+    for (int i = 0; i < going; i++)
+        if (keep_in_face(&on_way[i])) {
+            q[kept] = on_way[i].face->at;
+            on_way[kept++] = on_way[i];
+        }
+    if (kept)
+        ask(p, q, kept, f, g);
+    for (int i = 0; i < kept; i++) {
+        csg_face_crease *face = on_way[i].face;
+        face->is_there = is_zero(p, &face->face, f[i], csg_vec3_norm(face->ends[0].gradient));
+    }
 }
 
 /* From between the points straight into the face, to where the sign is another one. */
@@ -272,9 +356,10 @@ static csg_vec3 step_beside(csg_sheet_probe *p, const csg_cell_box *face,
 csg_vec3 csg_wedge_in_face(csg_sheet_probe *p, const csg_cell_box *face,
                            const csg_surface_point ends[2])
 {
-    csg_vec3 at;
-    if (csg_sheets_meet_in_face(p, face, ends, &at))
-        return at;
+    csg_face_crease one = {.face = *face, .ends = {ends[0], ends[1]}};
+    csg_sheets_meet_in_faces(p, &one, 1);
+    if (one.is_there)
+        return one.at;
     return keep_within(face, step_beside(p, face, ends), MARGIN * face->cell);
 }
 
@@ -374,7 +459,7 @@ static bool find_tip(csg_sheet_probe *p, const csg_cell_box *box, const csg_poly
         return false;
     csg_vec3 kept = keep_within(box, *at, MARGIN * box->cell);
     *at = kept;
-    return is_zero(p, box, kept, slope);
+    return is_zero_at(p, box, kept, slope);
 }
 
 /* Whether the sheets on both sides of some crease point differ by more than 12 degrees: what is
@@ -408,10 +493,10 @@ csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *p, const csg_cell_box *box,
             if (polygon->is_crease[i])
                 sum = csg_vec3_add(sum, polygon->point[i].at);
         at = csg_vec3_scale(sum, 1.0 / creases);
-        if (gather_sheets(polygon, creases, &s) && come_closer(p, box, &s, &at, -1)) {
+        if (gather_sheets(polygon, creases, &s) && come_closer(p, box, &s, &at)) {
             csg_vec3 kept = keep_within(box, at, MARGIN * box->cell);
             if (csg_vec3_norm(csg_vec3_sub(kept, at)) <= MARGIN * box->cell &&
-                is_zero(p, box, kept, slope)) {
+                is_zero_at(p, box, kept, slope)) {
                 *out = kept;
                 return CSG_APEX_CREASE;
             }

@@ -33,13 +33,21 @@ typedef struct csg_surface_point {
     csg_vec3 at, gradient;
 } csg_surface_point;
 
-/* Whether a crease goes through a face between two points of its border, and where: within it, with
- * a margin to its sides. */
-bool csg_sheets_meet_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
-                             const csg_surface_point ends[2], csg_vec3 *out);
+/* A face, two points of its border, and, found between them, whether a crease goes through the face
+ * and where: within it, with a margin to its sides. */
+typedef struct csg_face_crease {
+    csg_cell_box face;
+    csg_surface_point ends[2];
+    bool is_there;
+    csg_vec3 at;
+} csg_face_crease;
 
-/* The same where both points are on one edge of the face, which a wedge pokes through: where its
- * sheets meet, else where the surface is beside the edge. */
+enum { CSG_MOST_FACES = 36 }; /* at once: those of a brick */
+
+void csg_sheets_meet_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count);
+
+/* A place in the face where both points are on one edge of it, which a wedge pokes through: where
+ * its sheets meet, else where the surface is beside the edge. */
 csg_vec3 csg_wedge_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
                            const csg_surface_point ends[2]);
 

@@ -70,9 +70,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
         double cells = ceil((high[axis] + margin - begin) / step) * (step / cell);
         if (!(cells <= CSG_LATTICE_MOST_CELLS)) {
             csg_diag_plain(
-                &a->input.context->diags, CSG_DIAG_TOO_FINE, NULL,
-                a->input.options->simplify_error > 0 ? "raise the error of --simplify, or give -r"
-                                                     : "give smaller --bounds, or -r",
+                &a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
                 "a tolerance of %g over %g x %g x %g would take more than %d cells along "
                 "a side",
                 a->goal->error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);
@@ -220,7 +218,7 @@ static void count_blocks(const csg_bricks *bricks, uint64_t blocks[CSGM_LEVELS_M
 {
     for (size_t i = 0; i < bricks->count; i++) {
         const csg_brick *brick = &bricks->items[i];
-        if (!brick->divided && brick->crossed && brick->level >= bricks->options.coarse)
+        if (brick->crossed & ~brick->divided && brick->level >= bricks->options.coarse)
             blocks[brick->level - bricks->options.coarse]++;
     }
 }
