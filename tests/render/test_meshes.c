@@ -85,7 +85,9 @@ static void test_a_scenes_mesh(void **state)
     render_begin(&c, 2, CSGM_ISA_AUTO,
                  "difference() { sphere(r = 1); translate([0.6, -0.6, 0.6]) "
                  "color(\"red\") sphere(r = 0.6); }");
-    assert_int_equal(csgm_mesh_build(c.context, c.field, NULL, &mesh, NULL), CSGM_OK);
+    csgm_mesh_options fine = csgm_mesh_options_default();
+    fine.resolution = 128;
+    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
     csgm_mesh_view view = csgm_mesh_get_view(mesh);
     csgm_render_options options = front_options(200, 2.4);
     render_scene(&c, &options);
