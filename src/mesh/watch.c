@@ -67,7 +67,7 @@ csgm_status csg_mesh_why_stopped(csg_mesh_watch *w)
     if (!atomic_load(&w->timed_out))
         return CSGM_CANCELLED;
     csg_diag_plain(&w->context->diags, CSG_DIAG_TIMEOUT, NULL,
-                   "raise --timeout, or mesh at a lower resolution",
+                   "raise --timeout, or mesh more coarsely: --quality draft, or a lower -r",
                    "meshing took longer than the limit of %g s", w->context->limits.timeout_s);
     return CSGM_ERR_LIMIT;
 }

@@ -51,6 +51,25 @@ class Quality(cli.CliTest):
             self.assertGreater(mesh["triangles"], most // 2)
             self.assertEqual(mesh["euler"], 2)
 
+    def test_share_of_the_triangles(self):
+        """P% of what it has without: no place is then too far, since nothing was said of distances."""
+        text = "sphere(10); translate([9, 0, 0]) cylinder(h = 12, r = 3);"
+        whole = self.stats(text, "--quality", "draft")["mesh"]["triangles"]
+        self.write("scene.txt", text)
+        result = cli.run("scene.txt", "-o", "out.ply", "--stats", "--quality", "draft", "--simplify", "50%", cwd=self.folder)
+        self.assert_status(result, 0)
+        self.assertNotIn("warning", result.stderr)
+        self.assertAlmostEqual(json.loads(result.stdout)["mesh"]["triangles"], whole / 2, delta=2)
+
+    def test_hints(self):
+        """What to do where it is too much says how these cells, too, get fewer."""
+        self.write("scene.txt", "sphere(1);")
+        for options, words in ((["--max-memory", "3M"], "--quality draft, or a lower -r"), (["--timeout", "0.001"], "--quality draft, or a lower -r"),
+                               (["--bounds=-1e7,-1e7,-1e7,1e7,1e7,1e7"], "smaller --bounds, or -r")):
+            result = cli.run("scene.txt", "-o", "out.ply", "--quality", "fine", *options, cwd=self.folder)
+            self.assert_status(result, 2)
+            self.assertIn(words, result.stderr)
+
     def test_bounds(self):
         self.write("scene.txt", "sphere(10);")
         result = cli.run("scene.txt", "-o", "out.ply", "--stats", "--quality", "draft", "--bounds=-20,-20,0,20,20,20", cwd=self.folder)

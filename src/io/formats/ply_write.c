@@ -91,7 +91,8 @@ csgm_status csg_ply_check(csgm_context *context, const char *file, const csgm_me
 {
     if (mesh->vertex_count <= INT32_MAX)
         return CSGM_OK;
-    csg_diag_plain(&context->diags, CSG_DIAG_FORMAT_LIMIT, file, "lower the resolution",
+    csg_diag_plain(&context->diags, CSG_DIAG_FORMAT_LIMIT, file,
+                   "mesh more coarsely, or write OBJ instead",
                    "PLY counts vertices up to 2147483647, the mesh has %llu",
                    (unsigned long long)mesh->vertex_count);
     return CSGM_ERR_UNSUPPORTED;

@@ -570,7 +570,8 @@ static csgm_status go(work *w, bool (*visit)(work *, uint32_t, const csg_shell *
         return csg_context_no_memory(w->x->context);
     if (w->count < OWN)
         return CSGM_OK;
-    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower the quality",
+    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL,
+                   "mesh more coarsely: --quality draft, or -r",
                    "the mesh would have more than %u vertices", OWN - 1);
     return CSGM_ERR_LIMIT;
 }

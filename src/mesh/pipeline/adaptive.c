@@ -70,7 +70,9 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
         double cells = ceil((high[axis] + margin - begin) / step) * (step / cell);
         if (!(cells <= CSG_LATTICE_MOST_CELLS)) {
             csg_diag_plain(
-                &a->input.context->diags, CSG_DIAG_TOO_FINE, NULL, "raise the tolerance",
+                &a->input.context->diags, CSG_DIAG_TOO_FINE, NULL,
+                a->input.options->simplify_error > 0 ? "raise the error of --simplify, or give -r"
+                                                     : "give smaller --bounds, or -r",
                 "a tolerance of %g over %g x %g x %g would take more than %d cells along "
                 "a side",
                 a->goal->error, size.x, size.y, size.z, CSG_LATTICE_MOST_CELLS);

@@ -160,7 +160,8 @@ static csgm_status assemble(assembly *a, csgm_mesh **out)
         triangles += a->meshes[i]->triangle_count;
     }
     if (vertices >= UINT32_MAX) {
-        csg_diag_plain(&a->context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, "lower -r, or raise -s",
+        csg_diag_plain(&a->context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL,
+                       "mesh more coarsely: --quality draft, or a lower -r",
                        "the parts have %llu vertices in all, more than 32 bits can number",
                        (unsigned long long)vertices);
         return CSGM_ERR_LIMIT;

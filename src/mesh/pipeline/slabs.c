@@ -112,7 +112,8 @@ csgm_status csg_mesh_count_slabs(csg_mesh_slabs *s)
     }
     if (status != CSGM_OK || s->vertex_count <= UINT32_MAX)
         return status;
-    csg_diag_plain(&s->watch->context->diags, CSG_DIAG_TOO_FINE, NULL, "lower the resolution",
+    csg_diag_plain(&s->watch->context->diags, CSG_DIAG_TOO_FINE, NULL,
+                   "lower -r, or raise -s or -e",
                    "the mesh would have %llu vertices, more than 32-bit indices can number",
                    (unsigned long long)s->vertex_count);
     return CSGM_ERR_LIMIT;

@@ -9,7 +9,17 @@
 #include "base/mesh_codes.h"
 
 /* follows: the cells follow the shape, there is no -r to raise. */
-static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool follows)
+static const char *hint_at_far_place(const csgm_mesh_options *options, bool follows)
+{
+    if (!follows)
+        return "raise -r, or the tolerance";
+    if (options->simplify_error > 0 || options->quality == CSGM_QUALITY_FINE)
+        return "-e keeps within a tolerance, and proves it";
+    return "--quality fine comes nearer, -e keeps within a tolerance and proves it";
+}
+
+static void report_misses(csgm_context *context, const csg_mesh_goal *goal,
+                          const csgm_mesh_options *options, bool follows)
 {
     if (goal->open)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
@@ -19,9 +29,10 @@ static void report_misses(csgm_context *context, const csg_mesh_goal *goal, bool
                        "first at %g,%g,%g",
                        (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
                        goal->place.z);
-    if (goal->error > 0 && !goal->triangles && goal->measured > goal->error)
+    bool has_count = goal->triangles || goal->share > 0; /* then the error grows until it is met */
+    if (goal->error > 0 && !has_count && goal->measured > goal->error)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
-                       follows ? "raise the quality, or give -e" : "raise -r, or the tolerance",
+                       hint_at_far_place(options, follows),
                        "a place of the surface is %g from the mesh, more than %g", goal->measured,
                        goal->error);
     if (goal->unproven)
@@ -112,7 +123,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
     }
     if (status != CSGM_OK)
         return status;
-    report_misses(context, &goal, follows);
+    report_misses(context, &goal, options, follows);
     if (stats)
         fill_stats(stats, &goal);
     return CSGM_OK;

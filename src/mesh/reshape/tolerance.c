@@ -56,16 +56,21 @@ static bool has_count(const csg_mesh_goal *goal)
     return goal->triangles || goal->share > 0;
 }
 
-/* With errors that double until few enough triangles are left. */
+/* With errors that double until few enough triangles are left. A share of a mesh within an error is
+ * that of the triangles which the error leaves, not of those that it began with. */
 static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
 {
     csg_remesh *r = d->remesh;
+    csgm_status status = CSGM_OK;
+    if (goal->error > 0 && goal->share > 0 && !goal->triangles) {
+        status = csg_decimate(d, CSG_DECIMATE_ALL);
+        goal->begun = r->corners.live;
+    }
     double wanted = goal->triangles ? (double)goal->triangles : goal->share * (double)goal->begun;
     uint32_t least = wanted < (double)goal->begun ? (uint32_t)ceil(wanted) : (uint32_t)goal->begun;
     double most = 0.25 * csg_lattice_extent(r->marching->lattice);
-    csgm_status status = CSGM_OK;
     r->error = goal->error > 0 ? goal->error : r->cell / 64;
-    for (;;) {
+    while (status == CSGM_OK) {
         status = csg_decimate(d, least);
         if (status != CSGM_OK || r->corners.live <= least + 1 || r->error * 2 > most)
             break;
