@@ -470,6 +470,12 @@ typedef struct csgm_mesh_options {
 
 CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
 
+/* The tolerance T of a quality for a solid of these bounds; 0 where they are empty, a point or
+ * infinite. Given as simplify_error, with resolution and cell_size 0 and a quality, it meshes other
+ * solids within the same T: two of them that differ in size then differ in the mesh only where they
+ * differ in shape. */
+CSGM_API double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds);
+
 /* A part of the solid, or a gap in it, that no point of the lattice stands for. */
 typedef struct csgm_certify_place {
     bool is_missed; /* false: it could not be told */

@@ -13,6 +13,7 @@
 #include "io/stream.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
+#include "mesh/pipeline/adaptive.h"
 #include "mesh/pipeline/parts.h"
 #include "scene/reference.h"
 #include "scene/tree/parts.h"
@@ -25,6 +26,15 @@ csgm_mesh_options csgm_mesh_options_default(void)
                                .features = CSGM_FEATURES_SHARP,
                                .colors = true,
                                .prune = true};
+}
+
+double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
+{
+    csg_vec3 size = csg_box_size(bounds);
+    bool has_size = !csg_box_is_empty(bounds) && csg_box_is_finite(bounds) &&
+                    fmax(size.x, fmax(size.y, size.z)) > 0;
+    return has_size && quality <= CSGM_QUALITY_FINE ? csg_mesh_quality_tolerance(quality, bounds)
+                                                    : 0;
 }
 
 csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,

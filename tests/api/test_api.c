@@ -206,6 +206,33 @@ static void test_options_of_other_versions(void **state)
     end(&r);
 }
 
+/* Within the tolerance of another solid: of its mesh, and of none where there is no size. */
+static void test_tolerance_of_a_quality(void **state)
+{
+    const csgm_box box = {{-1, 0, 0}, {1, 1, 1}}; /* its longest side is 2 */
+    csgm_box endless = box, none = csgm_mesh_options_default().bounds,
+             point = {{1, 1, 1}, {1, 1, 1}};
+    run r;
+    (void)state;
+    endless.max.x = INFINITY;
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_DRAFT, box) == 0x1p-7);
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_NORMAL, box) == 0x1p-9);
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_FINE, box) == 0x1p-11);
+    assert_true(csgm_quality_tolerance((csgm_quality)99, box) == 0);
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_DRAFT, endless) == 0);
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_DRAFT, none) == 0);
+    assert_true(csgm_quality_tolerance(CSGM_QUALITY_DRAFT, point) == 0);
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.quality = CSGM_QUALITY_DRAFT;
+    assert_int_equal(go(&r, NULL, "sphere(1);", &options), CSGM_OK);
+    uint64_t own = csgm_mesh_get_view(r.mesh).triangle_count;
+    end(&r);
+    options.simplify_error = csgm_quality_tolerance(CSGM_QUALITY_DRAFT, box);
+    assert_int_equal(go(&r, NULL, "sphere(1);", &options), CSGM_OK);
+    assert_int_equal(csgm_mesh_get_view(r.mesh).triangle_count, own);
+    end(&r);
+}
+
 static void test_params(void **state)
 {
     static const char text[] = "// how wide\nwidth = 3; // [1:5]\ncube(width);\n";
@@ -399,6 +426,7 @@ int main(void)
         cmocka_unit_test(test_destroy_of_nothing),
         cmocka_unit_test(test_options_not_made_by_default),
         cmocka_unit_test(test_options_of_other_versions),
+        cmocka_unit_test(test_tolerance_of_a_quality),
         cmocka_unit_test(test_params),
         cmocka_unit_test(test_null_arguments),
         cmocka_unit_test(test_names),

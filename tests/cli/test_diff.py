@@ -73,6 +73,33 @@ class Diff(diff_support.DiffTest):
         self.assertIn(b"normals differ", self.diff(1, "v.glb", "s.txt", "-r", "24", "--normals", "crease").stdout)
         self.assertIn(b"colours differ", self.diff(1, "s.ply", "s.txt", "-r", "24", "--colors", "none").stdout)
 
+    def test_two_scenes_get_one_tolerance(self):
+        """The smaller of theirs, at most a quarter of --tol, at least that of --quality fine; equal cells are as asked for."""
+        small = "cube(10); translate([5, 5, 9]) sphere(2);\n"
+        self.write("a.txt", small)
+        self.write("b.txt", small + "translate([15, 5, 5]) cube([10, 3, 3], center = true);\n")
+
+        def triangles(*options, a="a.txt", b="b.txt"):
+            report = self.report(1, a, b, *options)
+            return [report[side]["triangles"] for side in "ab"]
+
+        def alone(name, *options):
+            result = self.run_in("info", name, "--json", *options)
+            return json.loads(result.stdout)["mesh"]["triangles"]
+        draft = ["--quality", "draft"]
+        a, b = triangles(*draft)
+        self.assertEqual(a, alone("a.txt", *draft))
+        self.assertGreater(b, alone("b.txt", *draft))  # b is twice as large, its own tolerance too
+        self.assertEqual(triangles(*draft, "--tol", "0.5"), [a, b])
+        self.assertGreater(triangles(*draft, "--tol", "0.05")[0], a)
+        finest = triangles(*draft, "--tol", "1e-6")
+        self.assertEqual(finest[0], alone("a.txt", "--quality", "fine"))
+        self.assertEqual(triangles(*draft, "--tol-rel", "1e-7"), finest)
+        for options in (["-r", "24"], ["-e", "0.1"]):
+            self.assertEqual(triangles(*options, "--tol", "0.05"), [alone(name, *options) for name in ("a.txt", "b.txt")])
+        self.assert_status(self.run_in("a.txt", "-q", "-o", "a.ply", *draft), 0)  # one mesh: as ever
+        self.assertEqual(triangles(*draft, "--tol", "0.05", a="a.ply")[1], alone("b.txt", *draft))
+
     def test_timeout(self):
         """However little time there is: it ends with the limit's message, in any stage."""
         self.mesh(BALL, "a.ply")

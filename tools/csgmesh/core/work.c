@@ -3,6 +3,8 @@
  */
 #include "core/work.h"
 
+#include <math.h>
+
 #include "core/sources.h"
 #include "mesh/outputs.h"
 
@@ -40,6 +42,20 @@ int cli_work_load(cli_app *app, cli_work *work, const char *path)
     return cli_sources_guard_scene(app, work->scene);
 }
 
+double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality quality)
+{
+    const cli_options *o = &app->options;
+    if (!(o->quality || o->triangles) || o->given[CLI_OPTION_simplify])
+        return 0;
+    csgm_box box = work->info.bounds;
+    if (o->given[CLI_OPTION_bounds])
+        box = (csgm_box){{fmax(box.min.x, o->bounds.min.x), fmax(box.min.y, o->bounds.min.y),
+                          fmax(box.min.z, o->bounds.min.z)},
+                         {fmin(box.max.x, o->bounds.max.x), fmin(box.max.y, o->bounds.max.y),
+                          fmin(box.max.z, o->bounds.max.z)}};
+    return csgm_quality_tolerance(quality, box);
+}
+
 static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
 {
     const cli_options *options = &app->options;
@@ -52,7 +68,7 @@ static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
     if (options->simplify.is_share)
         mesh.simplify_share = options->simplify.value;
     else
-        mesh.simplify_error = options->simplify.value;
+        mesh.simplify_error = work->within > 0 ? work->within : options->simplify.value;
     mesh.quality = (csgm_quality)options->quality; /* in the enum's order */
     mesh.triangles = (uint64_t)options->triangles;
     mesh.improve = options->improve;

@@ -14,10 +14,15 @@ typedef struct cli_work {
     csgm_mesh_stats stats;
     double compile_s;
     const csgm_normals *normals; /* instead of those that the outputs want, NULL: none */
+    double
+        within; /* > 0: the tolerance of cells that follow the shape, instead of their quality's */
 } cli_work;
 
 /* Usage faults of -r, -s and --bounds. CLI_DONE or CLI_TROUBLE. */
 int cli_work_check(cli_app *app);
+/* The tolerance that a loaded scene's mesh would have of its quality; 0: its cells do not follow
+ * the shape, or something else says how fine they are. */
+double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality quality);
 /* Each returns an exit status; failures are reported. */
 int cli_work_load(cli_app *app, cli_work *work, const char *path);
 int cli_work_mesh(cli_app *app, cli_work *work);

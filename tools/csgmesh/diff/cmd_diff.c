@@ -230,6 +230,35 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
     return exit_status;
 }
 
+static double diagonal(csgm_box box)
+{
+    double x = box.max.x - box.min.x, y = box.max.y - box.min.y, z = box.max.z - box.min.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
+/* Two scenes whose cells follow the shape are meshed within one tolerance, the smaller of theirs:
+ * where only one has a finer detail, or is larger, the rest of them gets the same triangles. It is
+ * a quarter of what may differ at most, since both meshes stray; but not less than --quality fine,
+ * below which cells cost minutes. */
+static void share_tolerance(cli_app *app, const csgm_diff_options *options, diff_side sides[2])
+{
+    double within = INFINITY, finest = INFINITY;
+    for (int i = 0; i < 2; i++) {
+        const cli_work *work = &sides[i].work;
+        csgm_quality quality = (csgm_quality)app->options.quality;
+        double own = work->scene ? cli_work_tolerance(app, work, quality) : 0;
+        if (!(own > 0))
+            return;
+        within = fmin(within, own);
+        finest = fmin(finest, cli_work_tolerance(app, work, CSGM_QUALITY_FINE));
+    }
+    double most =
+        fmax(options->tolerance, options->tolerance_relative * diagonal(sides[0].work.info.bounds));
+    if (most > 0 && isfinite(most))
+        within = fmin(within, fmax(ldexp(1, (int)floor(log2(most / 4))), finest));
+    sides[0].work.within = sides[1].work.within = within;
+}
+
 /* Loads and compares; CLI_TROUBLE: it could not be done. */
 static int compare(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
                    diff_result *result)
@@ -241,8 +270,12 @@ static int compare(cli_app *app, const csgm_diff_options *options, diff_side sid
         return CLI_DONE;
     }
     for (int i = 0; i < 2; i++)
-        if (diff_side_load(app, &sides[i], i ? result->b : result->a, i ? result->a : result->b) !=
+        if (diff_side_open(app, &sides[i], i ? result->b : result->a, i ? result->a : result->b) !=
             CLI_DONE)
+            return CLI_TROUBLE;
+    share_tolerance(app, options, sides);
+    for (int i = 0; i < 2; i++)
+        if (diff_side_mesh(app, &sides[i]) != CLI_DONE)
             return CLI_TROUBLE;
     return compare_sides(app, options, sides, result);
 }

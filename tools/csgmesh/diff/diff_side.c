@@ -61,7 +61,7 @@ static int mesh_scene(cli_app *app, diff_side *side)
     return cli_exit_status(made);
 }
 
-static int load_scene(cli_app *app, diff_side *side, const char *other)
+static int open_scene(cli_app *app, diff_side *side, const char *other)
 {
     int status = cli_work_load(app, &side->work, side->path);
     if (status != CLI_DONE)
@@ -74,7 +74,7 @@ static int load_scene(cli_app *app, diff_side *side, const char *other)
                     : creases                              ? CSGM_NORMALS_CREASE
                                                            : CSGM_NORMALS_VERTEX;
     side->draco = traits & CSGM_HEEDS_DRACO && is_compressed(other);
-    return mesh_scene(app, side);
+    return CLI_DONE;
 }
 
 bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
@@ -90,7 +90,7 @@ bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
     return true;
 }
 
-int diff_side_load(cli_app *app, diff_side *side, const char *path, const char *other)
+int diff_side_open(cli_app *app, diff_side *side, const char *path, const char *other)
 {
     *side = (diff_side){.path = path, .format = csgm_format_from_path(path)};
     if (diff_path_is_nothing(path))
@@ -101,7 +101,12 @@ int diff_side_load(cli_app *app, diff_side *side, const char *path, const char *
             side->view = csgm_mesh_get_view(side->mesh);
         return cli_exit_status(status);
     }
-    return load_scene(app, side, other);
+    return open_scene(app, side, other);
+}
+
+int diff_side_mesh(cli_app *app, diff_side *side)
+{
+    return side->work.scene && !side->work.mesh ? mesh_scene(app, side) : CLI_DONE;
 }
 
 void diff_side_release(diff_side *side)
@@ -193,7 +198,9 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
     if (format == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, NULL, "%s is a scene, which no mesh can be written to", path_a);
     if (!b->path)
-        status = diff_side_load(app, b, path_b, path_a);
+        status = diff_side_open(app, b, path_b, path_a);
+    if (status == CLI_DONE)
+        status = diff_side_mesh(app, b);
     if (status != CLI_DONE)
         return status;
     csgm_write_options options = cli_outputs_options(&app->options);

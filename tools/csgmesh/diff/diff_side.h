@@ -19,9 +19,11 @@ typedef struct diff_side {
 
 bool diff_path_is_nothing(const char *path); /* as git names a file that is not there */
 bool diff_path_is_scene(const char *path);
+/* Reads a mesh, or loads a scene. An exit status; failures are reported. Release it either way. */
+int diff_side_open(cli_app *app, diff_side *side, const char *path, const char *other);
 /* A scene is meshed as the other file may have been made: in its format, with the normals that are
- * usual there. An exit status; failures are reported. Release it either way. */
-int diff_side_load(cli_app *app, diff_side *side, const char *path, const char *other);
+ * usual there. Nothing else is changed. */
+int diff_side_mesh(cli_app *app, diff_side *side);
 /* Meshes a scene again, as a file with one normal for each place. false: there is nothing else that
  * the file could have been. *status: an exit status. */
 bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status);
