@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import time
 import unittest
 import xml.etree.ElementTree as xml
@@ -221,6 +222,17 @@ class UpToDate(BatchTest):
         self.assertEqual(self.again("--no-sync", "--timeout", "100", "-j", "1"), set())
         self.assertEqual(len(self.again("--force")), 3)
         self.assertEqual(len(self.again("-Werror")), 3)
+
+    def test_another_program(self):
+        """Whatever may be its default: what another build of csgmesh made is made again."""
+        other = self.path("other")
+        shutil.copy(cli.PROGRAM, other)
+        with open(other, "ab") as file:
+            file.write(b"!")
+        run = subprocess.run([other, "batch", *self.all, "--json"], cwd=self.folder, capture_output=True, check=False)
+        self.assertEqual([json.loads(line)["outcome"] for line in run.stdout.splitlines()[:-1]], ["made"] * 3)
+        self.assertEqual(len(self.again()), 3)
+        self.assertEqual(self.again(), set())
 
     def test_outputs_that_are_gone_or_not_ours(self):
         os.remove(self.path("out/mug.glb"))
