@@ -94,6 +94,55 @@ static void test_same_for_all_threads(void **state)
     mesh_case_end(&a);
 }
 
+/* ---- how near ----------------------------------------------------------------------------------
+ */
+
+/* Vertices are known to be near, samples of the surface are near the mesh: so should the triangles
+ * be between, at random places. */
+static void assert_near(const mesh_case *c, double error)
+{
+    enum { PLACES = 4 };
+    csg_random random = {77};
+    size_t beyond = 0;
+    double most = 0;
+    for (uint64_t t = 0; t < c->mesh->triangle_count; t++)
+        for (int i = 0; i < PLACES; i++) {
+            double a = csg_random_uniform(&random, 0, 1), b = csg_random_uniform(&random, 0, 1 - a);
+            csg_vec3 p = {0, 0, 0};
+            for (int k = 0; k < 3; k++) {
+                csg_vec3 v = mesh_vertex(c, c->mesh->indices[3 * t + (uint64_t)k]);
+                p = csg_vec3_add(p, csg_vec3_scale(v, k == 0 ? a : k == 1 ? b : 1 - a - b));
+            }
+            float x = (float)p.x, y = (float)p.y, z = (float)p.z, f;
+            csg_field_eval(c->field, &x, &y, &z, &f, 1);
+            beyond += fabs((double)f) > error;
+            most = fmax(most, fabs((double)f));
+        }
+    assert_true(beyond * 500 <= PLACES * c->mesh->triangle_count);
+    assert_true(most <= 1.3 * error);
+}
+
+static void test_near_surface(void **state)
+{
+    for (int i = 0; i < 3; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        /* blends; an edge that turns slowly; faces that meet at angles that are hardly a crease */
+        csg_node_id node = many_sided(&c);
+        if (i == 1)
+            node = joined(&c, CSG_NODE_INTERSECTION, SHARP, make_cylinder(&c, 1, 0.3),
+                          turned(&c, make_box(&c, 0.95, 2, 0.28), 3, csg_vec3_make(0, 1, 0)));
+        if (i == 2)
+            node = joined(&c, CSG_NODE_INTERSECTION, SHARP, make_box(&c, 1, 0.9, 0.4),
+                          moved(&c, make_sphere(&c, 3), 0.1, 0.2, -2.62));
+        mesh_case_compile(&c, node);
+        csgm_mesh_options options = thinned(100, 0.004);
+        mesh_build_closed(&c, &options, "near");
+        assert_near(&c, 0.004);
+        mesh_case_end(&c);
+    }
+}
+
 static void test_random_scenes(void **state)
 {
     for (unsigned seed = first_scene; seed < first_scene + scene_count; seed++) {
@@ -161,6 +210,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_boxes),
         cmocka_unit_test(test_cylinder),
         cmocka_unit_test(test_same_for_all_threads),
+        cmocka_unit_test(test_near_surface),
         cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_goals),
     };

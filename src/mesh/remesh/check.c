@@ -5,16 +5,23 @@
 
 #include "mesh/remesh/remesh.h"
 
+static float value_at(csg_remesh *r, csg_vec3 at)
+{
+    float place[1][3], f;
+    csg_vec3_to_floats(place[0], at);
+    csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
+    return f;
+}
+
 bool csg_remesh_project(csg_remesh *r, csg_vec3 *at, double reach)
 {
     enum { MOST_STEPS = 4 };
     csg_vec3 p = *at;
     for (int step = 0; step < MOST_STEPS; step++) {
-        float place[1][3], f, g[1][3];
-        csg_vec3_to_floats(place[0], p);
-        csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
+        float place[1][3], g[1][3], f = value_at(r, p);
         if (fabsf(f) <= 2 * r->probe.noise)
             break;
+        csg_vec3_to_floats(place[0], p);
         csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
         csg_vec3 slope = {(double)g[0][0], (double)g[0][1], (double)g[0][2]};
         double square = csg_vec3_dot(slope, slope);
@@ -26,6 +33,32 @@ bool csg_remesh_project(csg_remesh *r, csg_vec3 *at, double reach)
     }
     *at = p;
     return true;
+}
+
+bool csg_remesh_come_to_surface(csg_remesh *r, csg_vec3 *at, double reach)
+{
+    enum { MOST_STEPS = 4 };
+    float place[1][3], g[1][3];
+    double f = (double)value_at(r, *at);
+    double slope = (double)r->probe.marching->field->tape.lipschitz;
+    double near = fmax(2 * (double)r->probe.noise, 0x1p-10 * r->error * slope);
+    if (fabs(f) <= near)
+        return true;
+    csg_vec3_to_floats(place[0], *at);
+    csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
+    csg_vec3 way = {(double)g[0][0], (double)g[0][1], (double)g[0][2]}, p = *at;
+    double square = csg_vec3_dot(way, way);
+    for (int step = 0; step < MOST_STEPS && square > 1e-6; step++) {
+        p = csg_vec3_sub(p, csg_vec3_scale(way, f / square));
+        if (!(csg_vec3_norm(csg_vec3_sub(p, *at)) <= reach))
+            return false;
+        f = (double)value_at(r, p);
+        if (fabs(f) <= near) {
+            *at = p;
+            return true;
+        }
+    }
+    return csg_remesh_project(r, at, reach);
 }
 
 csg_look_at_vertex csg_remesh_look(csg_remesh *r, csg_vec3 at)
@@ -44,20 +77,22 @@ csg_look_at_vertex csg_remesh_look(csg_remesh *r, csg_vec3 at)
 /* ---- the bracket ------------------------------------------------------------------------------
  */
 
-enum { MOST_SPLIT = 3, MOST_POINTS = CSG_PROBE_MOST / 2 };
+enum { MOST_POINTS = CSG_PROBE_MOST / 2 };
 
 typedef struct bracket {
-    float out[MOST_POINTS][3], in[MOST_POINTS][3];
+    float places[2 * MOST_POINTS][3], f[2 * MOST_POINTS]; /* a step outside, then one inside */
     csg_vec3 at[MOST_POINTS], normal[MOST_POINTS];
-    float f[MOST_POINTS];
     size_t count;
 } bracket;
 
 /* Centroids of the upright small triangles when each side is cut into `split`. */
-static void spread(bracket *b, const csg_vec3 v[3], csg_vec3 normal, int split)
+static void spread(bracket *b, const csg_vec3 v[3], uint16_t seen, int split)
 {
+    csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(v[0], v[1], v[2]));
     for (int i = 0; i < split; i++)
         for (int j = 0; i + j < split; j++) {
+            if (seen & csg_bracket_bit(i, j))
+                continue;
             double s = (i + 1.0 / 3) / split, t = (j + 1.0 / 3) / split;
             b->at[b->count] =
                 csg_vec3_add(v[0], csg_vec3_add(csg_vec3_scale(csg_vec3_sub(v[1], v[0]), s),
@@ -71,14 +106,13 @@ static void take_step(csg_remesh *r, bracket *b, double step)
 {
     size_t left = 0;
     for (size_t i = 0; i < b->count; i++) {
-        csg_vec3_to_floats(b->out[i], csg_vec3_add(b->at[i], csg_vec3_scale(b->normal[i], step)));
-        csg_vec3_to_floats(b->in[i], csg_vec3_sub(b->at[i], csg_vec3_scale(b->normal[i], step)));
+        csg_vec3 way = csg_vec3_scale(b->normal[i], step);
+        csg_vec3_to_floats(b->places[2 * i], csg_vec3_add(b->at[i], way));
+        csg_vec3_to_floats(b->places[2 * i + 1], csg_vec3_sub(b->at[i], way));
     }
-    float f_in[MOST_POINTS];
-    csg_probe_values(&r->probe, (const float(*)[3])b->out, b->count, b->f);
-    csg_probe_values(&r->probe, (const float(*)[3])b->in, b->count, f_in);
+    csg_probe_values(&r->probe, (const float(*)[3])b->places, 2 * b->count, b->f);
     for (size_t i = 0; i < b->count; i++) {
-        if (b->f[i] < 0 && f_in[i] >= 0)
+        if (b->f[2 * i] < 0 && b->f[2 * i + 1] >= 0)
             continue;
         b->at[left] = b->at[i];
         b->normal[left++] = b->normal[i];
@@ -98,18 +132,17 @@ static bool are_bracketed(csg_remesh *r, bracket *b)
     return all;
 }
 
-bool csg_remesh_brackets(csg_remesh *r, const csg_vec3 (*triangles)[3], size_t count)
+bool csg_remesh_brackets(csg_remesh *r, const csg_vec3 (*triangles)[3], const uint16_t *seen,
+                         size_t count)
 {
-    enum { MOST_OF_ONE = MOST_SPLIT * (MOST_SPLIT + 1) / 2 };
+    enum { MOST_OF_ONE = CSG_BRACKET_MOST_SPLIT * (CSG_BRACKET_MOST_SPLIT + 1) / 2 };
     bracket b;
     b.count = 0;
     for (size_t i = 0; i < count; i++) {
-        const csg_vec3 *v = triangles[i];
-        int split = (int)fmin(MOST_SPLIT, ceil(csg_triangle_longest_side(v) / (1.5 * r->cell)));
+        double longest = csg_triangle_longest_side(triangles[i]);
         if (b.count + MOST_OF_ONE > MOST_POINTS && !are_bracketed(r, &b))
             return false;
-        spread(&b, v, csg_vec3_normalize(csg_triangle_cross(v[0], v[1], v[2])),
-               split < 1 ? 1 : split);
+        spread(&b, triangles[i], seen ? seen[i] : 0, csg_bracket_split(r, longest * longest));
     }
     return are_bracketed(r, &b);
 }

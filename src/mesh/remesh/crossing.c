@@ -246,6 +246,32 @@ static void include_triangle(csg_triangle_box *all, const csg_triangle_tree *t, 
     include_box(all, &box);
 }
 
+static range range_around(range a, range b)
+{
+    return (range){a.min < b.min ? a.min : b.min, a.max > b.max ? a.max : b.max};
+}
+
+static csg_triangle_box box_of_extents(const extent *extents, size_t count)
+{
+    static const range NONE = {INFINITY, -INFINITY};
+    extent e = {NONE, NONE, NONE};
+    for (size_t i = 0; i < count; i++) {
+        e.x = range_around(e.x, extents[i].x);
+        e.y = range_around(e.y, extents[i].y);
+        e.z = range_around(e.z, extents[i].z);
+    }
+    const csg_vec3 ends[3] = {
+        {e.x.min, e.y.min, e.z.min}, {e.x.max, e.y.max, e.z.max}, {e.x.max, e.y.max, e.z.max}};
+    return csg_triangle_box_of(ends);
+}
+
+static void include_place(csg_triangle_box *all, csg_vec3 p)
+{
+    const csg_vec3 v[3] = {p, p, p};
+    csg_triangle_box box = csg_triangle_box_of(v);
+    include_box(all, &box);
+}
+
 /* The box around what goes and what comes. The neighbours of vertices that go are corners of what
  * comes, or of a triangle that goes. */
 static csg_triangle_box box_of_change(const csg_triangle_tree *t, const csg_crossing_change *c,
@@ -255,13 +281,8 @@ static csg_triangle_box box_of_change(const csg_triangle_tree *t, const csg_cros
     for (int i = 0; i < 2; i++) {
         if (c->triangles[i] != CSG_CORNER_NONE)
             include_triangle(&all, t, c->triangles[i]);
-        if (c->vertices[i] == CSG_CORNER_NONE)
-            continue;
-        uint32_t first = t->corners->corner[c->vertices[i]], corner = first;
-        do {
-            include_triangle(&all, t, corner / 3);
-            corner = csg_corner_swing(t->corners, corner);
-        } while (corner != first);
+        if (c->vertices[i] != CSG_CORNER_NONE)
+            include_place(&all, t->at[c->vertices[i]]);
     }
     return all;
 }
@@ -274,6 +295,12 @@ static int count_bits(uint32_t word)
     return count;
 }
 
+static bool is_apart(const csg_triangle_box *box, int axis, double a, double b, double c)
+{
+    range own = range_of(a, b, c);
+    return own.min > (double)box->max[axis] || own.max < (double)box->min[axis];
+}
+
 static uint32_t facing_of_leaf(const csg_triangle_tree *t, size_t leaf, const csg_triangle_box *box)
 {
     uint32_t facing = CSG_FACING_ALL;
@@ -284,8 +311,8 @@ static uint32_t facing_of_leaf(const csg_triangle_tree *t, size_t leaf, const cs
         if (!csg_corners_is_live(t->corners, triangle))
             continue;
         csg_triangle_tree_corners(t, triangle, v);
-        csg_triangle_box own = csg_triangle_box_of(v);
-        if (csg_triangle_boxes_overlap(box, &own))
+        if (!is_apart(box, 0, v[0].x, v[1].x, v[2].x) &&
+            !is_apart(box, 1, v[0].y, v[1].y, v[2].y) && !is_apart(box, 2, v[0].z, v[1].z, v[2].z))
             facing &= csg_triangle_facing(csg_triangle_cross(v[0], v[1], v[2]));
     }
     return facing;
@@ -322,15 +349,13 @@ static bool is_one_sheet(const csg_triangle_tree *t, const csg_triangle_box *box
 bool csg_crossing_is_made(const csg_triangle_tree *t, const csg_crossing_change *c, bool *one_sheet)
 {
     newcomers n; /* not filled: it is large */
-    n.all = csg_triangle_box_of(c->at[0]);
     uint32_t facing = CSG_FACING_ALL;
     for (size_t i = 0; i < c->count; i++) {
-        csg_triangle_box box = csg_triangle_box_of(c->at[i]);
         n.plates[i] = plate_of(c->at[i], c->vertex[i]);
         n.extents[i] = extent_of(c->at[i]);
         facing &= csg_triangle_facing(n.plates[i].normal);
-        include_box(&n.all, &box);
     }
+    n.all = box_of_extents(n.extents, c->count);
     csg_triangle_box box = box_of_change(t, c, &n.all);
     bool sheet = is_one_sheet(t, &box, facing);
     if (one_sheet)

@@ -70,11 +70,30 @@ bool csg_remesh_is_crease(const csg_remesh *remesh, uint32_t corner);
 /* The nearest place on the surface, by Newton's steps along the gradient. False: none within
  * `reach`. */
 bool csg_remesh_project(csg_remesh *remesh, csg_vec3 *at, double reach);
+/* The same to a thousandth of the error, with fewer questions: the gradient is asked once. */
+bool csg_remesh_come_to_surface(csg_remesh *remesh, csg_vec3 *at, double reach);
 csg_look_at_vertex csg_remesh_look(csg_remesh *remesh, csg_vec3 at);
 
 /* Whether triangles (a[i], b[i], c[i]) lie within `error` of the surface at evenly spread points: a
  * step along the normal leads outside, the same step back inside. So a triangle faces outward, and
- * two sheets that face each other cannot cross: each keeps to its half of the room between them. */
-bool csg_remesh_brackets(csg_remesh *remesh, const csg_vec3 (*triangles)[3], size_t count);
+ * two sheets that face each other cannot cross: each keeps to its half of the room between them.
+ * seen: points of each triangle that are not looked at (csg_bracket_bit); NULL: all are. */
+bool csg_remesh_brackets(csg_remesh *remesh, const csg_vec3 (*triangles)[3], const uint16_t *seen,
+                         size_t count);
+
+enum { CSG_BRACKET_MOST_SPLIT = 3 };
+
+/* Into how many parts each side of a triangle is cut there, whose longest one has this square. */
+static inline int csg_bracket_split(const csg_remesh *remesh, double longest)
+{
+    double one = 1.5 * remesh->cell;
+    return longest <= one * one ? 1 : longest <= 4 * one * one ? 2 : CSG_BRACKET_MOST_SPLIT;
+}
+/* In `seen`: the point between i / split and (i + 1) / split of the way to the second corner, and j
+ * and j + 1 to the third. */
+static inline uint16_t csg_bracket_bit(int i, int j)
+{
+    return (uint16_t)(1u << (CSG_BRACKET_MOST_SPLIT * i + j));
+}
 
 #endif

@@ -11,14 +11,15 @@
 /* Places for the new vertex, the best first. */
 typedef struct proposal {
     csg_vec3 at[3];
-    bool exact[3]; /* an end of the edge: on the surface already */
+    uint32_t end[3]; /* of the edge, which lies there; NONE: neither does, and the place is to be
+                        brought to the surface */
     int count;
 } proposal;
 
-static void propose(proposal *p, csg_vec3 at, bool exact)
+static void propose(proposal *p, csg_vec3 at, uint32_t end)
 {
     p->at[p->count] = at;
-    p->exact[p->count++] = exact;
+    p->end[p->count++] = end;
 }
 
 /* Creases are not left, corners do not move. Where the error is small an end does: the place of
@@ -38,7 +39,7 @@ static proposal places_of(const csg_decimation *d, const csg_quadric *q, uint32_
     double error_a = csg_quadric_error(q, a), error_b = csg_quadric_error(q, b);
     bool a_first = error_a < error_b;
     if (kind_a != kind_b) {
-        propose(&p, kind_a > kind_b ? a : b, true);
+        propose(&p, kind_a > kind_b ? a : b, kind_a > kind_b ? from : to);
         return p;
     }
     double small = SMALL * r->error;
@@ -48,11 +49,11 @@ static proposal places_of(const csg_decimation *d, const csg_quadric *q, uint32_
         double reach = 2 * csg_vec3_norm(csg_vec3_sub(a, b));
         if (csg_quadric_least(q, middle, &best) &&
             csg_vec3_norm(csg_vec3_sub(best, middle)) <= reach)
-            propose(&p, best, false);
+            propose(&p, best, CSG_CORNER_NONE);
     }
-    propose(&p, a_first ? a : b, true);
+    propose(&p, a_first ? a : b, a_first ? from : to);
     if (kind_a == CSG_VERTEX_CREASE)
-        propose(&p, a_first ? b : a, true);
+        propose(&p, a_first ? b : a, a_first ? to : from);
     return p;
 }
 
@@ -110,11 +111,14 @@ static void finish_ring(csg_decimation *d, uint32_t to, uint32_t corner)
         room->vertex[i][0] = to;
 }
 
-static void find_ring(csg_decimation *d, uint32_t from, uint32_t to, uint32_t corner)
+/* What changes if the edge at this corner shrinks to its second end: only what is around the first
+ * one, if the second one stays where it is. */
+static void find_ring(csg_decimation *d, uint32_t from, uint32_t to, uint32_t corner, bool moves)
 {
     d->room->count = 0;
     add_fan(d, from, to);
-    add_fan(d, to, from);
+    if (moves)
+        add_fan(d, to, from);
     finish_ring(d, to, corner);
 }
 
@@ -156,6 +160,7 @@ static bool has_shape(csg_collapse_room *room)
         csg_vec3 old;
         shape before = shape_of(room->before[i], &old);
         shape after = shape_of(room->after[i], &room->normal[i]);
+        room->longest[i] = after.longest;
         double quality = quality_of(before), own = quality_of(after);
         double dot = csg_vec3_dot(old, room->normal[i]);
         if (quality > SOUND &&
@@ -172,15 +177,17 @@ static bool has_shape(csg_collapse_room *room)
 /* ---- the collapse ------------------------------------------------------------------------------
  */
 
-static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to, bool *one_sheet)
+/* moves: so does the end that stays, with all that is around it. */
+static bool crosses(const csg_decimation *d, uint32_t from, uint32_t to, bool moves,
+                    bool *one_sheet)
 {
     const csg_collapse_room *room = d->room;
     const csg_crossing_change change = {.at = (const csg_vec3(*)[3])room->after,
                                         .vertex = (const uint32_t(*)[3])room->vertex,
                                         .count = room->count,
-                                        .vertices = {from, to},
+                                        .vertices = {from, moves ? to : CSG_CORNER_NONE},
                                         .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE},
-                                        .is_fan = true};
+                                        .is_fan = moves};
     return csg_crossing_is_made(&d->remesh->tree, &change, one_sheet);
 }
 
@@ -211,35 +218,72 @@ static csg_look_at_vertex look_at(const csg_decimation *d, csg_vec3 at, uint32_t
     return same ? looks[to] : csg_remesh_look(d->remesh, at);
 }
 
-static bool place_is_good(csg_decimation *d, const proposal *p, int i, csg_vec3 *at, uint32_t from,
-                          uint32_t to)
+/* What is near samples that face its way is near the surface. At other points the field is asked,
+ * but where all are on one sheet and nothing is far. */
+static bool is_near(csg_decimation *d, bool one_sheet)
 {
-    static const double NEAR = 0.5; /* of the error: the field is not asked on one sheet */
+    static const double NEAR = 0.5; /* of the error */
     csg_remesh *r = d->remesh;
-    *at = p->at[i];
-    move_ring(d->room, *at);
-    if (!has_shape(d->room))
-        return false;
-    if (!p->exact[i]) {
-        if (!csg_remesh_project(r, at, fmax(r->cell, 4 * r->error)))
-            return false;
-        *at = round_place(r, *at);
-        move_ring(d->room, *at);
-        if (!has_shape(d->room))
-            return false;
-    }
-    if (!is_within(d, *at))
-        return false;
-    if (r->looks && p->exact[i])
-        d->room->look = memcmp(at, &r->at[from], sizeof *at) ? r->looks[to] : r->looks[from];
-    else if (r->looks)
-        d->room->look = look_at(d, *at, from, to);
-    bool one_sheet;
-    if (!csg_decimation_can_hand_over(d, to) || crosses(d, from, to, &one_sheet))
-        return false;
+    csg_collapse_room *room = d->room;
     double near = NEAR * r->error;
-    return (one_sheet && d->room->farthest <= near * near) ||
-           csg_remesh_brackets(r, (const csg_vec3(*)[3])d->room->after, d->room->count);
+    if (one_sheet && room->farthest <= near * near)
+        return true;
+    csg_decimation_find_seen(d);
+    return csg_remesh_brackets(r, (const csg_vec3(*)[3])room->after, room->seen, room->count);
+}
+
+/* Whether samples are known to be near enough after a move of the vertex so far: no distance grows
+ * by more. */
+static bool are_near_after(csg_decimation *d, double move)
+{
+    csg_collapse_room *room = d->room;
+    double farthest = sqrt(room->farthest) + move;
+    if (d->originals || farthest > d->remesh->error)
+        return false;
+    room->farthest = farthest * farthest;
+    return true;
+}
+
+/* Brings the place of least error to the surface. Where samples are too far from it by more than
+ * the way there could make good, the field is not asked. */
+static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to, bool *handed_over)
+{
+    static const double HOPEFUL = 1.25; /* of the error */
+    csg_remesh *r = d->remesh;
+    csg_vec3 before = *at;
+    if (!csg_decimation_can_hand_over(d, to, HOPEFUL * r->error) ||
+        !csg_remesh_come_to_surface(r, at, fmax(r->cell, 4 * r->error)))
+        return false;
+    *at = round_place(r, *at);
+    move_ring(d->room, *at);
+    *handed_over = are_near_after(d, csg_vec3_norm(csg_vec3_sub(*at, before)));
+    return has_shape(d->room);
+}
+
+/* Whether the edge may shrink to its end `to`, which comes to a place of its own. */
+static bool new_place_is_good(csg_decimation *d, csg_vec3 *at, uint32_t from, uint32_t to)
+{
+    const csg_remesh *r = d->remesh;
+    bool handed_over, one_sheet;
+    move_ring(d->room, *at);
+    if (!has_shape(d->room) || !bring_to_surface(d, at, to, &handed_over) || !is_within(d, *at))
+        return false;
+    if (r->looks)
+        d->room->look = look_at(d, *at, from, to);
+    return (handed_over || csg_decimation_can_hand_over(d, to, r->error)) &&
+           !crosses(d, from, to, true, &one_sheet) && is_near(d, one_sheet);
+}
+
+/* Whether it may shrink to its end `to`, where that is. */
+static bool end_is_good(csg_decimation *d, uint32_t from, uint32_t to)
+{
+    const csg_remesh *r = d->remesh;
+    bool one_sheet;
+    move_ring(d->room, r->at[to]);
+    if (r->looks)
+        d->room->look = r->looks[to];
+    return has_shape(d->room) && csg_decimation_can_hand_over(d, to, r->error) &&
+           !crosses(d, from, to, false, &one_sheet) && is_near(d, one_sheet);
 }
 
 static void collapse(csg_decimation *d, uint32_t corner, uint32_t from, uint32_t to, csg_vec3 at)
@@ -301,13 +345,12 @@ static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
     if (r->kind[from] == CSG_VERTEX_CORNER || !is_flat(r, from, to))
         return false;
     uint32_t corner = csg_corners_find_edge(&r->corners, from, to);
-    room->count = 0;
-    add_fan(d, from, to);
-    finish_ring(d, to, corner);
+    find_ring(d, from, to, corner, false);
     move_ring(room, r->at[to]);
     if (r->looks)
         room->look = r->looks[to];
-    if (!has_shape(room) || !faces_as_before(room) || !csg_decimation_can_hand_over(d, to))
+    if (!has_shape(room) || !faces_as_before(room) ||
+        !csg_decimation_can_hand_over(d, to, r->error))
         return false;
     collapse(d, corner, from, to, r->at[to]);
     return true;
@@ -343,14 +386,16 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
         return from;
     csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     proposal p = places_of(d, &q, from, to);
-    find_ring(d, from, to, corner);
     for (int i = 0; i < p.count; i++) {
-        csg_vec3 at;
-        if (!place_is_good(d, &p, i, &at, from, to))
+        bool moves = p.end[i] == CSG_CORNER_NONE;
+        uint32_t kept = moves ? to : p.end[i], gone = kept == to ? from : to;
+        uint32_t edge = kept == to ? corner : csg_corners_find_edge(&r->corners, gone, kept);
+        find_ring(d, gone, kept, edge, moves);
+        if (moves ? !new_place_is_good(d, &p.at[i], gone, kept) : !end_is_good(d, gone, kept))
             continue;
-        collapse(d, corner, from, to, at);
-        r->kind[to] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
-        return to;
+        collapse(d, edge, gone, kept, p.at[i]);
+        r->kind[kept] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
+        return kept;
     }
     return CSG_CORNER_NONE;
 }

@@ -15,40 +15,70 @@ enum { COLOR_STEP = 12, MATERIAL_STEP = 500 };
 /* ---- making ------------------------------------------------------------------------------------
  */
 
-static void add_sample(csg_decimation *d, const float at[3], uint32_t triangle)
+static void add_sample(csg_decimation *d, const float at[3], csg_vec3 normal, uint32_t triangle)
 {
     uint32_t s = d->sample_count++;
+    const double parts[3] = {normal.x, normal.y, normal.z};
     memcpy(d->samples[s].at, at, sizeof d->samples[s].at);
+    for (int axis = 0; axis < 3; axis++)
+        d->samples[s].normal[axis] = (int16_t)lrint(INT16_MAX * parts[axis]);
     d->samples[s].next = d->first_sample[triangle];
     d->first_sample[triangle] = s;
 }
 
-/* Two Newton steps; what is not on the surface then, or has left the triangle's neighbourhood, is
- * no sample. */
+/* Zero where it leads over a crease. */
+static csg_vec3 normal_of(const csg_decimation *d, uint32_t triangle)
+{
+    const csg_remesh *r = d->remesh;
+    const uint32_t *v = r->corners.vertex + 3 * (size_t)triangle;
+    for (int k = 0; k < 3; k++)
+        if (r->kind[v[k]] != CSG_VERTEX_SMOOTH)
+            return csg_vec3_make(0, 0, 0);
+    return csg_vec3_normalize(csg_triangle_cross(r->at[v[0]], r->at[v[1]], r->at[v[2]]));
+}
+
+/* One of Newton's steps for each that is not near the surface yet. */
+static void take_step(csg_decimation *d, float (*at)[3], float *f, float close, size_t count)
+{
+    csg_remesh *r = d->remesh;
+    float places[BATCH][3], g[BATCH][3], values[BATCH];
+    uint32_t of[BATCH], n = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (!(fabsf(f[i]) <= close)) {
+            memcpy(places[n], at[i], sizeof places[n]);
+            of[n++] = i;
+        }
+    csg_probe_gradients(&r->probe, (const float(*)[3])places, n, g);
+    for (uint32_t i = 0; i < n; i++) {
+        float square = g[i][0] * g[i][0] + g[i][1] * g[i][1] + g[i][2] * g[i][2];
+        for (int axis = 0; axis < 3 && square > 1e-6f; axis++)
+            places[i][axis] -= f[of[i]] * g[i][axis] / square;
+    }
+    csg_probe_values(&r->probe, (const float(*)[3])places, n, values);
+    for (uint32_t i = 0; i < n; i++) {
+        memcpy(at[of[i]], places[i], sizeof places[i]);
+        f[of[i]] = values[i];
+    }
+}
+
+/* Two of Newton's steps, one where that is enough; what is not on the surface then, or has left the
+ * triangle's neighbourhood, is no sample. */
 static void project(csg_decimation *d, float (*at)[3], const uint32_t *triangles, size_t count)
 {
     enum { STEPS = 2 };
     csg_remesh *r = d->remesh;
-    float f[BATCH], g[BATCH][3], start[BATCH][3];
-    memcpy(start, at, count * sizeof *at);
-    for (int step = 0; step <= STEPS; step++) {
-        csg_probe_values(&r->probe, (const float(*)[3])at, count, f);
-        if (step == STEPS)
-            break;
-        csg_probe_gradients(&r->probe, (const float(*)[3])at, count, g);
-        for (size_t i = 0; i < count; i++) {
-            float square = g[i][0] * g[i][0] + g[i][1] * g[i][1] + g[i][2] * g[i][2];
-            for (int axis = 0; axis < 3 && square > 1e-6f; axis++)
-                at[i][axis] -= f[i] * g[i][axis] / square;
-        }
-    }
-    double reach = fmax(0.5 * r->cell, 2 * r->error); /* cells may be of any size there */
+    float f[BATCH], start[BATCH][3];
     float close = 4 * r->probe.noise + (float)(1e-3 * r->error);
+    memcpy(start, at, count * sizeof *at);
+    csg_probe_values(&r->probe, (const float(*)[3])at, count, f);
+    for (int step = 0; step < STEPS; step++)
+        take_step(d, at, f, close, count);
+    double reach = fmax(0.5 * r->cell, 2 * r->error); /* cells may be of any size there */
     for (size_t i = 0; i < count; i++) {
         double x = (double)(at[i][0] - start[i][0]), y = (double)(at[i][1] - start[i][1]),
                z = (double)(at[i][2] - start[i][2]);
         if (fabsf(f[i]) <= close && x * x + y * y + z * z <= reach * reach)
-            add_sample(d, at[i], triangles[i]);
+            add_sample(d, at[i], normal_of(d, triangles[i]), triangles[i]);
     }
 }
 
@@ -105,12 +135,15 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
         csg_vec3 p = r->at[v];
         const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
-        add_sample(d, at, r->corners.corner[v] / 3);
+        bool at_crease = r->kind[v] != CSG_VERTEX_SMOOTH;
+        add_sample(d, at, at_crease ? csg_vec3_make(0, 0, 0) : normals[v],
+                   r->corners.corner[v] / 3);
     }
     d->vertex_samples = d->sample_count;
     sample_triangles(d, normals);
     for (size_t i = 0; d->missed && i < d->missed->count; i++)
-        add_sample(d, d->missed->points[i].at, d->missed->points[i].triangle);
+        add_sample(d, d->missed->points[i].at, csg_vec3_make(0, 0, 0),
+                   d->missed->points[i].triangle);
 }
 
 /* ---- handing over ------------------------------------------------------------------------------
@@ -125,7 +158,7 @@ static csg_look_at_vertex look_of(const csg_decimation *d, uint32_t vertex, uint
 static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t triangle,
                         const double weights[3], uint32_t kept)
 {
-    if (!d->originals || sample >= d->vertex_samples)
+    if (!d->originals || d->room->is_first_look || sample >= d->vertex_samples)
         return true;
     if (d->room->one_look && !memcmp(&d->originals[sample], &d->room->look, sizeof d->room->look))
         return true;
@@ -145,68 +178,95 @@ static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t trian
            fabs(material[1] - own->material[1]) <= MATERIAL_STEP;
 }
 
-/* Whether the sample is right above or below the triangle: weights and height are found then. */
-static bool is_over(const csg_facet *t, csg_vec3 p, double weights[3], double *square)
+/* Of every triangle of the fan: the squared height of a place over its plane, and that where the
+ * place is right above or below the triangle and does not face the other way, else INFINITY. The
+ * triangles meet in one place, from which `off` leads; what is a corner is over both triangles
+ * there, however it was rounded. */
+static void find_heights(csg_facets *f, const float off[3], const float normal[3], uint32_t count)
 {
-    csg_vec3 off = csg_vec3_sub(p, t->at);
-    double a = csg_vec3_dot(off, t->toward[0]), b = csg_vec3_dot(off, t->toward[1]);
-    if (!(a >= 0 && b >= 0 && a + b <= 1))
-        return false;
-    double height = csg_vec3_dot(off, t->normal);
-    weights[0] = 1 - a - b;
-    weights[1] = a;
-    weights[2] = b;
-    *square = height * height;
-    return true;
+    static const float SLACK = 1e-5f;
+    for (uint32_t k = 0; k < count; k++) {
+        float a = off[0] * f->second[0][k] + off[1] * f->second[1][k] + off[2] * f->second[2][k];
+        float b = off[0] * f->third[0][k] + off[1] * f->third[1][k] + off[2] * f->third[2][k];
+        float height =
+            off[0] * f->normal[0][k] + off[1] * f->normal[1][k] + off[2] * f->normal[2][k];
+        float facing =
+            normal[0] * f->normal[0][k] + normal[1] * f->normal[1][k] + normal[2] * f->normal[2][k];
+        float least = a < b ? a : b, rest = 1 - a - b;
+        least = rest < least ? rest : least;
+        least = facing < 0 ? -1 : least;
+        f->square[k] = height * height;
+        f->over[k] = least >= -SLACK ? height * height : INFINITY;
+        f->weight[0][k] = a;
+        f->weight[1][k] = b;
+    }
 }
 
-/* The triangle that answers for a sample from now on: the nearest of those that it is over, or the
- * first that is near enough; if there is none, the nearest of all. NONE: it would be too far away.
- */
-static uint32_t choose_owner(csg_decimation *d, uint32_t sample, uint32_t hint, uint32_t kept)
+/* The triangle that is nearest to a sample, which is over none of them, or not near enough. */
+static uint32_t choose_nearest(csg_decimation *d, csg_vec3 p, double best[3], double *least)
 {
-    static const double NEAR = 1.0 / 16; /* of the error, squared */
     csg_collapse_room *room = d->room;
-    double most = d->remesh->error * d->remesh->error, least = INFINITY, best[3] = {0, 0, 0};
-    csg_vec3 p = csg_sample_at(d, sample);
-    double weights[3], square;
+    float most = (float)room->most;
     uint32_t owner = CSG_CORNER_NONE;
-    for (uint32_t i = 0; i < room->count && least > NEAR * most; i++) {
-        uint32_t k = hint + i < room->count ? hint + i : hint + i - room->count;
-        if (!is_over(&room->facet[k], p, weights, &square) || !(square < least))
+    *least = INFINITY;
+    for (uint32_t k = 0; k < room->count; k++) {
+        if (room->facets.square[k] > most) /* its plane is too far away, so it is */
             continue;
-        least = square;
-        owner = k;
-        memcpy(best, weights, sizeof best);
+        double weights[3], square = csg_triangle_nearest(room->after[k], p, weights);
+        if (square < *least) {
+            *least = square;
+            owner = k;
+            memcpy(best, weights, sizeof weights);
+        }
     }
-    if (least <= most && looks_alike(d, sample, owner, best, kept)) {
+    return owner;
+}
+
+/* The triangle that answers for a sample from now on: the nearest of those that it is over; if
+ * there is none, the nearest of all. NONE: it would be too far away. */
+static uint32_t choose_owner(csg_decimation *d, uint32_t sample, uint32_t kept)
+{
+    csg_collapse_room *room = d->room;
+    csg_facets *f = &room->facets;
+    double most = room->most;
+    csg_vec3 p = csg_sample_at(d, sample), normal = csg_sample_normal(d, sample);
+    float off[3], facing[3];
+    csg_vec3_to_floats(off, csg_vec3_sub(p, room->after[0][0]));
+    csg_vec3_to_floats(facing, normal);
+    find_heights(f, off, facing, room->count);
+    uint32_t owner = 0;
+    for (uint32_t k = 1; k < room->count; k++)
+        owner = f->over[k] < f->over[owner] ? k : owner;
+    double least = (double)f->over[owner];
+    double weights[3] = {1 - (double)f->weight[0][owner] - (double)f->weight[1][owner],
+                         (double)f->weight[0][owner], (double)f->weight[1][owner]};
+    if (least <= most && looks_alike(d, sample, owner, weights, kept)) {
         room->farthest = least > room->farthest ? least : room->farthest;
         return owner;
     }
-    least = INFINITY;
-    for (uint32_t k = 0; k < room->count; k++) {
-        square = csg_triangle_nearest(room->after[k], p, weights);
-        if (square < least) {
-            least = square;
-            owner = k;
-            memcpy(best, weights, sizeof best);
-        }
-    }
+    owner = choose_nearest(d, p, weights, &least);
     room->farthest = least > room->farthest ? least : room->farthest;
-    return least <= most && looks_alike(d, sample, owner, best, kept) ? owner : CSG_CORNER_NONE;
+    return least <= most && looks_alike(d, sample, owner, weights, kept) ? owner : CSG_CORNER_NONE;
 }
 
-static csg_facet facet_of(const csg_vec3 v[3], csg_vec3 n)
+static csg_vec3 part_of(const float parts[3][CSG_RING_MOST], uint32_t k)
+{
+    return csg_vec3_make((double)parts[0][k], (double)parts[1][k], (double)parts[2][k]);
+}
+
+static void make_facet(csg_facets *f, uint32_t k, const csg_vec3 v[3], csg_vec3 n)
 {
     csg_vec3 s = csg_vec3_sub(v[1], v[0]), t = csg_vec3_sub(v[2], v[0]);
-    double square = csg_vec3_dot(n, n);
-    csg_facet f = {.at = v[0]};
-    if (!(square > 0)) /* nothing is over it */
-        return (csg_facet){.at = v[0], .toward = {{NAN, NAN, NAN}, {NAN, NAN, NAN}}};
-    f.toward[0] = csg_vec3_scale(csg_vec3_cross(t, n), 1 / square);
-    f.toward[1] = csg_vec3_scale(csg_vec3_cross(n, s), 1 / square);
-    f.normal = csg_vec3_scale(n, 1 / sqrt(square));
-    return f;
+    double square = csg_vec3_dot(n, n); /* > 0: has_shape */
+    csg_vec3 second = csg_vec3_scale(csg_vec3_cross(t, n), 1 / square);
+    csg_vec3 third = csg_vec3_scale(csg_vec3_cross(n, s), 1 / square);
+    csg_vec3 normal = csg_vec3_scale(n, 1 / sqrt(square));
+    f->second[0][k] = (float)second.x, f->second[1][k] = (float)second.y;
+    f->second[2][k] = (float)second.z;
+    f->third[0][k] = (float)third.x, f->third[1][k] = (float)third.y;
+    f->third[2][k] = (float)third.z;
+    f->normal[0][k] = (float)normal.x, f->normal[1][k] = (float)normal.y;
+    f->normal[2][k] = (float)normal.z;
 }
 
 static bool has_one_look(const csg_decimation *d, uint32_t kept)
@@ -223,18 +283,18 @@ static bool has_one_look(const csg_decimation *d, uint32_t kept)
 
 /* Finds who answers for a triangle's samples. One that nobody can answer for comes first in its
  * list from then on: the next try is likely to fail at it, too. */
-static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t hint, uint32_t kept)
+static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
 {
     csg_collapse_room *room = d->room;
     uint32_t before = CSG_CORNER_NONE, s = d->first_sample[triangle];
     for (; s != CSG_CORNER_NONE; before = s, s = d->samples[s].next) {
-        uint32_t owner = choose_owner(d, s, hint, kept);
+        uint32_t owner = choose_owner(d, s, kept);
         if (owner == CSG_CORNER_NONE)
             break;
-        if (!csg_memory_reserve(d->remesh->memory, (void **)&room->owner, &room->owner_capacity,
+        if (room->owner_count == room->owner_capacity &&
+            !csg_memory_reserve(d->remesh->memory, (void **)&room->owner, &room->owner_capacity,
                                 room->owner_count + 1, sizeof *room->owner))
             return false;
-        hint = owner;
         room->owner[room->owner_count++] = owner;
     }
     if (s != CSG_CORNER_NONE && before != CSG_CORNER_NONE) {
@@ -245,18 +305,57 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t hint, uin
     return s == CSG_CORNER_NONE;
 }
 
-bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept)
+bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach)
 {
     csg_collapse_room *room = d->room;
+    room->most = reach * reach;
+    room->is_first_look = reach > d->remesh->error;
     room->owner_count = 0;
     room->farthest = 0;
     room->one_look = has_one_look(d, kept);
     for (uint32_t i = 0; i < room->count; i++)
-        room->facet[i] = facet_of((const csg_vec3 *)room->after[i], room->normal[i]);
+        make_facet(&room->facets, i, (const csg_vec3 *)room->after[i], room->normal[i]);
     for (uint32_t i = 0; i < room->count + 2; i++)
-        if (!find_owners(d, room->triangle[i], i < room->count ? i : 0, kept))
+        if (!find_owners(d, room->triangle[i], kept))
             return false;
     return true;
+}
+
+/* The points of csg_remesh_brackets that are a third of the triangle or less from a sample over it
+ * which faces its way. */
+static void see(csg_decimation *d, uint32_t sample, uint32_t k)
+{
+    static const double LEAST_COS = 0.7, NEAR = 0.3, LOW = 0.75 /* of the error */;
+    csg_collapse_room *room = d->room;
+    const csg_facets *f = &room->facets;
+    csg_vec3 off = csg_vec3_sub(csg_sample_at(d, sample), room->after[k][0]);
+    csg_vec3 normal = csg_sample_normal(d, sample);
+    double a = csg_vec3_dot(off, part_of(f->second, k)),
+           b = csg_vec3_dot(off, part_of(f->third, k));
+    int split = csg_bracket_split(d->remesh, room->longest[k]);
+    if (!(csg_vec3_dot(normal, part_of(f->normal, k)) >= LEAST_COS * INT16_MAX) ||
+        !(fabs(csg_vec3_dot(off, part_of(f->normal, k))) <= LOW * d->remesh->error) ||
+        !(a >= 0 && b >= 0 && a + b <= 1))
+        return;
+    if (split == 1)
+        room->seen[k] = csg_bracket_bit(0, 0);
+    for (int i = 0; i < split; i++)
+        for (int j = 0; i + j < split; j++) {
+            double by_a = a - (i + 1.0 / 3) / split, by_b = b - (j + 1.0 / 3) / split;
+            if (fabs(by_a) <= NEAR && fabs(by_b) <= NEAR && fabs(by_a + by_b) <= NEAR)
+                room->seen[k] |= csg_bracket_bit(i, j);
+        }
+}
+
+void csg_decimation_find_seen(csg_decimation *d)
+{
+    csg_collapse_room *room = d->room;
+    size_t n = 0;
+    memset(room->seen, 0, room->count * sizeof *room->seen);
+    for (uint32_t i = 0; i < room->count + 2; i++)
+        for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
+             s = d->samples[s].next)
+            see(d, s, room->owner[n++]);
 }
 
 void csg_decimation_hand_over(csg_decimation *d)

@@ -22,30 +22,37 @@ typedef struct csg_collapse_queue {
 
 enum { CSG_RING_MOST = 2 * CSG_CORNERS_MOST_VALENCE };
 
-/* A triangle as it is asked for places: p - at, times each of toward, is p's weight at the second
- * and the third corner. */
-typedef struct csg_facet {
-    csg_vec3 at, toward[2], normal;
-} csg_facet;
+/* A fan of triangles as it is asked for places, all at once: an offset from where they meet, times
+ * second and third, is the weight at a triangle's second and third corner. Then what was found. */
+typedef struct csg_facets {
+    float second[3][CSG_RING_MOST], third[3][CSG_RING_MOST], normal[3][CSG_RING_MOST];
+    float square[CSG_RING_MOST], over[CSG_RING_MOST], weight[2][CSG_RING_MOST];
+} csg_facets;
 
 typedef struct csg_surface_sample {
     float at[3];
-    uint32_t next; /* in its triangle's list */
+    uint32_t next;     /* in its triangle's list */
+    int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
 
 /* The triangles around an edge, as they would be after its collapse. */
 typedef struct csg_collapse_room {
     uint32_t triangle[CSG_RING_MOST + 2]; /* those that stay, then the two that go */
     csg_vec3 before[CSG_RING_MOST][3], after[CSG_RING_MOST][3];
-    csg_facet facet[CSG_RING_MOST]; /* of after */
+    csg_facets facets;              /* of after */
     csg_vec3 normal[CSG_RING_MOST]; /* of after, twice the area long */
+    double longest[CSG_RING_MOST];  /* side of after, squared */
     uint32_t vertex[CSG_RING_MOST][3];
-    uint32_t count;  /* that stay */
-    double farthest; /* of the samples handed over, squared */
+    uint32_t count;               /* that stay */
+    double most;                  /* that samples may be away, squared */
+    double farthest;              /* of the samples handed over, squared */
+    uint16_t seen[CSG_RING_MOST]; /* points of after near which there are samples that face its way:
+                                     of these csg_remesh_brackets need not ask */
     csg_look_at_vertex look;
-    bool one_look;   /* all vertices have it */
-    uint32_t *owner; /* of the samples of these triangles, in the order of their lists: who takes
-                        them, as an index into triangle */
+    bool one_look;      /* all vertices have it */
+    bool is_first_look; /* nothing is said of looks */
+    uint32_t *owner;    /* of the samples of these triangles, in the order of their lists: who takes
+                           them, as an index into triangle */
     size_t owner_count, owner_capacity;
 } csg_collapse_room;
 
@@ -91,9 +98,12 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */
 csgm_status csg_decimate_region(csg_decimation *d, const uint32_t *items, uint32_t count,
                                 uint32_t least);
-/* Whether the samples of room->triangle are near enough to room->after, and who takes which. */
-bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept);
+/* Whether the samples of room->triangle are at most so far from room->after, and who takes which. A
+ * reach beyond the error: only to know whether it is worth while to go on; looks do not matter. */
+bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach);
 void csg_decimation_hand_over(csg_decimation *d);
+/* room->seen, from who takes which. */
+void csg_decimation_find_seen(csg_decimation *d);
 
 /* The cost of collapsing an edge, before it is checked; negative: never. */
 double csg_collapse_cost(const csg_decimation *d, uint32_t from, uint32_t to);
@@ -103,6 +113,12 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {
     return csg_vec3_from_floats(d->samples[sample].at);
+}
+
+static inline csg_vec3 csg_sample_normal(const csg_decimation *d, uint32_t sample)
+{
+    const int16_t *n = d->samples[sample].normal;
+    return csg_vec3_make(n[0], n[1], n[2]);
 }
 
 #endif

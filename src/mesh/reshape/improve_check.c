@@ -84,7 +84,7 @@ bool csg_patch_is_sound(csg_improver *m)
     if (then.facing < fmin(FACING, now.facing) || then.facing <= 0.1 ||
         then.stray > fmax(m->allowed, now.stray) + 2 * (double)r->probe.noise)
         return false;
-    if (m->thinned && !csg_remesh_brackets(r, (const csg_vec3(*)[3])p->then, p->then_count))
+    if (m->thinned && !csg_remesh_brackets(r, (const csg_vec3(*)[3])p->then, NULL, p->then_count))
         return false;
     const csg_crossing_change change = {.at = (const csg_vec3(*)[3])p->then,
                                         .vertex = (const uint32_t(*)[3])p->vertex,
