@@ -55,7 +55,8 @@ class Figure:
             return file.read()
 
     def state(self):
-        return hashlib.sha256((self.text() + self.head).encode()).hexdigest()[:12]
+        text = re.sub(r"^//! normal .*\n", "", self.text(), flags=re.M)  # of no picture, of no figure here
+        return hashlib.sha256((text + self.head).encode()).hexdigest()[:12]
 
     def is_made(self):
         return f"<!-- made of {self.state()} -->" in self.body
