@@ -26,6 +26,11 @@ static void include(csg_triangle_box *box, csg_vec3 p)
     }
 }
 
+csg_triangle_box csg_triangle_box_nothing(void)
+{
+    return NOTHING;
+}
+
 csg_triangle_box csg_triangle_box_of(const csg_vec3 v[3])
 {
     csg_triangle_box box = NOTHING;
@@ -34,7 +39,7 @@ csg_triangle_box csg_triangle_box_of(const csg_vec3 v[3])
     return box;
 }
 
-static csg_triangle_box box_around(const csg_triangle_box *a, const csg_triangle_box *b)
+csg_triangle_box csg_triangle_box_around(const csg_triangle_box *a, const csg_triangle_box *b)
 {
     csg_triangle_box box;
     for (int k = 0; k < 3; k++) {
@@ -81,7 +86,7 @@ static summary of_leaf(const csg_triangle_tree *t, size_t leaf)
 
 static summary of_children(const csg_triangle_tree *t, size_t i)
 {
-    return (summary){box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]),
+    return (summary){csg_triangle_box_around(&t->nodes[2 * i], &t->nodes[2 * i + 1]),
                      t->facing[2 * i] & t->facing[2 * i + 1]};
 }
 
@@ -171,7 +176,7 @@ void csg_triangle_tree_include(csg_triangle_tree *t, uint32_t triangle)
     for (size_t i = node_of(t, triangle); i; i /= 2) {
         if (contains(&t->nodes[i], &own) && !(t->facing[i] & ~facing))
             return;
-        t->nodes[i] = box_around(&t->nodes[i], &own);
+        t->nodes[i] = csg_triangle_box_around(&t->nodes[i], &own);
         t->facing[i] &= facing;
     }
 }

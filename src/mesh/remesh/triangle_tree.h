@@ -61,7 +61,9 @@ static inline uint32_t csg_triangle_tree_item(const csg_triangle_tree *tree, siz
     return tree->items ? tree->items[i] : (uint32_t)i;
 }
 
+csg_triangle_box csg_triangle_box_nothing(void);
 csg_triangle_box csg_triangle_box_of(const csg_vec3 triangle[3]);
+csg_triangle_box csg_triangle_box_around(const csg_triangle_box *a, const csg_triangle_box *b);
 static inline bool csg_triangle_boxes_overlap(const csg_triangle_box *a, const csg_triangle_box *b)
 {
     return (a->min[0] <= b->max[0]) & (b->min[0] <= a->max[0]) & (a->min[1] <= b->max[1]) &

@@ -119,10 +119,10 @@ static bool cut(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, d
 
 /* The first cubes: places and sizes do not depend on how large the mesh is, but for a factor of
  * two. */
-static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, int round)
+static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, const csg_triangle_box *all,
+                    int round)
 {
     const csg_remesh *r = c->d->remesh;
-    const csg_triangle_box *all = &r->tree.nodes[1];
     csg_vec3 center = r->marching->field->center;
     const double middle[3] = {center.x, center.y, center.z};
     double extent = 0, from[3], side = 1;
@@ -173,6 +173,7 @@ static bool make_cubes(cutting *c, int round)
     if (!live)
         return false;
     c->item_count = c->region_count = 0;
+    csg_triangle_box all = csg_triangle_box_nothing();
     for (uint32_t t = 0; t < count; t++) {
         csg_vec3 v[3];
         c->inside[t] = CSG_CORNER_NONE;
@@ -180,9 +181,10 @@ static bool make_cubes(cutting *c, int round)
             continue;
         csg_triangle_tree_corners(&r->tree, t, v);
         c->boxes[t] = csg_triangle_box_of(v);
+        all = csg_triangle_box_around(&all, &c->boxes[t]);
         live[n++] = t;
     }
-    bool done = cut_all(c, live, n, round);
+    bool done = cut_all(c, live, n, &all, round);
     csg_arena_reset(&c->arena);
     if (done)
         share_out(c);
@@ -215,7 +217,7 @@ static bool thin_out_region(void *user, uint32_t worker_index, size_t index)
     return false;
 }
 
-/* Collapses leave boxes larger than they have to be. */
+/* Collapses leave boxes larger than they have to be; those in cubes leave them out of date. */
 static csgm_status make_tree_again(csg_remesh *r)
 {
     csg_triangle_tree_release(&r->tree);
@@ -234,7 +236,7 @@ static csgm_status run_round(cutting *c, int round)
         return (csgm_status)atomic_load(&c->status);
     for (size_t i = 0; i < c->region_count; i++)
         r->corners.live -= c->regions[i].removed;
-    return make_tree_again(r);
+    return CSGM_OK;
 }
 
 /* What is left, as one region. */
@@ -334,6 +336,8 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
         CSG_ZONE(r->context, "cubes");
         status = run_round(&c, round);
     }
+    if (status == CSGM_OK && in_cubes)
+        status = make_tree_again(r);
     if (status == CSGM_OK) {
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);
