@@ -332,6 +332,17 @@ static bool gather(cell_at_hand *c, unsigned polygon, csg_polygon *out)
     return true;
 }
 
+/* Wants a cell divided, as long as there are smaller ones. */
+static void want_divided(const cell_at_hand *c)
+{
+    csg_bricks *b = c->w->x->bricks;
+    csg_brick *brick = &b->items[c->shell->number];
+    if (brick->level == b->finest)
+        return;
+    brick->wanted |= (uint8_t)(1u << csg_brick_cell(c->at[0], c->at[1], c->at[2]));
+    atomic_store(&c->w->any, true);
+}
+
 /* A fan around a point of the cell. */
 static bool fan(cell_at_hand *c, const csg_polygon *p)
 {
@@ -340,6 +351,8 @@ static bool fan(cell_at_hand *c, const csg_polygon *p)
     csg_cell_box box = csg_judge_cell_box(w->x->bricks, c->shell->brick, c->at);
     csg_vec3 apex;
     csg_apex_kind kind = csg_polygon_find_apex(c->probe, &box, p, &apex);
+    if (!c->is_whole && csg_judge_fan_distance(w->x->judge, c->probe, p, apex) > w->x->farthest)
+        want_divided(c);
     self->creases += kind == CSG_APEX_CREASE;
     self->smooth += kind == CSG_APEX_FAILED;
     placed_vertex v = {.is_crease = kind == CSG_APEX_CREASE};
@@ -395,7 +408,7 @@ static bool make_triangles(cell_at_hand *c)
         unsigned sides = c->polygons.first[polygon + 1] - c->polygons.first[polygon];
         bool plain = c->is_whole && (unsigned)p.count == sides;
         bool flat = brick->flat >> csg_brick_cell(c->at[0], c->at[1], c->at[2]) & 1;
-        if (plain && c->polygons.count == 1 && (flat || sides == 3))
+        if (plain && c->polygons.count == 1 && flat)
             return cut_whole(c);
         if (!fan(c, &p))
             return false;
@@ -413,13 +426,9 @@ static bool visit_cells(work *w, uint32_t worker_index, const csg_shell *s)
 
 static bool want_simple(cell_at_hand *c)
 {
-    csg_bricks *b = c->w->x->bricks;
-    csg_brick *brick = &b->items[c->shell->number];
-    if (!c->is_whole && (c->polygons.count > 1 || has_several(brick, c->at) ||
-                         csg_cell_polygons_are_mixed(&c->polygons))) {
-        brick->wanted |= (uint8_t)(1u << csg_brick_cell(c->at[0], c->at[1], c->at[2]));
-        atomic_store(&c->w->any, true);
-    }
+    if (!c->is_whole && (c->polygons.count > 1 || has_several(c->shell->brick, c->at) ||
+                         csg_cell_polygons_are_mixed(&c->polygons)))
+        want_divided(c);
     return true;
 }
 
@@ -644,10 +653,11 @@ static csgm_status fill_mesh(work *w)
     return CSGM_OK;
 }
 
-csgm_status csg_extract(csg_extraction *x)
+csgm_status csg_extract(csg_extraction *x, bool *any)
 {
     CSG_ZONE(x->context, "extraction");
     work w;
+    x->creases = x->smooth = 0;
     csgm_status status = begin(&w, x, list_all);
     if (status == CSGM_OK)
         status = go(&w, visit_edges, 0, 0.3);
@@ -660,7 +670,8 @@ csgm_status csg_extract(csg_extraction *x)
         status = csg_context_no_memory(x->context);
     if (status == CSGM_OK)
         status = go(&w, visit_cells, 0.6, 0.4);
-    if (status == CSGM_OK)
+    *any = status == CSGM_OK && atomic_load(&w.any);
+    if (status == CSGM_OK && !*any)
         status = fill_mesh(&w);
     end(&w);
     return status;

@@ -19,9 +19,10 @@ typedef struct csg_extraction {
     csg_mesh_watch *watch;
     csg_bricks *bricks;
     const csg_judge *judge;
-    csg_vec3 shift; /* field frame -> relative to the mesh's origin */
-    bool colors;    /* the mesh has room for them */
-    size_t checked; /* bricks: the borders of those before it, among themselves, are simple */
+    csg_vec3 shift;  /* field frame -> relative to the mesh's origin */
+    bool colors;     /* the mesh has room for them */
+    double farthest; /* how far triangles of leaves beside finer ones may be from the surface */
+    size_t checked;  /* bricks: the borders of those before it, among themselves, are simple */
     /* made */
     csgm_mesh *mesh;  /* positions and indices, the caller's; its origin is still to be set */
     uint64_t creases; /* vertices on creases, corners and tips */
@@ -33,7 +34,9 @@ typedef struct csg_extraction {
  * (reported). */
 csgm_status csg_extraction_check_borders(csg_extraction *extraction, bool *any);
 
-/* CSGM_OK or why it was stopped (reported); CSGM_ERR_LIMIT above 2^31 vertices. */
-csgm_status csg_extract(csg_extraction *extraction);
+/* The mesh, or, where leaves beside finer ones turn out to be too far from the surface, *any and no
+ * mesh: those want to be divided. CSGM_OK or why it was stopped (reported); CSGM_ERR_LIMIT above
+ * 2^31 vertices. */
+csgm_status csg_extract(csg_extraction *extraction, bool *any);
 
 #endif

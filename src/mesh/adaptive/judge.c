@@ -319,10 +319,13 @@ static double find_distance(csg_sheet_probe *probe, const cut_polygon *piece, do
         double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
         if (height > least_height && -csg_gradients_cosine(cross, g) < looks_away)
             return INFINITY;
-        csg_vec3 at[3] = {csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3),
+        csg_vec3 at[4] = {csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3),
                           csg_vec3_scale(csg_vec3_add(a, b), 0.5),
-                          csg_vec3_scale(csg_vec3_add(b, c), 0.5)};
-        for (int k = 0; k < 3; k++, n++)
+                          csg_vec3_scale(csg_vec3_add(b, c), 0.5),
+                          csg_vec3_scale(csg_vec3_add(c, a), 0.5)};
+        int count =
+            piece->is_fan ? 3 : 4; /* the next triangle of a fan has the last one's middle */
+        for (int k = 0; k < count; k++, n++)
             x[n] = (float)at[k].x, y[n] = (float)at[k].y, z[n] = (float)at[k].z;
     }
     for (size_t i = n; i % CSG_LANES; i++)
@@ -335,32 +338,32 @@ static double find_distance(csg_sheet_probe *probe, const cut_polygon *piece, do
     return slope > 0 ? fmax(worst - 4 * probe->noise, 0) / slope : INFINITY;
 }
 
-/* Cuts the polygon without a point inside, as csg_cell_cut does, which numbers edges. False: it is
- * none that a whole cell has. */
-static bool cut_without_apex(unsigned pattern, cut_polygon *piece)
+double csg_judge_fan_distance(const csg_judge *judge, csg_sheet_probe *probe,
+                              const csg_polygon *polygon, csg_vec3 apex)
 {
-    csg_cell_loops loops = csg_cell_loops_of(pattern, 0);
+    cut_polygon piece = {.polygon = *polygon, .is_fan = true, .apex = apex};
+    return find_distance(probe, &piece, judge->tolerance);
+}
+
+/* Cuts the polygon of a whole cell without a point inside, from the same vertex on as the mesh will
+ * have it: other triangles have other distances. False: it has no such cut. */
+static bool cut_without_apex(cut_polygon *piece)
+{
     const csg_polygon *p = &piece->polygon;
-    uint8_t triangles[CSG_CELL_MOST_INDICES];
-    for (int loop = 0; loop < loops.count; loop++) {
-        bool is_own = false;
-        for (int i = 0; i < loops.sides[loop]; i++)
-            is_own = is_own || loops.edge[loop][i] == p->vertex[0];
-        if (!is_own)
-            continue;
-        if (loops.sides[loop] != p->count || !csg_cell_cut(loops.edge[loop], p->count, triangles))
-            return false;
-        for (int i = 0; i < 3 * (p->count - 2); i++) {
-            int at = 0;
-            while (at < p->count && p->vertex[at] != triangles[i])
-                at++;
-            if (at == p->count)
-                return false;
-            piece->cut[i] = (uint8_t)at;
-        }
-        return true;
+    uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES];
+    if (p->count > CSG_CELL_EDGES)
+        return false;
+    for (int i = 0; i < p->count; i++)
+        edge[i] = (uint8_t)p->vertex[i];
+    if (!csg_cell_cut(edge, p->count, triangles))
+        return false;
+    for (int i = 0; i < 3 * (p->count - 2); i++) {
+        int at = 0;
+        while (at < p->count - 1 && p->vertex[at] != triangles[i])
+            at++;
+        piece->cut[i] = (uint8_t)at;
     }
-    return false;
+    return true;
 }
 
 /* Keeps the triangles of a cell that is good. */
@@ -501,8 +504,7 @@ static bool cut_into_triangles(cell_work *w, const unsigned at[3], bool is_whole
     cut_polygon *piece = &w->pieces[w->count++];
     int creases = gather(w, at, polygons, polygon, alone && w->judge->sharp, &piece->polygon);
     piece->is_fan = false;
-    if (!creases && is_whole &&
-        cut_without_apex(csg_brick_pattern(w->brick, at[0], at[1], at[2]), piece) &&
+    if (!creases && is_whole && cut_without_apex(piece) &&
         find_distance(&w->probe, piece, least) <= tolerance) {
         if (alone)
             w->brick->flat |= (uint8_t)(1u << csg_brick_cell(at[0], at[1], at[2]));

@@ -77,6 +77,11 @@ typedef struct csg_cell_faces {
 /* The sign of the field there: the same whichever cell asks, fine or coarse. */
 bool csg_cell_face_is_inside(void *cell_faces, const csg_face_look *look);
 
+/* How far a fan around a point is from the surface, as |f| over the slope at points of its
+ * triangles; INFINITY where one that is not small looks inwards. */
+double csg_judge_fan_distance(const csg_judge *judge, csg_sheet_probe *probe,
+                              const csg_polygon *polygon, csg_vec3 apex);
+
 /* The box of a cell. */
 csg_cell_box csg_judge_cell_box(const csg_bricks *bricks, const csg_brick *brick,
                                 const unsigned at[3]);

@@ -122,6 +122,21 @@ static csgm_status refine(adaptive *a)
         if (status == CSGM_OK && any)
             status = csg_bricks_refine(&a->bricks);
     }
+    a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
+    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
+}
+
+/* The mesh. What its leaves beside finer ones look like is known only then: those that are too far
+ * from the surface are divided, and it is made again. */
+static csgm_status extract(adaptive *a)
+{
+    bool any = true;
+    csgm_status status = CSGM_OK;
+    while (status == CSGM_OK && any) {
+        status = csg_extract(&a->extraction, &any);
+        if (status == CSGM_OK && any)
+            status = refine(a);
+    }
     return status;
 }
 
@@ -208,12 +223,12 @@ static csgm_status walk(adaptive *a)
                                      .watch = &a->watch,
                                      .bricks = &a->bricks,
                                      .judge = &a->judge,
+                                     .farthest = a->goal->error,
                                      .shift = a->workers.marching.shift,
                                      .colors = csg_mesh_gets_colors(&a->input)};
     status = refine(a);
-    a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
     a->refined_s = csg_clock_now_s();
-    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
+    return status;
 }
 
 static void count_blocks(const csg_bricks *bricks, uint64_t blocks[CSGM_LEVELS_MOST])
@@ -280,7 +295,7 @@ static csgm_status make_mesh(adaptive *a)
     csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK)
-        status = csg_extract(&a->extraction);
+        status = extract(a);
     if (status == CSGM_OK) {
         a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
         status = paint(a);
