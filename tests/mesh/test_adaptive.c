@@ -100,6 +100,44 @@ static void test_bumps_and_dents(void **state)
     }
 }
 
+/* Sheets from two tolerances thick, wherever they lie between the points of large cells: a step
+ * that goes further the further it began jumps over them. */
+static void test_thin_sheets(void **state)
+{
+    csg_random random = {23};
+    for (unsigned i = 0; i < 2 * scene_count && i < 40; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        double half = csg_random_uniform(&random, 0.008, 0.012);
+        double x = csg_random_uniform(&random, 1, 3);
+        csg_node_id block = moved(&c, make_box(&c, 1, 1, 1), -3, 0, 0);
+        csg_node_id sheet = moved(&c, make_box(&c, half, 1, 1), x, 0, 0);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, block, sheet));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "a sheet beside a block");
+        assert_int_equal(c.check.components, 2);
+        mesh_case_end(&c);
+    }
+}
+
+/* Triangles of leaves beside finer ones, and of polygons without a point inside, are as near as all
+ * others: nothing has to be said of a blend. */
+static void test_within_tolerance(void **state)
+{
+    csg_random random = {29};
+    for (unsigned i = 0; i < scene_count && i < 10; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        csg_node_id rod = posed_anyhow(&c, make_cylinder(&c, 0.4, 2), &random);
+        csg_node_id ball = moved(&c, make_sphere(&c, 1), 0.8, 0.1, 0.2);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, ROUND(0.2), rod, ball));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "a rod blended into a ball");
+        assert_int_equal(c.context.diags.warnings, 0); /* W0410 */
+        mesh_case_end(&c);
+    }
+}
+
 /* ---- edges that a wedge pokes through ----------------------------------------------------------
  */
 
@@ -187,6 +225,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_boxes),           cmocka_unit_test(test_small_parts),
         cmocka_unit_test(test_bumps_and_dents), cmocka_unit_test(test_tilted_boxes),
+        cmocka_unit_test(test_thin_sheets),     cmocka_unit_test(test_within_tolerance),
         cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
     };
     if (argc > 1)

@@ -14,9 +14,11 @@ enum {
     PADDED = (POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES
 };
 
-/* A step goes this much further than to where a field of constant slope would be 0, so that its end
- * lies beyond the surface and not on it. */
-static const float BEYOND = 1.25f;
+/* A step goes further than to where a field of constant slope would be 0, so that its end lies
+ * beyond the surface and not on it: by a part of the tolerance, so as not to jump over what is
+ * thin; and from where that was too short, since the slope is another one, by a part of the way. */
+static const double BEYOND_SURFACE = 0.5;
+static const float BEYOND_WAY = 1.25f;
 
 /* Of the tolerance: how deep a place must lie in what was missed. */
 static const double DEPTH = 0.05, CREASE_DEPTH = 0.6;
@@ -180,13 +182,15 @@ static uint8_t differs_between(const hunt *h, const csg_brick *brick)
     return (uint8_t)(cells & h->cells);
 }
 
-/* Moves every point across the surface that it is near, as far as that lies in the brick. */
-static void step_across(hunt *h)
+/* Moves every point across the surface that it is near, as far as that lies in the brick: `way`
+ * times as far as that is, and `beyond` further. */
+static void step_across(hunt *h, float way, float beyond)
 {
     for (int i = 0; i < h->count; i++) {
         float square = h->g[0][i] * h->g[0][i] + h->g[1][i] * h->g[1][i] + h->g[2][i] * h->g[2][i];
         bool known = square > 1e-12f && fabsf(h->f[i]) <= h->band;
-        float step = known ? -BEYOND * h->f[i] / square : 0;
+        float further = h->f[i] < 0 ? -beyond * sqrtf(square) : beyond * sqrtf(square);
+        float step = known ? -(way * h->f[i] + further) / square : 0;
         float *at[3] = {&h->x[i], &h->y[i], &h->z[i]};
         h->before[i] = h->f[i];
         for (int axis = 0; axis < 3; axis++) {
@@ -232,20 +236,30 @@ static float within_band(const hunt *h, float f)
     return f > h->band ? h->band : f < -h->band ? -h->band : f;
 }
 
-static void collect_crossings(const hunt *h, crossings *c)
+/* Takes the steps that crossed the surface; the others are where they began again. */
+static void take_crossings(hunt *h, crossings *c)
 {
-    const float *end[3] = {h->x, h->y, h->z};
-    c->count = 0;
+    float *at[3] = {h->x, h->y, h->z};
+    int kept = 0;
     for (int i = 0; i < h->count; i++) {
-        if ((h->before[i] >= 0) == (h->f[i] >= 0))
-            continue;
+        bool crossed = (h->before[i] >= 0) != (h->f[i] >= 0);
         for (int axis = 0; axis < 3; axis++) {
-            c->from[axis][c->count] = h->from[axis][i];
-            c->to[axis][c->count] = end[axis][i];
+            if (crossed) {
+                c->from[axis][c->count] = h->from[axis][i];
+                c->to[axis][c->count] = at[axis][i];
+            } else {
+                at[axis][kept] = h->from[axis][i];
+                h->g[axis][kept] = h->g[axis][i];
+            }
         }
-        c->before[c->count] = h->before[i];
-        c->after[c->count++] = within_band(h, h->f[i]);
+        if (crossed) {
+            c->before[c->count] = h->before[i];
+            c->after[c->count++] = within_band(h, h->f[i]);
+        } else {
+            h->f[kept++] = h->before[i];
+        }
     }
+    h->count = kept;
 }
 
 /* One step closer for each crossing: by the secant, or, every other time, by halves, since the
@@ -285,15 +299,10 @@ static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, f
     c->count = kept;
 }
 
-/* Where steps across the surface end in what their cells do not show. */
-static uint8_t differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *brick)
+/* Where steps end in what their cells do not show. */
+static uint8_t differs_at_ends(const hunt *h, const csg_brick *brick)
 {
     unsigned cells = 0;
-    fill_lanes(h);
-    p->kernel->gradients(p->tape, h->x, h->y, h->z, (size_t)h->count, h->g[0], h->g[1], h->g[2],
-                         p->scratch, p->scratch_floats);
-    step_across(h);
-    ask(p, h);
     for (int i = 0; i < h->count; i++)
         if (differs_in_cell(h, brick, i)) {
             unsigned cell[3];
@@ -301,6 +310,23 @@ static uint8_t differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *bric
             cells |= 1u << csg_brick_cell(cell[0], cell[1], cell[2]);
         }
     return (uint8_t)(cells & h->cells);
+}
+
+/* The same of all steps across the surface; `c`: those that crossed it. */
+static uint8_t differs_across(csg_sheet_probe *p, hunt *h, const csg_brick *brick, double tolerance,
+                              crossings *c)
+{
+    uint8_t cells = 0;
+    fill_lanes(h);
+    p->kernel->gradients(p->tape, h->x, h->y, h->z, (size_t)h->count, h->g[0], h->g[1], h->g[2],
+                         p->scratch, p->scratch_floats);
+    for (int again = 0; again < 2 && h->count; again++) {
+        step_across(h, again ? BEYOND_WAY : 1, again ? 0 : (float)(BEYOND_SURFACE * tolerance));
+        ask(p, h);
+        cells |= differs_at_ends(h, brick);
+        take_crossings(h, c);
+    }
+    return cells;
 }
 
 uint8_t csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick, double tolerance,
@@ -321,10 +347,8 @@ uint8_t csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick
     ask_between(p, &h, f);
     h.cells &= (uint8_t)~differs_between(&h, brick);
     keep_near(&h, b, brick);
-    if (h.count) {
-        h.cells &= (uint8_t)~differs_across(p, &h, brick);
-        collect_crossings(&h, &c);
-    }
+    if (h.count)
+        h.cells &= (uint8_t)~differs_across(p, &h, brick, tolerance, &c);
     if (kind == ANYTHING && h.cells)
         h.cells &= (uint8_t)~csg_hunt_leaves(p, b, brick, tolerance, h.cells, out);
     for (int step = 0; step < STEPS && c.count && h.cells; step++)
