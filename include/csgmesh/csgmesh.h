@@ -421,14 +421,14 @@ typedef enum csgm_features {
     CSGM_FEATURES_SMOOTH /* plain marching cubes: they are cut by up to a cell */
 } csgm_features;
 
-/* Meshes of a lattice that follows the shape: cells are small where it asks for that, and the mesh
- * is thinned out. The tolerance T is the largest power of two that is at most a share of the
- * longest side of the bounds. Every triangle is within T of the surface as sampled, and parts and
- * gaps thicker than T are looked for; nothing is proven, which `tolerance` does. */
+/* Meshes of a lattice that follows the shape, which resolution and cell_size 0 give: cells are
+ * small where it asks for that, and the mesh is thinned out. The tolerance T is the largest power
+ * of two that is at most a share of the longest side of the bounds. Every triangle is within T of
+ * the surface as sampled, and parts and gaps thicker than T are looked for; nothing is proven,
+ * which `tolerance` does. */
 typedef enum csgm_quality {
-    CSGM_QUALITY_NONE,   /* a lattice of equal cells, or as `tolerance` says */
-    CSGM_QUALITY_DRAFT,  /* T: a 250th of the longest side */
-    CSGM_QUALITY_NORMAL, /* a 1000th */
+    CSGM_QUALITY_NORMAL, /* T: a 1000th of the longest side; what options of zeros mean */
+    CSGM_QUALITY_DRAFT,  /* a 250th */
     CSGM_QUALITY_FINE    /* a 4000th */
 } csgm_quality;
 
@@ -440,7 +440,8 @@ typedef struct csgm_mesh_options {
                              the scene's own bounds */
     double cell_size;     /* edge of a marching-cubes cell; 0 (the default): as resolution says */
     uint32_t resolution;  /* cells along the longest side when cell_size is 0; 0 (the default): as
-                             tolerance, quality or triangles choose them, else 128 */
+                             tolerance chooses them, 128 to certify, else cells follow the
+                             shape as quality and triangles say */
     csgm_normals normals; /* default VERTEX */
     csgm_features features; /* default SHARP */
     bool colors;            /* vertex colours where the scene has any; default true */
@@ -451,27 +452,29 @@ typedef struct csgm_mesh_options {
     double tolerance;      /* > 0: no point of the mesh is farther than this from the surface, nor,
                               as measured on the lattice, the surface from the mesh; with resolution
                               and cell_size 0 the cells are chosen for it; default 0 */
-    double simplify_error; /* > 0: the same for the mesh of the resolution given; default 0 */
+    double simplify_error; /* > 0: the same for the mesh of the resolution given; without one, the
+                              tolerance of cells that follow the shape, not proven; default 0 */
     double simplify_share; /* > 0, < 1: so many of the triangles may stay; default 0 */
     bool improve; /* vertices move along the surface and edges flip, for better triangles; default
                      false */
     /* Look for what lies between the lattice's points: csgm_mesh_stats.certify says what is proven,
      * and what is missed is a warning each (W0406, W0407); default false. Without it a scan of the
-     * samples warns once of the thin parts that it happens to see. The mesh is the same. */
+     * samples of equal cells warns once of the thin parts that it happens to see. The mesh is that
+     * of equal cells without it. */
     bool certify;
     double certify_size; /* cubes that are not settled are divided down to this; 0 = cell / 64 */
     csgm_monitor monitor;
-    /* With resolution and cell_size 0 and no tolerance; default NONE. */
+    /* With resolution and cell_size 0 and no tolerance; default NORMAL. */
     csgm_quality quality;
     /* > 0: at most so many triangles, the cheapest left out first; with resolution and cell_size 0,
-     * of the lattice that `quality` says (NONE: NORMAL); default 0 */
+     * of the lattice that `quality` says; default 0 */
     uint64_t triangles;
 } csgm_mesh_options;
 
 CSGM_API csgm_mesh_options csgm_mesh_options_default(void);
 
 /* The tolerance T of a quality for a solid of these bounds; 0 where they are empty, a point or
- * infinite. Given as simplify_error, with resolution and cell_size 0 and a quality, it meshes other
+ * infinite. Given as simplify_error, with resolution and cell_size 0, it meshes other
  * solids within the same T: two of them that differ in size then differ in the mesh only where they
  * differ in shape. */
 CSGM_API double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds);

@@ -11,9 +11,9 @@
     //! expect echo "x", 1              a line ECHO: "x", 1
     //! resolution 64                   default 128
     //! options -D "wall=2" --max-depth 50
-    //! normal euler 4              what `expect euler` is with --quality normal
+    //! normal euler 4              what `expect euler` is by default, without -r
 
-With --quality normal bounds may be off by the tolerance, the volume by six tenths of it all over the surface, the area by as
+By default bounds may be off by the tolerance, the volume by six tenths of it all over the surface, the area by as
 much as expected or 2 %; equal cells' warnings of thin parts do not come, and that a place is farther than
 the tolerance (W0410) is no fault of the scene.
 
@@ -58,7 +58,7 @@ class Expectations:
 
     def how(self):
         """The options of the mesh."""
-        return (["--quality", "normal"] if self.follows else ["-r", self.resolution]) + self.options
+        return ([] if self.follows else ["-r", self.resolution]) + self.options
 
     def of(self, kind):
         return [words for name, _, words in self.values if name == kind]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Cells that follow the shape: --quality and --triangles. Flat solids end in as few triangles as they need, fine letters on a large
+"""Cells that follow the shape: the default, --quality and --triangles. Flat solids end in as few triangles as they need, fine letters on a large
 plate are there, bounds, parts, colours and formats are as on equal cells, and what excludes each other is said.
 """
 import json
@@ -27,6 +27,26 @@ class Quality(cli.CliTest):
         self.assertEqual(stats["mesh"]["triangles"], 12)
         self.assertEqual(stats["quality"]["distance_allowed"], 2 ** -7)
         self.assertEqual(len(self.bytes("cube(10);", "--quality", "draft", name="out.stl")), 84 + 12 * 50)
+
+    def test_it_is_the_default(self):
+        """Whatever else is asked for; -r 128 is what was the default, and what --certify looks at alone."""
+        text = "difference() { cube(10); translate([10, 10, 10]) sphere(4); }"
+        normal = self.bytes(text, "--quality", "normal")
+        self.assertEqual(self.bytes(text), normal)
+        self.assertTrue(self.stats(text)["lattice"]["adaptive"])
+        self.assertTrue(json.loads(cli.run("info", "scene.txt", "--json", cwd=self.folder).stdout)["lattice"]["adaptive"])
+        for options in (["--features", "smooth"], ["--improve"], ["--triangles", "99"], ["--simplify", "0.1"], ["--simplify", "50%"]):
+            self.assertTrue(self.stats(text, *options)["lattice"]["adaptive"], options)
+            self.assertEqual(self.bytes(text, *options), self.bytes(text, "--quality", "normal", *options), options)
+        for options in (["-r", "128"], ["-s", "0.5"], ["-e", "0.1"], ["--certify"], ["--certify-size", "0.05"]):
+            self.assertFalse(self.stats(text, *options)["lattice"]["adaptive"], options)
+        self.assertEqual(self.bytes(text, "--certify"), self.bytes(text, "-r", "128"))
+        self.assertLess(len(normal), len(self.bytes(text, "-r", "128")) / 50)
+
+    def test_simplify_without_cells(self):
+        """Its error is the tolerance, whatever the quality would have been."""
+        self.assertEqual(self.stats("sphere(10);", "--simplify", "0.25")["lattice"]["tolerance"], 0.25)
+        self.assertFalse(self.stats("sphere(10);", "--simplify", "0.25", "-r", "32")["lattice"]["adaptive"])
 
     def test_any_unit(self):
         for size in (1e-6, 1e7):
@@ -110,7 +130,8 @@ class Quality(cli.CliTest):
 
     def test_what_excludes_each_other(self):
         self.write("scene.txt", "cube(1);")
-        for options in (["--quality", "fine", "-r", "9"], ["--quality", "draft", "-e", "1"], ["--triangles", "9", "-s", "1"],
+        for options in (["--quality", "fine", "-r", "9"], ["--quality", "normal", "-s", "1"], ["--quality", "draft", "-e", "1"], ["--quality", "none"],
+                        ["--quality", "normal", "--certify"], ["--triangles", "9", "-s", "1"],
                         ["--triangles", "9", "--simplify", "1"], ["--quality", "fine", "--certify"]):
             self.assert_status(cli.run("scene.txt", "-o", "out.ply", *options, cwd=self.folder), 2)
 

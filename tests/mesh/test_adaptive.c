@@ -168,7 +168,7 @@ static void test_triangle_count(void **state)
     mesh_case_begin(&c, 2);
     mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, make_box(&c, 1, 1, 1),
                                  moved(&c, make_sphere(&c, 1), 1, 0.3, 0.2)));
-    csgm_mesh_options options = following(CSGM_QUALITY_NONE);
+    csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
     for (uint64_t most = 2000; most >= 125; most /= 4) {
         options.triangles = most;
         mesh_build_closed(&c, &options, "a number of triangles");

@@ -173,10 +173,8 @@ static csgm_status paint(adaptive *a)
 
 double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds)
 {
-    static const double shares[] = {[CSGM_QUALITY_NONE] = 1000,
-                                    [CSGM_QUALITY_DRAFT] = 250,
-                                    [CSGM_QUALITY_NORMAL] = 1000,
-                                    [CSGM_QUALITY_FINE] = 4000};
+    static const double shares[] = {
+        [CSGM_QUALITY_NORMAL] = 1000, [CSGM_QUALITY_DRAFT] = 250, [CSGM_QUALITY_FINE] = 4000};
     csg_vec3 size = csg_box_size(bounds);
     return power_below(fmax(size.x, fmax(size.y, size.z)) / shares[quality]);
 }

@@ -6,13 +6,12 @@
 
 #include "mesh/pipeline/build.h"
 
-/* A quality or a number of triangles, and neither -r nor -s: cells follow the shape. To certify,
- * and to prove a tolerance, takes equal cells. */
+/* Without -r and -s cells follow the shape. To certify, and to prove a tolerance, takes equal
+ * cells. This is the one place that says which options mean which lattice. */
 static inline bool csg_mesh_is_adaptive(const csgm_mesh_options *options)
 {
     return !options->resolution && !(options->cell_size > 0) && !options->certify &&
-           !(options->tolerance > 0) &&
-           (options->quality != CSGM_QUALITY_NONE || options->triangles);
+           !(options->tolerance > 0);
 }
 
 /* The tolerance of a quality, for a box to mesh. */

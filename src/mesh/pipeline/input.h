@@ -17,7 +17,8 @@ typedef struct csg_mesh_share {
     double before, amount; /* of the work: fractions */
 } csg_mesh_share;
 
-/* Cells along the longest side of a lattice of equal cells, where nothing says how many. */
+/* Cells along the longest side of a lattice of equal cells, where nothing says how many: to
+ * certify. */
 enum { CSG_MESH_DEFAULT_CELLS = 128 };
 
 typedef struct csg_mesh_input {

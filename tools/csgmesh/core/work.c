@@ -17,7 +17,7 @@ int cli_work_check(cli_app *app)
                                "-e and --simplify both say what may be taken away: give one");
     const cli_options *o = &app->options;
     bool equal_cells = o->given[CLI_OPTION_resolution] || o->given[CLI_OPTION_cell_size];
-    if (o->quality && (equal_cells || o->given[CLI_OPTION_tolerance]))
+    if (o->given[CLI_OPTION_quality] && (equal_cells || o->given[CLI_OPTION_tolerance]))
         return cli_usage_error(
             app, NULL, "--quality chooses cells and tolerance: give it without -r, -s and -e");
     if (o->triangles &&
@@ -26,7 +26,7 @@ int cli_work_check(cli_app *app)
             app, NULL,
             "--triangles chooses cells and tolerance: give it without -r, -s, -e and "
             "--simplify");
-    if ((o->quality || o->triangles) && (o->certify || o->certify_size > 0))
+    if ((o->given[CLI_OPTION_quality] || o->triangles) && (o->certify || o->certify_size > 0))
         return cli_usage_error(app, "give -r",
                                "--certify looks at cells of one size, not at those of --quality or "
                                "--triangles");
@@ -45,7 +45,8 @@ int cli_work_load(cli_app *app, cli_work *work, const char *path)
 double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality quality)
 {
     const cli_options *o = &app->options;
-    if (!(o->quality || o->triangles) || o->given[CLI_OPTION_simplify])
+    if (o->resolution || o->given[CLI_OPTION_cell_size] || o->given[CLI_OPTION_tolerance] ||
+        o->given[CLI_OPTION_simplify])
         return 0;
     csgm_box box = work->info.bounds;
     if (o->given[CLI_OPTION_bounds])
