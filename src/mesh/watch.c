@@ -45,10 +45,11 @@ void csg_mesh_report_progress(void *user, double fraction)
     if (!monitor->progress)
         return;
     double now = csg_clock_now_s();
-    if (now - w->last_report_s < 1.0 / REPORTS_PER_SECOND)
+    fraction = w->stage_done + w->stage_share * fraction;
+    if (now - w->last_report_s < 1.0 / REPORTS_PER_SECOND || fraction < w->told[w->stage])
         return;
     w->last_report_s = now;
-    fraction = w->stage_done + w->stage_share * fraction;
+    w->told[w->stage] = fraction;
     if (!w->is_part) {
         monitor->progress(monitor->user, w->stage, fraction);
         return;

@@ -19,6 +19,8 @@ typedef struct csg_mesh_watch {
     bool is_part;                    /* of a mesh with several parts */
     double part_before, part_amount; /* then: fractions of the whole work */
     double last_report_s;
+    double told[CSGM_STAGE_RENDER + 1]; /* the largest fraction of each stage: what is done anew is
+                                         not told again */
     atomic_bool timed_out, out_of_memory, refused;
 } csg_mesh_watch;
 

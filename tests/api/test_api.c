@@ -344,11 +344,12 @@ static bool on_look(void *user)
     return w->stop_at && looks >= w->stop_at;
 }
 
-static void test_cancel(void **state)
+/* resolution 0: cells follow the shape */
+static void cancel_anywhere(uint32_t resolution)
 {
     watch w = {0};
     csgm_mesh_options options = csgm_mesh_options_default();
-    options.resolution = 128;
+    options.resolution = resolution;
     options.monitor = (csgm_monitor){on_progress, on_look, &w};
     run r;
     assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
@@ -367,6 +368,12 @@ static void test_cancel(void **state)
         end(&r);
         assert_int_equal(memory.bytes, 0);
     }
+}
+
+static void test_cancel(void **state)
+{
+    cancel_anywhere(128);
+    cancel_anywhere(0);
 }
 
 /* ---- memory ---------------------------------------------------------------------------------- */

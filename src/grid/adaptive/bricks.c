@@ -506,7 +506,9 @@ typedef struct placed {
 static int compare_placed(const void *a, const void *b)
 {
     const placed *p = a, *q = b;
-    return csg_lattice_compare_morton(p->point, q->point);
+    int order = csg_lattice_compare_morton(p->point, q->point);
+    /* a brick, and one in the place of its first cell */
+    return order ? order : (p->brick > q->brick) - (p->brick < q->brick);
 }
 
 bool csg_bricks_leaves(const csg_bricks *b, uint32_t **out, size_t *count)

@@ -6,8 +6,8 @@
  *
  * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of
  * the finest lattice, so every point has one index, and one coordinate, at all levels. Which cells
- * are divided depends on the field and the lattice alone: the set is the least one that the judge
- * asks for and that is balanced.
+ * are divided depends on the field and the lattice alone: no more than the judge, who makes the
+ * mesh and the balance ask for.
  */
 #ifndef CSG_GRID_ADAPTIVE_BRICKS_H
 #define CSG_GRID_ADAPTIVE_BRICKS_H

@@ -131,6 +131,7 @@ static bool visit_edges(work *w, uint32_t worker_index, const csg_shell *s)
     csg_tape tape;
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, b, s->brick, room, &tape);
     csg_pierce(&probe, b, s->brick, NULL, &room->pierced);
+    room->evaluations += probe.evaluations;
     room->edges.count = 0;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS && s->brick->crossed; slot++) {
         int axis = (int)(slot / CSG_BRICK_POINTS);

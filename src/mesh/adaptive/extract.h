@@ -4,7 +4,7 @@
  *
  * Why nothing meets: segments of a face do not cross, and both cells at the face have the same; a
  * fan around a point strictly within a convex cell does not meet itself, nor the cell's faces but
- * in its loop; a cell has one polygon, or, of the finest level, those of csg_cell_tables.
+ * in its loop; a cell has one polygon, or several that are apart, or those of csg_cell_tables.
  */
 #ifndef CSG_MESH_ADAPTIVE_EXTRACT_H
 #define CSG_MESH_ADAPTIVE_EXTRACT_H
@@ -29,9 +29,9 @@ typedef struct csg_extraction {
     uint64_t smooth;  /* cells in which sheets should meet, and do not */
 } csg_extraction;
 
-/* Wants those leaves divided that have several polygons beside finer ones; *any: there are some. Of
- * bricks that were checked only those are again that new ones touch. CSGM_OK or why it was stopped
- * (reported). */
+/* Wants those leaves divided that have several polygons beside finer ones, or touch a pierced edge
+ * of finer ones; *any: there are some. Of bricks that were checked only those are again that new
+ * ones touch. CSGM_OK or why it was stopped (reported). */
 csgm_status csg_extraction_check_borders(csg_extraction *extraction, bool *any);
 
 /* The mesh, or, where leaves beside finer ones turn out to be too far from the surface, *any and no

@@ -351,8 +351,8 @@ static bool cut_without_apex(cut_polygon *piece)
 {
     const csg_polygon *p = &piece->polygon;
     uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES];
-    if (p->count > CSG_CELL_EDGES)
-        return false;
+    if (p->count > CSG_CELL_MOST_TRIANGLES + 2)
+        return false; /* joined through faces: no loop of the tables, whose cuts meet nowhere */
     for (int i = 0; i < p->count; i++)
         edge[i] = (uint8_t)p->vertex[i];
     if (!csg_cell_cut(edge, p->count, triangles))

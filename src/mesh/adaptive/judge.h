@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Which cells of a brick are small enough: they have one polygon, whose triangles are near the
- * surface and look outwards, and sheets that should meet in them do.
+ * Which cells of a brick are small enough: triangles of their polygons are near the surface, look
+ * outwards and meet nowhere, and sheets that should meet in them do.
  */
 #ifndef CSG_MESH_ADAPTIVE_JUDGE_H
 #define CSG_MESH_ADAPTIVE_JUDGE_H

@@ -54,17 +54,20 @@ void csg_probe_release(csg_probe *probe)
 /* ---- which tape -------------------------------------------------------------------------------
  */
 
-static bool is_in_leaf(const csg_bricks *b, uint32_t leaf, const uint32_t cell[3])
+/* Whether a leaf of the brick holds a cell of the finest lattice. */
+static bool is_in_leaf(const csg_bricks *b, uint32_t number, const uint32_t cell[3])
 {
-    const csg_brick *brick = &b->items[leaf];
-    uint32_t shift = b->finest - brick->level;
-    for (int axis = 0; axis < 3; axis++)
-        if (cell[axis] / CSG_BRICK_EDGE >> shift != brick->at[axis])
+    const csg_brick *brick = &b->items[number];
+    uint32_t own[3];
+    for (int axis = 0; axis < 3; axis++) {
+        own[axis] = cell[axis] >> (b->finest - brick->level);
+        if (own[axis] / CSG_BRICK_EDGE != brick->at[axis])
             return false;
-    return true;
+    }
+    return !(brick->divided >> csg_brick_octant(own) & 1);
 }
 
-/* The leaf at a place: that of the place before, as a rule. */
+/* The brick whose leaf is at a place: that of the place before, as a rule. */
 static uint32_t leaf_at(csg_probe_room *room, const csg_bricks *b, const float at[3])
 {
     uint32_t cell[3];
