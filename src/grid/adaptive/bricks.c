@@ -109,6 +109,28 @@ float csg_bricks_band(const csg_bricks *b, uint32_t level)
                    (edge * (1 + 0x1p-10) + (double)csg_octree_rounding(b->lattice)));
 }
 
+uint8_t csg_brick_cells_at(const int from[3], const int to[3])
+{
+    unsigned cells = 0;
+    for (unsigned cell = 0; cell < CSG_OCTANTS; cell++) {
+        bool holds = true;
+        for (int axis = 0; axis < 3; axis++) {
+            int low = 2 * (int)(cell >> axis & 1);
+            holds = holds && from[axis] >= low && to[axis] <= low + 2;
+        }
+        cells |= (unsigned)holds << cell;
+    }
+    return (uint8_t)cells;
+}
+
+void csg_brick_beside(const csg_brick *brick, unsigned part, uint32_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX;
+        at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
+    }
+}
+
 bool csg_brick_is_pierced(const csg_brick *brick, const unsigned from[3], const unsigned to[3])
 {
     for (int axis = 0; axis < 3 && brick->pierced; axis++) {
@@ -333,10 +355,7 @@ static bool want_balance(csg_bricks *b, const csg_brick *brick)
     for (unsigned part = 1; part < CSG_OCTANTS; part++) {
         uint32_t at[3], level = brick->level - 1u, found;
         unsigned octant = 0; /* of the brick at hand, the way was down */
-        for (int axis = 0; axis < 3; axis++) {
-            uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX; /* below 0 nothing is found */
-            at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
-        }
+        csg_brick_beside(brick, part, at);
         while ((found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE &&
                level > b->options.coarse) {
             octant = csg_brick_octant(at);

@@ -151,6 +151,13 @@ static inline unsigned csg_brick_edge(int axis, const unsigned low[3])
     return (unsigned)axis * PER_AXIS + low[axis] + CSG_BRICK_EDGE * (u + CSG_BRICK_SAMPLES * v);
 }
 
+/* The cells that hold a box, an edge or a point: from one place to another, in half cells. */
+uint8_t csg_brick_cells_at(const int from[3], const int to[3]);
+/* Where bricks of one level less touch the cube that a brick is an octant of, on the brick's own
+ * sides: `part`, of CSG_OCTANTS, says on which axes it lies beyond; 0 is the cube itself. A place
+ * below 0 is one that no brick has. */
+void csg_brick_beside(const csg_brick *brick, unsigned part, uint32_t at[3]);
+
 /* Whether an edge in the box from one of the brick's points to another is pierced. */
 bool csg_brick_is_pierced(const csg_brick *brick, const unsigned from[3], const unsigned to[3]);
 

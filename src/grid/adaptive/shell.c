@@ -25,21 +25,6 @@ static bool is_on_shell(const int q[3])
     return q[0] >= 0 && q[0] < S && q[1] >= 0 && q[1] < S && q[2] >= 0 && q[2] < S;
 }
 
-/* The cells at which half an edge is, from `q` along an axis. */
-static uint8_t cells_at(int axis, const int q[3])
-{
-    unsigned cells = 0;
-    for (int cell = 0; cell < CSG_OCTANTS; cell++) {
-        bool holds = true;
-        for (int k = 0; k < 3; k++) {
-            int low = 2 * (cell >> k & 1);
-            holds = holds && q[k] >= low && q[k] + (k == axis) <= low + 2;
-        }
-        cells |= (unsigned)holds << cell;
-    }
-    return (uint8_t)cells;
-}
-
 /* Signs and edges that a finer brick has on this one's leaves. */
 static void take_brick(csg_shell *s, const csg_brick *fine)
 {
@@ -58,8 +43,10 @@ static void take_brick(csg_shell *s, const csg_brick *fine)
                 continue;
             const unsigned low[3] = {(unsigned)local[0], (unsigned)local[1], (unsigned)local[2]};
             take_edges(s, axis, q);
-            if (fine->pierced >> csg_brick_edge(axis, low) & 1)
-                s->pierced_beyond |= cells_at(axis, q);
+            if (!(fine->pierced >> csg_brick_edge(axis, low) & 1))
+                continue;
+            const int end[3] = {q[0] + (axis == 0), q[1] + (axis == 1), q[2] + (axis == 2)};
+            s->pierced_beyond |= csg_brick_cells_at(q, end);
         }
     }
 }

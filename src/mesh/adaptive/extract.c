@@ -453,10 +453,7 @@ static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
         return;
     for (unsigned part = 0; part < CSG_OCTANTS; part++) {
         uint32_t at[3];
-        for (int axis = 0; axis < 3; axis++) {
-            uint32_t step = brick->at[axis] & 1 ? 1u : UINT32_MAX;
-            at[axis] = brick->at[axis] / 2 + (part >> axis & 1 ? step : 0);
-        }
+        csg_brick_beside(brick, part, at);
         uint32_t found = csg_bricks_find(b, brick->level - 1u, at);
         if (found != CSG_BRICK_NONE)
             changed[found] = 1;

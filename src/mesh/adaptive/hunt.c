@@ -88,16 +88,7 @@ static int own_point(int point)
 static uint8_t cells_of(int point)
 {
     const int half[3] = {point % HALVES, point / HALVES % HALVES, point / (HALVES * HALVES)};
-    unsigned cells = 0;
-    for (unsigned cell = 0; cell < CSG_OCTANTS; cell++) {
-        bool holds = true;
-        for (int axis = 0; axis < 3; axis++) {
-            int low = 2 * (int)(cell >> axis & 1);
-            holds = holds && half[axis] >= low && half[axis] <= low + 2;
-        }
-        cells |= (unsigned)holds << cell;
-    }
-    return (uint8_t)cells;
+    return csg_brick_cells_at(half, half);
 }
 
 static void fill_lanes(hunt *h)

@@ -37,7 +37,6 @@ typedef struct csg_judge_room {
 } csg_judge_room;
 
 typedef struct csg_judge {
-    const csg_cell_tables *tables;
     csg_judge_room *rooms; /* one per worker */
     double tolerance;      /* how far triangles may be from the surface */
     bool sharp;            /* look for creases */

@@ -95,8 +95,7 @@ static csgm_status create_judge(adaptive *a)
 {
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
-    a->judge = (csg_judge){.tables = m->tables,
-                           .tolerance = SHARE_OF_CELLS * a->goal->error,
+    a->judge = (csg_judge){.tolerance = SHARE_OF_CELLS * a->goal->error,
                            .sharp = a->goal->sharp,
                            .noise = m->noise,
                            .end_distance = (float)fmin(
