@@ -543,6 +543,9 @@ typedef struct csgm_mesh_stats {
     double cell_coarsest; /* the largest that they may be; cell_size is the finest */
     /* Blocks of 2^3 cells that follow the shape, by the size of these: cell_coarsest / 2^i. */
     uint64_t blocks[CSGM_LEVELS_MOST];
+    /* Of polyhedra, which went into the mesh as they are. Where they are all of it, it has no
+     * cells: cell_size is 0. */
+    uint64_t own_triangles;
 } csgm_mesh_stats;
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a

@@ -6,6 +6,7 @@
 
 #include "field/tape.h"
 
+extern const csg_color csg_default_color;
 /* Metallic in r, roughness in g. */
 extern const csg_color csg_default_material;
 

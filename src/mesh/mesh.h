@@ -21,6 +21,20 @@ struct csgm_mesh {
     bool split;      /* csgm_mesh_view.split */
 };
 
+/* A channel in 0..1 as a vertex's colour has it. */
+static inline uint8_t csg_mesh_color_byte(float channel)
+{
+    float v = channel * 255.0f + 0.5f;
+    return (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+}
+/* Metallic or roughness in 0..1 in steps of 1 / 10000: what was mixed of equal parts is equal
+ * again. */
+static inline uint16_t csg_mesh_material_share(float channel)
+{
+    float v = channel * 10000.0f + 0.5f;
+    return (uint16_t)(v < 0 ? 0 : v > 10000 ? 10000 : v);
+}
+
 /* Arrays of these sizes from context->memory, not filled. vertex_count < 2^32; counts may be 0.
  * CSGM_ERR_MEMORY (reported) or CSGM_OK. */
 csgm_status csg_mesh_create(csgm_context *context, uint64_t vertex_count, uint64_t triangle_count,

@@ -38,6 +38,18 @@ uint32_t csg_primitive_parameter_count(csg_node_kind kind)
     return kinds[kind].parameter_count;
 }
 
+void csg_look_take_inner(csg_look *outer, const csg_look *inner)
+{
+    if (!outer->has_color)
+        outer->color = inner->color;
+    if (!outer->has_material) {
+        outer->metallic = inner->metallic;
+        outer->roughness = inner->roughness;
+    }
+    outer->has_color |= inner->has_color;
+    outer->has_material |= inner->has_material;
+}
+
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
 {
     return (csg_blend){(csg_blend_kind)node->blend, scene->parameters[node->payload]};

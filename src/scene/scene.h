@@ -99,6 +99,9 @@ typedef struct csg_look {
     uint32_t part; /* 1 + index into part_names; 0 = none (parts.h) */
 } csg_look;
 
+/* What an inner node says of colour and material, where the outer ones say nothing. */
+void csg_look_take_inner(csg_look *outer, const csg_look *inner);
+
 enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
 
 /* What holds operands of a fillet: half-spaces with this normal, or, where is_round, cylinders

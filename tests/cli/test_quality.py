@@ -113,6 +113,26 @@ class Quality(cli.CliTest):
         for options, words in ((["-r", "32"], "with cells of 0.625\n"), (["--quality", "normal"], "within 0.015625, of cells of ")):
             self.assertIn(words, cli.run("info", "scene.txt", *options, cwd=self.folder).stdout.decode())
 
+    def test_polyhedra_go_out_as_they_are(self):
+        """Balls with facets, and what comes back from a file; what crosses itself is meshed."""
+        text = "sphere(10, $fn = 100);"
+        stats = self.stats(text, "--facets=exact")
+        self.assertEqual((stats["mesh"]["triangles"], stats["mesh"]["euler"]), (9996, 2))
+        self.assertEqual(stats["lattice"], {"adaptive": False, "own_triangles": 9996})
+        self.assertTrue(stats["files"][0]["manifold"])
+        self.bytes(text, "--facets=exact", name="ball.stl")
+        first = self.read("ball.stl")
+        self.assertEqual(self.bytes('import("ball.stl");', name="again.stl"), first)
+        self.assertEqual(self.stats(text, "--facets=exact", "--triangles", "9996")["mesh"]["triangles"], 9996)
+        for options in (["--triangles", "500"], ["-r", "24"], ["--simplify", "0.5"], ["--quality", "draft", "--bounds=-9,-20,-20,20,20,20"]):
+            self.assertNotIn("own_triangles", self.stats(text, "--facets=exact", *options)["lattice"])
+        self.assertIn("9996 triangles of its mesh are those of polyhedra",
+                      cli.run("info", "scene.txt", "--facets=exact", cwd=self.folder).stdout.decode())
+        mixed = 'part("a") import("ball.stl"); part("b") translate([30, 0, 0]) cube(4);'
+        stats = self.stats(mixed, "--quality", "draft")
+        self.assertEqual((stats["mesh"]["triangles"], stats["lattice"]["own_triangles"]), (9996 + 12, 9996))
+        self.assertTrue(stats["lattice"]["adaptive"])
+
     def test_lattice_of_parts(self):
         """Small parts begin with smaller cells; blocks of one size are counted together."""
         alone = [self.stats(part + ";", "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]

@@ -496,14 +496,14 @@ static bool child_frame(compiler *c, const task *t, frame *f)
 }
 
 /* Solids without a colour or material of their own, next to others. */
-static const csg_color default_color = {0.78f, 0.78f, 0.8f, 1.0f};
+const csg_color csg_default_color = {0.78f, 0.78f, 0.8f, 1.0f};
 const csg_color csg_default_material = {0.0f, 0.6f, 0.0f, 0.0f};
 
 static bool compile_tree(compiler *c)
 {
     frame outermost = {.place = csg_affine_identity(),
                        .factor = 1,
-                       .paint = default_color,
+                       .paint = csg_default_color,
                        .material = csg_default_material};
     const csg_node *root = &c->scene->nodes[c->scene->root];
     if (!push_color(c, &outermost))

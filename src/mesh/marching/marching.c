@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "field/field.h"
+#include "mesh/mesh.h"
 
 enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 
@@ -143,20 +144,15 @@ static void write_normals(const csg_edges *e, float *const g[3], float *out)
 static void write_colors(const csg_edges *e, float *const rgba[4], uint8_t *out)
 {
     for (uint32_t i = 0; i < e->count; i++)
-        for (int c = 0; c < 4; c++) {
-            float v = rgba[c][i] * 255.0f + 0.5f;
-            out[4 * e->rank[i] + c] = (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
-        }
+        for (int c = 0; c < 4; c++)
+            out[4 * e->rank[i] + c] = csg_mesh_color_byte(rgba[c][i]);
 }
 
-/* Steps of 1 / 10000: what was mixed of equal parts is equal again. */
 static void write_materials(const csg_edges *e, float *const pair[2], uint16_t *out)
 {
     for (uint32_t i = 0; i < e->count; i++)
-        for (int c = 0; c < 2; c++) {
-            float v = pair[c][i] * 10000.0f + 0.5f;
-            out[2 * e->rank[i] + c] = (uint16_t)(v < 0 ? 0 : v > 10000 ? 10000 : v);
-        }
+        for (int c = 0; c < 2; c++)
+            out[2 * e->rank[i] + c] = csg_mesh_material_share(pair[c][i]);
 }
 
 void csg_marching_colors(const csg_marching *m, const csg_tape *tape, const csg_edges *e,

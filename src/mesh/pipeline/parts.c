@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/mesh_codes.h"
 #include "mesh/pipeline/certify.h"
+#include "mesh/pipeline/own.h"
 #include "mesh/pipeline/tries.h"
 
 /* A field without parts. */
@@ -18,6 +19,14 @@ static csgm_status build_part(csgm_context *context, const csgm_field *field,
                               const csgm_mesh_options *options, const csg_mesh_share *share,
                               csgm_mesh **out, csgm_mesh_stats *stats)
 {
+    csgm_mesh *own = NULL;
+    csgm_status status = CSGM_OK;
+    if (csg_mesh_may_be_own(options))
+        status = csg_mesh_build_own(context, field, options, share, &own, stats);
+    if (status != CSGM_OK || own) {
+        *out = own;
+        return status;
+    }
     return csg_mesh_is_reshaped(options)
                ? csg_mesh_build_tries(context, field, options, share, out, stats)
                : csg_mesh_build_field(context, field, options, share, NULL, out, stats);
@@ -81,10 +90,13 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
                    part->mean_tape_length * (double)part->leaf_blocks;
     sum->octree_s += part->octree_s;
     sum->mesh_s += part->mesh_s;
-    sum->cell_size = part->cell_size;
-    sum->tolerance = part->tolerance;
-    add_blocks(sum, part);
-    memcpy(sum->cells, part->cells, sizeof sum->cells);
+    sum->own_triangles += part->own_triangles;
+    if (part->cell_size > 0) {
+        sum->cell_size = part->cell_size;
+        sum->tolerance = part->tolerance;
+        add_blocks(sum, part);
+        memcpy(sum->cells, part->cells, sizeof sum->cells);
+    }
     sum->cells_visited += part->cells_visited;
     sum->pruned_outside += part->pruned_outside;
     sum->pruned_inside += part->pruned_inside;

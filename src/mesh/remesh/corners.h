@@ -10,6 +10,8 @@
 #include "base/memory.h"
 
 #define CSG_CORNER_NONE UINT32_MAX
+/* An edge whose triangles turn by more than this is a crease: 20 degrees between normals. */
+#define CSG_CREASE_COS 0.94
 
 enum { CSG_CORNERS_MOST_VALENCE = 256 }; /* a collapse that would make more is refused */
 

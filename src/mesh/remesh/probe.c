@@ -8,6 +8,7 @@
 
 #include "field/field.h"
 #include "field/kernels/dispatch.h"
+#include "mesh/mesh.h"
 
 typedef struct csg_probe_room {
     float x[CSG_PROBE_MOST], y[CSG_PROBE_MOST], z[CSG_PROBE_MOST];
@@ -199,11 +200,6 @@ void csg_probe_gradients(csg_probe *probe, const float (*at)[3], size_t count, f
 /* ---- colours and materials --------------------------------------------------------------------
  */
 
-static float within(float v, float high)
-{
-    return v < 0 ? 0 : v > high ? high : v;
-}
-
 static void visit_colors(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
 {
     csg_probe_room *room = probe->room;
@@ -214,7 +210,7 @@ static void visit_colors(csg_probe *probe, const csg_tape *tape, size_t count, v
                                     probe->scratch, probe->scratch_floats);
     for (size_t i = 0; i < count; i++)
         for (int c = 0; c < 4; c++)
-            rgba[room->which[i]][c] = (uint8_t)within(channels[c][i] * 255.0f + 0.5f, 255);
+            rgba[room->which[i]][c] = csg_mesh_color_byte(channels[c][i]);
 }
 
 static void visit_materials(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
@@ -231,8 +227,8 @@ static void visit_materials(csg_probe *probe, const csg_tape *tape, size_t count
     for (size_t i = 0; i < count; i++) {
         float m = shaded.colors ? channels[0][i] : csg_default_material.r;
         float r = shaded.colors ? channels[1][i] : csg_default_material.g;
-        pair[room->which[i]][0] = (uint16_t)within(m * 10000.0f + 0.5f, 10000);
-        pair[room->which[i]][1] = (uint16_t)within(r * 10000.0f + 0.5f, 10000);
+        pair[room->which[i]][0] = csg_mesh_material_share(m);
+        pair[room->which[i]][1] = csg_mesh_material_share(r);
     }
 }
 

@@ -9,7 +9,6 @@
 
 enum { BATCH = CSG_PROBE_MOST };
 
-static const double CREASE_COS = 0.94;     /* 20 degrees between normals */
 static const double ON_SURFACE = 0.02;     /* distance of a centroid, in longest sides */
 static const double SHARP_TURN_COS = 0.85; /* of a crease at a vertex: a corner beyond it */
 
@@ -80,7 +79,8 @@ static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const face 
     do {
         const face *left = &faces[c / 3];
         const face *right = &faces[r->corners.across[csg_corner_previous(c)] / 3];
-        if (left->flat && right->flat && csg_vec3_dot(left->normal, right->normal) < CREASE_COS) {
+        if (left->flat && right->flat &&
+            csg_vec3_dot(left->normal, right->normal) < CSG_CREASE_COS) {
             csg_vec3 to = csg_remesh_corner(r, csg_corner_next(c));
             if (creases < 2)
                 way[creases] = csg_vec3_normalize(csg_vec3_sub(to, r->at[vertex]));
@@ -103,7 +103,7 @@ static void find_turns(const csg_remesh *r, const face *faces, uint8_t *turns)
         if (!csg_corners_is_live(m, c / 3))
             continue;
         uint32_t other = m->across[c] / 3;
-        if (csg_vec3_dot(faces[c / 3].normal, faces[other].normal) < CREASE_COS)
+        if (csg_vec3_dot(faces[c / 3].normal, faces[other].normal) < CSG_CREASE_COS)
             turns[c / 3] = turns[other] = 1;
     }
 }
@@ -146,7 +146,7 @@ bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
         return false;
     csg_vec3 left = csg_vec3_normalize(csg_triangle_cross(a, b, csg_remesh_corner(r, apex)));
     csg_vec3 right = csg_vec3_normalize(csg_triangle_cross(b, a, csg_remesh_corner(r, other)));
-    return csg_vec3_dot(left, right) < CREASE_COS;
+    return csg_vec3_dot(left, right) < CSG_CREASE_COS;
 }
 
 /* ---- beginning ---------------------------------------------------------------------------------

@@ -20,18 +20,6 @@ typedef struct finder {
     uint8_t *counts; /* per node: a COLOR node whose part does count */
 } finder;
 
-static void add_look(csg_look *outer, const csg_look *inner)
-{
-    if (!outer->has_color)
-        outer->color = inner->color;
-    if (!outer->has_material) {
-        outer->metallic = inner->metallic;
-        outer->roughness = inner->roughness;
-    }
-    outer->has_color |= inner->has_color;
-    outer->has_material |= inner->has_material;
-}
-
 static bool add_way(finder *f, const csg_part_way *way)
 {
     csg_parts *parts = f->parts;
@@ -55,7 +43,7 @@ static bool descend(finder *f, csg_part_unit *at)
         way.place = csg_affine_multiply(way.place, scene->transforms[node->payload]);
     } else {
         const csg_look *look = &scene->looks[node->payload];
-        add_look(&way.look, look);
+        csg_look_take_inner(&way.look, look);
         f->counts[at->node] = look->part && !way.look.part;
         way.look.part = way.look.part ? way.look.part : look->part;
     }

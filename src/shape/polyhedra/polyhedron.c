@@ -556,6 +556,28 @@ const csg_triangles *csg_polyhedron_triangles(const csg_shape *shape)
     return &as_polyhedron(shape)->mended;
 }
 
+uint32_t csg_polyhedron_triangle_at(const csg_shape *shape, uint32_t place)
+{
+    return as_polyhedron(shape)->tree.triangles[place].index;
+}
+
+bool csg_polyhedron_near(const csg_shape *shape, uint32_t place, double reach,
+                         csg_polyhedron_visit *visit, void *user)
+{
+    const polyhedron *solid = as_polyhedron(shape);
+    const csg_tree_triangle *t = &solid->tree.triangles[place];
+    csg_vec3 b = csg_vec3_add(t->a, t->ab), c = csg_vec3_add(t->a, t->ac);
+    csg_box box =
+        csg_box_hull((csg_box){t->a, t->a}, csg_box_hull((csg_box){b, b}, (csg_box){c, c}));
+    return csg_tree_in_box(&solid->tree, csg_box_grow(box, reach * solid->frame.scale + LEAST),
+                           visit, user);
+}
+
+bool csg_polyhedron_is_clear(const csg_shape *shape, uint32_t place)
+{
+    return csg_tree_is_clear(&as_polyhedron(shape)->tree, place);
+}
+
 bool csg_polyhedron_is_convex(const csg_shape *shape)
 {
     return as_polyhedron(shape)->is_convex;

@@ -20,6 +20,17 @@ csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *trian
                                   csg_repairs *repairs, csg_shape **out);
 /* The mended triangles, valid as long as the shape. */
 const csg_triangles *csg_polyhedron_triangles(const csg_shape *polyhedron);
+
+/* Each triangle has a place below their number, near ones near places: which of them it is. */
+uint32_t csg_polyhedron_triangle_at(const csg_shape *polyhedron, uint32_t place);
+/* Places of the triangles that come within `reach` of the one at `place`, this one too, and of
+ * others; false as soon as `visit` says so. */
+typedef bool csg_polyhedron_visit(void *user, uint32_t place);
+bool csg_polyhedron_near(const csg_shape *polyhedron, uint32_t place, double reach,
+                         csg_polyhedron_visit *visit, void *user);
+/* Whether there is solid behind the middle of the triangle, once, and none before it, as far as a
+ * billionth of the whole away. */
+bool csg_polyhedron_is_clear(const csg_shape *polyhedron, uint32_t place);
 /* All edges convex, one piece, nothing mended that matters. */
 bool csg_polyhedron_is_convex(const csg_shape *polyhedron);
 

@@ -90,8 +90,15 @@ typedef bool csg_tree_visit(void *user, uint32_t place);
 bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
                      void *user);
 
+/* Triangles of leaves that meet the box (frame units): all that meet it, and a few more; false as
+ * soon as `visit` says so. */
+bool csg_tree_in_box(const csg_tree *tree, csg_box box, csg_tree_visit *visit, void *user);
+
+/* Whether the winding number is 1 behind the middle of a triangle and 0 before it, right beside it.
+ */
+bool csg_tree_is_clear(const csg_tree *tree, uint32_t place);
 /* Whether a triangle neither crosses nor touches others but where they share corners, is no needle
- * and has the solid on its inner side only: winding number 1 there and 0 on the other. */
+ * and is clear. */
 bool csg_tree_is_plain(const csg_tree *tree, uint32_t place);
 
 /* Chooses which triangles count; NULL: all. */

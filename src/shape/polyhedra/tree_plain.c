@@ -91,29 +91,47 @@ static bool overlaps(const csg_tree_node *node, uint32_t i, csg_box box)
            (double)node->low[2][i] <= box.max.z && (double)node->high[2][i] >= box.min.z;
 }
 
-static bool crosses_some(const csg_tree *tree, uint32_t place, const corners *own)
+bool csg_tree_in_box(const csg_tree *tree, csg_box box, csg_tree_visit *visit, void *user)
 {
     uint32_t stack[STACK];
     size_t depth = 0;
-    csg_box box = box_of(own);
     stack[depth++] = 0;
     while (depth) {
         uint32_t next = stack[--depth];
         if (next & CSG_TREE_LEAF) {
             const csg_tree_leaf *leaf = &tree->leaves[next & ~CSG_TREE_LEAF];
-            for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
-                corners other = corners_of(&tree->triangles[i]);
-                if (i != place && !csg_box_is_empty(csg_box_intersect(box, box_of(&other))) &&
-                    is_crossing(own, &other))
-                    return true;
-            }
+            for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++)
+                if (!visit(user, i))
+                    return false;
             continue;
         }
         for (uint32_t i = 0; i < 4; i++)
             if (overlaps(&tree->nodes[next], i, box))
                 stack[depth++] = tree->nodes[next].children[i];
     }
-    return false;
+    return true;
+}
+
+typedef struct crossing_search {
+    const csg_tree *tree;
+    uint32_t place;
+    corners own;
+    csg_box box;
+} crossing_search;
+
+static bool is_apart(void *user, uint32_t place)
+{
+    const crossing_search *s = user;
+    corners other = corners_of(&s->tree->triangles[place]);
+    return place == s->place || csg_box_is_empty(csg_box_intersect(s->box, box_of(&other))) ||
+           !is_crossing(&s->own, &other);
+}
+
+static bool crosses_some(const csg_tree *tree, uint32_t place)
+{
+    corners own = corners_of(&tree->triangles[place]);
+    crossing_search s = {tree, place, own, box_of(&own)};
+    return !csg_tree_in_box(tree, s.box, is_apart, &s);
 }
 
 /* Next to the middle of the triangle, 2^-30 of the frame away. */
@@ -130,10 +148,14 @@ static int winding_beside(const csg_tree *tree, const csg_tree_triangle *t, doub
     return inside ? csg_tree_winding(tree, cell, NULL) : 0;
 }
 
-bool csg_tree_is_plain(const csg_tree *tree, uint32_t place)
+bool csg_tree_is_clear(const csg_tree *tree, uint32_t place)
 {
     const csg_tree_triangle *t = &tree->triangles[place];
-    corners own = corners_of(t);
-    return !t->is_needle && winding_beside(tree, t, -1) == 1 && winding_beside(tree, t, 1) == 0 &&
-           !crosses_some(tree, place, &own);
+    return winding_beside(tree, t, -1) == 1 && winding_beside(tree, t, 1) == 0;
+}
+
+bool csg_tree_is_plain(const csg_tree *tree, uint32_t place)
+{
+    return !tree->triangles[place].is_needle && csg_tree_is_clear(tree, place) &&
+           !crosses_some(tree, place);
 }

@@ -60,11 +60,15 @@ static bool is_adaptive(const csgm_mesh_stats *stats)
     return stats->tolerance > 0;
 }
 
-void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats)
+/* A mesh of nothing but polyhedra's own triangles has no cells. */
+static bool has_cells(const csgm_mesh_stats *stats)
+{
+    return stats->cell_size > 0 || !stats->own_triangles;
+}
+
+static void put_cells(cli_json *json, const csgm_mesh_stats *stats)
 {
     bool adaptive = is_adaptive(stats);
-    cli_json_open(json, "lattice", '{');
-    cli_json_bool(json, "adaptive", adaptive);
     if (adaptive)
         cli_json_number(json, "tolerance", stats->tolerance);
     cli_json_number(json, "cell_coarsest", adaptive ? stats->cell_coarsest : stats->cell_size);
@@ -73,6 +77,16 @@ void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats)
     for (int i = 0; i < (adaptive ? levels_of(stats) : 1); i++)
         cli_json_count(json, NULL, adaptive ? stats->blocks[i] : stats->leaf_blocks);
     cli_json_end(json, ']');
+}
+
+void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats)
+{
+    cli_json_open(json, "lattice", '{');
+    cli_json_bool(json, "adaptive", is_adaptive(stats));
+    if (stats->own_triangles)
+        cli_json_count(json, "own_triangles", stats->own_triangles);
+    if (has_cells(stats))
+        put_cells(json, stats);
     cli_json_end(json, '}');
 }
 
@@ -102,6 +116,11 @@ void cli_facts_scene_text(const csgm_scene_info *info)
 
 void cli_facts_lattice_text(const csgm_mesh_stats *stats)
 {
+    if (stats->own_triangles)
+        printf("%" PRIu64 " triangles of its mesh are those of polyhedra, as they are\n",
+               stats->own_triangles);
+    if (!has_cells(stats))
+        return;
     if (is_adaptive(stats))
         printf("its mesh within %.9g, of cells of %.9g to %.9g\n", stats->tolerance,
                stats->cell_coarsest, finest_of(stats));

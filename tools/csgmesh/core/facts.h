@@ -11,7 +11,8 @@ void cli_facts_scene_json(cli_json *json, const csgm_scene_info *info);
 /* "vertices" ... "bounds" of the open object. */
 void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_mesh_check *check);
 
-/* "lattice": cells of one size or such as follow the shape, and how many of which size. */
+/* "lattice": cells of one size or such as follow the shape, and how many of which size; triangles
+ * that went into the mesh as they are. */
 void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats);
 
 void cli_facts_scene_text(const csgm_scene_info *info);

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes that are polyhedra and nothing else: leaves that affine maps place, looks paint and sharp
+ * unions put side by side, so far apart that their boxes do not meet. Such a solid has triangles of
+ * its own.
+ */
+#ifndef CSG_MESH_OWN_UNITS_H
+#define CSG_MESH_OWN_UNITS_H
+
+#include "scene/scene.h"
+
+/* A polyhedron, and what stands above it. */
+typedef struct csg_own_unit {
+    const csg_shape *shape;
+    csg_affine place;
+    csg_look look;
+    csg_box box;                           /* scene units */
+    uint32_t first_vertex, first_triangle; /* in one mesh of all units */
+} csg_own_unit;
+
+typedef struct csg_own_units {
+    csg_memory *memory;
+    csg_own_unit *items; /* in the order of the scene */
+    size_t count;
+    uint64_t vertex_count, triangle_count;
+} csg_own_units;
+
+/* count 0: it is not such a scene, or of more vertices than 32 bits can number. CSGM_ERR_MEMORY is
+ * not reported. Reset it in any case. */
+csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene);
+void csg_own_units_reset(csg_own_units *units);
+
+#endif

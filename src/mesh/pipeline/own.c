@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * From the polyhedra of a scene to a mesh; see own.h.
+ */
+#include "mesh/pipeline/own.h"
+
+#include <float.h>
+
+#include "base/clock.h"
+#include "base/trace.h"
+#include "field/field.h"
+#include "mesh/own/sound.h"
+#include "mesh/own/write.h"
+#include "shape/polyhedra/polyhedron.h"
+
+typedef struct own {
+    csg_mesh_input input;
+    csg_mesh_watch watch;
+    csg_own_units units;
+    csgm_mesh *mesh; /* NULL: they are not taken */
+} own;
+
+/* ---- vertices and triangles --------------------------------------------------------------------
+ */
+
+static void paint(csgm_mesh *mesh, const csg_own_unit *unit, size_t vertex)
+{
+    const csg_look *look = &unit->look;
+    csg_color color = look->has_color ? look->color : csg_default_color;
+    if (mesh->colors) {
+        uint8_t *rgba = mesh->colors + 4 * vertex;
+        rgba[0] = csg_mesh_color_byte(color.r);
+        rgba[1] = csg_mesh_color_byte(color.g);
+        rgba[2] = csg_mesh_color_byte(color.b);
+        rgba[3] = csg_mesh_color_byte(color.a);
+    }
+    if (mesh->materials) {
+        bool has = look->has_material;
+        uint16_t *pair = mesh->materials + 2 * vertex;
+        pair[0] = csg_mesh_material_share(has ? look->metallic : csg_default_material.r);
+        pair[1] = csg_mesh_material_share(has ? look->roughness : csg_default_material.g);
+    }
+}
+
+/* False: a coordinate is too large for a float. */
+static bool place_unit(csgm_mesh *mesh, const csg_own_unit *unit)
+{
+    const csg_triangles *from = csg_polyhedron_triangles(unit->shape);
+    bool is_mirrored = csg_affine_determinant(unit->place) < 0;
+    double largest = 0;
+    for (size_t i = 0; i < from->point_count; i++) {
+        size_t vertex = unit->first_vertex + i;
+        csg_vec3 at = csg_vec3_sub(csg_affine_point(&unit->place, from->points[i]), mesh->origin);
+        largest = fmax(largest, csg_vec3_norm(at));
+        if (!(largest < (double)FLT_MAX))
+            return false;
+        csg_vec3_to_floats(mesh->positions + 3 * vertex, at);
+        for (int k = 0; k < 3; k++)
+            mesh->positions[3 * vertex + (size_t)k] += 0.0f; /* no -0 */
+        paint(mesh, unit, vertex);
+    }
+    for (size_t t = 0; t < from->count; t++)
+        for (size_t k = 0; k < 3; k++)
+            mesh->indices[3 * (unit->first_triangle + t) + k] =
+                unit->first_vertex + from->corners[t][is_mirrored ? 2 - k : k];
+    return true;
+}
+
+static csgm_status fill(own *o, bool *fits)
+{
+    csgm_status status =
+        csg_mesh_create(o->input.context, o->units.vertex_count, o->units.triangle_count, false,
+                        csg_mesh_gets_colors(&o->input), &o->mesh);
+    if (status == CSGM_OK && csg_mesh_gets_materials(&o->input))
+        status = csg_mesh_add_materials(o->mesh);
+    if (status != CSGM_OK)
+        return status;
+    o->mesh->origin = csg_mesh_origin_of(&o->input);
+    *fits = true;
+    for (size_t i = 0; i < o->units.count && *fits; i++)
+        *fits = place_unit(o->mesh, &o->units.items[i]);
+    return CSGM_OK;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------------
+ */
+
+static void drop(own *o)
+{
+    csg_mesh_destroy(o->mesh);
+    o->mesh = NULL;
+}
+
+static csgm_status add_normals(own *o, const csg_corners *corners)
+{
+    csgm_normals normals = o->input.options->normals;
+    csgm_mesh *with;
+    if (normals == CSGM_NORMALS_NONE)
+        return CSGM_OK;
+    csgm_status status = csg_own_write_normals(o->input.context, o->mesh, corners,
+                                               normals == CSGM_NORMALS_CREASE, &with);
+    if (status == CSGM_OK) {
+        drop(o);
+        o->mesh = with;
+    }
+    return status;
+}
+
+static csgm_status make_mesh(own *o)
+{
+    bool sound = false;
+    csg_corners corners;
+    csgm_status status = fill(o, &sound);
+    if (status != CSGM_OK || !sound)
+        return status;
+    csg_corners_result result =
+        csg_corners_make(&corners, &o->input.context->memory, o->mesh->indices,
+                         o->mesh->triangle_count, o->mesh->vertex_count);
+    if (result == CSG_CORNERS_NO_MEMORY)
+        return csg_context_no_memory(o->input.context);
+    sound = result == CSG_CORNERS_MADE;
+    if (!sound) {
+        drop(o);
+        return CSGM_OK;
+    }
+    status = csg_own_is_sound(&o->units, o->mesh, &corners, &o->watch, &sound);
+    if (status == CSGM_OK && sound)
+        status = add_normals(o, &corners);
+    csg_corners_release(&corners);
+    if (!sound)
+        drop(o);
+    return status;
+}
+
+static void fill_stats(const own *o, csgm_mesh_stats *stats)
+{
+    *stats = (csgm_mesh_stats){
+        .mesh_s = csg_clock_now_s() - o->watch.started_s,
+        .own_triangles = o->mesh->triangle_count,
+        .memory_peak_bytes = atomic_load(&o->input.context->memory.peak_bytes),
+    };
+}
+
+static csgm_status build(own *o)
+{
+    csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
+    const csgm_mesh_options *options = o->input.options;
+    if (status == CSGM_ERR_MEMORY)
+        return csg_context_no_memory(o->input.context);
+    bool too_many = options->triangles && o->units.triangle_count > options->triangles;
+    if (!o->units.count || too_many ||
+        !csg_box_contains_box(o->input.bounds, o->input.field->bounds))
+        return CSGM_OK;
+    status = make_mesh(o);
+    if (status != CSGM_OK)
+        drop(o);
+    return status;
+}
+
+csgm_status csg_mesh_build_own(csgm_context *context, const csgm_field *field,
+                               const csgm_mesh_options *options, const csg_mesh_share *share,
+                               csgm_mesh **out, csgm_mesh_stats *stats)
+{
+    CSG_ZONE(context, "own triangles");
+    own o = {.input = {.context = context, .options = options, .field = field, .share = share}};
+    o.input.bounds = csg_box_is_empty(options->bounds) ? field->bounds : options->bounds;
+    csg_mesh_input_watch(&o.input, 0, &o.watch);
+    o.watch.stage = CSGM_STAGE_MESH;
+    csgm_status status = build(&o);
+    if (status == CSGM_OK && o.mesh && stats)
+        fill_stats(&o, stats);
+    csg_own_units_reset(&o.units);
+    *out = o.mesh;
+    return status;
+}

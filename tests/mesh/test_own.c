@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: MIT
+ * Polyhedra that go out as their own triangles: placed, painted and turned as the scene says, where
+ * they are a sound mesh of the solid; whatever is not, and whatever options ask for cells, is
+ * meshed as ever. Seeded random shells say that what is taken has the solid on its inner side
+ * everywhere (by solid angles) and meets nowhere (CGAL); every allocation may fail.
+ */
+#include "mesh/mesh_support.h"
+#include "mesh/pipeline/own.h"
+#include "mesh/uncrossed.h"
+#include "shape/solid_support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static csg_node_id shape_of(mesh_case *c, const csg_triangles *triangles)
+{
+    csg_shape *shape;
+    csg_repairs repairs;
+    assert_int_equal(csg_polyhedron_create(&c->context.memory, triangles, &repairs, &shape),
+                     CSGM_OK);
+    return csg_build_shape(&c->builder, shape, NOWHERE);
+}
+
+static csg_node_id make_ball(mesh_case *c, csg_vec3 center, double radius, uint32_t columns,
+                             double bumps)
+{
+    csg_triangles triangles;
+    csg_triangles_init(&triangles, &c->context.memory);
+    solid_add_ball(&triangles, center, radius, columns, columns, bumps);
+    csg_node_id node = shape_of(c, &triangles);
+    csg_triangles_release(&triangles);
+    return node;
+}
+
+static csgm_mesh_options plain(void)
+{
+    return mesh_options(0);
+}
+
+/* Whether they are taken; if not, nothing is meshed. */
+static bool is_taken(mesh_case *c, const csgm_mesh_options *options)
+{
+    csg_mesh_destroy(c->mesh);
+    c->mesh = NULL;
+    assert_int_equal(csg_mesh_build_own(&c->context, c->field, options, NULL, &c->mesh, &c->stats),
+                     CSGM_OK);
+    return c->mesh != NULL;
+}
+
+static uint64_t own_of(mesh_case *c, const csgm_mesh_options *options)
+{
+    assert_int_equal(mesh_build(c, options), CSGM_OK);
+    return c->stats.own_triangles;
+}
+
+/* ---- placed and painted ------------------------------------------------------------------------
+ */
+
+/* Each vertex is a vertex of the polyhedron, moved and rounded; nothing else is in the mesh. */
+static void test_vertices(void **state)
+{
+    (void)state;
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        csg_affine by = csg_affine_rotate(25, csg_vec3_make(1, 2, 3));
+        if (mirrored)
+            by = csg_affine_multiply(by, csg_affine_scale(csg_vec3_make(-2, 1, 0.5)));
+        csg_node_id ball = make_ball(&c, csg_vec3_make(1, 2, 3), 2, 30, 0.1);
+        mesh_case_compile(&c, csg_build_transform(&c.builder, &by, ball, NOWHERE));
+        csgm_mesh_options options = plain();
+        mesh_build_closed(&c, &options, "a ball");
+        const csg_triangles *from = csg_polyhedron_triangles(c.scene->shapes[0]);
+        assert_int_equal(c.stats.own_triangles, from->count);
+        assert_int_equal(c.mesh->triangle_count, from->count);
+        assert_int_equal(c.mesh->vertex_count, from->point_count);
+        for (size_t i = 0; i < from->point_count; i++) {
+            float at[3];
+            csg_vec3_to_floats(at, csg_affine_point(&by, from->points[i]));
+            bool found = false;
+            for (size_t k = 0; k < c.mesh->vertex_count && !found; k++)
+                found = !memcmp(at, c.mesh->positions + 3 * k, sizeof at);
+            assert_true(found);
+        }
+        assert_true(c.check.volume > 0);
+        assert_true(c.stats.cell_size == 0 && c.stats.tolerance == 0);
+        mesh_case_end(&c);
+    }
+}
+
+static void test_looks(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    const csg_look inner = {.color = {0, 1, 0, 1},
+                            .metallic = 1,
+                            .roughness = 0.25f,
+                            .has_color = true,
+                            .has_material = true};
+    const csg_look outer = {.color = {1, 0, 0, 0.5f}, .has_color = true};
+    csg_node_id a =
+        csg_build_look(&c.builder, &inner, make_ball(&c, csg_vec3_make(0, 0, 0), 1, 8, 0), NOWHERE);
+    a = csg_build_look(&c.builder, &outer, a, NOWHERE);
+    csg_node_id b = make_ball(&c, csg_vec3_make(3, 0, 0), 1, 8, 0);
+    mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, a, b));
+    csgm_mesh_options options = plain();
+    mesh_build_closed(&c, &options, "two balls");
+    assert_int_equal(c.stats.own_triangles, c.mesh->triangle_count);
+    assert_int_equal(c.check.components, 2);
+    static const uint8_t colors[2][4] = {{255, 0, 0, 128}, {199, 199, 204, 255}};
+    static const uint16_t materials[2][2] = {{10000, 2500}, {0, 6000}};
+    for (size_t i = 0; i < c.mesh->vertex_count; i++) {
+        int which = c.mesh->positions[3 * i] > 1.5f;
+        assert_memory_equal(c.mesh->colors + 4 * i, colors[which], 4);
+        assert_memory_equal(c.mesh->materials + 2 * i, materials[which], 4);
+    }
+    mesh_case_end(&c);
+}
+
+/* A box has three normals at each corner, and 24 vertices, where creases part them. */
+static void test_normals(void **state)
+{
+    (void)state;
+    mesh_case c;
+    csg_triangles box;
+    mesh_case_begin(&c, 1);
+    csg_triangles_init(&box, &c.context.memory);
+    solid_add_fine_box(&box, csg_vec3_make(0, 0, 0), csg_vec3_make(1, 1, 1), 1);
+    mesh_case_compile(&c, shape_of(&c, &box));
+    csg_triangles_release(&box);
+    csgm_mesh_options options = plain();
+    mesh_build_closed(&c, &options, "a box");
+    assert_int_equal(c.mesh->vertex_count, 8);
+    options.normals = CSGM_NORMALS_CREASE;
+    assert_int_equal(own_of(&c, &options), 12);
+    assert_int_equal(c.mesh->vertex_count, 24);
+    assert_true(c.mesh->split);
+    for (size_t i = 0; i < 24; i++) {
+        const float *n = c.mesh->normals + 3 * i;
+        assert_true(fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]) == 1);
+    }
+    options.normals = CSGM_NORMALS_NONE;
+    assert_int_equal(own_of(&c, &options), 12);
+    assert_null(c.mesh->normals);
+    mesh_case_end(&c);
+}
+
+/* ---- options -----------------------------------------------------------------------------------
+ */
+
+static void test_options(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    mesh_case_compile(&c, make_ball(&c, csg_vec3_make(0, 0, 0), 1, 10, 0));
+    csgm_mesh_options options = plain();
+    uint64_t count = own_of(&c, &options);
+    assert_true(count > 0);
+    options.quality = CSGM_QUALITY_DRAFT;
+    assert_int_equal(own_of(&c, &options), count);
+    options.bounds = (csg_box){{-2, -2, -2}, {2, 2, 2}}; /* cuts nothing */
+    assert_int_equal(own_of(&c, &options), count);
+    options.triangles = count;
+    assert_int_equal(own_of(&c, &options), count);
+    const csgm_mesh_options asked = options;
+#define ASSERT_CELLS(member, value)                                                                \
+    options = asked;                                                                               \
+    options.member = value;                                                                        \
+    assert_int_equal(own_of(&c, &options), 0);
+    ASSERT_CELLS(triangles, count - 1)
+    ASSERT_CELLS(bounds.max.x, 0.5)
+    ASSERT_CELLS(resolution, 16)
+    ASSERT_CELLS(cell_size, 0.1)
+    ASSERT_CELLS(tolerance, 0.1)
+    ASSERT_CELLS(simplify_error, 0.1)
+    ASSERT_CELLS(simplify_share, 0.5)
+    ASSERT_CELLS(improve, true)
+    ASSERT_CELLS(certify, true)
+    ASSERT_CELLS(features, CSGM_FEATURES_SMOOTH)
+#undef ASSERT_CELLS
+    mesh_case_end(&c);
+}
+
+/* ---- what is no mesh ---------------------------------------------------------------------------
+ */
+
+typedef void add_solid(csg_triangles *t);
+
+static void add_cross(csg_triangles *t)
+{
+    solid_add_ball(t, csg_vec3_make(0, 0, 0), 1, 12, 12, 0);
+    solid_add_ball(t, csg_vec3_make(0.5, 0.25, 0), 1, 12, 12, 0);
+}
+static void add_twice_within(csg_triangles *t)
+{
+    solid_add_ball(t, csg_vec3_make(0, 0, 0), 1, 12, 12, 0);
+    solid_add_ball(t, csg_vec3_make(0, 0, 0), 0.5, 12, 12, 0);
+}
+static void add_hollow(csg_triangles *t)
+{
+    solid_add_box(t, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), false);
+    solid_add_box(t, csg_vec3_make(-0.5, -0.5, -0.5), csg_vec3_make(0.5, 0.5, 0.5), true);
+}
+static void add_in_hole(csg_triangles *t)
+{
+    add_hollow(t);
+    solid_add_ball(t, csg_vec3_make(0, 0, 0), 0.25, 12, 12, 0);
+}
+/* Boxes that share an edge. */
+static void add_touching(csg_triangles *t)
+{
+    solid_add_box(t, csg_vec3_make(0, 0, 0), csg_vec3_make(1, 1, 1), false);
+    solid_add_box(t, csg_vec3_make(1, 1, 0), csg_vec3_make(2, 2, 1), false);
+}
+/* Boxes of which one corner touches a face of the other. */
+static void add_leaning(csg_triangles *t)
+{
+    solid_add_box(t, csg_vec3_make(0, 0, 0), csg_vec3_make(1, 1, 1), false);
+    size_t first = t->point_count;
+    solid_add_box(t, csg_vec3_make(1, 0.25, 0.25), csg_vec3_make(2, 0.75, 0.75), false);
+    for (size_t i = first; i < t->point_count; i++) {
+        csg_vec3 p = t->points[i];
+        t->points[i].x += 0.5 * (p.y - 0.25) + 0.25 * (p.z - 0.25);
+    }
+}
+/* In floats the shells are one. */
+static void add_thin(csg_triangles *t)
+{
+    solid_add_box(t, csg_vec3_make(10, 10, 10), csg_vec3_make(11, 11, 11), false);
+    solid_add_box(t, csg_vec3_make(10 + 1e-7, 10 + 1e-7, 10 + 1e-7),
+                  csg_vec3_make(11 - 1e-7, 11 - 1e-7, 11 - 1e-7), true);
+}
+
+static void test_soundness(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        add_solid *add;
+        bool is_own;
+    } rows[] = {
+        {"balls that cross", add_cross, false},
+        {"a ball in a ball", add_twice_within, false},
+        {"a hollow box", add_hollow, true},
+        {"a ball in its hole", add_in_hole, true},
+        {"boxes at an edge", add_touching, false},
+        {"boxes at a corner", add_leaning, false},
+        {"a skin that floats cannot hold", add_thin, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        mesh_case c;
+        csg_triangles triangles;
+        mesh_case_begin(&c, 2);
+        csg_triangles_init(&triangles, &c.context.memory);
+        rows[i].add(&triangles);
+        mesh_case_compile(&c, shape_of(&c, &triangles));
+        csg_triangles_release(&triangles);
+        csgm_mesh_options options = plain();
+        if (is_taken(&c, &options) != rows[i].is_own)
+            fail_msg("%s: %s", rows[i].name, rows[i].is_own ? "not taken" : "taken");
+        if (c.mesh)
+            assert_uncrossed(c.mesh, rows[i].name);
+        mesh_case_end(&c);
+    }
+}
+
+/* Units whose boxes meet, or with something else beside them, are no polyhedra of their own. */
+static void test_other_scenes(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 4; which++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id a = make_ball(&c, csg_vec3_make(0, 0, 0), 1, 8, 0);
+        csg_node_id b = which == 0   ? make_ball(&c, csg_vec3_make(1.5, 0, 0), 1, 8, 0)
+                        : which == 1 ? moved(&c, make_sphere(&c, 1), 3, 0, 0)
+                                     : make_ball(&c, csg_vec3_make(3, 0, 0), 1, 8, 0);
+        csg_node_kind kind = which == 2 ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION;
+        mesh_case_compile(&c, joined(&c, kind, which == 3 ? ROUND(0.1) : SHARP, a, b));
+        csgm_mesh_options options = plain();
+        assert_false(is_taken(&c, &options));
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- random shells -----------------------------------------------------------------------------
+ */
+
+static csg_node_id random_shells(mesh_case *c, csg_random *random)
+{
+    csg_triangles triangles;
+    csg_triangles_init(&triangles, &c->context.memory);
+    int count = 1 + (int)csg_random_uniform(random, 0, 4);
+    for (int i = 0; i < count; i++) {
+        csg_vec3 at =
+            csg_vec3_make(csg_random_uniform(random, -3, 3), csg_random_uniform(random, -1, 1),
+                          csg_random_uniform(random, -1, 1));
+        size_t first = triangles.count;
+        solid_add_ball(&triangles, at, csg_random_uniform(random, 0.1, 2), 12, 9,
+                       csg_random_uniform(random, 0, 0.3));
+        for (size_t t = first; i % 2 && t < triangles.count; t++)
+            solid_flip(&triangles, t);
+    }
+    csg_node_id node = shape_of(c, &triangles);
+    csg_triangles_release(&triangles);
+    csg_affine squeeze = csg_affine_scale(csg_vec3_make(csg_random_uniform(random, 0.5, 2),
+                                                        csg_random_uniform(random, 0.001, 2), -1));
+    node = csg_build_transform(&c->builder, &squeeze, node, NOWHERE);
+    return posed_anyhow(c, node, random);
+}
+
+/* Where the solid is, the mesh winds around once, elsewhere never. */
+static void assert_winds_around(const mesh_case *c, csg_random *random)
+{
+    const csgm_mesh *mesh = c->mesh;
+    csg_triangles t = {.points = malloc(mesh->vertex_count * sizeof(csg_vec3)),
+                       .point_count = mesh->vertex_count,
+                       .corners = (uint32_t(*)[3])mesh->indices,
+                       .count = mesh->triangle_count};
+    for (uint64_t i = 0; i < mesh->vertex_count; i++)
+        t.points[i] = mesh_vertex(c, i);
+    for (int i = 0; i < 100; i++) {
+        csg_vec3 p =
+            mesh_vertex(c, (uint64_t)csg_random_uniform(random, 0, (double)mesh->vertex_count - 1));
+        p = csg_vec3_add(p, solid_random_point(random, 0.1));
+        double f = test_sample(c->scene, p).value;
+        if (fabs(f) > 1e-5)
+            assert_true(fabs(solid_winding(&t, p) - (f > 0)) < 1e-3);
+    }
+    free(t.points);
+}
+
+static void test_random_shells(void **state)
+{
+    (void)state;
+    enum { SCENES = 150 };
+    int own = 0;
+    for (unsigned seed = 0; seed < SCENES; seed++) {
+        mesh_case c;
+        csg_random random = {seed + 1};
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, random_shells(&c, &random));
+        csgm_mesh_options options = plain();
+        if (is_taken(&c, &options)) {
+            own++;
+            csgm_mesh_view view = csg_mesh_view(c.mesh);
+            assert_int_equal(csg_mesh_inspect(&c.context, &view, &c.check), CSGM_OK);
+            assert_int_equal(c.check.boundary_edges + c.check.nonmanifold_edges +
+                                 c.check.misoriented_edges + c.check.nonmanifold_vertices,
+                             0);
+            assert_uncrossed(c.mesh, "shells");
+            assert_winds_around(&c, &random);
+        }
+        mesh_case_end(&c);
+    }
+    assert_in_range(own, SCENES / 5, SCENES * 4 / 5); /* both happen */
+}
+
+static csg_node_id one_scene(mesh_case *c)
+{
+    return make_ball(c, csg_vec3_make(0, 0, 0), 1, 60, 0.2);
+}
+
+static void test_same_bytes(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 3);
+    mesh_case_compile(&c, one_scene(&c));
+    csgm_mesh_options options = plain();
+    assert_true(own_of(&c, &options) > 0);
+    mesh_assert_same_by(&c, one_scene, &options, 1, CSGM_ISA_AUTO);
+    mesh_assert_same_by(&c, one_scene, &options, 2, CSGM_ISA_SCALAR);
+    mesh_case_end(&c);
+}
+
+/* ---- allocations that fail ----------------------------------------------------------------- */
+
+static void test_each_allocation(void **state)
+{
+    (void)state;
+    mesh_case c;
+    failing f = {0};
+    mesh_case_begin(&c, 1);
+    mesh_case_compile(&c, make_ball(&c, csg_vec3_make(0, 0, 0), 1, 8, 0));
+    uint64_t before = atomic_load(&c.context.memory.used_bytes);
+    csgm_allocator original = c.context.memory.allocator;
+    c.context.memory.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
+    csgm_mesh_options options = plain();
+    options.normals = CSGM_NORMALS_CREASE;
+    csgm_status status = CSGM_ERR_MEMORY;
+    long n = 0;
+    while (status == CSGM_ERR_MEMORY) {
+        f.left = n++;
+        status = mesh_build(&c, &options);
+        assert_int_equal(c.findings, status == CSGM_OK ? 0 : 1);
+        csg_mesh_destroy(c.mesh);
+        c.mesh = NULL;
+        assert_int_equal(atomic_load(&c.context.memory.used_bytes), before);
+    }
+    assert_int_equal(status, CSGM_OK);
+    assert_true(n > 15);
+    c.context.memory.allocator = original;
+    mesh_case_end(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_vertices),        cmocka_unit_test(test_looks),
+        cmocka_unit_test(test_normals),         cmocka_unit_test(test_options),
+        cmocka_unit_test(test_soundness),       cmocka_unit_test(test_other_scenes),
+        cmocka_unit_test(test_random_shells),   cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_each_allocation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
