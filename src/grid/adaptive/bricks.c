@@ -222,9 +222,8 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
     child.node_count = tape.count;
     if (child.level >= b->options.coarse) {
         sample(b, self, &child);
-        child.wanted =
-            b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f);
-        child.wanted = child.level < b->finest ? child.wanted : 0;
+        if (!b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f))
+            return false;
     }
     self->made[self->count++] = child;
     return true;

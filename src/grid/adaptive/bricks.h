@@ -41,15 +41,16 @@ typedef struct csg_brick {
     uint8_t several;  /* with several polygons: they are small enough for them */
     uint8_t inside[CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES]; /* [z][y]: bit x set where f >= 0 */
     uint64_t pierced; /* edges that the surface crosses twice: bits as csg_brick_edge has them */
+    const struct csg_judged *judged; /* what the judge keeps of it for himself */
 } csg_brick;
 
 typedef struct csg_bricks csg_bricks;
 
-/* The cells of a brick, sampled and all leaves, that are to be divided; it may set the brick's
- * `flat`, `several`, `searched` and `pierced`, and what is crossed because of it. f: values at the
- * brick's points, x fastest. Any worker. */
-typedef uint8_t csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
-                                csg_brick *brick, const float *f);
+/* Sets which cells of a brick, sampled and all leaves, are `wanted`; it may set the brick's `flat`,
+ * `several`, `searched`, `judged` and `pierced`, and what is crossed because of it. f: values at
+ * the brick's points, x fastest. False: out of memory. Any worker. */
+typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
+                             csg_brick *brick, const float *f);
 
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */

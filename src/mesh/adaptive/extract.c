@@ -11,7 +11,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 
-enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, LEAVES_PER_ITEM = 16 };
+enum { E = CSG_BRICK_EDGE, LEAVES_PER_ITEM = 16 };
 
 /* A vertex and the edge or face that it lies on, by its middle. */
 typedef struct placed_vertex {
@@ -123,35 +123,20 @@ static bool is_divided(const csg_shell *s, int axis, const unsigned low[3])
     return s->has_finer && s->divided_edges[axis][low[2]][low[1]] >> low[0] & 1;
 }
 
+/* Those that the judge has found. */
 static bool visit_edges(work *w, uint32_t worker_index, const csg_shell *s)
 {
-    const csg_bricks *b = w->x->bricks;
-    csg_judge_room *room = &w->x->judge->rooms[worker_index];
-    uint64_t place[2 * CSG_BRICK_SLOTS];
-    csg_tape tape;
-    csg_sheet_probe probe = csg_judge_probe(w->x->judge, b, s->brick, room, &tape);
-    csg_pierce(&probe, b, s->brick, NULL, &room->pierced);
-    room->evaluations += probe.evaluations;
-    room->edges.count = 0;
-    for (unsigned slot = 0; slot < CSG_BRICK_SLOTS && s->brick->crossed; slot++) {
-        int axis = (int)(slot / CSG_BRICK_POINTS);
-        const unsigned low[3] = {slot % N, slot / N % N, slot % CSG_BRICK_POINTS / (N * N)};
-        if (low[axis] == E || !csg_judge_has_edge(room, s->brick, axis, low) ||
-            is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
+    const csg_judged *judged = s->brick->judged;
+    for (unsigned i = 0; judged && i < judged->root_count; i++) {
+        const csg_judged_root *root = &judged->roots[i];
+        unsigned low[3];
+        int axis = csg_slot_place(root->slot, low);
+        if (is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
             continue;
-        uint32_t first = room->edges.count;
-        csg_judge_add_edge(room, b, s->brick, axis, low);
-        bool pierced = room->edges.count - first == 2;
-        for (unsigned i = 0; first + i < room->edges.count; i++)
-            place[first + i] =
-                place_of(b, s->brick, low, local_on_edge(axis, pierced ? 1 + 2 * i : 2));
-    }
-    csg_judge_solve_edges(w->x->judge, b, s->brick, room);
-    for (uint32_t i = 0; i < room->edges.count; i++) {
-        placed_vertex v = {.place = place[i],
-                           .at = {room->edges.x[i], room->edges.y[i], room->edges.z[i]}};
-        for (int axis = 0; axis < 3; axis++)
-            v.gradient[axis] = room->gradient[axis][i];
+        placed_vertex v = {
+            .place = place_of(w->x->bricks, s->brick, low, local_on_edge(axis, root->quarters))};
+        memcpy(v.at, root->at, sizeof v.at);
+        memcpy(v.gradient, root->gradient, sizeof v.gradient);
         if (!add_vertex(w, &w->workers[worker_index], &v))
             return false;
     }
@@ -166,7 +151,8 @@ typedef struct cell_at_hand {
     uint32_t worker;
     const csg_shell *shell;
     unsigned at[3];
-    bool is_whole; /* none of its edges and faces is divided */
+    bool is_whole;  /* none of its edges and faces is divided */
+    bool is_border; /* finer leaves divide some of them: the judge has not seen it like that */
     csg_cell_polygons polygons;
     csg_sheet_probe *probe;
 } cell_at_hand;
@@ -179,7 +165,7 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
     csg_tape tape;
     csg_judge_room *room = &w->x->judge->rooms[worker_index];
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
-    csg_pierce(&probe, w->x->bricks, s->brick, NULL, &room->pierced);
+    const csg_pierced *pierced = csg_judged_pierced(s->brick->judged);
     unsigned cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
     for (cells &= ~(unsigned)s->brick->divided; cells; cells &= cells - 1) {
         unsigned bit = (unsigned)__builtin_ctz(cells);
@@ -190,7 +176,8 @@ static bool each_cell(work *w, uint32_t worker_index, const csg_shell *s, visit_
                              .probe = &probe};
         csg_shell_cell place = csg_shell_cell_of(s, cell.at[0], cell.at[1], cell.at[2]);
         cell.is_whole = !place.divided;
-        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe, &room->pierced};
+        cell.is_border = place.divided & ~place.pierced;
+        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe, pierced};
         csg_cell_polygons_make(&cell.polygons, &place, csg_cell_face_is_inside, &faces);
         if (cell.polygons.count && !visit(&cell))
             return false;
@@ -250,12 +237,47 @@ static bool is_for(const cell_at_hand *c, int axis, unsigned side, bool pierced)
     return csg_shell_owns_face(s, axis, low);
 }
 
-static bool look_into_faces(cell_at_hand *c)
+/* Whether a side of a polygon goes from one edge of the cell to another that nothing finer divides:
+ * then the judge has seen it. */
+static bool is_judged(const cell_at_hand *c, const csg_polygon_side *side)
+{
+    unsigned from[3], to[3];
+    csg_local_place(side->from, from);
+    csg_local_place(side->to, to);
+    bool whole = true;
+    for (int k = 0; k < 3; k++)
+        whole = whole && from[k] % 2 == 0 && to[k] % 2 == 0;
+    return whole || !c->is_border;
+}
+
+/* What is in a face that the judge has not seen. False: nothing, or, which the cell will say, there
+ * is no vertex at one end. */
+static bool find_crease(cell_at_hand *c, const csg_polygon_side *side, int axis, unsigned upper,
+                        float at[3])
 {
     work *w = c->w;
     const csg_bricks *b = w->x->bricks;
     const csg_brick *brick = c->shell->brick;
-    csg_cell_box box = csg_judge_cell_box(b, brick, c->at);
+    csg_face_crease face = {.face = csg_judge_cell_box(b, brick, c->at), .is_wedge = side->pierced};
+    double plane = upper ? face.face.high[axis] : face.face.low[axis];
+    face.face.low[axis] = face.face.high[axis] = plane;
+    unsigned first = side->from < side->to ? side->from : side->to;
+    unsigned last = side->from < side->to ? side->to : side->from;
+    uint32_t a = find_vertex(w, place_of(b, brick, c->at, first));
+    uint32_t z = find_vertex(w, place_of(b, brick, c->at, last));
+    if (a == CSG_TABLE_NONE || z == CSG_TABLE_NONE)
+        return false;
+    face.ends[0] = point_of(&w->vertices[a]);
+    face.ends[1] = point_of(&w->vertices[z]);
+    csg_sheets_meet_in_faces(c->probe, &face, 1);
+    csg_vec3_to_floats(at, face.at);
+    return face.is_there;
+}
+
+static bool look_into_faces(cell_at_hand *c)
+{
+    work *w = c->w;
+    const csg_brick *brick = c->shell->brick;
     for (unsigned i = 0; i < c->polygons.first[c->polygons.count]; i++) {
         const csg_polygon_side *side = &c->polygons.side[i];
         unsigned upper;
@@ -263,25 +285,19 @@ static bool look_into_faces(cell_at_hand *c)
         if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
             (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
             continue;
-        csg_face_crease face = {.face = box};
-        double plane = upper ? box.high[axis] : box.low[axis];
-        face.face.low[axis] = face.face.high[axis] = plane;
-        unsigned first = side->from < side->to ? side->from : side->to;
-        unsigned last = side->from < side->to ? side->to : side->from;
-        uint32_t a = find_vertex(w, place_of(b, brick, c->at, first));
-        uint32_t z = find_vertex(w, place_of(b, brick, c->at, last));
-        if (a == CSG_TABLE_NONE || z == CSG_TABLE_NONE)
-            continue; /* the cell will say so */
-        face.ends[0] = point_of(&w->vertices[a]);
-        face.ends[1] = point_of(&w->vertices[z]);
-        if (side->pierced)
-            face.at = csg_wedge_in_face(c->probe, &face.face, face.ends);
-        else
-            csg_sheets_meet_in_faces(c->probe, &face, 1);
-        if (!side->pierced && !face.is_there)
+        placed_vertex v = {.place = place_of(w->x->bricks, brick, c->at, side->crease),
+                           .is_crease = true};
+        if (is_judged(c, side)) {
+            unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
+            low[axis] += upper;
+            const csg_judged_crease *found =
+                csg_judged_crease_in(brick->judged, csg_brick_slot(axis, low));
+            if (!found)
+                continue;
+            memcpy(v.at, found->at, sizeof v.at);
+        } else if (!find_crease(c, side, axis, upper, v.at)) {
             continue;
-        placed_vertex v = {.place = place_of(b, brick, c->at, side->crease), .is_crease = true};
-        csg_vec3_to_floats(v.at, face.at);
+        }
         w->workers[c->worker].creases++;
         if (!add_vertex(w, &w->workers[c->worker], &v))
             return false;
@@ -344,20 +360,46 @@ static void want_divided(const cell_at_hand *c)
     atomic_store(&c->w->any, true);
 }
 
+/* The point in the middle of a fan that the judge has not seen. Beside finer leaves the fan may
+ * turn out to be too far from the surface. */
+static csg_apex_kind find_apex(cell_at_hand *c, const csg_polygon *p, float at[3])
+{
+    const csg_extraction *x = c->w->x;
+    csg_apex_search search = {.box = csg_judge_cell_box(x->bricks, c->shell->brick, c->at),
+                              .polygon = p};
+    csg_polygons_find_apexes(c->probe, &search, 1);
+    csg_vec3_to_floats(at, search.at);
+    if (c->is_whole)
+        return search.kind;
+    csg_piece piece = {.polygon = *p, .is_fan = true, .apex = search.at};
+    csg_piece *const pieces[] = {&piece};
+    csg_pieces_find_distances(c->probe, pieces, 1, x->judge->tolerance);
+    if (piece.distance > x->farthest)
+        want_divided(c);
+    return search.kind;
+}
+
 /* A fan around a point of the cell. */
-static bool fan(cell_at_hand *c, const csg_polygon *p)
+static bool fan(cell_at_hand *c, unsigned polygon, const csg_polygon *p)
 {
     work *w = c->w;
     worker *self = &w->workers[c->worker];
-    csg_cell_box box = csg_judge_cell_box(w->x->bricks, c->shell->brick, c->at);
-    csg_vec3 apex;
-    csg_apex_kind kind = csg_polygon_find_apex(c->probe, &box, p, &apex);
-    if (!c->is_whole && csg_judge_fan_distance(w->x->judge, c->probe, p, apex) > w->x->farthest)
-        want_divided(c);
+    unsigned creases = 0;
+    for (int i = 0; i < p->count; i++)
+        creases += p->is_crease[i];
+    const csg_judged_apex *judged =
+        c->is_border
+            ? NULL
+            : csg_judged_apex_of(c->shell->brick->judged,
+                                 csg_brick_cell(c->at[0], c->at[1], c->at[2]), polygon, creases);
+    placed_vertex v;
+    memset(&v, 0, sizeof v);
+    csg_apex_kind kind = judged ? (csg_apex_kind)judged->kind : find_apex(c, p, v.at);
+    if (judged)
+        memcpy(v.at, judged->at, sizeof v.at);
     self->creases += kind == CSG_APEX_CREASE;
     self->smooth += kind == CSG_APEX_FAILED;
-    placed_vertex v = {.is_crease = kind == CSG_APEX_CREASE};
-    csg_vec3_to_floats(v.at, apex);
+    v.is_crease = kind == CSG_APEX_CREASE;
     uint32_t number = OWN | (uint32_t)(self->count - w->segments[self->item].first);
     if (!add_vertex(w, self, &v))
         return false;
@@ -385,7 +427,7 @@ static bool cut_whole(cell_at_hand *c)
         }
         if (!csg_cell_cut(edge, sides, triangles)) {
             csg_polygon p; /* joined through faces: a loop that has no cut */
-            if (!gather(c, polygon, &p) || !fan(c, &p))
+            if (!gather(c, polygon, &p) || !fan(c, polygon, &p))
                 return false;
             continue;
         }
@@ -411,7 +453,7 @@ static bool make_triangles(cell_at_hand *c)
         bool flat = brick->flat >> csg_brick_cell(c->at[0], c->at[1], c->at[2]) & 1;
         if (plain && c->polygons.count == 1 && flat)
             return cut_whole(c);
-        if (!fan(c, &p))
+        if (!fan(c, polygon, &p))
             return false;
     }
     return true;

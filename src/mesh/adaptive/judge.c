@@ -9,7 +9,7 @@
 #include "mesh/adaptive/hunt.h"
 #include "mesh/remesh/triangle.h"
 
-enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
+enum { E = CSG_BRICK_EDGE };
 
 /* Where sheets do not meet although they should, and triangles are near the surface all the same,
  * cells of so many tolerances are small enough. */
@@ -21,11 +21,6 @@ static const double APART = 1e-3;
 
 /* ---- edges -------------------------------------------------------------------------------------
  */
-
-static unsigned slot_of(int axis, const unsigned low[3])
-{
-    return (unsigned)axis * P + low[0] + N * (low[1] + N * low[2]);
-}
 
 /* From a point along an axis. */
 static void add_span(csg_edges *e, int axis, const float from[3], float to, bool inside)
@@ -39,8 +34,9 @@ static void add_span(csg_edges *e, int axis, const float from[3], float to, bool
     e->rank[n] = (uint16_t)n;
 }
 
-void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *b, const csg_brick *brick, int axis,
-                        const unsigned low[3])
+/* Appends an edge of the brick; of a pierced one its lower half, then its upper. */
+static void add_edge(csg_judge_room *room, const csg_bricks *b, const csg_brick *brick, int axis,
+                     const unsigned low[3])
 {
     float from[3], to = csg_brick_coordinate(b, brick, axis, low[axis] + 1);
     for (int k = 0; k < 3; k++)
@@ -56,8 +52,9 @@ void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *b, const csg_bri
     add_span(&room->edges, axis, from, to, inside);
 }
 
-void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
-                           csg_judge_room *room)
+/* Roots along edges that are collected, and gradients there. */
+static void solve_edges(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
+                        csg_judge_room *room)
 {
     csg_edges *e = &room->edges;
     csg_tape tape = csg_bricks_tape(b, brick);
@@ -74,8 +71,9 @@ void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *b, const cs
     room->gradients += e->count;
 }
 
-bool csg_judge_has_edge(const csg_judge_room *room, const csg_brick *brick, int axis,
-                        const unsigned low[3])
+/* Whether an edge of the brick has a vertex, or, pierced, two. */
+static bool has_edge(const csg_judge_room *room, const csg_brick *brick, int axis,
+                     const unsigned low[3])
 {
     return csg_brick_is_crossed(brick, axis, low) ||
            (room->pierced.edges >> csg_brick_edge(axis, low) & 1);
@@ -85,12 +83,12 @@ static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge
 {
     room->edges.count = 0;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
-        int axis = (int)(slot / P);
-        const unsigned low[3] = {slot % N, slot / N % N, slot % P / (N * N)};
-        if (low[axis] == E || !csg_judge_has_edge(room, brick, axis, low))
+        unsigned low[3];
+        int axis = csg_slot_place(slot, low);
+        if (low[axis] == E || !has_edge(room, brick, axis, low))
             continue;
         room->edge[0][slot] = (uint16_t)room->edges.count;
-        csg_judge_add_edge(room, b, brick, axis, low);
+        add_edge(room, b, brick, axis, low);
         room->edge[1][slot] = (uint16_t)(room->edges.count - 1);
     }
 }
@@ -190,7 +188,7 @@ static unsigned slot_of_place(unsigned place, const unsigned cell[3], bool is_fa
         if ((q[k] % 4 != 0) != is_face)
             axis = k;
     }
-    return slot_of(axis, low);
+    return csg_brick_slot(axis, low);
 }
 
 /* The vertex on an edge of a cell, or on a half of one, by its middle. */
@@ -212,7 +210,7 @@ static csg_surface_point point_of(const csg_judge_room *room, unsigned place,
 static csg_face_crease face_of(const csg_judge_room *room, const csg_cell_box *box,
                                const unsigned cell[3], const csg_polygon_side *side)
 {
-    csg_face_crease f = {.face = *box};
+    csg_face_crease f = {.face = *box, .is_wedge = side->pierced};
     unsigned q[3];
     csg_local_place(side->face, q);
     for (int k = 0; k < 3; k++) {
@@ -226,9 +224,10 @@ static csg_face_crease face_of(const csg_judge_room *room, const csg_cell_box *b
     return f;
 }
 
-/* Looks for creases in the faces of cells with one polygon, in each once for both cells. */
+/* Looks for creases in the faces of cells with one polygon, and for those that all wedges have, in
+ * each face once for both cells. */
 static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg_bricks *b,
-                         const csg_brick *brick)
+                         const csg_brick *brick, bool sharp)
 {
     memset(room->face, CSG_NO_FACE, sizeof room->face);
     room->face_count = 0;
@@ -237,10 +236,11 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
         const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
         const csg_cell_polygons *polygons = &room->polygons[cell];
         csg_cell_box box = csg_judge_cell_box(b, brick, at);
-        for (unsigned i = 0; polygons->count == 1 && i < polygons->first[1]; i++) {
+        bool creased = sharp && polygons->count == 1;
+        for (unsigned i = 0; i < polygons->first[polygons->count]; i++) {
             const csg_polygon_side *side = &polygons->side[i];
             unsigned slot = slot_of_place(side->face, at, true);
-            if (!side->alone || side->pierced || room->face[slot] != CSG_NO_FACE)
+            if (room->face[slot] != CSG_NO_FACE || !(side->pierced || (creased && side->alone)))
                 continue;
             room->face[slot] = (uint8_t)room->face_count;
             room->faces[room->face_count++] = face_of(room, &box, at, side);
@@ -249,134 +249,32 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
     csg_sheets_meet_in_faces(probe, room->faces, room->face_count);
 }
 
-/* A polygon as it is cut into triangles: around an apex, or without a point inside. */
-typedef struct cut_polygon {
-    csg_polygon polygon;
-    bool is_fan;
-    csg_vec3 apex;
-    uint8_t cut[CSG_CELL_MOST_INDICES]; /* three corners per triangle */
-} cut_polygon;
+enum { MOST_PIECES = CSG_JUDGED_MOST_APEXES / CSG_BRICK_CELLS /* of a cell */ };
 
-enum { MOST_PIECES = 4 };
-
-typedef struct cell_work {
+typedef struct brick_work {
     const csg_judge *judge;
     const csg_bricks *bricks;
     csg_brick *brick;
     csg_judge_room *room;
     csg_sheet_probe probe;
     const csg_hunted *hunted;
-    cut_polygon pieces[MOST_PIECES]; /* of the cell at hand */
-    int count;
-} cell_work;
-
-static int triangle_count(const cut_polygon *p)
-{
-    return p->is_fan ? p->polygon.count : p->polygon.count - 2;
-}
-
-/* The corners of a triangle as vertices of the polygon, -1 for the apex, and their places. */
-static void find_triangle(const cut_polygon *p, int t, int corner[3], csg_vec3 at[3])
-{
-    const int around[3] = {-1, t, (t + 1) % p->polygon.count};
-    for (int k = 0; k < 3; k++) {
-        corner[k] = p->is_fan ? around[k] : p->cut[3 * t + k];
-        at[k] = corner[k] < 0 ? p->apex : p->polygon.point[corner[k]].at;
-    }
-}
-
-/* The gradient that a triangle's sheet has: of a vertex of it that is on no crease. */
-static csg_vec3 gradient_of(const csg_polygon *p, const int corner[3])
-{
-    for (int k = 0; k < 3; k++)
-        if (corner[k] >= 0 && !p->is_crease[corner[k]])
-            return p->point[corner[k]].gradient;
-    return csg_vec3_make(0, 0, 0);
-}
-
-/* The largest distance from the surface, as |f| over the slope, at points of the triangles.
- * INFINITY: a triangle higher than `least_height` looks inwards. */
-static double find_distance(csg_sheet_probe *probe, const cut_polygon *piece, double least_height)
-{
-    enum { MOST = 3 * CSG_POLYGON_MOST + CSG_LANES };
-    /* of the normals of a triangle and of its sheet */
-    const double looks_away = 0.17;
-    const csg_polygon *p = &piece->polygon;
-    float x[MOST], y[MOST], z[MOST], f[MOST];
-    size_t n = 0;
-    x[0] = y[0] = z[0] = 0;
-    double slope = INFINITY;
-    for (int i = 0; i < p->count; i++)
-        if (!p->is_crease[i])
-            slope = fmin(slope, csg_vec3_norm(p->point[i].gradient));
-    for (int t = 0; t < triangle_count(piece); t++) {
-        int corner[3];
-        csg_vec3 v[3];
-        find_triangle(piece, t, corner, v);
-        csg_vec3 a = v[0], b = v[1], c = v[2], g = gradient_of(p, corner);
-        csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
-        csg_vec3 longest = csg_vec3_sub(b, c);
-        double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
-        if (height > least_height && -csg_gradients_cosine(cross, g) < looks_away)
-            return INFINITY;
-        csg_vec3 at[4] = {csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3),
-                          csg_vec3_scale(csg_vec3_add(a, b), 0.5),
-                          csg_vec3_scale(csg_vec3_add(b, c), 0.5),
-                          csg_vec3_scale(csg_vec3_add(c, a), 0.5)};
-        int count =
-            piece->is_fan ? 3 : 4; /* the next triangle of a fan has the last one's middle */
-        for (int k = 0; k < count; k++, n++)
-            x[n] = (float)at[k].x, y[n] = (float)at[k].y, z[n] = (float)at[k].z;
-    }
-    for (size_t i = n; i % CSG_LANES; i++)
-        x[i] = x[0], y[i] = y[0], z[i] = z[0];
-    probe->kernel->values(probe->tape, x, y, z, n, f, probe->scratch, probe->scratch_floats);
-    probe->evaluations += n;
-    double worst = 0;
-    for (size_t i = 0; i < n; i++)
-        worst = fmax(worst, fabs((double)f[i]));
-    return slope > 0 ? fmax(worst - 4 * probe->noise, 0) / slope : INFINITY;
-}
-
-double csg_judge_fan_distance(const csg_judge *judge, csg_sheet_probe *probe,
-                              const csg_polygon *polygon, csg_vec3 apex)
-{
-    cut_polygon piece = {.polygon = *polygon, .is_fan = true, .apex = apex};
-    return find_distance(probe, &piece, judge->tolerance);
-}
-
-/* Cuts the polygon of a whole cell without a point inside, from the same vertex on as the mesh will
- * have it: other triangles have other distances. False: it has no such cut. */
-static bool cut_without_apex(cut_polygon *piece)
-{
-    const csg_polygon *p = &piece->polygon;
-    uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES];
-    if (p->count > CSG_CELL_MOST_TRIANGLES + 2)
-        return false; /* joined through faces: no loop of the tables, whose cuts meet nowhere */
-    for (int i = 0; i < p->count; i++)
-        edge[i] = (uint8_t)p->vertex[i];
-    if (!csg_cell_cut(edge, p->count, triangles))
-        return false;
-    for (int i = 0; i < 3 * (p->count - 2); i++) {
-        int at = 0;
-        while (at < p->count - 1 && p->vertex[at] != triangles[i])
-            at++;
-        piece->cut[i] = (uint8_t)at;
-    }
-    return true;
-}
+    double cell;
+    bool is_small; /* sheets may fail to meet */
+    double least;  /* height of triangles that must look outwards */
+    unsigned bad;  /* cells that are to be divided */
+} brick_work;
 
 /* Keeps the triangles of a cell that is good. */
-static void keep_triangles(cell_work *w, unsigned cell)
+static void keep_triangles(csg_judge_room *room, unsigned cell)
 {
-    csg_judge_room *room = w->room;
     room->first_triangle[cell] = room->triangle_count;
-    for (int k = 0; k < w->count; k++)
-        for (int t = 0; t < triangle_count(&w->pieces[k]); t++) {
+    for (int k = room->first_piece[cell]; k < room->end_piece[cell]; k++)
+        for (int t = 0; t < csg_piece_triangle_count(&room->pieces[k]); t++) {
             int corner[3];
             if (room->triangle_count == CSG_JUDGE_MOST_TRIANGLES)
                 return;
-            find_triangle(&w->pieces[k], t, corner, room->triangles[room->triangle_count++]);
+            csg_piece_triangle(&room->pieces[k], t, corner,
+                               room->triangles[room->triangle_count++]);
         }
     room->end_triangle[cell] = room->triangle_count;
 }
@@ -403,7 +301,7 @@ static bool is_near_triangles(const csg_judge_room *room, uint32_t first, uint32
 
 /* The cells in which the surface was found away from triangles. Beside cells that are not searched,
  * and beside other bricks, it may be near triangles that are not there yet. */
-static uint8_t find_uncovered(const cell_work *w, uint8_t cells)
+static uint8_t find_uncovered(const brick_work *w, uint8_t cells)
 {
     double tolerance = w->judge->tolerance;
     const csg_judge_room *room = w->room;
@@ -429,94 +327,8 @@ static uint8_t find_uncovered(const cell_work *w, uint8_t cells)
     return (uint8_t)uncovered;
 }
 
-/* Whether all triangles of a piece have the other piece on one side: then they do not meet. */
-static bool is_beside(const cut_polygon *p, const cut_polygon *other, double margin)
-{
-    for (int t = 0; t < triangle_count(p); t++) {
-        int corner[3];
-        csg_vec3 v[3];
-        find_triangle(p, t, corner, v);
-        csg_vec3 n =
-            csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
-        double low = INFINITY, high = -INFINITY;
-        for (int i = other->is_fan ? -1 : 0; i < other->polygon.count; i++) {
-            csg_vec3 at = i < 0 ? other->apex : other->polygon.point[i].at;
-            double d = csg_vec3_dot(n, csg_vec3_sub(at, v[0]));
-            low = fmin(low, d);
-            high = fmax(high, d);
-        }
-        if (!(low > margin || high < -margin))
-            return false;
-    }
-    return true;
-}
-
-static bool are_apart(const cell_work *w, double margin)
-{
-    for (int i = 0; i < w->count; i++)
-        for (int k = 0; k < i; k++)
-            if (!is_beside(&w->pieces[i], &w->pieces[k], margin) &&
-                !is_beside(&w->pieces[k], &w->pieces[i], margin))
-                return false;
-    return true;
-}
-
-/* The vertices of a polygon, and, creased, what is found in the faces between them. */
-static int gather(cell_work *w, const unsigned at[3], const csg_cell_polygons *polygons,
-                  unsigned polygon, bool creased, csg_polygon *p)
-{
-    const csg_judge_room *room = w->room;
-    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
-    int creases = 0;
-    p->count = 0;
-    for (int i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
-        const csg_polygon_side *side = &polygons->side[i];
-        csg_vec3 crease;
-        uint8_t face = room->face[slot_of_place(side->face, at, true)];
-        p->vertex[p->count] = csg_local_edge(side->from);
-        p->is_crease[p->count] = false;
-        p->point[p->count++] = point_of(room, side->from, at);
-        if (side->pierced) {
-            csg_face_crease wedge = face_of(room, &box, at, side);
-            crease = csg_wedge_in_face(&w->probe, &wedge.face, wedge.ends);
-        } else if (creased && side->alone && room->faces[face].is_there) {
-            crease = room->faces[face].at;
-        } else {
-            continue;
-        }
-        p->is_crease[p->count] = true;
-        p->point[p->count++].at = crease;
-        creases++;
-    }
-    return creases;
-}
-
-/* Cuts one of a cell's polygons. False: its triangles are not what they should be. */
-static bool cut_into_triangles(cell_work *w, const unsigned at[3], bool is_whole,
-                               const csg_cell_polygons *polygons, unsigned polygon)
-{
-    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
-    double tolerance = w->judge->tolerance;
-    bool is_small = box.cell <= FAILURE * tolerance, alone = polygons->count == 1;
-    double least = is_small ? tolerance : 0.1 * tolerance;
-    if (w->count == MOST_PIECES)
-        return false;
-    cut_polygon *piece = &w->pieces[w->count++];
-    int creases = gather(w, at, polygons, polygon, alone && w->judge->sharp, &piece->polygon);
-    piece->is_fan = false;
-    if (!creases && is_whole && cut_without_apex(piece) &&
-        find_distance(&w->probe, piece, least) <= tolerance) {
-        if (alone)
-            w->brick->flat |= (uint8_t)(1u << csg_brick_cell(at[0], at[1], at[2]));
-        return true;
-    }
-    if (is_whole && !alone)
-        return false;
-    piece->is_fan = true;
-    csg_apex_kind kind = csg_polygon_find_apex(&w->probe, &box, &piece->polygon, &piece->apex);
-    return (kind != CSG_APEX_FAILED || is_small) &&
-           find_distance(&w->probe, piece, least) <= tolerance;
-}
+/* ---- verdict -----------------------------------------------------------------------------------
+ */
 
 static bool has_pierced_edge(const csg_brick *brick, const unsigned low[3])
 {
@@ -534,7 +346,7 @@ static void cross_pierced(csg_brick *brick)
 }
 
 /* The polygons of all cells; notes which have several. */
-static void make_polygons(cell_work *w)
+static void make_polygons(brick_work *w)
 {
     csg_shell shell = {.brick = w->brick};
     for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
@@ -549,56 +361,266 @@ static void make_polygons(cell_work *w)
     }
 }
 
-/* Whether a cell is small enough. Several polygons must be on their own sides of each other where
- * the cell has pierced edges; those of a whole cell are whatever their vertices. */
-static bool is_good(cell_work *w, unsigned cell)
+static void find_place(unsigned cell, unsigned at[3])
 {
-    const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
-    const csg_cell_polygons *polygons = &w->room->polygons[cell];
-    bool pierced = has_pierced_edge(w->brick, at);
-    csg_cell_box box = csg_judge_cell_box(w->bricks, w->brick, at);
-    bool good = !csg_cell_polygons_are_mixed(polygons);
-    w->count = 0;
-    for (unsigned i = 0; i < polygons->count && good; i++)
-        good = cut_into_triangles(w, at, !pierced, polygons, i);
-    good = good && (!pierced || are_apart(w, APART * box.cell));
-    if (good)
-        keep_triangles(w, cell);
-    bool is_small = box.cell <= SEVERAL * w->judge->tolerance && !pierced;
-    return good || (polygons->count > 1 && is_small);
+    at[0] = cell % E, at[1] = cell / E % E, at[2] = cell / (E * E);
 }
 
-uint8_t csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
-                        const float *f)
+/* The vertices of a polygon, and what is found in the faces between them. */
+static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_polygon *p)
+{
+    const csg_judge_room *room = w->room;
+    const csg_cell_polygons *polygons = &room->polygons[cell];
+    unsigned at[3];
+    find_place(cell, at);
+    p->count = 0;
+    for (unsigned i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
+        const csg_polygon_side *side = &polygons->side[i];
+        uint8_t face = room->face[slot_of_place(side->face, at, true)];
+        p->vertex[p->count] = csg_local_edge(side->from);
+        p->is_crease[p->count] = false;
+        p->point[p->count++] = point_of(room, side->from, at);
+        bool creased = polygons->count == 1 && side->alone;
+        if (!(side->pierced || creased) || face == CSG_NO_FACE || !room->faces[face].is_there)
+            continue;
+        p->is_crease[p->count] = true;
+        p->point[p->count++].at = room->faces[face].at;
+    }
+}
+
+static int crease_count(const csg_polygon *p)
+{
+    int creases = 0;
+    for (int i = 0; i < p->count; i++)
+        creases += p->is_crease[i];
+    return creases;
+}
+
+/* The polygons of the cells that may be good. */
+static void gather_pieces(brick_work *w)
+{
+    csg_judge_room *room = w->room;
+    room->piece_count = 0;
+    for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest);
+        const csg_cell_polygons *polygons = &room->polygons[cell];
+        room->first_piece[cell] = room->end_piece[cell] = (uint8_t)room->piece_count;
+        if (polygons->count > MOST_PIECES || csg_cell_polygons_are_mixed(polygons)) {
+            w->bad |= 1u << cell;
+            continue;
+        }
+        for (unsigned i = 0; i < polygons->count; i++) {
+            csg_piece *piece = &room->pieces[room->piece_count++];
+            piece->cell = (uint8_t)cell;
+            piece->number = (uint8_t)i;
+            piece->is_cut = piece->is_fan = false;
+            gather(w, cell, i, &piece->polygon);
+        }
+        room->end_piece[cell] = (uint8_t)room->piece_count;
+    }
+}
+
+/* Cuts what can be cut without a point inside: polygons of whole cells that have no creases. */
+static void cut_plain(brick_work *w)
+{
+    csg_judge_room *room = w->room;
+    csg_piece *tried[CSG_JUDGED_MOST_APEXES];
+    int count = 0;
+    for (int i = 0; i < room->piece_count; i++) {
+        csg_piece *piece = &room->pieces[i];
+        unsigned at[3];
+        find_place(piece->cell, at);
+        if (!has_pierced_edge(w->brick, at) && !crease_count(&piece->polygon) &&
+            csg_piece_cut_plain(piece))
+            tried[count++] = piece;
+    }
+    csg_pieces_find_distances(&w->probe, tried, count, w->least);
+    for (int i = 0; i < count; i++) {
+        tried[i]->is_cut = tried[i]->distance <= w->judge->tolerance;
+        if (tried[i]->is_cut && room->polygons[tried[i]->cell].count == 1)
+            w->brick->flat |= (uint8_t)(1u << tried[i]->cell);
+    }
+}
+
+/* Cuts the rest into fans. Several polygons of a whole cell have none: the points in their middles
+ * know nothing of each other. */
+static void cut_fans(brick_work *w)
+{
+    csg_judge_room *room = w->room;
+    csg_apex_search searches[CSG_JUDGED_MOST_APEXES];
+    csg_piece *fans[CSG_JUDGED_MOST_APEXES];
+    int count = 0;
+    for (int i = 0; i < room->piece_count; i++) {
+        csg_piece *piece = &room->pieces[i];
+        unsigned at[3];
+        find_place(piece->cell, at);
+        if (piece->is_cut)
+            continue;
+        if (room->polygons[piece->cell].count > 1 && !has_pierced_edge(w->brick, at)) {
+            w->bad |= 1u << piece->cell;
+            continue;
+        }
+        searches[count] = (csg_apex_search){.box = csg_judge_cell_box(w->bricks, w->brick, at),
+                                            .polygon = &piece->polygon};
+        fans[count++] = piece;
+    }
+    csg_polygons_find_apexes(&w->probe, searches, count);
+    for (int i = 0; i < count; i++) {
+        fans[i]->is_fan = fans[i]->is_cut = true;
+        fans[i]->apex = searches[i].at;
+        fans[i]->kind = searches[i].kind;
+    }
+    csg_pieces_find_distances(&w->probe, fans, count, w->least);
+    for (int i = 0; i < count; i++)
+        if ((fans[i]->kind == CSG_APEX_FAILED && !w->is_small) ||
+            fans[i]->distance > w->judge->tolerance)
+            w->bad |= 1u << fans[i]->cell;
+}
+
+static bool are_apart(const csg_judge_room *room, unsigned cell, double margin)
+{
+    for (int i = room->first_piece[cell]; i < room->end_piece[cell]; i++)
+        for (int k = room->first_piece[cell]; k < i; k++)
+            if (!csg_pieces_are_apart(&room->pieces[i], &room->pieces[k], margin))
+                return false;
+    return true;
+}
+
+/* Which cells are small enough. Several polygons must be on their own sides of each other where the
+ * cell has pierced edges; those of a whole cell are whatever their vertices. */
+static uint8_t find_bad(brick_work *w)
+{
+    csg_judge_room *room = w->room;
+    gather_pieces(w);
+    cut_plain(w);
+    cut_fans(w);
+    for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest), at[3];
+        find_place(cell, at);
+        bool pierced = has_pierced_edge(w->brick, at);
+        if (pierced && !are_apart(room, cell, APART * w->cell))
+            w->bad |= 1u << cell;
+        if (!(w->bad >> cell & 1))
+            keep_triangles(room, cell);
+        else if (room->polygons[cell].count > 1 && w->cell <= SEVERAL * w->judge->tolerance &&
+                 !pierced)
+            w->bad &= ~(1u << cell);
+    }
+    return (uint8_t)w->bad;
+}
+
+/* ---- what is kept for the mesh -----------------------------------------------------------------
+ */
+
+/* Vertices on edges of these cells. */
+static uint8_t list_roots(const csg_judge_room *room, const csg_brick *brick, uint8_t cells,
+                          csg_judged_root *roots)
+{
+    unsigned count = 0;
+    for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
+        unsigned low[3];
+        int axis = csg_slot_place(slot, low), from[3], to[3];
+        for (int k = 0; k < 3; k++) {
+            from[k] = 2 * (int)low[k];
+            to[k] = from[k] + (k == axis ? 2 : 0);
+        }
+        if (low[axis] == E || !has_edge(room, brick, axis, low) ||
+            !(csg_brick_cells_at(from, to) & cells))
+            continue;
+        unsigned first = room->edge[0][slot], last = room->edge[1][slot];
+        for (unsigned i = first; i <= last; i++) {
+            const csg_edges *e = &room->edges;
+            const float(*g)[CSG_BLOCK_MOST_EDGES] = room->gradient;
+            roots[count++] =
+                (csg_judged_root){.at = {e->x[i], e->y[i], e->z[i]},
+                                  .gradient = {g[0][i], g[1][i], g[2][i]},
+                                  .slot = (uint8_t)slot,
+                                  .quarters = (uint8_t)(first == last ? 2 : 1 + 2 * (i - first))};
+        }
+    }
+    return (uint8_t)count;
+}
+
+static uint8_t list_creases(const csg_judge_room *room, csg_judged_crease *creases)
+{
+    unsigned count = 0;
+    for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
+        uint8_t face = room->face[slot];
+        if (face == CSG_NO_FACE || !room->faces[face].is_there)
+            continue;
+        creases[count] = (csg_judged_crease){.slot = (uint8_t)slot};
+        csg_vec3_to_floats(creases[count++].at, room->faces[face].at);
+    }
+    return (uint8_t)count;
+}
+
+static uint8_t list_apexes(const csg_judge_room *room, uint8_t cells, csg_judged_apex *apexes)
+{
+    unsigned count = 0;
+    for (int i = 0; i < room->piece_count; i++) {
+        const csg_piece *piece = &room->pieces[i];
+        if (!piece->is_fan || !(cells >> piece->cell & 1))
+            continue;
+        apexes[count] = (csg_judged_apex){.cell = piece->cell,
+                                          .polygon = piece->number,
+                                          .creases = (uint8_t)crease_count(&piece->polygon),
+                                          .kind = (uint8_t)piece->kind};
+        csg_vec3_to_floats(apexes[count++].at, piece->apex);
+    }
+    return (uint8_t)count;
+}
+
+/* Of the cells that are not to be divided. False: out of memory. */
+static bool keep(const brick_work *w, uint8_t cells)
+{
+    csg_judge_room *room = w->room;
+    csg_judged_root roots[CSG_JUDGED_MOST_ROOTS];
+    csg_judged_crease creases[CSG_MOST_FACES];
+    csg_judged_apex apexes[CSG_JUDGED_MOST_APEXES];
+    csg_judged judged = {.roots = roots, .creases = creases, .apexes = apexes};
+    if (!cells)
+        return true;
+    judged.root_count = list_roots(room, w->brick, cells, roots);
+    judged.crease_count = list_creases(room, creases);
+    judged.apex_count = list_apexes(room, cells, apexes);
+    judged.pierced = &room->pierced;
+    w->brick->judged = csg_judged_keep(&room->kept, &judged);
+    return w->brick->judged != NULL;
+}
+
+/* ---- a brick -----------------------------------------------------------------------------------
+ */
+
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick *brick,
+                     const float *f)
 {
     const csg_judge *judge = user;
     csg_judge_room *room = &judge->rooms[worker];
     bool is_finest = brick->level == b->finest;
+    double cell = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
     csg_tape tape;
     csg_hunted hunted = {.count = 0};
-    cell_work w = {.judge = judge,
-                   .bricks = b,
-                   .brick = brick,
-                   .room = room,
-                   .probe = csg_judge_probe(judge, b, brick, room, &tape),
-                   .hunted = &hunted};
+    brick_work w = {.judge = judge,
+                    .bricks = b,
+                    .brick = brick,
+                    .room = room,
+                    .probe = csg_judge_probe(judge, b, brick, room, &tape),
+                    .hunted = &hunted,
+                    .cell = cell,
+                    .is_small = cell <= FAILURE * judge->tolerance};
+    w.least = w.is_small ? judge->tolerance : 0.1 * judge->tolerance;
     csg_pierce(&w.probe, b, brick, f, &room->pierced);
     brick->pierced = room->pierced.edges;
     cross_pierced(brick);
     brick->flat = brick->several = 0;
     collect_edges(b, brick, room);
-    csg_judge_solve_edges(judge, b, brick, room);
+    solve_edges(judge, b, brick, room);
     room->triangle_count = 0;
     memset(room->first_triangle, 0, sizeof room->first_triangle);
     memset(room->end_triangle, 0, sizeof room->end_triangle);
     make_polygons(&w);
-    if (judge->sharp)
-        find_creases(&w.probe, room, b, brick);
-    unsigned wanted = 0;
-    for (unsigned rest = brick->crossed; rest; rest &= rest - 1) {
-        unsigned cell = (unsigned)__builtin_ctz(rest);
-        wanted |= (unsigned)!is_good(&w, cell) << cell;
-    }
+    find_creases(&w.probe, room, b, brick, judge->sharp);
+    unsigned wanted = find_bad(&w);
     /* Where nothing is hidden in a cell, nothing is in a brick in its place. */
     uint8_t cells = (uint8_t)(CSG_BRICK_ALL_CELLS & ~(wanted | brick->searched));
     if (cells && !is_finest) {
@@ -607,5 +629,6 @@ uint8_t csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_br
         brick->searched |= cells & (uint8_t)~wanted;
     }
     room->evaluations += w.probe.evaluations;
-    return (uint8_t)wanted;
+    brick->wanted = is_finest ? 0 : (uint8_t)wanted;
+    return keep(&w, brick->crossed & (uint8_t)~brick->wanted);
 }

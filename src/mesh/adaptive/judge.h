@@ -6,19 +6,17 @@
 #define CSG_MESH_ADAPTIVE_JUDGE_H
 
 #include "field/kernels/roots.h"
-#include "mesh/adaptive/pierce.h"
+#include "mesh/adaptive/judged.h"
+#include "mesh/adaptive/pieces.h"
 #include "mesh/adaptive/polygons.h"
-#include "mesh/adaptive/sheets.h"
-#include "mesh/marching/tables.h"
 
 enum {
-    CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS,
     CSG_BRICK_CELLS = CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE,
     CSG_JUDGE_MOST_TRIANGLES = 64 * CSG_BRICK_CELLS,
     CSG_NO_FACE = 0xFF
 };
 
-/* One thread's room; slots of edges and faces: axis * CSG_BRICK_POINTS + lower (lowest) point. */
+/* One thread's room. */
 typedef struct csg_judge_room {
     csg_edges edges;
     float gradient[3][CSG_BLOCK_MOST_EDGES];
@@ -29,8 +27,12 @@ typedef struct csg_judge_room {
     uint8_t face[CSG_BRICK_SLOTS];               /* place in `faces`, or CSG_NO_FACE */
     csg_face_crease faces[CSG_MOST_FACES];       /* that creases are looked for in */
     int face_count;
+    csg_piece pieces[CSG_JUDGED_MOST_APEXES]; /* of the brick's cells, each cell's together */
+    int piece_count;
+    uint8_t first_piece[CSG_BRICK_CELLS], end_piece[CSG_BRICK_CELLS];
     csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
     uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
+    csg_arena kept; /* what the judge keeps of bricks */
     float *scratch;
     size_t scratch_floats;
     uint64_t evaluations, gradients;
@@ -45,25 +47,14 @@ typedef struct csg_judge {
 } csg_judge;
 
 /* A csg_brick_judge; user: a csg_judge. */
-uint8_t csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
-                        const float *f);
+bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
+                     const float *f);
 
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 
-/* Roots along edges that are collected, and gradients there; edges of level `level`. */
-void csg_judge_solve_edges(const csg_judge *judge, const csg_bricks *bricks, const csg_brick *brick,
-                           csg_judge_room *room);
 /* The probe of a brick; *tape is filled. */
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *bricks,
                                 const csg_brick *brick, csg_judge_room *room, csg_tape *tape);
-/* Whether an edge of the brick has a vertex, or, pierced, two. */
-bool csg_judge_has_edge(const csg_judge_room *room, const csg_brick *brick, int axis,
-                        const unsigned low[3]);
-/* Appends an edge of the brick to room->edges; of a pierced one its lower half, then its upper.
- */
-void csg_judge_add_edge(csg_judge_room *room, const csg_bricks *bricks, const csg_brick *brick,
-                        int axis, const unsigned low[3]);
-
 /* A cell and who answers for its field: a csg_face_is_inside's user. */
 typedef struct csg_cell_faces {
     const csg_bricks *bricks;
@@ -75,11 +66,6 @@ typedef struct csg_cell_faces {
 
 /* The sign of the field there: the same whichever cell asks, fine or coarse. */
 bool csg_cell_face_is_inside(void *cell_faces, const csg_face_look *look);
-
-/* How far a fan around a point is from the surface, as |f| over the slope at points of its
- * triangles; INFINITY where one that is not small looks inwards. */
-double csg_judge_fan_distance(const csg_judge *judge, csg_sheet_probe *probe,
-                              const csg_polygon *polygon, csg_vec3 apex);
 
 /* The box of a cell. */
 csg_cell_box csg_judge_cell_box(const csg_bricks *bricks, const csg_brick *brick,

@@ -8,11 +8,8 @@
 
 #include "mesh/plane.h"
 
-enum {
-    MOST = CSG_POLYGON_MOST_SHEETS,
-    LANES = CSG_LANES,
-    MOST_ASKED = (2 * CSG_MOST_FACES + LANES - 1) / LANES * LANES
-};
+enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES, MOST_ASKED = CSG_MOST_APEXES * MOST };
+_Static_assert(MOST_ASKED >= 2 * CSG_MOST_FACES && MOST_ASKED % LANES == 0, "all looks fit");
 
 /* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
  * differ by 12 in all may go round a tip. */
@@ -193,38 +190,10 @@ static bool has_arrived(const csg_cell_box *box, int step, csg_vec3 before, csg_
     return step > 0 && csg_vec3_norm(csg_vec3_sub(at, before)) < 1e-5 * box->cell;
 }
 
-/* Moves `at` to where the sheets meet. False: they do not, near the box. */
-static bool come_closer(csg_sheet_probe *p, const csg_cell_box *box, sheets *s, csg_vec3 *at)
-{
-    csg_vec3 q[MOST], g[MOST], before = *at;
-    double f[MOST];
-    if (!meet(s->plane, s->count, at))
-        return false;
-    for (int step = 0; step < STEPS && !has_arrived(box, step - 1, before, *at); step++) {
-        before = *at;
-        if (!(way_out(box, *at) < box->cell))
-            return false;
-        place_looks(box, s, *at, OFF[step], -1, q);
-        ask(p, q, s->count, f, g);
-        take_looks(s, q, f, g, -1);
-        if (!meet(s->plane, s->count, at))
-            return false;
-    }
-    return true;
-}
-
 /* Whether a value is that of a place on the surface. */
 static bool is_zero(const csg_sheet_probe *p, const csg_cell_box *box, double f, double slope)
 {
     return fabs(f) <= ZERO * box->cell * slope + 4 * p->noise;
-}
-
-static bool is_zero_at(csg_sheet_probe *p, const csg_cell_box *box, csg_vec3 at, double slope)
-{
-    double f;
-    csg_vec3 g;
-    ask(p, &at, 1, &f, &g);
-    return is_zero(p, box, f, slope);
 }
 
 /* ---- in a face ---------------------------------------------------------------------------------
@@ -282,6 +251,43 @@ static bool keep_in_face(approach *a)
            csg_vec3_norm(csg_vec3_sub(a->face->at, a->at)) <= MARGIN * box->cell;
 }
 
+/* From between the points straight into the face, to where the sign is another one. */
+static csg_vec3 step_beside(csg_sheet_probe *p, const csg_face_crease *f)
+{
+    enum { LOOKS = 6, HALVINGS = 6 };
+    const csg_cell_box *face = &f->face;
+    csg_vec3 from = csg_vec3_scale(csg_vec3_add(f->ends[0].at, f->ends[1].at), 0.5);
+    csg_vec3 way = {0, 0, 0}, g;
+    for (int axis = 0; axis < 3; axis++) { /* the one along which neither ends nor face extend */
+        double at = *component(&from, axis), low = face->low[axis], high = face->high[axis];
+        if (low < high && (at == low || at == high))
+            *component(&way, axis) = at == low ? face->cell : -face->cell;
+    }
+    double least = 0, most = 0, value, first;
+    ask(p, &from, 1, &first, &g);
+    for (int look = LOOKS; look > 0 && !(most > 0); look--) {
+        double part = ldexp(0.9, 1 - look);
+        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
+        ask(p, &at, 1, &value, &g);
+        *((value >= 0) == (first >= 0) ? &least : &most) = part;
+    }
+    for (int halving = 0; halving < HALVINGS && most > 0; halving++) {
+        double part = 0.5 * (least + most);
+        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
+        ask(p, &at, 1, &value, &g);
+        *((value >= 0) == (first >= 0) ? &least : &most) = part;
+    }
+    return csg_vec3_add(from, csg_vec3_scale(way, most > 0 ? most : 0.5));
+}
+
+/* As the mesh has it. */
+static csg_vec3 rounded(csg_vec3 at)
+{
+    float rounded[3];
+    csg_vec3_to_floats(rounded, at);
+    return csg_vec3_from_floats(rounded);
+}
+
 void csg_sheets_meet_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int count)
 {
     approach on_way[CSG_MOST_FACES];
@@ -323,44 +329,13 @@ void csg_sheets_meet_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int co
         csg_face_crease *face = on_way[i].face;
         face->is_there = is_zero(p, &face->face, f[i], csg_vec3_norm(face->ends[0].gradient));
     }
-}
-
-/* From between the points straight into the face, to where the sign is another one. */
-static csg_vec3 step_beside(csg_sheet_probe *p, const csg_cell_box *face,
-                            const csg_surface_point ends[2])
-{
-    enum { LOOKS = 6, HALVINGS = 6 };
-    csg_vec3 from = csg_vec3_scale(csg_vec3_add(ends[0].at, ends[1].at), 0.5), way = {0, 0, 0}, g;
-    for (int axis = 0; axis < 3; axis++) { /* the one along which neither ends nor face extend */
-        double at = *component(&from, axis), low = face->low[axis], high = face->high[axis];
-        if (low < high && (at == low || at == high))
-            *component(&way, axis) = at == low ? face->cell : -face->cell;
+    for (int i = 0; i < count; i++) {
+        csg_face_crease *face = &faces[i];
+        if (face->is_wedge && !face->is_there)
+            face->at = keep_within(&face->face, step_beside(p, face), MARGIN * face->face.cell);
+        face->is_there |= face->is_wedge;
+        face->at = face->is_there ? rounded(face->at) : face->at;
     }
-    double least = 0, most = 0, f, first;
-    ask(p, &from, 1, &first, &g);
-    for (int look = LOOKS; look > 0 && !(most > 0); look--) {
-        double part = ldexp(0.9, 1 - look);
-        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
-        ask(p, &at, 1, &f, &g);
-        *((f >= 0) == (first >= 0) ? &least : &most) = part;
-    }
-    for (int halving = 0; halving < HALVINGS && most > 0; halving++) {
-        double part = 0.5 * (least + most);
-        csg_vec3 at = csg_vec3_add(from, csg_vec3_scale(way, part));
-        ask(p, &at, 1, &f, &g);
-        *((f >= 0) == (first >= 0) ? &least : &most) = part;
-    }
-    return csg_vec3_add(from, csg_vec3_scale(way, most > 0 ? most : 0.5));
-}
-
-csg_vec3 csg_wedge_in_face(csg_sheet_probe *p, const csg_cell_box *face,
-                           const csg_surface_point ends[2])
-{
-    csg_face_crease one = {.face = *face, .ends = {ends[0], ends[1]}};
-    csg_sheets_meet_in_faces(p, &one, 1);
-    if (one.is_there)
-        return one.at;
-    return keep_within(face, step_beside(p, face, ends), MARGIN * face->cell);
 }
 
 /* ---- in a cell ---------------------------------------------------------------------------------
@@ -411,27 +386,6 @@ static bool gather_sheets(const csg_polygon *polygon, int creases, sheets *s)
     return true;
 }
 
-/* Onto the surface by Newton's steps from the middle, as far as they stay in the cell. */
-static csg_vec3 onto_surface(csg_sheet_probe *p, const csg_cell_box *box, csg_vec3 at)
-{
-    enum { NEWTON = 3 };
-    at = keep_within(box, at, MARGIN * box->cell);
-    for (int step = 0; step < NEWTON; step++) {
-        double f;
-        csg_vec3 g;
-        ask(p, &at, 1, &f, &g);
-        double square = csg_vec3_dot(g, g), reach = 0.5 * box->cell;
-        if (!(square > 1e-12) || fabs(f) <= p->noise)
-            break;
-        csg_vec3 move = csg_vec3_scale(g, -f / square);
-        double length = csg_vec3_norm(move);
-        if (length > reach)
-            move = csg_vec3_scale(move, reach / length);
-        at = keep_within(box, csg_vec3_add(at, move), MARGIN * box->cell);
-    }
-    return at;
-}
-
 /* How far the gradients of a polygon turn: the least cosine to their mean. */
 static double least_cosine(const csg_polygon *polygon, csg_vec3 *mean)
 {
@@ -444,22 +398,6 @@ static double least_cosine(const csg_polygon *polygon, csg_vec3 *mean)
         if (!polygon->is_crease[i])
             least = fmin(least, csg_gradients_cosine(polygon->point[i].gradient, *mean));
     return least;
-}
-
-/* Around a tip there are no creases: every vertex has a tangent plane of its own. */
-static bool find_tip(csg_sheet_probe *p, const csg_cell_box *box, const csg_polygon *polygon,
-                     double slope, csg_vec3 *at)
-{
-    plane planes[CSG_POLYGON_MOST];
-    int count = 0;
-    for (int i = 0; i < polygon->count; i++)
-        if (!polygon->is_crease[i])
-            planes[count++] = csg_plane_of(polygon->point[i].at, 0, polygon->point[i].gradient);
-    if (!meet_many(planes, count, at) || way_out(box, *at) > 0)
-        return false;
-    csg_vec3 kept = keep_within(box, *at, MARGIN * box->cell);
-    *at = kept;
-    return is_zero_at(p, box, kept, slope);
 }
 
 /* Whether the sheets on both sides of some crease point differ by more than 12 degrees: what is
@@ -475,40 +413,195 @@ static bool is_sharp(const csg_polygon *polygon)
     return false;
 }
 
-csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *p, const csg_cell_box *box,
-                                    const csg_polygon *polygon, csg_vec3 *out)
+/* ---- apexes, step by step ----------------------------------------------------------------------
+ */
+
+/* What a search does next: sheets come closer to where they meet; that place is looked at; Newton's
+ * steps lead from the middle of the polygon onto the surface. */
+typedef enum stage { MEETING, CHECKING, LANDING, FOUND } stage;
+
+typedef struct apex_way {
+    csg_apex_search *search;
+    stage stage;
+    int step; /* of the stage */
+    sheets sheets;
+    csg_vec3 at, before;
+    double slope;
+    csg_apex_kind otherwise; /* where there is no meeting */
+} apex_way;
+
+/* Onto the surface by Newton's steps from the middle, as far as they stay in the cell. */
+static void land(apex_way *a)
 {
-    csg_vec3 middle = middle_of(polygon), mean, at = middle;
+    const csg_cell_box *box = &a->search->box;
+    a->stage = LANDING;
+    a->step = 0;
+    a->search->kind = a->otherwise;
+    a->at = keep_within(box, middle_of(a->search->polygon), MARGIN * box->cell);
+}
+
+static void check(apex_way *a, csg_vec3 kept)
+{
+    a->stage = CHECKING;
+    a->at = kept;
+}
+
+/* The place in which sheets met, kept within the cell. */
+static void check_meeting(apex_way *a)
+{
+    const csg_cell_box *box = &a->search->box;
+    csg_vec3 kept = keep_within(box, a->at, MARGIN * box->cell);
+    if (csg_vec3_norm(csg_vec3_sub(kept, a->at)) <= MARGIN * box->cell)
+        check(a, kept);
+    else
+        land(a);
+}
+
+/* Goes on to meet, where there is more to learn and the place is near the cell. */
+static void approach_meeting(apex_way *a)
+{
+    const csg_cell_box *box = &a->search->box;
+    if (a->step == STEPS || has_arrived(box, a->step - 1, a->before, a->at))
+        check_meeting(a);
+    else if (!(way_out(box, a->at) < box->cell))
+        land(a);
+}
+
+static void set_out_to_meet(apex_way *a, int creases)
+{
+    const csg_polygon *polygon = a->search->polygon;
+    csg_vec3 sum = {0, 0, 0};
+    for (int i = 0; i < polygon->count; i++)
+        if (polygon->is_crease[i])
+            sum = csg_vec3_add(sum, polygon->point[i].at);
+    a->at = csg_vec3_scale(sum, 1.0 / creases);
+    a->stage = MEETING;
+    a->otherwise = is_sharp(polygon) ? CSG_APEX_FAILED : CSG_APEX_SMOOTH;
+    if (gather_sheets(polygon, creases, &a->sheets) &&
+        meet(a->sheets.plane, a->sheets.count, &a->at))
+        approach_meeting(a);
+    else
+        land(a);
+}
+
+/* Around a tip there are no creases: every vertex has a tangent plane of its own. */
+static void set_out_to_tip(apex_way *a)
+{
+    const csg_cell_box *box = &a->search->box;
+    const csg_polygon *polygon = a->search->polygon;
+    plane planes[CSG_POLYGON_MOST];
+    int count = 0;
+    for (int i = 0; i < polygon->count; i++)
+        if (!polygon->is_crease[i])
+            planes[count++] = csg_plane_of(polygon->point[i].at, 0, polygon->point[i].gradient);
+    csg_vec3 at = middle_of(polygon);
+    if (meet_many(planes, count, &at) && !(way_out(box, at) > 0))
+        check(a, keep_within(box, at, MARGIN * box->cell));
+    else
+        land(a);
+}
+
+static void set_out_in_cell(apex_way *a, csg_apex_search *search)
+{
+    const csg_polygon *polygon = search->polygon;
+    csg_vec3 mean;
     int creases = 0;
-    double slope = 0;
+    *a = (apex_way){.search = search, .otherwise = CSG_APEX_SMOOTH};
     for (int i = 0; i < polygon->count; i++) {
         creases += polygon->is_crease[i];
         if (!polygon->is_crease[i])
-            slope = fmax(slope, csg_vec3_norm(polygon->point[i].gradient));
+            a->slope = fmax(a->slope, csg_vec3_norm(polygon->point[i].gradient));
     }
-    if (creases >= 2) {
-        sheets s;
-        csg_vec3 sum = {0, 0, 0};
-        for (int i = 0; i < polygon->count; i++)
-            if (polygon->is_crease[i])
-                sum = csg_vec3_add(sum, polygon->point[i].at);
-        at = csg_vec3_scale(sum, 1.0 / creases);
-        if (gather_sheets(polygon, creases, &s) && come_closer(p, box, &s, &at)) {
-            csg_vec3 kept = keep_within(box, at, MARGIN * box->cell);
-            if (csg_vec3_norm(csg_vec3_sub(kept, at)) <= MARGIN * box->cell &&
-                is_zero_at(p, box, kept, slope)) {
-                *out = kept;
-                return CSG_APEX_CREASE;
-            }
+    if (creases >= 2)
+        set_out_to_meet(a, creases);
+    else if (least_cosine(polygon, &mean) < ONE_POLYGON)
+        set_out_to_tip(a);
+    else
+        land(a);
+}
+
+/* Where the search wants to look: how many places. */
+static int place_looks_of(const apex_way *a, csg_vec3 *q)
+{
+    if (a->stage == MEETING) {
+        place_looks(&a->search->box, &a->sheets, a->at, OFF[a->step], -1, q);
+        return a->sheets.count;
+    }
+    *q = a->at;
+    return a->stage == FOUND ? 0 : 1;
+}
+
+static void take_meeting(apex_way *a, const csg_vec3 *q, const double *f, csg_vec3 *g)
+{
+    a->before = a->at;
+    take_looks(&a->sheets, q, f, g, -1);
+    a->step++;
+    if (meet(a->sheets.plane, a->sheets.count, &a->at))
+        approach_meeting(a);
+    else
+        land(a);
+}
+
+static void take_landing(const csg_sheet_probe *p, apex_way *a, double f, csg_vec3 g)
+{
+    enum { NEWTON = 3 };
+    const csg_cell_box *box = &a->search->box;
+    double square = csg_vec3_dot(g, g), reach = 0.5 * box->cell;
+    a->stage = FOUND;
+    if (!(square > 1e-12) || fabs(f) <= p->noise)
+        return;
+    csg_vec3 move = csg_vec3_scale(g, -f / square);
+    double length = csg_vec3_norm(move);
+    if (length > reach)
+        move = csg_vec3_scale(move, reach / length);
+    a->at = keep_within(box, csg_vec3_add(a->at, move), MARGIN * box->cell);
+    if (++a->step < NEWTON)
+        a->stage = LANDING;
+}
+
+static void take_looks_of(const csg_sheet_probe *p, apex_way *a, const csg_vec3 *q, const double *f,
+                          csg_vec3 *g)
+{
+    if (a->stage == MEETING) {
+        take_meeting(a, q, f, g);
+    } else if (a->stage == LANDING) {
+        take_landing(p, a, *f, *g);
+    } else if (is_zero(p, &a->search->box, *f, a->slope)) {
+        a->stage = FOUND;
+        a->search->kind = CSG_APEX_CREASE;
+    } else {
+        land(a);
+    }
+}
+
+static void find_some_apexes(csg_sheet_probe *p, csg_apex_search *searches, int count)
+{
+    apex_way ways[CSG_MOST_APEXES];
+    csg_vec3 q[MOST_ASKED], g[MOST_ASKED];
+    double f[MOST_ASKED];
+    for (int i = 0; i < count; i++)
+        set_out_in_cell(&ways[i], &searches[i]);
+    for (int looks = 1; looks > 0;) {
+        int number[CSG_MOST_APEXES];
+        looks = 0;
+        for (int i = 0; i < count; i++) {
+            number[i] = place_looks_of(&ways[i], &q[looks]);
+            looks += number[i];
         }
-        *out = onto_surface(p, box, middle);
-        return is_sharp(polygon) ? CSG_APEX_FAILED : CSG_APEX_SMOOTH;
+        if (looks)
+            ask(p, q, looks, f, g);
+        for (int i = 0, first = 0; i < count; first += number[i++])
+            if (number[i])
+                take_looks_of(p, &ways[i], &q[first], &f[first], &g[first]);
     }
-    bool turns = least_cosine(polygon, &mean) < ONE_POLYGON;
-    if (turns && find_tip(p, box, polygon, slope, &at)) {
-        *out = at;
-        return CSG_APEX_CREASE;
+    for (int i = 0; i < count; i++)
+        searches[i].at = rounded(ways[i].at);
+}
+
+void csg_polygons_find_apexes(csg_sheet_probe *p, csg_apex_search *searches, int count)
+{
+    for (int done = 0; done < count; done += CSG_MOST_APEXES) {
+        int rest = count - done;
+        find_some_apexes(p, searches + done, rest < CSG_MOST_APEXES ? rest : CSG_MOST_APEXES);
     }
-    *out = onto_surface(p, box, middle);
-    return CSG_APEX_SMOOTH;
 }

@@ -34,10 +34,13 @@ typedef struct csg_surface_point {
 } csg_surface_point;
 
 /* A face, two points of its border, and, found between them, whether a crease goes through the face
- * and where: within it, with a margin to its sides. */
+ * and where, as floats: within it, with a margin to its sides. */
 typedef struct csg_face_crease {
     csg_cell_box face;
     csg_surface_point ends[2];
+    bool is_wedge; /* both points are on one edge of the face, which a wedge pokes through: there is
+                      a place always, where its sheets meet, else where the surface is beside the
+                      edge */
     bool is_there;
     csg_vec3 at;
 } csg_face_crease;
@@ -45,11 +48,6 @@ typedef struct csg_face_crease {
 enum { CSG_MOST_FACES = 36 }; /* at once: those of a brick */
 
 void csg_sheets_meet_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count);
-
-/* A place in the face where both points are on one edge of it, which a wedge pokes through: where
- * its sheets meet, else where the surface is beside the edge. */
-csg_vec3 csg_wedge_in_face(csg_sheet_probe *probe, const csg_cell_box *face,
-                           const csg_surface_point ends[2]);
 
 /* A loop on the faces of a cell: vertices on its edges, which have gradients, and crease points
  * within its faces, which have none. */
@@ -66,10 +64,18 @@ typedef enum csg_apex_kind {
     CSG_APEX_FAILED  /* sheets should meet, but not here: it is only near the surface */
 } csg_apex_kind;
 
-/* The point that a polygon's triangles meet in: strictly within the cell, so that the fan around it
- * meets neither itself nor what is in other cells. */
-csg_apex_kind csg_polygon_find_apex(csg_sheet_probe *probe, const csg_cell_box *box,
-                                    const csg_polygon *polygon, csg_vec3 *out);
+/* A polygon in a cell, and, found for it, the point that its triangles meet in, as floats: strictly
+ * within the cell, so that the fan around it meets neither itself nor what is in other cells. */
+typedef struct csg_apex_search {
+    csg_cell_box box;
+    const csg_polygon *polygon;
+    csg_apex_kind kind;
+    csg_vec3 at;
+} csg_apex_search;
+
+enum { CSG_MOST_APEXES = 8 }; /* at once; of more, eight by eight */
+
+void csg_polygons_find_apexes(csg_sheet_probe *probe, csg_apex_search *searches, int count);
 
 /* Cosine of the angle between two gradients; 1 where one is 0. */
 double csg_gradients_cosine(csg_vec3 a, csg_vec3 b);

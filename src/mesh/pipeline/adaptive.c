@@ -107,6 +107,7 @@ static csgm_status create_judge(adaptive *a)
     for (uint32_t i = 0; i < a->workers.count; i++) {
         a->judge.rooms[i].scratch = a->workers.each[i].scratch;
         a->judge.rooms[i].scratch_floats = a->workers.scratch_floats;
+        csg_arena_init(&a->judge.rooms[i].kept, memory);
     }
     return CSGM_OK;
 }
@@ -269,6 +270,8 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
 static void release(adaptive *a)
 {
     csg_bricks_destroy(&a->bricks);
+    for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++)
+        csg_arena_reset(&a->judge.rooms[i].kept);
     csg_memory_release(&a->input.context->memory, a->judge.rooms,
                        a->workers.count * sizeof(csg_judge_room));
     csg_mesh_workers_release(&a->workers);

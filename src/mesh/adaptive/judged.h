@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ * What the judge found on the way to his verdict of a brick, kept for the mesh of its leaves: it
+ * would find the same. Vertices are floats already, as the mesh has them.
+ */
+#ifndef CSG_MESH_ADAPTIVE_JUDGED_H
+#define CSG_MESH_ADAPTIVE_JUDGED_H
+
+#include "mesh/adaptive/pierce.h"
+
+enum {
+    CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS, /* of edges, of faces: csg_brick_slot */
+    CSG_JUDGED_MOST_ROOTS = 2 * CSG_BRICK_EDGES,
+    CSG_JUDGED_MOST_APEXES = 32
+};
+
+/* The slot of an edge, or of a face, along or across an axis, by its lower (lowest) point. */
+static inline unsigned csg_brick_slot(int axis, const unsigned low[3])
+{
+    enum { N = CSG_BRICK_SAMPLES };
+    return (unsigned)axis * CSG_BRICK_POINTS + low[0] + N * (low[1] + N * low[2]);
+}
+
+static inline int csg_slot_place(unsigned slot, unsigned low[3])
+{
+    enum { N = CSG_BRICK_SAMPLES };
+    low[0] = slot % N, low[1] = slot / N % N, low[2] = slot % CSG_BRICK_POINTS / (N * N);
+    return (int)(slot / CSG_BRICK_POINTS);
+}
+
+/* A vertex on an edge; quarters: its span's middle, in quarters of the edge: 2, or 1 and 3 of the
+ * halves of a pierced one. */
+typedef struct csg_judged_root {
+    float at[3], gradient[3];
+    uint8_t slot, quarters;
+} csg_judged_root;
+
+/* A vertex in a face. */
+typedef struct csg_judged_crease {
+    float at[3];
+    uint8_t slot;
+} csg_judged_crease;
+
+/* The point in the middle of a fan, as long as the polygon has so many vertices in faces. */
+typedef struct csg_judged_apex {
+    float at[3];
+    uint8_t cell, polygon, creases;
+    uint8_t kind; /* a csg_apex_kind */
+} csg_judged_apex;
+
+typedef struct csg_judged {
+    uint8_t root_count, crease_count, apex_count;
+    const csg_judged_root *roots;
+    const csg_judged_crease *creases;
+    const csg_judged_apex *apexes;
+    const csg_pierced *pierced; /* NULL: no edge is */
+} csg_judged;
+
+/* A copy in an arena. NULL: out of memory. */
+const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged);
+
+/* Of a brick whose judge kept nothing, because no leaf is left of it, there is nothing. */
+const csg_pierced *csg_judged_pierced(const csg_judged *judged);
+/* NULL: no crease goes through that face. */
+const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot);
+/* NULL: it was not cut that way, or had other vertices. */
+const csg_judged_apex *csg_judged_apex_of(const csg_judged *judged, unsigned cell, unsigned polygon,
+                                          unsigned creases);
+
+#endif

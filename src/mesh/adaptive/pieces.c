@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ * Triangles and points of them; see pieces.h.
+ */
+#include "mesh/adaptive/pieces.h"
+
+#include <math.h>
+
+/* Points asked at once; of one piece there are fewer. */
+enum { MOST_OF_ONE = 4 * CSG_POLYGON_MOST, MOST = 4 * MOST_OF_ONE };
+
+/* Cosine between the normals of a triangle and of its sheet: below it, the triangle looks away. */
+static const double LOOKS_AWAY = 0.17;
+
+typedef struct points {
+    float x[MOST + CSG_LANES], y[MOST + CSG_LANES], z[MOST + CSG_LANES], f[MOST + CSG_LANES];
+    int count;
+} points;
+
+int csg_piece_triangle_count(const csg_piece *p)
+{
+    return p->is_fan ? p->polygon.count : p->polygon.count - 2;
+}
+
+void csg_piece_triangle(const csg_piece *p, int t, int corner[3], csg_vec3 at[3])
+{
+    const int around[3] = {-1, t, (t + 1) % p->polygon.count};
+    for (int k = 0; k < 3; k++) {
+        corner[k] = p->is_fan ? around[k] : p->cut[3 * t + k];
+        at[k] = corner[k] < 0 ? p->apex : p->polygon.point[corner[k]].at;
+    }
+}
+
+bool csg_piece_cut_plain(csg_piece *piece)
+{
+    const csg_polygon *p = &piece->polygon;
+    uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES];
+    piece->is_fan = false;
+    if (p->count > CSG_CELL_MOST_TRIANGLES + 2)
+        return false; /* joined through faces: no loop of the tables, whose cuts meet nowhere */
+    for (int i = 0; i < p->count; i++)
+        edge[i] = (uint8_t)p->vertex[i];
+    if (!csg_cell_cut(edge, p->count, triangles))
+        return false;
+    for (int i = 0; i < 3 * (p->count - 2); i++) {
+        int at = 0;
+        while (at < p->count - 1 && p->vertex[at] != triangles[i])
+            at++;
+        piece->cut[i] = (uint8_t)at;
+    }
+    return true;
+}
+
+/* ---- distances ---------------------------------------------------------------------------------
+ */
+
+/* The gradient that a triangle's sheet has: of a vertex of it that is on no crease. */
+static csg_vec3 gradient_of(const csg_polygon *p, const int corner[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (corner[k] >= 0 && !p->is_crease[corner[k]])
+            return p->point[corner[k]].gradient;
+    return csg_vec3_make(0, 0, 0);
+}
+
+static double slope_of(const csg_polygon *p)
+{
+    double slope = INFINITY;
+    for (int i = 0; i < p->count; i++)
+        if (!p->is_crease[i])
+            slope = fmin(slope, csg_vec3_norm(p->point[i].gradient));
+    return slope;
+}
+
+static void add_point(points *q, csg_vec3 at)
+{
+    q->x[q->count] = (float)at.x, q->y[q->count] = (float)at.y, q->z[q->count] = (float)at.z;
+    q->count++;
+}
+
+/* False: a triangle looks inwards. */
+static bool add_points(points *q, const csg_piece *piece, double least_height)
+{
+    for (int t = 0; t < csg_piece_triangle_count(piece); t++) {
+        int corner[3];
+        csg_vec3 v[3];
+        csg_piece_triangle(piece, t, corner, v);
+        csg_vec3 a = v[0], b = v[1], c = v[2], g = gradient_of(&piece->polygon, corner);
+        csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
+        csg_vec3 longest = csg_vec3_sub(b, c);
+        double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
+        if (height > least_height && -csg_gradients_cosine(cross, g) < LOOKS_AWAY)
+            return false;
+        add_point(q, csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3));
+        add_point(q, csg_vec3_scale(csg_vec3_add(a, b), 0.5));
+        add_point(q, csg_vec3_scale(csg_vec3_add(b, c), 0.5));
+        if (!piece->is_fan) /* the next triangle of a fan has it */
+            add_point(q, csg_vec3_scale(csg_vec3_add(c, a), 0.5));
+    }
+    return true;
+}
+
+static void ask(csg_sheet_probe *probe, points *q)
+{
+    for (int i = q->count; i % CSG_LANES; i++)
+        q->x[i] = q->x[0], q->y[i] = q->y[0], q->z[i] = q->z[0];
+    if (q->count)
+        probe->kernel->values(probe->tape, q->x, q->y, q->z, (size_t)q->count, q->f, probe->scratch,
+                              probe->scratch_floats);
+    probe->evaluations += (uint64_t)q->count;
+}
+
+/* As many pieces as there is room for, from the first on. */
+static int find_some(csg_sheet_probe *probe, csg_piece *const *pieces, int count,
+                     double least_height)
+{
+    enum { PIECES = 64 };
+    points q;
+    int end[PIECES], n = 0;
+    q.count = 0;
+    for (; n < count && n < PIECES && q.count + MOST_OF_ONE <= MOST; n++) {
+        int first = q.count;
+        bool looks_out = add_points(&q, pieces[n], least_height);
+        pieces[n]->distance = looks_out ? 0 : INFINITY;
+        if (!looks_out)
+            q.count = first;
+        end[n] = q.count;
+    }
+    ask(probe, &q);
+    for (int k = 0, i = 0; k < n; k++) {
+        double worst = 0, slope = slope_of(&pieces[k]->polygon);
+        for (; i < end[k]; i++)
+            worst = fmax(worst, fabs((double)q.f[i]));
+        double distance = slope > 0 ? fmax(worst - 4 * probe->noise, 0) / slope : INFINITY;
+        pieces[k]->distance = fmax(pieces[k]->distance, distance);
+    }
+    return n;
+}
+
+void csg_pieces_find_distances(csg_sheet_probe *probe, csg_piece *const *pieces, int count,
+                               double least_height)
+{
+    for (int done = 0; done < count;)
+        done += find_some(probe, pieces + done, count - done, least_height);
+}
+
+/* ---- apart -------------------------------------------------------------------------------------
+ */
+
+static bool is_beside(const csg_piece *p, const csg_piece *other, double margin)
+{
+    for (int t = 0; t < csg_piece_triangle_count(p); t++) {
+        int corner[3];
+        csg_vec3 v[3];
+        csg_piece_triangle(p, t, corner, v);
+        csg_vec3 n =
+            csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
+        double low = INFINITY, high = -INFINITY;
+        for (int i = other->is_fan ? -1 : 0; i < other->polygon.count; i++) {
+            csg_vec3 at = i < 0 ? other->apex : other->polygon.point[i].at;
+            double d = csg_vec3_dot(n, csg_vec3_sub(at, v[0]));
+            low = fmin(low, d);
+            high = fmax(high, d);
+        }
+        if (!(low > margin || high < -margin))
+            return false;
+    }
+    return true;
+}
+
+bool csg_pieces_are_apart(const csg_piece *one, const csg_piece *other, double margin)
+{
+    return is_beside(one, other, margin) || is_beside(other, one, margin);
+}
