@@ -11,7 +11,7 @@
 #include "base/mesh_codes.h"
 #include "base/pool.h"
 #include "base/trace.h"
-#include "mesh/adaptive/extract.h"
+#include "mesh/adaptive/borders.h"
 #include "mesh/pipeline/workers.h"
 
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
@@ -112,32 +112,19 @@ static csgm_status create_judge(adaptive *a)
     return CSGM_OK;
 }
 
-/* Until no border cell has several polygons. */
+/* Until every border is simple, and near the surface. */
 static csgm_status refine(adaptive *a)
 {
-    csgm_status status = csg_bricks_refine(&a->bricks);
-    bool any = status == CSGM_OK;
-    while (status == CSGM_OK && any) {
-        status = csg_extraction_check_borders(&a->extraction, &any);
-        if (status == CSGM_OK && any)
-            status = csg_bricks_refine(&a->bricks);
+    csgm_status status = CSGM_OK;
+    for (bool any = true; any && status == CSGM_OK;) {
+        status = csg_bricks_refine(&a->bricks);
+        if (status == CSGM_OK)
+            status = csg_borders_check_simple(&a->extraction, &any);
+        if (status == CSGM_OK && !any)
+            status = csg_borders_check_near(&a->extraction, &any);
     }
     a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
-}
-
-/* The mesh. What its leaves beside finer ones look like is known only then: those that are too far
- * from the surface are divided, and it is made again. */
-static csgm_status extract(adaptive *a)
-{
-    bool any = true;
-    csgm_status status = CSGM_OK;
-    while (status == CSGM_OK && any) {
-        status = csg_extract(&a->extraction, &any);
-        if (status == CSGM_OK && any)
-            status = refine(a);
-    }
-    return status;
 }
 
 /* ---- looks ------------------------------------------------------------------------------------- */
@@ -295,7 +282,7 @@ static csgm_status make_mesh(adaptive *a)
     csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK)
-        status = extract(a);
+        status = csg_extract(&a->extraction);
     if (status == CSGM_OK) {
         a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
         status = paint(a);

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT
+ * Bricks that finer ones touch; see borders.h.
+ */
+#include "mesh/adaptive/borders.h"
+
+#include <string.h>
+
+#include "base/trace.h"
+#include "mesh/adaptive/cells.h"
+
+/* Wants cells divided, as long as there are smaller ones. */
+static void want_divided(csg_cell_loop *w, const csg_shell *s, unsigned cells)
+{
+    csg_bricks *b = w->x->bricks;
+    csg_brick *brick = &b->items[s->number];
+    if (brick->level == b->finest || !cells)
+        return;
+    brick->wanted |= (uint8_t)cells;
+    atomic_store(&w->any, true);
+}
+
+/* ---- simple ------------------------------------------------------------------------------------
+ */
+
+static bool want_simple(csg_cell_at_hand *c)
+{
+    unsigned cell = 1u << csg_cells_bit(c);
+    if (!c->is_whole && (c->polygons.count > 1 || c->shell->brick->several & cell ||
+                         csg_cell_polygons_are_mixed(&c->polygons)))
+        want_divided(c->loop, c->shell, cell);
+    return true;
+}
+
+static bool visit_simple(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
+{
+    want_divided(w, s, s->pierced_beyond & (uint8_t)~s->brick->divided);
+    return !s->has_finer || csg_cells_each(w, worker, s, want_simple);
+}
+
+/* ---- near --------------------------------------------------------------------------------------
+ */
+
+static bool set_border_aside(csg_cell_at_hand *c)
+{
+    bool done = true;
+    const csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
+    for (unsigned i = 0; c->is_border && i < c->polygons.count && done; i++)
+        done = room->piece_count == CSG_JUDGED_MOST_APEXES || csg_cells_set_aside(c, i);
+    return done;
+}
+
+/* Fans beside finer leaves: the judge has not seen them. */
+static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
+{
+    csg_judge_room *room = &w->x->judge->rooms[worker];
+    csg_piece *fans[CSG_JUDGED_MOST_APEXES];
+    csg_tape tape;
+    unsigned far = 0;
+    room->piece_count = 0;
+    if (!s->has_finer || s->brick->level == w->x->bricks->finest)
+        return true;
+    if (!csg_cells_each(w, worker, s, set_border_aside))
+        return false;
+    csg_cells_find_apexes(w, worker, s);
+    for (int i = 0; i < room->piece_count; i++)
+        fans[i] = &room->pieces[i];
+    csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
+    csg_pieces_find_distances(&probe, fans, room->piece_count, w->x->judge->tolerance);
+    room->evaluations += probe.evaluations;
+    for (int i = 0; i < room->piece_count; i++)
+        far |= (unsigned)(fans[i]->distance > w->x->farthest) << fans[i]->cell;
+    want_divided(w, s, far);
+    return true;
+}
+
+/* ---- which ------------------------------------------------------------------------------------
+ */
+
+/* Marks what a new brick, in the place of a cell, changes the border of: itself, and the bricks
+ * around that cell. */
+static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
+{
+    const csg_brick *brick = &b->items[number];
+    changed[number] = 1;
+    if (brick->level <= b->options.coarse)
+        return;
+    for (unsigned part = 0; part < CSG_OCTANTS; part++) {
+        uint32_t at[3];
+        csg_brick_beside(brick, part, at);
+        uint32_t found = csg_bricks_find(b, brick->level - 1u, at);
+        if (found != CSG_BRICK_NONE)
+            changed[found] = 1;
+    }
+}
+
+static bool has_leaves(const csg_brick *brick)
+{
+    return brick->divided != CSG_BRICK_ALL_CELLS;
+}
+
+/* A byte per brick: 1 where new bricks, from `first` on, changed its border. NULL: out of memory.
+ */
+static uint8_t *find_changed(const csg_extraction *x, size_t first)
+{
+    const csg_bricks *b = x->bricks;
+    uint8_t *changed = csg_memory_alloc(&x->context->memory, b->count);
+    if (!changed)
+        return NULL;
+    memset(changed, 0, b->count);
+    for (size_t i = first; i < b->count; i++)
+        mark_changed(b, i, changed);
+    return changed;
+}
+
+/* Marks, by a second bit, the bricks that the leaves of a marked one share edges and faces with:
+ * those around it, and those in the place of cells of all of these. */
+static void mark_around(const csg_bricks *b, size_t number, uint8_t *changed)
+{
+    const csg_brick *brick = &b->items[number];
+    for (int part = 0; part < 27; part++) {
+        const int step[3] = {part % 3 - 1, part / 3 % 3 - 1, part / 9 - 1};
+        uint32_t at[3];
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = brick->at[axis] + (uint32_t)step[axis];
+        uint32_t found = csg_bricks_find(b, brick->level, at);
+        if (found == CSG_BRICK_NONE)
+            continue;
+        changed[found] |= 2;
+        for (unsigned rest = b->items[found].divided; rest; rest &= rest - 1) {
+            unsigned octant = (unsigned)__builtin_ctz(rest);
+            uint32_t below[3];
+            for (int axis = 0; axis < 3; axis++)
+                below[axis] = 2 * at[axis] + (octant >> axis & 1);
+            uint32_t finer = csg_bricks_find(b, brick->level + 1u, below);
+            if (finer != CSG_BRICK_NONE)
+                changed[finer] |= 2;
+        }
+    }
+}
+
+/* Lists the bricks that have leaves and one of these bits. */
+static csgm_status list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t bit)
+{
+    const csg_bricks *b = w->x->bricks;
+    w->leaf_count = 0;
+    for (size_t i = 0; i < b->count; i++)
+        if (marks[i] & bit && has_leaves(&b->items[i]) && !csg_cell_loop_list(w, (uint32_t)i))
+            return csg_context_no_memory(w->x->context);
+    return CSGM_OK;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------------
+ */
+
+csgm_status csg_borders_check_simple(csg_extraction *x, bool *any)
+{
+    csg_cell_loop w;
+    csgm_status status = csg_cell_loop_begin(&w, x);
+    uint8_t *changed = status == CSGM_OK ? find_changed(x, x->simple) : NULL;
+    if (status == CSGM_OK)
+        status = changed ? list_marked(&w, changed, 1) : csg_context_no_memory(x->context);
+    csg_memory_release(&x->context->memory, changed, changed ? x->bricks->count : 0);
+    x->simple = x->bricks->count;
+    if (status == CSGM_OK)
+        status = csg_cell_loop_run(&w, visit_simple, x->bricks->reported, 0);
+    *any = atomic_load(&w.any);
+    csg_cell_loop_end(&w);
+    return status;
+}
+
+csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
+{
+    CSG_ZONE(x->context, "borders");
+    csg_cell_loop w;
+    csg_bricks *b = x->bricks;
+    csgm_status status = csg_cell_loop_begin(&w, x);
+    uint8_t *marks = status == CSGM_OK ? find_changed(x, x->near) : NULL;
+    if (status == CSGM_OK && !marks)
+        status = csg_context_no_memory(x->context);
+    for (size_t i = 0; status == CSGM_OK && i < b->count; i++)
+        if (marks[i] & 1 && has_leaves(&b->items[i]))
+            mark_around(b, i, marks);
+    if (status == CSGM_OK)
+        status = list_marked(&w, marks, 2);
+    if (status == CSGM_OK)
+        status = csg_cells_find_vertices(&w, b->reported, 0);
+    if (status == CSGM_OK)
+        status = list_marked(&w, marks, 1);
+    if (status == CSGM_OK)
+        status = csg_cell_loop_run(&w, visit_near, b->reported, 0);
+    x->near = b->count;
+    *any = atomic_load(&w.any);
+    csg_memory_release(&x->context->memory, marks, marks ? b->count : 0);
+    csg_cell_loop_end(&w);
+    return status;
+}

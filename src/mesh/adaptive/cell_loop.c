@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT
+ * Items of a few bricks each; see cell_loop.h.
+ */
+#include "mesh/adaptive/cell_loop.h"
+
+#include <string.h>
+
+#include "base/mesh_codes.h"
+#include "base/pool.h"
+
+enum { BRICKS_PER_ITEM = 16 };
+
+static size_t item_count(const csg_cell_loop *w)
+{
+    return (w->leaf_count + BRICKS_PER_ITEM - 1) / BRICKS_PER_ITEM;
+}
+
+/* ---- places ------------------------------------------------------------------------------------
+ */
+
+uint64_t csg_cells_place(const csg_bricks *b, const csg_brick *brick, const unsigned cell[3],
+                         unsigned local)
+{
+    unsigned q[3];
+    uint64_t place = 0, size = csg_bricks_cell(b, brick->level);
+    csg_local_place(local, q);
+    for (int axis = 0; axis < 3; axis++)
+        place |= (2 * (uint64_t)csg_brick_point(b, brick, axis, cell[axis]) + q[axis] * size / 2)
+                 << (21 * axis);
+    return place;
+}
+
+static uint64_t hash_of_place(uint64_t place)
+{
+    return csg_hash_word(CSG_HASH_START, place);
+}
+
+uint32_t csg_cells_find_vertex(const csg_cell_loop *w, uint64_t place)
+{
+    size_t slot;
+    uint32_t found = csg_table_first(&w->index, hash_of_place(place), &slot);
+    while (found != CSG_TABLE_NONE && w->vertices[found].place != place)
+        found = csg_table_next(&w->index, &slot);
+    return found;
+}
+
+/* ---- what is made ------------------------------------------------------------------------------
+ */
+
+bool csg_cells_add_vertex(csg_cell_loop *w, uint32_t worker, const csg_placed_vertex *vertex)
+{
+    csg_cell_worker *self = &w->workers[worker];
+    if (!csg_memory_reserve(&w->x->context->memory, (void **)&self->vertices, &self->capacity,
+                            self->count + 1, sizeof *vertex))
+        return csg_mesh_stop_without_memory(w->x->watch);
+    self->vertices[self->count++] = *vertex;
+    return true;
+}
+
+bool csg_cells_add_triangle(csg_cell_loop *w, uint32_t worker, uint32_t a, uint32_t b, uint32_t c)
+{
+    csg_cell_worker *self = &w->workers[worker];
+    if (!csg_memory_reserve(&w->x->context->memory, (void **)&self->corners, &self->corner_capacity,
+                            self->corner_count + 3, sizeof a))
+        return csg_mesh_stop_without_memory(w->x->watch);
+    self->corners[self->corner_count++] = a;
+    self->corners[self->corner_count++] = b;
+    self->corners[self->corner_count++] = c;
+    return true;
+}
+
+/* ---- loops -------------------------------------------------------------------------------------
+ */
+
+static bool visit_item(void *user, uint32_t worker_index, size_t item)
+{
+    csg_cell_loop *w = user;
+    csg_cell_worker *self = &w->workers[worker_index];
+    csg_shell shell;
+    if (csg_mesh_should_stop(w->x->watch))
+        return false;
+    self->first = self->count;
+    w->segments[item] = (csg_cell_segment){
+        .worker = worker_index, .first = self->count, .first_corner = self->corner_count};
+    size_t end = (item + 1) * BRICKS_PER_ITEM;
+    for (size_t i = item * BRICKS_PER_ITEM; i < end && i < w->leaf_count; i++) {
+        csg_shell_make(&shell, w->x->bricks, w->leaves[i]);
+        if (!w->visit(w, worker_index, &shell))
+            return false;
+    }
+    w->segments[item].count = self->count - w->segments[item].first;
+    w->segments[item].corner_count = self->corner_count - w->segments[item].first_corner;
+    return true;
+}
+
+static void report(void *user, size_t done, size_t count)
+{
+    csg_cell_loop *w = user;
+    csg_mesh_report_progress(w->x->watch, w->before + w->amount * ((double)done / (double)count));
+}
+
+/* Vertices of all items behind those that are there, and corners, in the order of the leaves. */
+static bool join_items(csg_cell_loop *w)
+{
+    csg_memory *memory = &w->x->context->memory;
+    size_t vertices = 0, corners = 0;
+    for (size_t i = 0; i < item_count(w); i++) {
+        vertices += w->segments[i].count;
+        corners += w->segments[i].corner_count;
+    }
+    if (!csg_memory_reserve(memory, (void **)&w->vertices, &w->capacity, w->count + vertices + 1,
+                            sizeof *w->vertices))
+        return false;
+    if (corners) {
+        w->corners = csg_memory_alloc(memory, corners * sizeof *w->corners);
+        w->corner_count = w->corners ? corners : 0;
+    }
+    if (corners && !w->corners)
+        return false;
+    size_t at = 0;
+    for (size_t i = 0; i < item_count(w); i++) {
+        const csg_cell_segment *s = &w->segments[i];
+        const csg_cell_worker *from = &w->workers[s->worker];
+        for (size_t k = 0; k < s->corner_count; k++) {
+            uint32_t v = from->corners[s->first_corner + k];
+            w->corners[at++] = v & CSG_OWN_VERTEX ? (uint32_t)w->count + (v & ~CSG_OWN_VERTEX) : v;
+        }
+        if (s->count)
+            memcpy(w->vertices + w->count, from->vertices + s->first,
+                   s->count * sizeof *w->vertices);
+        w->count += s->count;
+    }
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        w->workers[i].count = w->workers[i].corner_count = 0;
+    return true;
+}
+
+csgm_status csg_cell_loop_enter(csg_cell_loop *w)
+{
+    csg_table_release(&w->index);
+    csg_table_init(&w->index, &w->x->context->memory);
+    if (!csg_table_reserve(&w->index, w->count + 1, NULL, NULL))
+        return csg_context_no_memory(w->x->context);
+    for (size_t i = 0; i < w->count; i++)
+        csg_table_add(&w->index, hash_of_place(w->vertices[i].place), (uint32_t)i);
+    return CSGM_OK;
+}
+
+/* Room for what each item makes. False: out of memory. */
+static bool reserve_segments(csg_cell_loop *w)
+{
+    return csg_memory_reserve(&w->x->context->memory, (void **)&w->segments, &w->segment_capacity,
+                              item_count(w) + 1, sizeof *w->segments);
+}
+
+csgm_status csg_cell_loop_run(csg_cell_loop *w, csg_visit_brick *visit, double before,
+                              double amount)
+{
+    w->visit = visit;
+    w->before = before;
+    w->amount = amount;
+    if (!reserve_segments(w))
+        return csg_context_no_memory(w->x->context);
+    bool done = csg_pool_run(w->x->context->pool, item_count(w), visit_item, report, w);
+    if (!done)
+        return atomic_load(&w->broken) ? csg_mesh_report_open(w->x->watch)
+                                       : csg_mesh_why_stopped(w->x->watch);
+    if (!join_items(w))
+        return csg_context_no_memory(w->x->context);
+    if (w->count < CSG_OWN_VERTEX)
+        return CSGM_OK;
+    csg_diag_plain(&w->x->context->diags, CSG_DIAG_TOO_FINE, NULL,
+                   "mesh more coarsely: --quality draft, or -r",
+                   "the mesh would have more than %u vertices", CSG_OWN_VERTEX - 1);
+    return CSGM_ERR_LIMIT;
+}
+
+bool csg_cell_loop_list(csg_cell_loop *w, uint32_t brick)
+{
+    if (!csg_memory_reserve(&w->x->context->memory, (void **)&w->leaves, &w->leaf_capacity,
+                            w->leaf_count + 1, sizeof *w->leaves))
+        return false;
+    w->leaves[w->leaf_count++] = brick;
+    return true;
+}
+
+csgm_status csg_cell_loop_begin(csg_cell_loop *w, csg_extraction *x)
+{
+    csg_memory *memory = &x->context->memory;
+    *w = (csg_cell_loop){.x = x, .worker_count = csg_pool_threads(x->context->pool)};
+    csg_table_init(&w->index, memory);
+    w->workers = csg_memory_alloc(memory, w->worker_count * sizeof *w->workers);
+    if (!w->workers)
+        return csg_context_no_memory(x->context);
+    memset(w->workers, 0, w->worker_count * sizeof *w->workers);
+    return CSGM_OK;
+}
+
+void csg_cell_loop_end(csg_cell_loop *w)
+{
+    csg_memory *memory = &w->x->context->memory;
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        csg_cell_worker *self = &w->workers[i];
+        csg_memory_release(memory, self->vertices, self->capacity * sizeof *self->vertices);
+        csg_memory_release(memory, self->corners, self->corner_capacity * sizeof *self->corners);
+    }
+    csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
+    csg_memory_release(memory, w->leaves, w->leaf_capacity * sizeof *w->leaves);
+    csg_memory_release(memory, w->segments, w->segment_capacity * sizeof *w->segments);
+    csg_memory_release(memory, w->vertices, w->capacity * sizeof *w->vertices);
+    csg_memory_release(memory, w->corners, w->corner_count * sizeof *w->corners);
+    csg_table_release(&w->index);
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: MIT
+ * Edges, faces, polygons; see cells.h. What the judge has found is taken from there; beside
+ * finer leaves the rest is found here.
+ */
+#include "mesh/adaptive/cells.h"
+
+#include <string.h>
+
+enum { E = CSG_BRICK_EDGE };
+
+/* ---- edges -------------------------------------------------------------------------------------
+ */
+
+/* A point of an edge along an axis, both in quarters of the cell at its lower point. */
+static unsigned local_on_edge(int axis, unsigned quarters)
+{
+    static const unsigned stride[3] = {1, 5, 25};
+    return quarters * stride[axis];
+}
+
+static bool is_divided(const csg_shell *s, int axis, const unsigned low[3])
+{
+    return s->has_finer && s->divided_edges[axis][low[2]][low[1]] >> low[0] & 1;
+}
+
+/* Those that the judge has found. */
+static bool visit_edges(csg_cell_loop *w, uint32_t worker_index, const csg_shell *s)
+{
+    const csg_judged *judged = s->brick->judged;
+    for (unsigned i = 0; judged && i < judged->root_count; i++) {
+        const csg_judged_root *root = &judged->roots[i];
+        unsigned low[3];
+        int axis = csg_slot_place(root->slot, low);
+        if (is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
+            continue;
+        csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, s->brick, low,
+                                                        local_on_edge(axis, root->quarters))};
+        memcpy(v.at, root->at, sizeof v.at);
+        memcpy(v.gradient, root->gradient, sizeof v.gradient);
+        if (!csg_cells_add_vertex(w, worker_index, &v))
+            return false;
+    }
+    return true;
+}
+
+/* ---- cells -------------------------------------------------------------------------------------
+ */
+
+bool csg_cells_each(csg_cell_loop *w, uint32_t worker_index, const csg_shell *s,
+                    csg_visit_cell *visit)
+{
+    csg_tape tape;
+    csg_judge_room *room = &w->x->judge->rooms[worker_index];
+    csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
+    const csg_pierced *pierced = csg_judged_pierced(s->brick->judged);
+    unsigned cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
+    for (cells &= ~(unsigned)s->brick->divided; cells; cells &= cells - 1) {
+        unsigned bit = (unsigned)__builtin_ctz(cells);
+        csg_cell_at_hand cell = {.loop = w,
+                                 .worker = worker_index,
+                                 .shell = s,
+                                 .at = {bit % E, bit / E % E, bit / (E * E)},
+                                 .probe = &probe};
+        csg_shell_cell place = csg_shell_cell_of(s, cell.at[0], cell.at[1], cell.at[2]);
+        cell.is_whole = !place.divided;
+        cell.is_border = place.divided & ~place.pierced;
+        csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe, pierced};
+        csg_cell_polygons_make(&cell.polygons, &place, csg_cell_face_is_inside, &faces);
+        if (cell.polygons.count && !visit(&cell))
+            return false;
+    }
+    room->evaluations += probe.evaluations;
+    return true;
+}
+
+static bool has_several(const csg_brick *brick, const unsigned at[3])
+{
+    return brick->several >> csg_brick_cell(at[0], at[1], at[2]) & 1;
+}
+
+static csg_surface_point point_of(const csg_placed_vertex *v)
+{
+    return (csg_surface_point){csg_vec3_from_floats(v->at), csg_vec3_from_floats(v->gradient)};
+}
+
+/* ---- faces -------------------------------------------------------------------------------------
+ */
+
+/* The axis of a whole face by its middle, and its side; -1: of a quarter, which finer leaves have.
+ */
+static int axis_of_face(unsigned local, unsigned *side)
+{
+    unsigned q[3];
+    csg_local_place(local, q);
+    for (int axis = 0; axis < 3; axis++) {
+        if (q[axis] % 2)
+            return -1;
+        if (q[axis] != 2) {
+            *side = q[axis] / 4;
+            return (q[(axis + 1) % 3] == 2 && q[(axis + 2) % 3] == 2) ? axis : -1;
+        }
+    }
+    return -1;
+}
+
+/* Whether the face is for this cell to look into: of two cells the lower one's, of two leaves that
+ * of the lower number, and, but beside a pierced edge, not where one cell has several polygons. */
+static bool is_for(const csg_cell_at_hand *c, int axis, unsigned side, bool pierced)
+{
+    const csg_shell *s = c->shell;
+    unsigned low[3] = {c->at[0], c->at[1], c->at[2]}, next[3] = {c->at[0], c->at[1], c->at[2]};
+    low[axis] += side;
+    if (!pierced && has_several(s->brick, c->at))
+        return false;
+    if (low[axis] > 0 && low[axis] < E) {
+        next[axis] = side ? low[axis] : low[axis] - 1;
+        return side && (pierced || !has_several(s->brick, next));
+    }
+    static const uint32_t stride[3] = {1, 3, 9};
+    uint32_t beyond = s->around[side ? 13 + stride[axis] : 13 - stride[axis]];
+    next[axis] = side ? 0 : E - 1;
+    if (!pierced && beyond != CSG_BRICK_NONE &&
+        has_several(&c->loop->x->bricks->items[beyond], next))
+        return false;
+    return csg_shell_owns_face(s, axis, low);
+}
+
+/* Whether a side of a polygon goes from one edge of the cell to another that nothing finer divides:
+ * then the judge has seen it. */
+static bool is_judged(const csg_cell_at_hand *c, const csg_polygon_side *side)
+{
+    unsigned from[3], to[3];
+    csg_local_place(side->from, from);
+    csg_local_place(side->to, to);
+    bool whole = true;
+    for (int k = 0; k < 3; k++)
+        whole = whole && from[k] % 2 == 0 && to[k] % 2 == 0;
+    return whole || !c->is_border;
+}
+
+/* What is in a face that the judge has not seen. False: nothing, or, which the cell will say, there
+ * is no vertex at one end. */
+static bool find_crease(csg_cell_at_hand *c, const csg_polygon_side *side, int axis, unsigned upper,
+                        float at[3])
+{
+    csg_cell_loop *w = c->loop;
+    const csg_bricks *b = w->x->bricks;
+    const csg_brick *brick = c->shell->brick;
+    csg_face_crease face = {.face = csg_judge_cell_box(b, brick, c->at), .is_wedge = side->pierced};
+    double plane = upper ? face.face.high[axis] : face.face.low[axis];
+    face.face.low[axis] = face.face.high[axis] = plane;
+    unsigned first = side->from < side->to ? side->from : side->to;
+    unsigned last = side->from < side->to ? side->to : side->from;
+    uint32_t a = csg_cells_find_vertex(w, csg_cells_place(b, brick, c->at, first));
+    uint32_t z = csg_cells_find_vertex(w, csg_cells_place(b, brick, c->at, last));
+    if (a == CSG_TABLE_NONE || z == CSG_TABLE_NONE)
+        return false;
+    face.ends[0] = point_of(&w->vertices[a]);
+    face.ends[1] = point_of(&w->vertices[z]);
+    csg_sheets_meet_in_faces(c->probe, &face, 1);
+    csg_vec3_to_floats(at, face.at);
+    return face.is_there;
+}
+
+static bool look_into_faces(csg_cell_at_hand *c)
+{
+    csg_cell_loop *w = c->loop;
+    const csg_brick *brick = c->shell->brick;
+    for (unsigned i = 0; i < c->polygons.first[c->polygons.count]; i++) {
+        const csg_polygon_side *side = &c->polygons.side[i];
+        unsigned upper;
+        int axis = axis_of_face(side->face, &upper);
+        if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
+            (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
+            continue;
+        csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, brick, c->at, side->crease),
+                               .is_crease = true};
+        if (is_judged(c, side)) {
+            unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
+            low[axis] += upper;
+            const csg_judged_crease *found =
+                csg_judged_crease_in(brick->judged, csg_brick_slot(axis, low));
+            if (!found)
+                continue;
+            memcpy(v.at, found->at, sizeof v.at);
+        } else if (!find_crease(c, side, axis, upper, v.at)) {
+            continue;
+        }
+        w->workers[c->worker].creases++;
+        if (!csg_cells_add_vertex(w, c->worker, &v))
+            return false;
+    }
+    return true;
+}
+
+static bool visit_faces(csg_cell_loop *w, uint32_t worker_index, const csg_shell *s)
+{
+    return csg_cells_each(w, worker_index, s, look_into_faces);
+}
+
+csgm_status csg_cells_find_vertices(csg_cell_loop *w, double before, double amount)
+{
+    csgm_status status = csg_cell_loop_run(w, visit_edges, before, 0.5 * amount);
+    if (status == CSGM_OK)
+        status = csg_cell_loop_enter(w);
+    size_t edges = w->count;
+    if (status == CSGM_OK)
+        status = csg_cell_loop_run(w, visit_faces, before + 0.5 * amount, 0.5 * amount);
+    if (status == CSGM_OK && w->count > edges)
+        status = csg_cell_loop_enter(w);
+    return status;
+}
+
+/* ---- polygons ----------------------------------------------------------------------------------
+ */
+
+bool csg_cells_is_missing(const csg_cell_at_hand *c)
+{
+    atomic_store(&c->loop->broken, true);
+    return false;
+}
+
+bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
+{
+    csg_cell_loop *w = c->loop;
+    const csg_brick *brick = c->shell->brick;
+    bool creased = !has_several(brick, c->at);
+    out->count = 0;
+    for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
+        const csg_polygon_side *side = &c->polygons.side[i];
+        uint32_t v =
+            csg_cells_find_vertex(w, csg_cells_place(w->x->bricks, brick, c->at, side->from));
+        if (v == CSG_TABLE_NONE || out->count + 2 > CSG_POLYGON_MOST)
+            return csg_cells_is_missing(c);
+        out->vertex[out->count] = v;
+        out->is_crease[out->count] = false;
+        out->point[out->count++] = point_of(&w->vertices[v]);
+        uint32_t crease = CSG_TABLE_NONE;
+        if (side->pierced || (creased && side->alone && !side->along_edge))
+            crease =
+                csg_cells_find_vertex(w, csg_cells_place(w->x->bricks, brick, c->at, side->crease));
+        if (side->pierced && crease == CSG_TABLE_NONE)
+            return csg_cells_is_missing(c);
+        if (crease == CSG_TABLE_NONE)
+            continue;
+        out->vertex[out->count] = crease;
+        out->is_crease[out->count] = true;
+        out->point[out->count++] = point_of(&w->vertices[crease]);
+    }
+    return true;
+}
+
+csg_piece *csg_cells_set_aside(csg_cell_at_hand *c, unsigned polygon)
+{
+    csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
+    csg_piece *piece = &room->pieces[room->piece_count];
+    piece->cell = (uint8_t)csg_cells_bit(c);
+    piece->is_fan = true;
+    if (!csg_cells_gather(c, polygon, &piece->polygon))
+        return NULL;
+    room->piece_count++;
+    return piece;
+}
+
+void csg_cells_find_apexes(csg_cell_loop *loop, uint32_t worker, const csg_shell *s)
+{
+    csg_judge_room *room = &loop->x->judge->rooms[worker];
+    csg_apex_search searches[CSG_JUDGED_MOST_APEXES];
+    csg_tape tape;
+    csg_sheet_probe probe = csg_judge_probe(loop->x->judge, loop->x->bricks, s->brick, room, &tape);
+    for (int i = 0; i < room->piece_count; i++) {
+        unsigned cell = room->pieces[i].cell;
+        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        searches[i] = (csg_apex_search){.box = csg_judge_cell_box(loop->x->bricks, s->brick, at),
+                                        .polygon = &room->pieces[i].polygon};
+    }
+    csg_polygons_find_apexes(&probe, searches, room->piece_count);
+    for (int i = 0; i < room->piece_count; i++) {
+        room->pieces[i].apex = searches[i].at;
+        room->pieces[i].kind = searches[i].kind;
+    }
+    room->evaluations += probe.evaluations;
+}
