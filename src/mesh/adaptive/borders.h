@@ -6,7 +6,7 @@
 #ifndef CSG_MESH_ADAPTIVE_BORDERS_H
 #define CSG_MESH_ADAPTIVE_BORDERS_H
 
-#include "mesh/adaptive/extract.h"
+#include "mesh/adaptive/extraction.h"
 
 /* Those that have several polygons, or touch a pierced edge of finer ones; *any: there are some.
  * CSGM_OK or why it was stopped (reported). */

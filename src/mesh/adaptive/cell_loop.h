@@ -6,7 +6,7 @@
 #define CSG_MESH_ADAPTIVE_CELL_LOOP_H
 
 #include "base/table.h"
-#include "mesh/adaptive/extract.h"
+#include "mesh/adaptive/extraction.h"
 
 /* A vertex and the edge or face that it lies on, by its middle. */
 typedef struct csg_placed_vertex {

@@ -12,6 +12,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 #include "mesh/adaptive/borders.h"
+#include "mesh/adaptive/extract.h"
 #include "mesh/pipeline/workers.h"
 
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
