@@ -53,7 +53,7 @@ static bool set_border_aside(csg_cell_at_hand *c)
 static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 {
     csg_judge_room *room = &w->x->judge->rooms[worker];
-    csg_piece *fans[CSG_JUDGED_MOST_APEXES];
+    csg_cut_polygon *fans[CSG_JUDGED_MOST_APEXES];
     csg_tape tape;
     unsigned far = 0;
     room->piece_count = 0;
@@ -65,7 +65,7 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
     for (int i = 0; i < room->piece_count; i++)
         fans[i] = &room->pieces[i];
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
-    csg_pieces_find_distances(&probe, fans, room->piece_count, w->x->judge->tolerance);
+    csg_cuts_find_distances(&probe, fans, room->piece_count, w->x->judge->tolerance);
     room->evaluations += probe.evaluations;
     for (int i = 0; i < room->piece_count; i++)
         far |= (unsigned)(fans[i]->distance > w->x->farthest) << fans[i]->cell;

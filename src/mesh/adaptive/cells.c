@@ -250,10 +250,10 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
     return true;
 }
 
-csg_piece *csg_cells_set_aside(csg_cell_at_hand *c, unsigned polygon)
+csg_cut_polygon *csg_cells_set_aside(csg_cell_at_hand *c, unsigned polygon)
 {
     csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
-    csg_piece *piece = &room->pieces[room->piece_count];
+    csg_cut_polygon *piece = &room->pieces[room->piece_count];
     piece->cell = (uint8_t)csg_cells_bit(c);
     piece->is_fan = true;
     if (!csg_cells_gather(c, polygon, &piece->polygon))

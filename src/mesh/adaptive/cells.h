@@ -40,7 +40,7 @@ bool csg_cells_gather(csg_cell_at_hand *cell, unsigned polygon, csg_polygon *out
 bool csg_cells_is_missing(const csg_cell_at_hand *cell);
 /* Sets a polygon of a cell aside, in the judge's room for pieces, whose fan is to be found: at most
  * CSG_JUDGED_MOST_APEXES. NULL: one of its vertices is missing. */
-csg_piece *csg_cells_set_aside(csg_cell_at_hand *cell, unsigned polygon);
+csg_cut_polygon *csg_cells_set_aside(csg_cell_at_hand *cell, unsigned polygon);
 /* The points in the middle of those that were set aside. */
 void csg_cells_find_apexes(csg_cell_loop *loop, uint32_t worker, const csg_shell *shell);
 

@@ -34,7 +34,7 @@ static bool add_fans(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
     csg_judge_room *room = &w->x->judge->rooms[worker];
     csg_cells_find_apexes(w, worker, s);
     for (int i = 0; i < room->piece_count; i++) {
-        const csg_piece *piece = &room->pieces[i];
+        const csg_cut_polygon *piece = &room->pieces[i];
         float apex[3];
         csg_vec3_to_floats(apex, piece->apex);
         if (!add_fan(w, worker, &piece->polygon, apex, piece->kind))
@@ -45,7 +45,7 @@ static bool add_fans(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 }
 
 /* The polygon last set aside gets its fan: at once where the judge knows its middle, else later. */
-static bool fan(csg_cell_at_hand *c, unsigned polygon, const csg_piece *piece)
+static bool fan(csg_cell_at_hand *c, unsigned polygon, const csg_cut_polygon *piece)
 {
     csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
     unsigned creases = 0;
@@ -81,7 +81,7 @@ static bool cut_whole(csg_cell_at_hand *c)
             vertex[edge[sides++]] = v;
         }
         if (!csg_cell_cut(edge, sides, triangles)) {
-            const csg_piece *piece = csg_cells_set_aside(c, polygon);
+            const csg_cut_polygon *piece = csg_cells_set_aside(c, polygon);
             if (!piece || !fan(c, polygon, piece)) /* joined through faces: there is no cut */
                 return false;
             continue;
@@ -101,7 +101,7 @@ static bool make_triangles(csg_cell_at_hand *c)
     if (brick->several >> bit & 1 && c->is_whole)
         return cut_whole(c);
     for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
-        const csg_piece *piece = csg_cells_set_aside(c, polygon);
+        const csg_cut_polygon *piece = csg_cells_set_aside(c, polygon);
         if (!piece)
             return false;
         unsigned sides = c->polygons.first[polygon + 1] - c->polygons.first[polygon];

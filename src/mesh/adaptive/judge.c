@@ -269,12 +269,11 @@ static void keep_triangles(csg_judge_room *room, unsigned cell)
 {
     room->first_triangle[cell] = room->triangle_count;
     for (int k = room->first_piece[cell]; k < room->end_piece[cell]; k++)
-        for (int t = 0; t < csg_piece_triangle_count(&room->pieces[k]); t++) {
+        for (int t = 0; t < csg_cut_triangle_count(&room->pieces[k]); t++) {
             int corner[3];
             if (room->triangle_count == CSG_JUDGE_MOST_TRIANGLES)
                 return;
-            csg_piece_triangle(&room->pieces[k], t, corner,
-                               room->triangles[room->triangle_count++]);
+            csg_cut_triangle(&room->pieces[k], t, corner, room->triangles[room->triangle_count++]);
         }
     room->end_triangle[cell] = room->triangle_count;
 }
@@ -410,7 +409,7 @@ static void gather_pieces(brick_work *w)
             continue;
         }
         for (unsigned i = 0; i < polygons->count; i++) {
-            csg_piece *piece = &room->pieces[room->piece_count++];
+            csg_cut_polygon *piece = &room->pieces[room->piece_count++];
             piece->cell = (uint8_t)cell;
             piece->number = (uint8_t)i;
             piece->is_cut = piece->is_fan = false;
@@ -424,17 +423,17 @@ static void gather_pieces(brick_work *w)
 static void cut_plain(brick_work *w)
 {
     csg_judge_room *room = w->room;
-    csg_piece *tried[CSG_JUDGED_MOST_APEXES];
+    csg_cut_polygon *tried[CSG_JUDGED_MOST_APEXES];
     int count = 0;
     for (int i = 0; i < room->piece_count; i++) {
-        csg_piece *piece = &room->pieces[i];
+        csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
         find_place(piece->cell, at);
         if (!has_pierced_edge(w->brick, at) && !crease_count(&piece->polygon) &&
-            csg_piece_cut_plain(piece))
+            csg_cut_plain(piece))
             tried[count++] = piece;
     }
-    csg_pieces_find_distances(&w->probe, tried, count, w->least);
+    csg_cuts_find_distances(&w->probe, tried, count, w->least);
     for (int i = 0; i < count; i++) {
         tried[i]->is_cut = tried[i]->distance <= w->judge->tolerance;
         if (tried[i]->is_cut && room->polygons[tried[i]->cell].count == 1)
@@ -448,10 +447,10 @@ static void cut_fans(brick_work *w)
 {
     csg_judge_room *room = w->room;
     csg_apex_search searches[CSG_JUDGED_MOST_APEXES];
-    csg_piece *fans[CSG_JUDGED_MOST_APEXES];
+    csg_cut_polygon *fans[CSG_JUDGED_MOST_APEXES];
     int count = 0;
     for (int i = 0; i < room->piece_count; i++) {
-        csg_piece *piece = &room->pieces[i];
+        csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
         find_place(piece->cell, at);
         if (piece->is_cut)
@@ -470,7 +469,7 @@ static void cut_fans(brick_work *w)
         fans[i]->apex = searches[i].at;
         fans[i]->kind = searches[i].kind;
     }
-    csg_pieces_find_distances(&w->probe, fans, count, w->least);
+    csg_cuts_find_distances(&w->probe, fans, count, w->least);
     for (int i = 0; i < count; i++)
         if ((fans[i]->kind == CSG_APEX_FAILED && !w->is_small) ||
             fans[i]->distance > w->judge->tolerance)
@@ -481,7 +480,7 @@ static bool are_apart(const csg_judge_room *room, unsigned cell, double margin)
 {
     for (int i = room->first_piece[cell]; i < room->end_piece[cell]; i++)
         for (int k = room->first_piece[cell]; k < i; k++)
-            if (!csg_pieces_are_apart(&room->pieces[i], &room->pieces[k], margin))
+            if (!csg_cuts_are_apart(&room->pieces[i], &room->pieces[k], margin))
                 return false;
     return true;
 }
@@ -558,7 +557,7 @@ static uint8_t list_apexes(const csg_judge_room *room, uint8_t cells, csg_judged
 {
     unsigned count = 0;
     for (int i = 0; i < room->piece_count; i++) {
-        const csg_piece *piece = &room->pieces[i];
+        const csg_cut_polygon *piece = &room->pieces[i];
         if (!piece->is_fan || !(cells >> piece->cell & 1))
             continue;
         apexes[count] = (csg_judged_apex){.cell = piece->cell,

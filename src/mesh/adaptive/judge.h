@@ -6,8 +6,8 @@
 #define CSG_MESH_ADAPTIVE_JUDGE_H
 
 #include "field/kernels/roots.h"
+#include "mesh/adaptive/cut_polygons.h"
 #include "mesh/adaptive/judged.h"
-#include "mesh/adaptive/pieces.h"
 #include "mesh/adaptive/polygons.h"
 
 enum {
@@ -27,7 +27,7 @@ typedef struct csg_judge_room {
     uint8_t face[CSG_BRICK_SLOTS];               /* place in `faces`, or CSG_NO_FACE */
     csg_face_crease faces[CSG_MOST_FACES];       /* that creases are looked for in */
     int face_count;
-    csg_piece pieces[CSG_JUDGED_MOST_APEXES]; /* of the brick's cells, each cell's together */
+    csg_cut_polygon pieces[CSG_JUDGED_MOST_APEXES]; /* of the brick's cells, each cell's together */
     int piece_count;
     uint8_t first_piece[CSG_BRICK_CELLS], end_piece[CSG_BRICK_CELLS];
     csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Polygons as they are cut into triangles, and how far these are from the surface.
  */
-#ifndef CSG_MESH_ADAPTIVE_PIECES_H
-#define CSG_MESH_ADAPTIVE_PIECES_H
+#ifndef CSG_MESH_ADAPTIVE_CUT_POLYGONS_H
+#define CSG_MESH_ADAPTIVE_CUT_POLYGONS_H
 
 #include "mesh/adaptive/sheets.h"
 #include "mesh/marching/tables.h"
 
 /* Around an apex, or without a point inside. */
-typedef struct csg_piece {
+typedef struct csg_cut_polygon {
     csg_polygon polygon;
     bool is_fan;
     csg_vec3 apex;
@@ -17,24 +17,24 @@ typedef struct csg_piece {
     uint8_t cell, number;               /* the polygon's, in its cell */
     bool is_cut;                        /* as the mesh is to have it */
     double distance;                    /* from the surface, as it was last cut */
-} csg_piece;
+} csg_cut_polygon;
 
-int csg_piece_triangle_count(const csg_piece *piece);
+int csg_cut_triangle_count(const csg_cut_polygon *piece);
 /* The corners of a triangle as vertices of the polygon, -1 for the apex, and their places. */
-void csg_piece_triangle(const csg_piece *piece, int triangle, int corner[3], csg_vec3 at[3]);
+void csg_cut_triangle(const csg_cut_polygon *piece, int triangle, int corner[3], csg_vec3 at[3]);
 
 /* Cuts the polygon of a whole cell without a point inside, its vertices being the edges that they
  * are on, from the same vertex on as the mesh will have it: other triangles have other distances.
  * False: it has no such cut. */
-bool csg_piece_cut_plain(csg_piece *piece);
+bool csg_cut_plain(csg_cut_polygon *piece);
 
 /* The largest distance from the surface of each, as |f| over the slope, at points of the triangles.
  * INFINITY: a triangle higher than `least_height` looks inwards. */
-void csg_pieces_find_distances(csg_sheet_probe *probe, csg_piece *const *pieces, int count,
-                               double least_height);
+void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pieces, int count,
+                             double least_height);
 
 /* Whether all triangles of one have the other on one side, by more than a margin: then they do not
  * meet. */
-bool csg_pieces_are_apart(const csg_piece *one, const csg_piece *other, double margin);
+bool csg_cuts_are_apart(const csg_cut_polygon *one, const csg_cut_polygon *other, double margin);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Triangles and points of them; see pieces.h.
+ * Triangles and points of them; see cut_polygons.h.
  */
-#include "mesh/adaptive/pieces.h"
+#include "mesh/adaptive/cut_polygons.h"
 
 #include <math.h>
 
@@ -16,12 +16,12 @@ typedef struct points {
     int count;
 } points;
 
-int csg_piece_triangle_count(const csg_piece *p)
+int csg_cut_triangle_count(const csg_cut_polygon *p)
 {
     return p->is_fan ? p->polygon.count : p->polygon.count - 2;
 }
 
-void csg_piece_triangle(const csg_piece *p, int t, int corner[3], csg_vec3 at[3])
+void csg_cut_triangle(const csg_cut_polygon *p, int t, int corner[3], csg_vec3 at[3])
 {
     const int around[3] = {-1, t, (t + 1) % p->polygon.count};
     for (int k = 0; k < 3; k++) {
@@ -30,7 +30,7 @@ void csg_piece_triangle(const csg_piece *p, int t, int corner[3], csg_vec3 at[3]
     }
 }
 
-bool csg_piece_cut_plain(csg_piece *piece)
+bool csg_cut_plain(csg_cut_polygon *piece)
 {
     const csg_polygon *p = &piece->polygon;
     uint8_t edge[CSG_CELL_EDGES], triangles[CSG_CELL_MOST_INDICES];
@@ -78,12 +78,12 @@ static void add_point(points *q, csg_vec3 at)
 }
 
 /* False: a triangle looks inwards. */
-static bool add_points(points *q, const csg_piece *piece, double least_height)
+static bool add_points(points *q, const csg_cut_polygon *piece, double least_height)
 {
-    for (int t = 0; t < csg_piece_triangle_count(piece); t++) {
+    for (int t = 0; t < csg_cut_triangle_count(piece); t++) {
         int corner[3];
         csg_vec3 v[3];
-        csg_piece_triangle(piece, t, corner, v);
+        csg_cut_triangle(piece, t, corner, v);
         csg_vec3 a = v[0], b = v[1], c = v[2], g = gradient_of(&piece->polygon, corner);
         csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
         csg_vec3 longest = csg_vec3_sub(b, c);
@@ -110,7 +110,7 @@ static void ask(csg_sheet_probe *probe, points *q)
 }
 
 /* As many pieces as there is room for, from the first on. */
-static int find_some(csg_sheet_probe *probe, csg_piece *const *pieces, int count,
+static int find_some(csg_sheet_probe *probe, csg_cut_polygon *const *pieces, int count,
                      double least_height)
 {
     enum { PIECES = 64 };
@@ -136,8 +136,8 @@ static int find_some(csg_sheet_probe *probe, csg_piece *const *pieces, int count
     return n;
 }
 
-void csg_pieces_find_distances(csg_sheet_probe *probe, csg_piece *const *pieces, int count,
-                               double least_height)
+void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pieces, int count,
+                             double least_height)
 {
     for (int done = 0; done < count;)
         done += find_some(probe, pieces + done, count - done, least_height);
@@ -146,12 +146,12 @@ void csg_pieces_find_distances(csg_sheet_probe *probe, csg_piece *const *pieces,
 /* ---- apart -------------------------------------------------------------------------------------
  */
 
-static bool is_beside(const csg_piece *p, const csg_piece *other, double margin)
+static bool is_beside(const csg_cut_polygon *p, const csg_cut_polygon *other, double margin)
 {
-    for (int t = 0; t < csg_piece_triangle_count(p); t++) {
+    for (int t = 0; t < csg_cut_triangle_count(p); t++) {
         int corner[3];
         csg_vec3 v[3];
-        csg_piece_triangle(p, t, corner, v);
+        csg_cut_triangle(p, t, corner, v);
         csg_vec3 n =
             csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
         double low = INFINITY, high = -INFINITY;
@@ -167,7 +167,7 @@ static bool is_beside(const csg_piece *p, const csg_piece *other, double margin)
     return true;
 }
 
-bool csg_pieces_are_apart(const csg_piece *one, const csg_piece *other, double margin)
+bool csg_cuts_are_apart(const csg_cut_polygon *one, const csg_cut_polygon *other, double margin)
 {
     return is_beside(one, other, margin) || is_beside(other, one, margin);
 }
