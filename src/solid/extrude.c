@@ -6,11 +6,20 @@
 #include <math.h>
 
 #include "scene/operators/rule.h"
+#include "scene/outlines/unite.h"
 #include "shape/plane/polygons.h"
 #include "solid/measure.h"
 #include "solid/operations.h"
 #include "solid/pieces.h"
 #include "solid/sweeps.h"
+
+/* A figure whose edges are straight is one outline before it becomes a solid. */
+static csg_node_id united(csg_solid_job *job, csg_node_id flat)
+{
+    if (flat == CSG_NODE_NONE || job->stop)
+        return CSG_NODE_NONE;
+    return csg_solid_done(job, csg_unite(job->builder, flat));
+}
 
 static csg_node_id extrude(csg_solid_job *job, csg_node_id flat, double low, double high)
 {
@@ -99,8 +108,11 @@ csg_node_id csg_solid_extrude(csg_solid_job *job, const csg_facet_rule *rule, cs
             sweep.slices = helix_slices(job, rule, flat, s);
         return csg_sweep_up(job, flat, &sweep);
     }
+    flat = united(job, flat);
     if (s->twist == 0)
         return extrude(job, flat, 0, s->height);
+    if (flat == CSG_NODE_NONE)
+        return flat;
     const csg_warp warp = {.kind = CSG_WARP_TWIST,
                            .parameters = {-s->twist / s->height, 0, s->height}};
     flat = csg_solid_done(job, csg_build_warp(job->builder, &warp, flat, job->where));
@@ -181,8 +193,9 @@ csg_node_id csg_solid_turn(csg_solid_job *job, csg_node_id flat, double angle, d
 {
     csg_span where = job->where;
     const csg_warp warp = {.kind = CSG_WARP_REVOLVE};
-    if (flat == CSG_NODE_NONE || job->stop)
-        return CSG_NODE_NONE;
+    flat = united(job, flat);
+    if (flat == CSG_NODE_NONE)
+        return flat;
     csg_node_id node = csg_solid_done(job, csg_build_warp(job->builder, &warp, flat, where));
     if (node == CSG_NODE_NONE || fabs(angle) >= 360)
         return node;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Outlines of flat figures against their fields: what the field calls inside, the outline goes
  * around once, for polygons up to the tolerance and for what is traced up to a cell; areas;
- * trouble.
+ * trouble. Figures of straight edges that become one outline: the same figure, a true distance.
  */
 #include "scene/operators/blend_kinds.h"
 #include "scene_support.h"
@@ -11,6 +11,7 @@
 
 #include "failing.h"
 #include "scene/outlines/flatten.h"
+#include "scene/outlines/unite.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
 
@@ -196,6 +197,101 @@ static void sharp_operators_and_offsets(void **state)
     assert_int_equal(outline.loop_count, 0);
 }
 
+/* ---- united ------------------------------------------------------------------------------- */
+
+static size_t nodes_below(csg_node_id node, csg_node_kind kind)
+{
+    csgm_scene *scene;
+    size_t count = 0;
+    assert_int_equal(csg_build_snapshot(&builder, node, &scene), CSGM_OK);
+    for (size_t i = 0; i < scene->node_count; i++)
+        count += scene->nodes[i].kind == kind;
+    csg_scene_destroy(scene);
+    return count;
+}
+
+/* The same figure as before, told by the sign wherever |f| > slack of both. */
+static csg_node_id united(csg_node_id node)
+{
+    csgm_scene *before, *after;
+    assert_int_equal(csg_build_snapshot(&builder, node, &before), CSGM_OK);
+    node = csg_unite(&builder, node);
+    assert_int_not_equal(node, CSG_NODE_NONE);
+    assert_int_equal(csg_build_snapshot(&builder, node, &after), CSGM_OK);
+    for (int i = 0; i < 1000; i++) {
+        csg_vec3 p = test_point(&dice, 5);
+        double f = test_sample(before, p).value, g = test_sample(after, p).value;
+        if (fabs(f) > 1e-7)
+            assert_true((f > 0) == (g > 0));
+        assert_true(fabs(g) >= fabs(f) - 1e-7); /* a true distance is never less */
+    }
+    csg_scene_destroy(before);
+    csg_scene_destroy(after);
+    return node;
+}
+
+static csg_node_id straight(int kind)
+{
+    csg_node_id leaf = kind % 3 ? rectangle(csg_random_uniform(&dice, 0.2, 2),
+                                            csg_random_uniform(&dice, 0.2, 2), 0)
+                                : triangle_with_hole();
+    return moved(csg_random_uniform(&dice, -2, 2), csg_random_uniform(&dice, -2, 2),
+                 turned(csg_random_uniform(&dice, 0, 360), leaf));
+}
+
+static void straight_figures_unite(void **state)
+{
+    if (!has_polygons())
+        skip();
+    static const csg_node_kind kinds[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
+                                          CSG_NODE_INTERSECTION};
+    for (int round = 0; round < 60; round++) {
+        /* of a kind, and one that is another figure: a curve, a colour, a blend */
+        csg_node_id inner = operate(kinds[round % 2], 0, straight(round), straight(1), straight(2));
+        csg_node_id mirrored = csg_build_transform(
+            &builder, &(csg_affine){.m = {{-1, 0.2, 0}, {0, 1, 0}, {0, 0, 1}}}, inner, NOWHERE);
+        csg_node_id all = operate(kinds[round / 2 % 2], 0, straight(0), mirrored, CSG_NODE_NONE);
+        csg_node_id node = united(csg_build_color(&builder, (csg_color){1, 0, 0, 1}, all, NOWHERE));
+        if (nodes_below(node, CSG_NODE_SHAPE) == 1) { /* else nothing is left of it */
+            assert_int_equal(nodes_below(node, CSG_NODE_COLOR), 1);
+            assert_int_equal(nodes_below(node, CSG_NODE_RECTANGLE), 0);
+        }
+        csg_node_id round_one = moved(0.5, 0, circle(1.5));
+        csg_node_id operands[4] = {straight(0), straight(1), straight(2), straight(0)};
+        int at = round % 4; /* also what a difference begins with */
+        operands[at] = round_one;
+        node = united(csg_build_operator(&builder, kinds[round % 3],
+                                         (csg_blend){CSG_BLEND_SHARP, 0}, operands, 4, NOWHERE));
+        assert_int_equal(nodes_below(node, CSG_NODE_CIRCLE), 1);
+        if (nodes_below(node, CSG_NODE_RECTANGLE) == 0)
+            assert_int_equal(nodes_below(node, CSG_NODE_SHAPE), 1);
+    }
+}
+
+/* Blends see the fields that they saw; what is painted by itself stays so. */
+static void others_stay(void **state)
+{
+    if (!has_polygons())
+        skip();
+    csg_node_id pair = operate(CSG_NODE_UNION, 0, straight(1), straight(2), CSG_NODE_NONE);
+    csg_node_id blend = united(operate(CSG_NODE_UNION, 0.3, pair, straight(1), CSG_NODE_NONE));
+    assert_int_equal(nodes_below(blend, CSG_NODE_RECTANGLE), 3);
+    csg_node_id red = csg_build_color(&builder, (csg_color){1, 0, 0, 1}, straight(1), NOWHERE);
+    csg_node_id two = united(operate(CSG_NODE_UNION, 0, red, straight(1), CSG_NODE_NONE));
+    assert_int_equal(nodes_below(two, CSG_NODE_RECTANGLE), 2);
+    csg_node_id round =
+        united(operate(CSG_NODE_UNION, 0, rectangle(1, 1, 0.5), rectangle(1, 2, 0.1), straight(1)));
+    assert_int_equal(nodes_below(round, CSG_NODE_RECTANGLE), 3);
+    csg_node_id nothing = united(
+        operate(CSG_NODE_DIFFERENCE, 0, rectangle(1, 1, 0), rectangle(2, 2, 0), CSG_NODE_NONE));
+    assert_int_equal(nodes_below(nothing, CSG_NODE_RECTANGLE), 2);
+    csg_node_id long_chain = rectangle(3, 3, 0);
+    for (int i = 0; i < 3000; i++)
+        long_chain = operate(CSG_NODE_DIFFERENCE, 0, long_chain,
+                             moved(0.001 * i, 0, rectangle(0.0001, 0.1, 0)), CSG_NODE_NONE);
+    assert_int_not_equal(csg_unite(&builder, long_chain), CSG_NODE_NONE);
+}
+
 /* ---- traced ------------------------------------------------------------------------------- */
 
 static void blends_are_traced(void **state)
@@ -295,6 +391,32 @@ static void every_allocation_may_fail(void **state)
     assert_true(n > 10);
 }
 
+static void every_allocation_of_uniting_may_fail(void **state)
+{
+    failing f = {LONG_MAX, 0};
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
+    if (!has_polygons())
+        skip();
+    csg_build_abandon(&builder);
+    csg_memory_init(&context.memory, &allocator, 0);
+    long n = 0;
+    for (bool failed = true; failed; n++) {
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+        csg_node_id pair =
+            operate(CSG_NODE_UNION, 0, rectangle(1, 2, 0), rectangle(2, 1, 0), CSG_NODE_NONE);
+        csg_node_id node = operate(CSG_NODE_DIFFERENCE, 0, circle(4), pair, triangle_with_hole());
+        f.left = n;
+        node = csg_unite(&builder, node);
+        failed = f.left < 0;
+        f.left = LONG_MAX;
+        assert_int_equal(node == CSG_NODE_NONE, failed);
+        csg_build_abandon(&builder);
+        assert_int_equal(f.live, 0);
+    }
+    assert_true(n > 10);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
@@ -309,6 +431,9 @@ int main(void)
         TEST(solids_are_refused),
         TEST(depth_is_no_matter),
         TEST(every_allocation_may_fail),
+        TEST(straight_figures_unite),
+        TEST(others_stay),
+        TEST(every_allocation_of_uniting_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -227,6 +227,8 @@ void csg_parts_keep_alike(csg_eval *e, size_t first, csg_span where);
 void csg_eval_keep_drawn(csg_eval *e, csg_span where);
 /* a flat scene is drawn and becomes a plate, as csgm_flat says. */
 csg_node_id csg_eval_finish_flat(csg_eval *e, csg_node_id node, csg_span where);
+/* A flat node with a thickness of 1. */
+csg_node_id csg_eval_plate(csg_eval *e, csg_node_id flat, csg_span where);
 bool csg_eval_is_empty(const csg_eval *e, csg_node_id node);
 bool csg_eval_is_flat(const csg_eval *e, csg_node_id node); /* false for the empty solid */
 /* After every csg_build_*: a failure becomes a finding, and the node EMPTY. */

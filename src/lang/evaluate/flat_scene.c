@@ -7,6 +7,7 @@
 #include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
 #include "scene/outlines/draw_layers.h"
+#include "scene/outlines/unite.h"
 
 static csgm_flat flat_of(const csg_eval *e)
 {
@@ -46,6 +47,14 @@ static void draw(csg_eval *e, csg_node_id node, csg_span where)
                         "the figure's outlines cannot be made");
 }
 
+csg_node_id csg_eval_plate(csg_eval *e, csg_node_id flat, csg_span where)
+{
+    csg_node_id node = csg_check_node(e, csg_unite(&e->builder, flat), where);
+    if (node == CSG_NODE_NONE)
+        return node;
+    return csg_check_node(e, csg_build_extrude(&e->builder, node, -0.5, 0.5, where), where);
+}
+
 csg_node_id csg_eval_finish_flat(csg_eval *e, csg_node_id node, csg_span where)
 {
     csgm_flat flat = flat_of(e);
@@ -65,5 +74,5 @@ csg_node_id csg_eval_finish_flat(csg_eval *e, csg_node_id node, csg_span where)
                         "the scene is a flat figure: it gets a thickness of 1");
     if (e->stop)
         return CSG_NODE_NONE;
-    return csg_check_node(e, csg_build_extrude(&e->builder, node, -0.5, 0.5, where), where);
+    return csg_eval_plate(e, node, where);
 }

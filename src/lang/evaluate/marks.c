@@ -77,8 +77,7 @@ void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[C
         csg_node_id both[2] = {unite(e, first, (csg_scene_mark)kind, false, where),
                                unite(e, first, (csg_scene_mark)kind, true, where)};
         if (both[1] != CSG_NODE_NONE) /* as thick as a scene that is flat */
-            both[1] =
-                csg_check_node(e, csg_build_extrude(&e->builder, both[1], -0.5, 0.5, where), where);
+            both[1] = csg_eval_plate(e, both[1], where);
         if (both[0] == CSG_NODE_NONE || both[1] == CSG_NODE_NONE)
             out[kind] = both[0] != CSG_NODE_NONE ? both[0] : both[1];
         else
