@@ -49,6 +49,32 @@ csg_vec3 test_points_in_scene(const test_points *points, size_t i, const csgm_fi
     return csg_vec3_add(at, field->center);
 }
 
+static void same_bits(const float *a, const float *b, size_t count, bool zeros_too,
+                      const char *array, const char *what)
+{
+    for (size_t i = 0; i < count; i++) {
+        bool both_zero = a[i] == 0 && b[i] == 0 && !zeros_too;
+        if (memcmp(&a[i], &b[i], sizeof *a) && !both_zero)
+            fail_msg("%s: %s differs at point %zu: %.9g (%a) and %.9g (%a)", what, array, i,
+                     (double)a[i], (double)a[i], (double)b[i], (double)b[i]);
+    }
+}
+
+/* Both by one walk are what they are by two. */
+static void evaluate_together(const csg_kernel *kernel, const csg_tape *tape,
+                              const test_points *points, const test_results *alone, float *scratch,
+                              size_t floats)
+{
+    test_results both;
+    kernel->values_and_gradients(tape, points->x, points->y, points->z, points->count, both.value,
+                                 both.gradient[0], both.gradient[1], both.gradient[2], scratch,
+                                 floats);
+    same_bits(both.value, alone->value, points->count, true, "value", "both at once");
+    for (int c = 0; c < 3; c++)
+        same_bits(both.gradient[c], alone->gradient[c], points->count, true, "gradient",
+                  "both at once");
+}
+
 void test_evaluate(const csg_kernel *kernel, const csg_tape *tape, const test_points *points,
                    test_results *out)
 {
@@ -62,6 +88,7 @@ void test_evaluate(const csg_kernel *kernel, const csg_tape *tape, const test_po
     kernel->gradients(tape, points->x, points->y, points->z, points->count, out->gradient[0],
                       out->gradient[1], out->gradient[2], scratch, floats);
     kernel->colors(tape, points->x, points->y, points->z, points->count, rgba, scratch, floats);
+    evaluate_together(kernel, tape, points, out, scratch, floats);
     free(scratch);
 }
 
@@ -73,17 +100,6 @@ size_t test_kernels(const csg_kernel *kernels[8])
             kernels[count++] = csg_kernel_for(isa);
     assert_true(count > 0);
     return count;
-}
-
-static void same_bits(const float *a, const float *b, size_t count, bool zeros_too,
-                      const char *array, const char *what)
-{
-    for (size_t i = 0; i < count; i++) {
-        bool both_zero = a[i] == 0 && b[i] == 0 && !zeros_too;
-        if (memcmp(&a[i], &b[i], sizeof *a) && !both_zero)
-            fail_msg("%s: %s differs at point %zu: %.9g (%a) and %.9g (%a)", what, array, i,
-                     (double)a[i], (double)a[i], (double)b[i], (double)b[i]);
-    }
 }
 
 void test_same_bits(const test_results *a, const test_results *b, size_t count, bool zeros_too,

@@ -521,9 +521,9 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
 }
 
 /* out: for each channel of the plan that is wanted, the first `gradients` of them left out where
- * they are only means. */
+ * they are only means. f: values; NULL: not wanted. */
 __attribute__((always_inline)) static inline void
-mixed(const csg_tape *tape, const float *x, const float *y, const float *z, size_t count,
+mixed(const csg_tape *tape, const float *x, const float *y, const float *z, size_t count, float *f,
       float *const *out, plan wanted, float *scratch, size_t scratch_floats)
 {
     uint32_t depth = csg_tape_depth(tape);
@@ -533,28 +533,37 @@ mixed(const csg_tape *tape, const float *x, const float *y, const float *z, size
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
         walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, wanted);
+        if (f)
+            memcpy(f + i, slot(s, 0), n * sizeof(float));
         for (int c = first; c < channels_of(wanted); c++)
             memcpy(out[c - first] + i, channel(s, depth, 0, c), n * sizeof(float));
     }
+}
+
+static void values_and_gradients(const csg_tape *tape, const float *x, const float *y,
+                                 const float *z, size_t count, float *f, float *gx, float *gy,
+                                 float *gz, float *scratch, size_t scratch_floats)
+{
+    float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
+    mixed(tape, x, y, z, count, f, out, GRADIENTS_ONLY, scratch, scratch_floats);
 }
 
 static void gradients(const csg_tape *tape, const float *x, const float *y, const float *z,
                       size_t count, float *gx, float *gy, float *gz, float *scratch,
                       size_t scratch_floats)
 {
-    float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
-    mixed(tape, x, y, z, count, out, GRADIENTS_ONLY, scratch, scratch_floats);
+    values_and_gradients(tape, x, y, z, count, NULL, gx, gy, gz, scratch, scratch_floats);
 }
 
 static void colors(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
 {
     if (!tape->turns || !turns(tape)) {
-        mixed(tape, x, y, z, count, rgba, COLORS_ONLY, scratch, scratch_floats);
+        mixed(tape, x, y, z, count, NULL, rgba, COLORS_ONLY, scratch, scratch_floats);
         return;
     }
     for (int c = 0; c < COLOR_CHANNELS; c++)
-        mixed(tape, x, y, z, count, &rgba[c], (plan){GRADIENT_CHANNELS, 1, c}, scratch,
+        mixed(tape, x, y, z, count, NULL, &rgba[c], (plan){GRADIENT_CHANNELS, 1, c}, scratch,
               scratch_floats);
 }
 
@@ -644,6 +653,7 @@ const csg_kernel CSG_THIS_KERNEL = {
     .name = STRING(CSG_KERNEL),
     .values = values,
     .gradients = gradients,
+    .values_and_gradients = values_and_gradients,
     .colors = colors,
     .intervals = intervals,
     .join = join_alone,

@@ -32,6 +32,11 @@ typedef struct csg_kernel {
                       size_t count, float *gx, float *gy, float *gz, float *scratch,
                       size_t scratch_floats);
 
+    /* Both by one walk: the same values and gradients. */
+    void (*values_and_gradients)(const csg_tape *tape, const float *x, const float *y,
+                                 const float *z, size_t count, float *out, float *gx, float *gy,
+                                 float *gz, float *scratch, size_t scratch_floats);
+
     /* Colours: the leaves' in the proportions of the operators' partial derivatives; rgba[4]
      * arrays of count. */
     void (*colors)(const csg_tape *tape, const float *x, const float *y, const float *z,

@@ -41,9 +41,8 @@ static void ask(csg_sheet_probe *p, const csg_vec3 *at, int count, double *f, cs
         const csg_vec3 *q = &at[i < count ? i : 0];
         x[i] = (float)q->x, y[i] = (float)q->y, z[i] = (float)q->z;
     }
-    p->kernel->values(p->tape, x, y, z, (size_t)count, v, p->scratch, p->scratch_floats);
-    p->kernel->gradients(p->tape, x, y, z, (size_t)count, gx, gy, gz, p->scratch,
-                         p->scratch_floats);
+    p->kernel->values_and_gradients(p->tape, x, y, z, (size_t)count, v, gx, gy, gz, p->scratch,
+                                    p->scratch_floats);
     p->evaluations += (uint64_t)count;
     for (int i = 0; i < count; i++) {
         f[i] = (double)v[i];

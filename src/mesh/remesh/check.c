@@ -13,17 +13,24 @@ static float value_at(csg_remesh *r, csg_vec3 at)
     return f;
 }
 
+static float value_and_gradient_at(csg_remesh *r, csg_vec3 at, csg_vec3 *gradient)
+{
+    float place[1][3], g[1][3], f;
+    csg_vec3_to_floats(place[0], at);
+    csg_probe_values_and_gradients(&r->probe, (const float(*)[3])place, 1, &f, g);
+    *gradient = csg_vec3_from_floats(g[0]);
+    return f;
+}
+
 bool csg_remesh_project(csg_remesh *r, csg_vec3 *at, double reach)
 {
     enum { MOST_STEPS = 4 };
     csg_vec3 p = *at;
     for (int step = 0; step < MOST_STEPS; step++) {
-        float place[1][3], g[1][3], f = value_at(r, p);
+        csg_vec3 slope;
+        float f = value_and_gradient_at(r, p, &slope);
         if (fabsf(f) <= 2 * r->probe.noise)
             break;
-        csg_vec3_to_floats(place[0], p);
-        csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
-        csg_vec3 slope = {(double)g[0][0], (double)g[0][1], (double)g[0][2]};
         double square = csg_vec3_dot(slope, slope);
         if (!(square > 1e-6))
             return false;
@@ -38,15 +45,12 @@ bool csg_remesh_project(csg_remesh *r, csg_vec3 *at, double reach)
 bool csg_remesh_come_to_surface(csg_remesh *r, csg_vec3 *at, double reach)
 {
     enum { MOST_STEPS = 4 };
-    float place[1][3], g[1][3];
-    double f = (double)value_at(r, *at);
+    csg_vec3 way, p = *at;
+    double f = (double)value_and_gradient_at(r, p, &way);
     double slope = (double)r->probe.marching->field->tape.lipschitz;
     double near = fmax(2 * (double)r->probe.noise, 0x1p-10 * r->error * slope);
     if (fabs(f) <= near)
         return true;
-    csg_vec3_to_floats(place[0], *at);
-    csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
-    csg_vec3 way = {(double)g[0][0], (double)g[0][1], (double)g[0][2]}, p = *at;
     double square = csg_vec3_dot(way, way);
     for (int step = 0; step < MOST_STEPS && square > 1e-6; step++) {
         p = csg_vec3_sub(p, csg_vec3_scale(way, f / square));

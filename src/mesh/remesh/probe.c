@@ -180,21 +180,37 @@ void csg_probe_values(csg_probe *probe, const float (*at)[3], size_t count, floa
     each_tape(probe, at, count, visit_values, out);
 }
 
+typedef struct values_and_gradients {
+    float *f; /* NULL: not wanted */
+    float (*g)[3];
+} values_and_gradients;
+
 static void visit_gradients(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
 {
     csg_probe_room *room = probe->room;
-    float(*g)[3] = out;
-    probe->marching->kernel->gradients(tape, room->x, room->y, room->z, count, room->channels[0],
-                                       room->channels[1], room->channels[2], probe->scratch,
-                                       probe->scratch_floats);
-    for (size_t i = 0; i < count; i++)
-        for (int c = 0; c < 3; c++)
-            g[room->which[i]][c] = room->channels[c][i];
+    const values_and_gradients *to = out;
+    float *c[3] = {room->channels[0], room->channels[1], room->channels[2]};
+    probe->marching->kernel->values_and_gradients(tape, room->x, room->y, room->z, count,
+                                                  room->channels[3], c[0], c[1], c[2],
+                                                  probe->scratch, probe->scratch_floats);
+    for (size_t i = 0; i < count; i++) {
+        if (to->f)
+            to->f[room->which[i]] = room->channels[3][i];
+        for (int k = 0; k < 3; k++)
+            to->g[room->which[i]][k] = c[k][i];
+    }
 }
 
 void csg_probe_gradients(csg_probe *probe, const float (*at)[3], size_t count, float (*out)[3])
 {
-    each_tape(probe, at, count, visit_gradients, out);
+    csg_probe_values_and_gradients(probe, at, count, NULL, out);
+}
+
+void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size_t count, float *f,
+                                    float (*g)[3])
+{
+    values_and_gradients out = {f, g};
+    each_tape(probe, at, count, visit_gradients, &out);
 }
 
 /* ---- colours and materials --------------------------------------------------------------------

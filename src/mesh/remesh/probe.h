@@ -29,6 +29,9 @@ void csg_probe_release(csg_probe *probe);
 /* Up to CSG_PROBE_MOST points. */
 void csg_probe_values(csg_probe *probe, const float (*at)[3], size_t count, float *out);
 void csg_probe_gradients(csg_probe *probe, const float (*at)[3], size_t count, float (*out)[3]);
+/* Both, for little more than the gradients. */
+void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size_t count, float *f,
+                                    float (*g)[3]);
 /* As a block's vertices get them; each of the two may be NULL. */
 void csg_probe_looks(csg_probe *probe, const float (*at)[3], size_t count, uint8_t (*colors)[4],
                      uint16_t (*materials)[2]);
