@@ -7,6 +7,7 @@
 #include "mesh/mesh_support.h"
 #include "mesh/pipeline/own.h"
 #include "mesh/uncrossed.h"
+#include "shape/plane/region.h"
 #include "shape/solid_support.h"
 
 #include <math.h>
@@ -52,6 +53,27 @@ static uint64_t own_of(mesh_case *c, const csgm_mesh_options *options)
 {
     assert_int_equal(mesh_build(c, options), CSGM_OK);
     return c->stats.own_triangles;
+}
+
+/* Where the solid is, the mesh winds around once, elsewhere never. */
+static void assert_winds_around(const mesh_case *c, csg_random *random)
+{
+    const csgm_mesh *mesh = c->mesh;
+    csg_triangles t = {.points = malloc(mesh->vertex_count * sizeof(csg_vec3)),
+                       .point_count = mesh->vertex_count,
+                       .corners = (uint32_t(*)[3])mesh->indices,
+                       .count = mesh->triangle_count};
+    for (uint64_t i = 0; i < mesh->vertex_count; i++)
+        t.points[i] = mesh_vertex(c, i);
+    for (int i = 0; i < 100; i++) {
+        csg_vec3 p =
+            mesh_vertex(c, (uint64_t)csg_random_uniform(random, 0, (double)mesh->vertex_count - 1));
+        p = csg_vec3_add(p, solid_random_point(random, 0.1));
+        double f = test_sample(c->scene, p).value;
+        if (fabs(f) > 1e-5)
+            assert_true(fabs(solid_winding(&t, p) - (f > 0)) < 1e-3);
+    }
+    free(t.points);
 }
 
 /* ---- placed and painted ------------------------------------------------------------------------
@@ -144,6 +166,79 @@ static void test_normals(void **state)
     options.normals = CSGM_NORMALS_NONE;
     assert_int_equal(own_of(&c, &options), 12);
     assert_null(c.mesh->normals);
+    mesh_case_end(&c);
+}
+
+/* ---- extruded outlines -------------------------------------------------------------------------
+ */
+
+static csg_node_id region_of(mesh_case *c, csg_outline *outline)
+{
+    csg_shape *shape;
+    assert_int_equal(csg_region_create(&c->context.memory, outline, &shape), CSGM_OK);
+    csg_outline_release(outline);
+    return csg_build_shape(&c->builder, shape, NOWHERE);
+}
+
+/* Stars with holes in rows. */
+static csg_node_id make_stars(mesh_case *c, csg_random *random, double *area)
+{
+    csg_outline outline;
+    csg_outline_init(&outline, &c->context.memory);
+    for (int i = 0; i < 20; i++) {
+        csg_vec2 center = {2.1 * (i % 5), 2.1 * (i / 5)};
+        add_star(&outline, random, center, 0.7, 1, 30, false);
+        add_star(&outline, random, center, 0.2, 0.6, 20, true);
+    }
+    *area = area_of(&outline);
+    return region_of(c, &outline);
+}
+
+static void test_extrusions(void **state)
+{
+    (void)state;
+    for (unsigned seed = 0; seed < 12; seed++) {
+        mesh_case c;
+        csg_random random = {seed + 1};
+        double area;
+        mesh_case_begin(&c, 2);
+        csg_affine turn = csg_affine_rotate(20, csg_vec3_make(0, 0, 1));
+        turn.m[2][0] = 5; /* is not looked at in the plane */
+        csg_node_id flat =
+            csg_build_transform(&c.builder, &turn, make_stars(&c, &random, &area), NOWHERE);
+        flat = csg_build_color(&c.builder, (csg_color){1, 0, 0, 1}, flat, NOWHERE);
+        csg_node_id node = csg_build_extrude(&c.builder, flat, 1, 3, NOWHERE);
+        mesh_case_compile(&c, seed % 3 == 0   ? node
+                              : seed % 3 == 1 ? moved(&c, node, 7.3, 1e-3, 0.1)
+                                              : posed_anyhow(&c, node, &random));
+        csgm_mesh_options options = plain();
+        assert_true(is_taken(&c, &options));
+        assert_true(fabs(mesh_largest_error(&c)) < 1e-5);
+        csgm_mesh_view view = csg_mesh_view(c.mesh);
+        assert_int_equal(csg_mesh_inspect(&c.context, &view, &c.check), CSGM_OK);
+        assert_true(fabs(c.check.volume - 2 * area) < 1e-4);
+        assert_int_equal(c.check.components, 20);
+        assert_int_equal(c.check.euler, 0);
+        assert_int_equal(c.mesh->colors[0], 255);
+        assert_uncrossed(c.mesh, "stars");
+        assert_winds_around(&c, &random);
+        mesh_case_end(&c);
+    }
+}
+
+/* Loops that touch leave an edge of four triangles. */
+static void test_touching_loops(void **state)
+{
+    (void)state;
+    mesh_case c;
+    csg_outline outline;
+    mesh_case_begin(&c, 1);
+    csg_outline_init(&outline, &c.context.memory);
+    add_rectangle(&outline, 0, 0, 1, 1);
+    add_rectangle(&outline, 1, 1, 2, 2);
+    mesh_case_compile(&c, csg_build_extrude(&c.builder, region_of(&c, &outline), 0, 1, NOWHERE));
+    csgm_mesh_options options = plain();
+    assert_false(is_taken(&c, &options));
     mesh_case_end(&c);
 }
 
@@ -312,27 +407,6 @@ static csg_node_id random_shells(mesh_case *c, csg_random *random)
     return posed_anyhow(c, node, random);
 }
 
-/* Where the solid is, the mesh winds around once, elsewhere never. */
-static void assert_winds_around(const mesh_case *c, csg_random *random)
-{
-    const csgm_mesh *mesh = c->mesh;
-    csg_triangles t = {.points = malloc(mesh->vertex_count * sizeof(csg_vec3)),
-                       .point_count = mesh->vertex_count,
-                       .corners = (uint32_t(*)[3])mesh->indices,
-                       .count = mesh->triangle_count};
-    for (uint64_t i = 0; i < mesh->vertex_count; i++)
-        t.points[i] = mesh_vertex(c, i);
-    for (int i = 0; i < 100; i++) {
-        csg_vec3 p =
-            mesh_vertex(c, (uint64_t)csg_random_uniform(random, 0, (double)mesh->vertex_count - 1));
-        p = csg_vec3_add(p, solid_random_point(random, 0.1));
-        double f = test_sample(c->scene, p).value;
-        if (fabs(f) > 1e-5)
-            assert_true(fabs(solid_winding(&t, p) - (f > 0)) < 1e-3);
-    }
-    free(t.points);
-}
-
 static void test_random_shells(void **state)
 {
     (void)state;
@@ -411,7 +485,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_vertices),        cmocka_unit_test(test_looks),
-        cmocka_unit_test(test_normals),         cmocka_unit_test(test_options),
+        cmocka_unit_test(test_normals),         cmocka_unit_test(test_extrusions),
+        cmocka_unit_test(test_touching_loops),  cmocka_unit_test(test_options),
         cmocka_unit_test(test_soundness),       cmocka_unit_test(test_other_scenes),
         cmocka_unit_test(test_random_shells),   cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_each_allocation),

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "base/orient.h"
+#include "shape/plane/delaunay.h"
 #include "shape/plane/polygons.h"
 
 static void add_loop(const double (*points)[2], int count)
@@ -22,12 +23,31 @@ static void add_loop(const double (*points)[2], int count)
         add_loop(points, sizeof points / sizeof *points);                                          \
     } while (0)
 
+/* The smallest sine of an angle between two edges at a corner of counter-clockwise triangles. */
+static double thinnest(const uint32_t *indices, size_t count)
+{
+    double least = 1;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *t = indices + i / 3 * 3;
+        csg_vec2 p = outline.points[indices[i]], a = outline.points[t[(i + 1) % 3]],
+                 b = outline.points[t[(i + 2) % 3]];
+        double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+        least = fmin(least, (ax * by - ay * bx) / (hypot(ax, ay) * hypot(bx, by)));
+    }
+    return least;
+}
+
+/* Also as fat ones as can be, of the same edges. */
 static size_t triangulate(double slack)
 {
     uint32_t *indices;
     size_t count;
     assert_int_equal(csg_polygons_triangulate(&outline, &memory, &indices, &count), CSGM_OK);
     check_triangles(&outline, indices, count, slack);
+    double before = thinnest(indices, count);
+    assert_true(csg_delaunay_improve(&outline, &memory, indices, count));
+    check_triangles(&outline, indices, count, slack);
+    assert_true(thinnest(indices, count) >= before - 1e-9);
     csg_memory_release(&memory, indices, count * sizeof *indices);
     return count / 3;
 }
@@ -93,6 +113,24 @@ static void holes_and_islands(void **state)
     ADD_LOOP({5, 5}, {5, 7}, {7, 6});
     ADD_LOOP({5, 3}, {5, 4}, {7, 4}, {7, 3});
     assert_int_equal(triangulate(0), 8 + 2 + 4 + 4 + 3 + 2 * 3);
+}
+
+/* A strip of corners on two lines: each is joined to those across from it. */
+static void triangles_become_fat(void **state)
+{
+    enum { COUNT = 200 };
+    uint32_t *indices;
+    size_t count;
+    for (int i = 0; i < COUNT; i++)
+        assert_true(csg_outline_add(&outline, (csg_vec2){i, 0.001 * i * (i - COUNT)}));
+    for (int i = COUNT; i-- > 0;)
+        assert_true(csg_outline_add(&outline, (csg_vec2){i, 1 + 0.001 * i * (i - COUNT)}));
+    assert_true(csg_outline_close(&outline));
+    assert_int_equal(csg_polygons_triangulate(&outline, &memory, &indices, &count), CSGM_OK);
+    assert_true(csg_delaunay_improve(&outline, &memory, indices, count));
+    check_triangles(&outline, indices, count, 0);
+    assert_true(thinnest(indices, count) > 0.5);
+    csg_memory_release(&memory, indices, count * sizeof *indices);
 }
 
 static void straight_corners_stay(void **state)
@@ -243,6 +281,7 @@ int main(void)
         TEST(hulls_of_lines_are_empty),
         TEST(nothing_has_no_triangles),
         TEST(holes_and_islands),
+        TEST(triangles_become_fat),
         TEST(straight_corners_stay),
         TEST(a_hole_between_corners_of_its_height),
         TEST(loops_that_touch),

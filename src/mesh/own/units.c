@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "scene/operators/blend_kinds.h"
+#include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
+#include "shape/polyhedra/prism.h"
 
 /* More units than that are meshed as ever: each is held against each. */
 enum { MOST_UNITS = 4096 };
@@ -16,23 +18,30 @@ enum { MOST_UNITS = 4096 };
 typedef struct above {
     csg_affine place;
     csg_look look;
+    bool is_taken; /* it is of a unit that stands above */
 } above;
 
-static bool is_unit(const csgm_scene *scene, const csg_node *node)
+static bool is_shape(const csgm_scene *scene, const csg_node *node, csg_shape_kind kind)
 {
-    return node->kind == CSG_NODE_SHAPE &&
-           scene->shapes[node->payload]->kind == CSG_SHAPE_POLYHEDRON;
+    return node->kind == CSG_NODE_SHAPE && scene->shapes[node->payload]->kind == kind;
 }
 
-/* The number of units; 0: there is something else. */
-static size_t count_units(const csgm_scene *scene)
+/* A flat child between two planes (csg_build_plate). */
+static bool is_plate(const csg_node *node)
+{
+    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
+}
+
+/* At most so many units; 0: there is something that is in no such scene. */
+static size_t most_units(const csgm_scene *scene)
 {
     size_t count = 0;
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
         bool is_way = node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
+                      node->kind == CSG_NODE_SLAB || is_shape(scene, node, CSG_SHAPE_REGION) ||
                       (node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend));
-        if (is_unit(scene, node))
+        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || is_plate(node))
             count++;
         else if (!is_way)
             return 0;
@@ -49,25 +58,125 @@ static above below(const csgm_scene *scene, const csg_node *node, above a)
     return a;
 }
 
-/* room: for what is above each node. */
-static void place_units(csg_own_units *units, const csgm_scene *scene, above *room)
+/* ---- plates ------------------------------------------------------------------------------------
+ */
+
+/* Down to a leaf through transforms and colours. */
+static const csg_node *leaf_below(const csgm_scene *scene, const csg_node *node, above *a)
 {
-    size_t left = units->count;
+    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
+        *a = below(scene, node, *a);
+        node = &scene->nodes[csg_scene_children(scene, node)[0]];
+    }
+    return node;
+}
+
+/* To places that are floats in the scene, where these are the same all along z: triangles of a lid
+ * that are thin are then as thin as they will be. */
+static void round_points(csg_outline *outline, const csg_affine *place)
+{
+    csg_affine back;
+    if (place->m[0][2] != 0 || place->m[1][2] != 0 || !csg_affine_invert(*place, &back))
+        return;
+    for (size_t i = 0; i < outline->point_count; i++) {
+        csg_vec2 *p = &outline->points[i];
+        csg_vec3 at = csg_affine_point(place, csg_vec3_make(p->x, p->y, 0));
+        at.x = (double)(float)at.x;
+        at.y = (double)(float)at.y;
+        at = csg_affine_point(&back, at);
+        *p = (csg_vec2){at.x, at.y};
+    }
+}
+
+static csgm_status make_prism(const csgm_scene *scene, const csg_node *figure, double half,
+                              double middle, csg_own_unit *unit)
+{
+    csg_memory *memory = &scene->context->memory;
+    csg_outline outline;
+    csg_triangles triangles;
+    csg_repairs repairs;
+    csgm_status status = CSGM_ERR_MEMORY;
+    csg_outline_init(&outline, memory);
+    if (csg_outline_append(&outline, csg_region_outline(scene->shapes[figure->payload]))) {
+        round_points(&outline, &unit->place);
+        status = csg_prism(memory, &outline, middle - half, middle + half, &triangles);
+    }
+    csg_outline_release(&outline);
+    if (status != CSGM_OK)
+        return status;
+    status = csg_polyhedron_create(memory, &triangles, &repairs, &unit->shape);
+    csg_triangles_release(&triangles);
+    return status;
+}
+
+/* The unit's shape stays NULL: the plate is none of an outline. */
+static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_own_unit *unit)
+{
+    const csg_node_id *children = csg_scene_children(scene, plate);
+    above flat = {.place = csg_affine_identity(), .look = unit->look}, ends = flat;
+    const csg_node *figure = leaf_below(scene, &scene->nodes[children[0]], &flat);
+    const csg_node *slab = leaf_below(scene, &scene->nodes[children[1]], &ends);
+    if (!is_shape(scene, figure, CSG_SHAPE_REGION) || slab->kind != CSG_NODE_SLAB)
+        return CSGM_OK;
+    unit->place = csg_affine_multiply(unit->place, csg_affine_of_plane(flat.place));
+    unit->look = flat.look;
+    csgm_status status =
+        make_prism(scene, figure, csg_scene_parameters(scene, slab)[0], ends.place.t[2], unit);
+    return status == CSGM_ERR_MEMORY ? status : CSGM_OK;
+}
+
+/* ---- all of them -------------------------------------------------------------------------------
+ */
+
+/* The unit that a node is. unit->shape stays NULL: it is none. */
+static csgm_status take_unit(const csgm_scene *scene, const csg_node *node, const above *a,
+                             csg_own_unit *unit)
+{
+    *unit = (csg_own_unit){.place = a->place, .look = a->look};
+    if (is_plate(node))
+        return extrude(scene, node, unit);
+    if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON)) {
+        unit->shape = scene->shapes[node->payload];
+        csg_shape_retain(unit->shape);
+    }
+    return CSGM_OK;
+}
+
+/* room: for what is above each node. *all: nothing is left over. Units come from the last to the
+ * first. */
+static csgm_status place_units(csg_own_units *units, const csgm_scene *scene, above *room,
+                               bool *all)
+{
+    csgm_status status = CSGM_OK;
+    *all = true;
     room[scene->root] = (above){.place = csg_affine_identity()};
-    for (size_t i = scene->node_count; i-- > 0;) {
+    for (size_t i = scene->node_count; i-- > 0 && status == CSGM_OK && *all;) {
         const csg_node *node = &scene->nodes[i];
-        if (is_unit(scene, node)) {
-            const csg_shape *shape = scene->shapes[node->payload];
-            units->items[--left] =
-                (csg_own_unit){.shape = shape,
-                               .place = room[i].place,
-                               .look = room[i].look,
-                               .box = csg_affine_box(&room[i].place, shape->box)};
-            continue;
-        }
         above a = below(scene, node, room[i]);
+        bool is_unit = !a.is_taken && (is_plate(node) || !node->child_count);
+        if (is_unit) {
+            csg_own_unit *unit = &units->items[units->count];
+            status = take_unit(scene, node, &a, unit);
+            a.is_taken = *all = unit->shape != NULL;
+            units->count += unit->shape != NULL;
+        }
         for (uint32_t k = 0; k < node->child_count; k++)
             room[csg_scene_children(scene, node)[k]] = a;
+    }
+    return status;
+}
+
+/* In the order of the scene, each with its box. */
+static void arrange(csg_own_units *units)
+{
+    for (size_t i = 0, k = units->count; i < k; i++) {
+        csg_own_unit unit = units->items[i];
+        units->items[i] = units->items[--k];
+        units->items[k] = unit;
+    }
+    for (size_t i = 0; i < units->count; i++) {
+        csg_own_unit *unit = &units->items[i];
+        unit->box = csg_affine_box(&unit->place, unit->shape->box);
     }
 }
 
@@ -104,28 +213,32 @@ csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
 {
     static const uint64_t MOST = UINT32_MAX / 3 - 1; /* corners have numbers too */
     *units = (csg_own_units){.memory = &scene->context->memory};
-    size_t count = count_units(scene), bytes = scene->node_count * sizeof(above);
-    if (!count)
+    size_t room_bytes = scene->node_count * sizeof(above);
+    units->room = most_units(scene);
+    if (!units->room)
         return CSGM_OK;
-    above *room = csg_memory_alloc(units->memory, bytes);
-    units->items = csg_memory_alloc(units->memory, count * sizeof *units->items);
-    if (units->items)
-        units->count = count;
-    bool done = room && units->items;
-    if (done)
-        place_units(units, scene, room);
-    csg_memory_release(units->memory, room, bytes);
-    if (!done)
-        return CSGM_ERR_MEMORY;
-    number(units);
-    if (units->vertex_count > MOST || units->triangle_count > MOST || !are_apart(units))
+    bool all = false;
+    above *room = csg_memory_alloc(units->memory, room_bytes);
+    units->items = csg_memory_alloc(units->memory, units->room * sizeof *units->items);
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (room && units->items)
+        status = place_units(units, scene, room, &all);
+    csg_memory_release(units->memory, room, room_bytes);
+    if (status == CSGM_OK && all) {
+        arrange(units);
+        number(units);
+    }
+    if (!all || units->vertex_count > MOST || units->triangle_count > MOST || !are_apart(units))
         csg_own_units_reset(units);
-    return CSGM_OK;
+    return status;
 }
 
 void csg_own_units_reset(csg_own_units *units)
 {
-    csg_memory_release(units->memory, units->items, units->count * sizeof *units->items);
+    for (size_t i = 0; i < units->count; i++)
+        csg_shape_release(units->items[i].shape);
+    if (units->items)
+        csg_memory_release(units->memory, units->items, units->room * sizeof *units->items);
     units->items = NULL;
     units->count = 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Scenes that are polyhedra and nothing else: leaves that affine maps place, looks paint and sharp
- * unions put side by side, so far apart that their boxes do not meet. Such a solid has triangles of
- * its own.
+ * Scenes that are polyhedra and nothing else: leaves, and outlines that are extruded straight,
+ * which affine maps place, looks paint and sharp unions put side by side, so far apart that their
+ * boxes do not meet. Such a solid has triangles of its own.
  */
 #ifndef CSG_MESH_OWN_UNITS_H
 #define CSG_MESH_OWN_UNITS_H
@@ -10,7 +10,7 @@
 
 /* A polyhedron, and what stands above it. */
 typedef struct csg_own_unit {
-    const csg_shape *shape;
+    csg_shape *shape; /* one reference */
     csg_affine place;
     csg_look look;
     csg_box box;                           /* scene units */
@@ -20,7 +20,7 @@ typedef struct csg_own_unit {
 typedef struct csg_own_units {
     csg_memory *memory;
     csg_own_unit *items; /* in the order of the scene */
-    size_t count;
+    size_t count, room;
     uint64_t vertex_count, triangle_count;
 } csg_own_units;
 
