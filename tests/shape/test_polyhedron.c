@@ -277,16 +277,21 @@ static void check_cell(const solid_case *c, const near_list *list, const csg_sha
     }
 }
 
-/* A cell and one within it. */
+/* A cell and one within it. Every other time both are around a place of the surface, and hardly
+ * anything but what is in them is listed. */
 static void check_cells(solid_case *c, csg_random *random)
 {
-    double half = csg_random_uniform(random, 0.02, 0.5);
-    csg_shape_cell large = {.center = solid_random_point(random, 1.2), .half = {half, half, half}};
-    csg_vec3 away = solid_random_point(random, half / 2), ignored;
+    bool is_tight = csg_random_below(random, 2);
+    double half = csg_random_uniform(random, 0.02, 0.5), share = is_tight ? 1e-3 : 1;
+    const csg_triangles *t = csg_polyhedron_triangles(c->shape);
+    csg_vec3 at = is_tight ? t->points[csg_random_below(random, (uint32_t)t->point_count)]
+                           : solid_random_point(random, 1.2);
+    csg_shape_cell large = {.center = at, .half = {half, half, half}};
+    csg_vec3 away = solid_random_point(random, share * half / 2), ignored;
     csg_shape_cell small = {.center = csg_vec3_add(large.center, away),
                             .half = csg_vec3_scale(large.half, 0.4)};
     large.reach = fabs(csg_shape_sample(c->shape, large.center, &ignored)) + csg_vec3_norm(away) +
-                  csg_random_uniform(random, 0, half);
+                  csg_random_uniform(random, 0, share * half);
     small.reach = fmax(fabs(csg_shape_sample(c->shape, small.center, &ignored)),
                        csg_random_uniform(random, 0, large.reach));
     near_list outer = narrow(c, NULL, &large), inner = narrow(c, outer.near, &small);
@@ -309,6 +314,29 @@ static void test_cells(void **state)
                                csg_vec3_make(0.3, 0.5, 0.45), 1 + i / 4);
         make(&c);
         for (int k = 0; k < 25; k++)
+            check_cells(&c, &random);
+        end(&c);
+    }
+}
+
+/* A deep star around an axis, as its long triangles wind up: where nearer ones may be left out of a
+ * list, the nearest of those in it does not tell the side. */
+static void test_cells_of_long_triangles(void **state)
+{
+    csg_random random = {5};
+    for (uint32_t i = 0; i < 12; i++) {
+        solid_case c;
+        solid_begin(&c);
+        solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 40 + 20 * i, 10 + 5 * i, 0);
+        for (size_t v = 0; v < c.triangles.point_count; v++) {
+            csg_vec3 *p = &c.triangles.points[v];
+            double r = hypot(p->x, p->y), angle = atan2(p->y, p->x);
+            double wave = r * (0.6 + 0.35 * cos(5 * angle));
+            p->x = wave * cos(angle + 2 * p->z);
+            p->y = wave * sin(angle + 2 * p->z);
+        }
+        make(&c);
+        for (int k = 0; k < 400; k++)
             check_cells(&c, &random);
         end(&c);
     }
@@ -442,19 +470,13 @@ static void test_every_allocation_fails(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box),
-        cmocka_unit_test(test_near_edges),
-        cmocka_unit_test(test_ball),
-        cmocka_unit_test(test_solids_of_all_kinds),
-        cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_batches),
-        cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_far_and_not_numbers),
-        cmocka_unit_test(test_scales),
-        cmocka_unit_test(test_convex),
-        cmocka_unit_test(test_hash),
-        cmocka_unit_test(test_every_allocation_fails),
+        cmocka_unit_test(test_box),       cmocka_unit_test(test_near_edges),
+        cmocka_unit_test(test_ball),      cmocka_unit_test(test_solids_of_all_kinds),
+        cmocka_unit_test(test_needles),   cmocka_unit_test(test_batches),
+        cmocka_unit_test(test_cells),     cmocka_unit_test(test_cells_of_long_triangles),
+        cmocka_unit_test(test_gradients), cmocka_unit_test(test_far_and_not_numbers),
+        cmocka_unit_test(test_scales),    cmocka_unit_test(test_convex),
+        cmocka_unit_test(test_hash),      cmocka_unit_test(test_every_allocation_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@ static bool cell_of(const csg_tape *tape, const csg_tape_node *leaf, const csg_s
     const float *frame = parameters + CSG_LEAF_FRAME;
     const double *c = cube->center;
     double q[3], half[3], slack = (double)parameters[CSG_LEAF_SLACK], side = cube->half + slack;
-    if (leaf->warp || tape->count > 1) /* below operators twistscale.txt lost bits in the band */
+    if (leaf->warp)
         return false;
     for (int k = 0; k < 3; k++) {
         if (leaf->frame == CSG_FRAME_OFFSET) {

@@ -62,8 +62,8 @@ typedef struct found {
     bool inside;
 } found;
 
-/* No other triangle there, or several. */
-#define NOT_BESIDE UINT32_MAX
+/* No triangle, or several. */
+#define NO_PLACE UINT32_MAX
 
 /* More than points and their feet are moved by rounding. */
 static const double LEAST = 0x1p-36;
@@ -116,7 +116,7 @@ static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *
     csg_vec3 normal = outward(t);
     if (part != CSG_PART_FACE) {
         uint32_t other = solid->beside[place][part];
-        if (other == NOT_BESIDE || !is_plain(solid, other))
+        if (other == NO_PLACE || !is_plain(solid, other))
             return false;
         normal = csg_vec3_add(normal, outward(&solid->tree.triangles[other]));
     }
@@ -131,7 +131,8 @@ static double nearest_told(const polyhedron *solid)
     return solid->is_convex ? 0x1p-28 : 0;
 }
 
-/* p is in the box. */
+/* p is in the box. place: of the triangle that is nearest; NO_PLACE: it is not known, nearer ones
+ * may be left out of the list. */
 static int find_winding(walker *w, known_point *p, uint32_t place)
 {
     int winding;
@@ -139,7 +140,7 @@ static int find_winding(walker *w, known_point *p, uint32_t place)
         return w->last.winding;
     if (reaches(&w->row, p->at) || (w->row.is_set && reaches(p, w->row.at)))
         return w->row.winding;
-    if (p->free > nearest_told(w->solid) && p->free < w->limit &&
+    if (p->free > nearest_told(w->solid) && place != NO_PLACE &&
         read_side(w->solid, p->at, place, &winding))
         return winding;
     if (shares_row(&w->last, p->cell))
@@ -156,7 +157,7 @@ static bool is_inside(walker *w, csg_vec3 at, double distance, uint32_t place)
                               csg_triangle_frame_round(at.z)},
                      .free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST,
                      .is_set = true};
-    p.winding = find_winding(w, &p, place);
+    p.winding = find_winding(w, &p, distance < w->limit ? place : NO_PLACE);
     if (!shares_row(&w->last, p.cell))
         w->row = p;
     w->last = p;
@@ -458,8 +459,7 @@ static bool make_beside(csg_arena *scratch, polyhedron *solid, const csg_triangl
         const csg_edge *edge = &edges->edges[edges->of_half[half]];
         const uint32_t *halves = edges->halves + edge->first;
         uint32_t other = halves[halves[0] == half];
-        solid->beside[places[half / 3]][half % 3] =
-            edge->count == 2 ? places[other / 3] : NOT_BESIDE;
+        solid->beside[places[half / 3]][half % 3] = edge->count == 2 ? places[other / 3] : NO_PLACE;
     }
     return true;
 }
