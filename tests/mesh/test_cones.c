@@ -45,6 +45,34 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     return true;
 }
 
+/* The gradients of mesh/distance/slopes.h, tried at random points of the ball: none is longer, none
+ * strays farther from the others, and all climb along the axis that the balls have in common. */
+static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec3 at, double radius,
+                            const csg_gradients *found)
+{
+    csg_cone cone;
+    csg_vec3 first = {0, 0, 0};
+    bool has_axis = csg_cone_find_axis(&found->balls, &cone);
+    for (int i = 0; i < TRIES; i++) {
+        csg_vec3 d =
+            csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
+        csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
+        double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
+        if (csg_vec3_norm(g) < 1e-9)
+            continue;
+        first = csg_vec3_norm(first) > 0 ? first : g;
+        if (csg_vec3_norm(g) > found->longest + 1e-3)
+            fail_msg("a slope of %g, not %g at most, near (%g, %g, %g) within %g", csg_vec3_norm(g),
+                     found->longest, at.x, at.y, at.z, radius);
+        if (csg_vec3_norm(csg_vec3_sub(g, first)) > 2 * found->stray + 1e-3)
+            fail_msg("slopes %g apart, not %g from one, near (%g, %g, %g) within %g",
+                     csg_vec3_norm(csg_vec3_sub(g, first)), found->stray, at.x, at.y, at.z, radius);
+        if (has_axis && climb < cone.least - 1e-3)
+            fail_msg("the field climbs by %g, not %g, near (%g, %g, %g) within %g", climb,
+                     cone.least, at.x, at.y, at.z, radius);
+    }
+}
+
 /* The range of mesh/distance/slopes.h over a triangle, tried at random points of it. Returns
  * whether there was one. */
 static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_random *random,
@@ -71,6 +99,8 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
             fail_msg("a value of %g, not %g to %g, near (%g, %g, %g) within %g", value, found.low,
                      found.high, at.x, at.y, at.z, radius);
     }
+    if (is_known)
+        check_gradients(scene, random, at, radius, &found);
     free(scratch);
     return is_known;
 }
@@ -138,9 +168,13 @@ static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t 
             continue;
         }
         mesh_case_compile(&c, posed_anyhow(&c, node, &random));
-        for (int k = 0; k < 250; k++)
-            found += try_cone(c.scene, c.field, &random, test_point(&random, 1.4),
-                              exp(csg_random_uniform(&random, -6, -0.5)));
+        for (int k = 0; k < 250; k++) {
+            csg_vec3 at = test_point(&random, 1.4);
+            double radius = exp(csg_random_uniform(&random, -6, -0.5));
+            found += try_cone(c.scene, c.field, &random, at, radius);
+            csg_random other = random; /* what cones are tried at depends on nothing else */
+            try_range(c.scene, c.field, &other, at, radius);
+        }
         mesh_case_end(&c);
     }
     if (found < least_found * scene_count / 24)

@@ -37,6 +37,7 @@ typedef struct settler {
 typedef struct proof {
     const csg_remesh *remesh;
     double error;
+    double farthest; /* of the error: a piece with a place as far from the surface is given up */
     settler *settlers;
     size_t settler_count;
     size_t scratch_floats;
@@ -127,18 +128,16 @@ static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 
     return false;
 }
 
-static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3])
+static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3],
+                            const csg_gradients *gradients)
 {
-    csg_gradients gradients;
     csg_cone cone;
-    if (!csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, v, d.center,
-                            d.radius + p->error, s->scratch, p->scratch_floats, &gradients) ||
-        !csg_cone_find_axis(&gradients.balls, &cone))
+    if (!csg_cone_find_axis(&gradients->balls, &cone))
         return false;
     double least = cone.least * p->error - slack_of(p);
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
-    return (gradients.low >= -least && gradients.high <= least) ||
-           settles_by_steps(p, s, d, v, gradients.stray, slack_of(p) + gradients.doubt, axis);
+    return (gradients->low >= -least && gradients->high <= least) ||
+           settles_by_steps(p, s, d, v, gradients->stray, slack_of(p), axis);
 }
 
 /* Thin walls, sharp tips: a change of sign in any direction will do. */
@@ -180,19 +179,26 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
 {
     static const double STEPS_REACH = 6; /* of the error */
     disc d = disc_of(v);
-    double lipschitz = (double)s->tape.lipschitz;
+    double steepest = (double)s->tape.lipschitz, value;
+    csg_gradients gradients;
+    bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, v, d.center,
+                                    d.radius + p->error, s->scratch, p->scratch_floats, &gradients);
     s->pieces++;
-    if (settles_by_cone(p, s, d, v)) {
+    if (known && settles_by_cone(p, s, d, v, &gradients)) {
         s->by_cone++;
         return SETTLED;
     }
+    if (known && gradients.longest < steepest)
+        steepest = gradients.longest;
+    value = known ? gradients.value : value_at(p, s, d.center);
+    if (fabs(value) > p->farthest * steepest * p->error + slack_of(p))
+        return FAR;
     if (d.radius > STEPS_REACH * p->error)
         return OPEN;
-    if (fabs(value_at(p, s, d.center)) > lipschitz * p->error + slack_of(p))
-        return FAR;
     /* any gradient is as near to zero as that */
     csg_vec3 inward = csg_vec3_scale(normal, -1);
-    if (settles_by_steps(p, s, d, v, lipschitz, slack_of(p), inward))
+    if ((!known || gradients.stray > 0.5 * steepest) &&
+        settles_by_steps(p, s, d, v, steepest, slack_of(p), inward))
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
     return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
@@ -428,10 +434,11 @@ static void end(proof *p)
     csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
 }
 
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
-                               csg_distance_proof *out)
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
+                               uint8_t *pending, csg_distance_proof *out)
 {
-    proof p = {.remesh = remesh, .error = error};
+    static const double HOPELESS = 0.95; /* pieces would have to be small, and many */
+    proof p = {.remesh = remesh, .error = error, .farthest = patient ? 1 : HOPELESS};
     *out = (csg_distance_proof){0};
     csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->context);
     const csg_corners *m = &remesh->corners;

@@ -31,8 +31,9 @@ typedef struct csg_distance_proof {
 } csg_distance_proof;
 
 /* pending, a byte per triangle: in, whether it is to be looked at; out, whether a piece of it
- * stayed open. CSGM_OK or why it was stopped. */
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, uint8_t *pending,
-                               csg_distance_proof *out);
+ * stayed open. patient: what is as good as too far away is looked at, too: it costs the most, and
+ * where a triangle can be mended that is cheaper. CSGM_OK or why it was stopped. */
+csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
+                               uint8_t *pending, csg_distance_proof *out);
 
 #endif

@@ -17,7 +17,8 @@ enum {
     LEAST_CUBES = 1500,
     AGAIN_CUBES = 200000,
     MOST_CUBES = 60000,
-    ALL_CUBES = 1000000
+    ALL_CUBES = 1000000,
+    ALL_AGAIN = 4000000
 };
 
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
@@ -99,6 +100,25 @@ static bool find_surface(const walk *w, worker *s, const cube *q, double value, 
     }
     *out = p;
     return fabs(value) <= noise;
+}
+
+/* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
+ * within. A gap as narrow as the last ring would be none. */
+static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
+{
+    enum { RINGS = 4, WAYS = 6 };
+    double noise = 4 * (double)w->remesh->probe.noise, reach = 0.25 * w->error;
+    csg_vec3 g = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
+    if (value_at(w, s, &q->tape, csg_vec3_sub(p, csg_vec3_scale(g, reach))) < -noise)
+        return true;
+    for (int ring = 0; ring < RINGS; ring++, reach /= 4)
+        for (int i = 0; i < WAYS; i++) {
+            double step = i % 2 ? reach : -reach;
+            csg_vec3 off = {i / 2 == 0 ? step : 0, i / 2 == 1 ? step : 0, i / 2 == 2 ? step : 0};
+            if (value_at(w, s, &q->tape, csg_vec3_add(p, off)) < -noise)
+                return true;
+        }
+    return false;
 }
 
 /* How far the field can be from its value in the middle, all over the cube. */
@@ -193,6 +213,8 @@ static verdict settle(const walk *w, worker *s, const cube *q)
         distance = far;
     if (sheet && distance <= w->error)
         return SETTLED;
+    if (!is_border(w, s, q, p))
+        return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
 
@@ -320,7 +342,7 @@ static bool look_again(walk *w)
     for (size_t i = 0; i < w->segment_count; i++)
         if (w->segments[i].unfinished)
             w->again[count++] = i;
-    w->most_cubes = ALL_CUBES / (count + 1);
+    w->most_cubes = ALL_AGAIN / (count + 1);
     if (w->most_cubes > AGAIN_CUBES)
         w->most_cubes = AGAIN_CUBES;
     bool done = !count || csg_pool_run(w->remesh->context->pool, count, look_at_cube, NULL, w);

@@ -16,6 +16,7 @@ typedef struct operand {
     double value, doubt; /* at the centre; rounding */
     double low, high;    /* over the triangle */
     csg_cone_balls balls;
+    double longest; /* gradient */
     bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
                        faces' */
     bool faces;     /* gradients between the balls may be as long as these: where faces meet */
@@ -135,38 +136,54 @@ static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_co
     return true;
 }
 
-static bool append(operand *to, const operand *from)
+static bool append_balls(csg_cone_balls *to, const csg_cone_balls *from)
 {
-    if (to->balls.count + from->balls.count > CSG_CONE_MOST)
+    if (to->count + from->count > CSG_CONE_MOST)
         return false;
-    memcpy(&to->balls.items[to->balls.count], from->balls.items,
-           from->balls.count * sizeof *from->balls.items);
-    to->balls.count += from->balls.count;
-    to->balls.has_edges |= from->balls.has_edges;
-    to->stretched |= from->stretched;
-    to->faces |= from->faces;
+    memcpy(&to->items[to->count], from->items, from->count * sizeof *from->items);
+    to->count += from->count;
     return true;
 }
 
-/* a becomes the mixture with b; the value is the caller's. */
-static bool mix(operand *a, const operand *b, range share, bool is_sharp)
+/* All pairs. What is longer than the hull of an operand's faces is so along these: they are added
+ * as they are. */
+static bool mix_pairs(operand *a, const operand *b, range share)
 {
-    if (share.low >= 1)
-        return true;
-    if (share.high <= 0) {
-        a->balls = b->balls;
-        a->stretched = b->stretched;
-        a->faces = b->faces;
-        return true;
-    }
-    if (is_sharp || a->faces || b->faces) /* any share */
-        return append(a, b);
     csg_cone_balls from = a->balls;
     a->balls.count = 0;
     for (uint32_t i = 0; i < from.count; i++)
         for (uint32_t k = 0; k < b->balls.count; k++)
             if (!mix_pair(&a->balls, &from.items[i], &b->balls.items[k], share))
                 return false;
+    return (!a->faces || append_balls(&a->balls, &from)) &&
+           (!b->faces || append_balls(&a->balls, &b->balls));
+}
+
+/* a becomes the mixture with b; the value is the caller's. */
+static bool mix(operand *a, const operand *b, range share, bool is_sharp)
+{
+    static const double ANY = 0.7; /* shares that are as good as any */
+    if (share.low >= 1)
+        return true;
+    if (share.high <= 0) {
+        a->balls = b->balls;
+        a->longest = b->longest;
+        a->stretched = b->stretched;
+        a->faces = b->faces;
+        return true;
+    }
+    operand before = *a;
+    bool faces = a->faces || b->faces;
+    bool mixed = !is_sharp && (!faces || share.high - share.low <= ANY) && mix_pairs(a, b, share);
+    if (!mixed) { /* any share */
+        *a = before;
+        if ((!is_sharp && !faces) || !append_balls(&a->balls, &b->balls))
+            return false;
+    }
+    a->balls.has_edges |= b->balls.has_edges;
+    a->longest = fmax(a->longest, b->longest);
+    a->stretched |= b->stretched;
+    a->faces |= b->faces;
     return true;
 }
 
@@ -206,6 +223,7 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         a->high = orthogonal_value((double)n, turn, a->high, b->high);
         a->stretched |= edge;
         a->faces |= edge;
+        a->longest *= edge ? 1.41421357 : 1;
         a->value = value;
         a->doubt += b->doubt;
         return done;
@@ -294,13 +312,47 @@ static bool join_round(walker *w, const csg_tape_node *node)
     return done;
 }
 
+/* ---- one ball for all --------------------------------------------------------------------------
+ */
+
+/* A ball around all gradients: in the balls' hull, or longer combinations of these of at most that
+ * length. Those that have an axis in common are within a circular cone around it, as all they
+ * combine to, and climb along it by no less than they do. */
+static bool enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out)
+{
+    csg_cone cone;
+    double tangent = 0;
+    if (!csg_cone_find_axis(balls, &cone))
+        return false;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        double along = 0, square = 0;
+        for (int k = 0; k < 3; k++) {
+            along += cone.axis[k] * ball->at[k];
+            square += ball->at[k] * ball->at[k];
+        }
+        double across = sqrt(fmax(square - along * along, 0)) + ball->spread;
+        if (!(along - ball->spread >= 0.999 * cone.least))
+            return false;
+        tangent = fmax(tangent, across / (along - ball->spread));
+    }
+    double least = 0.999 * cone.least, most = fmax(longest, least);
+    double sine = tangent / sqrt(1 + tangent * tangent);
+    for (int k = 0; k < 3; k++)
+        out->at[k] = 0.5 * (least + most) * cone.axis[k];
+    out->spread =
+        sqrt(sine * sine * most * most + 0.25 * (most - least) * (most - least)) + 1e-6 * most;
+    return true;
+}
+
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
-/* Signed distances to convex sets, and 1 - d of a gauge d, are concave, wherever they are asked. */
-static bool is_concave(uint8_t op)
+/* Signed distances to convex sets, and 1 - d of a gauge d, are concave, wherever they are asked;
+ * not through a warp. */
+static bool is_concave(const csg_tape_node *leaf)
 {
-    return csg_op_has(op, CSG_TRAIT_CONVEX);
+    return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
 }
 
 /* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
@@ -332,7 +384,7 @@ static void find_range(const walker *w, const csg_tape_node *node, const float *
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
         stray = 2 * fmax(norm_of(balls[0].at), leaf->balls.corner);
-    if (!is_concave(node->op)) {
+    if (!is_concave(node)) {
         leaf->low -= stray * w->flat;
         leaf->high += stray * w->flat;
         return;
@@ -347,6 +399,29 @@ static void find_range(const walker *w, const csg_tape_node *node, const float *
     *(concave ? &leaf->high : &leaf->low) = beyond;
 }
 
+/* A leaf without a bound of its own. It may have no share in what is there. */
+static void take_any(const walker *w, operand *leaf)
+{
+    double steepest = fmax((double)w->tape->steepest, (double)w->tape->lipschitz);
+    leaf->balls.count = 1;
+    leaf->balls.has_edges = false;
+    leaf->balls.corner = 0;
+    leaf->balls.items[0] = (csg_cone_ball){.at = {0, 0, 0}, .spread = steepest};
+}
+
+/* Faces that hardly turn, as those of a curve that was cut into segments, are one smooth one. */
+static void join_faces(operand *leaf)
+{
+    static const double NARROW = 0.35; /* of the longest gradient */
+    csg_cone_ball one;
+    if (!enclose(&leaf->balls, leaf->longest, &one) || !(one.spread <= NARROW * leaf->longest))
+        return;
+    leaf->balls.items[0] = one;
+    leaf->balls.count = 1;
+    leaf->balls.has_edges = leaf->stretched = leaf->faces = false;
+    leaf->balls.corner = 0;
+}
+
 /* low, high: of the leaf's value at the corners, and at the centre behind them. */
 static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, const float *high)
 {
@@ -357,10 +432,17 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     leaf->value = 0.5 * ((double)low[3] + (double)high[3]);
     leaf->doubt = 0.5 * ((double)high[3] - (double)low[3]) + 1e-6 * fabs(leaf->value);
     if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
-        return false;
+        take_any(w, leaf);
+    leaf->longest = leaf->balls.corner;
+    for (uint32_t i = 0; i < leaf->balls.count; i++) {
+        const csg_cone_ball *ball = &leaf->balls.items[i];
+        leaf->longest = fmax(leaf->longest, norm_of(ball->at) + ball->spread);
+    }
     leaf->faces = leaf->balls.count > 1;
     for (uint32_t i = 0; i < leaf->balls.count; i++) /* else the frame, or a warp, stretches */
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * norm_of(leaf->balls.items[i].at);
+    if (leaf->faces && !is_concave(node))
+        join_faces(leaf);
     find_range(w, node, low, high, leaf);
     return true;
 }
@@ -390,14 +472,28 @@ static double find_stray(const operand *root)
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
     double stray = 0;
-    if (root->stretched || balls->has_edges || !balls->count)
+    if (!balls->count)
         return INFINITY;
+    if (root->stretched || root->faces || balls->has_edges)
+        return enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
     for (uint32_t i = 0; i < balls->count; i++)
         for (int k = 0; k < 3; k++)
             middle.at[k] += balls->items[i].at[k] / balls->count;
     for (uint32_t i = 0; i < balls->count; i++)
         stray = fmax(stray, apart(&middle, &balls->items[i]));
     return stray;
+}
+
+/* Of the balls' hull; where faces meet, combinations may be longer. */
+static double find_longest(const operand *root)
+{
+    const csg_cone_balls *balls = &root->balls;
+    double most = 0;
+    if (root->stretched || root->faces || balls->has_edges)
+        return root->longest;
+    for (uint32_t i = 0; i < balls->count; i++)
+        most = fmax(most, norm_of(balls->items[i].at) + balls->items[i].spread);
+    return most;
 }
 
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
@@ -431,6 +527,8 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
     if (!walk(&w, low, high))
         return false;
     out->balls = w.stack[0].balls;
+    out->value = w.stack[0].value;
+    out->longest = find_longest(&w.stack[0]);
     out->low = w.stack[0].low;
     out->high = w.stack[0].high;
     out->stray = find_stray(&w.stack[0]);

@@ -20,7 +20,9 @@ enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 
 typedef struct csg_gradients {
     csg_cone_balls balls;
-    double low, high; /* of the field, over the triangle */
+    double value;     /* of the field, at the centre */
+    double low, high; /* over the triangle */
+    double longest;   /* of all gradients */
     double stray;     /* no gradient is farther from one and the same vector; INFINITY: not known */
     double doubt;     /* rounding of the field's values */
 } csg_gradients;

@@ -30,36 +30,132 @@ static uint32_t free_vertex(refiner *f)
     return f->vertex < m->vertex_count ? f->vertex++ : CSG_CORNER_NONE;
 }
 
-/* The corner that the longest side starts at; creases are halved only where they are straight. */
-static uint32_t longest_side(const csg_remesh *r, uint32_t triangle)
+/* The field's tangent plane a step from a place, along one side's triangle. */
+typedef struct plane {
+    csg_vec3 normal;
+    double height; /* of the place above it */
+} plane;
+
+static bool find_plane(csg_remesh *r, csg_vec3 at, csg_vec3 way, plane *out)
 {
-    uint32_t longest = CSG_CORNER_NONE;
-    double most = 0;
-    for (uint32_t c = 3 * triangle; c < 3 * triangle + 3; c++) {
-        csg_vec3 side =
-            csg_vec3_sub(csg_remesh_corner(r, csg_corner_next(c)), csg_remesh_corner(r, c));
-        double length = csg_vec3_norm(side);
-        if (length > most && !csg_remesh_is_crease(r, c)) {
-            most = length;
-            longest = c;
-        }
-    }
-    return longest;
+    float place[1][3], f, g[1][3];
+    csg_vec3_to_floats(place[0], csg_vec3_add(at, way));
+    csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
+    csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
+    csg_vec3 slope = {(double)g[0][0], (double)g[0][1], (double)g[0][2]};
+    double norm = csg_vec3_norm(slope);
+    if (!(norm > 1e-3))
+        return false;
+    out->normal = csg_vec3_scale(slope, 1 / norm);
+    out->height = (double)f / norm - csg_vec3_dot(out->normal, way);
+    return true;
 }
 
-/* Whether the four triangles keep the way they face, and cross nothing. */
-static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
+/* A crease's place is where the tangent planes of both its sides meet, of all such places the
+ * nearest one. They are asked for beside it, where the crease itself is not. */
+static bool bring_to_crease(csg_remesh *r, uint32_t corner, csg_vec3 *at)
+{
+    enum { STEPS = 3 };
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    csg_vec3 along = csg_vec3_normalize(csg_vec3_sub(b, a)), way[2], p = *at;
+    uint32_t apex = csg_corner_previous(corner);
+    const uint32_t beside[2] = {apex, r->corners.across[apex]};
+    for (int i = 0; i < 2; i++) {
+        csg_vec3 off = csg_vec3_sub(csg_remesh_corner(r, beside[i]), a);
+        off = csg_vec3_sub(off, csg_vec3_scale(along, csg_vec3_dot(off, along)));
+        double height = csg_vec3_norm(off);
+        if (!(height > 0))
+            return false;
+        way[i] = csg_vec3_scale(off, fmin(2 * r->error, 0.5 * height) / height);
+    }
+    for (int step = 0; step < STEPS; step++) {
+        plane face[2];
+        if (!find_plane(r, p, way[0], &face[0]) || !find_plane(r, p, way[1], &face[1]))
+            return false;
+        double cosine = csg_vec3_dot(face[0].normal, face[1].normal);
+        double square = 1 - cosine * cosine;
+        if (!(square > 0.05))
+            return false;
+        double u = (cosine * face[1].height - face[0].height) / square;
+        double v = (cosine * face[0].height - face[1].height) / square;
+        p = csg_vec3_add(
+            p, csg_vec3_add(csg_vec3_scale(face[0].normal, u), csg_vec3_scale(face[1].normal, v)));
+        if (!(csg_vec3_norm(csg_vec3_sub(p, *at)) <= 4 * r->error))
+            return false;
+    }
+    *at = p;
+    return true;
+}
+
+/* A side of a triangle, by the corner it starts at. */
+typedef struct side {
+    uint32_t corner;
+    double length, away; /* away: of its middle from the surface, by the field or the crease */
+} side;
+
+/* What is far from the surface comes first, then what is long. */
+static bool is_worse(const side *a, const side *b, double far)
+{
+    bool a_far = a->away > far, b_far = b->away > far;
+    if (a_far != b_far)
+        return a_far;
+    return a_far ? a->away > b->away : a->length > b->length;
+}
+
+/* The sides in the order in which they should be halved: long triangles along a curve are as far
+ * from it however short they get. */
+static void sides_to_halve(csg_remesh *r, uint32_t triangle, side sides[3])
+{
+    static const double FAR = 0.3; /* of the error */
+    float at[3][3], f[3];
+    int count = 0;
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t c = 3 * triangle + k;
+        csg_vec3 a = csg_remesh_corner(r, c), b = csg_remesh_corner(r, csg_corner_next(c));
+        csg_vec3_to_floats(at[k], csg_vec3_scale(csg_vec3_add(a, b), 0.5));
+    }
+    csg_probe_values(&r->probe, (const float(*)[3])at, 3, f);
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t c = 3 * triangle + k;
+        csg_vec3 a = csg_remesh_corner(r, c), b = csg_remesh_corner(r, csg_corner_next(c));
+        csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5), to = middle;
+        side one = {c, csg_vec3_norm(csg_vec3_sub(b, a)), fabs((double)f[k])};
+        if (csg_remesh_is_crease(r, c) && bring_to_crease(r, c, &to))
+            one.away = csg_vec3_norm(csg_vec3_sub(to, middle));
+        int i = count++;
+        for (; i && is_worse(&one, &sides[i - 1], FAR * r->error); i--)
+            sides[i] = sides[i - 1];
+        sides[i] = one;
+    }
+}
+
+/* Out of the solid; zero where the field says nothing. */
+static csg_vec3 outward_at(csg_remesh *r, csg_vec3 at)
+{
+    float place[1][3], g[1][3];
+    csg_vec3_to_floats(place[0], at);
+    csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
+    return csg_vec3_normalize(csg_vec3_make(-(double)g[0][0], -(double)g[0][1], -(double)g[0][2]));
+}
+
+/* Whether the four triangles keep the way they face, or face as the surface does (slivers turn),
+ * and cross nothing. */
+static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
 {
     uint32_t apex = csg_corner_previous(corner);
     csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
     csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, r->corners.across[apex]);
     csg_vec3 left = csg_vec3_normalize(csg_triangle_cross(c, a, b));
     csg_vec3 right = csg_vec3_normalize(csg_triangle_cross(d, b, a));
+    double worst = fmin(csg_triangle_quality(c, a, b), csg_triangle_quality(d, b, a));
+    double least = fmin(1e-3, 0.25 * worst);
+    csg_vec3 outward = outward_at(r, at);
     const csg_vec3 cut[4][3] = {{c, a, at}, {c, at, b}, {d, b, at}, {d, at, a}};
     for (int i = 0; i < 4; i++) {
         csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(cut[i][0], cut[i][1], cut[i][2]));
-        if (csg_vec3_dot(normal, i < 2 ? left : right) < 0.3 ||
-            csg_triangle_quality(cut[i][0], cut[i][1], cut[i][2]) < 1e-3)
+        if ((csg_vec3_dot(normal, i < 2 ? left : right) < 0.3 &&
+             csg_vec3_dot(normal, outward) < 0.3) ||
+            csg_triangle_quality(cut[i][0], cut[i][1], cut[i][2]) < least)
             return false;
     }
     const uint32_t *v = r->corners.vertex;
@@ -77,12 +173,69 @@ static bool is_sound(const csg_remesh *r, uint32_t corner, csg_vec3 at)
     return !csg_crossing_is_made(&r->tree, &change, NULL);
 }
 
+/* The mean of the normals at a side. */
+static csg_vec3 normal_at(const csg_remesh *r, uint32_t corner)
+{
+    csg_vec3 sum = {0, 0, 0};
+    const uint32_t beside[2] = {corner / 3, r->corners.across[csg_corner_previous(corner)] / 3};
+    for (int i = 0; i < 2; i++) {
+        uint32_t c = 3 * beside[i];
+        sum = csg_vec3_add(sum, csg_vec3_normalize(csg_triangle_cross(
+                                    csg_remesh_corner(r, c), csg_remesh_corner(r, c + 1),
+                                    csg_remesh_corner(r, c + 2))));
+    }
+    return csg_vec3_normalize(sum);
+}
+
+/* Where the way in from outside, along the normal, first meets the solid. */
+static bool find_entry(csg_remesh *r, csg_vec3 *at, csg_vec3 normal)
+{
+    enum { STEPS = 16, HALVINGS = 4 };
+    double high = 2 * r->error, step = 2 * high / STEPS;
+    for (int halving = 0; halving < HALVINGS; halving++, step /= STEPS) {
+        float place[STEPS + 1][3], f[STEPS + 1];
+        for (int i = 0; i <= STEPS; i++)
+            csg_vec3_to_floats(place[i],
+                               csg_vec3_add(*at, csg_vec3_scale(normal, high - i * step)));
+        csg_probe_values(&r->probe, (const float(*)[3])place, STEPS + 1, f);
+        int inside = 0;
+        while (inside <= STEPS && f[inside] < 0)
+            inside++;
+        if (!halving && (inside == 0 || inside > STEPS))
+            return false;
+        high -= (inside - 1) * step;
+    }
+    *at = csg_vec3_add(*at, csg_vec3_scale(normal, high));
+    return true;
+}
+
+/* Newton's steps may end where f is zero within the solid: where parts of it touch. */
+static bool bring_to_surface(csg_remesh *r, csg_vec3 *at, csg_vec3 normal)
+{
+    static const double OUT = 0.125; /* of the error */
+    csg_vec3 p = *at;
+    if (csg_remesh_project(r, &p, 4 * r->error)) {
+        float place[1][3], f;
+        csg_vec3_to_floats(place[0], csg_vec3_add(p, csg_vec3_scale(normal, OUT * r->error)));
+        csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
+        if (f < 0) {
+            *at = p;
+            return true;
+        }
+    }
+    return find_entry(r, at, normal);
+}
+
 static bool halve(refiner *f, uint32_t corner)
 {
     csg_remesh *r = f->remesh;
     csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
     csg_vec3 at = csg_vec3_scale(csg_vec3_add(a, b), 0.5);
-    if (!csg_remesh_project(r, &at, 4 * r->error) || !is_sound(r, corner, at))
+    bool is_crease = csg_remesh_is_crease(r, corner);
+    if (!(is_crease && bring_to_crease(r, corner, &at)) &&
+        !bring_to_surface(r, &at, normal_at(r, corner)))
+        return false;
+    if (!is_sound(r, corner, at))
         return false;
     uint32_t vertex = free_vertex(f);
     const uint32_t triangles[2] = {free_triangle(f), free_triangle(f)};
@@ -91,7 +244,7 @@ static bool halve(refiner *f, uint32_t corner)
         return false;
     uint32_t other = r->corners.across[csg_corner_previous(corner)] / 3;
     r->at[vertex] = at;
-    r->kind[vertex] = CSG_VERTEX_SMOOTH;
+    r->kind[vertex] = is_crease ? CSG_VERTEX_CREASE : CSG_VERTEX_SMOOTH;
     if (r->looks)
         r->looks[vertex] = csg_remesh_look(r, at);
     csg_corners_split(&r->corners, corner, vertex, triangles);
@@ -109,30 +262,39 @@ static bool refine_open(refiner *f)
     for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
         if (f->pending[t] != 1 || !csg_corners_is_live(&r->corners, t))
             continue;
-        uint32_t corner = longest_side(r, t);
-        changed |= corner != CSG_CORNER_NONE && halve(f, corner);
+        side sides[3];
+        sides_to_halve(r, t, sides);
+        bool done = false;
+        for (int i = 0; i < 3 && !done; i++)
+            done = halve(f, sides[i].corner);
+        changed |= done;
     }
     return changed;
 }
 
 csgm_status csg_refine_until_near(csg_remesh *r, double error, csg_distance_proof *out)
 {
-    enum { MOST_ROUNDS = 12 };
+    enum { MOST_ROUNDS = 12, MOST_IDLE = 2 };
     size_t count = r->corners.triangle_count;
     refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
     if (!f.pending)
         return csg_context_no_memory(r->context);
     memset(f.pending, 1, count);
-    csgm_status status = csg_check_distance(r, error, f.pending, out);
-    uint64_t before = UINT64_MAX / 10; /* a round that settles hardly any is the last */
-    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped &&
-                        out->open * 10 < before * 9;
+    csgm_status status = csg_check_distance(r, error, false, f.pending, out);
+    uint64_t least = UINT64_MAX / 10;
+    int idle = 0; /* rounds that settled hardly any */
+    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;
          round++) {
-        before = out->open;
+        idle += out->open * 10 >= least * 9;
+        if (idle > MOST_IDLE)
+            break;
+        least = out->open < least ? out->open : least;
         if (!refine_open(&f))
             break;
-        status = csg_check_distance(r, error, f.pending, out);
+        status = csg_check_distance(r, error, false, f.pending, out);
     }
+    if (status == CSGM_OK && out->open && !out->stopped)
+        status = csg_check_distance(r, error, true, f.pending, out);
     csg_memory_release(r->memory, f.pending, count);
     return status;
 }

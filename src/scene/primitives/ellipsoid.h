@@ -220,15 +220,49 @@ static inline int csg_ellipsoid_falls_outwards(const float *own)
     return 1;
 }
 
+/* Whether inside the ellipsoid all of the ball has one nearest point each: where that jumps lies in
+ * the shortest axis' middle plane, and where two axes are the shortest, on the third. */
+static inline bool csg_ellipsoid_is_clear(const csg_cone_leaf *l)
+{
+    const float *own = l->own;
+    double z = l->q[2], from = fabs(z);
+    for (int i = 0; i < 2; i++)
+        from = own[i] == own[2] ? fmax(from, sqrt(l->q[i] * l->q[i] + z * z)) : from;
+    return from > l->rho * (1 + 1e-6);
+}
+
+/* The normal of the nearest point y is along N = (y_i / e_i^2), so a turn is at most K / |N| times
+ * y's way, K = 1 / e_min^2: the curvature there. Over the ball y moves no farther than s, where
+ * (1 - depth K / (|N| - K s)) s = rho; along the way |N| falls by at most K s. The turn; INFINITY:
+ * not known. */
+static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double value)
+{
+    const float *own = l->own;
+    const double n[3] = {(double)g.x, (double)g.y, (double)g.z};
+    double depth = fmax(value + l->rho, 0), steepest = 1 / ((double)own[2] * (double)own[2]);
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double along = (l->q[i] - value * n[i]) / ((double)own[i] * (double)own[i]);
+        square += along * along;
+    }
+    double length = 0.9999 * sqrt(square), b = length + steepest * (l->rho - depth);
+    double root = b * b - 4 * steepest * l->rho * length;
+    if (!(b > 0 && root > 0) || (depth > 0 && !csg_ellipsoid_is_clear(l)))
+        return INFINITY;
+    double way = 2 * l->rho * length / (b + sqrt(root)), left = length - steepest * way;
+    return left > 1e-3 * length && left > steepest * depth ? steepest * way / left : INFINITY;
+}
+
 static inline bool csg_ellipsoid_gradients(csg_cone_leaf *l)
 {
     const float *own = l->own;
     point g, q = {(float)l->q[0], (float)l->q[1], (float)l->q[2]};
-    double depth = fmax((double)csg_ellipsoid_value(own, q, &g) + l->rho, 0);
+    double value = (double)csg_ellipsoid_value(own, q, &g), depth = fmax(value + l->rho, 0);
     double least = (double)own[2], curvature = fmax((double)own[0], (double)own[1]);
     curvature /= least * least;
-    double spread = l->rho * curvature / (1 - curvature * depth);
-    if (!(curvature * depth < 1 && spread < 1.4))
+    double spread = curvature * depth < 1 ? l->rho * curvature / (1 - curvature * depth) : INFINITY;
+    spread = fmin(spread, csg_ellipsoid_turn(l, g, value));
+    if (!(spread < 1.4))
         return false;
     return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, spread + 1e-4);
 }
