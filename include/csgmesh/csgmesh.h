@@ -439,9 +439,9 @@ typedef struct csgm_mesh_options {
     csgm_box bounds;      /* what to mesh, the solid is cut and capped there; empty (the default) =
                              the scene's own bounds */
     double cell_size;     /* edge of a marching-cubes cell; 0 (the default): as resolution says */
-    uint32_t resolution;  /* cells along the longest side when cell_size is 0; 0 (the default): as
-                             tolerance chooses them, 128 to certify, else cells follow the
-                             shape as quality and triangles say */
+    uint32_t resolution;  /* cells along the longest side when cell_size is 0; 0 (the default):
+                             128 to certify, else cells follow the shape as tolerance, quality
+                             and triangles say */
     csgm_normals normals; /* default VERTEX */
     csgm_features features; /* default SHARP */
     bool colors;            /* vertex colours where the scene has any; default true */
@@ -451,7 +451,7 @@ typedef struct csgm_mesh_options {
      * stay, and a mesh in memory is needed where it would have been streamed. */
     double tolerance;      /* > 0: no point of the mesh is farther than this from the surface, nor,
                               as measured on the lattice, the surface from the mesh; with resolution
-                              and cell_size 0 the cells are chosen for it; default 0 */
+                              and cell_size 0 the cells follow the shape; default 0 */
     double simplify_error; /* > 0: the same for the mesh of the resolution given; without one, the
                               tolerance of cells that follow the shape, not proven; default 0 */
     double simplify_share; /* > 0, < 1: so many of the triangles may stay; default 0 */

@@ -38,7 +38,9 @@ class Quality(cli.CliTest):
         for options in (["--features", "smooth"], ["--improve"], ["--triangles", "99"], ["--simplify", "0.1"], ["--simplify", "50%"]):
             self.assertTrue(self.stats(text, *options)["lattice"]["adaptive"], options)
             self.assertEqual(self.bytes(text, *options), self.bytes(text, "--quality", "normal", *options), options)
-        for options in (["-r", "128"], ["-s", "0.5"], ["-e", "0.1"], ["--certify"], ["--certify-size", "0.05"]):
+        lattice = self.stats(text, "-e", "0.1")["lattice"]
+        self.assertEqual((lattice["adaptive"], lattice["tolerance"]), (True, 0.1))
+        for options in (["-r", "128"], ["-s", "0.5"], ["-r", "64", "-e", "0.1"], ["--certify"], ["--certify-size", "0.05"]):
             self.assertFalse(self.stats(text, *options)["lattice"]["adaptive"], options)
         self.assertEqual(self.bytes(text, "--certify"), self.bytes(text, "-r", "128"))
         self.assertLess(len(normal), len(self.bytes(text, "-r", "128")) / 50)

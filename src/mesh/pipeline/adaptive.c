@@ -41,6 +41,12 @@ typedef struct adaptive {
 /* ---- the lattice -------------------------------------------------------------------------------
  */
 
+/* What cells are made for. */
+static double cells_error(const csg_mesh_goal *goal)
+{
+    return goal->finer * goal->error;
+}
+
 /* The largest power of two that is at most this. */
 static double power_below(double size)
 {
@@ -59,7 +65,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
     csg_vec3 size = csg_box_size(solid), center = a->input.field->center;
     double longest = fmax(size.x, fmax(size.y, size.z));
     double first = power_below(longest / FIRST_CELLS);
-    double cell = fmin(power_below(a->goal->error) / 2, ldexp(first, -LEAST_LEVELS));
+    double cell = fmin(power_below(cells_error(a->goal)) / 2, ldexp(first, -LEAST_LEVELS));
     const double low[3] = {bounds.min.x, bounds.min.y, bounds.min.z};
     const double high[3] = {bounds.max.x, bounds.max.y, bounds.max.z};
     const double middle[3] = {center.x, center.y, center.z};
@@ -96,7 +102,7 @@ static csgm_status create_judge(adaptive *a)
 {
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
-    a->judge = (csg_judge){.tolerance = SHARE_OF_CELLS * a->goal->error,
+    a->judge = (csg_judge){.tolerance = SHARE_OF_CELLS * cells_error(a->goal),
                            .sharp = a->goal->sharp,
                            .noise = m->noise,
                            .end_distance = (float)fmin(
@@ -209,7 +215,7 @@ static csgm_status walk(adaptive *a)
                                      .watch = &a->watch,
                                      .bricks = &a->bricks,
                                      .judge = &a->judge,
-                                     .farthest = a->goal->error,
+                                     .farthest = cells_error(a->goal),
                                      .shift = a->workers.marching.shift,
                                      .colors = csg_mesh_gets_colors(&a->input)};
     status = refine(a);

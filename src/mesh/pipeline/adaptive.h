@@ -6,12 +6,11 @@
 
 #include "mesh/pipeline/build.h"
 
-/* Without -r and -s cells follow the shape. To certify, and to prove a tolerance, takes equal
- * cells. This is the one place that says which options mean which lattice. */
+/* Without -r and -s cells follow the shape; to certify takes equal ones. This is the one place that
+ * says which options mean which lattice. */
 static inline bool csg_mesh_is_adaptive(const csgm_mesh_options *options)
 {
-    return !options->resolution && !(options->cell_size > 0) && !options->certify &&
-           !(options->tolerance > 0);
+    return !options->resolution && !(options->cell_size > 0) && !options->certify;
 }
 
 /* The tolerance of a quality, for a box to mesh. */

@@ -11,7 +11,8 @@
 static inline bool csg_mesh_may_be_own(const csgm_mesh_options *options)
 {
     return csg_mesh_is_adaptive(options) && options->features == CSGM_FEATURES_SHARP &&
-           !(options->simplify_error > 0) && !(options->simplify_share > 0) && !options->improve;
+           !(options->tolerance > 0) && !(options->simplify_error > 0) &&
+           !(options->simplify_share > 0) && !options->improve;
 }
 
 /* csg_mesh_build_field for such options. *out NULL: the solid is something else, its triangles

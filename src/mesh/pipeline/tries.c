@@ -23,8 +23,9 @@ static void report_misses(csgm_context *context, const csg_mesh_goal *goal,
 {
     if (goal->open)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
-                       goal->chooses ? "raise the tolerance"
-                                     : "raise -r, or give -e alone: it chooses the resolution",
+                       goal->chooses || follows
+                           ? "raise the tolerance"
+                           : "raise -r, or give -e alone: its cells follow the shape",
                        "at %llu places the mesh could not be shown to be within %g of the surface, "
                        "first at %g,%g,%g",
                        (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
@@ -82,17 +83,20 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
     enum { MOST_TRIES = 6, FIRST_CELLS = 64, MOST_CELLS = 768 };
     csgm_mesh_options base = *options;
     bool follows = csg_mesh_is_adaptive(options); /* its cells follow the shape */
-    csg_mesh_goal goal = {
-        .error = options->tolerance > 0 ? options->tolerance : options->simplify_error,
-        .share = options->simplify_share,
-        .improve = options->improve,
-        .triangles = options->triangles,
-        .proves = !follows,
-        .sharp = options->features == CSGM_FEATURES_SHARP,
-        .chooses = options->tolerance > 0 && !options->resolution && !(options->cell_size > 0),
-        .normals = options->normals,
-        .care = 0.85,
-        .started_s = csg_clock_now_s()};
+    bool proves = options->tolerance > 0;
+    csg_mesh_goal goal = {.error = proves ? options->tolerance : options->simplify_error,
+                          .share = options->simplify_share,
+                          .improve = options->improve,
+                          .triangles = options->triangles,
+                          .proves = !follows || proves,
+                          .sharp = options->features == CSGM_FEATURES_SHARP,
+                          .chooses = !follows && proves && !options->resolution &&
+                                     !(options->cell_size > 0),
+                          .follows = follows,
+                          .finer = 1,
+                          .normals = options->normals,
+                          .care = 0.85,
+                          .started_s = csg_clock_now_s()};
     base.normals = CSGM_NORMALS_NONE;
     csg_box solid = csg_box_intersect(box_of(field, options), field->bounds);
     if (share || !csg_box_is_finite(solid)) /* parts have one tolerance */
@@ -117,9 +121,10 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         was_open = goal.open > 0;
         if (was_open)
             goal.care *= 0.8;
+        goal.finer *= 0.25; /* whole parts are missing */
+        goal.measured = 0;
         goal.open = 0;
-        if (!follows)
-            base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
+        base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);
     }
     if (status != CSGM_OK)
         return status;

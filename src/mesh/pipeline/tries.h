@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Meshes that are reshaped: tries, of one lattice each, until one is within the tolerance.
+ * Meshes that are reshaped: one of cells that follow the shape; or tries, of one lattice of equal
+ * cells each, until one is within the tolerance.
  */
 #ifndef CSG_MESH_PIPELINE_TRIES_H
 #define CSG_MESH_PIPELINE_TRIES_H

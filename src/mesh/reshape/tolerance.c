@@ -117,6 +117,7 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
 /* What the cells are too large for; where they are free, smaller ones are asked for. */
 static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *missed)
 {
+    static const double PART = 2; /* of the error: what is as far from the mesh is not part of it */
     CSG_ZONE(r->context, "missed parts");
     *missed = (csg_missed){0};
     if (!(goal->error > 0) || !goal->proves)
@@ -124,6 +125,9 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
     csgm_status status = csg_missed_find(r, goal->error, missed);
     if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
         goal->cell_size = 0.5 * r->cell;
+    if (status == CSGM_OK && goal->follows && !goal->is_last &&
+        missed->farthest > PART * goal->error)
+        goal->cell_size = r->cell;
     goal->unfinished = missed->unfinished;
     return status;
 }
@@ -139,6 +143,7 @@ static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
     status = find_missed(r, goal, &missed);
     if (status == CSGM_OK && thins && !(goal->cell_size > 0))
         status = thin_out(r, goal, &missed);
+    goal->measured = fmax(goal->measured, missed.farthest); /* some belong to no triangle */
     csg_missed_release(&missed, r->memory);
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;
@@ -149,7 +154,7 @@ static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
         goal->cell_size = 0.6 * r->cell; /* the lattice is too coarse for its own samples */
     else if (status == CSGM_OK && thins)
         status = prove(r, goal);
-    if (status == CSGM_OK && goal->open && !goal->is_last)
+    if (status == CSGM_OK && goal->open && !goal->is_last && !goal->follows)
         goal->cell_size = goal->chooses ? 0.6 * r->cell : r->cell;
     if (status == CSGM_OK && !(goal->cell_size > 0))
         status = csg_remesh_write_back(r, goal->normals != CSGM_NORMALS_NONE,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * A mesh of equal cells towards a goal: it is thinned out as far as the error allows (decimate.h),
- * improved where that is asked for (improve.h), and then held against the field (distance/check.h).
- * Where the check fails the goal asks for another try (pipeline/tries.h), more carefully and, if
- * the resolution is free, more finely.
+ * A mesh towards a goal: it is thinned out as far as the error allows (decimate.h), improved where
+ * that is asked for (improve.h), and then held against the field (distance/check.h) and mended
+ * where that fails (refine.h). What is still open asks for another try of equal cells
+ * (pipeline/tries.h), more carefully and, if the resolution is free, more finely.
  */
 #ifndef CSG_MESH_RESHAPE_TOLERANCE_H
 #define CSG_MESH_RESHAPE_TOLERANCE_H
@@ -18,6 +18,8 @@ typedef struct csg_mesh_goal {
     bool improve;
     bool sharp;           /* creases are kept */
     bool chooses;         /* the cell size */
+    bool follows;         /* the shape, with its cells */
+    double finer;         /* of the error: what these are made for */
     csgm_normals normals; /* of the result */
     double care;          /* of the error: what changes may make, so that the proof has room */
     double started_s;     /* for the time limit of all tries */
