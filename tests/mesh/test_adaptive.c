@@ -7,6 +7,7 @@
  * Arguments: how many random scenes (default 12; four times as many bumps and dents, up to 40), the
  * first one's seed (default 0).
  */
+#include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
 #include "mesh/uncrossed.h"
 
@@ -120,6 +121,51 @@ static void test_thin_sheets(void **state)
     }
 }
 
+/* A slit through a block, thinner than the tolerance: most of it is in the mesh, or it is named. */
+static void test_slits(void **state)
+{
+    const double tolerance = 0x1p-7; /* a 250th of 2, or less */
+    csg_random random = {31};
+    for (unsigned i = 0; i < scene_count && i < 40; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        double half = 0.5 * tolerance * csg_random_uniform(&random, 0.1, 0.9);
+        double x = csg_random_uniform(&random, -0.8, 0.8);
+        csg_node_id block = make_box(&c, 1, 1, 0.5);
+        csg_node_id slit = moved(&c, make_box(&c, half, 2, 1), x, 0, 0);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_DIFFERENCE, SHARP, block, slit));
+        csgm_mesh_options options = following(CSGM_QUALITY_DRAFT);
+        mesh_build_closed(&c, &options, "a slit in a block");
+        bool raised = c.last_code == CSG_DIAG_NOT_WITHIN; /* a second word, on the tolerance */
+        bool named = raised ? c.context.diags.warnings == 2 : c.last_code == CSG_DIAG_THIN_PART;
+        double taken = 4 - c.check.volume, whole = 2 * half * 2;
+        if (taken < 0.9 * whole && !named)
+            fail_msg("slit %u, %g thick at %g: lost without a word", i, 2 * half, x);
+        mesh_case_end(&c);
+    }
+}
+
+/* Where solids touch there is nothing thin: the gap beside the place ends, it is not lost. */
+static void test_contacts(void **state)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        csg_node_id plate = moved(&c, make_box(&c, 2, 2, 0.25), 0, 0, -0.25);
+        csg_node_id ball = moved(&c, make_sphere(&c, 0.7), 0, 0, 0.7);
+        csg_node_id log = moved(
+            &c, turned(&c, make_cylinder(&c, 0.4, 0.8), 90, csg_vec3_make(1, 0, 0)), 0, 0, 0.4);
+        csg_node_id other = i == 0   ? ball
+                            : i == 1 ? log
+                                     : moved(&c, make_box(&c, 1, 1, 1), 0, 0, 1);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, plate, other));
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "a solid on a plate");
+        assert_int_equal(c.context.diags.warnings, 0);
+        mesh_case_end(&c);
+    }
+}
+
 /* Triangles of leaves beside finer ones, and of polygons without a point inside, are as near as all
  * others: nothing has to be said of a blend. */
 static void test_within_tolerance(void **state)
@@ -226,6 +272,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_boxes),           cmocka_unit_test(test_small_parts),
         cmocka_unit_test(test_bumps_and_dents), cmocka_unit_test(test_tilted_boxes),
         cmocka_unit_test(test_thin_sheets),     cmocka_unit_test(test_within_tolerance),
+        cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
         cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
     };
     if (argc > 1)

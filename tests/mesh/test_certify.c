@@ -41,8 +41,8 @@ static bool is_doubted(lattice_case *c)
         csg_octree_create(&c->base.context, c->base.field, &c->lattice, &options, &octree),
         CSGM_OK);
     assert_int_equal(csg_octree_sample(octree, 0, csg_octree_frontier_count(octree)), CSGM_OK);
-    bool found = csg_certify_doubts(&c->base.context, c->base.field, &c->lattice, octree, &place,
-                                    &edges, &status);
+    bool found = csg_certify_doubts(&c->base.context, c->base.field, &c->lattice, octree, NULL,
+                                    NULL, &place, &edges, &status);
     assert_int_equal(status, CSGM_OK);
     csg_octree_destroy(octree);
     return found;

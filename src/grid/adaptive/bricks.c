@@ -89,6 +89,18 @@ uint32_t csg_bricks_leaf_at(const csg_bricks *b, const float at[3])
     return CSG_BRICK_NONE;
 }
 
+bool csg_bricks_have(const csg_bricks *b, const float at[3], bool inside)
+{
+    uint32_t cell[3], number = csg_bricks_leaf_at(b, at);
+    if (number == CSG_BRICK_NONE || !csg_lattice_cell_of(b->lattice, at, cell))
+        return true;
+    const csg_brick *brick = &b->items[number];
+    for (int axis = 0; axis < 3; axis++)
+        cell[axis] >>= b->finest - brick->level;
+    bool corner = brick->inside[cell[2] & 1][cell[1] & 1] >> (cell[0] & 1) & 1;
+    return brick->crossed >> csg_brick_octant(cell) & 1 || corner == inside;
+}
+
 csg_tape csg_bricks_short_tape(const csg_bricks *b, const csg_brick *brick)
 {
     csg_tape tape = b->field->tape;

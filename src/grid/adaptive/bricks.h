@@ -102,6 +102,9 @@ csgm_status csg_bricks_refine(csg_bricks *bricks);
 uint32_t csg_bricks_find(const csg_bricks *bricks, uint32_t level, const uint32_t at[3]);
 /* The brick whose leaf holds a point of the field's frame, CSG_BRICK_NONE where none does. */
 uint32_t csg_bricks_leaf_at(const csg_bricks *bricks, const float at[3]);
+/* Whether the leaf at a point of the field's frame has anything of this sign: a corner, or a
+ * surface through it. True where there is no leaf. */
+bool csg_bricks_have(const csg_bricks *bricks, const float at[3], bool inside);
 /* Bricks that have leaves, in Morton order: an array of *count numbers, to be released by the
  * caller. False: out of memory. */
 bool csg_bricks_leaves(const csg_bricks *bricks, uint32_t **out, size_t *count);

@@ -44,11 +44,16 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
                             const csg_lattice *lattice, const csg_certify_options *options,
                             csg_certify_report *report);
 
+/* Whether a place (field's frame) within a part of the solid, or within a gap, that the lattice
+ * misses is lost: another lattice may have it. */
+typedef bool csg_certify_is_lost(const void *user, csg_vec3 at, double thickness, bool is_gap);
+
 /* Without certifying: follows some of the octree's doubts (octree.h) to the lattice. False: none of
  * them is a part missed; else *place is the thickest of those found, cells is the number of blocks
- * with doubts. *status: CSGM_OK or CSGM_ERR_MEMORY (reported). */
+ * with doubts. is_lost: NULL: all that the lattice misses are. *status: CSGM_OK or CSGM_ERR_MEMORY
+ * (reported). */
 bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const csg_lattice *lattice,
-                        csg_octree *octree, csg_certify_place *place, uint64_t *edges,
-                        csgm_status *status);
+                        csg_octree *octree, csg_certify_is_lost *is_lost, const void *user,
+                        csg_certify_place *place, uint64_t *edges, csgm_status *status);
 
 #endif

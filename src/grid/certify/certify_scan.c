@@ -18,6 +18,8 @@ typedef struct scan_room {
     csg_pruner pruner;
     csg_arena tapes;
     csg_reach reach;
+    csg_certify_is_lost *is_lost; /* NULL: all are */
+    const void *user;
 } scan_room;
 
 static bool prepare(scan_room *room, const csgm_field *field, const csg_lattice *lattice,
@@ -51,11 +53,13 @@ static bool follow(scan_room *room, const csgm_field *field, const csg_lattice *
     int sign = doubt->is_inside ? -1 : 1;
     csg_reach_state state = csg_reach_from(&room->reach, middle[0], sign * value, sign, NULL, &end);
     csg_arena_release_to(&room->tapes, mark);
-    *missed = state == CSG_REACH_NONE && end.thickness > 0;
+    const csg_vec3 at = csg_vec3_make(end.at[0], end.at[1], end.at[2]);
+    *missed = state == CSG_REACH_NONE && end.thickness > 0 &&
+              (!room->is_lost || room->is_lost(room->user, at, end.thickness, sign < 0));
     if (*missed && end.thickness > place->thickness) {
         place->thickness = end.thickness;
         place->is_gap = sign < 0;
-        place->at = csg_vec3_add(field->center, csg_vec3_make(end.at[0], end.at[1], end.at[2]));
+        place->at = csg_vec3_add(field->center, at);
     }
     return true;
 }
@@ -74,8 +78,8 @@ static bool follow_some(scan_room *room, const csgm_field *field, const csg_latt
 }
 
 bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const csg_lattice *lattice,
-                        csg_octree *octree, csg_certify_place *place, uint64_t *edges,
-                        csgm_status *status)
+                        csg_octree *octree, csg_certify_is_lost *is_lost, const void *user,
+                        csg_certify_place *place, uint64_t *edges, csgm_status *status)
 {
     size_t count;
     const csg_scan *doubts = csg_octree_doubts(octree, &count, edges);
@@ -83,7 +87,9 @@ bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const cs
     *place = (csg_certify_place){.kind = CSG_CELL_MISSED, .cells = count};
     if (!count)
         return false;
-    scan_room room = {.reach = {.kernel = csg_kernel_for(context->isa),
+    scan_room room = {.is_lost = is_lost,
+                      .user = user,
+                      .reach = {.kernel = csg_kernel_for(context->isa),
                                 .lattice = lattice,
                                 .lipschitz = (double)field->tape.lipschitz,
                                 .scratch_floats = csg_kernel_scratch_floats(field->depth)}};

@@ -30,6 +30,18 @@ static float doubt_of(float a, float b, float c, float d, float widest)
     return 1 - inner / outer;
 }
 
+/* The same of an edge at the border of the samples, where the value before b is missing: |f| falls
+ * from c on as it did from d to c, and would be less than nothing before it is at b. Less is known
+ * than of other edges: half the doubt. */
+static float doubt_at_border(float b, float c, float d, float widest)
+{
+    bool same = (b >= 0) == (c >= 0) && (c >= 0) == (d >= 0);
+    float inner = fabsf(b) + fabsf(c), fall = fabsf(d) - fabsf(c);
+    if (!same || inner > widest || fabsf(d) < 1.1f * fabsf(c) || inner >= fall)
+        return 0;
+    return 0.5f * (1 - inner / fall);
+}
+
 void csg_scan_values(csg_scan *scan, const float *f, size_t n, const uint32_t first[3])
 {
     const size_t steps[3] = {1, n, n * n};
@@ -41,9 +53,12 @@ void csg_scan_values(csg_scan *scan, const float *f, size_t n, const uint32_t fi
         for (size_t line = 0; line < n * n; line++) {
             size_t u = line % n, v = line / n;
             const float *p = f + u * across[0] + v * across[1];
-            for (size_t i = 1; i + 2 < n; i++) {
+            for (size_t i = 0; i + 1 < n; i++) {
                 const float *at = p + i * step;
-                float doubt = doubt_of(*(at - step), at[0], at[step], at[2 * step], widest);
+                float doubt = i == 0 ? doubt_at_border(at[0], at[step], at[2 * step], widest)
+                              : i + 2 == n
+                                  ? doubt_at_border(at[step], at[0], *(at - step), widest)
+                                  : doubt_of(*(at - step), at[0], at[step], at[2 * step], widest);
                 scan->count += doubt > 0;
                 if (!(doubt > scan->doubt))
                     continue;

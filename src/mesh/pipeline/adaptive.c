@@ -13,6 +13,7 @@
 #include "base/trace.h"
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
+#include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/workers.h"
 
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
@@ -34,6 +35,7 @@ typedef struct adaptive {
     csg_judge judge;
     csg_extraction extraction;
     csg_mesh_goal *goal;
+    double asked; /* tolerance; the goal's may have been raised */
     double refined_s;
     bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
@@ -287,6 +289,8 @@ static void warn_of_result(const adaptive *a)
 static csgm_status make_mesh(adaptive *a)
 {
     csgm_status status = walk(a);
+    if (status == CSGM_OK)
+        status = csg_mesh_look_for_lost(&a->input, &a->bricks, a->goal->error, a->asked, &a->watch);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK)
         status = csg_extract(&a->extraction);
@@ -302,14 +306,15 @@ static csgm_status make_mesh(adaptive *a)
 /* With the tolerance of the goal; *is_too_fine: it takes too many bricks, nothing was made. */
 static csgm_status build_within(csgm_context *context, const csgm_field *field,
                                 const csgm_mesh_options *options, const csg_mesh_share *share,
-                                csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats,
-                                bool *is_too_fine)
+                                csg_mesh_goal *goal, double asked, csgm_mesh **out,
+                                csgm_mesh_stats *stats, bool *is_too_fine)
 {
     csgm_mesh_options base = *options;
     base.resolution = COMPARED_CELLS;
     base.features = CSGM_FEATURES_SMOOTH;
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
-                  .goal = goal};
+                  .goal = goal,
+                  .asked = asked};
     csg_mesh_input_watch(&a.input, goal->started_s, &a.watch);
     csgm_status status = csg_mesh_input_complete(&a.input);
     a.refined_s = csg_clock_now_s();
@@ -340,10 +345,11 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
     const double asked = goal->error;
     bool is_too_fine;
     csgm_status status =
-        build_within(context, field, options, share, goal, out, stats, &is_too_fine);
+        build_within(context, field, options, share, goal, asked, out, stats, &is_too_fine);
     while (is_too_fine) { /* ends: the largest cells are few */
         goal->error *= 2;
-        status = build_within(context, field, options, share, goal, out, stats, &is_too_fine);
+        status =
+            build_within(context, field, options, share, goal, asked, out, stats, &is_too_fine);
     }
     if (status == CSGM_OK && goal->error > asked)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,

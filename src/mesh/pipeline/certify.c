@@ -15,6 +15,8 @@
 #include "scene/tree/texts.h"
 
 enum { WARNINGS_MOST = 4 };
+/* Cells along the longest side of the scan that looks for what adaptive cells have lost. */
+enum { SCANNED_CELLS = 64 };
 
 /* Cells whose diagonal is less than this thickness: a ball of it holds a lattice point. */
 static double cell_for(double thickness)
@@ -128,7 +130,7 @@ static csgm_status follow_doubts(const csg_mesh_input *in, csg_octree *octree,
     CSG_ZONE(in->context, "doubts");
     csg_certify_place place;
     csgm_status status;
-    if (!csg_certify_doubts(in->context, in->field, &in->lattice, octree, &place,
+    if (!csg_certify_doubts(in->context, in->field, &in->lattice, octree, NULL, NULL, &place,
                             &doubts->unresolved_cells, &status))
         return status;
     csgm_certify_place shown = translate(in, &place);
@@ -144,6 +146,63 @@ csgm_status csg_mesh_look_for_missed(const csg_mesh_input *in, csg_octree *octre
     if (!octree)
         return CSGM_OK;
     return in->options->certify ? certify(in, watch, doubts) : follow_doubts(in, octree, doubts);
+}
+
+/* ---- cells that follow the shape ---------------------------------------------------------------
+ */
+
+typedef struct loss {
+    const csg_bricks *bricks;
+    double thinnest; /* that leaves are trusted to have whole */
+} loss;
+
+static bool is_lost(const void *user, csg_vec3 at, double thickness, bool is_gap)
+{
+    const loss *l = user;
+    float place[3];
+    csg_vec3_to_floats(place, at);
+    return thickness < l->thinnest || !csg_bricks_have(l->bricks, place, !is_gap);
+}
+
+static void warn_of_lost(const csg_mesh_input *in, const csg_certify_place *place, double tolerance)
+{
+    char message[320], hint[120];
+    csgm_diag diag = {.message = message, .hint = hint};
+    show_source(in->field->scene, place->at, &diag);
+    snprintf(
+        message, sizeof message,
+        "%s about %.2g thick is not in the mesh, or not all of it: the tolerance is %.3g; it is "
+        "near (%.6g, %.6g, %.6g)",
+        place->is_gap ? "a gap" : "a part", place->thickness, tolerance, place->at.x, place->at.y,
+        place->at.z);
+    snprintf(hint, sizeof hint, "--simplify %.2g makes cells that are small enough for it",
+             place->thickness);
+    csg_diag_report(&in->context->diags, CSG_DIAG_THIN_PART, diag);
+}
+
+csgm_status csg_mesh_look_for_lost(const csg_mesh_input *in, const csg_bricks *bricks,
+                                   double tolerance, double asked, csg_mesh_watch *watch)
+{
+    CSG_ZONE(in->context, "doubts");
+    const csg_octree_options options = {.prune = in->options->prune,
+                                        .scan = true,
+                                        .cancelled = csg_mesh_should_stop,
+                                        .user = watch};
+    csg_lattice lattice;
+    csg_octree *octree;
+    csg_certify_place place;
+    uint64_t edges;
+    const loss lost = {bricks, tolerance > asked ? tolerance : 0};
+    if (!csg_lattice_make(in->bounds, in->field->center, 0, SCANNED_CELLS, &lattice))
+        return CSGM_OK;
+    csgm_status status = csg_octree_create(in->context, in->field, &lattice, &options, &octree);
+    if (status == CSGM_OK)
+        status = csg_octree_sample(octree, 0, csg_octree_frontier_count(octree));
+    if (status == CSGM_OK && csg_certify_doubts(in->context, in->field, &lattice, octree, is_lost,
+                                                &lost, &place, &edges, &status))
+        warn_of_lost(in, &place, tolerance);
+    csg_octree_destroy(octree);
+    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : status;
 }
 
 void csg_mesh_add_certify(csgm_certify *sum, const csgm_certify *part)
