@@ -230,20 +230,12 @@ static bool crosses_rest(const csg_triangle_tree *t, const csg_crossing_change *
 /* ---- one sheet ---------------------------------------------------------------------------------
  */
 
-static void include_box(csg_triangle_box *all, const csg_triangle_box *box)
-{
-    for (int k = 0; k < 3; k++) {
-        all->min[k] = box->min[k] < all->min[k] ? box->min[k] : all->min[k];
-        all->max[k] = box->max[k] > all->max[k] ? box->max[k] : all->max[k];
-    }
-}
-
 static void include_triangle(csg_triangle_box *all, const csg_triangle_tree *t, uint32_t triangle)
 {
     csg_vec3 v[3];
     csg_triangle_tree_corners(t, triangle, v);
     csg_triangle_box box = csg_triangle_box_of(v);
-    include_box(all, &box);
+    *all = csg_triangle_box_around(all, &box);
 }
 
 static range range_around(range a, range b)
@@ -269,7 +261,7 @@ static void include_place(csg_triangle_box *all, csg_vec3 p)
 {
     const csg_vec3 v[3] = {p, p, p};
     csg_triangle_box box = csg_triangle_box_of(v);
-    include_box(all, &box);
+    *all = csg_triangle_box_around(all, &box);
 }
 
 /* The box around what goes and what comes. The neighbours of vertices that go are corners of what
