@@ -458,7 +458,7 @@ typedef struct csgm_mesh_options {
     bool improve; /* vertices move along the surface and edges flip, for better triangles; default
                      false */
     /* Look for what lies between the lattice's points: csgm_mesh_stats.certify says what is proven,
-     * and what is missed is a warning each (W0406, W0407); default false. Without it a scan of the
+     * and what is missed is a warning each (W0406, W0407); default false. Without it a scan of
      * samples of equal cells warns once of the thin parts that it happens to see. The mesh is that
      * of equal cells without it. */
     bool certify;
