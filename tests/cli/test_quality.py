@@ -135,6 +135,28 @@ class Quality(cli.CliTest):
         self.assertEqual((stats["mesh"]["triangles"], stats["lattice"]["own_triangles"]), (9996 + 12, 9996))
         self.assertTrue(stats["lattice"]["adaptive"])
 
+    def test_polyhedra_beyond_floats(self):
+        """Coordinates that no float has are not taken as they are."""
+        self.write("scene.txt", """module a() polyhedron(points = [[1, 1, 1], [2, 1, 1], [1, 2, 1], [1, 1, 2]], faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
+module b() { a(); mirror([1, 0, 0]) a(); }
+module c() { scale(1e14) b(); mirror([0, 1, 0]) scale(1e14) b(); }
+module d() { scale(1e14) c(); mirror([0, 0, 1]) scale(1e14) c(); }
+scale(1e14) d();
+""")
+        result = cli.run("scene.txt", "-o", "out.ply", cwd=self.folder)
+        self.assert_status(result, 1)
+        self.assertIn("W0403", result.stderr)
+        self.assertNotIn("E0506", result.stderr)
+
+    def test_thin_parts_are_named(self):
+        """What is thinner than the tolerance, once, with the option that has it."""
+        self.write("scene.txt", "difference() { cube([20, 20, 5]); translate([5.3, -1, 2]) cube([0.007, 30, 10]); }")
+        result = cli.run("scene.txt", "-o", "out.ply", "--quality", "draft", cwd=self.folder)
+        self.assert_status(result, 0)
+        self.assertEqual(result.stderr.count("W0406"), 1, result.stderr)
+        self.assertIn("scene.txt:1:59: warning W0406: a gap about 0.00", result.stderr)
+        self.assertIn("hint: --simplify 0.00", result.stderr)
+
     def test_lattice_of_parts(self):
         """Small parts begin with smaller cells; blocks of one size are counted together."""
         alone = [self.stats(part + ";", "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]

@@ -201,7 +201,7 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
         settles_by_steps(p, s, d, v, steepest, slack_of(p), inward))
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
-    return d.radius <= 0.25 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
+    return d.radius <= 0.5 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
 }
 
 /* The two halves by the middle of the longest side; false: small enough to give up. */

@@ -48,7 +48,8 @@ static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
 }
 
 /* How fast the difference of two operands can change. Between faces' normals a unit vector is at
- * most sqrt((1 + sqrt(3)) / 2) as far from any other as one of these. */
+ * most 1 / cos(phi / 4) as far from any other as one of these, where they are phi apart: at most
+ * sqrt(2), for a disc without thickness. */
 static double rate_of(const walker *w, const operand *a, const operand *b)
 {
     double most = 0;
@@ -57,7 +58,7 @@ static double rate_of(const walker *w, const operand *a, const operand *b)
     for (uint32_t i = 0; i < a->balls.count; i++)
         for (uint32_t k = 0; k < b->balls.count; k++)
             most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
-    return a->faces || b->faces ? 1.2 * most : most;
+    return a->faces || b->faces ? 1.41421357 * most : most;
 }
 
 /* What a blend adds to the larger operand, and its slope, where the operands differ by d. */

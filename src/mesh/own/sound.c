@@ -18,7 +18,7 @@
 
 /* Triangles of one item of work, and pairs that it may look at: where there are more, thousands of
  * needles lie side by side, and cells are quicker. */
-enum { PER_ITEM = 512, MOST_PAIRS = 1 << 23 };
+enum { PER_ITEM = 512, MOST_PAIRS = 1 << 23, PAIRS_PER_POLL = 1 << 14 };
 
 /* Of a polyhedron's size: what rounding may move, as the polyhedron itself has it, so that
  * triangles have few others near them. */
@@ -74,7 +74,8 @@ static bool is_free(void *user, uint32_t place)
     looking *l = user;
     if (place <= l->place)
         return true;
-    if (l->pairs++ == MOST_PAIRS)
+    bool polls = l->pairs % PAIRS_PER_POLL == 0;
+    if (l->pairs++ == MOST_PAIRS || (polls && csg_mesh_should_stop(l->all->watch)))
         return false;
     uint32_t triangle = triangle_at(l->unit, place);
     csg_exact_triangle other = triangle_of(l->all->mesh, triangle);
@@ -110,7 +111,7 @@ static bool check_item(void *user, uint32_t worker, size_t index)
         l.triangle = triangle_at(unit, l.place);
         l.own = triangle_of(c->mesh, l.triangle);
         if (!csg_polyhedron_near(unit->shape, l.place, 2 * l.reach / least, is_free, &l))
-            return tell(c);
+            return !csg_mesh_should_stop(c->watch) && tell(c);
     }
     return true;
 }

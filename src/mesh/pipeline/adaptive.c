@@ -35,7 +35,6 @@ typedef struct adaptive {
     csg_judge judge;
     csg_extraction extraction;
     csg_mesh_goal *goal;
-    double asked; /* tolerance; the goal's may have been raised */
     double refined_s;
     bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
@@ -289,8 +288,6 @@ static void warn_of_result(const adaptive *a)
 static csgm_status make_mesh(adaptive *a)
 {
     csgm_status status = walk(a);
-    if (status == CSGM_OK)
-        status = csg_mesh_look_for_lost(&a->input, &a->bricks, a->goal->error, a->asked, &a->watch);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK)
         status = csg_extract(&a->extraction);
@@ -300,21 +297,23 @@ static csgm_status make_mesh(adaptive *a)
     }
     if (status == CSGM_OK && a->extraction.mesh->triangle_count)
         status = csg_mesh_reshape(a->goal, &a->extraction.mesh, &a->workers.marching, &a->watch);
+    if (status == CSGM_OK && !(a->goal->cell_size > 0))
+        status = csg_mesh_look_for_lost(&a->input, &a->bricks, cells_error(a->goal),
+                                        a->goal->error > a->goal->asked, &a->watch);
     return status;
 }
 
 /* With the tolerance of the goal; *is_too_fine: it takes too many bricks, nothing was made. */
 static csgm_status build_within(csgm_context *context, const csgm_field *field,
                                 const csgm_mesh_options *options, const csg_mesh_share *share,
-                                csg_mesh_goal *goal, double asked, csgm_mesh **out,
-                                csgm_mesh_stats *stats, bool *is_too_fine)
+                                csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats,
+                                bool *is_too_fine)
 {
     csgm_mesh_options base = *options;
     base.resolution = COMPARED_CELLS;
     base.features = CSGM_FEATURES_SMOOTH;
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
-                  .goal = goal,
-                  .asked = asked};
+                  .goal = goal};
     csg_mesh_input_watch(&a.input, goal->started_s, &a.watch);
     csgm_status status = csg_mesh_input_complete(&a.input);
     a.refined_s = csg_clock_now_s();
@@ -342,19 +341,15 @@ csgm_status csg_mesh_build_adaptive(csgm_context *context, const csgm_field *fie
                                     csg_mesh_goal *goal, csgm_mesh **out, csgm_mesh_stats *stats)
 {
     CSG_ZONE(context, "adaptive build");
-    const double asked = goal->error;
     bool is_too_fine;
     csgm_status status =
-        build_within(context, field, options, share, goal, asked, out, stats, &is_too_fine);
+        build_within(context, field, options, share, goal, out, stats, &is_too_fine);
     while (is_too_fine) { /* ends: the largest cells are few */
-        goal->error *= 2;
-        status =
-            build_within(context, field, options, share, goal, asked, out, stats, &is_too_fine);
+        if (goal->finer < 1)
+            goal->finer = fmin(2 * goal->finer, 1);
+        else
+            goal->error *= 2;
+        status = build_within(context, field, options, share, goal, out, stats, &is_too_fine);
     }
-    if (status == CSGM_OK && goal->error > asked)
-        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
-                       "mesh thin or intricate parts by themselves, or give -r",
-                       "a tolerance of %g would take too many cells: the mesh is within %g", asked,
-                       goal->error);
     return status;
 }

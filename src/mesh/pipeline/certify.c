@@ -175,13 +175,13 @@ static void warn_of_lost(const csg_mesh_input *in, const csg_certify_place *plac
         "near (%.6g, %.6g, %.6g)",
         place->is_gap ? "a gap" : "a part", place->thickness, tolerance, place->at.x, place->at.y,
         place->at.z);
-    snprintf(hint, sizeof hint, "--simplify %.2g makes cells that are small enough for it",
-             place->thickness);
+    snprintf(hint, sizeof hint, "%s %.2g makes cells that are small enough for it",
+             in->options->tolerance > 0 ? "-e" : "--simplify", place->thickness);
     csg_diag_report(&in->context->diags, CSG_DIAG_THIN_PART, diag);
 }
 
 csgm_status csg_mesh_look_for_lost(const csg_mesh_input *in, const csg_bricks *bricks,
-                                   double tolerance, double asked, csg_mesh_watch *watch)
+                                   double tolerance, bool raised, csg_mesh_watch *watch)
 {
     CSG_ZONE(in->context, "doubts");
     const csg_octree_options options = {.prune = in->options->prune,
@@ -189,10 +189,10 @@ csgm_status csg_mesh_look_for_lost(const csg_mesh_input *in, const csg_bricks *b
                                         .cancelled = csg_mesh_should_stop,
                                         .user = watch};
     csg_lattice lattice;
-    csg_octree *octree;
+    csg_octree *octree = NULL;
     csg_certify_place place;
     uint64_t edges;
-    const loss lost = {bricks, tolerance > asked ? tolerance : 0};
+    const loss lost = {bricks, raised ? tolerance : 0};
     if (!csg_lattice_make(in->bounds, in->field->center, 0, SCANNED_CELLS, &lattice))
         return CSGM_OK;
     csgm_status status = csg_octree_create(in->context, in->field, &lattice, &options, &octree);

@@ -19,10 +19,10 @@ typedef struct csg_mesh_doubts {
 csgm_status csg_mesh_look_for_missed(const csg_mesh_input *input, csg_octree *octree,
                                      csg_mesh_watch *watch, csg_mesh_doubts *doubts);
 /* The same for cells that follow the shape: what a scan of few equal cells doubts and the leaves do
- * not have is lost, as what is thinner than the tolerance may be. asked: the tolerance before it
- * was raised; if it was, what is thinner counts as lost even where leaves have some of it. */
+ * not have is lost, as what is thinner than the tolerance may be. raised: the tolerance is not the
+ * one that was asked for; what is thinner counts as lost then even where leaves have some of it. */
 csgm_status csg_mesh_look_for_lost(const csg_mesh_input *input, const csg_bricks *bricks,
-                                   double tolerance, double asked, csg_mesh_watch *watch);
+                                   double tolerance, bool raised, csg_mesh_watch *watch);
 /* The reports of parts as one. */
 void csg_mesh_add_certify(csgm_certify *sum, const csgm_certify *part);
 

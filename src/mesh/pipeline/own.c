@@ -4,6 +4,7 @@
 #include "mesh/pipeline/own.h"
 
 #include <float.h>
+#include <math.h>
 
 #include "base/clock.h"
 #include "base/trace.h"
@@ -110,6 +111,8 @@ static csgm_status make_mesh(own *o)
     bool sound = false;
     csg_corners corners;
     csgm_status status = fill(o, &sound);
+    if (!sound)
+        drop(o);
     if (status != CSGM_OK || !sound)
         return status;
     csg_corners_result result =
@@ -140,15 +143,23 @@ static void fill_stats(const own *o, csgm_mesh_stats *stats)
     };
 }
 
+/* Bounds and cells that are no numbers are for the lattice to refuse. */
+static bool is_whole(const csg_mesh_input *in)
+{
+    return !(in->options->cell_size < 0) && !isnan(in->options->cell_size) &&
+           csg_box_is_finite(in->bounds) && csg_box_contains_box(in->bounds, in->field->bounds);
+}
+
 static csgm_status build(own *o)
 {
-    csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
     const csgm_mesh_options *options = o->input.options;
+    if (!is_whole(&o->input))
+        return CSGM_OK;
+    csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(o->input.context);
     bool too_many = options->triangles && o->units.triangle_count > options->triangles;
-    if (!o->units.count || too_many ||
-        !csg_box_contains_box(o->input.bounds, o->input.field->bounds))
+    if (!o->units.count || too_many)
         return CSGM_OK;
     status = make_mesh(o);
     if (status != CSGM_OK)

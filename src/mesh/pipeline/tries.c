@@ -13,6 +13,8 @@ static const char *hint_at_far_place(const csgm_mesh_options *options, bool foll
 {
     if (!follows)
         return "raise -r, or the tolerance";
+    if (options->tolerance > 0)
+        return "raise the tolerance";
     if (options->simplify_error > 0 || options->quality == CSGM_QUALITY_FINE)
         return "-e keeps within a tolerance, and proves it";
     return "--quality fine comes nearer, -e keeps within a tolerance and proves it";
@@ -30,6 +32,11 @@ static void report_misses(csgm_context *context, const csg_mesh_goal *goal,
                        "first at %g,%g,%g",
                        (unsigned long long)goal->open, goal->allowed, goal->place.x, goal->place.y,
                        goal->place.z);
+    if (goal->error > goal->asked)
+        csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
+                       "mesh thin or intricate parts by themselves, or give -r",
+                       "a tolerance of %g would take too many cells: the mesh is within %g",
+                       goal->asked, goal->error);
     bool has_count = goal->triangles || goal->share > 0; /* then the error grows until it is met */
     if (goal->error > 0 && !has_count && goal->measured > goal->error)
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_WITHIN, NULL,
@@ -103,6 +110,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         solid = box_of(field, options);
     if (follows && !(goal.error > 0))
         goal.error = csg_mesh_quality_tolerance(options->quality, solid);
+    goal.asked = goal.error;
     if (goal.chooses)
         base.resolution = FIRST_CELLS;
     double least = longest_side(field, options) / MOST_CELLS;

@@ -20,6 +20,7 @@ typedef struct csg_mesh_goal {
     bool chooses;         /* the cell size */
     bool follows;         /* the shape, with its cells */
     double finer;         /* of the error: what these are made for */
+    double asked;         /* the error before it was raised, since it took too many cells */
     csgm_normals normals; /* of the result */
     double care;          /* of the error: what changes may make, so that the proof has room */
     double started_s;     /* for the time limit of all tries */
