@@ -71,6 +71,16 @@ uint32_t csg_bricks_find(const csg_bricks *b, uint32_t level, const uint32_t at[
     return found;
 }
 
+void csg_bricks_around(const csg_bricks *b, uint32_t number, uint32_t around[CSG_BRICKS_AROUND])
+{
+    const csg_brick *brick = &b->items[number];
+    for (uint32_t d = 0; d < CSG_BRICKS_AROUND; d++) {
+        const uint32_t at[3] = {brick->at[0] + d % 3 - 1, brick->at[1] + d / 3 % 3 - 1,
+                                brick->at[2] + d / 9 - 1};
+        around[d] = d == CSG_BRICKS_AROUND / 2 ? number : csg_bricks_find(b, brick->level, at);
+    }
+}
+
 uint32_t csg_bricks_leaf_at(const csg_bricks *b, const float at[3])
 {
     uint32_t cell[3];

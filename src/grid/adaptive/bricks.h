@@ -18,6 +18,7 @@
 
 enum {
     CSG_BRICK_EDGE = 2, /* cells */
+    CSG_BRICKS_AROUND = 27,
     CSG_BRICK_SAMPLES = CSG_BRICK_EDGE + 1,
     CSG_BRICK_POINTS = CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES * CSG_BRICK_SAMPLES,
     CSG_BRICK_POINTS_PADDED = (CSG_BRICK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES
@@ -100,6 +101,10 @@ csgm_status csg_bricks_refine(csg_bricks *bricks);
 
 /* The brick at a place of a level, CSG_BRICK_NONE where there is none. */
 uint32_t csg_bricks_find(const csg_bricks *bricks, uint32_t level, const uint32_t at[3]);
+/* A brick and those of its level around it: 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1 to 1;
+ * CSG_BRICK_NONE where there is none. */
+void csg_bricks_around(const csg_bricks *bricks, uint32_t number,
+                       uint32_t around[CSG_BRICKS_AROUND]);
 /* The brick whose leaf holds a point of the field's frame, CSG_BRICK_NONE where none does. */
 uint32_t csg_bricks_leaf_at(const csg_bricks *bricks, const float at[3]);
 /* Whether the leaf at a point of the field's frame has anything of this sign: a corner, or a
@@ -139,6 +144,14 @@ static inline float csg_brick_coordinate(const csg_bricks *bricks, const csg_bri
 static inline unsigned csg_brick_cell(unsigned i, unsigned j, unsigned k)
 {
     return i + CSG_BRICK_EDGE * (j + CSG_BRICK_EDGE * k);
+}
+
+/* The cell of a bit. */
+static inline void csg_brick_cell_place(unsigned cell, unsigned at[3])
+{
+    at[0] = cell % CSG_BRICK_EDGE;
+    at[1] = cell / CSG_BRICK_EDGE % CSG_BRICK_EDGE;
+    at[2] = cell / (CSG_BRICK_EDGE * CSG_BRICK_EDGE);
 }
 
 /* The bit of a cell that is the octant of its brick at a place, counted in cells. */

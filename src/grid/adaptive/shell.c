@@ -7,7 +7,7 @@
 
 enum { E = CSG_BRICK_EDGE, N = CSG_BRICK_SAMPLES, S = CSG_SHELL_SAMPLES };
 
-static const int CENTER = 13;
+static const int CENTER = CSG_BRICKS_AROUND / 2;
 
 /* ---- finer leaves ------------------------------------------------------------------------------
  */
@@ -98,16 +98,12 @@ static void take_own(csg_shell *s)
 
 void csg_shell_make(csg_shell *s, const csg_bricks *b, uint32_t number)
 {
-    const csg_brick *brick = &b->items[number];
     memset(s, 0, sizeof *s);
-    s->brick = brick;
+    s->brick = &b->items[number];
     s->number = number;
-    for (int d = 0; d < 27; d++) {
+    csg_bricks_around(b, number, s->around);
+    for (int d = 0; d < CSG_BRICKS_AROUND; d++) {
         const int step[3] = {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
-        uint32_t at[3];
-        for (int axis = 0; axis < 3; axis++)
-            at[axis] = brick->at[axis] + (uint32_t)step[axis];
-        s->around[d] = d == CENTER ? number : csg_bricks_find(b, brick->level, at);
         if (s->around[d] != CSG_BRICK_NONE && b->items[s->around[d]].divided)
             take_cells(s, b, &b->items[s->around[d]], step);
     }

@@ -14,12 +14,11 @@ enum { CSG_SHELL_SAMPLES = 2 * CSG_BRICK_EDGE + 1 };
 
 typedef struct csg_shell {
     const csg_brick *brick;
-    uint32_t number;     /* of the brick */
-    uint32_t around[27]; /* bricks of the same level, 1 + x + 3 (1 + y) + 9 (1 + z) by steps of -1
-                            to 1; CSG_BRICK_NONE: none */
-    uint8_t pierced_beyond; /* cells at which finer leaves have pierced edges, bits as
-                               csg_brick_cell has them */
-    bool has_finer;         /* finer leaves touch the brick; else what follows says nothing */
+    uint32_t number;                    /* of the brick */
+    uint32_t around[CSG_BRICKS_AROUND]; /* csg_bricks_around */
+    uint8_t pierced_beyond;             /* cells at which finer leaves have pierced edges, bits as
+                                           csg_brick_cell has them */
+    bool has_finer; /* finer leaves touch the brick; else what follows says nothing */
     uint16_t inside[CSG_SHELL_SAMPLES][CSG_SHELL_SAMPLES]; /* [z][y]: bit x */
     /* Edges of the brick's cells that finer leaves divide: [axis][z][y]: bit x, by lower point. */
     uint8_t divided_edges[3][CSG_BRICK_SAMPLES][CSG_BRICK_SAMPLES];

@@ -76,12 +76,15 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 /* ---- which ------------------------------------------------------------------------------------
  */
 
+/* Marks of bricks. */
+enum { CHANGED = 1, AROUND = 2 };
+
 /* Marks what a new brick, in the place of a cell, changes the border of: itself, and the bricks
  * around that cell. */
 static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
 {
     const csg_brick *brick = &b->items[number];
-    changed[number] = 1;
+    changed[number] = CHANGED;
     if (brick->level <= b->options.coarse)
         return;
     for (unsigned part = 0; part < CSG_OCTANTS; part++) {
@@ -89,7 +92,7 @@ static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
         csg_brick_beside(brick, part, at);
         uint32_t found = csg_bricks_find(b, brick->level - 1u, at);
         if (found != CSG_BRICK_NONE)
-            changed[found] = 1;
+            changed[found] = CHANGED;
     }
 }
 
@@ -98,8 +101,8 @@ static bool has_leaves(const csg_brick *brick)
     return brick->divided != CSG_BRICK_ALL_CELLS;
 }
 
-/* A byte per brick: 1 where new bricks, from `first` on, changed its border. NULL: out of memory.
- */
+/* A byte per brick: CHANGED where new bricks, from `first` on, changed its border. NULL: out of
+ * memory. */
 static uint8_t *find_changed(const csg_extraction *x, size_t first)
 {
     const csg_bricks *b = x->bricks;
@@ -112,39 +115,36 @@ static uint8_t *find_changed(const csg_extraction *x, size_t first)
     return changed;
 }
 
-/* Marks, by a second bit, the bricks that the leaves of a marked one share edges and faces with:
- * those around it, and those in the place of cells of all of these. */
-static void mark_around(const csg_bricks *b, size_t number, uint8_t *changed)
+/* Marks the bricks that the leaves of one share edges and faces with: those around it, and those in
+ * the place of cells of all of these. */
+static void mark_around(const csg_bricks *b, uint32_t number, uint8_t *marks)
 {
-    const csg_brick *brick = &b->items[number];
-    for (int part = 0; part < 27; part++) {
-        const int step[3] = {part % 3 - 1, part / 3 % 3 - 1, part / 9 - 1};
-        uint32_t at[3];
-        for (int axis = 0; axis < 3; axis++)
-            at[axis] = brick->at[axis] + (uint32_t)step[axis];
-        uint32_t found = csg_bricks_find(b, brick->level, at);
-        if (found == CSG_BRICK_NONE)
+    uint32_t around[CSG_BRICKS_AROUND];
+    csg_bricks_around(b, number, around);
+    for (int i = 0; i < CSG_BRICKS_AROUND; i++) {
+        if (around[i] == CSG_BRICK_NONE)
             continue;
-        changed[found] |= 2;
-        for (unsigned rest = b->items[found].divided; rest; rest &= rest - 1) {
+        const csg_brick *brick = &b->items[around[i]];
+        marks[around[i]] |= AROUND;
+        for (unsigned rest = brick->divided; rest; rest &= rest - 1) {
             unsigned octant = (unsigned)__builtin_ctz(rest);
             uint32_t below[3];
             for (int axis = 0; axis < 3; axis++)
-                below[axis] = 2 * at[axis] + (octant >> axis & 1);
+                below[axis] = 2 * brick->at[axis] + (octant >> axis & 1);
             uint32_t finer = csg_bricks_find(b, brick->level + 1u, below);
             if (finer != CSG_BRICK_NONE)
-                changed[finer] |= 2;
+                marks[finer] |= AROUND;
         }
     }
 }
 
-/* Lists the bricks that have leaves and one of these bits. */
-static csgm_status list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t bit)
+/* Lists the bricks that have leaves and this mark. */
+static csgm_status list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t mark)
 {
     const csg_bricks *b = w->x->bricks;
     w->leaf_count = 0;
     for (size_t i = 0; i < b->count; i++)
-        if (marks[i] & bit && has_leaves(&b->items[i]) && !csg_cell_loop_list(w, (uint32_t)i))
+        if (marks[i] & mark && has_leaves(&b->items[i]) && !csg_cell_loop_list(w, (uint32_t)i))
             return csg_context_no_memory(w->x->context);
     return CSGM_OK;
 }
@@ -158,7 +158,7 @@ csgm_status csg_borders_check_simple(csg_extraction *x, bool *any)
     csgm_status status = csg_cell_loop_begin(&w, x);
     uint8_t *changed = status == CSGM_OK ? find_changed(x, x->simple) : NULL;
     if (status == CSGM_OK)
-        status = changed ? list_marked(&w, changed, 1) : csg_context_no_memory(x->context);
+        status = changed ? list_marked(&w, changed, CHANGED) : csg_context_no_memory(x->context);
     csg_memory_release(&x->context->memory, changed, changed ? x->bricks->count : 0);
     x->simple = x->bricks->count;
     if (status == CSGM_OK)
@@ -178,14 +178,14 @@ csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
     if (status == CSGM_OK && !marks)
         status = csg_context_no_memory(x->context);
     for (size_t i = 0; status == CSGM_OK && i < b->count; i++)
-        if (marks[i] & 1 && has_leaves(&b->items[i]))
-            mark_around(b, i, marks);
+        if (marks[i] & CHANGED && has_leaves(&b->items[i]))
+            mark_around(b, (uint32_t)i, marks);
     if (status == CSGM_OK)
-        status = list_marked(&w, marks, 2);
+        status = list_marked(&w, marks, AROUND);
     if (status == CSGM_OK)
         status = csg_cells_find_vertices(&w, b->reported, 0);
     if (status == CSGM_OK)
-        status = list_marked(&w, marks, 1);
+        status = list_marked(&w, marks, CHANGED);
     if (status == CSGM_OK)
         status = csg_cell_loop_run(&w, visit_near, b->reported, 0);
     x->near = b->count;

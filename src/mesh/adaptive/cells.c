@@ -56,11 +56,8 @@ bool csg_cells_each(csg_cell_loop *w, uint32_t worker_index, const csg_shell *s,
     unsigned cells = s->has_finer ? CSG_BRICK_ALL_CELLS : s->brick->crossed;
     for (cells &= ~(unsigned)s->brick->divided; cells; cells &= cells - 1) {
         unsigned bit = (unsigned)__builtin_ctz(cells);
-        csg_cell_at_hand cell = {.loop = w,
-                                 .worker = worker_index,
-                                 .shell = s,
-                                 .at = {bit % E, bit / E % E, bit / (E * E)},
-                                 .probe = &probe};
+        csg_cell_at_hand cell = {.loop = w, .worker = worker_index, .shell = s, .probe = &probe};
+        csg_brick_cell_place(bit, cell.at);
         csg_shell_cell place = csg_shell_cell_of(s, cell.at[0], cell.at[1], cell.at[2]);
         cell.is_whole = !place.divided;
         cell.is_border = place.divided & ~place.pierced;
@@ -269,8 +266,8 @@ void csg_cells_find_apexes(csg_cell_loop *loop, uint32_t worker, const csg_shell
     csg_tape tape;
     csg_sheet_probe probe = csg_judge_probe(loop->x->judge, loop->x->bricks, s->brick, room, &tape);
     for (int i = 0; i < room->piece_count; i++) {
-        unsigned cell = room->pieces[i].cell;
-        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        unsigned at[3];
+        csg_brick_cell_place(room->pieces[i].cell, at);
         searches[i] = (csg_apex_search){.box = csg_judge_cell_box(loop->x->bricks, s->brick, at),
                                         .polygon = &room->pieces[i].polygon};
     }

@@ -70,10 +70,8 @@ static void ask_leaf(leaf_look *l, batch *at, int count)
     l->tape.nodes = &l->node;
     l->tape.count = 1;
     fill_lanes(at, count);
-    p->kernel->values(&l->tape, at->x, at->y, at->z, (size_t)count, at->f, p->scratch,
-                      p->scratch_floats);
-    p->kernel->gradients(&l->tape, at->x, at->y, at->z, (size_t)count, at->g[0], at->g[1], at->g[2],
-                         p->scratch, p->scratch_floats);
+    p->kernel->values_and_gradients(&l->tape, at->x, at->y, at->z, (size_t)count, at->f, at->g[0],
+                                    at->g[1], at->g[2], p->scratch, p->scratch_floats);
     p->evaluations += (uint64_t)count;
 }
 

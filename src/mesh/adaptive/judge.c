@@ -232,8 +232,8 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
     memset(room->face, CSG_NO_FACE, sizeof room->face);
     room->face_count = 0;
     for (unsigned rest = brick->crossed; rest; rest &= rest - 1) {
-        unsigned cell = (unsigned)__builtin_ctz(rest);
-        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        unsigned cell = (unsigned)__builtin_ctz(rest), at[3];
+        csg_brick_cell_place(cell, at);
         const csg_cell_polygons *polygons = &room->polygons[cell];
         csg_cell_box box = csg_judge_cell_box(b, brick, at);
         bool creased = sharp && polygons->count == 1;
@@ -339,7 +339,8 @@ static bool has_pierced_edge(const csg_brick *brick, const unsigned low[3])
 static void cross_pierced(csg_brick *brick)
 {
     for (unsigned cell = 0; cell < CSG_BRICK_CELLS && brick->pierced; cell++) {
-        const unsigned low[3] = {cell % E, cell / E % E, cell / (E * E)};
+        unsigned low[3];
+        csg_brick_cell_place(cell, low);
         brick->crossed |= (uint8_t)((unsigned)has_pierced_edge(brick, low) << cell);
     }
 }
@@ -349,8 +350,8 @@ static void make_polygons(brick_work *w)
 {
     csg_shell shell = {.brick = w->brick};
     for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
-        unsigned cell = (unsigned)__builtin_ctz(rest);
-        const unsigned at[3] = {cell % E, cell / E % E, cell / (E * E)};
+        unsigned cell = (unsigned)__builtin_ctz(rest), at[3];
+        csg_brick_cell_place(cell, at);
         csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
         csg_cell_faces faces = {w->bricks, w->brick, at, &w->probe, &w->room->pierced};
         csg_cell_polygons *polygons = &w->room->polygons[cell];
@@ -360,18 +361,13 @@ static void make_polygons(brick_work *w)
     }
 }
 
-static void find_place(unsigned cell, unsigned at[3])
-{
-    at[0] = cell % E, at[1] = cell / E % E, at[2] = cell / (E * E);
-}
-
 /* The vertices of a polygon, and what is found in the faces between them. */
 static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_polygon *p)
 {
     const csg_judge_room *room = w->room;
     const csg_cell_polygons *polygons = &room->polygons[cell];
     unsigned at[3];
-    find_place(cell, at);
+    csg_brick_cell_place(cell, at);
     p->count = 0;
     for (unsigned i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
@@ -428,7 +424,7 @@ static void cut_plain(brick_work *w)
     for (int i = 0; i < room->piece_count; i++) {
         csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
-        find_place(piece->cell, at);
+        csg_brick_cell_place(piece->cell, at);
         if (!has_pierced_edge(w->brick, at) && !crease_count(&piece->polygon) &&
             csg_cut_plain(piece))
             tried[count++] = piece;
@@ -452,7 +448,7 @@ static void cut_fans(brick_work *w)
     for (int i = 0; i < room->piece_count; i++) {
         csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
-        find_place(piece->cell, at);
+        csg_brick_cell_place(piece->cell, at);
         if (piece->is_cut)
             continue;
         if (room->polygons[piece->cell].count > 1 && !has_pierced_edge(w->brick, at)) {
@@ -495,7 +491,7 @@ static uint8_t find_bad(brick_work *w)
     cut_fans(w);
     for (unsigned rest = w->brick->crossed; rest; rest &= rest - 1) {
         unsigned cell = (unsigned)__builtin_ctz(rest), at[3];
-        find_place(cell, at);
+        csg_brick_cell_place(cell, at);
         bool pierced = has_pierced_edge(w->brick, at);
         if (pierced && !are_apart(room, cell, APART * w->cell))
             w->bad |= 1u << cell;

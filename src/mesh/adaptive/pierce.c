@@ -136,16 +136,12 @@ void csg_pierce(csg_sheet_probe *probe, const csg_bricks *b, const csg_brick *br
 {
     points p;
     candidate found[CSG_BRICK_EDGES];
-    uint64_t edges = brick->level == b->finest ? 0 : f ? find_near(b, brick, f) : brick->pierced;
+    uint64_t edges = brick->level == b->finest ? 0 : find_near(b, brick, f);
     out->edges = 0;
     if (!edges)
         return;
     place_points(&p, b, brick);
-    if (f)
-        memcpy(p.f, f, sizeof p.f);
-    else
-        probe->kernel->values(probe->tape, p.x, p.y, p.z, P, p.f, probe->scratch,
-                              probe->scratch_floats);
+    memcpy(p.f, f, sizeof p.f);
     probe->kernel->gradients(probe->tape, p.x, p.y, p.z, P, p.g[0], p.g[1], p.g[2], probe->scratch,
                              probe->scratch_floats);
     keep_pierced(probe, &p, found, find_candidates(&p, edges, found), out);

@@ -26,8 +26,7 @@ typedef struct csg_pierced {
 /* Of an edge: the length of the shorter span on either side of the point, at least. */
 #define CSG_LEAST_SPAN 0x1p-4f
 
-/* f: values at the brick's points; NULL: they are asked for. Leaves of the finest level have
- * none. */
+/* f: values at the brick's points. Leaves of the finest level have none. */
 void csg_pierce(csg_sheet_probe *probe, const csg_bricks *bricks, const csg_brick *brick,
                 const float *f, csg_pierced *out);
 
