@@ -177,6 +177,12 @@ class Limits(cli.CliTest):
     def test_nodes(self):
         self.limited("for (i = [1 : 5000]) translate([i, 0, 0]) sphere(0.3);\n", "--max-nodes", "1000")
 
+    def test_steps(self):
+        long = "function f(n) = n <= 0 ? 1 : f(n - 1);\nsphere(f(1e5));\n"
+        self.limited(long, "--max-steps", "1e4", words=["--max-steps", "10000 steps"])
+        result = self.run_in("a.txt", "-r", "8", "-o", "o.stl", "--max-steps", "1e7")
+        self.assert_status(result, 0)
+
 
 class Sources(cli.CliTest):
     """No output overwrites what the run reads, whatever it is called there."""

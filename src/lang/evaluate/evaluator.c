@@ -128,7 +128,8 @@ bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
         return false;
     e->steps += steps;
     if (e->steps > e->context->limits.eval_steps) {
-        csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where, "is there an endless loop?",
+        csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where,
+                       "is there an endless loop? raise the limit with --max-steps",
                        "the evaluation takes more than %llu steps",
                        (unsigned long long)e->context->limits.eval_steps);
         return false;

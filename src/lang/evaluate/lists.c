@@ -63,7 +63,8 @@ static void begin_range(csg_eval *e, csg_iteration *iteration, csg_span where)
                         "the range has no end, it counts as empty");
         iteration->count = 0;
     } else if (iteration->count > (double)(e->context->limits.eval_steps - e->steps)) {
-        csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where, "is the range's step right?",
+        csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where,
+                       "is the range's step right? raise the limit with --max-steps",
                        "the range has %.15g elements", iteration->count);
     }
 }

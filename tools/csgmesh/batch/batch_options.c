@@ -52,7 +52,8 @@ static bool is_of_job(const row *option)
 static bool is_without_effect(cli_option_id id)
 {
     return id == CLI_OPTION_no_sync || id == CLI_OPTION_no_prune || id == CLI_OPTION_max_memory ||
-           id == CLI_OPTION_max_depth || id == CLI_OPTION_max_nodes || id == CLI_OPTION_timeout;
+           id == CLI_OPTION_max_depth || id == CLI_OPTION_max_nodes || id == CLI_OPTION_max_steps ||
+           id == CLI_OPTION_timeout;
 }
 
 static bool same_key(const char *key, const char *name)

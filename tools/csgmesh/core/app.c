@@ -4,6 +4,7 @@
 #include "core/cli.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,6 +50,7 @@ int cli_usage_error(cli_app *app, const char *hint, const char *format, ...)
 
 static csgm_limits limits_from(const cli_options *options)
 {
+    const double MOST_STEPS = 1e18; /* thirty years of them: larger numbers mean no limit */
     csgm_limits limits = csgm_context_options_default().limits;
     if (options->given[CLI_OPTION_max_depth])
         limits.depth = (uint32_t)options->max_depth;
@@ -56,6 +58,8 @@ static csgm_limits limits_from(const cli_options *options)
         limits.scene_nodes = (uint32_t)options->max_nodes;
     if (options->given[CLI_OPTION_max_memory])
         limits.memory_bytes = options->max_memory;
+    if (options->given[CLI_OPTION_max_steps])
+        limits.eval_steps = (uint64_t)ceil(fmin(options->max_steps, MOST_STEPS));
     limits.timeout_s = options->timeout;
     return limits;
 }
