@@ -75,9 +75,10 @@ static csg_node_id build_field(csg_solid_job *job, writer *w, csg_formula_id f, 
     csg_formula_step *steps = f == CSG_FORMULA_NONE ? NULL : csg_memory_alloc(job->memory, bytes);
     uint32_t count = steps ? csg_formula_collect(&w->builder, f, steps) : 0;
     csg_node_id node = CSG_NODE_NONE;
+    const csg_field_domain everywhere = {csg_box_all(), false, lipschitz, true};
     if (count)
-        node = csg_solid_done(job, csg_build_field(job->builder, steps, count, csg_box_all(), false,
-                                                   lipschitz, job->where));
+        node = csg_solid_done(job,
+                              csg_build_field(job->builder, steps, count, &everywhere, job->where));
     else
         csg_solid_no_memory(job);
     csg_memory_release(job->memory, steps, bytes);

@@ -186,8 +186,8 @@ static csg_node_id random_scene(test_subject *subject, csg_random *random, int t
     uint32_t count = test_random_formula(&subject->context.memory, random, 1 + (unsigned)turn % 24,
                                          turn % 3 > 0, steps);
     csg_box box = {{-2, -1.5, -2}, {1.5, 2, 2}};
-    csg_node_id field =
-        csg_build_field(builder, steps, count, box, turn % 2, turn % 3 ? 0 : 1e4, NOWHERE);
+    const csg_field_domain domain = {box, turn % 2, turn % 3 ? 0 : 1e4, true};
+    csg_node_id field = csg_build_field(builder, steps, count, &domain, NOWHERE);
     if (field == CSG_NODE_NONE)
         fail_msg("formula %d: %s", turn, builder->problem);
     csg_affine place = make_frame(random, turn / 2 % 4);
@@ -333,9 +333,9 @@ static void test_constant(void **state)
     const csg_kernel *kernels[8];
     const csg_formula_step steps[] = {{.op = CSG_FORMULA_CONSTANT, .constant = 0.75}};
     test_subject subject;
+    const csg_field_domain everywhere = {csg_box_all(), false, 1, false};
     test_subject_begin(&subject);
-    csg_node_id node =
-        csg_build_field(&subject.builder, steps, 1, csg_box_all(), false, 1, NOWHERE);
+    csg_node_id node = csg_build_field(&subject.builder, steps, 1, &everywhere, NOWHERE);
     test_subject_compile(&subject, node);
     csg_random random = {25};
     add_points(&points, &random);

@@ -26,9 +26,10 @@ static double value_at(csg_vec3 p)
 static void check(const char *declarations, const char *formula, double wanted)
 {
     char scene[1024];
-    snprintf(scene, sizeof scene,
-             "%s field(function (p) %s, domain = [[-2, -2, -2], [2, 2, 2]], lipschitz = 100);",
-             declarations, formula);
+    snprintf(
+        scene, sizeof scene,
+        "%s field(function (p) %s, domain = [[0.2, -0.8, 1], [0.4, -0.6, 1.2]], lipschitz = 1000);",
+        declarations, formula);
     csgm_status status = bench_compile(&b, scene);
     if (status != CSGM_OK || b.code_count)
         print_error("%s\n%s", scene, b.text);
@@ -149,6 +150,9 @@ static void test_printing(void **state)
         " + r * 0.01, bounds = [[-2, -2, -1], [2, 2, 1.5]]);",
         "field(function (p) p.z % 3 + p.x ^ 2.5 + p.y ^ 7 + atan2(p.x, -p.y) + max(p) + exp(p.x),"
         " lipschitz = 7.25);",
+        "field(function (p) 3 - norm(p), lipschitz = 0.5, proven = true);",
+        "field(function (p) 3 - norm(p), lipschitz = 0.5);",
+        "gyroid(2, 0.3);",
         "field(function (p) 4);",
         "function deep(x, n) = n == 0 ? x : 1 / (2 + sin(deep(x, n - 1)));"
         "field(function (p) deep(p.x, 60), lipschitz = 1);",

@@ -277,7 +277,8 @@ static csg_node_id formula(mesh_case *c, csg_random *random)
     csg_formula_step steps[TEST_MOST_STEPS];
     uint32_t count = test_random_formula(&c->context.memory, random, 8, true, steps);
     csg_box box = {{-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}};
-    return csg_build_field(&c->builder, steps, count, box, true, 100, NOWHERE);
+    const csg_field_domain domain = {box, true, 100, true};
+    return csg_build_field(&c->builder, steps, count, &domain, NOWHERE);
 }
 
 /* Extrusions, revolutions, twisted and bent solids, slices, offsets. */

@@ -229,6 +229,122 @@ static void test_lipschitz_of_distances(void **state)
     bench_end(&b);
 }
 
+/* ---- stated constants -------------------------------------------------------------------------
+ */
+
+static csg_slope_trial try_constant(bench *b, csg_formula_id id, csg_box box, double stated)
+{
+    csg_formula_step steps[64];
+    uint32_t count = csg_formula_collect(&b->builder, id, steps);
+    return csg_formula_try_lipschitz(&b->context.memory, steps, count, box, stated);
+}
+
+static void check_refuted(bench *b, csg_formula_id id, csg_box box, double stated, double slope)
+{
+    csg_slope_trial trial = try_constant(b, id, box, stated);
+    assert_int_equal(trial.verdict, CSG_SLOPE_REFUTED);
+    test_near(trial.slope, slope, 0.01 * slope);
+    assert_true(csg_box_contains_box(box, (csg_box){trial.place, trial.place}));
+}
+
+/* a * sin(200 x), which changes by 200 a pi / 180. */
+static csg_formula_id waves(bench *b, double a)
+{
+    csg_formula_id angle = apply(b, CSG_FORMULA_MUL, b->x, constant(b, 200));
+    return apply(b, CSG_FORMULA_MUL, constant(b, a), apply(b, CSG_FORMULA_SIN, angle, 0));
+}
+
+static void test_stated_constants(void **state)
+{
+    const double one_degree = M_PI / 180;
+    bench b;
+    bench_begin(&b);
+    csg_box box = {{-2, -2, -2}, {2, 2, 2}}, all = csg_box_all();
+    csg_formula_id ball = length(&b, length(&b, b.x, b.y), b.z);
+    csg_formula_id square = apply(&b, CSG_FORMULA_MUL, b.x, b.x);
+    csg_formula_id steep = apply(&b, CSG_FORMULA_MUL, ball, constant(&b, 100));
+    csg_formula_id wavy = apply(&b, CSG_FORMULA_SUB, waves(&b, 3), ball);
+    assert_int_equal(try_constant(&b, ball, box, 1).verdict, CSG_SLOPE_PROVEN);
+    assert_int_equal(try_constant(&b, ball, all, 1).verdict, CSG_SLOPE_PROVEN);
+    assert_int_equal(try_constant(&b, square, box, 4.5).verdict, CSG_SLOPE_PROVEN);
+    assert_int_equal(try_constant(&b, wavy, box, 12).verdict, CSG_SLOPE_PROVEN);
+    check_refuted(&b, square, box, 3, 4);
+    check_refuted(&b, steep, box, 1, 100);
+    check_refuted(&b, steep, box, 99.9, 100);
+    check_refuted(&b, wavy, box, 1, 1 + 600 * one_degree);
+    /* all of space is not what a scene looks at */
+    csg_slope_trial trial = try_constant(&b, steep, all, 1);
+    assert_int_equal(trial.verdict, CSG_SLOPE_UNDECIDED);
+    test_near(trial.bound, 100, 1e-9);
+    trial = try_constant(&b, square, all, 1);
+    assert_true(trial.verdict == CSG_SLOPE_UNDECIDED && isinf(trial.bound));
+    /* by less than rounding */
+    trial = try_constant(&b, square, box, 4);
+    assert_true(trial.verdict == CSG_SLOPE_PROVEN || trial.bound < 4.1);
+    assert_int_equal(try_constant(&b, steep, box, 100 * (1 - 1e-8)).verdict, CSG_SLOPE_UNDECIDED);
+    bench_end(&b);
+}
+
+/* min(x, max(x, 100 x)) is x, though derivatives at 0 say 100; |x| - |x| + x has kinks that cancel.
+ */
+static void test_kinks_refute_nothing(void **state)
+{
+    bench b;
+    bench_begin(&b);
+    csg_box box = {{-1, -1, -1}, {1, 1, 1}};
+    csg_formula_id steep = apply(&b, CSG_FORMULA_MUL, b.x, constant(&b, 100));
+    csg_formula_id most = apply(&b, CSG_FORMULA_MAX, b.x, steep);
+    csg_slope_trial trial = try_constant(&b, apply(&b, CSG_FORMULA_MIN, b.x, most), box, 1);
+    assert_int_not_equal(trial.verdict, CSG_SLOPE_REFUTED);
+    /* where intervals know nothing, the rest is looked at all the same */
+    csg_formula_id floor = apply(&b, CSG_FORMULA_FLOOR, b.y, 0);
+    trial = try_constant(&b, apply(&b, CSG_FORMULA_ADD, floor, b.x), box, 1);
+    assert_true(trial.verdict == CSG_SLOPE_UNDECIDED && isinf(trial.bound));
+    check_refuted(&b, apply(&b, CSG_FORMULA_ADD, floor, steep), box, 1, 100);
+    bench_end(&b);
+}
+
+/* A constant that was found is proven; seven tenths of it are proven only where nothing is steeper,
+ * and refuted only where something is. */
+static void test_stated_constants_of_random(void **state)
+{
+    csgm_context context;
+    test_context_init(&context);
+    csg_random random = {13};
+    static csg_formula_step steps[TEST_MOST_STEPS];
+    csg_box box = {{-2, -1.5, -1}, {1, 1.5, 2}};
+    size_t verdicts[3] = {0};
+    for (int turn = 0; turn < 100; turn++) {
+        uint32_t count =
+            test_random_formula(&context.memory, &random, 1 + (unsigned)turn % 16, true, steps);
+        double lambda = csg_formula_lipschitz(&context.memory, steps, count, box), steepest = 0;
+        if (!isfinite(lambda) || lambda == 0)
+            continue;
+        csg_slope_trial trial =
+            csg_formula_try_lipschitz(&context.memory, steps, count, box, lambda);
+        assert_int_equal(trial.verdict, CSG_SLOPE_PROVEN);
+        double stated = 0.7 * lambda;
+        trial = csg_formula_try_lipschitz(&context.memory, steps, count, box, stated);
+        verdicts[trial.verdict]++;
+        for (int i = 0; i < 500; i++) {
+            csg_vec3 p = point_in(&random, box), q = point_in(&random, box);
+            double rise =
+                evaluate(steps, count, box, p).value - evaluate(steps, count, box, q).value;
+            steepest = fmax(steepest, fabs(rise) / csg_vec3_norm(csg_vec3_sub(p, q)));
+        }
+        double known = trial.verdict == CSG_SLOPE_PROVEN      ? stated
+                       : trial.verdict == CSG_SLOPE_UNDECIDED ? trial.bound
+                                                              : lambda;
+        assert_true(steepest <= known * (1 + 1e-6));
+        if (trial.verdict == CSG_SLOPE_REFUTED)
+            assert_true(trial.slope > stated && trial.slope <= lambda * (1 + 1e-6));
+    }
+    print_message("undecided %zu, proven %zu, refuted %zu\n", verdicts[0], verdicts[1],
+                  verdicts[2]);
+    assert_true(verdicts[CSG_SLOPE_REFUTED] > 40);
+    test_context_end(&context);
+}
+
 /* ---- nodes ------------------------------------------------------------------------------------
  */
 
@@ -254,8 +370,10 @@ static void test_field_node(void **state)
     scene_bench s;
     scene_begin(&s);
     csg_box box = {{-1, -2, -3}, {1, 2, 4}};
-    csg_node_id cut = csg_build_field(&s.builder, slab, 4, box, true, 0, NOWHERE);
-    csg_node_id loose = csg_build_field(&s.builder, slab, 4, box, false, 5, NOWHERE);
+    csg_node_id cut =
+        csg_build_field(&s.builder, slab, 4, &(csg_field_domain){box, true, 0, false}, NOWHERE);
+    csg_node_id loose =
+        csg_build_field(&s.builder, slab, 4, &(csg_field_domain){box, false, 5, true}, NOWHERE);
     csg_affine shift = csg_affine_translate(csg_vec3_make(10, 0, 0));
     loose = csg_build_transform(&s.builder, &shift, loose, NOWHERE);
     csg_node_id root = csg_build_operator(&s.builder, CSG_NODE_UNION, (csg_blend){0},
@@ -279,7 +397,8 @@ static void test_field_bounds(void **state)
     scene_begin(&s);
     csg_box box = {{-1, -2, -3}, {1, 2, 4}};
     csgm_scene *scene =
-        test_seal(&s.builder, csg_build_field(&s.builder, slab, 4, box, true, 0, NOWHERE));
+        test_seal(&s.builder, csg_build_field(&s.builder, slab, 4,
+                                              &(csg_field_domain){box, true, 0, false}, NOWHERE));
     csg_box bounds = csg_bounds_of_solid(scene);
     test_near_vec3(bounds.min, box.min, 1e-12);
     test_near_vec3(bounds.max, box.max, 1e-12);
@@ -293,8 +412,8 @@ static void refuse(const csg_formula_step *steps, uint32_t count, csg_box box, d
 {
     scene_bench s;
     scene_begin(&s);
-    assert_int_equal(csg_build_field(&s.builder, steps, count, box, true, lambda, NOWHERE),
-                     CSG_NODE_NONE);
+    const csg_field_domain domain = {box, true, lambda, false};
+    assert_int_equal(csg_build_field(&s.builder, steps, count, &domain, NOWHERE), CSG_NODE_NONE);
     assert_int_equal(s.builder.status, CSGM_ERR_SCENE);
     if (!strstr(s.builder.problem, problem))
         fail_msg("'%s' does not say '%s'", s.builder.problem, problem);
@@ -316,6 +435,33 @@ static void test_refused(void **state)
     refuse(slab, 0, box, 0, "more than");
     const csg_formula_step steep[] = {{.op = CSG_FORMULA_X}, {.op = CSG_FORMULA_FLOOR, .a = 0}};
     refuse(steep, 2, box, 0, "give lipschitz");
+}
+
+static double constant_of_field(const csg_formula_step *steps, uint32_t count,
+                                csg_field_domain domain)
+{
+    scene_bench s;
+    scene_begin(&s);
+    csgm_scene *scene =
+        test_seal(&s.builder, csg_build_field(&s.builder, steps, count, &domain, NOWHERE));
+    double lambda = csg_scene_lipschitz(scene);
+    csg_scene_destroy(scene);
+    test_context_end(&s.context);
+    return lambda;
+}
+
+static void test_stated_constants_of_nodes(void **state)
+{
+    const csg_formula_step line[] = {{.op = CSG_FORMULA_X}},
+                           jumps[] = {{.op = CSG_FORMULA_X}, {.op = CSG_FORMULA_FLOOR, .a = 0}};
+    csg_box box = {{-1, -1, -1}, {1, 1, 1}}, all = csg_box_all();
+    refuse(slab, 4, box, 1, "lipschitz = 1 is too small: at [");
+    refuse(line, 1, box, 0.5, "the function changes by 1 along one unit of length");
+    test_near(constant_of_field(line, 1, (csg_field_domain){box, true, 3, false}), 3, 0);
+    test_near(constant_of_field(line, 1, (csg_field_domain){all, false, 0.5, false}), 1, 1e-12);
+    test_near(constant_of_field(line, 1, (csg_field_domain){all, false, 0.5, true}), 0.5, 0);
+    test_near(constant_of_field(slab, 4, (csg_field_domain){all, false, 7, false}), 7, 0);
+    test_near(constant_of_field(jumps, 2, (csg_field_domain){box, true, 9, false}), 9, 0);
 }
 
 /* A sum that needs all of its many summands at once. */
@@ -354,9 +500,13 @@ int main(void)
         cmocka_unit_test(test_gradients),
         cmocka_unit_test(test_lipschitz_holds),
         cmocka_unit_test(test_lipschitz_of_distances),
+        cmocka_unit_test(test_stated_constants),
+        cmocka_unit_test(test_kinks_refute_nothing),
+        cmocka_unit_test(test_stated_constants_of_random),
         cmocka_unit_test(test_field_node),
         cmocka_unit_test(test_field_bounds),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_stated_constants_of_nodes),
         cmocka_unit_test(test_too_wide),
         cmocka_unit_test(test_no_value),
     };

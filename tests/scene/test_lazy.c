@@ -405,7 +405,8 @@ static csg_node_id steep_field(void)
                                       {CSG_FORMULA_SUB, 0, 1, 0},
                                       {CSG_FORMULA_CONSTANT, 0, 0, 3},
                                       {CSG_FORMULA_MUL, 2, 3, 0}};
-    return csg_build_field(&builder, steps, 5, csg_box_all(), false, 3, NOWHERE);
+    const csg_field_domain everywhere = {csg_box_all(), false, 3, false};
+    return csg_build_field(&builder, steps, 5, &everywhere, NOWHERE);
 }
 
 static void test_steep_fields(void **state)

@@ -139,22 +139,25 @@ csg_box csg_argument_box(csg_module_call *call, uint32_t index)
 
 csg_node_id csg_module_field(csg_module_call *call)
 {
-    enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN };
+    enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN, PROVEN };
     csg_eval *e = call->e;
     csg_span where = call->statement->where;
     if (!csg_argument_is_function(call, FUNCTION, 1))
         csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
                            "it needs a function of a point, as function (p) 1 - norm(p)");
     bool cut = csg_has_argument(call, BOUNDS);
-    csg_box box = csg_argument_box(call, cut ? BOUNDS : DOMAIN);
-    double lipschitz = csg_argument_number(call, LIPSCHITZ, 0, CSG_POSITIVE);
+    const csg_field_domain domain = {.bounds = csg_argument_box(call, cut ? BOUNDS : DOMAIN),
+                                     .cut = cut,
+                                     .lipschitz =
+                                         csg_argument_number(call, LIPSCHITZ, 0, CSG_POSITIVE),
+                                     .trusted = csg_argument_boolean(call, PROVEN)};
     csg_node_id node = CSG_NODE_NONE;
     uint32_t count = 0;
     size_t bytes = 0;
     csg_formula_step *steps =
         call->failed ? NULL : csg_formula_of_function(call, FUNCTION, 0, &count, &bytes);
     if (steps && count && !call->failed)
-        node = csg_build_field(&e->builder, steps, count, box, cut, lipschitz, where);
+        node = csg_build_field(&e->builder, steps, count, &domain, where);
     else if (!e->stop)
         node = csg_build_empty(&e->builder, where);
     csg_memory_release(e->heap.memory, steps, bytes);

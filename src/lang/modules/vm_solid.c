@@ -46,15 +46,16 @@ csg_node_id csg_import_tape(csg_module_call *call, const char *path, uint32_t fi
                             uint32_t lipschitz)
 {
     csg_eval *e = call->e;
-    csg_box box = csg_argument_box(call, bounds);
-    double slope = csg_argument_number(call, lipschitz, 0, CSG_POSITIVE);
+    const csg_field_domain domain = {.bounds = csg_argument_box(call, bounds),
+                                     .cut = csg_has_argument(call, bounds),
+                                     .lipschitz =
+                                         csg_argument_number(call, lipschitz, 0, CSG_POSITIVE)};
     csg_node_id node = CSG_NODE_NONE;
     uint32_t count = 0;
     size_t bytes = 0;
     csg_formula_step *steps = call->failed ? NULL : read_tape(call, path, file, &count, &bytes);
     if (steps && count)
-        node = csg_build_field(&e->builder, steps, count, box, csg_has_argument(call, bounds),
-                               slope, call->statement->where);
+        node = csg_build_field(&e->builder, steps, count, &domain, call->statement->where);
     csg_memory_release(e->heap.memory, steps, bytes);
     if (e->stop)
         return CSG_NODE_NONE;

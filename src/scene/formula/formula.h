@@ -45,6 +45,7 @@ typedef struct csg_profile {
 typedef struct csg_formula {
     uint32_t first, count; /* into the scene's steps */
     double lipschitz;
+    bool trusted;        /* the constant was stated as one that is proven, and could not be tried */
     csg_box bounds;      /* finite, or all of space */
     csg_profile profile; /* of a combine node with the blend PROFILE */
     /* the profile itself is the next formula */
@@ -107,6 +108,25 @@ csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_f
  * box make it; INFINITY where that finds none. NAN: out of memory. */
 double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                              csg_box box);
+
+typedef enum csg_slope_verdict {
+    CSG_SLOPE_UNDECIDED,
+    CSG_SLOPE_PROVEN, /* up to rounding */
+    CSG_SLOPE_REFUTED /* by more than rounding */
+} csg_slope_verdict;
+
+/* What became of a Lipschitz constant that somebody stated. */
+typedef struct csg_slope_trial {
+    csg_slope_verdict verdict;
+    double
+        bound; /* unless it is refuted: a constant that holds, perhaps INFINITY; NAN: no memory */
+    csg_vec3 place; /* where it is refuted: a point beside which */
+    double slope;   /* the formula changes by as much along one unit of length */
+} csg_slope_trial;
+
+/* With the work of csg_formula_lipschitz; a constant that this gives is proven. */
+csg_slope_trial csg_formula_try_lipschitz(csg_memory *memory, const csg_formula_step *steps,
+                                          uint32_t count, csg_box box, double stated);
 /* An upper bound of the sum of the partial derivatives' sizes anywhere; INFINITY where interval
  * arithmetic finds none. NAN: out of memory. */
 double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Lipschitz constants of formulas: each step's value, the three components of its gradient and the
- * gradient's length as intervals over a box, rounded outwards. The box is split where the bound is
- * largest until it is tight or enough parts were made.
+ * Formulas over a box: each step's value, the three components of its gradient and the gradient's
+ * length as intervals, rounded outwards.
  *
  * Three rules know more than interval arithmetic: u * u is no product of strangers, the root of a
  * sum of squares is smooth enough at 0, and a minimum has the gradient of one of its operands.
@@ -9,21 +8,14 @@
 #include <assert.h>
 #include <float.h>
 
-#include "scene/formula/formula.h"
+#include "scene/formula/formula_bound.h"
 
 #define DEGREE 0.017453292519943295
 
-enum {
-    MOST_PARTS = 1024,
-    MOST_WORK = 1 << 20, /* parts times steps */
-    FEWEST_PARTS = 16,
-    MOST_SQUARES = 8 /* under one root */
-};
+enum { MOST_SQUARES = 8 /* under one root */ };
 
-/* NaN ends: nothing is known, not even that there is a value. */
-typedef struct range {
-    double low, high;
-} range;
+typedef csg_formula_range range;
+typedef csg_formula_bound bound;
 
 static range unknown(void)
 {
@@ -218,13 +210,6 @@ static range remainder_of(range a, range b)
 
 /* ---- steps -------------------------------------------------------------------------------------
  */
-
-/* Value, components of the gradient, and a bound of its length. */
-typedef struct bound {
-    range value;
-    range gradient[3];
-    double length;
-} bound;
 
 static range value_of(csg_formula_op op, range a, range b)
 {
@@ -469,11 +454,6 @@ static bound root_of_squares(const bound *bounds, range under, const uint32_t *s
 /* ---- boxes -------------------------------------------------------------------------------------
  */
 
-typedef struct part {
-    csg_box box;
-    double length;
-} part;
-
 /* Derivatives along three directions instead of along x, y and z, which makes lengths mean nothing.
  */
 typedef double directions[3][3];
@@ -506,72 +486,11 @@ static double bound_along(const csg_formula_step *steps, uint32_t count, csg_box
     return isnan(length) ? INFINITY : length;
 }
 
-static double bound_on_box(const csg_formula_step *steps, uint32_t count, csg_box box,
-                           bound *bounds)
+double csg_formula_bound_on_box(const csg_formula_step *steps, uint32_t count, csg_box box,
+                                csg_formula_bound *bounds)
 {
     static const directions axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     return bound_along(steps, count, box, axes, bounds);
-}
-
-/* Halves of a box across its longest side. */
-static void halve(csg_box box, csg_box *low, csg_box *high)
-{
-    csg_vec3 size = csg_box_size(box), middle = csg_box_center(box);
-    *low = *high = box;
-    if (size.x >= size.y && size.x >= size.z)
-        low->max.x = high->min.x = middle.x;
-    else if (size.y >= size.z)
-        low->max.y = high->min.y = middle.y;
-    else
-        low->max.z = high->min.z = middle.z;
-}
-
-/* The slope at the middle of a box: no Lipschitz constant is less. */
-static double slope_inside(const csg_formula_step *steps, uint32_t count, csg_box box,
-                           csg_formula_dual *work)
-{
-    csg_formula formula = {.count = count, .bounds = csg_box_all()};
-    return csg_vec3_norm(csg_formula_evaluate(steps, &formula, csg_box_center(box), work).gradient);
-}
-
-/* Splits the part with the largest bound, again and again. */
-static double refine(const csg_formula_step *steps, uint32_t count, part *parts, uint32_t most,
-                     bound *bounds, csg_formula_dual *work)
-{
-    const double tight = 1.02;
-    double seen = 0;
-    for (uint32_t used = 1;; used++) {
-        uint32_t worst = 0;
-        for (uint32_t i = 1; i < used; i++)
-            if (parts[i].length > parts[worst].length)
-                worst = i;
-        csg_box box = parts[worst].box;
-        seen = fmax(seen, slope_inside(steps, count, box, work));
-        if (used == most || parts[worst].length <= tight * seen)
-            return parts[worst].length;
-        halve(box, &parts[worst].box, &parts[used].box);
-        parts[worst].length = bound_on_box(steps, count, parts[worst].box, bounds);
-        parts[used].length = bound_on_box(steps, count, parts[used].box, bounds);
-    }
-}
-
-double csg_formula_lipschitz(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                             csg_box box)
-{
-    uint32_t most = MOST_WORK / count;
-    most = most > MOST_PARTS ? MOST_PARTS : most < FEWEST_PARTS ? FEWEST_PARTS : most;
-    size_t work_bytes = count * sizeof(csg_formula_dual), bound_bytes = count * sizeof(bound);
-    size_t bytes = most * sizeof(part) + bound_bytes + work_bytes;
-    part *parts = csg_memory_alloc(memory, bytes);
-    if (!parts)
-        return NAN;
-    bound *bounds = (bound *)(parts + most);
-    parts[0] = (part){box, bound_on_box(steps, count, box, bounds)};
-    double length = parts[0].length;
-    if (csg_box_is_finite(box))
-        length = refine(steps, count, parts, most, bounds, (csg_formula_dual *)(bounds + count));
-    csg_memory_release(memory, parts, bytes);
-    return length;
 }
 
 /* The last step's bound on a box. False: out of memory. */
@@ -581,7 +500,7 @@ static bool bound_of_result(csg_memory *memory, const csg_formula_step *steps, u
     bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
     if (!bounds)
         return false;
-    bound_on_box(steps, count, box, bounds);
+    csg_formula_bound_on_box(steps, count, box, bounds);
     *out = bounds[count - 1];
     csg_memory_release(memory, bounds, count * sizeof *bounds);
     return true;

@@ -268,18 +268,28 @@ csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box 
                               (csg_node_id[]){node, cutter}, 2, where);
 }
 
-csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
-                            uint32_t count, csg_box bounds, bool cut, double lipschitz,
-                            csg_span where)
+/* Finds the constant, or tries the stated one. */
+static bool settle_slope(csg_scene_builder *builder, const csg_formula_step *steps,
+                         csg_formula *formula, double stated)
 {
-    if (builder->status != CSGM_OK || !csg_check_field(builder, steps, count, bounds, lipschitz))
+    csg_memory *memory = &builder->context->memory;
+    csg_slope_trial trial = {.verdict = CSG_SLOPE_PROVEN};
+    if (stated > 0)
+        trial = csg_formula_try_lipschitz(memory, steps, formula->count, formula->bounds, stated);
+    else
+        trial.bound = csg_formula_lipschitz(memory, steps, formula->count, formula->bounds);
+    return csg_check_slope(builder, stated, &trial, formula);
+}
+
+csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
+                            uint32_t count, const csg_field_domain *domain, csg_span where)
+{
+    csg_box bounds = domain->bounds;
+    double stated = domain->lipschitz;
+    if (builder->status != CSGM_OK || !csg_check_field(builder, steps, count, bounds, stated))
         return CSG_NODE_NONE;
-    csg_formula formula = {.count = count, .lipschitz = lipschitz, .bounds = bounds};
-    if (lipschitz == 0)
-        formula.lipschitz = csg_formula_lipschitz(&builder->context->memory, steps, count, bounds);
-    if (isnan(formula.lipschitz))
-        return csg_build_no_memory(builder);
-    if (!csg_check_slope(builder, &formula))
+    csg_formula formula = {.count = count, .bounds = bounds, .trusted = domain->trusted};
+    if (!settle_slope(builder, steps, &formula, stated))
         return CSG_NODE_NONE;
     if (!csg_build_reserve_node(builder) || !csg_build_append_formula(builder, steps, &formula))
         return CSG_NODE_NONE;
@@ -287,7 +297,8 @@ csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *
                      .payload = (uint32_t)builder->scene->formula_count - 1,
                      .where = where};
     csg_node_id field = csg_build_append(builder, node, NULL, 0);
-    return cut && csg_box_is_finite(bounds) ? csg_build_cut(builder, field, bounds, where) : field;
+    bool cut = domain->cut && csg_box_is_finite(bounds);
+    return cut ? csg_build_cut(builder, field, bounds, where) : field;
 }
 
 /* ---- transforms and colours ----------------------------------------------------------- */

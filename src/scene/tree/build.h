@@ -35,12 +35,18 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
  * swallows the other. */
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,
                               double r2, csg_span where);
-/* The solid where the formula is >= 0. steps as csg_formula_collect gives them; bounds: where the
- * formula is meant (formula.h), a finite box, or all of space; cut: and nothing outside of it is
- * inside. lipschitz 0: computed, which fails for formulas that are too steep to tell. */
+/* Where a formula is meant, and what its maker says of it. */
+typedef struct csg_field_domain {
+    csg_box bounds;   /* formula.h: a finite box, or all of space */
+    bool cut;         /* nothing outside of the bounds is inside */
+    double lipschitz; /* stated: tried (csg_check_slope); 0: computed, which fails for formulas that
+                         are too steep to tell */
+    bool trusted;     /* the stated one holds where it can be neither proven nor refuted */
+} csg_field_domain;
+
+/* The solid where the formula is >= 0; steps as csg_formula_collect gives them. */
 csg_node_id csg_build_field(csg_scene_builder *builder, const csg_formula_step *steps,
-                            uint32_t count, csg_box bounds, bool cut, double lipschitz,
-                            csg_span where);
+                            uint32_t count, const csg_field_domain *domain, csg_span where);
 /* matrix must be invertible and finite. */
 csg_node_id csg_build_transform(csg_scene_builder *builder, const csg_affine *matrix,
                                 csg_node_id child, csg_span where);
@@ -103,8 +109,8 @@ csg_node_id csg_build_bare_warp(csg_scene_builder *builder, const csg_warp *warp
 csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box box,
                           csg_span where);
 /* F(children), one to three of them, x, y, z of the formula being their fields (scene.h). slope: a
- * bound on the sum of the partial derivatives' sizes; 0: computed, which fails for formulas that
- * are too steep to tell. */
+ * bound on the sum of the partial derivatives' sizes, raised to the one that is proven; 0:
+ * computed, which fails for formulas that are too steep to tell. */
 csg_node_id csg_build_combine(csg_scene_builder *builder, const csg_formula_step *steps,
                               uint32_t count, double slope, const csg_node_id *children,
                               size_t child_count, csg_span where);

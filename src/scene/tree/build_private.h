@@ -33,6 +33,10 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
 /* Range and angles of a rule for these operands; *blend may become another. */
 bool csg_build_settle_rule(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend,
                            const csg_node_id *operands, size_t count, double *range);
+/* csg_build_combine with a slope that is known to hold. */
+csg_node_id csg_build_combine_known(csg_scene_builder *builder, const csg_formula_step *steps,
+                                    uint32_t count, double slope, const csg_node_id *children,
+                                    size_t child_count, csg_span where);
 /* Two nodes joined by a profile: a combine node. */
 csg_node_id csg_build_profiled(csg_scene_builder *builder, csg_node_kind kind, csg_blend blend,
                                csg_node_id a, csg_node_id b, csg_span where);

@@ -174,9 +174,9 @@ static csg_node_id combined(csg_scene_builder *builder, csg_node_kind kind, csg_
     csg_memory *memory = &builder->context->memory;
     csg_formula_step *steps = csg_memory_alloc(memory, terms->count * sizeof *steps);
     uint32_t count = steps ? csg_formula_collect(terms, result, steps) : 0;
-    csg_node_id node =
-        count ? csg_build_combine(builder, steps, count, profile.lipschitz, operands, 2, where)
-              : csg_build_no_memory(builder);
+    csg_node_id node = count ? csg_build_combine_known(builder, steps, count, profile.lipschitz,
+                                                       operands, 2, where)
+                             : csg_build_no_memory(builder);
     csg_memory_release(memory, steps, terms->count * sizeof *steps);
     if (node == CSG_NODE_NONE)
         return node;

@@ -110,10 +110,31 @@ bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, 
     return builder->status == CSGM_OK;
 }
 
-bool csg_check_slope(csg_scene_builder *builder, csg_formula *formula)
+static void refuse_slope(csg_scene_builder *builder, double stated, const csg_slope_trial *trial)
+{
+    csg_check_fail(builder, CSGM_ERR_SCENE,
+                   "lipschitz = %.9g is too small: at [%.6g, %.6g, %.6g] the function changes by "
+                   "%.6g along one unit of length",
+                   stated, trial->place.x, trial->place.y, trial->place.z, trial->slope);
+}
+
+bool csg_check_slope(csg_scene_builder *builder, double stated, const csg_slope_trial *trial,
+                     csg_formula *formula)
 {
     const double smallest = 1e-6, largest = 1e12;
-    if (!(formula->lipschitz <= largest))
+    bool settled = trial->verdict == CSG_SLOPE_PROVEN || !(trial->bound <= largest);
+    if (isnan(trial->bound)) {
+        csg_check_fail(builder, CSGM_ERR_MEMORY, "%s", "");
+    } else if (stated > 0 && trial->verdict == CSG_SLOPE_REFUTED) {
+        refuse_slope(builder, stated, trial);
+    } else if (stated > 0) {
+        formula->lipschitz = settled || formula->trusted ? stated : fmax(stated, trial->bound);
+        formula->trusted &= !settled;
+    } else {
+        formula->lipschitz = trial->bound;
+        formula->trusted = false;
+    }
+    if (builder->status == CSGM_OK && !(formula->lipschitz <= largest))
         csg_check_fail(builder, CSGM_ERR_SCENE, "how steep the formula gets cannot be told%s",
                        csg_box_is_finite(formula->bounds)
                            ? "; give lipschitz ="

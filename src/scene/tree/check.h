@@ -16,8 +16,11 @@ void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *
 bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *values);
 bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count,
                      csg_box bounds, double lipschitz);
-/* The formula's Lipschitz constant, as given or found; a tiny one is raised. */
-bool csg_check_slope(csg_scene_builder *builder, csg_formula *formula);
+/* The formula's Lipschitz constant: the bound that was found where none is stated (0); else the
+ * stated one if it is proven, trusted, or nothing is known, an error where it is refuted, and else
+ * the larger one of both. A tiny one is raised. */
+bool csg_check_slope(csg_scene_builder *builder, double stated, const csg_slope_trial *trial,
+                     csg_formula *formula);
 /* Of a capsule. */
 bool csg_check_ends(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1, double r2);
 bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix);

@@ -49,7 +49,7 @@ static bool put_field(const csg_printer *out, const csg_node *node)
         csg_put(out, "]");
     }
     csg_put_argument(out, ", ", "lipschitz", formula->lipschitz);
-    csg_put(out, ");\n");
+    csg_put(out, formula->trusted ? ", proven = true);\n" : ");\n");
     return true;
 }
 
