@@ -236,7 +236,8 @@ typedef enum csgm_flat {
     CSGM_FLAT_PLATE,   /* a solid, 1 thick, with a warning */
     CSGM_FLAT_DRAWING, /* its outlines are kept for csgm_scene_draw; solids beside it are left out,
                           with a warning, and a scene without a flat figure is an error */
-    CSGM_FLAT_BOTH     /* both; a scene that is a solid is an error */
+    CSGM_FLAT_BOTH,    /* both; a scene that is a solid is an error */
+    CSGM_FLAT_KEPT     /* a flat figure, for dumps: no mesh can be made of it */
 } csgm_flat;
 
 /* How a scene's text is read: values from outside, folders of includes, and facets. */
@@ -890,10 +891,18 @@ CSGM_API csgm_status csgm_json_read(csgm_context *context, const char *text, siz
 
 /* ---- looking inside (stable text, for tests and for people) -------------------------- */
 
-typedef enum csgm_dump { CSGM_DUMP_SCENE, CSGM_DUMP_TAPE, CSGM_DUMP_VM } csgm_dump;
+typedef enum csgm_dump {
+    CSGM_DUMP_SCENE,
+    CSGM_DUMP_TAPE,
+    CSGM_DUMP_VM,
+    CSGM_DUMP_OPENSCAD
+} csgm_dump;
 
 /* SCENE parses back to the same tree. VM is the scene's formula as the programs fidget and libfive
- * read it, negative inside; CSGM_ERR_UNSUPPORTED: no formula is known for one of its solids. */
+ * read it, negative inside; CSGM_ERR_UNSUPPORTED: no formula is known for one of its solids.
+ * OPENSCAD is text that OpenSCAD reads, as its .csg files; CSGM_ERR_UNSUPPORTED: it has no words
+ * for one of the solids (blends, formulas ...). Load the scene with CSGM_FACETS_EXACT, and with
+ * CSGM_FLAT_KEPT. */
 CSGM_API csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm_dump what,
                                      csgm_text_fn *sink, void *user);
 

@@ -5,6 +5,7 @@
 #include "field/field.h"
 #include "scene/formula/vm.h"
 #include "scene/tree/print.h"
+#include "scene/tree/print_openscad.h"
 
 static csgm_status dump_tape(csgm_context *context, const csgm_scene *scene, csgm_text_fn *sink,
                              void *user)
@@ -29,6 +30,8 @@ csgm_status csgm_scene_dump(csgm_context *context, const csgm_scene *scene, csgm
         return dump_tape(context, scene, sink, user);
     case CSGM_DUMP_VM:
         return csg_vm_print(scene, sink, user);
+    case CSGM_DUMP_OPENSCAD:
+        return csg_scene_print_openscad(scene, sink, user);
     }
     return CSGM_ERR_ARGUMENT;
 }

@@ -21,7 +21,7 @@ bool csg_scene_options_adopt(csgm_scene_options *options, const csgm_scene_optio
         (options->include_dir_count && !options->include_dirs) ||
         !options->parameter_file != !options->parameter_set ||
         (options->facets != CSGM_FACETS_ROUND && options->facets != CSGM_FACETS_EXACT) ||
-        (uint32_t)options->leniency > CSGM_LENIENT || (uint32_t)options->flat > CSGM_FLAT_BOTH)
+        (uint32_t)options->leniency > CSGM_LENIENT || (uint32_t)options->flat > CSGM_FLAT_KEPT)
         return false;
     for (size_t i = 0; i < options->define_count; i++)
         if (!options->defines[i].name || !options->defines[i].expression)

@@ -104,8 +104,8 @@ class Mistakes(cli.CliTest):
         self.refused("a.txt", "-f", "ply", "-o", "-", "-M", "a.d", words=["-M needs an output"])
 
     def test_dump_and_eval(self):
-        self.refused("dump", "a.txt", words=["--scene, --tape or --vm"])
-        self.refused("dump", "--scene", "--tape", "a.txt", words=["--scene, --tape or --vm"])
+        self.refused("dump", "a.txt", words=["--scene, --tape, --vm or --csg"])
+        self.refused("dump", "--scene", "--tape", "a.txt", words=["--scene, --tape, --vm or --csg"])
         self.refused("eval", "a.txt", words=["add --at"])
         self.refused("eval", "a.txt", "--at", "1,2", words=["X,Y,Z"])
 

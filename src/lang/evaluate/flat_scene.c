@@ -58,7 +58,7 @@ csg_node_id csg_eval_plate(csg_eval *e, csg_node_id flat, csg_span where)
 csg_node_id csg_eval_finish_flat(csg_eval *e, csg_node_id node, csg_span where)
 {
     csgm_flat flat = flat_of(e);
-    if (node == CSG_NODE_NONE || e->stop || csg_eval_is_empty(e, node))
+    if (node == CSG_NODE_NONE || e->stop || csg_eval_is_empty(e, node) || flat == CSGM_FLAT_KEPT)
         return node;
     if (!csg_eval_is_flat(e, node)) {
         if (flat != CSGM_FLAT_PLATE)

@@ -62,7 +62,7 @@ static void put_index(const csg_printer *out, size_t index)
     csg_put(out, text);
 }
 
-static void put_region(const csg_printer *out, const csg_shape *shape)
+static void put_region(const csg_printer *out, const csg_shape *shape, const char *end)
 {
     const csg_outline *outline = csg_region_outline(shape);
     csg_put(out, "polygon(points = [");
@@ -79,11 +79,11 @@ static void put_region(const csg_printer *out, const csg_shape *shape)
         }
         csg_put(out, loop + 1 < outline->loop_count ? "]" : "]]");
     }
-    csg_put(out, ", clean = true);\n");
+    csg_put(out, end);
 }
 
 /* Faces run the other way round in the language. */
-static void put_polyhedron(const csg_printer *out, const csg_shape *shape)
+static void put_polyhedron(const csg_printer *out, const csg_shape *shape, const char *end)
 {
     const csg_triangles *triangles = csg_polyhedron_triangles(shape);
     csg_put(out, "polyhedron(points = [");
@@ -100,7 +100,16 @@ static void put_polyhedron(const csg_printer *out, const csg_shape *shape)
             csg_put(out, k ? ", " : "]");
         }
     }
-    csg_put(out, "], clean = true);\n");
+    csg_put(out, "]");
+    csg_put(out, end);
+}
+
+void csg_put_shape(const csg_printer *out, const csg_shape *shape, const char *end)
+{
+    if (shape->kind == CSG_SHAPE_REGION)
+        put_region(out, shape, end);
+    else
+        put_polyhedron(out, shape, end);
 }
 
 bool csg_put_leaf(const csg_printer *out, const csg_node *node)
@@ -112,11 +121,7 @@ bool csg_put_leaf(const csg_printer *out, const csg_node *node)
     } else if (node->kind != CSG_NODE_SHAPE) {
         put_primitive(out, node);
     } else {
-        const csg_shape *shape = out->scene->shapes[node->payload];
-        if (shape->kind == CSG_SHAPE_REGION)
-            put_region(out, shape);
-        else
-            put_polyhedron(out, shape);
+        csg_put_shape(out, out->scene->shapes[node->payload], ", clean = true);\n");
     }
     return true;
 }

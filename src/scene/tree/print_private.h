@@ -22,6 +22,8 @@ void csg_put_argument(const csg_printer *out, const char *separator, const char 
                       double value);
 /* The line of a SOFT node. */
 void csg_put_soft(const csg_printer *out, const csg_node *node);
+/* polygon() or polyhedron(), whose last words are `end`. */
+void csg_put_shape(const csg_printer *out, const csg_shape *shape, const char *end);
 /* A node without children, up to the end of its line. False: out of memory. */
 bool csg_put_leaf(const csg_printer *out, const csg_node *node);
 

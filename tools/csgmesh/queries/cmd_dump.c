@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * csgmesh dump --scene|--tape|--vm SCENE: the evaluated tree as scene text, the tape, or a formula.
+ * csgmesh dump --scene|--tape|--vm|--csg SCENE: the evaluated tree as scene text, the tape, a
+ * formula, or the tree as OpenSCAD says it.
  */
 #include <stdio.h>
 
@@ -16,9 +17,14 @@ int cli_cmd_dump(cli_app *app)
     if (options->operands.count != 1)
         return cli_usage_error(app, "as csgmesh dump --scene mug.txt",
                                options->operands.count ? "one scene at a time" : "no scene given");
-    if (options->tree + options->tape + options->vm != 1)
-        return cli_usage_error(app, NULL, "say which: --scene, --tape or --vm");
-    csgm_dump what = options->tape ? CSGM_DUMP_TAPE : options->vm ? CSGM_DUMP_VM : CSGM_DUMP_SCENE;
+    if (options->tree + options->tape + options->vm + options->csg != 1)
+        return cli_usage_error(app, NULL, "say which: --scene, --tape, --vm or --csg");
+    csgm_dump what = options->tape  ? CSGM_DUMP_TAPE
+                     : options->vm  ? CSGM_DUMP_VM
+                     : options->csg ? CSGM_DUMP_OPENSCAD
+                                    : CSGM_DUMP_SCENE;
+    if (options->csg)
+        app->flat = CSGM_FLAT_KEPT;
     csgm_scene *scene = NULL;
     int status = cli_app_open(app);
     if (status == CLI_DONE)
