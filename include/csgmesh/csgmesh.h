@@ -159,7 +159,8 @@ typedef struct csgm_context_options {
     csgm_isa isa;     /* AUTO: the widest this machine runs, or what the environment variable
                          CSGMESH_ISA names; results are equal */
     csgm_limits limits;
-    bool warnings_as_errors; /* default false */
+    bool warnings_as_errors; /* default false; one while a mesh is written: CSGM_ERR_SCENE, and no
+                                file */
     csgm_diag_fn *on_diag;   /* called on the calling thread only; NULL = silent */
     csgm_text_fn *on_echo;   /* whole lines "ECHO: ...\n"; NULL = dropped */
     void *user;              /* passed to on_diag and on_echo */
@@ -733,6 +734,13 @@ CSGM_API csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view
 CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                                         const char *name, csgm_format format,
                                         const csgm_write_options *options);
+/* From csgm_files_hold on, files that calls with this context write are complete on the disk and
+ * wait for their names: until csgm_files_release gives all of them theirs, in the order in which
+ * they were written (keep), or removes them; so does csgm_context_destroy. Pipes and devices are
+ * written at once. Where one cannot have its name, it and those after it are removed, and that is
+ * the status. */
+CSGM_API csgm_status csgm_files_hold(csgm_context *context);
+CSGM_API csgm_status csgm_files_release(csgm_context *context, bool keep);
 /* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe:
  * for a handler that then ends the process with _exit. */
 CSGM_API void csgm_files_abandon(void);

@@ -4,6 +4,7 @@
 #include "api/options.h"
 #include "api/view.h"
 #include "io/formats.h"
+#include "io/hold.h"
 
 csgm_format csgm_format_from_path(const char *path)
 {
@@ -43,6 +44,19 @@ csgm_write_options csgm_write_options_default(void)
 void csgm_files_abandon(void)
 {
     csg_io_cleanup_pending();
+}
+
+csgm_status csgm_files_hold(csgm_context *context)
+{
+    if (!context)
+        return CSGM_ERR_ARGUMENT;
+    csg_hold_begin(context);
+    return CSGM_OK;
+}
+
+csgm_status csgm_files_release(csgm_context *context, bool keep)
+{
+    return context ? csg_hold_end(context, keep) : CSGM_ERR_ARGUMENT;
 }
 
 csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,

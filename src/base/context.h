@@ -9,6 +9,7 @@
 
 typedef struct csg_pool csg_pool;
 typedef struct csg_trace_lanes csg_trace_lanes;
+typedef struct csg_held_file csg_held_file;
 
 struct csgm_context {
     csg_memory memory;
@@ -18,6 +19,8 @@ struct csgm_context {
     void *user;
     csgm_isa isa;           /* never AUTO */
     csg_pool *pool;         /* threads = 1: still a pool, of the caller alone */
+    bool holds_files;       /* files get their names all at once (io/hold.h) */
+    csg_held_file *held;    /* those that wait for that, the last first */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
 };
 

@@ -18,6 +18,7 @@
 #include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/formats.h"
+#include "io/hold.h"
 
 /* ---- temporaries in progress ------------------------------------------------------ */
 
@@ -236,15 +237,19 @@ static int wait_for_disk(const csg_atomic_file *file)
     return fsync(file->fd) == 0 ? 0 : errno;
 }
 
-csgm_status csg_file_commit(csg_atomic_file *file)
+/* The first error's errno, or 0. */
+static int close_file(csg_atomic_file *file, int error)
 {
-    if (file->target && file->only_if_changed && is_unchanged(file)) {
-        csg_file_abandon(file);
-        return CSGM_OK;
-    }
-    int error = file->target && file->sync ? wait_for_disk(file) : 0;
-    if (close(file->fd) != 0 && !error)
+    if (file->fd >= 0 && close(file->fd) != 0 && !error)
         error = errno;
+    file->fd = -1;
+    return error;
+}
+
+/* Closed, and named if there was no error so far. */
+static csgm_status end_file(csg_atomic_file *file, int error)
+{
+    error = close_file(file, error);
     if (file->target && !error && rename(file->temporary, file->target) != 0)
         error = errno;
     if (!error) {
@@ -258,9 +263,27 @@ csgm_status csg_file_commit(csg_atomic_file *file)
     return fail(file, error);
 }
 
+csgm_status csg_file_commit(csg_atomic_file *file)
+{
+    if (file->target && file->only_if_changed && is_unchanged(file)) {
+        csg_file_abandon(file);
+        return CSGM_OK;
+    }
+    int error = file->target && file->sync ? wait_for_disk(file) : 0;
+    bool waits = !error && file->target && file->context->holds_files;
+    if (waits) /* without its descriptor: there may be many */
+        error = close_file(file, error);
+    return waits && !error ? csg_hold_add(file) : end_file(file, error);
+}
+
+csgm_status csg_file_name(csg_atomic_file *file)
+{
+    return end_file(file, 0);
+}
+
 void csg_file_abandon(csg_atomic_file *file)
 {
-    close(file->fd);
+    close_file(file, 0);
     if (file->temporary)
         unlink(file->temporary);
     forget(file);

@@ -21,8 +21,11 @@ typedef struct csg_atomic_file {
 
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path);
-/* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. */
+/* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. Where
+ * the context holds files (hold.h) the name waits. */
 csgm_status csg_file_commit(csg_atomic_file *file);
+/* Gives a file that has been held its name, and ends it. */
+csgm_status csg_file_name(csg_atomic_file *file);
 /* Closes and removes the temporary. */
 void csg_file_abandon(csg_atomic_file *file);
 

@@ -496,8 +496,11 @@ csgm_status csg_round_mesh(csgm_context *context, const csgm_mesh_view *mesh,
         status = refuse(&r, 0, file, format);
     else if (found)
         status = repair(&r, file, format);
+    uint32_t errors = context->diags.errors;
     if (!status)
         tell_moved(&r, file, format);
+    if (context->diags.errors != errors) /* as warnings are to be */
+        status = CSGM_ERR_SCENE;
     if (!status)
         status = deliver(&r, out);
     csg_table_release(&r.table);

@@ -203,14 +203,24 @@ static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh
     return status;
 }
 
+/* Has a warning that counts as an error come since? Then nothing is written. */
+static csgm_status heed_warnings(const csgm_context *context, uint32_t errors)
+{
+    return context->diags.warnings_as_errors && context->diags.errors != errors ? CSGM_ERR_SCENE
+                                                                                : CSGM_OK;
+}
+
 csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
                             const char *name, csgm_format format, const csgm_write_options *options)
 {
     csgm_write_options defaults = csg_write_options_default();
     const csg_format_row *row;
     options = options ? options : &defaults;
+    uint32_t errors = context->diags.errors;
     csgm_status status = prepare(context, mesh, name, format, options, &row);
-    return status ? status : fill_joined(context, mesh, fd, name, row, options);
+    if (!status)
+        status = fill_joined(context, mesh, fd, name, row, options);
+    return status ? status : heed_warnings(context, errors);
 }
 
 csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
@@ -223,12 +233,15 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
     csgm_status status = prepare(context, mesh, path, format, options, &row);
     if (status)
         return status;
+    uint32_t errors = context->diags.errors;
     status = csg_file_create(&file, context, path);
     if (status)
         return status;
     file.sync = options->sync;
     file.only_if_changed = options->only_if_changed;
     status = fill_joined(context, mesh, file.fd, path, row, options);
+    if (!status)
+        status = heed_warnings(context, errors);
     if (!status)
         return csg_file_commit(&file);
     csg_file_abandon(&file);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Bad input and a hostile world: one clear message, the right exit status, no output file left."""
+import json
 import os
 import subprocess
 import unittest
@@ -149,6 +150,23 @@ class BadOutput(cli.CliTest):
         result = self.run_in("a.txt", "-r", "16", "-f", "stl", "-o", "/dev/full", "-o", "b.ply")
         self.assert_status(result, 2)
         self.assert_files("a.txt", "b.ply")
+
+    def test_warnings_of_writing(self):
+        """-Werror hears them, too: no output is there then, nor has an old one changed."""
+        if not cli.has_library("Draco"):
+            self.skipTest("this build cannot write Draco")
+        coarse = ["a.txt", "-r", "40", "-o", "a.ply", "-o", "a.drc", "-o", "b.glb", "--draco-bits", "6,8,8"]
+        self.write("b.glb", "old")
+        self.assert_refused(self.run_in(*coarse, "-Werror"), 1, "error E0513")
+        self.assert_files("a.txt", "b.glb")
+        self.assertEqual(self.read("b.glb"), b"old")
+        piped = self.run_in("a.txt", *coarse[1:3], "-f", "drc", "-o", "-", *coarse[-2:], "-Werror")
+        self.assertEqual((piped.returncode, len(piped.stdout)), (1, 0))
+        self.write("batch.json", json.dumps({"jobs": [{"scene": "a.txt", "out": ["a.ply", "a.drc"]}]}))
+        self.assert_status(self.run_in("batch", "batch.json", "-d", "out", *coarse[1:3], *coarse[-2:], "-Werror"), 1)
+        self.assertEqual([name for name in os.listdir(self.path("out")) if name[0] != "."], [])
+        self.assertIn("warning W0513", self.run_in(*coarse).stderr)
+        self.assert_files("a.txt", "a.ply", "a.drc", "b.glb", "batch.json", "out")
 
 
 class Limits(cli.CliTest):

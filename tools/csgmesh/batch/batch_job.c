@@ -204,7 +204,16 @@ static int write_stream(maker *m)
     return status == CLI_DONE ? add_output(m, path, format, NULL) : status;
 }
 
-static int mesh_and_write(maker *m)
+/* The outputs of a job get their names together, or none does. */
+static int name_outputs(maker *m, int status)
+{
+    if (status == CLI_DONE && cli_app_is_refused(&m->app))
+        status = CLI_INPUT_AT_FAULT;
+    csgm_status named = csgm_files_release(m->app.context, status == CLI_DONE);
+    return status == CLI_DONE ? cli_exit_status(named) : status;
+}
+
+static int write_all(maker *m)
 {
     if (m->job->outputs.count == 1 && !m->job->by_part && m->app.options.warnings == 0)
         return write_stream(m);
@@ -216,6 +225,12 @@ static int mesh_and_write(maker *m)
     if (!view.triangle_count)
         return refuse_empty(m);
     return m->job->by_part ? write_parts(m, &view) : write_whole(m, &view);
+}
+
+static int mesh_and_write(maker *m)
+{
+    csgm_status held = csgm_files_hold(m->app.context);
+    return held == CSGM_OK ? name_outputs(m, write_all(m)) : cli_exit_status(held);
 }
 
 /* ---- the record ----------------------------------------------------------------------- */

@@ -172,6 +172,16 @@ static void tell_result(cli_app *app, uint64_t triangle_count, const run_report 
             (unsigned long long)triangle_count, report->total_s);
 }
 
+/* The outputs that could be written get their names; with -Werror none does after a warning. */
+static int name_outputs(cli_app *app, int status)
+{
+    bool refused = cli_app_is_refused(app);
+    if (refused && status == CLI_DONE)
+        status = CLI_INPUT_AT_FAULT;
+    csgm_status named = csgm_files_release(app->context, !refused);
+    return status == CLI_DONE ? cli_exit_status(named) : status;
+}
+
 static int write_all(cli_app *app, const cli_work *work, run_report *report)
 {
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
@@ -181,7 +191,7 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
         return CLI_INPUT_AT_FAULT;
     }
     double begin_s = cli_now_s();
-    int status = cli_outputs_write(app, &view);
+    int status = name_outputs(app, cli_outputs_write(app, &view));
     if (status == CLI_DONE && app->options.depfile)
         status = cli_depfile_write(app, work->scene);
     double end_s = cli_now_s();
@@ -212,6 +222,7 @@ static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
     int status =
         cli_work_mesh_file(app, work, app->options.outputs.items[0],
                            cli_outputs_format(&app->options, 0), &write_options, &triangle_count);
+    status = name_outputs(app, status);
     if (status == CLI_DONE && app->options.depfile)
         status = cli_depfile_write(app, work->scene);
     report->total_s = cli_now_s() - app->start_s;
@@ -226,6 +237,8 @@ static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
 static int draw_scene(cli_app *app, const cli_work *work)
 {
     int status = app->flat == CSGM_FLAT_PLATE ? CLI_DONE : cli_drawings_write(app, work->scene);
+    if (app->flat == CSGM_FLAT_DRAWING)
+        status = name_outputs(app, status);
     if (status == CLI_DONE && app->flat == CSGM_FLAT_DRAWING && app->options.depfile)
         status = cli_depfile_write(app, work->scene);
     return status;
@@ -237,6 +250,8 @@ static int mesh_scene(cli_app *app, const char *path)
     run_report report = {0};
     app->flat = cli_drawings_flat(&app->options);
     int status = cli_work_load(app, &work, path);
+    if (status == CLI_DONE)
+        status = cli_exit_status(csgm_files_hold(app->context));
     if (status == CLI_DONE)
         status = draw_scene(app, &work);
     bool is_meshed = status == CLI_DONE && app->flat != CSGM_FLAT_DRAWING;
