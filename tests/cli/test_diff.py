@@ -194,6 +194,28 @@ class Diff(diff_support.DiffTest):
         self.assertIn(b"A is now B", self.diff(0, "new.ply", "c.ply", "--update").stdout)
         self.assertEqual(self.read("new.ply"), self.read("c.ply"))
 
+    def test_update_keeps_settings(self):
+        """Text stays text and what is compressed compressed, whatever the other file or a scene's default is."""
+        self.write("knob.txt", KNOB)
+        for name in ("a.stl", "a.ply"):
+            other = "b" + name[1:]
+            self.mesh(BALL, name, "--ascii")
+            self.mesh(KNOB, other)
+            for source in (other, "knob.txt"):
+                self.mesh(BALL, name, "--ascii")
+                self.diff(0, name, source, "--update")
+                self.assertIn(self.read(name)[:32].split()[0], (b"solid", b"ply"))
+                self.assertEqual(self.read(name).count(b"\0"), 0, name)
+                self.diff(0, name, source, "--tol", "1e-6")
+            self.mesh(BALL, name)
+            self.mesh(KNOB, other, "--ascii")
+            self.diff(0, name, other, "--update")
+            self.assertIn(b"\0", self.read(name))
+        if cli.has_library("Draco") and cli.has_library("tinygltf"):
+            self.mesh(BALL, "a.glb", "--draco")
+            self.diff(0, "a.glb", "knob.txt", "--update")
+            self.assertIn(b"KHR_draco_mesh_compression", self.read("a.glb"))
+
     def test_trouble(self):
         self.mesh(BALL, "a.ply")
         self.write("broken.stl", b"\0" * 83)

@@ -2,6 +2,7 @@
 """Bad input and a hostile world: one clear message, the right exit status, no output file left."""
 import json
 import os
+import shutil
 import subprocess
 import unittest
 
@@ -115,6 +116,19 @@ class BadOutput(cli.CliTest):
     def test_full_statistics(self):
         result = self.run_in("a.txt", "-r", "16", "--stats=/dev/full")
         self.assert_refused(result, 2, "/dev/full", "No space left")
+
+    def test_a_file_that_cannot_be_read_back(self):
+        """--stats reads its files: with less memory than that takes, the mesh is there and the run has failed."""
+        seen = set()
+        for limit in range(300, 3000, 50):
+            result = self.run_in("a.txt", "-r", "48", "-j", "1", "-o", "a.stl", "--stats=s.json", "--max-memory",
+                                 f"{limit}K")
+            self.assert_clean(result)
+            seen.add((result.returncode, "cannot be read back" in result.stderr))
+            self.assertIn(result.returncode, (0, 2), result.stderr)
+            if result.returncode == 0:
+                self.assertEqual(len(json.loads(self.read("s.json"))["files"]), 1)
+        self.assertEqual(seen, {(2, False), (2, True), (0, False)})
 
     def test_closed_pipe(self):
         read, write = os.pipe()
@@ -254,6 +268,30 @@ class Sources(cli.CliTest):
             self.assertEqual(file.read(), self.before["part.stl"])
         result = self.run_in("batch", "mesh.txt", "-d", "out", "-f", "stl")
         self.assert_status(result, 0)
+
+    def test_reports_of_a_batch(self):
+        """Neither --trace nor --junit overwrites what a job reads or writes, made now or up to date."""
+        self.write("batch.json", json.dumps({"jobs": ["s.txt", "ball.txt"]}))
+        batch = ["batch", "batch.json", "-d", "out", "-r", "8", "-f", "stl"]
+        for is_made in (False, True):
+            for option in ("--trace", "--junit"):
+                for name in ("s.txt", "batch.json", "sizes.txt", "hard.stl", "link.txt", "out/./s.stl"):
+                    if name.startswith("out") and not is_made:
+                        continue
+                    before = self.read(name)
+                    result = self.run_in(*batch, option, name)
+                    self.assert_status(result, 2)
+                    self.assertRegex(result.stderr, "would overwrite|both write to")
+                    self.assertEqual(self.read(name), before, f"{option} {name}")
+            self.assert_status(self.run_in(*batch), 0)
+        os.remove(self.path("out/ball.stl"))
+        result = self.run_in(*batch, "--junit", "out/../out/ball.stl")
+        self.assert_status(result, 2)
+        self.assertFalse(os.path.exists(self.path("out/ball.stl")))
+        shutil.rmtree(self.path("out"))
+        self.assert_status(self.run_in(*batch, "--junit", "./out/ball.stl"), 2)
+        self.assertFalse(os.path.exists(self.path("out/ball.stl")))
+        self.assert_status(self.run_in(*batch, "--junit", "out/r.xml", "--trace", "out/t.json"), 0)
 
     def test_what_is_no_source_is_written(self):
         self.assert_status(self.run_in("ball.txt", "-r", "8", "-o", "other.stl", "--stats=/dev/null"), 0)

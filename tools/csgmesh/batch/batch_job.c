@@ -10,6 +10,7 @@
 
 #include "batch/batch_names.h"
 #include "batch/batch_run.h"
+#include "core/sources.h"
 #include "core/work.h"
 #include "mesh/certify.h"
 #include "mesh/outputs.h"
@@ -238,10 +239,15 @@ static int mesh_and_write(maker *m)
 static int take_record(maker *m)
 {
     batch_result *result = m->result;
+    m->app.options.outputs = (cli_list){0}; /* they are written */
     bool sound = batch_record_take_inputs(&result->arena, &m->run->memo, m->job, m->work.scene,
                                           m->since, &m->record);
     for (size_t i = 0; i < result->output_count; i++) {
         batch_output *output = &result->outputs[i];
+        if (cli_sources_guard_written(&m->app, output->path) != CLI_DONE) {
+            result->endangers_files = true;
+            return CLI_TROUBLE;
+        }
         sound = batch_output_look(output) && sound;
         sound = sound && batch_hash_available() && batch_hash_path(output->path, &output->digest);
     }
@@ -292,6 +298,7 @@ static int make_job(maker *m, bool may_defer, bool *is_large)
     if (status == CLI_DONE)
         status = cli_work_load(&m->app, &m->work, m->job->scene);
     m->app.options.outputs = names;
+    m->result->endangers_files = m->app.overwriter && strcmp(m->app.overwriter, "-o") != 0;
     *is_large = status == CLI_DONE && may_defer && is_long_work(m);
     if (*is_large)
         return CLI_DONE;
@@ -313,6 +320,8 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     m.since[0] = now.tv_sec;
     m.since[1] = now.tv_nsec;
     m.app.options = job->options;
+    m.app.options.trace = run->app->options.trace; /* what must be no source either */
+    m.app.options.junit = run->app->options.junit;
     m.app.options.threads = threads;
     m.app.options.if_changed = true;
     m.app.start_s = cli_now_s();

@@ -14,6 +14,7 @@
 #include "batch/batch_manifest.h"
 #include "batch/batch_names.h"
 #include "core/format_lists.h"
+#include "core/sources.h"
 #include "mesh/outputs.h"
 
 static const char DEFAULT_NAME[] = "{scene}-{set}.{ext}";
@@ -300,6 +301,21 @@ static int check_collisions(batch_plan *plan)
     return CLI_DONE;
 }
 
+/* The batch's own reports are none of its jobs' files. */
+static int check_reports(batch_plan *plan)
+{
+    int status = CLI_DONE;
+    for (size_t i = 0; i < plan->count && status == CLI_DONE; i++) {
+        const batch_job *job = &plan->jobs[i];
+        status = cli_sources_guard_file(plan->app, job->scene);
+        if (status == CLI_DONE)
+            status = cli_sources_guard_file(plan->app, job->parameter_file);
+        for (size_t j = 0; j < job->outputs.count && status == CLI_DONE; j++)
+            status = cli_sources_guard_written(plan->app, job->outputs.items[j]);
+    }
+    return status;
+}
+
 static int choose_directory(batch_plan *plan, const batch_entries *entries)
 {
     plan->directory =
@@ -326,6 +342,8 @@ int batch_plan_make(cli_app *app, batch_plan *plan)
     }
     if (status == CLI_DONE)
         status = check_collisions(plan);
+    if (status == CLI_DONE)
+        status = check_reports(plan);
     if (status == CLI_DONE && plan->arena.failed)
         status = refuse(plan, "", NULL, "out of memory");
     return status;

@@ -191,6 +191,8 @@ int batch_report_end(batch_run *run)
         put_summary_json(run, seconds);
     else if (!app->console.quiet)
         put_summary(run, seconds);
-    int junit = app->options.junit ? batch_junit_write(run) : CLI_DONE;
+    for (size_t i = 0; i < run->plan->count && !app->overwriter; i++)
+        app->overwriter = run->results[i].endangers_files ? "--junit" : NULL;
+    int junit = app->options.junit && !app->overwriter ? batch_junit_write(run) : CLI_DONE;
     return cli_finish_stdout(app, junit > worst ? junit : worst);
 }

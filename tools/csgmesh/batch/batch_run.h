@@ -18,8 +18,9 @@ typedef enum batch_outcome {
 
 typedef struct batch_result {
     batch_outcome outcome;
-    int status;     /* exit status */
-    char *messages; /* what csgmesh mesh would have said; NULL or "" = nothing */
+    int status;           /* exit status */
+    bool endangers_files; /* --trace or --junit would overwrite what it reads or writes */
+    char *messages;       /* what csgmesh mesh would have said; NULL or "" = nothing */
     double seconds;
     uint64_t triangles;    /* of BATCH_MADE */
     batch_output *outputs; /* with their digests, sizes */

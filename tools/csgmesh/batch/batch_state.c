@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 
 #include "batch/batch_run.h"
+#include "core/sources.h"
 #include "mesh/depfile.h"
 
 batch_digest batch_job_id(const batch_job *job)
@@ -76,6 +77,18 @@ static void take_outputs(batch_result *result, const batch_record *record)
     }
 }
 
+/* A job is told of it that is made: so it is not up to date. */
+static bool is_endangered(const batch_run *run, const batch_record *record)
+{
+    const cli_options *options = &run->app->options;
+    bool found = false;
+    for (size_t i = 0; i < record->input_count && !found; i++)
+        found = cli_sources_is_output(options, record->inputs[i].path);
+    for (size_t i = 0; i < record->output_count && !found; i++)
+        found = cli_sources_is_output(options, record->outputs[i].path);
+    return found;
+}
+
 bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result)
 {
     batch_arena arena = {0};
@@ -85,10 +98,10 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
     const char *text = batch_hash_available() && !run->app->options.force
                            ? batch_read_small(&arena, record_path(&arena, run, job), &length)
                            : NULL;
-    bool current = text && batch_record_parse(&arena, job, run->plan->directory, text, &record) &&
-                   batch_digest_equal(&record.key, &key) &&
-                   batch_record_inputs_hold(&run->memo, &record) &&
-                   outputs_hold(run, &arena, &record) && !arena.failed;
+    bool current =
+        text && batch_record_parse(&arena, job, run->plan->directory, text, &record) &&
+        batch_digest_equal(&record.key, &key) && batch_record_inputs_hold(&run->memo, &record) &&
+        outputs_hold(run, &arena, &record) && !is_endangered(run, &record) && !arena.failed;
     if (current) {
         take_outputs(result, &record);
         result->outcome = BATCH_UP_TO_DATE;
@@ -153,7 +166,8 @@ static bool try_record(batch_run *run, batch_arena *arena, const batch_job *job,
     const char *text = batch_read_small(arena, path, &length);
     return text && batch_record_parse(arena, job, run->plan->directory, text, record) &&
            batch_digest_equal(&record->key, key) && batch_record_inputs_hold(&run->memo, record) &&
-           record->output_count > 0 && install(run, arena, job, record);
+           record->output_count > 0 && !is_endangered(run, record) &&
+           install(run, arena, job, record);
 }
 
 bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result)

@@ -15,10 +15,11 @@ typedef struct cli_app {
     cli_console console;
     csgm_context *context; /* from cli_app_open on */
     double start_s;
-    csgm_trace *trace;     /* of --trace, or NULL */
-    const char *zone_note; /* in it: what the context is at work on; NULL = the first operand */
-    csgm_flat flat;        /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
-    bool would_overwrite;  /* an output is a file that is read: nothing may be written any more */
+    csgm_trace *trace;      /* of --trace, or NULL */
+    const char *zone_note;  /* in it: what the context is at work on; NULL = the first operand */
+    csgm_flat flat;         /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
+    const char *overwriter; /* option whose output is a file that is read, or another output:
+                               nothing may be written any more; NULL = none */
 } cli_app;
 
 /* Makes the context from the options. CLI_DONE, or the exit status. */

@@ -69,21 +69,45 @@ static const char *output_at(const cli_options *o, size_t index, const char **op
     return is_other ? others[index - o->outputs.count].path : o->outputs.items[index];
 }
 
+/* The output that is this file, and its option; NULL: none is. */
+static const char *find_writer(const cli_options *options, const char *path, const char **option)
+{
+    identity file = identify(path);
+    bool is_last = !file.is_file || file.name; /* what does not exist is not overwritten */
+    for (size_t i = 0; !is_last; i++) {
+        const char *output = output_at(options, i, option, &is_last);
+        identity written = identify(output);
+        if (are_same(&file, &written))
+            return output;
+    }
+    return NULL;
+}
+
+bool cli_sources_is_output(const cli_options *options, const char *path)
+{
+    const char *option;
+    return find_writer(options, path, &option) != NULL;
+}
+
+static int guard(cli_app *app, const char *path, const char *verb)
+{
+    const char *option, *writer = find_writer(&app->options, path, &option);
+    if (!writer)
+        return CLI_DONE;
+    app->overwriter = option;
+    return cli_usage_error(app, "give the output another name",
+                           "%s %s would overwrite %s, which this run %s", option, writer, path,
+                           verb);
+}
+
 int cli_sources_guard_file(cli_app *app, const char *input)
 {
-    identity read = identify(input);
-    bool is_last = !read.is_file || read.name; /* what does not exist is not read */
-    for (size_t i = 0; !is_last; i++) {
-        const char *option, *path = output_at(&app->options, i, &option, &is_last);
-        identity written = identify(path);
-        if (!are_same(&read, &written))
-            continue;
-        app->would_overwrite = true;
-        return cli_usage_error(app, "give the output another name",
-                               "%s %s would overwrite %s, which this run reads", option, path,
-                               input);
-    }
-    return CLI_DONE;
+    return guard(app, input, "reads");
+}
+
+int cli_sources_guard_written(cli_app *app, const char *output)
+{
+    return guard(app, output, "writes");
 }
 
 int cli_sources_guard_scene(cli_app *app, const csgm_scene *scene)
@@ -106,7 +130,7 @@ static int guard_outputs(cli_app *app)
         for (size_t j = i + 1; !is_last_other; j++) {
             const char *other = output_at(&app->options, j, &other_option, &is_last_other);
             if (other && strcmp(path, "-") == 0 && strcmp(other, "-") == 0) {
-                app->would_overwrite = true;
+                app->overwriter = other_option;
                 return cli_usage_error(app, "write one of them to a file",
                                        "%s and %s both write to standard output", option,
                                        other_option);
@@ -114,7 +138,7 @@ static int guard_outputs(cli_app *app)
             identity two = identify(other);
             if (!are_same(&one, &two))
                 continue;
-            app->would_overwrite = true;
+            app->overwriter = other_option;
             return cli_usage_error(app, "give one of them another name",
                                    "%s and %s both write to %s", option, other_option, path);
         }

@@ -17,4 +17,9 @@ int cli_sources_guard_scene(cli_app *app, const csgm_scene *scene);
 /* The same outputs against one more file that is read; NULL is none. */
 int cli_sources_guard_file(cli_app *app, const char *input);
 
+/* The same outputs against a file that this run has written, and that is none of them. */
+int cli_sources_guard_written(cli_app *app, const char *output);
+/* Is it one of the outputs? Nothing is reported. */
+bool cli_sources_is_output(const cli_options *options, const char *path);
+
 #endif

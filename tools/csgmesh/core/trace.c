@@ -60,7 +60,7 @@ int cli_trace_end(cli_app *app, int status)
         return status;
     csgm_context_destroy(app->context); /* its zones end */
     app->context = NULL;
-    int written = app->would_overwrite ? status : write_trace(app);
+    int written = app->overwriter ? status : write_trace(app);
     csgm_trace_destroy(app->trace);
     app->trace = NULL;
     return written > status ? written : status;

@@ -388,7 +388,7 @@ int cli_cmd_diff(cli_app *app)
     if (status == CLI_DONE) {
         csgm_diff_options options = diff_options(&app->options, ignored);
         status = compare_pairs(app, &options, &results);
-        if (!app->would_overwrite)
+        if (!app->overwriter)
             status = write_reports(app, &results, status);
     }
     diff_results_release(&results);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/textfile.h"
 #include "mesh/outputs.h"
@@ -28,7 +29,7 @@ static bool is_compressed(const char *path)
     static const char wanted[] = "KHR_draco_mesh_compression";
     enum { CHUNK = 1 << 16, KEPT = sizeof wanted - 2 };
     static char bytes[KEPT + CHUNK];
-    FILE *file = fopen(path, "rb");
+    FILE *file = fopen(path, "rbe");
     size_t kept = 0, got;
     bool found = false;
     while (file && !found && (got = fread(bytes + kept, 1, CHUNK, file)) > 0) {
@@ -139,7 +140,7 @@ bool diff_same_bytes(const char *a, const char *b)
         format != csgm_format_from_path(b) || stat(a, &left) != 0 || stat(b, &right) != 0 ||
         !S_ISREG(left.st_mode) || !S_ISREG(right.st_mode) || left.st_size != right.st_size)
         return false;
-    FILE *file_a = fopen(a, "rb"), *file_b = fopen(b, "rb");
+    FILE *file_a = fopen(a, "rbe"), *file_b = fopen(b, "rbe");
     bool same = file_a && file_b && same_content(file_a, file_b);
     if (file_a)
         fclose(file_a);
@@ -159,7 +160,7 @@ static int copy_file(cli_app *app, const char *from, const char *to)
 {
     struct stat status;
     errno = 0;
-    FILE *file = fopen(from, "rb");
+    FILE *file = fopen(from, "rbe");
     if (!file || fstat(fileno(file), &status) != 0) {
         int refused = refuse_read(app, from);
         if (file)
@@ -173,6 +174,27 @@ static int copy_file(cli_app *app, const char *from, const char *to)
     int result = good ? cli_write_text(app, to, bytes, length) : refuse_read(app, from);
     free(bytes);
     return result;
+}
+
+/* Is it text, of a format that is text or binary as --ascii says? STL as its reader tells it. */
+static bool is_ascii(const char *path)
+{
+    enum { TRIANGLES_AT = 80, HEAD_BYTES = 84, TRIANGLE_BYTES = 50 };
+    struct stat status;
+    unsigned char head[512] = {0};
+    csgm_format format = csgm_format_from_path(path);
+    FILE *file = csgm_format_traits(format) & CSGM_HEEDS_ASCII ? fopen(path, "rbe") : NULL;
+    size_t got = file ? fread(head, 1, sizeof head - 1, file) : 0;
+    bool has_size = file && fstat(fileno(file), &status) == 0;
+    if (file)
+        fclose(file);
+    if (!has_size || format != CSGM_FORMAT_STL)
+        return has_size && strstr((const char *)head, "\nformat ascii");
+    const unsigned char *n = head + TRIANGLES_AT;
+    uint64_t triangles = n[0] | (uint64_t)n[1] << 8 | (uint64_t)n[2] << 16 | (uint64_t)n[3] << 24;
+    bool fits =
+        got >= HEAD_BYTES && (uint64_t)status.st_size == HEAD_BYTES + TRIANGLE_BYTES * triangles;
+    return !fits && memcmp(head, "solid", 5) == 0;
 }
 
 /* ---- accepting ------------------------------------------------------------------------- */
@@ -193,7 +215,10 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
     if (diff_path_is_nothing(path_a) || diff_path_is_nothing(path_b))
         return cli_usage_error(app, NULL, "--update wants two files");
     make_folders(path_a);
-    if (format == csgm_format_from_path(path_b) && !(csgm_format_traits(format) & CSGM_NAMES_FILES))
+    bool is_new = access(path_a, F_OK) != 0;
+    bool ascii = is_ascii(path_a);
+    if (format == csgm_format_from_path(path_b) &&
+        !(csgm_format_traits(format) & CSGM_NAMES_FILES) && (is_new || ascii == is_ascii(path_b)))
         return copy_file(app, path_b, path_a);
     if (format == CSGM_FORMAT_AUTO)
         return cli_usage_error(app, NULL, "%s is a scene, which no mesh can be written to", path_a);
@@ -204,6 +229,8 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
     if (status != CLI_DONE)
         return status;
     csgm_write_options options = cli_outputs_options(&app->options);
+    options.ascii |= ascii;
+    options.draco |= csgm_format_traits(format) & CSGM_HEEDS_DRACO && is_compressed(path_a);
     csgm_mesh_view view = b->work.mesh ? csgm_mesh_get_view(b->work.mesh) : b->view;
     return cli_exit_status(
         csgm_mesh_write(app->context, &view, path_a, CSGM_FORMAT_AUTO, &options));

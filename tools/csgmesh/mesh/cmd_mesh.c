@@ -105,19 +105,25 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
     cli_json_end(json, '}');
 }
 
-/* What each file holds, by reading it: formats round, weld and split. */
-static void put_file(cli_json *json, cli_app *app, size_t index)
+/* What each file holds, by reading it: formats round, weld and split. false: it cannot be read
+ * (reported). */
+static bool put_file(cli_json *json, cli_app *app, size_t index)
 {
     const char *path = app->options.outputs.items[index];
     csgm_format format = cli_outputs_format(&app->options, index);
     csgm_mesh *mesh;
+    csgm_mesh_view view = {.positions = NULL};
     csgm_mesh_check check;
     struct stat info;
-    if (strcmp(path, "-") == 0 || !csgm_format_available(format, true) || stat(path, &info) != 0 ||
-        !S_ISREG(info.st_mode) || csgm_mesh_read(app->context, path, format, &mesh) != CSGM_OK)
-        return;
-    csgm_mesh_view view = csgm_mesh_get_view(mesh);
-    if (csgm_mesh_inspect(app->context, &view, &check) == CSGM_OK) {
+    if (strcmp(path, "-") == 0 || !csgm_format_available(format, true) ||
+        (stat(path, &info) == 0 && !S_ISREG(info.st_mode)))
+        return true;
+    csgm_status status = csgm_mesh_read(app->context, path, format, &mesh);
+    if (status == CSGM_OK) {
+        view = csgm_mesh_get_view(mesh);
+        status = csgm_mesh_inspect(app->context, &view, &check);
+    }
+    if (status == CSGM_OK) {
         cli_json_open(json, NULL, '{');
         cli_json_string(json, "name", path);
         cli_json_string(json, "format", csgm_format_name(format));
@@ -125,9 +131,13 @@ static void put_file(cli_json *json, cli_app *app, size_t index)
         cli_json_end(json, '}');
     }
     csgm_mesh_destroy(mesh);
+    if (status != CSGM_OK)
+        cli_console_say(&app->console, CSGM_ERROR, NULL,
+                        "--stats: %s has been written and cannot be read back", path);
+    return status == CSGM_OK;
 }
 
-static void put_statistics(FILE *out, cli_app *app, const cli_work *work, const run_report *report)
+static bool put_statistics(FILE *out, cli_app *app, const cli_work *work, const run_report *report)
 {
     cli_json json = cli_json_make(out, true);
     cli_json_begin(&json, '{');
@@ -138,13 +148,15 @@ static void put_statistics(FILE *out, cli_app *app, const cli_work *work, const 
     put_work(&json, work);
     put_results(&json, work, report);
     cli_json_open(&json, "files", '[');
+    bool all_read = true;
     for (size_t i = 0; i < app->options.outputs.count; i++)
-        put_file(&json, app, i);
+        all_read = put_file(&json, app, i) && all_read;
     cli_json_end(&json, ']');
     cli_json_count(&json, "peak_rss_bytes", report->peak_rss_bytes);
     cli_json_count(&json, "threads", csgm_context_threads(app->context));
     cli_json_string(&json, "simd", csgm_context_isa(app->context));
     cli_json_end(&json, '}');
+    return all_read;
 }
 
 static int write_statistics(cli_app *app, const cli_work *work, run_report *report)
@@ -155,9 +167,9 @@ static int write_statistics(cli_app *app, const cli_work *work, run_report *repo
         return cli_exit_status(status);
     report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view, &report->vertices_measured);
     cli_text text;
-    if (cli_text_open(&text))
-        put_statistics(text.out, app, work, report);
-    return cli_text_write(app, &text, app->options.stats);
+    bool all_read = !cli_text_open(&text) || put_statistics(text.out, app, work, report);
+    int written = cli_text_write(app, &text, app->options.stats);
+    return all_read ? written : CLI_TROUBLE;
 }
 
 /* ---- the run --------------------------------------------------------------------------- */
