@@ -14,7 +14,7 @@
 #include "base/scene_codes.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
-#include "io/hold.h"
+#include "io/file.h"
 
 /* More workers than this never helped, and each costs a stack. */
 enum { THREADS_MOST = 1024 };
@@ -158,7 +158,7 @@ void csgm_context_destroy(csgm_context *context)
 {
     if (!context)
         return;
-    csg_hold_end(context, false);
+    csg_files_release(context, false);
     csg_pool_destroy(context->pool);
     csg_trace_leave(context->trace);
     release_context(context, context->memory.allocator);

@@ -3,8 +3,8 @@
  */
 #include "api/options.h"
 #include "api/view.h"
+#include "io/file.h"
 #include "io/formats.h"
-#include "io/hold.h"
 
 csgm_format csgm_format_from_path(const char *path)
 {
@@ -50,13 +50,13 @@ csgm_status csgm_files_hold(csgm_context *context)
 {
     if (!context)
         return CSGM_ERR_ARGUMENT;
-    csg_hold_begin(context);
+    csg_files_hold(context);
     return CSGM_OK;
 }
 
 csgm_status csgm_files_release(csgm_context *context, bool keep)
 {
-    return context ? csg_hold_end(context, keep) : CSGM_ERR_ARGUMENT;
+    return context ? csg_files_release(context, keep) : CSGM_ERR_ARGUMENT;
 }
 
 csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,

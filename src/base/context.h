@@ -19,7 +19,7 @@ struct csgm_context {
     void *user;
     csgm_isa isa;           /* never AUTO */
     csg_pool *pool;         /* threads = 1: still a pool, of the caller alone */
-    bool holds_files;       /* files get their names all at once (io/hold.h) */
+    bool holds_files;       /* files get their names all at once (io/file.h) */
     csg_held_file *held;    /* those that wait for that, the last first */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
 };

@@ -18,7 +18,6 @@
 #include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/formats.h"
-#include "io/hold.h"
 
 /* ---- temporaries in progress ------------------------------------------------------ */
 
@@ -263,6 +262,28 @@ static csgm_status end_file(csg_atomic_file *file, int error)
     return fail(file, error);
 }
 
+struct csg_held_file {
+    csg_held_file *next;
+    csg_atomic_file file;
+};
+
+/* Takes a complete file over. */
+static csgm_status hold(csg_atomic_file *file)
+{
+    csgm_context *context = file->context;
+    csg_held_file *held = csg_memory_alloc(&context->memory, sizeof *held);
+    const char *path = held ? csg_arena_printf(&file->names, "%s", file->path) : NULL;
+    if (!path) {
+        csg_memory_release(&context->memory, held, held ? sizeof *held : 0);
+        csg_file_abandon(file);
+        return csg_context_no_memory(context);
+    }
+    *held = (csg_held_file){.next = context->held, .file = *file};
+    held->file.path = path; /* the caller's may be gone by then */
+    context->held = held;
+    return CSGM_OK;
+}
+
 csgm_status csg_file_commit(csg_atomic_file *file)
 {
     if (file->target && file->only_if_changed && is_unchanged(file)) {
@@ -273,12 +294,7 @@ csgm_status csg_file_commit(csg_atomic_file *file)
     bool waits = !error && file->target && file->context->holds_files;
     if (waits) /* without its descriptor: there may be many */
         error = close_file(file, error);
-    return waits && !error ? csg_hold_add(file) : end_file(file, error);
-}
-
-csgm_status csg_file_name(csg_atomic_file *file)
-{
-    return end_file(file, 0);
+    return waits && !error ? hold(file) : end_file(file, error);
 }
 
 void csg_file_abandon(csg_atomic_file *file)
@@ -287,4 +303,41 @@ void csg_file_abandon(csg_atomic_file *file)
     if (file->temporary)
         unlink(file->temporary);
     forget(file);
+}
+
+/* ---- held files ------------------------------------------------------------------- */
+
+void csg_files_hold(csgm_context *context)
+{
+    context->holds_files = true;
+}
+
+static csg_held_file *in_their_order(csg_held_file *list)
+{
+    csg_held_file *first = NULL;
+    while (list) {
+        csg_held_file *next = list->next;
+        list->next = first;
+        first = list;
+        list = next;
+    }
+    return first;
+}
+
+csgm_status csg_files_release(csgm_context *context, bool keep)
+{
+    csgm_status status = CSGM_OK;
+    csg_held_file *list = in_their_order(context->held);
+    context->held = NULL;
+    context->holds_files = false;
+    while (list) {
+        csg_held_file *next = list->next;
+        if (keep && status == CSGM_OK)
+            status = end_file(&list->file, 0);
+        else
+            csg_file_abandon(&list->file);
+        csg_memory_release(&context->memory, list, sizeof *list);
+        list = next;
+    }
+    return status;
 }

@@ -22,11 +22,16 @@ typedef struct csg_atomic_file {
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path);
 /* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. Where
- * the context holds files (hold.h) the name waits. */
+ * the context holds files the name waits. */
 csgm_status csg_file_commit(csg_atomic_file *file);
-/* Gives a file that has been held its name, and ends it. */
-csgm_status csg_file_name(csg_atomic_file *file);
 /* Closes and removes the temporary. */
 void csg_file_abandon(csg_atomic_file *file);
+
+/* From now on files of this context that are complete wait for their names; pipes and devices do
+ * not. */
+void csg_files_hold(csgm_context *context);
+/* keep: they get their names, in the order in which they were written, or from the first on that
+ * cannot have its name (reported) they are removed. Else all are removed. */
+csgm_status csg_files_release(csgm_context *context, bool keep);
 
 #endif
