@@ -178,13 +178,23 @@ typedef enum verdict { SETTLED, DIVIDE, NO_MEMORY } verdict;
 static bool is_near_mesh(const walk *w, const cube *q)
 {
     double most = 0.9 * w->error - sqrt(3.0) * q->half;
-    return most > 0 && csg_triangle_tree_nearest(&w->remesh->tree, q->c, most, NULL) < INFINITY;
+    return most > 0 && csg_triangle_tree_is_near(&w->remesh->tree, q->c, most);
+}
+
+/* As far as it matters. Most are near: to look there first costs little. */
+static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
+{
+    double far = 4 * w->error + 4 * w->remesh->cell;
+    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, w->error, triangle);
+    if (distance == INFINITY)
+        distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, triangle);
+    return fmin(distance, far);
 }
 
 /* A place of the surface at hand, how far from the mesh it is. */
 static verdict settle(const walk *w, worker *s, const cube *q)
 {
-    double cell = w->remesh->cell, ball = sqrt(3.0) * q->half, far = 4 * w->error + 4 * cell;
+    double cell = w->remesh->cell, ball = sqrt(3.0) * q->half;
     uint32_t triangle;
     csg_vec3 p;
     if (2 * q->half > SHEET_CELLS * cell * 1.01)
@@ -205,16 +215,11 @@ static verdict settle(const walk *w, worker *s, const cube *q)
         return DIVIDE;
     if (!find_surface(w, s, q, value, &p))
         return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
-    /* most are near: to look there first costs little */
-    double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, w->error, &triangle);
-    if (distance == INFINITY)
-        distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, &triangle);
-    if (distance == INFINITY)
-        distance = far;
-    if (sheet && distance <= w->error)
+    if (sheet && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error))
         return SETTLED;
     if (!is_border(w, s, q, p))
         return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
+    double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
 

@@ -248,3 +248,43 @@ double csg_triangle_tree_nearest(const csg_triangle_tree *t, csg_vec3 at, double
         *triangle = found;
     return found == CSG_CORNER_NONE ? INFINITY : sqrt(least);
 }
+
+/* The square of the distance of the farthest corner. Not of an empty box. */
+static double distance_to_corner(const csg_triangle_box *box, csg_vec3 p)
+{
+    const double v[3] = {p.x, p.y, p.z};
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double below = v[axis] - (double)box->min[axis], above = (double)box->max[axis] - v[axis];
+        double d = below > above ? below : above;
+        square += d * d;
+    }
+    return square;
+}
+
+bool csg_triangle_tree_is_near(const csg_triangle_tree *t, csg_vec3 at, double most)
+{
+    size_t stack[CSG_TRIANGLE_TREE_STACK], top = 0;
+    double least = most * most;
+    stack[top++] = 1;
+    while (top) {
+        size_t i = stack[--top];
+        if (!(distance_to_box(&t->nodes[i], at) < least))
+            continue; /* an empty box, too: it is infinitely far */
+        if (distance_to_corner(&t->nodes[i], at) < least)
+            return true;
+        if (i >= t->leaf_count) {
+            double square = least;
+            uint32_t found = CSG_CORNER_NONE;
+            look_at_leaf(t, i - t->leaf_count, at, &square, &found);
+            if (found != CSG_CORNER_NONE)
+                return true;
+            continue;
+        }
+        bool near =
+            distance_to_box(&t->nodes[2 * i + 1], at) < distance_to_box(&t->nodes[2 * i], at);
+        stack[top++] = 2 * i + !near;
+        stack[top++] = 2 * i + near;
+    }
+    return false;
+}

@@ -75,5 +75,7 @@ void csg_triangle_tree_corners(const csg_triangle_tree *tree, uint32_t triangle,
  * Any thread. */
 double csg_triangle_tree_nearest(const csg_triangle_tree *tree, csg_vec3 at, double most,
                                  uint32_t *triangle);
+/* Whether some triangle is nearer than `most`, without looking for the nearest. Any thread. */
+bool csg_triangle_tree_is_near(const csg_triangle_tree *tree, csg_vec3 at, double most);
 
 #endif
