@@ -62,7 +62,8 @@ bool csg_cells_each(csg_cell_loop *w, uint32_t worker_index, const csg_shell *s,
         cell.is_whole = !place.divided;
         cell.is_border = place.divided & ~place.pierced;
         csg_cell_faces faces = {w->x->bricks, s->brick, cell.at, &probe, pierced};
-        csg_cell_polygons_make(&cell.polygons, &place, csg_cell_face_is_inside, &faces);
+        csg_cell_polygons_make(&cell.polygons, &w->x->judge->plain, &place, csg_cell_face_is_inside,
+                               &faces);
         if (cell.polygons.count && !visit(&cell))
             return false;
     }

@@ -355,7 +355,7 @@ static void make_polygons(brick_work *w)
         csg_shell_cell place = csg_shell_cell_of(&shell, at[0], at[1], at[2]);
         csg_cell_faces faces = {w->bricks, w->brick, at, &w->probe, &w->room->pierced};
         csg_cell_polygons *polygons = &w->room->polygons[cell];
-        csg_cell_polygons_make(polygons, &place, csg_cell_face_is_inside, &faces);
+        csg_cell_polygons_make(polygons, &w->judge->plain, &place, csg_cell_face_is_inside, &faces);
         if (polygons->count > 1)
             w->brick->several |= (uint8_t)(1u << cell);
     }

@@ -43,7 +43,8 @@ typedef struct csg_judge {
     double tolerance;      /* how far triangles may be from the surface */
     bool sharp;            /* look for creases */
     float noise;           /* of values */
-    float end_distance;    /* of vertices from lattice points: a part of an edge of the finest */
+    csg_plain_polygons plain;
+    float end_distance; /* of vertices from lattice points: a part of an edge of the finest */
 } csg_judge;
 
 /* A csg_brick_judge; user: a csg_judge. */

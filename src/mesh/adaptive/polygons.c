@@ -190,8 +190,8 @@ static bool take_beginning(links *l, uint8_t place)
     return is_there;
 }
 
-void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
-                            csg_face_is_inside *is_inside, void *user)
+static void trace(csg_cell_polygons *polygons, const csg_shell_cell *cell,
+                  csg_face_is_inside *is_inside, void *user)
 {
     links l; /* its arrays are filled where begins says so */
     l.begins[0] = l.begins[1] = 0;
@@ -222,6 +222,55 @@ void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *c
             polygons->first[polygons->count++] = (uint8_t)first;
     }
     polygons->first[polygons->count] = (uint8_t)n;
+}
+
+/* ---- plain cells -------------------------------------------------------------------------------
+ */
+
+static const uint8_t CORNER[8] = {0, 2, 6, 8, 18, 20, 24, 26}; /* bits of 3 x 3 x 3 */
+
+/* The faces of this cell have to be looked at. */
+static bool note_look(void *user, const csg_face_look *look)
+{
+    (void)look;
+    *(bool *)user = true;
+    return false;
+}
+
+void csg_plain_polygons_fill(csg_plain_polygons *plain)
+{
+    for (unsigned pattern = 0; pattern < 256; pattern++) {
+        csg_cell_polygons polygons;
+        csg_shell_cell cell = {0};
+        bool looks = false;
+        for (unsigned c = 0; c < 8; c++)
+            cell.inside |= (pattern >> c & 1u) << CORNER[c];
+        trace(&polygons, &cell, note_look, &looks);
+        plain->of[pattern].is_known = !looks;
+        plain->of[pattern].count = polygons.count;
+        if (looks)
+            continue;
+        memcpy(plain->of[pattern].first, polygons.first, polygons.count + 1u);
+        memcpy(plain->of[pattern].side, polygons.side,
+               polygons.first[polygons.count] * sizeof polygons.side[0]);
+    }
+}
+
+void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_plain_polygons *plain,
+                            const csg_shell_cell *cell, csg_face_is_inside *is_inside, void *user)
+{
+    unsigned pattern = 0;
+    for (unsigned c = 0; c < 8; c++)
+        pattern |= (cell->inside >> CORNER[c] & 1u) << c;
+    if (cell->divided || !plain->of[pattern].is_known) {
+        trace(polygons, cell, is_inside, user);
+        return;
+    }
+    unsigned count = plain->of[pattern].count;
+    polygons->count = (uint8_t)count;
+    memcpy(polygons->first, plain->of[pattern].first, count + 1);
+    memcpy(polygons->side, plain->of[pattern].side,
+           polygons->first[count] * sizeof polygons->side[0]);
 }
 
 bool csg_cell_polygons_are_mixed(const csg_cell_polygons *polygons)

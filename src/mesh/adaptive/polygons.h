@@ -19,7 +19,10 @@
 enum {
     CSG_LOCAL_PLACES = 125, /* 5 x 5 x 5 quarters of a cell */
     CSG_CELL_MOST_SEGMENTS = 96,
-    CSG_CELL_MOST_POLYGONS = 16
+    CSG_CELL_MOST_POLYGONS = 16,
+    /* of a cell without divided edges: */
+    CSG_PLAIN_MOST_SEGMENTS = 12,
+    CSG_PLAIN_MOST_POLYGONS = 4
 };
 
 /* A side of a polygon: from the vertex on one edge to that on another, through a face. Edges, whole
@@ -54,8 +57,20 @@ typedef struct csg_face_look {
 /* Whether the place is inside. */
 typedef bool csg_face_is_inside(void *user, const csg_face_look *look);
 
-void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_shell_cell *cell,
-                            csg_face_is_inside *is_inside, void *user);
+/* The polygons of cells without divided edges, by the signs of their corners, where no face has to
+ * be looked at: nearly all cells are such. */
+typedef struct csg_plain_polygons {
+    struct {
+        bool is_known;
+        uint8_t count, first[CSG_PLAIN_MOST_POLYGONS + 1];
+        csg_polygon_side side[CSG_PLAIN_MOST_SEGMENTS];
+    } of[256];
+} csg_plain_polygons;
+
+void csg_plain_polygons_fill(csg_plain_polygons *plain);
+
+void csg_cell_polygons_make(csg_cell_polygons *polygons, const csg_plain_polygons *plain,
+                            const csg_shell_cell *cell, csg_face_is_inside *is_inside, void *user);
 
 /* Whether some side that cuts off the point of a pierced edge is in a face with others, which its
  * vertex may lie beyond. */

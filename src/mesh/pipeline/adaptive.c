@@ -108,6 +108,7 @@ static csgm_status create_judge(adaptive *a)
                            .noise = m->noise,
                            .end_distance = (float)fmin(
                                fmax(4 * (double)m->unit / a->lattice.cell_size, 0x1p-10), 0.25)};
+    csg_plain_polygons_fill(&a->judge.plain);
     a->judge.rooms = csg_memory_alloc(memory, a->workers.count * sizeof(csg_judge_room));
     if (!a->judge.rooms)
         return csg_context_no_memory(a->input.context);
