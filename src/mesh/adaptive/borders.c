@@ -142,7 +142,7 @@ static void mark_around(const csg_bricks *b, uint32_t number, uint8_t *marks)
 static csgm_status list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t mark)
 {
     const csg_bricks *b = w->x->bricks;
-    w->leaf_count = 0;
+    csg_cell_loop_clear(w);
     for (size_t i = 0; i < b->count; i++)
         if (marks[i] & mark && has_leaves(&b->items[i]) && !csg_cell_loop_list(w, (uint32_t)i))
             return csg_context_no_memory(w->x->context);
@@ -182,6 +182,8 @@ csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
             mark_around(b, (uint32_t)i, marks);
     if (status == CSGM_OK)
         status = list_marked(&w, marks, AROUND);
+    if (status == CSGM_OK)
+        status = csg_cell_loop_keep_shells(&w);
     if (status == CSGM_OK)
         status = csg_cells_find_vertices(&w, b->reported, 0);
     if (status == CSGM_OK)

@@ -76,7 +76,7 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
 {
     csg_cell_loop *w = user;
     csg_cell_worker *self = &w->workers[worker_index];
-    csg_shell shell;
+    csg_shell own;
     if (csg_mesh_should_stop(w->x->watch))
         return false;
     self->first = self->count;
@@ -84,8 +84,10 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
         .worker = worker_index, .first = self->count, .first_corner = self->corner_count};
     size_t end = (item + 1) * BRICKS_PER_ITEM;
     for (size_t i = item * BRICKS_PER_ITEM; i < end && i < w->leaf_count; i++) {
-        csg_shell_make(&shell, w->x->bricks, w->leaves[i]);
-        if (!w->visit(w, worker_index, &shell))
+        csg_shell *shell = w->shells ? &w->shells[i] : &own;
+        if (!w->has_shells)
+            csg_shell_make(shell, w->x->bricks, w->leaves[i]);
+        if (!w->visit(w, worker_index, shell))
             return false;
     }
     w->segments[item].count = self->count - w->segments[item].first;
@@ -165,6 +167,7 @@ csgm_status csg_cell_loop_run(csg_cell_loop *w, csg_visit_brick *visit, double b
     if (!done)
         return atomic_load(&w->broken) ? csg_mesh_report_open(w->x->watch)
                                        : csg_mesh_why_stopped(w->x->watch);
+    w->has_shells = w->shells != NULL;
     if (!join_items(w))
         return csg_context_no_memory(w->x->context);
     if (w->count < CSG_OWN_VERTEX)
@@ -182,6 +185,30 @@ bool csg_cell_loop_list(csg_cell_loop *w, uint32_t brick)
         return false;
     w->leaves[w->leaf_count++] = brick;
     return true;
+}
+
+static void release_shells(csg_cell_loop *w)
+{
+    csg_memory_release(&w->x->context->memory, w->shells, w->shell_count * sizeof *w->shells);
+    w->shells = NULL;
+    w->shell_count = 0;
+    w->has_shells = false;
+}
+
+void csg_cell_loop_clear(csg_cell_loop *w)
+{
+    release_shells(w);
+    w->leaf_count = 0;
+}
+
+csgm_status csg_cell_loop_keep_shells(csg_cell_loop *w)
+{
+    release_shells(w);
+    if (!w->leaf_count)
+        return CSGM_OK;
+    w->shells = csg_memory_alloc(&w->x->context->memory, w->leaf_count * sizeof *w->shells);
+    w->shell_count = w->shells ? w->leaf_count : 0;
+    return w->shells ? CSGM_OK : csg_context_no_memory(w->x->context);
 }
 
 csgm_status csg_cell_loop_begin(csg_cell_loop *w, csg_extraction *x)
@@ -205,6 +232,7 @@ void csg_cell_loop_end(csg_cell_loop *w)
         csg_memory_release(memory, self->corners, self->corner_capacity * sizeof *self->corners);
     }
     csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
+    release_shells(w);
     csg_memory_release(memory, w->leaves, w->leaf_capacity * sizeof *w->leaves);
     csg_memory_release(memory, w->segments, w->segment_capacity * sizeof *w->segments);
     csg_memory_release(memory, w->vertices, w->capacity * sizeof *w->vertices);

@@ -36,6 +36,10 @@ typedef struct csg_cell_loop {
     csg_extraction *x;
     uint32_t *leaves;
     size_t leaf_count, leaf_capacity;
+    csg_shell
+        *shells; /* of the leaves, where several loops visit them; NULL: made anew each time */
+    size_t shell_count;
+    bool has_shells; /* they are made */
     csg_cell_worker *workers;
     uint32_t worker_count;
     csg_cell_segment *segments; /* one per item */
@@ -58,6 +62,11 @@ csgm_status csg_cell_loop_begin(csg_cell_loop *loop, csg_extraction *x);
 void csg_cell_loop_end(csg_cell_loop *loop);
 /* False: out of memory. */
 bool csg_cell_loop_list(csg_cell_loop *loop, uint32_t brick);
+/* Without the bricks that are listed. */
+void csg_cell_loop_clear(csg_cell_loop *loop);
+/* Has the shells of the bricks that are listed made once for all loops over them. CSGM_OK or
+ * CSGM_ERR_MEMORY (reported). */
+csgm_status csg_cell_loop_keep_shells(csg_cell_loop *loop);
 /* Visits the bricks listed. CSGM_OK or why it was stopped (reported). */
 csgm_status csg_cell_loop_run(csg_cell_loop *loop, csg_visit_brick *visit, double before,
                               double amount);

@@ -154,6 +154,8 @@ csgm_status csg_extract(csg_extraction *x)
     if (status == CSGM_OK)
         status = list_all(&w);
     if (status == CSGM_OK)
+        status = csg_cell_loop_keep_shells(&w);
+    if (status == CSGM_OK)
         status = csg_cells_find_vertices(&w, 0, 0.5);
     if (status == CSGM_OK)
         status = csg_cell_loop_run(&w, visit_cells, 0.5, 0.5);
