@@ -232,6 +232,93 @@ static void batches_are_their_points(void **state)
     assert_true(isinf(out[5]) && out[5] < 0 && isinf(out[6]) && out[6] < 0);
 }
 
+/* ---- what matters in a cell ----------------------------------------------------------------- */
+
+static csg_shape_near *make_list(void)
+{
+    return malloc(sizeof(csg_shape_near) + CSG_SHAPE_MOST_NEAR * sizeof(uint32_t));
+}
+
+/* False: nothing is known, as where the limit of the larger cell does not reach the outline. */
+static bool narrow(csg_shape_near *list, const csg_shape_near *among, const csg_shape_cell *cell)
+{
+    list->limit = cell->reach;
+    list->count = csg_shape_narrow(region, among, cell, list->items);
+    assert_in_range(list->count, among ? 0 : 1, CSG_SHAPE_MOST_NEAR);
+    return list->count > 0;
+}
+
+/* Every bit as by the whole region, corners and sides of the box among the points. */
+static void check_cell(const csg_shape_near *list, const csg_shape_cell *cell)
+{
+    enum { COUNT = 64 };
+    float x[COUNT], y[COUNT], z[COUNT], whole[4][COUNT], own[4][COUNT], values[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        double u = csg_random_uniform(&dice, -1, 1), v = csg_random_uniform(&dice, -1, 1);
+        u = i % 4 == 0 ? copysign(1, u) : u;
+        v = i % 8 < 2 ? copysign(1, v) : v;
+        x[i] = (float)(cell->center.x + u * cell->half.x * (1 - 1e-6));
+        y[i] = (float)(cell->center.y + v * cell->half.y * (1 - 1e-6));
+        z[i] = (float)i;
+    }
+    csg_shape_gradients(region, NULL, x, y, z, COUNT, whole[0], whole[1], whole[2], whole[3]);
+    csg_shape_gradients(region, list, x, y, z, COUNT, own[0], own[1], own[2], own[3]);
+    csg_shape_values(region, list, x, y, z, COUNT, values);
+    assert_memory_equal(own, whole, sizeof own);
+    assert_memory_equal(values, whole[0], sizeof values);
+}
+
+/* Smaller and smaller cells around a place: on the outline, beside it, or anywhere. */
+static int check_way_down(double extent)
+{
+    int checked = 0;
+    csg_vec2 p = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];
+    double half = extent * csg_random_uniform(&dice, 0.05, 0.6), off = csg_random_below(&dice, 3);
+    csg_vec3 at = {p.x + off * csg_random_uniform(&dice, -half, half),
+                   p.y + off * csg_random_uniform(&dice, -half, half), 5};
+    double share = csg_random_uniform(&dice, 0.3, 1);
+    csg_shape_near *list = make_list(), *before = make_list();
+    for (int level = 0; level < 9; level++, half *= 0.45) {
+        csg_vec3 ignored;
+        csg_shape_cell cell = {.center = at, .half = {half, share * half, 9}};
+        double least = fabs(csg_shape_sample(region, at, &ignored));
+        cell.reach = least + (level % 3 ? 3 * half : csg_random_uniform(&dice, 0, half));
+        if (level)
+            cell.reach = fmin(cell.reach, before->limit);
+        if (!narrow(list, level ? before : NULL, &cell))
+            break;
+        checked++;
+        check_cell(list, &cell);
+        csg_shape_near *other = before;
+        before = list;
+        list = other;
+        at.x += csg_random_uniform(&dice, -0.5, 0.5) * half;
+        at.y += csg_random_uniform(&dice, -0.5, 0.5) * cell.half.y;
+    }
+    free(list);
+    free(before);
+    return checked;
+}
+
+static void cells_have_what_matters_there(void **state)
+{
+    int checked = 0;
+    for (int round = 0; round < 60; round++) {
+        csg_outline_release(&outline);
+        int corners = 3 + round * round / 4;
+        add_star(&outline, &dice, (csg_vec2){0, 0}, round % 3 ? 0.9 : 0.2, 1, corners, false);
+        add_star(&outline, &dice, (csg_vec2){0, 0}, 0.1, 0.3, corners, true);
+        add_star(&outline, &dice, (csg_vec2){1, 1}, 0.1, 0.9, 5 + corners / 2, false);
+        make_region();
+        for (int i = 0; i < 40; i++)
+            checked += check_way_down(2);
+    }
+    make_text_like(3000);
+    for (int i = 0; i < 300; i++)
+        checked += check_way_down(20);
+    assert_true(checked > 15000);
+}
+
 static void shapes_are_counted_and_named(void **state)
 {
     make_text_like(500);
@@ -333,6 +420,7 @@ int main(void)
         TEST(crossings_by_a_rounding_error),
         TEST(differences_stay_below_distances),
         TEST(batches_are_their_points),
+        TEST(cells_have_what_matters_there),
         TEST(shapes_are_counted_and_named),
         TEST(nothing_and_nonsense),
         TEST(every_allocation_may_fail),

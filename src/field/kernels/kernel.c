@@ -22,6 +22,7 @@
 #include "field/kernels/leaf_kernel.h"
 #include "field/kernels/rule_kernel.h"
 #include "field/kernels/smooth_kernel.h"
+#include "field/kernels/warp_kernel.h"
 #include "field/rule_layout.h"
 
 #define STRING_(a) #a
@@ -649,6 +650,11 @@ static void join_alone(const csg_tape *tape, const csg_tape_node *node, float *a
     join_siblings(node, tape->parameters + node->join_parameters, a, b, count);
 }
 
+static void warped(const csg_tape *tape, uint32_t warp, float *x, float *y, float *z, size_t count)
+{
+    CSG_THIS_WARP_KERNEL.points(tape, warp, x, y, z, count);
+}
+
 const csg_kernel CSG_THIS_KERNEL = {
     .name = STRING(CSG_KERNEL),
     .values = values,
@@ -656,6 +662,7 @@ const csg_kernel CSG_THIS_KERNEL = {
     .values_and_gradients = values_and_gradients,
     .colors = colors,
     .intervals = intervals,
+    .warped = warped,
     .join = join_alone,
     .roots = CSG_THIS_ROOTS,
 };

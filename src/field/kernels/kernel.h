@@ -51,6 +51,10 @@ typedef struct csg_kernel {
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       const float *turns, float *low, float *high, float *scratch);
 
+    /* Points through all warps from the outermost to number `warp`, as a leaf below has them;
+     * count <= CSG_BATCH. */
+    void (*warped)(const csg_tape *tape, uint32_t warp, float *x, float *y, float *z, size_t count);
+
     /* One join alone, a = a op b, for benchmarks: node is a child that joins, count a multiple of
      * CSG_LANES and at most CSG_BATCH. Not one that turns with gradients. */
     void (*join)(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,

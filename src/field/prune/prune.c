@@ -419,9 +419,9 @@ static csg_shape_demand demand_on_shape(const csg_pruner *pruner, uint32_t node,
 static bool narrow_shapes(csg_pruner *pruner, int octant, csg_arena *arena, bool *shortened)
 {
     const csg_tape *tape = pruner->tape;
-    csg_shape_cube cube = {.half = (double)pruner->radius * 0.5773503}; /* 1 / sqrt 3, rounded up */
+    csg_shape_cube cube = {.radius = pruner->radius};
     for (int axis = 0; axis < 3; axis++)
-        cube.center[axis] = (double)pruner->center[axis][octant];
+        cube.center[axis] = pruner->center[axis][octant];
     uint32_t to = 0; /* leaves keep their order */
     for (uint32_t i = 0; i < tape->count; i++) {
         if (pruner->dropped[i] >> octant & 1 || tape->nodes[i].op != CSG_OP_SHAPE)
@@ -429,7 +429,8 @@ static bool narrow_shapes(csg_pruner *pruner, int octant, csg_arena *arena, bool
         csg_shape_demand demand = demand_on_shape(pruner, i, octant);
         while (pruner->nodes[to].op != CSG_OP_SHAPE)
             to++;
-        if (!csg_prune_shape(tape, &pruner->nodes[to++], &cube, demand, arena, shortened))
+        if (!csg_prune_shape(pruner->kernel, tape, &pruner->nodes[to++], &cube, demand, arena,
+                             shortened))
             return false;
     }
     return true;

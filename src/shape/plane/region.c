@@ -46,9 +46,22 @@ static bool is_nowhere(const region *r, double x, double y)
     return !(r->tree.segment_count && fabs(x) < 1e150 && fabs(y) < 1e150);
 }
 
-static double value_at(const region *r, double x, double y, csg_segment_hit *nearest)
+/* Farther than the list's limit another segment may be nearer, and the side of this one wrong. */
+static csg_segment_hit nearest_to(const region *r, const csg_shape_near *near, double x, double y)
 {
-    *nearest = csg_segment_nearest(&r->tree, x, y);
+    if (near) {
+        csg_segment_list list = {near->items, near->count};
+        csg_segment_hit hit = csg_segment_nearest_of(&r->tree, list, x, y);
+        if (hit.squared <= near->limit * near->limit)
+            return hit;
+    }
+    return csg_segment_nearest(&r->tree, x, y);
+}
+
+static double value_at(const region *r, const csg_shape_near *near, double x, double y,
+                       csg_segment_hit *nearest)
+{
+    *nearest = nearest_to(r, near, x, y);
     csg_segment_place at = csg_segment_locate(&r->tree, nearest->segment, x, y);
     const csg_segment_sides *sides = &r->sides[nearest->segment];
     csg_side side = (csg_side)(at.along < 0           ? sides->from
@@ -60,12 +73,12 @@ static double value_at(const region *r, double x, double y, csg_segment_hit *nea
 
 /* Along the way from the nearest point, but the segment's normal wherever that is meant: there the
  * way may be too short to have a direction. */
-static answer answer_at(const region *r, double x, double y)
+static answer answer_at(const region *r, const csg_shape_near *near, double x, double y)
 {
     csg_segment_hit nearest;
     if (is_nowhere(r, x, y))
         return (answer){.value = -INFINITY};
-    answer a = {.value = value_at(r, x, y, &nearest)};
+    answer a = {.value = value_at(r, near, x, y, &nearest)};
     const csg_segment_end *s = &r->tree.ends[nearest.segment];
     csg_segment_leaf *leaf = &r->tree.leaves[nearest.segment / CSG_SEGMENT_LANES];
     csg_segment_place at = csg_segment_locate(&r->tree, nearest.segment, x, y);
@@ -83,7 +96,7 @@ static answer answer_at(const region *r, double x, double y)
 
 static double sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
 {
-    answer a = answer_at((const region *)shape, p.x, p.y);
+    answer a = answer_at((const region *)shape, NULL, p.x, p.y);
     *gradient = csg_vec3_make(a.gradient.x, a.gradient.y, 0);
     return a.value;
 }
@@ -109,7 +122,6 @@ static uint64_t key_of(float x, float y)
 static void values(const csg_shape *shape, const csg_shape_near *near, const float *x,
                    const float *y, const float *z, size_t count, float *out)
 {
-    (void)near;
     const region *r = (const region *)shape;
     kept places[KEPT];
     size_t place_count = count < FEW_POINTS ? FEW_KEPT : KEPT;
@@ -121,7 +133,8 @@ static void values(const csg_shape *shape, const csg_shape_near *near, const flo
         if (!place->is_set || place->key != key) {
             csg_segment_hit nearest;
             double px = (double)x[i], py = (double)y[i];
-            float value = is_nowhere(r, px, py) ? -INFINITY : (float)value_at(r, px, py, &nearest);
+            float value =
+                is_nowhere(r, px, py) ? -INFINITY : (float)value_at(r, near, px, py, &nearest);
             *place = (kept){key, value, true};
         }
         out[i] = place->value;
@@ -132,9 +145,8 @@ static void gradients(const csg_shape *shape, const csg_shape_near *near, const 
                       const float *y, const float *z, size_t count, float *out, float *gx,
                       float *gy, float *gz)
 {
-    (void)near;
     for (size_t i = 0; i < count; i++) {
-        answer a = answer_at((const region *)shape, (double)x[i], (double)y[i]);
+        answer a = answer_at((const region *)shape, near, (double)x[i], (double)y[i]);
         out[i] = (float)a.value;
         gx[i] = (float)a.gradient.x;
         gy[i] = (float)a.gradient.y;
@@ -214,8 +226,13 @@ static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape
 static uint32_t narrow(const csg_shape *shape, const csg_shape_near *among,
                        const csg_shape_cell *cell, uint32_t *items)
 {
-    (void)shape, (void)among, (void)cell, (void)items;
-    return 0;
+    const region *r = (const region *)shape;
+    csg_vec3 c = cell->center, h = cell->half;
+    if (is_nowhere(r, c.x, c.y) || !(h.x < 1e150 && h.y < 1e150))
+        return 0;
+    csg_segment_list list = {among ? among->items : NULL, among ? among->count : 0};
+    return csg_segment_narrow(&r->tree, list, (csg_vec2){c.x, c.y}, (csg_vec2){h.x, h.y},
+                              cell->reach, items, CSG_SHAPE_MOST_NEAR);
 }
 
 static const csg_shape_operations operations = {destroy, sample, values, gradients,

@@ -57,6 +57,21 @@ void csg_segment_tree_release(csg_segment_tree *tree);
 
 /* x, y finite; at least one segment. */
 csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, double y);
+
+/* Leaves and nodes of the tree, as csg_segment_node.child has them, in the order of their segments.
+ */
+typedef struct csg_segment_list {
+    const uint32_t *items;
+    uint32_t count;
+} csg_segment_list;
+
+/* What of a list (count 0: of the tree) can be nearest to a point of the box, for points that are
+ * within `reach` of it: up to `most` items, so that csg_segment_nearest_of finds for these points
+ * what csg_segment_nearest does, to the bit. */
+uint32_t csg_segment_narrow(const csg_segment_tree *tree, csg_segment_list among, csg_vec2 center,
+                            csg_vec2 half, double reach, uint32_t *out, uint32_t most);
+csg_segment_hit csg_segment_nearest_of(const csg_segment_tree *tree, csg_segment_list list,
+                                       double x, double y);
 /* How often the loops go around the point. A corner belongs to one of its segments only, so no
  * point sees it twice; between 2 ulp of a segment to either side the answer is that of one side. */
 int csg_segment_winding(const csg_segment_tree *tree, double x, double y);
