@@ -40,6 +40,32 @@ static void test_random_scenes(void **state)
     assert_true(in_band > 10000);
 }
 
+/* Outlines of many segments, extruded, turned about an axis, below warps: only those segments that
+ * can be nearest are asked. */
+static void test_outlines(void **state)
+{
+    uint64_t cells = 0, shortened = 0, in_band = 0;
+    csg_random random = {27};
+    test_random_outlines = true;
+    for (unsigned i = 0; i < 200; i++) {
+        walk w = {0};
+        char what[48];
+        snprintf(what, sizeof what, "outline %u", i);
+        test_subject_begin(&w.subject);
+        test_subject_compile(&w.subject, test_random_shaped(&w.subject.builder, &random));
+        walk_begin(&w, 2);
+        for (int turn = 0; turn < 3; turn++) {
+            cube at = {test_point(&random, 0.5), csg_random_uniform(&random, 0.05, 0.8)};
+            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
+            descend(&w, &random, at, tau, what);
+        }
+        cells += w.cells, shortened += w.shortened, in_band += w.in_band;
+        walk_end(&w);
+    }
+    test_random_outlines = false;
+    assert_true(cells > 2000 && shortened > 300 && in_band > 4000);
+}
+
 /* Trees of fillets, whose values depend on gradients and may jump. */
 static void test_random_fillet_scenes(void **state)
 {
@@ -179,9 +205,8 @@ static void test_one_of_many(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_scenes),
-        cmocka_unit_test(test_random_fillet_scenes),
-        cmocka_unit_test(test_threshold),
+        cmocka_unit_test(test_random_scenes),        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_random_fillet_scenes), cmocka_unit_test(test_threshold),
         cmocka_unit_test(test_one_of_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

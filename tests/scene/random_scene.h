@@ -17,6 +17,9 @@ csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, un
  * and slices. Off at first: the numbers drawn are then the same as without them. */
 extern bool test_random_shapes;
 
+/* Whether figures of these are stars of many segments. Off at first. */
+extern bool test_random_outlines;
+
 /* Whether a third of the blends are rules of every kind, a third of the leaves soft, and some
  * leaves superellipsoids. Off at first, too. */
 extern bool test_random_rules;

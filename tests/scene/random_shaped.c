@@ -3,6 +3,7 @@
  */
 #include "random_scene.h"
 #include "scene/operators/blend_kinds.h"
+#include "shape/plane/region.h"
 
 static const csg_span nowhere = {.source = UINT32_MAX};
 
@@ -16,6 +17,30 @@ static bool chance(csg_random *random, double probability)
     return uniform(random, 0, 1) < probability;
 }
 
+bool test_random_outlines = false;
+
+/* A star of up to some hundred segments, its radii between inner and outer. */
+static csg_node_id star(csg_scene_builder *builder, csg_random *random)
+{
+    enum { MOST = 400 };
+    csg_memory *memory = &builder->context->memory;
+    csg_vec2 points[MOST];
+    uint32_t count = 3 + csg_random_below(random, chance(random, 0.5) ? 20 : MOST - 3);
+    double inner = uniform(random, 0.05, 0.35);
+    for (uint32_t i = 0; i < count; i++) {
+        double angle = 6.283185307179586 * (double)i / (double)count;
+        double radius = uniform(random, inner, 0.4);
+        points[i] = (csg_vec2){radius * cos(angle), radius * sin(angle)};
+    }
+    uint32_t end = count;
+    csg_outline outline = {
+        .memory = memory, .points = points, .ends = &end, .point_count = count, .loop_count = 1};
+    csg_shape *shape;
+    if (csg_region_create(memory, &outline, &shape) != CSGM_OK)
+        return CSG_NODE_NONE;
+    return csg_build_shape(builder, shape, nowhere);
+}
+
 /* A rectangle or a disc within [-0.8, 0.8]^2 or, `aside`, at x > 0. */
 static csg_node_id figure(csg_scene_builder *builder, csg_random *random, bool aside)
 {
@@ -24,7 +49,9 @@ static csg_node_id figure(csg_scene_builder *builder, csg_random *random, bool a
     if (!disc && chance(random, 0.5))
         v[2] = uniform(random, 0, fmin(v[0], v[1]));
     csg_node_id node =
-        csg_build_primitive(builder, disc ? CSG_NODE_CIRCLE : CSG_NODE_RECTANGLE, v, nowhere);
+        test_random_outlines
+            ? star(builder, random)
+            : csg_build_primitive(builder, disc ? CSG_NODE_CIRCLE : CSG_NODE_RECTANGLE, v, nowhere);
     double angle = aside ? 0 : uniform(random, -180, 180);
     csg_affine place = csg_affine_rotate(angle, csg_vec3_make(0, 0, 1));
     if (chance(random, 0.3))
