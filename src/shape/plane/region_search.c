@@ -19,6 +19,11 @@ static inline double greater(double a, double b)
     return a > b ? a : b;
 }
 
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 static inline void search_leaf(const csg_segment_tree *tree, uint32_t number, double x, double y,
                                csg_segment_hit *best)
 {
@@ -31,6 +36,9 @@ static inline void search_leaf(const csg_segment_tree *tree, uint32_t number, do
         double beyond = greater(greater(-along, along - leaf->length[k]), 0);
         squared[k] = left * left + beyond * beyond;
     }
+    double least = smaller(smaller(squared[0], squared[1]), smaller(squared[2], squared[3]));
+    if (!(least < best->squared)) /* nearly always */
+        return;
     for (uint32_t k = 0; k < CSG_SEGMENT_LANES; k++) {
         if (squared[k] < best->squared)
             *best = (csg_segment_hit){squared[k], number * CSG_SEGMENT_LANES + k};
