@@ -8,7 +8,7 @@
  */
 #include <float.h>
 
-#include "shape/polyhedra/four.h"
+#include "base/four.h"
 #include "shape/polyhedra/tree.h"
 
 static const float SLACK = 1 + 0x1p-18f;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Four floats at once, by the vector types of gcc and clang: the loops over a node's four children
- * are too short for the compiler to find by itself. Each lane is what plain float arithmetic gives.
+ * Four floats at once, by the vector types of gcc and clang: loops over a few things are too
+ * short for the compiler to find by itself. Each lane is what plain float arithmetic gives.
  */
-#ifndef CSG_SHAPE_FOUR_H
-#define CSG_SHAPE_FOUR_H
+#ifndef CSG_BASE_FOUR_H
+#define CSG_BASE_FOUR_H
 
 #include <math.h>
 #include <stdint.h>
