@@ -18,9 +18,21 @@ static inline csg_four csg_four_load(const float at[4])
     memcpy(&v, at, sizeof v);
     return v;
 }
+static inline void csg_four_store(csg_four v, float at[4])
+{
+    memcpy(at, &v, sizeof v);
+}
 static inline csg_four csg_four_all(float x)
 {
     return (csg_four){x, x, x, x};
+}
+static inline csg_four csg_four_choose(csg_four_mask mask, csg_four a, csg_four b)
+{
+    return (csg_four)((mask & (csg_four_mask)a) | (~mask & (csg_four_mask)b));
+}
+static inline csg_four csg_four_smaller(csg_four a, csg_four b)
+{
+    return csg_four_choose(a < b, a, b);
 }
 /* x where x > 0, else 0. */
 static inline csg_four csg_four_positive(csg_four x)

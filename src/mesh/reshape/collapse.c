@@ -232,31 +232,17 @@ static bool is_near(csg_decimation *d, bool one_sheet)
     return csg_remesh_brackets(r, (const csg_vec3(*)[3])room->after, room->seen, room->count);
 }
 
-/* Whether samples are known to be near enough after a move of the vertex so far: no distance grows
- * by more. */
-static bool are_near_after(csg_decimation *d, double move)
-{
-    csg_collapse_room *room = d->room;
-    double farthest = sqrt(room->farthest) + move;
-    if (d->originals || farthest > d->remesh->error)
-        return false;
-    room->farthest = farthest * farthest;
-    return true;
-}
-
 /* Brings the place of least error to the surface. Where samples are too far from it by more than
  * the way there could make good, the field is not asked. */
-static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to, bool *handed_over)
+static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to)
 {
     static const double HOPEFUL = 1.25; /* of the error */
     csg_remesh *r = d->remesh;
-    csg_vec3 before = *at;
-    if (!csg_decimation_can_hand_over(d, to, HOPEFUL * r->error) ||
+    if (!csg_decimation_may_hand_over(d, to, HOPEFUL * r->error) ||
         !csg_remesh_come_to_surface(r, at, fmax(r->cell, 4 * r->error)))
         return false;
     *at = round_place(r, *at);
     move_ring(d->room, *at);
-    *handed_over = are_near_after(d, csg_vec3_norm(csg_vec3_sub(*at, before)));
     return has_shape(d->room);
 }
 
@@ -264,13 +250,13 @@ static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to, bool 
 static bool new_place_is_good(csg_decimation *d, csg_vec3 *at, uint32_t from, uint32_t to)
 {
     const csg_remesh *r = d->remesh;
-    bool handed_over, one_sheet;
+    bool one_sheet;
     move_ring(d->room, *at);
-    if (!has_shape(d->room) || !bring_to_surface(d, at, to, &handed_over) || !is_within(d, *at))
+    if (!has_shape(d->room) || !bring_to_surface(d, at, to) || !is_within(d, *at))
         return false;
     if (r->looks)
         d->room->look = look_at(d, *at, from, to);
-    return (handed_over || csg_decimation_can_hand_over(d, to, r->error)) &&
+    return csg_decimation_can_hand_over(d, to, r->error) &&
            !crosses(d, from, to, true, &one_sheet) && is_near(d, one_sheet);
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/four.h"
 #include "mesh/reshape/decimate.h"
 
 enum { BATCH = CSG_PROBE_MOST };
@@ -185,21 +186,36 @@ static bool looks_alike(const csg_decimation *d, uint32_t sample, uint32_t trian
 static void find_heights(csg_facets *f, const float off[3], const float normal[3], uint32_t count)
 {
     static const float SLACK = 1e-5f;
-    for (uint32_t k = 0; k < count; k++) {
-        float a = off[0] * f->second[0][k] + off[1] * f->second[1][k] + off[2] * f->second[2][k];
-        float b = off[0] * f->third[0][k] + off[1] * f->third[1][k] + off[2] * f->third[2][k];
-        float height =
-            off[0] * f->normal[0][k] + off[1] * f->normal[1][k] + off[2] * f->normal[2][k];
-        float facing =
-            normal[0] * f->normal[0][k] + normal[1] * f->normal[1][k] + normal[2] * f->normal[2][k];
-        float least = a < b ? a : b, rest = 1 - a - b;
-        least = rest < least ? rest : least;
-        least = facing < 0 ? -1 : least;
-        f->square[k] = height * height;
-        f->over[k] = least >= -SLACK ? height * height : INFINITY;
-        f->weight[0][k] = a;
-        f->weight[1][k] = b;
+    const csg_four infinite = csg_four_all(INFINITY), slack = csg_four_all(-SLACK);
+    for (uint32_t k = 0; k < count; k += CSG_FACET_LANES) {
+        csg_four a = csg_four_all(0), b = a, height = a, facing = a;
+        for (int axis = 0; axis < 3; axis++) {
+            csg_four along = csg_four_load(f->normal[axis] + k);
+            a += off[axis] * csg_four_load(f->second[axis] + k);
+            b += off[axis] * csg_four_load(f->third[axis] + k);
+            height += off[axis] * along;
+            facing += normal[axis] * along;
+        }
+        csg_four least = csg_four_smaller(csg_four_smaller(a, b), 1 - a - b);
+        csg_four square = height * height;
+        csg_four_mask is_over = (least >= slack) & (facing >= csg_four_all(0));
+        csg_four_store(square, f->square + k);
+        csg_four_store(csg_four_choose(is_over, square, infinite), f->over + k);
+        csg_four_store(a, f->weight[0] + k);
+        csg_four_store(b, f->weight[1] + k);
     }
+}
+
+/* The first of the least. */
+static uint32_t find_lowest(const csg_facets *f, uint32_t count)
+{
+    float least = f->over[0];
+    for (uint32_t k = 1; k < count; k++)
+        least = f->over[k] < least ? f->over[k] : least;
+    uint32_t found = 0;
+    while (found + 1 < count && f->over[found] > least)
+        found++;
+    return found;
 }
 
 /* The triangle that is nearest to a sample, which is over none of them, or not near enough. */
@@ -234,9 +250,7 @@ static uint32_t choose_owner(csg_decimation *d, uint32_t sample, uint32_t kept)
     csg_vec3_to_floats(off, csg_vec3_sub(p, room->after[0][0]));
     csg_vec3_to_floats(facing, normal);
     find_heights(f, off, facing, room->count);
-    uint32_t owner = 0;
-    for (uint32_t k = 1; k < room->count; k++)
-        owner = f->over[k] < f->over[owner] ? k : owner;
+    uint32_t owner = find_lowest(f, room->count);
     double least = (double)f->over[owner];
     double weights[3] = {1 - (double)f->weight[0][owner] - (double)f->weight[1][owner],
                          (double)f->weight[0][owner], (double)f->weight[1][owner]};
@@ -305,16 +319,39 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
     return s == CSG_CORNER_NONE;
 }
 
-bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach)
+/* Lanes behind the last facet repeat it. */
+static void make_facets(csg_decimation *d, double reach)
 {
     csg_collapse_room *room = d->room;
     room->most = reach * reach;
-    room->is_first_look = reach > d->remesh->error;
-    room->owner_count = 0;
     room->farthest = 0;
-    room->one_look = has_one_look(d, kept);
     for (uint32_t i = 0; i < room->count; i++)
         make_facet(&room->facets, i, (const csg_vec3 *)room->after[i], room->normal[i]);
+    for (uint32_t i = room->count; i % CSG_FACET_LANES; i++)
+        make_facet(&room->facets, i, (const csg_vec3 *)room->after[room->count - 1],
+                   room->normal[room->count - 1]);
+}
+
+bool csg_decimation_may_hand_over(csg_decimation *d, uint32_t kept, double reach)
+{
+    csg_collapse_room *room = d->room;
+    make_facets(d, reach);
+    room->is_first_look = true;
+    for (uint32_t i = 0; i < room->count + 2; i++) {
+        uint32_t s = d->first_sample[room->triangle[i]];
+        if (s != CSG_CORNER_NONE && choose_owner(d, s, kept) == CSG_CORNER_NONE)
+            return false;
+    }
+    return true;
+}
+
+bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach)
+{
+    csg_collapse_room *room = d->room;
+    make_facets(d, reach);
+    room->is_first_look = false;
+    room->owner_count = 0;
+    room->one_look = has_one_look(d, kept);
     for (uint32_t i = 0; i < room->count + 2; i++)
         if (!find_owners(d, room->triangle[i], kept))
             return false;

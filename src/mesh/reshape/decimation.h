@@ -20,7 +20,11 @@ typedef struct csg_collapse_queue {
     size_t count, capacity;
 } csg_collapse_queue;
 
-enum { CSG_RING_MOST = 2 * CSG_CORNERS_MOST_VALENCE };
+enum {
+    CSG_FACET_LANES = 4, /* facets are asked by so many */
+    CSG_RING_MOST =
+        (2 * CSG_CORNERS_MOST_VALENCE + CSG_FACET_LANES - 1) / CSG_FACET_LANES * CSG_FACET_LANES
+};
 
 /* A fan of triangles as it is asked for places, all at once: an offset from where they meet, times
  * second and third, is the weight at a triangle's second and third corner. Then what was found. */
@@ -98,8 +102,11 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */
 csgm_status csg_decimate_region(csg_decimation *d, const uint32_t *items, uint32_t count,
                                 uint32_t least);
-/* Whether the samples of room->triangle are at most so far from room->after, and who takes which. A
- * reach beyond the error: only to know whether it is worth while to go on; looks do not matter. */
+/* Whether one sample of each of room->triangle, that at which the last try failed if one did, is at
+ * most so far from room->after; looks do not matter. Most of what can not be handed over is found
+ * by them. */
+bool csg_decimation_may_hand_over(csg_decimation *d, uint32_t kept, double reach);
+/* Whether all of them are, and who takes which. */
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach);
 void csg_decimation_hand_over(csg_decimation *d);
 /* room->seen, from who takes which. */
