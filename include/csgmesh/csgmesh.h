@@ -514,12 +514,14 @@ typedef struct csgm_certify {
 enum { CSGM_LEVELS_MOST = 24 }; /* sizes of cells in one mesh: each half as large as the last */
 
 /* What a mesh build did and found: times in seconds of wall time, counts, and distances in scene
- * units. */
+ * units. Start from csgm_mesh_stats_default(): members that the caller's struct does not have are
+ * left out, and a size that no version has had is CSGM_ERR_ARGUMENT. */
 typedef struct csgm_mesh_stats {
+    uint32_t struct_size; /* set by csgm_mesh_stats_default; do not touch */
+    uint32_t cells[3];    /* of cell_size, along the axes */
     /* Wall time of octree, sampling and counting; of roots, normals and triangles. */
     double octree_s, mesh_s;
     double cell_size;
-    uint32_t cells[3];
     uint64_t cells_visited;                 /* octree cells tested */
     uint64_t pruned_outside, pruned_inside; /* of those, proven free of surface */
     uint64_t leaf_blocks;                   /* blocks of 8^3 cells that were sampled */
@@ -549,6 +551,9 @@ typedef struct csgm_mesh_stats {
      * cells: cell_size is 0. */
     uint64_t own_triangles;
 } csgm_mesh_stats;
+
+/* All zeros but struct_size. */
+CSGM_API csgm_mesh_stats csgm_mesh_stats_default(void);
 
 /* options NULL = defaults; stats may be NULL. A scene without a surface in the bounds gives a
  * mesh without triangles and a warning. */

@@ -28,6 +28,11 @@ csgm_mesh_options csgm_mesh_options_default(void)
                                .prune = true};
 }
 
+csgm_mesh_stats csgm_mesh_stats_default(void)
+{
+    return (csgm_mesh_stats){.struct_size = sizeof(csgm_mesh_stats)};
+}
+
 double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
 {
     csg_vec3 size = csg_box_size(bounds);
@@ -45,10 +50,13 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !field || !csg_options_adopt(&own, sizeof own, options))
+    if (!context || !field || !csg_options_adopt(&own, sizeof own, options) ||
+        !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
-    csgm_mesh_stats ignored;
-    return csg_mesh_build(context, field, &own, out, stats ? stats : &ignored);
+    csgm_mesh_stats made = csgm_mesh_stats_default();
+    csgm_status status = csg_mesh_build(context, field, &own, out, &made);
+    csg_struct_deliver(stats, &made);
+    return status;
 }
 
 /* Into a file that is filled from all sides. */
@@ -66,8 +74,8 @@ static csgm_status stream_file(csgm_context *context, const csgm_field *field,
     status = csg_mesh_stream(context, field, options, &receiver, counts, stats);
     if (status == CSGM_OK && counts->triangle_count)
         return csg_stream_commit(stream);
-    csg_stream_abandon(stream);
-    return status == CSGM_OK ? CSGM_ERR_SCENE : status;
+    csgm_status of_stream = csg_stream_abandon(stream);
+    return of_stream != CSGM_OK ? of_stream : status == CSGM_OK ? CSGM_ERR_SCENE : status;
 }
 
 /* Through a mesh in memory. */
@@ -98,9 +106,10 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     csgm_write_options own = csgm_write_options_default();
     if (!context || !field || !path || format >= CSGM_FORMAT_COUNT ||
         !csg_options_adopt(&joined, sizeof joined, options) ||
-        !csg_options_adopt(&own, sizeof own, write_options))
+        !csg_options_adopt(&own, sizeof own, write_options) ||
+        !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
-    csgm_mesh_stats ignored;
+    csgm_mesh_stats found = csgm_mesh_stats_default();
     csg_mesh_counts made = {0};
     if (joined.normals == CSGM_NORMALS_CREASE &&
         !(csg_format_traits(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format) &
@@ -112,7 +121,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
         csg_mesh_can_stream(field, options) &&
         csg_stream_is_possible(path, format, csg_mesh_distance(field, options), write_options);
     csgm_status status = (streams ? stream_file : build_and_write)(
-        context, field, options, path, format, write_options, &made, stats ? stats : &ignored);
+        context, field, options, path, format, write_options, &made, &found);
+    csg_struct_deliver(stats, &found);
     if (counts) {
         counts[0] = made.vertex_count;
         counts[1] = made.triangle_count;

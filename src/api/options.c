@@ -9,14 +9,32 @@
 
 enum { STEP = 8 };
 
-bool csg_options_adopt(void *own, size_t own_bytes, const void *given)
+bool csg_struct_is_known(const void *given, size_t own_bytes)
 {
-    uint32_t size, own_size = (uint32_t)own_bytes;
+    uint32_t size;
     if (!given)
         return true;
     memcpy(&size, given, sizeof size);
-    if (size < 2 * STEP || size % STEP || size > own_size)
+    return size >= 2 * STEP && size % STEP == 0 && size <= own_bytes;
+}
+
+void csg_struct_deliver(void *given, const void *own)
+{
+    uint32_t size;
+    if (!given)
+        return;
+    memcpy(&size, given, sizeof size);
+    memcpy((char *)given + sizeof size, (const char *)own + sizeof size, size - sizeof size);
+}
+
+bool csg_options_adopt(void *own, size_t own_bytes, const void *given)
+{
+    uint32_t size, own_size = (uint32_t)own_bytes;
+    if (!csg_struct_is_known(given, own_bytes))
         return false;
+    if (!given)
+        return true;
+    memcpy(&size, given, sizeof size);
     memcpy(own, given, size);
     memcpy(own, &own_size, sizeof own_size);
     return true;

@@ -14,15 +14,24 @@
 #include <unistd.h>
 
 #ifdef __linux__
-#include <linux/openat2.h>
+#include <stdint.h>
 #include <sys/syscall.h>
+
+/* As the kernel's interface has them for good; older headers do not. The number is the same on all
+ * architectures but Alpha, whose headers name it. */
+#if !defined SYS_openat2 && !defined __alpha__
+#define SYS_openat2 437
+#endif
 #endif
 
 static int open_by_kernel(int folder, const char *name)
 {
 #ifdef SYS_openat2
-    struct open_how how = {.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK,
-                           .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
+    enum { NO_MAGIC_LINKS = 0x02, BENEATH = 0x08 };
+    const struct {
+        uint64_t flags, mode, resolve;
+    } how = {.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK,
+             .resolve = BENEATH | NO_MAGIC_LINKS};
     return (int)syscall(SYS_openat2, folder, name, &how, sizeof how);
 #else
     (void)folder, (void)name;

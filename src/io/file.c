@@ -61,6 +61,10 @@ void csg_io_cleanup_pending(void)
 
 static csgm_status fail(csg_atomic_file *file, int error)
 {
+    if (error == ENOMEM) {
+        csg_arena_reset(&file->names);
+        return csg_context_no_memory(file->context);
+    }
     csg_diag_plain(&file->context->diags, CSG_DIAG_CANNOT_WRITE, file->path, NULL,
                    "cannot write: %s", strerror(error));
     csg_arena_reset(&file->names);
@@ -280,6 +284,8 @@ static csgm_status hold(csg_atomic_file *file)
     }
     *held = (csg_held_file){.next = context->held, .file = *file};
     held->file.path = path; /* the caller's may be gone by then */
+    if (held->file.target == file->path)
+        held->file.target = path;
     context->held = held;
     return CSGM_OK;
 }

@@ -214,11 +214,10 @@ csgm_status csg_stream_commit(csg_stream *s)
     return status;
 }
 
-void csg_stream_abandon(csg_stream *s)
+csgm_status csg_stream_abandon(csg_stream *s)
 {
-    if (!s)
-        return;
-    report(s);
+    csgm_status status = report(s);
     csg_file_abandon(&s->file);
     release(s);
+    return status;
 }

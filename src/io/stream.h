@@ -24,7 +24,7 @@ csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_form
 csg_mesh_receiver csg_stream_receiver(csg_stream *stream);
 /* Completes the file and gives it its name. The stream is gone afterwards. */
 csgm_status csg_stream_commit(csg_stream *stream);
-/* Leaves no file; reports the write error, if that ended the build. NULL is a no-op. */
-void csg_stream_abandon(csg_stream *stream);
+/* Leaves no file; reports the error that ended the stream, and is it, or CSGM_OK. */
+csgm_status csg_stream_abandon(csg_stream *stream);
 
 #endif

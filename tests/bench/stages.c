@@ -57,6 +57,7 @@ static csgm_status build(run *r, const char *path, uint32_t cells)
 {
     csgm_mesh_options options = csgm_mesh_options_default();
     options.resolution = cells;
+    r->stats = csgm_mesh_stats_default();
     options.bounds = (csgm_box){{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
     return csgm_mesh_build_file(r->context, r->field, &options, path, CSGM_FORMAT_AUTO, NULL,
                                 r->counts, &r->stats);

@@ -66,6 +66,7 @@ static void build(built *b, const char *text, const csgm_mesh_options *options, 
     assert_int_equal(csgm_scene_parse(b->context, text, strlen(text), "hard.txt", NULL, &scene),
                      CSGM_OK);
     assert_int_equal(csgm_field_compile(b->context, scene, &field), CSGM_OK);
+    b->stats = csgm_mesh_stats_default();
     assert_int_equal(csgm_mesh_build(b->context, field, options, &b->mesh, &b->stats), CSGM_OK);
     b->view = csgm_mesh_get_view(b->mesh);
     csgm_field_destroy(field);

@@ -136,6 +136,7 @@ static csgm_mesh *build(pose *p, const double degrees[3])
     csgm_mesh_options options = csgm_mesh_options_default();
     options.resolution = RESOLUTION;
     options.normals = CSGM_NORMALS_CREASE;
+    p->stats = csgm_mesh_stats_default();
     assert_int_equal(csgm_mesh_build(p->context, field, &options, &mesh, &p->stats), CSGM_OK);
     csgm_field_destroy(field);
     csgm_scene_destroy(scene);

@@ -59,7 +59,7 @@ static void a_tenth_of_the_triangles(void **state)
     csgm_context *context;
     csgm_scene *scene;
     csgm_field *field;
-    csgm_mesh_stats stats;
+    csgm_mesh_stats stats = csgm_mesh_stats_default();
     uint64_t few, many;
     (void)state;
     assert_int_equal(csgm_context_create(NULL, &context), CSGM_OK);

@@ -10,15 +10,28 @@
 #include <unistd.h>
 
 #ifdef __linux__
-#include <linux/landlock.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
+
+/* Landlock as the kernel's interface has it for good; headers before Linux 5.13 do not. The numbers
+ * are the same on all architectures but Alpha. */
+#ifdef __alpha__
+enum { CREATE_RULESET = 554, ADD_RULE, RESTRICT_SELF };
+#else
+enum { CREATE_RULESET = 444, ADD_RULE, RESTRICT_SELF };
+#endif
+enum { ASK_VERSION = 1, RULE_PATH_BENEATH = 1 };
+enum { EXECUTE = 1 << 0, MAKE_CHAR = 1 << 6, MAKE_SOCK = 1 << 9, MAKE_BLOCK = 1 << 11 };
+
+typedef struct path_beneath {
+    uint64_t allowed_access;
+    int32_t parent_fd;
+} __attribute__((packed)) path_beneath;
 
 /* What may be done below a root: all but to start programs and to make devices. */
 static uint64_t allowed_rights(uint64_t handled)
 {
-    return handled & ~(uint64_t)(LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_MAKE_CHAR |
-                                 LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SOCK);
+    return handled & ~(uint64_t)(EXECUTE | MAKE_CHAR | MAKE_BLOCK | MAKE_SOCK);
 }
 
 /* All rights that this kernel knows, by the version of its interface. */
@@ -37,11 +50,11 @@ static int refuse(cli_app *app, const char *root, int error)
 
 static int add_root(cli_app *app, int rules, uint64_t rights, const char *root)
 {
-    struct landlock_path_beneath_attr below = {.allowed_access = rights};
+    path_beneath below = {.allowed_access = rights};
     below.parent_fd = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
     if (below.parent_fd < 0)
         return refuse(app, root, errno);
-    long failed = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &below, 0);
+    long failed = syscall(ADD_RULE, rules, RULE_PATH_BENEATH, &below, 0);
     int error = errno;
     close(below.parent_fd);
     return failed ? refuse(app, root, error) : CLI_DONE;
@@ -71,32 +84,41 @@ static int confine(cli_app *app, int rules, uint64_t rights, const char *environ
     int status = add_from_environment(app, rules, rights, environment);
     for (size_t i = 0; i < roots->count && status == CLI_DONE; i++)
         status = add_root(app, rules, rights, roots->items[i]);
-    if (status == CLI_DONE && (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
-                               syscall(SYS_landlock_restrict_self, rules, 0) != 0))
+    if (status == CLI_DONE &&
+        (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || syscall(RESTRICT_SELF, rules, 0) != 0))
         status = refuse(app, "cannot be enforced", errno);
     return status;
+}
+
+/* Why the kernel has no Landlock, by the error of asking for its version. */
+static const char *why_not(int error)
+{
+    return error == EOPNOTSUPP ? "this kernel has Landlock, but it was not started with it (lsm=)"
+           : error == ENOSYS   ? "this kernel has no Landlock (Linux 5.13 or newer can have it)"
+           : error == EPERM    ? "Landlock is forbidden here, as by a container's seccomp filter"
+                               : strerror(error);
 }
 #endif
 
 int cli_roots_confine(cli_app *app)
 {
     const char *environment = getenv("CSGMESH_ROOT");
+    const char *reason = "it needs Linux 5.13 or newer with Landlock";
     if (!app->options.roots.count && (!environment || !*environment))
         return CLI_DONE;
 #ifdef __linux__
-    long version = syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
+    long version = syscall(CREATE_RULESET, NULL, 0, ASK_VERSION);
     if (version > 0) {
-        struct landlock_ruleset_attr attributes = {.handled_access_fs = known_rights(version)};
-        int rules = (int)syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0);
+        const uint64_t handled = known_rights(version);
+        int rules = (int)syscall(CREATE_RULESET, &handled, sizeof handled, 0);
         int status = rules < 0 ? refuse(app, "cannot be enforced", errno)
-                               : confine(app, rules, allowed_rights(attributes.handled_access_fs),
-                                         environment);
+                               : confine(app, rules, allowed_rights(handled), environment);
         if (rules >= 0)
             close(rules);
         return status;
     }
+    reason = why_not(version < 0 ? errno : ENOSYS);
 #endif
-    return cli_usage_error(
-        app, "run it in a container that holds nothing else instead",
-        "--root cannot be kept here: it needs Linux 5.13 or newer with Landlock");
+    return cli_usage_error(app, "run it in a container that holds nothing else instead",
+                           "--root cannot be kept here: %s", reason);
 }

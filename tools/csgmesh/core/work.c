@@ -95,6 +95,7 @@ int cli_work_mesh(cli_app *app, cli_work *work)
 {
     csgm_mesh_options options = mesh_options(app, work);
     csgm_status status = work->field ? CSGM_OK : compile(app, work);
+    work->stats = csgm_mesh_stats_default();
     if (status == CSGM_OK)
         status = csgm_mesh_build(app->context, work->field, &options, &work->mesh, &work->stats);
     cli_console_end_progress(&app->console);
@@ -110,6 +111,7 @@ int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_form
     uint32_t errors = app->console.errors;
     uint64_t counts[2] = {0};
     csgm_status status = compile(app, work);
+    work->stats = csgm_mesh_stats_default();
     if (status == CSGM_OK)
         status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
                                       write_options, counts, &work->stats);
