@@ -17,6 +17,7 @@ typedef struct cli_app {
     double start_s;
     csgm_trace *trace;      /* of --trace, or NULL */
     const char *zone_note;  /* in it: what the context is at work on; NULL = the first operand */
+    cli_list arguments;     /* of CLI_OPENSCAD: all that stands behind the command's name */
     csgm_flat flat;         /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */
@@ -38,6 +39,8 @@ double cli_now_s(void);
 __attribute__((format(printf, 3, 4))) int cli_usage_error(cli_app *app, const char *hint,
                                                           const char *format, ...);
 
+/* On standard output; the exit status. */
+int cli_print_version(cli_app *app);
 void cli_help(void);
 void cli_help_command(cli_command command);
 

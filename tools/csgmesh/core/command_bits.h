@@ -10,7 +10,7 @@ enum {
 #define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,
 #include "core/commands.def"
 #undef COMMAND
-    ANY_SCENE = (1 << CLI_COMMAND_COUNT) - 1,
+    ANY_SCENE = ((1 << CLI_COMMAND_COUNT) - 1) & ~OPENSCAD, /* which has options of its own */
     ANY = ANY_SCENE
 };
 

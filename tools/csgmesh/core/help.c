@@ -72,6 +72,34 @@ static void print_wrapped(const char *text, int column)
     putchar('\n');
 }
 
+/* OpenSCAD's own, of csgmesh openscad. */
+static void print_openscad_options(void)
+{
+    static const struct {
+        char letter;
+        const char *name, *argument, *help;
+    } rows[] = {
+#define OPENSCAD_OPTION(NAME, letter, name, argument, help) {letter, name, argument, help},
+#define OPENSCAD_REFUSED(NAME, letter, name, argument, why)
+#include "openscad/openscad_options.def"
+#undef OPENSCAD_OPTION
+#undef OPENSCAD_REFUSED
+    };
+    putchar('\n');
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char letter[8] = "    ", form[96];
+        bool has_name = rows[i].name[1];
+        if (rows[i].letter)
+            snprintf(letter, sizeof letter, "-%c%s", rows[i].letter, has_name ? ", " : "");
+        snprintf(form, sizeof form, "  %s%s%s%s%s", letter, has_name ? "--" : "",
+                 has_name ? rows[i].name : "",
+                 rows[i].argument && rows[i].argument[0] != '[' ? " " : "",
+                 rows[i].argument ? rows[i].argument : "");
+        printf("%s", form);
+        print_wrapped(rows[i].help, (int)strlen(form));
+    }
+}
+
 static bool section_has_rows(size_t section, int command_bit)
 {
     for (size_t i = section + 1; i < OPTION_ROWS && !option_rows[i].section; i++)
@@ -101,7 +129,10 @@ void cli_help_command(cli_command command)
     const command_help *row = &commands[command];
     printf("csgmesh %s: %s\n\n%s\nUsage: csgmesh %s %s [options]\n", row->name, row->summary,
            row->examples, command == CLI_MESH ? "[mesh]" : row->name, row->operands);
-    print_options(1 << command);
+    if (command == CLI_OPENSCAD)
+        print_openscad_options();
+    else
+        print_options(1 << command);
 }
 
 void cli_help(void)
@@ -117,8 +148,8 @@ void cli_help(void)
            "  csgmesh info mug.glb                        what is in a file\n\n"
            "Usage: csgmesh [COMMAND] FILE... [options]\n\nCommands\n");
     for (size_t i = 0; i < CLI_COMMAND_COUNT; i++)
-        printf("  %-6s %-22s %s\n", commands[i].name, commands[i].operands, commands[i].summary);
-    printf("  %-6s %-22s %s\n", "help", "[COMMAND]", "all options of a command, with examples");
+        printf("  %-8s %-22s %s\n", commands[i].name, commands[i].operands, commands[i].summary);
+    printf("  %-8s %-22s %s\n", "help", "[COMMAND]", "all options of a command, with examples");
     printf(
         "\nThe options most used (csgmesh help mesh lists all)\n"
         "  -o FILE        %s; - is standard output\n"

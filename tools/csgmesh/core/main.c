@@ -32,7 +32,7 @@ static bool find_command(const char *name, cli_command *command)
     return false;
 }
 
-static int print_version(cli_app *app)
+int cli_print_version(cli_app *app)
 {
     int status = cli_app_open(app);
     if (status == CLI_DONE)
@@ -56,12 +56,16 @@ static int help(cli_app *app, const char *topic)
 static int run_command(cli_app *app, cli_command command, bool is_named, int argc, char **argv)
 {
     cli_problem problem;
+    if (command == CLI_OPENSCAD) {
+        app->arguments = (cli_list){(const char **)argv, (size_t)argc};
+        return commands[command].run(app);
+    }
     bool parsed = cli_options_parse(&app->options, command, argc, argv, &problem);
     cli_console_configure(&app->console, &app->options);
     if (!parsed)
         return cli_usage_error(app, problem.hint[0] ? problem.hint : NULL, "%s", problem.message);
     if (app->options.version)
-        return print_version(app);
+        return cli_print_version(app);
     if (app->options.help)
         return help(app, is_named ? commands[command].name : NULL);
     int status = cli_roots_confine(app);
