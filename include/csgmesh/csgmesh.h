@@ -631,6 +631,7 @@ typedef enum csgm_format {
     CSGM_FORMAT_GLB,
     CSGM_FORMAT_DRC, /* bare Draco */
     CSGM_FORMAT_3MF, /* a ZIP package of XML */
+    CSGM_FORMAT_AMF, /* XML, ISO/ASTM 52915 */
     /* New ones come here. A release may add some, so a program loops from AUTO + 1 and asks each
      * format what it can do; it does not keep COUNT. */
     CSGM_FORMAT_COUNT

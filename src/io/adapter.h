@@ -123,7 +123,7 @@ bool csg_gltf_available(void);
 csgm_status csg_gltf_parse(const char *json, size_t json_bytes, const uint8_t *bin,
                            size_t bin_bytes, const csg_gltf_calls *calls, csg_adapter_error *error);
 
-/* ---- 3MF packages (package.c: libzip, expat) ---------------------------------------- */
+/* ---- XML, and packages of it (package.c: libzip, expat) ----------------------------- */
 
 typedef struct csg_package csg_package;
 
@@ -136,6 +136,8 @@ typedef struct csg_xml_calls {
     csgm_status (*start)(void *user, const char *name, const char *const *attributes);
     csgm_status (*end)(void *user, const char *name);
     void *user;
+    /* Some of the text between elements, not ended by \0; NULL = nobody asks. */
+    csgm_status (*text)(void *user, const char *text, size_t length);
 } csg_xml_calls;
 
 bool csg_package_available(void);
@@ -146,6 +148,11 @@ void csg_package_close(csg_package *package); /* NULL is a no-op */
 /* One of the package's files, letters of any case. As csg_gltf_parse about errors. */
 csgm_status csg_package_parse(csg_package *package, const char *name, const csg_xml_calls *calls,
                               csg_adapter_error *error);
+/* Name of the package's first file; NULL = it has none. The package's storage. */
+const char *csg_package_first(csg_package *package);
+/* Bytes that are XML themselves. Available where packages are. */
+csgm_status csg_package_parse_bytes(const uint8_t *bytes, size_t size_bytes,
+                                    const csg_xml_calls *calls, csg_adapter_error *error);
 
 #ifdef __cplusplus
 }

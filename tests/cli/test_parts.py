@@ -138,6 +138,50 @@ class PartsTest(cli.CliTest):
                 text = package.read("3D/3dmodel.model").decode()
             self.assertIn(f'<model unit="{name}"', text)
 
+    def test_amf_objects(self):
+        """An object with its name for each part, and lengths in a unit that AMF has."""
+        for unit, name, factor in (("none", "millimeter", 1), ("cm", "millimeter", 10), ("in", "inch", 1)):
+            self.mesh(SCENE, "a.amf", "--unit", unit)
+            self.mesh(SCENE, "a.ply")
+            root = xml.fromstring(self.read("a.amf"))
+            self.assertEqual((root.tag, root.get("unit")), ("amf", name))
+            names = [o.findtext("metadata[@type='name']") for o in root.findall("object")]
+            self.assertEqual(names, [None, "lid & <cap>", "box"])
+            for item in root.findall("object"):
+                count = len(item.findall("mesh/vertices/vertex"))
+                for triangle in item.findall("mesh/volume/triangle"):
+                    self.assertLess(max(int(c.text) for c in triangle), count)
+            if "amf" in cli.formats_read():
+                sizes = [self.info(f"a.{end}")["mesh"]["bounds"] for end in ("amf", "ply")]
+                for a, b in zip(sum(sizes[0], []), sum(sizes[1], [])):
+                    self.assertAlmostEqual(a, b * factor, delta=1e-5)
+
+    def test_amf_of_others(self):
+        """Instances in their places, a vertex's colour before its object's, archives."""
+        if "amf" not in cli.formats_read():
+            self.skipTest("this build reads no AMF")
+        corners = ["<x>0</x><y>0</y><z>0</z>", "<x>1</x><y>0</y><z>0</z>", "<x>0</x><y>2</y><z>0</z>",
+                   "<x>0</x><y>0</y><z>3</z>"]
+        vertices = "".join(f"<vertex><coordinates>{c}</coordinates></vertex>" for c in corners)
+        faces = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
+        volume = "".join(f"<triangle><v1>{a}</v1><v2>{b}</v2><v3>{c}</v3></triangle>" for a, b, c in faces)
+        wedge = (f"<object id='7'><color><r>0</r><g>1</g><b>0</b></color><mesh><vertices>{vertices}</vertices>"
+                 f"<volume materialid='3'>{volume}</volume></mesh></object>")
+        self.write("plain.amf", f"<amf>{wedge}</amf>")
+        mesh = self.info("plain.amf")["mesh"]
+        self.assertEqual((mesh["volume"], mesh["bounds"]), (1, [[0, 0, 0], [1, 2, 3]]))
+        placed = (f"<amf><material id='3'><color><r>1</r></color></material>{wedge}<constellation id='1'>"
+                  "<instance objectid='7'><deltax>10</deltax><rz>90</rz></instance>"
+                  "<instance objectid='7'><rx>180</rx><deltaz>-5</deltaz></instance></constellation></amf>")
+        with zipfile.ZipFile(self.path("zipped.amf"), "w", zipfile.ZIP_DEFLATED) as package:
+            package.writestr("model.amf", placed)
+        mesh = self.info("zipped.amf")["mesh"]
+        self.assertEqual((round(mesh["volume"], 6), mesh["components"], mesh["manifold"]), (2, 2, True))
+        for bound, wanted in zip(sum(mesh["bounds"], []), (0, -2, -8, 10, 1, 3)):
+            self.assertAlmostEqual(bound, wanted, places=6)
+        self.mesh('import("plain.amf");', "again.ply", "-r", "32")
+        self.assertAlmostEqual(self.info("again.ply")["mesh"]["volume"], 1, places=2)
+
     def test_other_formats_hold_all_parts(self):
         for name in ("a.stl", "a.ply", "a.off"):
             self.mesh(SCENE, name)

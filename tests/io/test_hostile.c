@@ -26,7 +26,7 @@ static const sample samples[] = {
     {"g.glb", IO_CUBE, false, false},       {"h.gltf", IO_TETRAHEDRON, false, false},
     {"i.drc", IO_CUBE, false, true},        {"j.glb", IO_TETRAHEDRON, false, true},
     {"k.ply", IO_TETRAHEDRON, true, false}, {"l.3mf", IO_PARTS, false, false},
-    {"m.obj", IO_PARTS, false, false},
+    {"m.obj", IO_PARTS, false, false},      {"n.amf", IO_TETRAHEDRON, false, false},
 };
 
 enum {
@@ -201,6 +201,26 @@ static const lie lies[] = {
     {"a.obj", "v 0 0 1e999\n", "three finite numbers", 1},
     {"a.obj", "hello\n", "no statement", 1},
     {"a.obj", "v 0 0 0\nf 99999999999999999999 1 1\n", "", 2},
+    {"a.amf", "<amf/>", NULL, 0},
+    {"a.amf", "<model/>", "does not begin with <amf>", 0},
+    {"a.amf", "<amf><object/></amf>", "no good id", 0},
+    {"a.amf", "<amf><object id='1'><mesh><vertices><vertex/></vertices></mesh></object></amf>",
+     "lacks coordinates", 0},
+    {"a.amf",
+     "<amf><object id='1'><mesh><vertices><vertex><coordinates><x>1e999</x></coordinates></vertex>"
+     "</vertices></mesh></object></amf>",
+     "no finite number", 0},
+    {"a.amf",
+     "<amf><object id='1'><mesh><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
+     "</volume></mesh></object></amf>",
+     "does not exist", 0},
+    {"a.amf",
+     "<amf><object id='1'><mesh><volume><triangle><v1>-1</v1></triangle></volume></mesh></object>"
+     "</amf>",
+     "no number of a vertex", 0},
+    {"a.amf", "<amf><constellation><instance objectid='4'/></constellation></amf>",
+     "which is no object", 0},
+    {"a.amf", "<!DOCTYPE amf [<!ENTITY a 'b'>]><amf/>", "document type declaration", 0},
     {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", NULL, 0},
     {"a.off", "OFF 3 1 0\n# a comment\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "does not exist", 6},
     {"a.off", "OFF\n4000000000 1 0\n0 0 0\n", "too short", 2},

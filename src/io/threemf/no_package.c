@@ -24,6 +24,19 @@ csgm_status csg_package_parse(csg_package *package, const char *name, const csg_
     return CSGM_ERR_UNSUPPORTED;
 }
 
+const char *csg_package_first(csg_package *package)
+{
+    (void)package;
+    return NULL;
+}
+
+csgm_status csg_package_parse_bytes(const uint8_t *bytes, size_t size_bytes,
+                                    const csg_xml_calls *calls, csg_adapter_error *error)
+{
+    (void)bytes, (void)size_bytes, (void)calls, (void)error;
+    return CSGM_ERR_UNSUPPORTED;
+}
+
 void csg_package_close(csg_package *package)
 {
     (void)package;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The only file that names libzip and expat: a ZIP package in memory -> the elements of one of its
- * XML files. Bytes are hostile, so: what comes out of the archive may be so many times as much as
- * went in and no more, a single tag has a length that it may not exceed, elements may not nest
- * without end, and there are no document type declarations, hence no entities to expand.
+ * XML files, or XML in memory -> its elements. Bytes are hostile, so: what comes out of the archive
+ * may be so many times as much as went in and no more, a single tag has a length that it may not
+ * exceed, elements may not nest without end, and there are no document type declarations, hence no
+ * entities to expand.
  */
 #include <expat.h>
 #include <stdio.h>
@@ -137,14 +138,61 @@ static void XMLCALL on_other(void *user, const char *text, int length)
     p->seen = p->fed;
 }
 
+static void XMLCALL on_text(void *user, const char *text, int length)
+{
+    parse *p = user;
+    p->seen = p->fed;
+    if (p->status != CSGM_OK || !p->calls->text)
+        return;
+    csgm_status status = p->calls->text(p->calls->user, text, (size_t)length);
+    if (status != CSGM_OK)
+        stop(p, status, "");
+}
+
 static void XMLCALL on_doctype(void *user, const char *name, const char *system_id,
                                const char *public_id, int internal)
 {
     (void)name, (void)system_id, (void)public_id, (void)internal;
-    stop(user, CSGM_ERR_FORMAT, "it has a document type declaration, which 3MF forbids");
+    stop(user, CSGM_ERR_FORMAT, "it has a document type declaration, which is not read");
 }
 
 /* ---- bytes ----------------------------------------------------------------------------------- */
+
+static csgm_status fail_parser(parse *p)
+{
+    enum XML_Error code = XML_GetErrorCode(p->parser);
+    if (p->status != CSGM_OK)
+        return p->status;
+    p->problem = XML_ErrorString(code);
+    return code == XML_ERROR_NO_MEMORY ? CSGM_ERR_MEMORY : CSGM_ERR_FORMAT;
+}
+
+static bool make_parser(parse *p)
+{
+    p->parser = XML_ParserCreateNS(NULL, '|');
+    if (!p->parser)
+        return false;
+    XML_SetUserData(p->parser, p);
+    XML_SetElementHandler(p->parser, on_start, on_end);
+    XML_SetStartNamespaceDeclHandler(p->parser, on_namespace);
+    XML_SetDefaultHandler(p->parser, on_other);
+    XML_SetCharacterDataHandler(p->parser, on_text);
+    XML_SetStartDoctypeDeclHandler(p->parser, on_doctype);
+    return true;
+}
+
+/* Of a parse that has ended so. */
+static csgm_status tell(parse *p, csgm_status status, const char *what, const char *name,
+                        csg_adapter_error *error)
+{
+    bool reported = p->status != CSGM_OK && !*p->problem;
+    if (status == CSGM_ERR_MEMORY && !reported)
+        p->problem = "out of memory";
+    if (status != CSGM_OK && !reported)
+        fail(error, status, what, name, p->problem);
+    XML_ParserFree(p->parser);
+    return status;
+}
 
 static csgm_status feed(csg_package *package, zip_file_t *file, parse *p)
 {
@@ -163,13 +211,8 @@ static csgm_status feed(csg_package *package, zip_file_t *file, parse *p)
         }
         package->bytes_left -= (uint64_t)got;
         p->fed += (uint64_t)got;
-        if (XML_ParseBuffer(p->parser, (int)got, got == 0) != XML_STATUS_OK) {
-            if (p->status != CSGM_OK)
-                return p->status;
-            enum XML_Error code = XML_GetErrorCode(p->parser);
-            p->problem = XML_ErrorString(code);
-            return code == XML_ERROR_NO_MEMORY ? CSGM_ERR_MEMORY : CSGM_ERR_FORMAT;
-        }
+        if (XML_ParseBuffer(p->parser, (int)got, got == 0) != XML_STATUS_OK)
+            return fail_parser(p);
         if (p->fed - p->seen > MOST_TAG_BYTES) {
             p->problem = "it has a tag of more than a megabyte";
             return CSGM_ERR_FORMAT;
@@ -190,22 +233,34 @@ csgm_status csg_package_parse(csg_package *package, const char *name, const csg_
     if (!file)
         return fail(error, CSGM_ERR_FORMAT, "in the package's ", name,
                     zip_strerror(package->archive));
-    p.parser = XML_ParserCreateNS(NULL, '|');
-    csgm_status status = CSGM_ERR_MEMORY;
-    if (p.parser) {
-        XML_SetUserData(p.parser, &p);
-        XML_SetElementHandler(p.parser, on_start, on_end);
-        XML_SetStartNamespaceDeclHandler(p.parser, on_namespace);
-        XML_SetDefaultHandler(p.parser, on_other);
-        XML_SetStartDoctypeDeclHandler(p.parser, on_doctype);
-        status = feed(package, file, &p);
-    }
-    bool reported = p.status != CSGM_OK && !*p.problem;
-    if (status == CSGM_ERR_MEMORY && !reported)
-        p.problem = "out of memory";
-    if (status != CSGM_OK && !reported)
-        fail(error, status, "in the package's ", name, p.problem);
-    XML_ParserFree(p.parser);
+    csgm_status status = make_parser(&p) ? feed(package, file, &p) : CSGM_ERR_MEMORY;
     zip_fclose(file);
-    return status;
+    return tell(&p, status, "in the package's ", name, error);
+}
+
+const char *csg_package_first(csg_package *package)
+{
+    return zip_get_num_entries(package->archive, 0) > 0 ? zip_get_name(package->archive, 0, 0)
+                                                        : NULL;
+}
+
+csgm_status csg_package_parse_bytes(const uint8_t *bytes, size_t size_bytes,
+                                    const csg_xml_calls *calls, csg_adapter_error *error)
+{
+    parse p = {.calls = calls, .problem = ""};
+    csgm_status status = make_parser(&p) ? CSGM_OK : CSGM_ERR_MEMORY;
+    for (size_t at = 0, chunk = CHUNK; status == CSGM_OK && at <= size_bytes; at += chunk) {
+        bool last = size_bytes - at <= CHUNK;
+        chunk = last ? size_bytes - at : CHUNK;
+        p.fed += chunk;
+        if (XML_Parse(p.parser, (const char *)bytes + at, (int)chunk, last) != XML_STATUS_OK)
+            status = fail_parser(&p);
+        else if (p.fed - p.seen > MOST_TAG_BYTES) {
+            p.problem = "it has a tag of more than a megabyte";
+            status = CSGM_ERR_FORMAT;
+        }
+        if (last)
+            break;
+    }
+    return tell(&p, status, "in the file", "", error);
 }

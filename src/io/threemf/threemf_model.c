@@ -472,8 +472,8 @@ static csgm_status read_files(parser *p, csg_package *package)
 {
     csg_3mf *m = p->m;
     csg_adapter_error error = {.text = ""};
-    csg_xml_calls relationships = {NULL, on_relationship, on_nothing, p};
-    csg_xml_calls model = {on_namespace, on_start, on_end, p};
+    csg_xml_calls relationships = {NULL, on_relationship, on_nothing, p, NULL};
+    csg_xml_calls model = {on_namespace, on_start, on_end, p, NULL};
     csgm_status status =
         report(m->input, csg_package_parse(package, "_rels/.rels", &relationships, &error), &error);
     uint32_t root;

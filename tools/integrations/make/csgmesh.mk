@@ -10,7 +10,7 @@
 CSGMESH ?= csgmesh
 CSGMESH_THREADS ?= 1
 CSGMESH_OUT ?= .
-CSGMESH_FORMATS ?= obj ply stl off gltf glb drc 3mf
+CSGMESH_FORMATS ?= obj ply stl off gltf glb drc 3mf amf
 CSGMESH_SCENE_SUFFIXES ?= txt scad csg
 
 csgmesh_prefix := $(if $(filter-out .,$(CSGMESH_OUT)),$(CSGMESH_OUT)/)
