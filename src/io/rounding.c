@@ -27,8 +27,8 @@ enum {
     WAYS = 2 * REACH + 1,
     CANDIDATES = WAYS * WAYS * WAYS,
     ROUNDS = 8,
-    LEAST_STEPS = 64,    /* of floats along the mesh's longest side */
-    MANY = 100,          /* one vertex in so many moved is worth a warning */
+    LEAST_STEPS = 64, /* of floats along the longest side of a mesh whose places are not floats */
+    MANY = 100,       /* one vertex in so many moved is worth a warning */
     MOST_AT_A_PLACE = 64 /* more than find other places around it in practice */
 };
 
@@ -359,17 +359,24 @@ static csgm_status refuse(const rounder *r, uint32_t vertex, const char *file, c
     return CSGM_ERR_UNSUPPORTED;
 }
 
-/* Are floats so coarse there that the mesh would have no shape? */
+static double longest(csg_vec3 v)
+{
+    return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+}
+
+/* Are floats so coarse there that the mesh would lose its shape? Places that floats have, as those
+ * of a cube of whole numbers, stay where they are, however coarse floats are. */
 static bool is_shapeless(const rounder *r)
 {
     csg_box box = csg_box_empty();
-    for (uint64_t i = 0; i < r->mesh->vertex_count; i++) {
-        csg_vec3 p = csg_vec3_from_floats(r->mesh->positions + 3 * i);
+    double moved = 0;
+    for (uint32_t i = 0; i < r->mesh->vertex_count; i++) {
+        csg_vec3 p = exact_place(r, i);
         box = csg_box_hull(box, (csg_box){p, p});
+        moved = fmax(moved, longest(csg_vec3_sub(round_place(r->rounding, p), p)));
     }
-    csg_vec3 size = csg_box_size(box);
     return r->rounding->kind == CSG_ROUND_FLOAT && r->mesh->vertex_count &&
-           fmax(size.x, fmax(size.y, size.z)) < LEAST_STEPS * coarsest_step(r, 0);
+           2 * LEAST_STEPS * moved > longest(csg_box_size(box));
 }
 
 /* Moves suspects until none is left. */

@@ -191,6 +191,19 @@ class Statistics(cli.CliTest):
         self.assert_files("far.txt")
         self.assert_status(self.run_in("far.txt", "-o", "a.ply"), 0)
 
+    def test_far_and_exact(self):
+        """Floats are half a unit apart there, and the corners of a cube are floats: nothing collapses."""
+        self.write("far.txt", "translate([5e6, 0, 0]) cube(10);\n")
+        for name in ("a.stl", "b.stl"):
+            self.assert_status(self.run_in("far.txt", "-o", name, *(["--ascii"] if name == "b.stl" else [])), 0)
+            found = self.info(name)["mesh"]
+            self.assertEqual((found["triangles"], found["manifold"]), (12, True))
+            for corner, wanted in zip(found["bounds"], ([5e6, 0, 0], [5e6 + 10, 10, 10])):
+                for axis in range(3):
+                    self.assertAlmostEqual(corner[axis], wanted[axis], places=5)
+        self.write("far.txt", "translate([5e6, 0, 0]) cube(10.25);\n")
+        self.assert_refused(self.run_in("far.txt", "-o", "c.stl"), 2, "E0505")
+
 
 class Dependencies(cli.CliTest):
     def setUp(self):
