@@ -747,6 +747,17 @@ CSGM_API csgm_status csgm_mesh_write_fd(csgm_context *context, const csgm_mesh_v
  * the status. */
 CSGM_API csgm_status csgm_files_hold(csgm_context *context);
 CSGM_API csgm_status csgm_files_release(csgm_context *context, bool keep);
+/* Any other file that appears as these do: complete, or not at all, held where files are held.
+ * context NULL: failures are not reported, errno says what it was; memory is malloc's. */
+typedef struct csgm_file csgm_file;
+CSGM_API csgm_status csgm_file_create(csgm_context *context, const char *path, csgm_file **out);
+CSGM_API int csgm_file_descriptor(const csgm_file *file); /* to write to; do not close it */
+/* Gives it its name (keep; sync: once it is on the disk), or removes it, and ends the handle. */
+CSGM_API csgm_status csgm_file_end(csgm_file *file, bool keep, bool sync);
+/* Removes what killed processes have left in a folder: files that csgmesh has put there before they
+ * had their names, and that no process has open. Where the file system can have files without a
+ * name there are none; writing in a folder does it, too, once in a process. */
+CSGM_API void csgm_files_sweep(const char *folder);
 /* Removes what unfinished csgm_mesh_write calls have put beside their targets. Async-signal-safe:
  * for a handler that then ends the process with _exit. */
 CSGM_API void csgm_files_abandon(void);

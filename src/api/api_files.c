@@ -3,6 +3,10 @@
  */
 #include "api/options.h"
 #include "api/view.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
 #include "io/file.h"
 #include "io/formats.h"
 
@@ -57,6 +61,59 @@ csgm_status csgm_files_hold(csgm_context *context)
 csgm_status csgm_files_release(csgm_context *context, bool keep)
 {
     return context ? csg_files_release(context, keep) : CSGM_ERR_ARGUMENT;
+}
+
+struct csgm_file {
+    csg_atomic_file file;
+    csgm_context own; /* where the caller has none */
+};
+
+csgm_status csgm_file_create(csgm_context *context, const char *path, csgm_file **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!path)
+        return CSGM_ERR_ARGUMENT;
+    csgm_file *file = calloc(1, sizeof *file);
+    if (!file)
+        return context ? csg_context_no_memory(context) : CSGM_ERR_MEMORY;
+    csg_memory_init(&file->own.memory, NULL, 0);
+    csgm_status status = csg_file_create(&file->file, context ? context : &file->own, path);
+    int error = errno;
+    if (status == CSGM_OK)
+        *out = file;
+    else
+        free(file);
+    errno = error;
+    return status;
+}
+
+int csgm_file_descriptor(const csgm_file *file)
+{
+    return file->file.fd;
+}
+
+csgm_status csgm_file_end(csgm_file *file, bool keep, bool sync)
+{
+    csgm_status status = CSGM_OK;
+    if (!file)
+        return CSGM_OK;
+    file->file.sync = sync;
+    if (keep)
+        status = csg_file_commit(&file->file);
+    else
+        csg_file_abandon(&file->file);
+    int error = errno;
+    free(file);
+    errno = error;
+    return status;
+}
+
+void csgm_files_sweep(const char *folder)
+{
+    if (folder)
+        csg_temporary_sweep(folder);
 }
 
 csgm_status csgm_mesh_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,

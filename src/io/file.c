@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Atomic files; see file.h. The names of temporaries in progress stand in a fixed table of the
- * process, so that a signal handler can unlink them without a lock or an allocation. A seventeenth
- * file written at the same time is not in the table: an interrupt would leave its temporary behind.
+ * Atomic files; see file.h. Their bytes go to a file without a name (temporary.h).
  */
 #include "io/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,45 +14,6 @@
 
 #include "base/mesh_codes.h"
 #include "base/trace.h"
-#include "io/formats.h"
-
-/* ---- temporaries in progress ------------------------------------------------------ */
-
-enum { SLOTS = 16, SLOT_FREE = 0, SLOT_TAKEN, SLOT_LIVE };
-
-static struct {
-    atomic_int state;
-    char name[PATH_MAX];
-} pending[SLOTS];
-
-static int pending_add(const char *name)
-{
-    size_t length = strlen(name) + 1;
-    for (int i = 0; i < SLOTS && length <= PATH_MAX; i++) {
-        int expected = SLOT_FREE;
-        if (!atomic_compare_exchange_strong(&pending[i].state, &expected, SLOT_TAKEN))
-            continue;
-        memcpy(pending[i].name, name, length);
-        atomic_store(&pending[i].state, SLOT_LIVE);
-        return i;
-    }
-    return -1;
-}
-
-static void pending_remove(int slot)
-{
-    if (slot >= 0)
-        atomic_store(&pending[slot].state, SLOT_FREE);
-}
-
-void csg_io_cleanup_pending(void)
-{
-    int kept = errno;
-    for (int i = 0; i < SLOTS; i++)
-        if (atomic_load(&pending[i].state) == SLOT_LIVE)
-            unlink(pending[i].name);
-    errno = kept;
-}
 
 /* ---- finding the target ----------------------------------------------------------- */
 
@@ -63,11 +21,16 @@ static csgm_status fail(csg_atomic_file *file, int error)
 {
     if (error == ENOMEM) {
         csg_arena_reset(&file->names);
-        return csg_context_no_memory(file->context);
+        csgm_status status = csg_context_no_memory(file->context);
+        errno = error;
+        return status;
     }
     csg_diag_plain(&file->context->diags, CSG_DIAG_CANNOT_WRITE, file->path, NULL,
-                   "cannot write: %s", strerror(error));
+                   "cannot write: %s",
+                   error == ELOOP ? "its symbolic links lead in a circle, or are more than forty"
+                                  : strerror(error));
     csg_arena_reset(&file->names);
+    errno = error;
     return CSGM_ERR_IO;
 }
 
@@ -123,29 +86,16 @@ static csgm_status open_direct(csg_atomic_file *file, int descriptor)
     return file->fd < 0 ? fail(file, errno) : CSGM_OK;
 }
 
-/* Created by our own open, not mkstemp, so that the kernel applies the umask. */
 static int open_temporary(csg_atomic_file *file)
 {
-    static atomic_uint counter;
-    int folder = (int)folder_length(file->target);
-    for (int attempt = 0; attempt < 1000; attempt++) {
-        file->temporary =
-            csg_arena_printf(&file->names, "%.*s.csgmesh-%ld-%u.tmp", folder, file->target,
-                             (long)getpid(), atomic_fetch_add(&counter, 1));
-        if (!file->temporary) {
-            errno = ENOMEM;
-            return -1;
-        }
-        file->pending = pending_add(file->temporary);
-        file->fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file->fd >= 0)
-            return file->fd;
-        pending_remove(file->pending);
-        file->pending = -1;
-        if (errno != EEXIST)
-            return -1;
-    }
-    return -1;
+    const char *folder =
+        csg_arena_printf(&file->names, "%.*s", (int)folder_length(file->target), file->target);
+    if (!folder)
+        return ENOMEM;
+    csg_temporary_sweep_once(folder);
+    int error = csg_temporary_open(&file->temporary, &file->names, file->target);
+    file->fd = file->temporary.fd;
+    return error;
 }
 
 /* The new file gets the old one's mode and, where we may, its owner. */
@@ -160,8 +110,7 @@ static void take_over(int fd, const struct stat *old)
 
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path)
 {
-    *file =
-        (csg_atomic_file){.context = context, .path = path, .fd = -1, .sync = true, .pending = -1};
+    *file = (csg_atomic_file){.context = context, .path = path, .fd = -1, .sync = true};
     csg_arena_init(&file->names, &context->memory);
     int descriptor = descriptor_of(path);
     struct stat old;
@@ -175,8 +124,12 @@ csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const 
     if (exists && access(path, W_OK) != 0)
         return fail(file, errno);
     file->target = follow_links(&file->names, path);
-    if (!file->target || open_temporary(file) < 0)
+    if (!file->target)
         return fail(file, errno);
+    int error = open_temporary(file);
+    if (error)
+        return fail(file, error);
+    file->is_new = !exists;
     if (exists)
         take_over(file->fd, &old);
     return CSGM_OK;
@@ -184,17 +137,10 @@ csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const 
 
 /* ---- the end ---------------------------------------------------------------------- */
 
-static void forget(csg_atomic_file *file)
-{
-    pending_remove(file->pending);
-    csg_arena_reset(&file->names);
-    file->fd = file->pending = -1;
-}
-
-static bool read_fully(int fd, char *buffer, size_t size, size_t *got)
+static bool read_fully(int fd, char *buffer, size_t size, off_t at, size_t *got)
 {
     for (*got = 0; *got < size;) {
-        ssize_t count = read(fd, buffer + *got, size - *got);
+        ssize_t count = pread(fd, buffer + *got, size - *got, at + (off_t)*got);
         if (count < 0 && errno == EINTR)
             continue;
         if (count <= 0)
@@ -209,11 +155,13 @@ static bool same_bytes(int a, int b)
     enum { PIECE = 1 << 15 };
     char left[PIECE], right[PIECE];
     size_t left_count, right_count;
+    off_t at = 0;
     do {
-        if (!read_fully(a, left, PIECE, &left_count) ||
-            !read_fully(b, right, PIECE, &right_count) || left_count != right_count ||
+        if (!read_fully(a, left, PIECE, at, &left_count) ||
+            !read_fully(b, right, PIECE, at, &right_count) || left_count != right_count ||
             memcmp(left, right, left_count) != 0)
             return false;
+        at += PIECE;
     } while (left_count == PIECE);
     return true;
 }
@@ -224,13 +172,10 @@ static bool is_unchanged(const csg_atomic_file *file)
     struct stat old, new;
     if (stat(file->target, &old) != 0 || fstat(file->fd, &new) != 0 || old.st_size != new.st_size)
         return false;
-    int a = open(file->target, O_RDONLY | O_CLOEXEC);
-    int b = open(file->temporary, O_RDONLY | O_CLOEXEC);
-    bool same = a >= 0 && b >= 0 && same_bytes(a, b);
-    if (a >= 0)
-        close(a);
-    if (b >= 0)
-        close(b);
+    int descriptor = open(file->target, O_RDONLY | O_CLOEXEC);
+    bool same = descriptor >= 0 && same_bytes(descriptor, file->fd);
+    if (descriptor >= 0)
+        close(descriptor);
     return same;
 }
 
@@ -240,30 +185,26 @@ static int wait_for_disk(const csg_atomic_file *file)
     return fsync(file->fd) == 0 ? 0 : errno;
 }
 
-/* The first error's errno, or 0. */
+/* Closes; the first error's errno, or 0. */
 static int close_file(csg_atomic_file *file, int error)
 {
-    if (file->fd >= 0 && close(file->fd) != 0 && !error)
-        error = errno;
+    int closing = file->target                            ? csg_temporary_close(&file->temporary)
+                  : file->fd >= 0 && close(file->fd) != 0 ? errno
+                                                          : 0;
     file->fd = -1;
-    return error;
+    return error ? error : closing;
 }
 
-/* Closed, and named if there was no error so far. */
+/* Named if there was no error so far, and closed. */
 static csgm_status end_file(csg_atomic_file *file, int error)
 {
+    if (file->target && !error)
+        error = csg_temporary_rename(&file->temporary, file->target, file->is_new);
     error = close_file(file, error);
-    if (file->target && !error && rename(file->temporary, file->target) != 0)
-        error = errno;
-    if (!error) {
-        forget(file);
-        return CSGM_OK;
-    }
-    if (file->temporary)
-        unlink(file->temporary);
-    pending_remove(file->pending);
-    file->fd = file->pending = -1;
-    return fail(file, error);
+    if (error)
+        return fail(file, error);
+    csg_arena_reset(&file->names);
+    return CSGM_OK;
 }
 
 struct csg_held_file {
@@ -298,17 +239,13 @@ csgm_status csg_file_commit(csg_atomic_file *file)
     }
     int error = file->target && file->sync ? wait_for_disk(file) : 0;
     bool waits = !error && file->target && file->context->holds_files;
-    if (waits) /* without its descriptor: there may be many */
-        error = close_file(file, error);
-    return waits && !error ? hold(file) : end_file(file, error);
+    return waits ? hold(file) : end_file(file, error);
 }
 
 void csg_file_abandon(csg_atomic_file *file)
 {
     close_file(file, 0);
-    if (file->temporary)
-        unlink(file->temporary);
-    forget(file);
+    csg_arena_reset(&file->names);
 }
 
 /* ---- held files ------------------------------------------------------------------- */

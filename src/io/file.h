@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: MIT
- * Files that appear complete or not at all: the bytes go to a temporary file beside the target, are
+ * Files that appear complete or not at all: the bytes go to a temporary file (temporary.h), are
  * synced, and take the target's name. Devices, pipes and descriptors are written directly.
  */
 #ifndef CSG_IO_FILE_H
 #define CSG_IO_FILE_H
 
 #include "base/context.h"
+#include "io/temporary.h"
 
 typedef struct csg_atomic_file {
     csgm_context *context;
     csg_arena names;
-    const char *path;      /* as given, for diagnostics; borrowed */
-    const char *target;    /* links followed; NULL = written directly */
-    const char *temporary; /* beside the target */
+    const char *path;   /* as given, for diagnostics; borrowed */
+    const char *target; /* links followed; NULL = written directly */
+    csg_temporary temporary;
     int fd;
     bool sync; /* on the disk before it gets its name; true unless changed before the commit */
     bool only_if_changed; /* a target with these bytes stays as it is; set before the commit */
-    int pending;          /* slot of the temporary's name for csg_io_cleanup_pending, -1 = none */
+    bool is_new;          /* nothing has had the target's name */
 } csg_atomic_file;
 
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */

@@ -86,10 +86,10 @@ static void begin(fixture *f, uint64_t memory_bytes)
 
 static void end(fixture *f)
 {
-    assert_int_equal(count_entries("/proc/self/fd"), f->descriptors);
     csgm_field_destroy(f->field);
     csgm_scene_destroy(f->scene);
     csgm_context_destroy(f->context);
+    assert_int_equal(count_entries("/proc/self/fd"), f->descriptors);
     assert_int_equal(f->memory.blocks, 0);
     assert_int_equal(count_entries(f->folder), 0);
     assert_int_equal(rmdir(f->folder), 0);

@@ -53,6 +53,14 @@ def has_library(name):
     return any(line.startswith("with ") and name in line for line in lines)
 
 
+def hidden_name(number):
+    """What a run on this machine calls a file that has no name yet (io/temporary.h)."""
+    host = 2166136261
+    for byte in os.uname().nodename.encode():
+        host = (host ^ byte) * 16777619 & 0xFFFFFFFF
+    return f".csgmesh-{host:08x}-{os.getpid()}-{number:x}-0.tmp"
+
+
 class CliTest(unittest.TestCase):
     """Each test stands in an empty folder of its own."""
 

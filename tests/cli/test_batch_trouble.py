@@ -69,7 +69,7 @@ class Killed(TroubleTest):
         for name, content in digest(early).items():
             self.assertEqual(content, self.wanted[name])
         # what a killed process was writing, as the library names it
-        self.write("out/.csgmesh-999999999-0.tmp", "half")
+        self.write("out/" + cli.hidden_name(0), "half")
         outcomes = self.batch("s/*.txt", "-d", "out", "-r", "24")
         self.assertGreaterEqual(outcomes[None]["up_to_date"], min(len(early), 5) - 2)
         self.assertEqual(len(self.assert_whole(self.wanted)), self.COUNT)

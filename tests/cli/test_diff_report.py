@@ -148,8 +148,21 @@ class Picture(ReportTest):
         self.assert_refused(self.run_in("diff", "f", "f", "--png", "x.ppm"), 2, "--html")
         result = self.run_in("diff", "a.ply", "b.ply", "--html", "no/where.html")
         self.assert_status(result, 2)
-        self.assertIn("cannot write no/where.html", result.stderr)
+        self.assertIn("no/where.html: error E0502: cannot write", result.stderr)
         self.assert_files("a.ply", "b.ply", "f")
+
+    def test_a_full_disk_leaves_no_half_set(self):
+        """A limit on file sizes stands for it: the page is too large, the small report before it fits."""
+        self.mesh(PLATE, "a.ply")
+        self.mesh(PLATE, "b.ply", "-D", "holes=2")
+        before = sorted(os.listdir(self.folder))
+        reports = "--junit r.xml --heatmap h.ply --html r.html"
+        for command, left in ((f"ulimit -f 64; exec '{cli.PROGRAM}' diff a.ply b.ply {reports}", before),
+                              (f"exec '{cli.PROGRAM}' diff a.ply b.ply {reports}",
+                               sorted([*before, "h.ply", "r.html", "r.xml"]))):
+            result = subprocess.run(["sh", "-c", command], cwd=self.folder, capture_output=True, check=False)
+            self.assertEqual(result.returncode, 2 if left == before else 1, result.stderr)
+            self.assertEqual(sorted(os.listdir(self.folder)), left)
 
 
 class Page(ReportTest):

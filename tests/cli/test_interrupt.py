@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Ctrl-C and SIGTERM: the program ends at once, with status 2, and leaves nothing behind."""
+import fcntl
 import os
 import signal
 import subprocess
@@ -57,6 +58,51 @@ class Interrupt(cli.CliTest):
         os.close(read)
         self.assertEqual(process.returncode, 2, message)
         self.assertIn(b"interrupted", message)
+
+    def killed_at_a_pipe(self, *outputs):
+        """One output is complete, the other is a pipe: the run is killed when it has opened that."""
+        os.mkfifo(self.path("pipe"))
+        with subprocess.Popen([cli.PROGRAM, "a.txt", "-r", "64", "-f", "obj", "-o", *outputs, "-o", "pipe"],
+                              cwd=self.folder, stderr=subprocess.DEVNULL) as process:
+            with open(self.path("pipe"), "rb") as pipe:  # it waits for the writer
+                pipe.read(1)
+                process.kill()
+                process.wait()
+        self.assertEqual(process.returncode, -signal.SIGKILL)
+        os.remove(self.path("pipe"))
+
+    def test_nothing_is_left_of_a_killed_run(self):
+        self.write("a.txt", cli.BALL)
+        self.write("old.ply", "old")
+        self.killed_at_a_pipe("new.ply", "-o", "old.ply")
+        left = [name for name in os.listdir(self.folder) if name not in ("a.txt", "old.ply")]
+        self.assertTrue(all(name.startswith(".csgmesh-") for name in left), left)
+        if self.has_nameless_files():
+            self.assertEqual(left, [])
+        self.assertEqual(self.read("old.ply"), b"old")
+        self.assert_status(self.run_in("a.txt", "-r", "8", "-o", "new.ply"), 0)
+        self.assert_files("a.txt", "old.ply", "new.ply")
+
+    def has_nameless_files(self):
+        try:
+            os.close(os.open(self.folder, os.O_TMPFILE | os.O_RDWR))
+            return os.path.exists("/proc/self/fd")
+        except (AttributeError, OSError):
+            return False
+
+    def test_the_next_run_sweeps(self):
+        """Hidden files that no process holds go; those that one holds, and all others, stay."""
+        self.write("a.txt", cli.BALL)
+        dead, held = cli.hidden_name(1), cli.hidden_name(2)
+        other = ".csgmesh-1-0.tmp"
+        for name in (dead, held, other):
+            self.write(name, "half")
+        with open(self.path(held), "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            self.assert_status(self.run_in("a.txt", "-r", "8", "-o", "b.ply"), 0)
+            self.assert_files("a.txt", "b.ply", held, other)
+        self.assert_status(self.run_in("a.txt", "-r", "8", "-o", "b.ply"), 0)
+        self.assert_files("a.txt", "b.ply", other)
 
     def old_file_survives(self, name):
         self.write("a.txt", cli.BALL)

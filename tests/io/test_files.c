@@ -222,8 +222,16 @@ static void cleanup_removes_a_temporary(void **state)
 {
     fixture *f = *state;
     csg_atomic_file file;
-    assert_int_equal(csg_file_create(&file, &f->io.context, in_folder(f, "a.ply")), CSGM_OK);
+    csg_temporary named;
+    csg_arena names;
+    csg_arena_init(&names, &f->io.context.memory);
+    assert_int_equal(csg_temporary_open_named(&named, &names, in_folder(f, "a.ply")), 0);
     assert_int_equal(io_folder_count(f->folder), 1);
+    csg_io_cleanup_pending();
+    assert_int_equal(io_folder_count(f->folder), 0);
+    csg_temporary_close(&named);
+    csg_arena_reset(&names);
+    assert_int_equal(csg_file_create(&file, &f->io.context, f->path), CSGM_OK);
     csg_io_cleanup_pending();
     assert_int_equal(io_folder_count(f->folder), 0);
     csg_file_abandon(&file);

@@ -1,22 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * Files of batches; see batch_files.h. Temporaries are named as the library names its own, so that
- * one sweep finds both.
+ * Files of batches; see batch_files.h.
  */
 #include "batch/batch_files.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <signal.h>
-#include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/interrupt.h"
 #include "core/textfile.h"
 
 bool batch_make_folders(const char *path, bool whole)
@@ -46,59 +40,22 @@ bool batch_make_folders(const char *path, bool whole)
 
 /* ---- writing -------------------------------------------------------------------------- */
 
-/* A file being written under a name of its own, which an interrupt removes. */
-typedef struct temporary {
-    int fd, slot;
-    char name[PATH_MAX];
-} temporary;
-
-static bool open_temporary(temporary *t, const char *target)
-{
-    static atomic_uint counter;
-    const char *slash = strrchr(target, '/');
-    int folder = slash ? (int)(slash + 1 - target) : 0;
-    for (int attempt = 0; attempt < 1000; attempt++) {
-        int length = snprintf(t->name, sizeof t->name, "%.*s.csgmesh-%ld-b%u.tmp", folder, target,
-                              (long)getpid(), atomic_fetch_add(&counter, 1));
-        if (length < 0 || (size_t)length >= sizeof t->name) {
-            errno = ENAMETOOLONG;
-            return false;
-        }
-        t->slot = cli_interrupt_guard(t->name);
-        t->fd = open(t->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (t->fd >= 0)
-            return true;
-        cli_interrupt_release(t->slot);
-        if (errno != EEXIST)
-            return false;
-    }
-    return false;
-}
-
-/* Closes, and gives the file its name if all went well; errno is that of the first failure. */
-static bool close_and_rename(temporary *t, bool good, const char *target)
+/* Ends the file with errno of what failed first. */
+static bool end_file(csgm_file *file, bool good, bool sync)
 {
     int reason = errno;
-    if (close(t->fd) != 0 && good) {
-        good = false;
-        reason = errno;
-    }
-    if (good && rename(t->name, target) != 0) {
-        good = false;
-        reason = errno;
-    }
+    csgm_status status = csgm_file_end(file, good, sync);
     if (!good)
-        unlink(t->name);
-    cli_interrupt_release(t->slot);
-    errno = reason;
-    return good;
+        errno = reason;
+    return good && status == CSGM_OK;
 }
 
 bool batch_write_small(const char *path, const char *text, size_t length)
 {
-    temporary t;
-    return open_temporary(&t, path) &&
-           close_and_rename(&t, cli_write_fully(t.fd, text, length), path);
+    csgm_file *file;
+    if (csgm_file_create(NULL, path, &file) != CSGM_OK)
+        return false;
+    return end_file(file, cli_write_fully(csgm_file_descriptor(file), text, length), false);
 }
 
 char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
@@ -148,50 +105,23 @@ static bool pour(int from, int to, batch_digest *digest)
 bool batch_copy(const char *from, const char *to, const batch_digest *digest, bool if_changed,
                 bool sync)
 {
-    temporary t;
+    csgm_file *file = NULL;
     batch_digest found;
     if (if_changed && batch_hash_path(to, &found) && batch_digest_equal(&found, digest))
         return true;
     int source = open(from, O_RDONLY | O_CLOEXEC);
     if (source < 0)
         return false;
-    bool opened = open_temporary(&t, to);
-    bool good = opened && pour(source, t.fd, &found);
+    bool opened = csgm_file_create(NULL, to, &file) == CSGM_OK;
+    bool good = opened && pour(source, csgm_file_descriptor(file), &found);
     if (good && !batch_digest_equal(&found, digest)) {
         good = false;
         errno = EBADMSG;
     }
-    good = good && (!sync || fsync(t.fd) == 0);
     int reason = errno;
     close(source);
     errno = reason;
-    return opened && close_and_rename(&t, good, to);
-}
-
-/* ---- leftovers ------------------------------------------------------------------------ */
-
-/* ".csgmesh-PID-...tmp" of a process that has ended */
-static bool is_leftover(const char *name)
-{
-    static const char prefix[] = ".csgmesh-", suffix[] = ".tmp";
-    size_t length = strlen(name), least = sizeof prefix + sizeof suffix;
-    if (length < least || strncmp(name, prefix, sizeof prefix - 1) != 0 ||
-        strcmp(name + length - (sizeof suffix - 1), suffix) != 0)
-        return false;
-    char *end;
-    long pid = strtol(name + sizeof prefix - 1, &end, 10);
-    return *end == '-' && pid > 0 && kill((pid_t)pid, 0) != 0 && errno == ESRCH;
-}
-
-void batch_sweep(const char *folder)
-{
-    DIR *directory = opendir(folder);
-    const struct dirent *entry;
-    while (directory && (entry = readdir(directory)))
-        if (is_leftover(entry->d_name))
-            unlinkat(dirfd(directory), entry->d_name, 0);
-    if (directory)
-        closedir(directory);
+    return opened && end_file(file, good, sync);
 }
 
 /* ---- locks ---------------------------------------------------------------------------- */

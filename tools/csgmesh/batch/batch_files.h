@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Small files, copies, folders, locks and what a killed run has left behind. Nothing here reports:
- * false means errno.
+ * Small files, copies, folders and locks. Nothing here reports: false means errno.
  */
 #ifndef CLI_BATCH_FILES_H
 #define CLI_BATCH_FILES_H
@@ -18,8 +17,6 @@ char *batch_read_small(batch_arena *arena, const char *path, size_t *length);
  * `if_changed` a target with these bytes is left alone. */
 bool batch_copy(const char *from, const char *to, const batch_digest *digest, bool if_changed,
                 bool sync);
-/* Removes temporary files of processes that are no more. */
-void batch_sweep(const char *folder);
 
 /* The lock file of a directory of outputs. One byte says who is there, others stand for jobs; locks
  * end with their process. A file system without locks gives none, and no error. */

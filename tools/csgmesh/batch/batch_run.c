@@ -213,12 +213,12 @@ static void sweep(batch_run *run)
 {
     batch_arena arena = {0};
     const char *latest = "";
-    batch_sweep(run->state);
+    csgm_files_sweep(run->state);
     for (size_t i = 0; i < run->plan->count; i++)
         for (size_t j = 0; j < run->plan->jobs[i].outputs.count; j++) {
             const char *folder = batch_folder_of(&arena, run->plan->jobs[i].outputs.items[j]);
             if (strcmp(folder, latest) != 0)
-                batch_sweep(*folder ? folder : ".");
+                csgm_files_sweep(*folder ? folder : ".");
             latest = folder;
         }
     batch_arena_reset(&arena);

@@ -3,6 +3,7 @@
  * alone; or the rules with which a build system does the same.
  */
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include "batch/batch_report.h"
 #include "core/work.h"
@@ -25,8 +26,19 @@ static int check_usage(cli_app *app)
     return CLI_DONE;
 }
 
+/* A job's files are open until all of them are complete, and it may have many parts. */
+static void raise_limit_of_files(void)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+        limit.rlim_cur = limit.rlim_max;
+        setrlimit(RLIMIT_NOFILE, &limit); /* else there are fewer */
+    }
+}
+
 static int run_plan(cli_app *app, batch_plan *plan)
 {
+    raise_limit_of_files();
     batch_run state = {.app = app, .plan = plan};
     int status = batch_run_all(&state);
     if (status == CLI_DONE)

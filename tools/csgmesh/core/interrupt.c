@@ -12,10 +12,7 @@
 
 #include "core/cli.h"
 
-static atomic_bool progress_shown, is_ending;
-static _Atomic(const char *) pending_file;
-enum { SLOTS = 64 };
-static _Atomic(const char *) guarded[SLOTS];
+static atomic_bool progress_shown;
 
 static void say(const char *text)
 {
@@ -24,26 +21,14 @@ static void say(const char *text)
     }
 }
 
-static void remove_unfinished(void)
-{
-    const char *path = atomic_load(&pending_file);
-    csgm_files_abandon();
-    if (path)
-        unlink(path);
-    for (int i = 0; i < SLOTS; i++)
-        if ((path = atomic_load(&guarded[i])))
-            unlink(path);
-}
-
 /* Twice: another thread may be about to open a file whose name is known already. */
 static void on_signal(int signal_number)
 {
     (void)signal_number;
     static const struct timespec moment = {.tv_nsec = 5000000};
-    atomic_store(&is_ending, true);
-    remove_unfinished();
+    csgm_files_abandon();
     nanosleep(&moment, NULL);
-    remove_unfinished();
+    csgm_files_abandon();
     if (atomic_load(&progress_shown))
         say("\n");
     say("csgmesh: interrupted\n");
@@ -71,27 +56,4 @@ void cli_interrupt_install(void)
 bool cli_interrupt_progress_shown(bool shown)
 {
     return atomic_exchange(&progress_shown, shown);
-}
-
-void cli_interrupt_pending_file(const char *path)
-{
-    atomic_store(&pending_file, path);
-}
-
-int cli_interrupt_guard(const char *path)
-{
-    while (atomic_load(&is_ending))
-        pause(); /* nothing new is begun */
-    for (int i = 0; i < SLOTS; i++) {
-        const char *none = NULL;
-        if (atomic_compare_exchange_strong(&guarded[i], &none, path))
-            return i;
-    }
-    return -1;
-}
-
-void cli_interrupt_release(int slot)
-{
-    if (slot >= 0)
-        atomic_store(&guarded[slot], NULL);
 }

@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * Small files; see textfile.h. Regular files are written beside the target, synced and renamed;
- * devices and pipes are written directly.
+ * Small files; see textfile.h.
  */
 #include "core/textfile.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
-
-#include "core/interrupt.h"
 
 bool cli_write_fully(int fd, const char *bytes, size_t count)
 {
@@ -29,83 +22,31 @@ bool cli_write_fully(int fd, const char *bytes, size_t count)
     return true;
 }
 
-static bool write_directly(const char *path, const char *text, size_t length)
+/* What is not the library's to tell: it has told all of a file when it has a context. */
+static int refuse(cli_app *app, const char *path, const char *reason)
 {
-    int fd = open(path, O_WRONLY | O_CLOEXEC);
-    if (fd < 0)
-        return false;
-    bool good = cli_write_fully(fd, text, length);
-    int reason = errno;
-    good = close(fd) == 0 && good;
-    if (!good && reason)
-        errno = reason;
-    return good;
-}
-
-/* Created by our own open, not mkstemp, so that the kernel applies the umask. */
-static int open_beside(const char *target, char *temporary, size_t size)
-{
-    static atomic_uint counter;
-    for (int attempt = 0; attempt < 1000; attempt++) {
-        const char *slash = strrchr(target, '/');
-        int folder = slash ? (int)(slash + 1 - target) : 0;
-        int written = snprintf(temporary, size, "%.*s.csgmesh-%ld-t%u.tmp", folder, target,
-                               (long)getpid(), atomic_fetch_add(&counter, 1));
-        if (written < 0 || (size_t)written >= size) {
-            errno = ENAMETOOLONG;
-            return -1;
-        }
-        int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST)
-            return fd;
-    }
-    return -1;
-}
-
-static bool write_renamed(const char *target, const char *text, size_t length)
-{
-    char temporary[PATH_MAX + 64];
-    int fd = open_beside(target, temporary, sizeof temporary);
-    if (fd < 0)
-        return false;
-    cli_interrupt_pending_file(temporary);
-    errno = 0;
-    bool good = cli_write_fully(fd, text, length) && fsync(fd) == 0;
-    int reason = errno;
-    good = close(fd) == 0 && good && rename(temporary, target) == 0;
-    if (!good) {
-        reason = reason ? reason : errno;
-        unlink(temporary);
-        errno = reason;
-    }
-    cli_interrupt_pending_file(NULL);
-    return good;
-}
-
-static bool write_path(const char *path, const char *text, size_t length)
-{
-    struct stat status;
-    char target[PATH_MAX];
-    errno = 0;
-    if (strcmp(path, "-") == 0)
-        return cli_write_fully(STDOUT_FILENO, text, length);
-    if (stat(path, &status) != 0)
-        return write_renamed(path, text, length);
-    errno = 0;
-    if (!S_ISREG(status.st_mode))
-        return write_directly(path, text, length);
-    return realpath(path, target) && write_renamed(target, text, length);
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot write %s: %s", path, reason);
+    return CLI_TROUBLE;
 }
 
 int cli_write_text(cli_app *app, const char *path, const char *text, size_t length)
 {
-    if (write_path(path, text, length))
-        return CLI_DONE;
-    const char *reason = strerror(errno);
-    bool is_stdout = strcmp(path, "-") == 0;
-    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot write %s: %s",
-                    is_stdout ? "standard output" : path, reason);
-    return CLI_TROUBLE;
+    csgm_file *file;
+    if (strcmp(path, "-") == 0)
+        return cli_write_fully(STDOUT_FILENO, text, length)
+                   ? CLI_DONE
+                   : refuse(app, "standard output", strerror(errno));
+    csgm_status status = csgm_file_create(app->context, path, &file);
+    if (status == CSGM_OK && !cli_write_fully(csgm_file_descriptor(file), text, length)) {
+        int reason = errno;
+        csgm_file_end(file, false, false);
+        return refuse(app, path, strerror(reason));
+    }
+    if (status == CSGM_OK)
+        status = csgm_file_end(file, true, true);
+    if (status != CSGM_OK && !app->context)
+        refuse(app, path, strerror(errno));
+    return cli_exit_status(status);
 }
 
 FILE *cli_text_open(cli_text *text)

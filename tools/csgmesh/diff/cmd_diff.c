@@ -226,6 +226,7 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
     }
     if (exit_status == CLI_DONE)
         exit_status = diff_report_add(app, diff, sides, result);
+    result->lacks_picture = exit_status != CLI_DONE;
     csgm_diff_destroy(diff);
     return exit_status;
 }
@@ -358,16 +359,22 @@ static int find_pairs(cli_app *app, diff_results *results)
     return diff_results_add(app, results, a, b) ? CLI_DONE : CLI_TROUBLE;
 }
 
-/* The exit status of the comparison, unless one cannot be written. */
+/* All reports appear, or none. The exit status of the comparison, unless one cannot be written. */
 static int write_reports(cli_app *app, const diff_results *results, int status)
 {
     const cli_options *o = &app->options;
-    if (o->diff_json && diff_write_json(app, results) != CLI_DONE)
-        status = CLI_TROUBLE;
-    if (o->diff_junit && diff_write_junit(app, results) != CLI_DONE)
-        status = CLI_TROUBLE;
-    if (o->diff_html && diff_write_html(app, results) != CLI_DONE)
-        status = CLI_TROUBLE;
+    bool good = !app->overwriter;
+    for (size_t i = 0; i < results->count && good; i++)
+        good = !results->items[i].lacks_picture;
+    csgm_files_hold(app->context);
+    if (good && o->diff_json)
+        good = diff_write_json(app, results) == CLI_DONE;
+    if (good && o->diff_junit)
+        good = diff_write_junit(app, results) == CLI_DONE;
+    if (good && o->diff_html)
+        good = diff_write_html(app, results) == CLI_DONE;
+    if (csgm_files_release(app->context, good) != CSGM_OK || !good)
+        return CLI_TROUBLE;
     return status;
 }
 
@@ -387,9 +394,9 @@ int cli_cmd_diff(cli_app *app)
             cli_sources_guard_file(app, i % 2 ? results.items[i / 2].b : results.items[i / 2].a);
     if (status == CLI_DONE) {
         csgm_diff_options options = diff_options(&app->options, ignored);
-        status = compare_pairs(app, &options, &results);
-        if (!app->overwriter)
-            status = write_reports(app, &results, status);
+        if (!app->options.diff_update) /* what is accepted is there at once */
+            csgm_files_hold(app->context);
+        status = write_reports(app, &results, compare_pairs(app, &options, &results));
     }
     diff_results_release(&results);
     return cli_finish_stdout(app, status);

@@ -17,8 +17,9 @@ typedef enum diff_outcome {
 typedef struct diff_result {
     char *a, *b; /* paths; one is NULL where the other is alone */
     diff_outcome outcome;
-    int exit_status; /* of this pair */
-    bool is_updated; /* A is now B */
+    int exit_status;    /* of this pair */
+    bool lacks_picture; /* one that was asked for could not be made */
+    bool is_updated;    /* A is now B */
     csgm_diff_report
         report;         /* of pairs that were compared; level SAME_BYTES: nothing else is set */
     char *models;       /* for --html: the meshes as JSON, or NULL */

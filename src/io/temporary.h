@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ * Files that have no name yet. Where the file system can do it they have none at all, so that
+ * nothing is left of them when their process is killed, at any moment. Elsewhere, and for the
+ * moment in which such a file takes the place of an old one, they have a hidden name beside it:
+ *
+ *     .csgmesh-HOST-PROCESS-START-NUMBER.tmp
+ *
+ * and hold a lock, which ends with their process, however that ends. A file of such a name that
+ * nobody holds is swept by the next run that writes in the folder. Where locks do not work nothing
+ * is swept, nor what another machine has left.
+ */
+#ifndef CSG_IO_TEMPORARY_H
+#define CSG_IO_TEMPORARY_H
+
+#include <stdbool.h>
+
+#include "base/memory.h"
+
+typedef struct csg_temporary {
+    int fd;           /* for reading and writing */
+    int slot;         /* in the table of names that csg_io_cleanup_pending removes; -1: none */
+    bool is_named;    /* the name is that of the file */
+    const char *name; /* hidden, in the target's folder */
+} csg_temporary;
+
+/* Beside the target; the name's memory is of the arena. 0, or errno and nothing is open. */
+int csg_temporary_open(csg_temporary *file, csg_arena *names, const char *target);
+/* The same with a hidden name from the start. */
+int csg_temporary_open_named(csg_temporary *file, csg_arena *names, const char *target);
+/* Gives it the target's name, in the place of what had it; is_new: nothing had it. 0 or errno. */
+int csg_temporary_rename(csg_temporary *file, const char *target, bool is_new);
+/* Closes it; with its hidden name, if it still has that, it is removed. errno of close, or 0. */
+int csg_temporary_close(csg_temporary *file);
+
+/* Removes what killed processes have left in the folder; "" is the current one. */
+void csg_temporary_sweep(const char *folder);
+/* The same, but once in this process. */
+void csg_temporary_sweep_once(const char *folder);
+
+#endif
