@@ -234,8 +234,9 @@ csgm_status csg_package_parse(csg_package *package, const char *name, const csg_
         return fail(error, CSGM_ERR_FORMAT, "in the package's ", name,
                     zip_strerror(package->archive));
     csgm_status status = make_parser(&p) ? feed(package, file, &p) : CSGM_ERR_MEMORY;
+    status = tell(&p, status, "in the package's ", name, error); /* the problem may be the file's */
     zip_fclose(file);
-    return tell(&p, status, "in the package's ", name, error);
+    return status;
 }
 
 const char *csg_package_first(csg_package *package)
