@@ -62,7 +62,7 @@ typedef struct walk {
 /* A cube with the tape that holds in it and around it. */
 typedef struct cube {
     csg_vec3 c;
-    double half, around;
+    double half, around, value; /* in the middle, where the cube is small enough for one sheet */
     csg_tape tape;
 } cube;
 
@@ -82,10 +82,11 @@ static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_
 }
 
 /* A place of the surface in the cube or a little around it, by Newton's steps from its middle. */
-static bool find_surface(const walk *w, worker *s, const cube *q, double value, csg_vec3 *out)
+static bool find_surface(const walk *w, worker *s, const cube *q, csg_vec3 *out)
 {
     enum { STEPS = 6 };
     double noise = 4 * (double)w->remesh->probe.noise, reach = q->half + 0.9 * q->around;
+    double value = q->value;
     csg_vec3 p = q->c;
     for (int step = 0; step < STEPS && fabs(value) > noise; step++) {
         csg_vec3 g = gradient_at(w, s, &q->tape, p);
@@ -174,6 +175,11 @@ static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t
 
 typedef enum verdict { SETTLED, DIVIDE, NO_MEMORY } verdict;
 
+static bool may_be_sheet(const walk *w, double half)
+{
+    return 2 * half <= SHEET_CELLS * w->remesh->cell * 1.01;
+}
+
 /* All of the cube. */
 static bool is_near_mesh(const walk *w, const cube *q)
 {
@@ -194,12 +200,11 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
 /* A place of the surface at hand, how far from the mesh it is. */
 static verdict settle(const walk *w, worker *s, const cube *q)
 {
-    double cell = w->remesh->cell, ball = sqrt(3.0) * q->half;
+    double ball = sqrt(3.0) * q->half, value = q->value;
     uint32_t triangle;
     csg_vec3 p;
-    if (2 * q->half > SHEET_CELLS * cell * 1.01)
+    if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    double value = value_at(w, s, &q->tape, q->c);
     double noise = 4 * (double)w->remesh->probe.noise;
     const csg_vec3 middle[3] = {q->c, q->c, q->c};
     csg_gradients gradients;
@@ -213,7 +218,7 @@ static verdict settle(const walk *w, worker *s, const cube *q)
     bool near = !small && !sheet && is_near_mesh(w, q);
     if (!small && !sheet && !near)
         return DIVIDE;
-    if (!find_surface(w, s, q, value, &p))
+    if (!find_surface(w, s, q, &p))
         return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
     if (sheet && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error))
         return SETTLED;
@@ -223,7 +228,7 @@ static verdict settle(const walk *w, worker *s, const cube *q)
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
 
-static void place_children(const cube *parent, float c[3][CSG_OCTANTS])
+static void place_children(const cube *parent, float c[3][CSG_LANES])
 {
     const double at[3] = {parent->c.x, parent->c.y, parent->c.z};
     for (int axis = 0; axis < 3; axis++)
@@ -235,7 +240,7 @@ static void place_children(const cube *parent, float c[3][CSG_OCTANTS])
 static bool divide(const walk *w, worker *s, const cube *parent, int depth)
 {
     enum { DEEPEST = 24 };
-    float c[3][CSG_OCTANTS];
+    float c[3][CSG_LANES] = {{0}}, f[CSG_LANES];
     cube child = {.half = 0.5 * parent->half};
     csg_cell_state states[CSG_OCTANTS];
     csg_tape tapes[CSG_OCTANTS];
@@ -250,6 +255,9 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
         if (states[o] == CSG_CELL_SURFACE)
             done = csg_prune_shorten(&s->pruner, o, tau, &s->arena, &tapes[o]);
     }
+    if (done && may_be_sheet(w, child.half)) /* by the tape that holds in all of them, at once */
+        w->remesh->probe.marching->kernel->values(&parent->tape, c[0], c[1], c[2], CSG_OCTANTS, f,
+                                                  s->scratch, w->scratch_floats);
     for (int o = 0; o < CSG_OCTANTS && done; o++) {
         if (states[o] != CSG_CELL_SURFACE)
             continue;
@@ -259,6 +267,7 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
         }
         child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
         child.tape = tapes[o];
+        child.value = may_be_sheet(w, child.half) ? (double)f[o] : 0;
         verdict what = settle(w, s, &child);
         done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &child, depth + 1));
     }
