@@ -181,6 +181,8 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
         warn_empty(&e, scene);
         bool is_drawing = program->options && program->options->flat == CSGM_FLAT_DRAWING;
         status = is_drawing ? CSGM_OK : csg_warn_lost_parts(&e, scene); /* parts are layers there */
+        if (status == CSGM_OK)
+            status = csg_warn_joints(&e, scene);
         if (status != CSGM_OK)
             csg_scene_destroy(scene);
     }

@@ -9,17 +9,12 @@
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 
-typedef struct workspace {
-    csg_vec3 *points; /* per node, in its own frame */
-    csg_sample *samples;
-    csg_reference_work node;
-    void *heap;
-    size_t heap_bytes;
-} workspace;
+typedef csg_reference_room workspace;
 
 enum { STACK_BYTES = 16384 };
 
-static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
+/* stack: for small scenes, or NULL. */
+static bool begin_room(workspace *w, const csgm_scene *scene, void *stack)
 {
     size_t nodes = scene->node_count, steps = 0;
     for (size_t i = 0; i < scene->formula_count; i++)
@@ -27,7 +22,7 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     size_t bytes = nodes * (sizeof *w->points + sizeof *w->samples + 2 * sizeof(double)) +
                    steps * sizeof *w->node.steps;
     *w = (workspace){0};
-    if (bytes > STACK_BYTES) {
+    if (!stack || bytes > STACK_BYTES) {
         w->heap = stack = csg_memory_alloc(&scene->context->memory, bytes);
         w->heap_bytes = bytes;
         if (!stack)
@@ -41,7 +36,12 @@ static bool workspace_begin(workspace *w, const csgm_scene *scene, void *stack)
     return true;
 }
 
-static void workspace_end(workspace *w, const csgm_scene *scene)
+bool csg_reference_room_begin(csg_reference_room *room, const csgm_scene *scene)
+{
+    return begin_room(room, scene, NULL);
+}
+
+void csg_reference_room_end(csg_reference_room *w, const csgm_scene *scene)
 {
     csg_memory_release(&scene->context->memory, w->heap, w->heap_bytes);
 }
@@ -53,10 +53,11 @@ csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node
     return node->kind == CSG_NODE_WARP ? csg_warp_at(&scene->warps[node->payload], p).at : p;
 }
 
-static void place_points(workspace *w, const csgm_scene *scene, csg_vec3 p)
+static void place_points(workspace *w, const csgm_scene *scene, csg_node_id first, csg_node_id root,
+                         csg_vec3 p)
 {
-    w->points[scene->root] = p;
-    for (size_t i = scene->node_count; i-- > 0;) {
+    w->points[root] = p;
+    for (size_t i = (size_t)root + 1; i-- > first;) {
         const csg_node *node = &scene->nodes[i];
         csg_vec3 inner = csg_reference_inner_point(scene, node, w->points[i]);
         for (uint32_t k = 0; k < node->child_count; k++)
@@ -295,25 +296,33 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
     }
 }
 
-static void evaluate(workspace *w, const csgm_scene *scene)
+static void evaluate(workspace *w, const csgm_scene *scene, csg_node_id first, csg_node_id root)
 {
-    for (size_t i = 0; i < scene->node_count; i++)
+    for (size_t i = first; i <= root; i++)
         w->samples[i] = csg_reference_node(scene, &scene->nodes[i], w->points[i], w->samples,
                                            csg_scene_children(scene, &scene->nodes[i]), &w->node);
+}
+
+csg_sample csg_reference_below(csg_reference_room *room, const csgm_scene *scene, csg_node_id first,
+                               csg_node_id node, csg_vec3 p)
+{
+    place_points(room, scene, first, node, p);
+    evaluate(room, scene, first, node);
+    return room->samples[node];
 }
 
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
 {
     double stack[STACK_BYTES / sizeof(double)];
     workspace w;
-    if (!workspace_begin(&w, scene, stack)) {
+    if (!begin_room(&w, scene, stack)) {
         *status = CSGM_ERR_MEMORY;
         return (csg_sample){NAN, {0, 0, 0}};
     }
-    place_points(&w, scene, p);
-    evaluate(&w, scene);
+    place_points(&w, scene, 0, scene->root, p);
+    evaluate(&w, scene, 0, scene->root);
     csg_sample root = w.samples[scene->root];
-    workspace_end(&w, scene);
+    csg_reference_room_end(&w, scene);
     return root;
 }
 
@@ -342,12 +351,12 @@ uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, cs
 {
     double stack[STACK_BYTES / sizeof(double)];
     workspace w;
-    if (!workspace_begin(&w, scene, stack)) {
+    if (!begin_room(&w, scene, stack)) {
         *status = CSGM_ERR_MEMORY;
         return 0;
     }
-    place_points(&w, scene, p);
-    evaluate(&w, scene);
+    place_points(&w, scene, 0, scene->root, p);
+    evaluate(&w, scene, 0, scene->root);
     for (size_t i = 0; i < scene->node_count; i++)
         w.points[i].x = i == scene->root; /* the points have done their work: marks instead */
     uint32_t active = 0;
@@ -358,7 +367,7 @@ uint32_t csg_reference_active_primitives(const csgm_scene *scene, csg_vec3 p, cs
         active += csg_node_is_primitive(node->kind);
         mark_active(&w, scene, node);
     }
-    workspace_end(&w, scene);
+    csg_reference_room_end(&w, scene);
     return active;
 }
 
@@ -384,16 +393,16 @@ csg_node_id csg_reference_deciding_leaf(const csgm_scene *scene, csg_vec3 p, csg
 {
     double stack[STACK_BYTES / sizeof(double)];
     workspace w;
-    if (!workspace_begin(&w, scene, stack)) {
+    if (!begin_room(&w, scene, stack)) {
         *status = CSGM_ERR_MEMORY;
         return CSG_NODE_NONE;
     }
-    place_points(&w, scene, p);
-    evaluate(&w, scene);
+    place_points(&w, scene, 0, scene->root, p);
+    evaluate(&w, scene, 0, scene->root);
     csg_node_id id = scene->root;
     while (scene->nodes[id].child_count)
         id = csg_scene_children(scene,
                                 &scene->nodes[id])[deciding_child(&w, scene, &scene->nodes[id])];
-    workspace_end(&w, scene);
+    csg_reference_room_end(&w, scene);
     return id;
 }

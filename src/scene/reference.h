@@ -31,6 +31,23 @@ typedef struct csg_reference_work {
     double *values, *partials; /* room for the most operands */
 } csg_reference_work;
 
+/* Room for samples of all nodes, to be used for many points. */
+typedef struct csg_reference_room {
+    csg_vec3 *points;    /* per node, in its own frame */
+    csg_sample *samples; /* the same */
+    csg_reference_work node;
+    void *heap;
+    size_t heap_bytes;
+} csg_reference_room;
+
+/* False: out of memory, nothing to end. */
+bool csg_reference_room_begin(csg_reference_room *room, const csgm_scene *scene);
+void csg_reference_room_end(csg_reference_room *room, const csgm_scene *scene);
+/* A node at p in its own frame; the nodes below it are those from `first` on. Their samples are in
+ * the room then, each at the point that it was asked at. */
+csg_sample csg_reference_below(csg_reference_room *room, const csgm_scene *scene, csg_node_id first,
+                               csg_node_id node, csg_vec3 p);
+
 /* Where a node at p asks its children. */
 csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node, csg_vec3 p);
 

@@ -100,15 +100,24 @@ static void check_same(const csgm_scene *a, const csgm_scene *c)
     }
 }
 
+/* Findings, but for those about what blends of random solids do. */
+static int count_findings(void)
+{
+    int count = 0;
+    for (int i = 0; i < b.code_count; i++)
+        count += b.codes[i] != -304 && b.codes[i] != -340 && b.codes[i] != -341;
+    return count;
+}
+
 /* `scene` is taken over. */
 static void check_parses_back(csgm_scene *scene)
 {
     text first = print(scene);
     csgm_status status = bench_compile(&b, first.data);
-    if (status != CSGM_OK || b.code_count)
+    if (status != CSGM_OK || count_findings())
         print_error("%.4000s\n%s", first.data, b.text);
     assert_int_equal(status, CSGM_OK);
-    assert_int_equal(b.code_count, 0);
+    assert_int_equal(count_findings(), 0);
     text second = print(b.scene);
     size_t at = 0;
     while (first.data[at] && first.data[at] == second.data[at])

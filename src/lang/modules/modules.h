@@ -51,6 +51,8 @@ void csg_module_call_of_function(csg_module_call *call, const csg_function_call 
                                  const char *module, uint32_t skipped);
 /* Tells of parts that are only operands (scene/tree/parts.h); CSGM_ERR_MEMORY is reported. */
 csgm_status csg_warn_lost_parts(csg_eval *e, const csgm_scene *scene);
+/* Reports blends that swell, fill gaps or join nothing. CSGM_OK or CSGM_ERR_MEMORY (reported). */
+csgm_status csg_warn_joints(csg_eval *e, const csgm_scene *scene);
 
 /* ---- arguments: index = position in modules.def --------------------------------------------- */
 

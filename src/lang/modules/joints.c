@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ * Warnings about what blends do where solids come together (scene/operators/joints.h).
+ */
+#include <stdio.h>
+
+#include "base/scene_codes.h"
+#include "lang/modules/modules.h"
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/joints.h"
+
+typedef struct reporter {
+    csg_eval *e;
+    const csgm_scene *scene;
+} reporter;
+
+static void warn(void *user, const csg_joint *joint)
+{
+    const reporter *r = user;
+    csg_blend blend = csg_scene_blend(r->scene, joint->node);
+    char axis = (char)('x' + joint->axis), hint[80];
+    snprintf(hint, sizeof hint, "blend = fillet(%g) %s", blend.n,
+             joint->kind == CSG_JOINT_SWELLS ? "ends flush with it" : "keeps gaps open");
+    const char *round_hint = blend.kind == CSG_BLEND_ROUND ? hint : NULL;
+    switch (joint->kind) {
+    case CSG_JOINT_SWELLS:
+        csg_eval_report(r->e, CSG_DIAG_SWELLS, joint->node->where, round_hint,
+                        "the blend swells by %.3g beyond the face at %c = %.6g, which its solids "
+                        "have in common",
+                        joint->amount, axis, joint->at);
+        break;
+    case CSG_JOINT_FILLS:
+        csg_eval_report(r->e, CSG_DIAG_GAP_FILLED, joint->node->where, round_hint,
+                        "the blend fills the gap of %.3g between its solids around %c = %.6g",
+                        joint->amount, axis, joint->at);
+        break;
+    case CSG_JOINT_MISSES:
+        csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, NULL,
+                        "the blend joins nothing: its solids are %.3g apart", joint->amount);
+        break;
+    }
+}
+
+csgm_status csg_warn_joints(csg_eval *e, const csgm_scene *scene)
+{
+    reporter r = {e, scene};
+    csgm_status status = csg_joints_find(scene, warn, &r);
+    return status == CSGM_OK ? CSGM_OK : csg_context_no_memory(e->context);
+}

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: MIT
+ * Boxes, then samples in double; see joints.h.
+ */
+#include "scene/operators/joints.h"
+
+#include <math.h>
+
+#include "scene/operators/blend_kinds.h"
+#include "scene/reference.h"
+
+enum {
+    GRID = 5,           /* places along each side of a face */
+    MOST_SOLIDS = 64,   /* of one union */
+    MOST_WORK = 2000000 /* nodes evaluated, of a scene */
+};
+
+/* Of the blend's width: what swells by less is not worth a word. */
+static const double LEAST_SWELLING = 0.01;
+/* Of the box: ends that are nearer are one. */
+static const double SAME = 1e-9;
+/* Of a blend's support: solids that are farther apart than so much are nowhere both near enough to
+ * the surface, which comes out by less than the support itself. */
+static const double APART = 4;
+
+typedef struct look {
+    const csgm_scene *scene;
+    csg_reference_room room;
+    csg_node_id *firsts, *parents; /* per node: the first one below it; the one above it, or NONE */
+    csg_node_id first, id;         /* the nodes below the union, the union */
+    const csg_node *node;
+    csg_blend blend;
+    uint64_t work;
+} look;
+
+/* A place on an axis-parallel face: the axis that it is normal to, where, and its two sides. */
+typedef struct face {
+    int axis;
+    double at, low[3], high[3];
+} face;
+
+static void to_array(csg_vec3 v, double out[3])
+{
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+}
+
+static const csg_box *box_of(const look *l, uint32_t solid)
+{
+    return &l->scene->bounds[csg_scene_children(l->scene, l->node)[solid]];
+}
+
+/* What two solids have in common on the other axes; false: nothing. */
+static bool find_common(const look *l, uint32_t a, uint32_t b, face *f)
+{
+    double a_low[3], a_high[3], b_low[3], b_high[3];
+    to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
+    to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
+    for (int k = 0; k < 3; k++) {
+        f->low[k] = fmax(a_low[k], b_low[k]);
+        f->high[k] = fmin(a_high[k], b_high[k]);
+        if (k == f->axis)
+            f->low[k] = f->high[k] = f->at;
+        if (!isfinite(f->low[k]) || !isfinite(f->high[k])) /* a flat figure, along z */
+            f->low[k] = f->high[k] = 0;
+        if (!(f->low[k] <= f->high[k]))
+            return false;
+    }
+    return true;
+}
+
+static csg_vec3 place_on(const face *f, int i, int j)
+{
+    double p[3], part[2] = {(i + 0.5) / GRID, (j + 0.5) / GRID};
+    for (int k = 0, n = 0; k < 3; k++)
+        p[k] = k == f->axis ? f->at : f->low[k] + part[n++] * (f->high[k] - f->low[k]);
+    return csg_vec3_make(p[0], p[1], p[2]);
+}
+
+/* The union's value; those of its solids are in the room then. */
+static double value_at(look *l, csg_vec3 p)
+{
+    l->work += l->id - l->first + 1;
+    return csg_reference_below(&l->room, l->scene, l->first, l->id, p).value;
+}
+
+/* The place in the scene's frame; false: the union is cut out there, or a warp, which has no way
+ * back, takes it along. */
+static bool find_in_scene(const look *l, csg_vec3 *place)
+{
+    const csgm_scene *scene = l->scene;
+    for (csg_node_id id = l->id; id != scene->root; id = l->parents[id]) {
+        const csg_node *parent = &scene->nodes[l->parents[id]];
+        if (parent->kind == CSG_NODE_WARP ||
+            (parent->kind == CSG_NODE_DIFFERENCE && csg_scene_children(scene, parent)[0] != id))
+            return false;
+        if (parent->kind == CSG_NODE_TRANSFORM)
+            *place = csg_affine_point(&scene->transforms[parent->payload], *place);
+    }
+    return true;
+}
+
+/* Whether some other solid that is united with the union is there, of the samples in the room. */
+static bool is_covered(const look *l)
+{
+    const csgm_scene *scene = l->scene;
+    for (csg_node_id id = l->id; id != scene->root; id = l->parents[id]) {
+        const csg_node *parent = &scene->nodes[l->parents[id]];
+        for (uint32_t k = 0; parent->kind == CSG_NODE_UNION && k < parent->child_count; k++) {
+            csg_node_id other = csg_scene_children(scene, parent)[k];
+            if (other != id && l->room.samples[other].value >= 0)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Whether a place in the union is in the scene, and because of it. */
+static bool is_seen(look *l, csg_vec3 place)
+{
+    if (!find_in_scene(l, &place))
+        return false;
+    l->work += l->scene->node_count;
+    double value = csg_reference_below(&l->room, l->scene, 0, l->scene->root, place).value;
+    return value >= -SAME * (1 + csg_vec3_norm(place)) && !is_covered(l);
+}
+
+/* ---- swelling --------------------------------------------------------------------------------- */
+
+/* The union ends in a plane where all its solids do: what is inside on that plane lies beyond it by
+ * as much as its value. */
+static void look_at_face(look *l, const face *f, double turn, csg_joint *worst)
+{
+    for (int i = 0; i < GRID * GRID; i++) {
+        csg_vec3 at = place_on(f, i % GRID, i / GRID);
+        double beyond[3], value = value_at(l, at);
+        to_array(at, beyond);
+        beyond[f->axis] += 0.5 * turn * value;
+        if (!(value > worst->amount) || !is_seen(l, csg_vec3_make(beyond[0], beyond[1], beyond[2])))
+            continue;
+        worst->amount = value;
+        worst->axis = f->axis;
+        worst->at = f->at;
+    }
+}
+
+static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
+{
+    double low[3], high[3], extent = csg_vec3_norm(csg_vec3_sub(hull->max, hull->min));
+    to_array(hull->min, low), to_array(hull->max, high);
+    for (int side = 0; side < 6; side++) {
+        face f = {.axis = side / 2, .at = side % 2 ? high[side / 2] : low[side / 2]};
+        uint32_t before = UINT32_MAX; /* neighbours in the order of their writing are enough */
+        for (uint32_t k = 0; k < l->node->child_count && isfinite(f.at); k++) {
+            double ends[3];
+            to_array(side % 2 ? box_of(l, k)->max : box_of(l, k)->min, ends);
+            if (!(fabs(ends[f.axis] - f.at) <= SAME * extent))
+                continue;
+            if (before != UINT32_MAX && find_common(l, before, k, &f))
+                look_at_face(l, &f, side % 2 ? 1 : -1, worst);
+            before = k;
+        }
+    }
+}
+
+/* ---- gaps -------------------------------------------------------------------------------------- */
+
+/* The axis along which two boxes are apart while they overlap along the others, and the gap; -1. */
+static int find_gap(const look *l, uint32_t a, uint32_t b, double *gap, double *middle)
+{
+    double a_low[3], a_high[3], b_low[3], b_high[3];
+    int found = -1;
+    to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
+    to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
+    for (int k = 0; k < 3; k++) {
+        double from = fmin(a_high[k], b_high[k]), to = fmax(a_low[k], b_low[k]);
+        if (!(to > from))
+            continue;
+        if (found >= 0)
+            return -1;
+        found = k;
+        *gap = to - from;
+        *middle = 0.5 * (from + to);
+    }
+    return found;
+}
+
+/* Whether the two alone fill most of what lies between them. */
+static bool fills(look *l, const face *f, uint32_t a, uint32_t b)
+{
+    const csg_node_id *children = csg_scene_children(l->scene, l->node);
+    int filled = 0;
+    for (int i = 0; i < GRID * GRID; i++) {
+        double partials[2];
+        csg_vec3 p = place_on(f, i % GRID, i / GRID);
+        value_at(l, p);
+        const double values[2] = {l->room.samples[children[a]].value,
+                                  l->room.samples[children[b]].value};
+        filled += csg_reference_union(l->blend, values, 2, partials) >= 0 && is_seen(l, p);
+    }
+    return 2 * filled > GRID * GRID;
+}
+
+static void look_for_filled_gaps(look *l, csg_joint *worst)
+{
+    double reach = 2 * csg_blend_excess(l->blend, 2);
+    for (uint32_t a = 0; a < l->node->child_count; a++)
+        for (uint32_t b = 0; b < a && l->work < MOST_WORK; b++) {
+            double gap;
+            face f = {.axis = find_gap(l, a, b, &gap, &f.at)};
+            if (f.axis < 0 || !(gap < reach && gap > worst->amount) || !find_common(l, a, b, &f) ||
+                !fills(l, &f, a, b))
+                continue;
+            worst->amount = gap;
+            worst->axis = f.axis;
+            worst->at = f.at;
+        }
+}
+
+/* ---- one union --------------------------------------------------------------------------------- */
+
+static double distance_of(const csg_box *a, const csg_box *b)
+{
+    double x = fmax(fmax(a->min.x - b->max.x, b->min.x - a->max.x), 0);
+    double y = fmax(fmax(a->min.y - b->max.y, b->min.y - a->max.y), 0);
+    double z = fmax(fmax(a->min.z - b->max.z, b->min.z - a->max.z), 0);
+    return sqrt(x * x + y * y + z * z);
+}
+
+static double least_distance(const look *l)
+{
+    double least = INFINITY;
+    for (uint32_t a = 0; a < l->node->child_count; a++)
+        for (uint32_t b = 0; b < a; b++)
+            least = fmin(least, distance_of(box_of(l, a), box_of(l, b)));
+    return least;
+}
+
+/* False: nothing to be told of it. */
+static bool find_hull(const look *l, csg_box *hull)
+{
+    *hull = csg_box_empty();
+    for (uint32_t k = 0; k < l->node->child_count; k++) {
+        if (csg_box_is_empty(*box_of(l, k)))
+            return false;
+        *hull = csg_box_hull(*hull, *box_of(l, k));
+    }
+    return isfinite(hull->min.x) && isfinite(hull->min.y) && isfinite(hull->max.x) &&
+           isfinite(hull->max.y);
+}
+
+static bool is_looked_at(const csg_node *node)
+{
+    return node->kind == CSG_NODE_UNION && node->child_count > 1 &&
+           node->child_count <= MOST_SOLIDS && !(node->flags & CSG_FLAG_SOFT) &&
+           node->blend != CSG_BLEND_SHARP && node->blend != CSG_BLEND_ORTHOGONAL &&
+           !csg_blend_is_rule((csg_blend_kind)node->blend);
+}
+
+static void look_at_union(look *l, csg_joint_take *take, void *user)
+{
+    csg_box hull;
+    double support = csg_blend_support(l->blend), apart;
+    if (!find_hull(l, &hull) || !(support > 0))
+        return;
+    csg_joint joint = {.kind = CSG_JOINT_MISSES, .node = l->node};
+    apart = joint.amount = least_distance(l);
+    if (apart > APART * support) {
+        take(user, &joint);
+        return;
+    }
+    const double least = LEAST_SWELLING * support;
+    joint = (csg_joint){.kind = CSG_JOINT_SWELLS, .node = l->node, .amount = least};
+    look_for_swelling(l, &hull, &joint);
+    if (joint.amount > least)
+        take(user, &joint);
+    joint = (csg_joint){.kind = CSG_JOINT_FILLS, .node = l->node};
+    if (l->blend.kind != CSG_BLEND_FILLET) /* it keeps them (fillet.h) */
+        look_for_filled_gaps(l, &joint);
+    if (joint.amount > 0)
+        take(user, &joint);
+}
+
+static void walk(look *l, csg_joint_take *take, void *user)
+{
+    const csgm_scene *scene = l->scene;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        const csg_node_id *children = csg_scene_children(scene, node);
+        l->firsts[i] = node->child_count ? l->firsts[children[0]] : (csg_node_id)i;
+        for (uint32_t k = 0; k < node->child_count; k++)
+            l->parents[children[k]] = (csg_node_id)i;
+    }
+    for (size_t i = 0; i < scene->node_count && l->work < MOST_WORK; i++) {
+        if (!is_looked_at(&scene->nodes[i]))
+            continue;
+        l->first = l->firsts[i];
+        l->id = (csg_node_id)i;
+        l->node = &scene->nodes[i];
+        l->blend = csg_scene_blend(scene, l->node);
+        look_at_union(l, take, user);
+    }
+}
+
+csgm_status csg_joints_find(const csgm_scene *scene, csg_joint_take *take, void *user)
+{
+    csg_memory *memory = &scene->context->memory;
+    size_t count = scene->node_count, bytes = count * sizeof(csg_node_id);
+    look l = {.scene = scene};
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any = any || is_looked_at(&scene->nodes[i]);
+    if (!any)
+        return CSGM_OK;
+    l.firsts = csg_memory_alloc(memory, bytes);
+    l.parents = csg_memory_alloc(memory, bytes);
+    bool begun = l.firsts && l.parents && csg_reference_room_begin(&l.room, scene);
+    if (begun) {
+        walk(&l, take, user);
+        csg_reference_room_end(&l.room, scene);
+    }
+    csg_memory_release(memory, l.firsts, bytes);
+    csg_memory_release(memory, l.parents, bytes);
+    return begun ? CSGM_OK : CSGM_ERR_MEMORY;
+}
