@@ -48,7 +48,7 @@ static int open_by_names(int folder, const char *path)
         errno = EXDEV;
         return -1;
     }
-    int at = dup(folder);
+    int at = fcntl(folder, F_DUPFD_CLOEXEC, 0);
     while (at >= 0) {
         path += strspn(path, "/");
         size_t length = strcspn(path, "/");

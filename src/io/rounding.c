@@ -41,8 +41,8 @@ typedef struct rounder {
     csg_table table;    /* of places; entries that have moved on are found by nobody */
     size_t table_count; /* numbers in it, with those */
     uint8_t *suspect;   /* per vertex */
-    uint32_t *begin;    /* vertex_count + 1: each one's stretch of triangles */
-    uint32_t *around;   /* 3 * triangle_count */
+    uint64_t *begin;    /* vertex_count + 1: each one's stretch of triangles */
+    uint64_t *around;   /* 3 * triangle_count, which may be more than 32 bits can count */
     uint64_t moved;
 } rounder;
 
@@ -157,7 +157,7 @@ typedef struct faults {
 static faults faults_of(const rounder *r, uint32_t vertex, csg_vec3 place)
 {
     faults found = {.collapsed = count_others(r, vertex, place)};
-    for (uint32_t i = r->begin[vertex]; i < r->begin[vertex + 1]; i++) {
+    for (uint64_t i = r->begin[vertex]; i < r->begin[vertex + 1]; i++) {
         uint32_t v[3];
         if (!corners_of(r, r->around[i], v))
             continue;
@@ -326,11 +326,11 @@ static void list_around(rounder *r)
     memset(r->begin, 0, (r->mesh->vertex_count + 1) * sizeof *r->begin);
     for (uint64_t i = 0; i < 3 * r->mesh->triangle_count; i++)
         r->begin[r->first[r->mesh->indices[i]]]++;
-    uint32_t end = 0;
+    uint64_t end = 0;
     for (uint64_t v = 0; v <= r->mesh->vertex_count; v++)
         r->begin[v] = end += r->begin[v];
     for (uint64_t i = 3 * r->mesh->triangle_count; i-- > 0;)
-        r->around[--r->begin[r->first[r->mesh->indices[i]]]] = (uint32_t)(i / 3);
+        r->around[--r->begin[r->first[r->mesh->indices[i]]]] = i / 3;
 }
 
 /* What the file has there, for messages. */

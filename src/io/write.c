@@ -3,6 +3,7 @@
  * takes its name only when all of it is on disk.
  */
 #include <errno.h>
+#include <fcntl.h>
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -264,6 +265,7 @@ csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, cs
                        strerror(errno));
         return CSGM_ERR_IO;
     }
+    fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
     csgm_status status = csg_io_write_fd(context, mesh, fileno(file), name, format, options);
     if (!status) {
         rewind(file);

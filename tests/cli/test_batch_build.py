@@ -84,6 +84,20 @@ class BuildTest(BatchTest):
 
 
 class Emitted(BuildTest):
+    def test_roots_stay(self):
+        """What the run may read and write is what its rules may."""
+        self.write("rules.ninja", self.emit("ninja", "-d", "out"))
+        if "Landlock" in self.run_in("check", "mug.txt", "--root", ".").stderr:
+            self.skipTest("no Landlock here")
+        for system in ("ninja", "make"):
+            self.assertNotIn("--root", self.emit(system, "-d", "out"))
+            rules = self.emit(system, "-d", "out", "--root", ".")
+            self.assertIn("--root=.", rules)
+        if shutil.which("ninja"):
+            self.write("build.ninja", self.emit("ninja", "-d", "out", "--root", "."))
+            self.tool("ninja")
+            self.assertEqual(self.meshes("out"), self.FILES)
+
     @needs("ninja")
     def test_ninja(self):
         self.write("build.ninja", self.emit("ninja", "-d", "out"))

@@ -53,7 +53,7 @@ static bool is_long_work(maker *m)
     if (options->given[CLI_OPTION_bounds])
         mesh.bounds = options->bounds;
     cli_console kept = m->app.console;
-    FILE *nowhere = fopen("/dev/null", "w");
+    FILE *nowhere = fopen("/dev/null", "we");
     if (!nowhere)
         return false;
     m->app.console.out = nowhere;

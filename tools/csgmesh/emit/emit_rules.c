@@ -36,6 +36,15 @@ static void add_arguments(batch_plan *plan, emit_rule *rule)
     }
 }
 
+/* What a rule may read and write is what this run may; CSGMESH_ROOT stays with the environment. */
+static void add_roots(batch_plan *plan, emit_rule *rule)
+{
+    const cli_list *roots = &plan->app->options.roots;
+    for (size_t i = 0; i < roots->count; i++)
+        add_word(plan, rule,
+                 (emit_word){.kind = EMIT_SOURCE, .prefix = "--root=", .path = roots->items[i]});
+}
+
 static void add_mesh_words(batch_plan *plan, emit_rule *rule)
 {
     add_word(plan, rule, (emit_word){.kind = EMIT_INPUT});
@@ -44,6 +53,7 @@ static void add_mesh_words(batch_plan *plan, emit_rule *rule)
         add_word(plan, rule, (emit_word){.kind = EMIT_OUTPUT, .index = i});
     }
     add_arguments(plan, rule);
+    add_roots(plan, rule);
     add_text(plan, rule, "-M");
     add_word(plan, rule, (emit_word){.kind = EMIT_DEPFILE});
 }
@@ -65,6 +75,7 @@ static void add_batch_words(batch_plan *plan, emit_rule *rule)
              batch_printf(arena, "--name=%s", batch_name_expand(arena, job->pattern, &known)));
     add_text(plan, rule, formats);
     add_arguments(plan, rule);
+    add_roots(plan, rule);
     add_text(plan, rule, "--depfiles");
     add_text(plan, rule, "--quiet");
 }
