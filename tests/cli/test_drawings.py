@@ -155,5 +155,32 @@ class Drawings(cli.CliTest):
             self.assertEqual((done.returncode, done.stderr), (0, b""), done.stdout)
 
 
+class Batches(cli.CliTest):
+    """Drawings as outputs of jobs: the same bytes as one by one, up to date the next time."""
+
+    def batch(self, *arguments):
+        return self.run_in("batch", *arguments, "-d", "out", "-r", "12", "--json")
+
+    def test_drawings_of_a_batch(self):
+        self.write("flat.txt", "square(10); translate([20, 0]) circle(5);\n")
+        self.write("solid.txt", "sphere(3);\n")
+        self.assert_status(self.batch("flat.txt", "-f", "svg,dxf,pdf,stl"), 0)
+        for name in ("flat.svg", "flat.dxf", "flat.pdf", "flat.stl"):
+            self.assert_status(self.run_in("flat.txt", "-r", "12", "-o", name), 0)
+            self.assertEqual(self.read(name), self.read("out/" + name), name)
+        self.assertIn(b'"outcome": "up to date"', self.batch("flat.txt", "-f", "svg,dxf,pdf,stl").stdout)
+        self.assert_status(self.batch("flat.txt", "-f", "svg", "--name", "alone.{ext}"), 0)
+        self.assertEqual(self.read("flat.svg"), self.read("out/alone.svg"))
+        result = self.batch("solid.txt", "-f", "svg")
+        self.assert_status(result, 1)
+        self.assertIn(b"E0337", result.stdout)
+        result = self.batch("flat.txt", "-f", "svg", "--name", "{part}.{ext}")
+        self.assert_status(result, 1)
+        self.assertIn("a drawing has a layer for each part", result.stderr)
+        self.write("jobs.json", '["flat.txt", {"scene": "flat.txt", "out": "named.dxf"}]')
+        self.assert_status(self.batch("jobs.json"), 0)
+        self.assertEqual(self.read("flat.dxf"), self.read("out/named.dxf"))
+
+
 if __name__ == "__main__":
     cli.main()

@@ -98,6 +98,8 @@ static void fill(const size_t *starts, size_t point_count, const uint64_t *keys,
 bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_triangle_edges *out)
 {
     size_t half_count = 3 * triangles->count;
+    if (half_count > UINT32_MAX)
+        return false;
     out->halves = csg_arena_alloc(arena, half_count * sizeof *out->halves);
     out->of_half = csg_arena_alloc(arena, half_count * sizeof *out->of_half);
     size_t *starts = csg_arena_calloc(arena, triangles->point_count + 1, sizeof *starts);

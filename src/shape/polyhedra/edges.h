@@ -19,7 +19,7 @@ typedef struct csg_triangle_edges {
     uint32_t *of_half; /* the edge of each half-edge */
 } csg_triangle_edges;
 
-/* False: out of memory. No triangle has two equal corners. */
+/* False: out of memory, or of numbers for half-edges. No triangle has two equal corners. */
 bool csg_edges_make(csg_arena *arena, const csg_triangles *triangles, csg_triangle_edges *out);
 
 static inline uint32_t csg_half_from(const csg_triangles *triangles, uint32_t half)

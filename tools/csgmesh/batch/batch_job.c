@@ -13,6 +13,7 @@
 #include "core/sources.h"
 #include "core/work.h"
 #include "mesh/certify.h"
+#include "mesh/drawings.h"
 #include "mesh/outputs.h"
 
 typedef struct maker {
@@ -44,6 +45,8 @@ static bool is_long_work(maker *m)
     csgm_mesh_options mesh = csgm_mesh_options_default();
     csgm_field *field = NULL;
     csgm_mesh *probe = NULL;
+    if (m->app.flat == CSGM_FLAT_DRAWING)
+        return false;
     uint64_t resolution = options->resolution ? options->resolution : SUPPOSED;
     if (!options->given[CLI_OPTION_cell_size] && resolution <= LEAST &&
         m->work.info.primitive_count <= FEW)
@@ -94,11 +97,14 @@ static int refuse_empty(maker *m)
 static int write_view(maker *m, const csgm_mesh_view *view, const char *path, const char *format)
 {
     csgm_write_options options = cli_outputs_options(&m->app.options);
+    csgm_drawing_format drawing = csgm_drawing_format_from_name(format);
     if (!batch_make_folders(path, false)) {
         cli_console_say(&m->app.console, CSGM_ERROR, NULL, "cannot write %s: %s", path,
                         strerror(errno));
         return CLI_TROUBLE;
     }
+    if (drawing != CSGM_DRAWING_NONE)
+        return cli_drawings_write_one(&m->app, m->work.scene, path, drawing);
     return cli_exit_status(
         csgm_mesh_write(m->app.context, view, path, csgm_format_from_name(format), &options));
 }
@@ -216,7 +222,10 @@ static int name_outputs(maker *m, int status)
 
 static int write_all(maker *m)
 {
-    if (m->job->outputs.count == 1 && !m->job->by_part && m->app.options.warnings == 0)
+    bool is_plate = m->app.flat == CSGM_FLAT_PLATE;
+    if (m->app.flat == CSGM_FLAT_DRAWING) /* drawings alone need no mesh */
+        return write_whole(m, NULL);
+    if (m->job->outputs.count == 1 && !m->job->by_part && is_plate && m->app.options.warnings == 0)
         return write_stream(m);
     int status = cli_work_mesh(&m->app, &m->work);
     if (status != CLI_DONE)
@@ -290,6 +299,7 @@ static void set_outputs(maker *m)
 static int make_job(maker *m, bool may_defer, bool *is_large)
 {
     set_outputs(m);
+    m->app.flat = cli_drawings_flat(&m->app.options);
     int status = cli_work_check(&m->app);
     cli_list names = m->app.options.outputs;
     m->app.options.outputs = m->job->outputs; /* what must be no source */

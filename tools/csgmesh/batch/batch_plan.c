@@ -15,6 +15,7 @@
 #include "batch/batch_names.h"
 #include "core/format_lists.h"
 #include "core/sources.h"
+#include "mesh/drawings.h"
 #include "mesh/outputs.h"
 
 static const char DEFAULT_NAME[] = "{scene}-{set}.{ext}";
@@ -34,9 +35,15 @@ __attribute__((format(printf, 4, 5))) static int refuse(const batch_plan *plan, 
 
 /* ---- formats and outputs -------------------------------------------------------------- */
 
-static int check_format(batch_plan *plan, const char *place, const char *name)
+static int check_format(batch_plan *plan, const char *place, const char *name, bool by_part)
 {
     csgm_format format = csgm_format_from_name(name);
+    bool is_drawing = csgm_drawing_format_from_name(name) != CSGM_DRAWING_NONE;
+    if (is_drawing && by_part)
+        return refuse(plan, place, "a drawing has a layer for each part",
+                      "{part} makes no files of the format '%s'", name);
+    if (is_drawing)
+        return CLI_DONE;
     if (format != CSGM_FORMAT_AUTO && csgm_format_available(format, false))
         return CLI_DONE;
     char known[160];
@@ -61,13 +68,13 @@ static cli_list split_formats(batch_arena *arena, const char *text)
 
 static int add_output(batch_plan *plan, batch_job *job, const char *name, const char *format)
 {
-    int status = check_format(plan, job->place, format);
+    int status = check_format(plan, job->place, format, job->by_part);
     if (status != CLI_DONE)
         return status;
     if (!batch_name_stays_below(name))
         return refuse(plan, job->place, "outputs are named by paths below the directory of -d",
                       "'%.200s' is no name for an output", name);
-    batch_add(&plan->arena, &job->formats, csgm_format_name(csgm_format_from_name(format)));
+    batch_add(&plan->arena, &job->formats, cli_drawings_or_mesh_name(format));
     batch_add(&plan->arena, &job->names, name);
     batch_add(&plan->arena, &job->outputs, batch_join(&plan->arena, plan->directory, name));
     return CLI_DONE;
@@ -79,14 +86,18 @@ static int name_outputs(batch_plan *plan, batch_job *job, const batch_entry *ent
     cli_list formats = entry->formats;
     int status = CLI_DONE;
     for (size_t i = 0; i < entry->outputs.count && status == CLI_DONE; i++) {
-        csgm_format format = csgm_format_from_path(entry->outputs.items[i]);
-        if (format == CSGM_FORMAT_AUTO) {
+        const char *path = entry->outputs.items[i];
+        csgm_format mesh = csgm_format_from_path(path);
+        csgm_drawing_format drawing = csgm_drawing_format_from_path(path);
+        if (mesh == CSGM_FORMAT_AUTO && drawing == CSGM_DRAWING_NONE) {
             char known[160];
             cli_formats_of_this_build(known, sizeof known);
             return refuse(plan, job->place, known, "the name '%.200s' tells no format",
                           entry->outputs.items[i]);
         }
-        status = add_output(plan, job, entry->outputs.items[i], csgm_format_name(format));
+        status = add_output(plan, job, path,
+                            mesh != CSGM_FORMAT_AUTO ? csgm_format_name(mesh)
+                                                     : csgm_drawing_format_name(drawing));
     }
     if (entry->outputs.count)
         return status;

@@ -19,6 +19,7 @@
 
 #include "batch/batch_names.h"
 #include "core/textfile.h"
+#include "mesh/drawings.h"
 
 batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
 {
@@ -194,9 +195,9 @@ static bool parse_output(batch_arena *arena, const batch_job *job, const char *d
     rest += BATCH_DIGEST_TEXT;
     if (sscanf(rest, "%" SCNu64 " %" SCNd64 " %" SCNd64 " %15s%n", &output.bytes, &output.changed_s,
                &output.changed_ns, format, &used) != 4 ||
-        csgm_format_from_name(format) == CSGM_FORMAT_AUTO)
+        !cli_drawings_or_mesh_name(format))
         return false;
-    output.format = csgm_format_name(csgm_format_from_name(format));
+    output.format = cli_drawings_or_mesh_name(format);
     output.part = rest[used] == ' ' ? unescaped(arena, rest + used + 1) : NULL;
     output.path = batch_output_path(arena, job, directory, output.format, output.part);
     batch_output *place =

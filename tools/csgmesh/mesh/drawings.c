@@ -34,15 +34,40 @@ csgm_flat cli_drawings_flat(const cli_options *options)
     return count == options->outputs.count && !options->stats ? CSGM_FLAT_DRAWING : CSGM_FLAT_BOTH;
 }
 
+const char *cli_drawings_or_mesh_name(const char *name)
+{
+    csgm_format mesh = csgm_format_from_name(name);
+    csgm_drawing_format drawing = csgm_drawing_format_from_name(name);
+    return mesh != CSGM_FORMAT_AUTO       ? csgm_format_name(mesh)
+           : drawing != CSGM_DRAWING_NONE ? csgm_drawing_format_name(drawing)
+                                          : NULL;
+}
+
+static int check_layers(cli_app *app, const csgm_scene *scene)
+{
+    if (csgm_scene_layer_count(scene))
+        return CLI_DONE;
+    cli_console_say(&app->console, CSGM_ERROR, NULL,
+                    "the scene has nothing to draw: nothing was written");
+    return CLI_INPUT_AT_FAULT;
+}
+
+int cli_drawings_write_one(cli_app *app, const csgm_scene *scene, const char *path,
+                           csgm_drawing_format format)
+{
+    csgm_write_options options = cli_outputs_options(&app->options);
+    int status = check_layers(app, scene);
+    if (status == CLI_DONE)
+        status = cli_exit_status(csgm_scene_draw(app->context, scene, path, format, &options));
+    return status;
+}
+
 int cli_drawings_write(cli_app *app, const csgm_scene *scene)
 {
     csgm_write_options options = cli_outputs_options(&app->options);
     int worst = CLI_DONE;
-    if (!csgm_scene_layer_count(scene)) {
-        cli_console_say(&app->console, CSGM_ERROR, NULL,
-                        "the scene has nothing to draw: nothing was written");
+    if (check_layers(app, scene) != CLI_DONE)
         return CLI_INPUT_AT_FAULT;
-    }
     for (size_t i = 0; i < app->options.outputs.count; i++) {
         const char *path = app->options.outputs.items[i];
         csgm_drawing_format format = cli_drawings_format(&app->options, i);
