@@ -47,6 +47,9 @@ csg_node_id csg_solid_offset_sharp(csg_solid_job *job, csg_node_id child, double
 /* The figure without its holes: polygons. */
 csg_node_id csg_solid_fill(csg_solid_job *job, csg_node_id child);
 
+/* As high over the figure as the outline is far; straight: only over convex ones. */
+csg_node_id csg_solid_roof(csg_solid_job *job, csg_node_id flat, bool straight);
+
 /* ---- of numbers (tubes.c, periodic.c) -------------------------------------------------------- */
 
 typedef struct csg_knot { /* of a skeleton */

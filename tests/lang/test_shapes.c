@@ -132,6 +132,29 @@ static void figures_have_their_areas(void **state)
     CHECK_ALL(solids);
 }
 
+/* As high as the outline is far: over corners that point inwards there are cones. */
+static void roofs_follow_the_distance(void **state)
+{
+    (void)state;
+    const solid solids[] = {
+        {"roof() square(10);", 500.0 / 3, {{0, 0, 0}, {10, 10, 5}}},
+        {"roof(\"straight\") translate([1, 2]) square([20, 10]);",
+         1250.0 / 3,
+         {{1, 2, 0}, {21, 12, 5}}},
+        {"roof(method = \"voronoi\", convexity = 3) circle(5);",
+         125 * PI / 3,
+         {{-5, -5, 0}, {5, 5, 5}}},
+        {"roof() difference() { square(20); translate([5, 5]) square([20, 10]); }",
+         304.678, /* summed over 400 x 400 points */
+         {{0, 0, 0}, {20, 20, 2.92893}}},
+        {"roof() { circle(5); translate([6, 0]) circle(5); }", /* distances to the union's outline
+                                                                */
+         254.099,                                              /* summed over 900 x 900 points */
+         {{-5, -5, 0}, {11, 5, 5}}},
+    };
+    CHECK_ALL(solids);
+}
+
 static void offsets_round_and_cut_corners(void **state)
 {
     (void)state;
@@ -566,6 +589,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_have_their_areas),
+        cmocka_unit_test(roofs_follow_the_distance),
         cmocka_unit_test(offsets_round_and_cut_corners),
         cmocka_unit_test(extrusions_follow_openscad),
         cmocka_unit_test(the_axis_is_no_surface),

@@ -2,6 +2,7 @@
  * linear_extrude and rotate_extrude: their arguments (solid/extrude.c has the rest).
  */
 #include <math.h>
+#include <string.h>
 
 #include "base/scene_codes.h"
 #include "lang/modules/imports.h"
@@ -73,6 +74,29 @@ csg_node_id csg_module_linear_extrude(csg_module_call *call)
         by = csg_affine_multiply(lean, by);
     }
     return csg_shape_moved(call, node, &by);
+}
+
+/* ---- roof ------------------------------------------------------------------------------------ */
+
+csg_node_id csg_module_roof(csg_module_call *call)
+{
+    enum { METHOD };
+    csg_value method = call->values[METHOD];
+    bool is_straight = false;
+    if (csg_has_argument(call, METHOD)) {
+        const char *name = method.kind == CSG_VALUE_STRING ? method.as.string->text : "";
+        is_straight = strcmp(name, "straight") == 0;
+        if (!is_straight && strcmp(name, "voronoi") != 0)
+            csg_argument_error(call, METHOD, CSG_DIAG_BAD_TYPE,
+                               "method must be \"voronoi\" or \"straight\"");
+    }
+    csg_node_id flat = csg_shape_children(call, true);
+    if (flat == CSG_NODE_NONE || csg_eval_is_empty(call->e, flat))
+        return flat;
+    if (call->failed)
+        return csg_shape_empty(call);
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_solid_roof(&job, flat, is_straight));
 }
 
 /* ---- rotate_extrude -------------------------------------------------------------------------- */

@@ -148,6 +148,7 @@ static int read_feature(openscad_reader *r, const openscad_row *row, const char 
 {
     static const char *const known[] = {"all",
                                         "lazy-union",
+                                        "roof",
                                         "textmetrics",
                                         "import-function",
                                         "object-function",
@@ -168,7 +169,7 @@ static int read_feature(openscad_reader *r, const openscad_row *row, const char 
                                         NULL};
     if (is_among(value, known))
         return CLI_DONE;
-    if (strcmp(value, "roof") == 0 || strcmp(value, "python-engine") == 0)
+    if (strcmp(value, "python-engine") == 0)
         return cli_usage_error(r->app, NULL, "openscad: --%s %s: csgmesh has no such feature",
                                row->name, value);
     return refuse(r, row, value, "the name of a feature, as textmetrics, or all");
