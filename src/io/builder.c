@@ -6,9 +6,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
+#include "base/mesh_codes.h"
+
 void csg_builder_init(csg_mesh_builder *b, csgm_context *context)
 {
     *b = (csg_mesh_builder){.context = context};
+    if (context->limits.timeout_s > 0)
+        b->deadline_s = csg_clock_now_s() + context->limits.timeout_s;
     csg_arena_init(&b->names, &context->memory);
 }
 
@@ -59,10 +64,18 @@ static bool add_color(csg_mesh_builder *b, const uint8_t *color)
     return true;
 }
 
+static bool has_time(csg_mesh_builder *b)
+{
+    enum { EACH = 1 << 10 };
+    if (++b->added % EACH == 0 && b->deadline_s > 0 && csg_clock_now_s() > b->deadline_s)
+        b->failed = b->is_late = true;
+    return !b->is_late;
+}
+
 bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const float *normal,
                         const uint8_t *color)
 {
-    if (b->vertex_count >= UINT32_MAX ||
+    if (b->vertex_count >= UINT32_MAX || !has_time(b) ||
         !room(b, &b->positions, &b->position_room, b->vertex_count + 1, 3 * sizeof(double)) ||
         !add_color(b, color)) {
         b->failed = true;
@@ -85,7 +98,8 @@ bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const flo
 
 bool csg_builder_triangle(csg_mesh_builder *b, uint32_t i, uint32_t j, uint32_t k)
 {
-    if (!room(b, &b->indices, &b->index_room, b->triangle_count + 1, 3 * sizeof(uint32_t)))
+    if (!has_time(b) ||
+        !room(b, &b->indices, &b->index_room, b->triangle_count + 1, 3 * sizeof(uint32_t)))
         return false;
     uint32_t *corner = b->indices + 3 * b->triangle_count++;
     corner[0] = i;
@@ -158,12 +172,21 @@ static csgm_status add_parts(const csg_mesh_builder *b, csgm_mesh *mesh)
     return status;
 }
 
+csgm_status csg_builder_why_failed(const csg_mesh_builder *b)
+{
+    if (!b->is_late)
+        return csg_context_no_memory(b->context);
+    csg_diag_plain(&b->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
+                   "reading the mesh takes more than %g seconds", b->context->limits.timeout_s);
+    return CSGM_ERR_LIMIT;
+}
+
 csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
 {
     csgm_mesh *mesh;
     bool normals = b->vertex_count && !b->lacks_normals;
     if (b->failed)
-        return csg_context_no_memory(b->context);
+        return csg_builder_why_failed(b);
     csgm_status status = csg_mesh_create(b->context, b->vertex_count, b->triangle_count, normals,
                                          b->colors != NULL, &mesh);
     if (status)

@@ -19,7 +19,10 @@ typedef struct csg_mesh_builder {
     size_t part_count, part_room;
     csg_arena names;
     bool lacks_normals; /* a vertex came without: the mesh will have none */
-    bool failed;        /* out of memory; sticky */
+    bool failed;        /* out of memory or of time; sticky */
+    bool is_late;       /* it is time */
+    double deadline_s;  /* by csg_clock_now_s, from the limits; 0 = none */
+    uint32_t added;     /* vertices and triangles; the clock is looked at now and then */
     bool too_far;       /* a coordinate is beyond what floats hold; sticky */
 } csg_mesh_builder;
 
@@ -29,7 +32,7 @@ void csg_builder_release(csg_mesh_builder *builder);
 /* Room ahead for counts that are known and believed. */
 bool csg_builder_reserve(csg_mesh_builder *builder, size_t vertices, size_t triangles);
 
-/* false: out of memory, or 2^32 vertices. normal and color may be NULL. */
+/* false: out of memory or time, or 2^32 vertices. normal and color may be NULL. */
 bool csg_builder_vertex(csg_mesh_builder *builder, const double position[3], const float *normal,
                         const uint8_t *color);
 /* Indices must be below the vertex count by the time of csg_builder_finish. */
@@ -40,7 +43,9 @@ bool csg_builder_part(csg_mesh_builder *builder, const char *name);
 /* An array for a normal of every vertex that there is, to be filled now; NULL = out of memory. */
 float *csg_builder_normals(csg_mesh_builder *builder);
 
-/* The mesh; the builder is empty after. Reports what fails (memory only). */
+/* Of a builder that has failed: reports, and is, what it was. */
+csgm_status csg_builder_why_failed(const csg_mesh_builder *builder);
+/* The mesh; the builder is empty after. Reports what fails (memory and time only). */
 csgm_status csg_builder_finish(csg_mesh_builder *builder, csgm_mesh **out);
 
 #endif

@@ -241,6 +241,29 @@ static void cleanup_removes_a_temporary(void **state)
     assert_int_equal(io_folder_count(f->folder), 1);
 }
 
+/* A limit that is over at once: no verdict depends on how fast this machine is. */
+static void reading_ends_in_time(void **state)
+{
+    fixture *f = *state;
+    for (int i = CSGM_FORMAT_AUTO + 1; i < CSGM_FORMAT_COUNT; i++) {
+        csgm_format format = (csgm_format)i;
+        csgm_mesh *mesh = NULL;
+        if (!csg_format_available(format, false) || !csg_format_available(format, true))
+            continue;
+        in_folder(f, "a.mesh");
+        assert_int_equal(csg_io_write(&f->io.context, &f->view, f->path, format, NULL), CSGM_OK);
+        uint32_t before = f->io.findings;
+        f->io.context.limits.timeout_s = 1e-9;
+        csgm_status status = csg_io_read(&f->io.context, f->path, format, &mesh);
+        f->io.context.limits.timeout_s = 0;
+        if (status != CSGM_ERR_LIMIT || f->io.findings != before + 1 ||
+            !strstr(f->io.last, "takes more than"))
+            fail_msg("%s: status %d, '%s'", csg_format_name(format), (int)status, f->io.last);
+        assert_int_equal(csg_io_read(&f->io.context, f->path, format, &mesh), CSGM_OK);
+        csg_mesh_destroy(mesh);
+    }
+}
+
 static void names_and_options_are_checked(void **state)
 {
     fixture *f = *state;
@@ -270,7 +293,7 @@ int main(void)
         TEST(read_only_targets_are_refused),  TEST(refused_mesh_leaves_the_old_file),
         TEST(full_disk_leaves_nothing),       TEST(devices_and_pipes_are_written_directly),
         TEST(cleanup_removes_a_temporary),    TEST(names_and_options_are_checked),
-        TEST(every_format_tells_a_full_disk),
+        TEST(every_format_tells_a_full_disk), TEST(reading_ends_in_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -431,7 +431,7 @@ static csgm_status add_object(amf_file *f, const amf_object *object, const amf_i
         csg_builder_triangle(f->builder, (uint32_t)first + corner[0], (uint32_t)first + corner[1],
                              (uint32_t)first + corner[2]);
     }
-    return f->builder->failed ? no_memory(f) : CSGM_OK;
+    return f->builder->failed ? csg_builder_why_failed(f->builder) : CSGM_OK;
 }
 
 static csgm_status add_all(amf_file *f)

@@ -112,7 +112,7 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
         csg_builder_triangle(g->builder, corner[0], corner[mirrored ? 2 : 1],
                              corner[mirrored ? 1 : 2]);
     }
-    return !status && g->builder->failed ? csg_context_no_memory(g->input->context) : status;
+    return !status && g->builder->failed ? csg_builder_why_failed(g->builder) : status;
 }
 
 /* ---- files beside it -------------------------------------------------------------- */

@@ -144,7 +144,7 @@ static csgm_status add_mesh(reading *r, const placed *place)
                              (uint32_t)first + corner[mirrored ? 2 : 1],
                              (uint32_t)first + corner[mirrored ? 1 : 2]);
     }
-    return r->builder->failed ? csg_context_no_memory(m->input->context) : CSGM_OK;
+    return r->builder->failed ? csg_builder_why_failed(r->builder) : CSGM_OK;
 }
 
 /* Everything on the stack and below it; components come out in their order. */
