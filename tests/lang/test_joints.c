@@ -58,8 +58,9 @@ static void no_swelling_where_there_is_none(void **state)
     check("intersection() { cube([90, 20, 90]); " BRACKET " }", 0);             /* cut off */
     check("union() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0);      /* covered */
     check("difference() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0); /* cut out */
-    /* balls within a box each: these have no faces */
+    /* balls end in one plane, too, but have no faces */
     check("union(blend = 2) { sphere(5); translate([6, 0, 0]) sphere(5); }", 0);
+    check("union(blend = 0.1) for (i = [0 : 40]) translate([i / 8, 0, 0]) sphere(2);", 0);
     check(
         "rotate_extrude() translate([9, 0]) union(blend = 2) { square([20, 5]); square([5, 20]); }",
         0);

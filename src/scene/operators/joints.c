@@ -125,16 +125,26 @@ static bool is_seen(look *l, csg_vec3 place)
 
 /* ---- swelling --------------------------------------------------------------------------------- */
 
+/* Whether both solids are on their surfaces where the union was just asked. */
+static bool are_faces(const look *l, uint32_t a, uint32_t b, double rounding)
+{
+    const csg_node_id *children = csg_scene_children(l->scene, l->node);
+    return l->room.samples[children[a]].value >= -rounding &&
+           l->room.samples[children[b]].value >= -rounding;
+}
+
 /* The union ends in a plane where all its solids do: what is inside on that plane lies beyond it by
  * as much as its value. */
-static void look_at_face(look *l, const face *f, double turn, csg_joint *worst)
+static void look_at_face(look *l, const face *f, const uint32_t pair[2], double turn,
+                         double rounding, csg_joint *worst)
 {
     for (int i = 0; i < GRID * GRID; i++) {
         csg_vec3 at = place_on(f, i % GRID, i / GRID);
         double beyond[3], value = value_at(l, at);
         to_array(at, beyond);
         beyond[f->axis] += 0.5 * turn * value;
-        if (!(value > worst->amount) || !is_seen(l, csg_vec3_make(beyond[0], beyond[1], beyond[2])))
+        if (!(value > worst->amount) || !are_faces(l, pair[0], pair[1], rounding) ||
+            !is_seen(l, csg_vec3_make(beyond[0], beyond[1], beyond[2])))
             continue;
         worst->amount = value;
         worst->axis = f->axis;
@@ -154,8 +164,9 @@ static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
             to_array(side % 2 ? box_of(l, k)->max : box_of(l, k)->min, ends);
             if (!(fabs(ends[f.axis] - f.at) <= SAME * extent))
                 continue;
+            const uint32_t pair[2] = {before, k};
             if (before != UINT32_MAX && find_common(l, before, k, &f))
-                look_at_face(l, &f, side % 2 ? 1 : -1, worst);
+                look_at_face(l, &f, pair, side % 2 ? 1 : -1, SAME * extent, worst);
             before = k;
         }
     }
