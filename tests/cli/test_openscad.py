@@ -251,6 +251,7 @@ class Outputs(OpenscadTest):
                 (["-o", "a.stl"], "no scene given"),
                 (["part.scad", "-o", "a"], "names no format"),
                 (["part.scad", "-o", "a.png", "--summary=all"], "--summary needs a file with a mesh"),
+                (["part.scad", "-o", "a.svg", "--summary=all"], "--summary needs a file with a mesh"),
                 (["part.scad", "-o", "a.stl", "-D", "3"], "-D wants NAME=EXPR"),
                 (["part.scad", "-o", "a.stl", "--facets", "coarse"], "--facets wants")):
             result = self.openscad(*arguments, status=2)

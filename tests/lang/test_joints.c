@@ -58,6 +58,10 @@ static void no_swelling_where_there_is_none(void **state)
     check("intersection() { cube([90, 20, 90]); " BRACKET " }", 0);             /* cut off */
     check("union() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0);      /* covered */
     check("difference() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0); /* cut out */
+    check("linear_extrude(2) union(blend = 3) { circle(10); translate([5, 0]) circle(10); }", 0);
+    check("linear_extrude(5) union(blend = 3) { translate([0, 1]) square([10, 9]); "
+          "translate([9, 0]) square([10, 9.5]); }",
+          0);
     /* balls end in one plane, too, but have no faces */
     check("union(blend = 2) { sphere(5); translate([6, 0, 0]) sphere(5); }", 0);
     check("union(blend = 0.1) for (i = [0 : 40]) translate([i / 8, 0, 0]) sphere(2);", 0);
@@ -74,6 +78,9 @@ static void filled_gaps_are_told(void **state)
     check("union(blend = fillet(8)) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
           0);
     check("union(blend = 3) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }", 0);
+    /* faces that are apart by rounding */
+    check("union(blend = 1) for (i = [0 : 9]) translate([i * 10.1, i, 0]) cube([10.1, 8, 5 + i]);",
+          SWELLS);
     /* balls that grow together are what blends are for */
     check("union(blend = 4) { sphere(5); translate([11, 0, 0]) sphere(5); }", 0);
 }
@@ -82,6 +89,10 @@ static void blends_of_nothing_are_told(void **state)
 {
     check("union(blend = 2) { sphere(5); translate([500, 0, 0]) sphere(2); }", MISSES);
     assert_non_null(strstr(b.text, "the blend joins nothing: its solids are 493 apart"));
+    /* far away, and yet it acts: the field of what is stretched rises slowly */
+    check("union(blend = 1) { scale([1, 1, 100]) sphere(1); translate([0, 0, 210]) "
+          "scale([1, 1, 100]) sphere(1); }",
+          0);
     check("union(blend = 2) { sphere(5); translate([8, 0, 0]) sphere(2); translate([500, 0, 0]) "
           "sphere(2); }",
           0);
@@ -124,6 +135,11 @@ static void very_many_blends_are_not_all_looked_at(void **state)
     assert_int_equal(bench_compile(&b, "for (i = [1 : 20000]) translate([0, 0, 90 * i]) " BRACKET),
                      CSGM_OK);
     assert_true(bench_has(&b, SWELLS));
+    /* one that takes long to ask is not asked */
+    check(
+        "union(blend = 1) for (k = [0 : 63]) translate([3 * k, 0, 0]) union() for (i = [0 : 300]) "
+        "translate([rands(0, 0.5, 1)[0], i * 0.001, 0]) cube([3.5, 10, 10]);",
+        0);
 }
 
 static int open_bench(void **state)

@@ -12,7 +12,7 @@
 #include "io/color.h"
 #include "io/reader.h"
 
-enum { MOST_TEXT = 256, MOST_PLACED = 1 << 20 };
+enum { MOST_TEXT = 256, MOST_PLACED = 1 << 20, MOST_TRIANGLES_PLACED = 1 << 26 };
 
 typedef struct amf_vertex {
     double at[3];
@@ -437,6 +437,7 @@ static csgm_status add_object(amf_file *f, const amf_object *object, const amf_i
 static csgm_status add_all(amf_file *f)
 {
     csgm_status status = CSGM_OK;
+    uint64_t placed = 0;
     if (f->instance_count > MOST_PLACED)
         return csg_read_unsupported(f->input, "more than %d instances", MOST_PLACED);
     if (f->instance_count && f->object_count)
@@ -450,6 +451,10 @@ static csgm_status add_all(amf_file *f)
                                         "an instance names %u, which is no object (constellations "
                                         "of constellations are not read)",
                                         f->instances[i].object);
+        placed += object->triangle_count;
+        if (placed > f->triangle_count + MOST_TRIANGLES_PLACED)
+            return csg_read_unsupported(f->input, "instances of more than %d triangles",
+                                        MOST_TRIANGLES_PLACED);
         status = add_object(f, object, &f->instances[i]);
     }
     return status;

@@ -137,6 +137,19 @@ csg_box csg_argument_box(csg_module_call *call, uint32_t index)
     return (csg_box){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
+/* What was stated, and no bound says that it holds. */
+static void warn_raised(csg_module_call *call, int argument, double stated)
+{
+    const csgm_scene *scene = call->e->builder.scene;
+    double used = scene->formulas[scene->formula_count - 1].lipschitz;
+    if (stated > 0 && used > stated * (1 + 1e-9))
+        csg_eval_report(call->e, CSG_DIAG_SLOPE_RAISED, call->spans[argument],
+                        "proven = true keeps what is stated",
+                        "lipschitz = %g could not be proven: %.3g is used, which can be slower and "
+                        "less exact",
+                        stated, used);
+}
+
 csg_node_id csg_module_field(csg_module_call *call)
 {
     enum { FUNCTION, BOUNDS, LIPSCHITZ, DOMAIN, PROVEN };
@@ -160,6 +173,8 @@ csg_node_id csg_module_field(csg_module_call *call)
         node = csg_build_field(&e->builder, steps, count, &domain, where);
     else if (!e->stop)
         node = csg_build_empty(&e->builder, where);
+    if (steps && count && node != CSG_NODE_NONE)
+        warn_raised(call, LIPSCHITZ, domain.lipschitz);
     csg_memory_release(e->heap.memory, steps, bytes);
     return e->stop ? CSG_NODE_NONE : csg_check_node(e, node, where);
 }

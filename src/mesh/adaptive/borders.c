@@ -183,7 +183,7 @@ csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
     if (status == CSGM_OK)
         status = list_marked(&w, marks, AROUND);
     if (status == CSGM_OK)
-        status = csg_cell_loop_keep_shells(&w);
+        csg_cell_loop_keep_shells(&w);
     if (status == CSGM_OK)
         status = csg_cells_find_vertices(&w, b->reported, 0);
     if (status == CSGM_OK)

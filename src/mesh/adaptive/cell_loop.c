@@ -201,14 +201,12 @@ void csg_cell_loop_clear(csg_cell_loop *w)
     w->leaf_count = 0;
 }
 
-csgm_status csg_cell_loop_keep_shells(csg_cell_loop *w)
+void csg_cell_loop_keep_shells(csg_cell_loop *w)
 {
     release_shells(w);
-    if (!w->leaf_count)
-        return CSGM_OK;
-    w->shells = csg_memory_alloc(&w->x->context->memory, w->leaf_count * sizeof *w->shells);
+    if (w->leaf_count)
+        w->shells = csg_memory_alloc(&w->x->context->memory, w->leaf_count * sizeof *w->shells);
     w->shell_count = w->shells ? w->leaf_count : 0;
-    return w->shells ? CSGM_OK : csg_context_no_memory(w->x->context);
 }
 
 csgm_status csg_cell_loop_begin(csg_cell_loop *w, csg_extraction *x)

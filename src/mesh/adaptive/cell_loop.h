@@ -64,9 +64,9 @@ void csg_cell_loop_end(csg_cell_loop *loop);
 bool csg_cell_loop_list(csg_cell_loop *loop, uint32_t brick);
 /* Without the bricks that are listed. */
 void csg_cell_loop_clear(csg_cell_loop *loop);
-/* Has the shells of the bricks that are listed made once for all loops over them. CSGM_OK or
- * CSGM_ERR_MEMORY (reported). */
-csgm_status csg_cell_loop_keep_shells(csg_cell_loop *loop);
+/* Has the shells of the bricks that are listed made once for all loops over them, if there is
+ * memory for that. */
+void csg_cell_loop_keep_shells(csg_cell_loop *loop);
 /* Visits the bricks listed. CSGM_OK or why it was stopped (reported). */
 csgm_status csg_cell_loop_run(csg_cell_loop *loop, csg_visit_brick *visit, double before,
                               double amount);

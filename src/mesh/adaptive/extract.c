@@ -154,7 +154,7 @@ csgm_status csg_extract(csg_extraction *x)
     if (status == CSGM_OK)
         status = list_all(&w);
     if (status == CSGM_OK)
-        status = csg_cell_loop_keep_shells(&w);
+        csg_cell_loop_keep_shells(&w);
     if (status == CSGM_OK)
         status = csg_cells_find_vertices(&w, 0, 0.5);
     if (status == CSGM_OK)

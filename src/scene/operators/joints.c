@@ -9,9 +9,10 @@
 #include "scene/reference.h"
 
 enum {
-    GRID = 5,           /* places along each side of a face */
-    MOST_SOLIDS = 64,   /* of one union */
-    MOST_WORK = 2000000 /* nodes evaluated, of a scene */
+    GRID = 5,            /* places along each side of a face */
+    MOST_SOLIDS = 64,    /* of one union */
+    MOST_WORK = 2000000, /* nodes evaluated, of a scene */
+    LEAST_LOOKS = 100    /* a union that could not be asked so often is not looked at */
 };
 
 /* Of the blend's width: what swells by less is not worth a word. */
@@ -25,10 +26,11 @@ static const double APART = 4;
 typedef struct look {
     const csgm_scene *scene;
     csg_reference_room room;
-    csg_node_id *firsts, *parents; /* per node: the first one below it; the one above it, or NONE */
+    csg_node_id *firsts, *parents; /* per node: the first one below it; the one above it */
     csg_node_id first, id;         /* the nodes below the union, the union */
     const csg_node *node;
     csg_blend blend;
+    uint64_t *cost_before; /* per node, and the end: what all nodes before it take */
     uint64_t work;
 } look;
 
@@ -75,11 +77,27 @@ static csg_vec3 place_on(const face *f, int i, int j)
     return csg_vec3_make(p[0], p[1], p[2]);
 }
 
-/* The union's value; those of its solids are in the room then. */
-static double value_at(look *l, csg_vec3 p)
+/* Whether a node can be asked once more. */
+static bool can_ask(look *l, csg_node_id first, csg_node_id id)
 {
-    l->work += l->id - l->first + 1;
-    return csg_reference_below(&l->room, l->scene, l->first, l->id, p).value;
+    uint64_t cost = l->cost_before[id + 1] - l->cost_before[first];
+    l->work = l->work + cost < MOST_WORK ? l->work + cost : MOST_WORK;
+    return l->work < MOST_WORK;
+}
+
+/* The union's value; those of its solids are in the room then. False: too much was asked. */
+static bool ask(look *l, csg_vec3 p, double *value)
+{
+    if (!can_ask(l, l->first, l->id))
+        return false;
+    *value = csg_reference_below(&l->room, l->scene, l->first, l->id, p).value;
+    return true;
+}
+
+/* Of those in the room. */
+static double value_of(const look *l, uint32_t solid)
+{
+    return l->room.samples[csg_scene_children(l->scene, l->node)[solid]].value;
 }
 
 /* The place in the scene's frame; false: the union is cut out there, or a warp, which has no way
@@ -116,9 +134,8 @@ static bool is_covered(const look *l)
 /* Whether a place in the union is in the scene, and because of it. */
 static bool is_seen(look *l, csg_vec3 place)
 {
-    if (!find_in_scene(l, &place))
+    if (!find_in_scene(l, &place) || !can_ask(l, 0, l->scene->root))
         return false;
-    l->work += l->scene->node_count;
     double value = csg_reference_below(&l->room, l->scene, 0, l->scene->root, place).value;
     return value >= -SAME * (1 + csg_vec3_norm(place)) && !is_covered(l);
 }
@@ -128,9 +145,7 @@ static bool is_seen(look *l, csg_vec3 place)
 /* Whether both solids are on their surfaces where the union was just asked. */
 static bool are_faces(const look *l, uint32_t a, uint32_t b, double rounding)
 {
-    const csg_node_id *children = csg_scene_children(l->scene, l->node);
-    return l->room.samples[children[a]].value >= -rounding &&
-           l->room.samples[children[b]].value >= -rounding;
+    return value_of(l, a) >= -rounding && value_of(l, b) >= -rounding;
 }
 
 /* The union ends in a plane where all its solids do: what is inside on that plane lies beyond it by
@@ -140,7 +155,9 @@ static void look_at_face(look *l, const face *f, const uint32_t pair[2], double 
 {
     for (int i = 0; i < GRID * GRID; i++) {
         csg_vec3 at = place_on(f, i % GRID, i / GRID);
-        double beyond[3], value = value_at(l, at);
+        double beyond[3], value;
+        if (!ask(l, at, &value))
+            return;
         to_array(at, beyond);
         beyond[f->axis] += 0.5 * turn * value;
         if (!(value > worst->amount) || !are_faces(l, pair[0], pair[1], rounding) ||
@@ -152,9 +169,16 @@ static void look_at_face(look *l, const face *f, const uint32_t pair[2], double 
     }
 }
 
+/* Of a flat figure, in its plane. */
+static double extent_of(const csg_box *hull)
+{
+    csg_vec3 size = csg_vec3_sub(hull->max, hull->min);
+    return hypot(hypot(size.x, size.y), isfinite(size.z) ? size.z : 0);
+}
+
 static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
 {
-    double low[3], high[3], extent = csg_vec3_norm(csg_vec3_sub(hull->max, hull->min));
+    double low[3], high[3], extent = extent_of(hull);
     to_array(hull->min, low), to_array(hull->max, high);
     for (int side = 0; side < 6; side++) {
         face f = {.axis = side / 2, .at = side % 2 ? high[side / 2] : low[side / 2]};
@@ -197,28 +221,27 @@ static int find_gap(const look *l, uint32_t a, uint32_t b, double *gap, double *
 /* Whether the two alone fill most of what lies between them. */
 static bool fills(look *l, const face *f, uint32_t a, uint32_t b)
 {
-    const csg_node_id *children = csg_scene_children(l->scene, l->node);
     int filled = 0;
     for (int i = 0; i < GRID * GRID; i++) {
-        double partials[2];
         csg_vec3 p = place_on(f, i % GRID, i / GRID);
-        value_at(l, p);
-        const double values[2] = {l->room.samples[children[a]].value,
-                                  l->room.samples[children[b]].value};
+        double partials[2], value;
+        if (!ask(l, p, &value))
+            return false;
+        const double values[2] = {value_of(l, a), value_of(l, b)};
         filled += csg_reference_union(l->blend, values, 2, partials) >= 0 && is_seen(l, p);
     }
     return 2 * filled > GRID * GRID;
 }
 
-static void look_for_filled_gaps(look *l, csg_joint *worst)
+static void look_for_filled_gaps(look *l, double least, csg_joint *worst)
 {
     double reach = 2 * csg_blend_excess(l->blend, 2);
     for (uint32_t a = 0; a < l->node->child_count; a++)
-        for (uint32_t b = 0; b < a && l->work < MOST_WORK; b++) {
+        for (uint32_t b = 0; b < a; b++) {
             double gap;
             face f = {.axis = find_gap(l, a, b, &gap, &f.at)};
-            if (f.axis < 0 || !(gap < reach && gap > worst->amount) || !find_common(l, a, b, &f) ||
-                !fills(l, &f, a, b))
+            if (f.axis < 0 || !(gap < reach && gap > least && gap > worst->amount) ||
+                !find_common(l, a, b, &f) || !fills(l, &f, a, b))
                 continue;
             worst->amount = gap;
             worst->axis = f.axis;
@@ -236,12 +259,45 @@ static double distance_of(const csg_box *a, const csg_box *b)
     return sqrt(x * x + y * y + z * z);
 }
 
-static double least_distance(const look *l)
+/* Whether the blend changes anything on the way between two solids: at its ends, or by filling it.
+ * Values of stretched solids are much less than distances. */
+static bool acts_between(look *l, uint32_t a, uint32_t b)
+{
+    enum { STEPS = 16 };
+    double from[3], to[3];
+    for (int k = 0; k < 3; k++) {
+        double a_low[3], a_high[3], b_low[3], b_high[3];
+        to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
+        to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
+        double middle = 0.5 * (fmax(a_low[k], b_low[k]) + fmin(a_high[k], b_high[k]));
+        middle = isfinite(middle) ? middle : 0;
+        from[k] = isfinite(a_low[k]) ? fmin(fmax(middle, a_low[k]), a_high[k]) : middle;
+        to[k] = isfinite(b_low[k]) ? fmin(fmax(middle, b_low[k]), b_high[k]) : middle;
+    }
+    for (int i = 0; i <= STEPS; i++) {
+        double p[3], value;
+        for (int k = 0; k < 3; k++)
+            p[k] = from[k] + (to[k] - from[k]) * i / STEPS;
+        if (!ask(l, csg_vec3_make(p[0], p[1], p[2]), &value))
+            return true;
+        double most = fmax(value_of(l, a), value_of(l, b));
+        bool at_end = i == 0 || i == STEPS;
+        if ((value >= 0 && most < 0) || (at_end && value > most + SAME * fabs(most)))
+            return true;
+    }
+    return false;
+}
+
+/* The distance between the two that are nearest; 0 where the blend may act. */
+static double find_distance(look *l, double support)
 {
     double least = INFINITY;
     for (uint32_t a = 0; a < l->node->child_count; a++)
         for (uint32_t b = 0; b < a; b++)
             least = fmin(least, distance_of(box_of(l, a), box_of(l, b)));
+    for (uint32_t a = 0; a < l->node->child_count && least > APART * support; a++)
+        for (uint32_t b = 0; b < a && least > 0; b++)
+            least = acts_between(l, a, b) ? 0 : least;
     return least;
 }
 
@@ -273,7 +329,7 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
     if (!find_hull(l, &hull) || !(support > 0))
         return;
     csg_joint joint = {.kind = CSG_JOINT_MISSES, .node = l->node};
-    apart = joint.amount = least_distance(l);
+    apart = joint.amount = find_distance(l, support);
     if (apart > APART * support) {
         take(user, &joint);
         return;
@@ -285,18 +341,29 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
         take(user, &joint);
     joint = (csg_joint){.kind = CSG_JOINT_FILLS, .node = l->node};
     if (l->blend.kind != CSG_BLEND_FILLET) /* it keeps them (fillet.h) */
-        look_for_filled_gaps(l, &joint);
+        look_for_filled_gaps(l, least, &joint);
     if (joint.amount > 0)
         take(user, &joint);
+}
+
+/* In nodes of which one is a box. */
+static uint64_t cost_of(const csgm_scene *scene, const csg_node *node)
+{
+    enum { SHAPE = 16 };
+    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE)
+        return 1 + scene->formulas[node->payload].count / 4;
+    return node->kind == CSG_NODE_SHAPE ? SHAPE : 1;
 }
 
 static void walk(look *l, csg_joint_take *take, void *user)
 {
     const csgm_scene *scene = l->scene;
+    l->cost_before[0] = 0;
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
         const csg_node_id *children = csg_scene_children(scene, node);
         l->firsts[i] = node->child_count ? l->firsts[children[0]] : (csg_node_id)i;
+        l->cost_before[i + 1] = l->cost_before[i] + cost_of(scene, node);
         for (uint32_t k = 0; k < node->child_count; k++)
             l->parents[children[k]] = (csg_node_id)i;
     }
@@ -307,7 +374,8 @@ static void walk(look *l, csg_joint_take *take, void *user)
         l->id = (csg_node_id)i;
         l->node = &scene->nodes[i];
         l->blend = csg_scene_blend(scene, l->node);
-        look_at_union(l, take, user);
+        if (LEAST_LOOKS * (l->cost_before[i + 1] - l->cost_before[l->first]) < MOST_WORK)
+            look_at_union(l, take, user);
     }
 }
 
@@ -323,12 +391,14 @@ csgm_status csg_joints_find(const csgm_scene *scene, csg_joint_take *take, void 
         return CSGM_OK;
     l.firsts = csg_memory_alloc(memory, bytes);
     l.parents = csg_memory_alloc(memory, bytes);
-    bool begun = l.firsts && l.parents && csg_reference_room_begin(&l.room, scene);
+    l.cost_before = csg_memory_alloc(memory, (count + 1) * sizeof *l.cost_before);
+    bool begun = l.firsts && l.parents && l.cost_before && csg_reference_room_begin(&l.room, scene);
     if (begun) {
         walk(&l, take, user);
         csg_reference_room_end(&l.room, scene);
     }
     csg_memory_release(memory, l.firsts, bytes);
     csg_memory_release(memory, l.parents, bytes);
+    csg_memory_release(memory, l.cost_before, (count + 1) * sizeof *l.cost_before);
     return begun ? CSGM_OK : CSGM_ERR_MEMORY;
 }

@@ -333,7 +333,7 @@ static int write_summary(openscad_run *run, char *const *names)
     const openscad_line *line = run->line;
     for (size_t i = 0; i < line->output_count; i++) {
         const openscad_output *output = &line->outputs[i];
-        if (output->way != OPENSCAD_MESH || strcmp(output->path, "-") == 0)
+        if (!openscad_is_mesh_file(output))
             continue;
         openscad_words w = begin_words(run, false);
         run->path = names[i];

@@ -382,6 +382,7 @@ static int settle_output(openscad_reader *r, openscad_output *output)
 {
     static const char *const unknown[] = {"ast",   "term", "nef3", "nefdbg",
                                           "param", "wrl",  "pov",  NULL};
+    static const char *const drawings[] = {"svg", "dxf", "pdf", NULL};
     const char *name = r->export_format ? r->export_format : output->format;
     const char *slash = strrchr(output->path, '/'), *dot = strrchr(output->path, '.');
     if (!name && dot && (!slash || dot > slash))
@@ -398,6 +399,7 @@ static int settle_output(openscad_reader *r, openscad_output *output)
                   : strcmp(name, "csg") == 0  ? OPENSCAD_TREE
                   : strcmp(name, "echo") == 0 ? OPENSCAD_ECHO
                                               : OPENSCAD_MESH;
+    output->is_drawing = is_among(name, drawings);
     if (is_among(name, unknown))
         return cli_usage_error(r->app, NULL, "openscad: csgmesh writes no .%s (%.200s)", name,
                                output->path);
@@ -415,10 +417,10 @@ static int settle_frames(openscad_reader *r)
     return CLI_DONE;
 }
 
-static bool has_file_of(const openscad_line *line, openscad_way way)
+static bool has_mesh_file(const openscad_line *line)
 {
     for (size_t i = 0; i < line->output_count; i++)
-        if (line->outputs[i].way == way && strcmp(line->outputs[i].path, "-") != 0)
+        if (openscad_is_mesh_file(&line->outputs[i]))
             return true;
     return false;
 }
@@ -439,8 +441,7 @@ static int settle(openscad_reader *r)
         strcmp(line->scene, "-") == 0)
         status =
             cli_usage_error(r->app, NULL, "openscad: standard input is read once: give one output");
-    if (status == CLI_DONE && (line->summary || line->summary_file) &&
-        !has_file_of(line, OPENSCAD_MESH))
+    if (status == CLI_DONE && (line->summary || line->summary_file) && !has_mesh_file(line))
         status = cli_usage_error(r->app, "add -o part.stl",
                                  "openscad: --summary needs a file with a mesh");
     return status;

@@ -4,11 +4,13 @@
 #ifndef CLI_OPENSCAD_LINE_H
 #define CLI_OPENSCAD_LINE_H
 
+#include <string.h>
+
 #include "core/cli.h"
 
 /* The ways in which an output is made. */
 typedef enum openscad_way {
-    OPENSCAD_MESH,
+    OPENSCAD_MESH, /* or a drawing */
     OPENSCAD_PICTURE,
     OPENSCAD_TREE,
     OPENSCAD_ECHO
@@ -17,9 +19,15 @@ typedef enum openscad_way {
 typedef struct openscad_output {
     const char *path;
     const char *format; /* of -f; NULL: as the name says */
-    bool ascii;
+    bool ascii, is_drawing;
     openscad_way way;
 } openscad_output;
+
+/* What --summary can look at. */
+static inline bool openscad_is_mesh_file(const openscad_output *output)
+{
+    return output->way == OPENSCAD_MESH && !output->is_drawing && strcmp(output->path, "-") != 0;
+}
 
 enum {
     OPENSCAD_SUMMARY_TIME = 1,
