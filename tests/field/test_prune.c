@@ -12,9 +12,26 @@
 #include "field/prune_support.h"
 #include "scene/operators/blend_kinds.h"
 
+/* Ways down from random cubes around places up to `spread` from the middle, in a subject that is
+ * begun and has this root; adds what was seen to the totals. */
+static void walk_through(walk *w, csg_node_id root, csg_random *random, double spread, double most,
+                         const char *what, walk *totals)
+{
+    test_subject_compile(&w->subject, root);
+    walk_begin(w, 2 * spread + 1);
+    for (int turn = 0; turn < 3; turn++) {
+        cube at = {test_point(random, spread), csg_random_uniform(random, 0.05, most)};
+        double tau = at.half * pow(2, -csg_random_uniform(random, 1, 8)) + 2 * w->rounding;
+        descend(w, random, at, tau, what);
+    }
+    totals->cells += w->cells, totals->outside += w->outside, totals->inside += w->inside;
+    totals->shortened += w->shortened, totals->in_band += w->in_band;
+    walk_end(w);
+}
+
 static void test_random_scenes(void **state)
 {
-    uint64_t cells = 0, outside = 0, inside = 0, shortened = 0, in_band = 0;
+    walk totals = {0};
     csg_random random = {21};
     for (unsigned i = 0; i < 150; i++) {
         walk w = {0};
@@ -23,28 +40,19 @@ static void test_random_scenes(void **state)
         test_random_shapes = i % 2;
         test_random_curves = i % 5 == 3;
         test_subject_begin(&w.subject);
-        test_subject_compile(&w.subject,
-                             test_random_scene(&w.subject.builder, &random, 1 + i * 7 % 50));
-        walk_begin(&w, 3);
-        for (int turn = 0; turn < 3; turn++) {
-            cube at = {test_point(&random, 1), csg_random_uniform(&random, 0.05, 1.5)};
-            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
-            descend(&w, &random, at, tau, what);
-        }
-        cells += w.cells, outside += w.outside, inside += w.inside;
-        shortened += w.shortened, in_band += w.in_band;
-        walk_end(&w);
+        csg_node_id root = test_random_scene(&w.subject.builder, &random, 1 + i * 7 % 50);
+        walk_through(&w, root, &random, 1, 1.5, what, &totals);
     }
     /* Enough of everything was seen for the checks to mean something. */
-    assert_true(cells > 3000 && outside > 300 && inside > 100 && shortened > 400);
-    assert_true(in_band > 10000);
+    assert_true(totals.cells > 3000 && totals.outside > 300 && totals.inside > 100);
+    assert_true(totals.shortened > 400 && totals.in_band > 10000);
 }
 
 /* Outlines of many segments, extruded, turned about an axis, below warps: only those segments that
  * can be nearest are asked. */
 static void test_outlines(void **state)
 {
-    uint64_t cells = 0, shortened = 0, in_band = 0;
+    walk totals = {0};
     csg_random random = {27};
     test_random_outlines = true;
     for (unsigned i = 0; i < 200; i++) {
@@ -52,24 +60,17 @@ static void test_outlines(void **state)
         char what[48];
         snprintf(what, sizeof what, "outline %u", i);
         test_subject_begin(&w.subject);
-        test_subject_compile(&w.subject, test_random_shaped(&w.subject.builder, &random));
-        walk_begin(&w, 2);
-        for (int turn = 0; turn < 3; turn++) {
-            cube at = {test_point(&random, 0.5), csg_random_uniform(&random, 0.05, 0.8)};
-            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
-            descend(&w, &random, at, tau, what);
-        }
-        cells += w.cells, shortened += w.shortened, in_band += w.in_band;
-        walk_end(&w);
+        csg_node_id root = test_random_shaped(&w.subject.builder, &random);
+        walk_through(&w, root, &random, 0.5, 0.8, what, &totals);
     }
     test_random_outlines = false;
-    assert_true(cells > 2000 && shortened > 300 && in_band > 4000);
+    assert_true(totals.cells > 2000 && totals.shortened > 300 && totals.in_band > 4000);
 }
 
 /* Trees of fillets, whose values depend on gradients and may jump. */
 static void test_random_fillet_scenes(void **state)
 {
-    uint64_t cells = 0, shortened = 0, in_band = 0;
+    walk totals = {0};
     csg_random random = {23};
     test_random_fillets = true;
     for (unsigned i = 0; i < 150; i++) {
@@ -79,19 +80,11 @@ static void test_random_fillet_scenes(void **state)
         test_random_shapes = i % 3 == 1;
         test_random_curves = i % 5 == 3;
         test_subject_begin(&w.subject);
-        test_subject_compile(&w.subject,
-                             test_random_scene(&w.subject.builder, &random, 2 + i * 7 % 20));
-        walk_begin(&w, 3);
-        for (int turn = 0; turn < 3; turn++) {
-            cube at = {test_point(&random, 1), csg_random_uniform(&random, 0.05, 1.5)};
-            double tau = at.half * pow(2, -csg_random_uniform(&random, 1, 8)) + 2 * w.rounding;
-            descend(&w, &random, at, tau, what);
-        }
-        cells += w.cells, shortened += w.shortened, in_band += w.in_band;
-        walk_end(&w);
+        csg_node_id root = test_random_scene(&w.subject.builder, &random, 2 + i * 7 % 20);
+        walk_through(&w, root, &random, 1, 1.5, what, &totals);
     }
     test_random_fillets = test_random_shapes = test_random_curves = false;
-    assert_true(cells > 3000 && shortened > 400 && in_band > 10000);
+    assert_true(totals.cells > 3000 && totals.shortened > 400 && totals.in_band > 10000);
 }
 
 /* ---- on the threshold

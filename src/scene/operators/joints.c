@@ -40,25 +40,28 @@ typedef struct face {
     double at, low[3], high[3];
 } face;
 
-static void to_array(csg_vec3 v, double out[3])
+/* A box by axes. */
+typedef struct sides {
+    double low[3], high[3];
+} sides;
+
+static sides sides_of(csg_box b)
 {
-    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+    return (sides){{b.min.x, b.min.y, b.min.z}, {b.max.x, b.max.y, b.max.z}};
 }
 
-static const csg_box *box_of(const look *l, uint32_t solid)
+static csg_box box_of(const look *l, uint32_t solid)
 {
-    return &l->scene->bounds[csg_scene_children(l->scene, l->node)[solid]];
+    return l->scene->bounds[csg_scene_children(l->scene, l->node)[solid]];
 }
 
 /* What two solids have in common on the other axes; false: nothing. */
 static bool find_common(const look *l, uint32_t a, uint32_t b, face *f)
 {
-    double a_low[3], a_high[3], b_low[3], b_high[3];
-    to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
-    to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
+    sides one = sides_of(box_of(l, a)), other = sides_of(box_of(l, b));
     for (int k = 0; k < 3; k++) {
-        f->low[k] = fmax(a_low[k], b_low[k]);
-        f->high[k] = fmin(a_high[k], b_high[k]);
+        f->low[k] = fmax(one.low[k], other.low[k]);
+        f->high[k] = fmin(one.high[k], other.high[k]);
         if (k == f->axis)
             f->low[k] = f->high[k] = f->at;
         if (!isfinite(f->low[k]) || !isfinite(f->high[k])) /* a flat figure, along z */
@@ -69,11 +72,12 @@ static bool find_common(const look *l, uint32_t a, uint32_t b, face *f)
     return true;
 }
 
-static csg_vec3 place_on(const face *f, int i, int j)
+/* One of the grid, `beyond` the face along its axis. */
+static csg_vec3 place_on(const face *f, int number, double beyond)
 {
-    double p[3], part[2] = {(i + 0.5) / GRID, (j + 0.5) / GRID};
+    double p[3], part[2] = {(number % GRID + 0.5) / GRID, (number / GRID + 0.5) / GRID};
     for (int k = 0, n = 0; k < 3; k++)
-        p[k] = k == f->axis ? f->at : f->low[k] + part[n++] * (f->high[k] - f->low[k]);
+        p[k] = k == f->axis ? f->at + beyond : f->low[k] + part[n++] * (f->high[k] - f->low[k]);
     return csg_vec3_make(p[0], p[1], p[2]);
 }
 
@@ -154,14 +158,11 @@ static void look_at_face(look *l, const face *f, const uint32_t pair[2], double 
                          double rounding, csg_joint *worst)
 {
     for (int i = 0; i < GRID * GRID; i++) {
-        csg_vec3 at = place_on(f, i % GRID, i / GRID);
-        double beyond[3], value;
-        if (!ask(l, at, &value))
+        double value;
+        if (!ask(l, place_on(f, i, 0), &value))
             return;
-        to_array(at, beyond);
-        beyond[f->axis] += 0.5 * turn * value;
         if (!(value > worst->amount) || !are_faces(l, pair[0], pair[1], rounding) ||
-            !is_seen(l, csg_vec3_make(beyond[0], beyond[1], beyond[2])))
+            !is_seen(l, place_on(f, i, 0.5 * turn * value)))
             continue;
         worst->amount = value;
         worst->axis = f->axis;
@@ -176,17 +177,21 @@ static double extent_of(const csg_box *hull)
     return hypot(hypot(size.x, size.y), isfinite(size.z) ? size.z : 0);
 }
 
+/* Where a box ends: along x at the low and at the high end, along y, along z. */
+static double end_of(csg_box box, int side)
+{
+    sides s = sides_of(box);
+    return side % 2 ? s.high[side / 2] : s.low[side / 2];
+}
+
 static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
 {
-    double low[3], high[3], extent = extent_of(hull);
-    to_array(hull->min, low), to_array(hull->max, high);
+    double extent = extent_of(hull);
     for (int side = 0; side < 6; side++) {
-        face f = {.axis = side / 2, .at = side % 2 ? high[side / 2] : low[side / 2]};
+        face f = {.axis = side / 2, .at = end_of(*hull, side)};
         uint32_t before = UINT32_MAX; /* neighbours in the order of their writing are enough */
         for (uint32_t k = 0; k < l->node->child_count && isfinite(f.at); k++) {
-            double ends[3];
-            to_array(side % 2 ? box_of(l, k)->max : box_of(l, k)->min, ends);
-            if (!(fabs(ends[f.axis] - f.at) <= SAME * extent))
+            if (!(fabs(end_of(box_of(l, k), side) - f.at) <= SAME * extent))
                 continue;
             const uint32_t pair[2] = {before, k};
             if (before != UINT32_MAX && find_common(l, before, k, &f))
@@ -198,24 +203,21 @@ static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
 
 /* ---- gaps -------------------------------------------------------------------------------------- */
 
-/* The axis along which two boxes are apart while they overlap along the others, and the gap; -1. */
-static int find_gap(const look *l, uint32_t a, uint32_t b, double *gap, double *middle)
+/* Where two boxes are apart along one axis while they overlap along the others: the middle of the
+ * gap, which is so wide. False: nowhere. */
+static bool find_gap(const look *l, uint32_t a, uint32_t b, face *middle, double *gap)
 {
-    double a_low[3], a_high[3], b_low[3], b_high[3];
-    int found = -1;
-    to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
-    to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
+    sides one = sides_of(box_of(l, a)), other = sides_of(box_of(l, b));
+    int found = 0;
     for (int k = 0; k < 3; k++) {
-        double from = fmin(a_high[k], b_high[k]), to = fmax(a_low[k], b_low[k]);
+        double from = fmin(one.high[k], other.high[k]), to = fmax(one.low[k], other.low[k]);
         if (!(to > from))
             continue;
-        if (found >= 0)
-            return -1;
-        found = k;
+        found++;
+        *middle = (face){.axis = k, .at = 0.5 * (from + to)};
         *gap = to - from;
-        *middle = 0.5 * (from + to);
     }
-    return found;
+    return found == 1 && find_common(l, a, b, middle);
 }
 
 /* Whether the two alone fill most of what lies between them. */
@@ -223,7 +225,7 @@ static bool fills(look *l, const face *f, uint32_t a, uint32_t b)
 {
     int filled = 0;
     for (int i = 0; i < GRID * GRID; i++) {
-        csg_vec3 p = place_on(f, i % GRID, i / GRID);
+        csg_vec3 p = place_on(f, i, 0);
         double partials[2], value;
         if (!ask(l, p, &value))
             return false;
@@ -238,10 +240,10 @@ static void look_for_filled_gaps(look *l, double least, csg_joint *worst)
     double reach = 2 * csg_blend_excess(l->blend, 2);
     for (uint32_t a = 0; a < l->node->child_count; a++)
         for (uint32_t b = 0; b < a; b++) {
-            double gap;
-            face f = {.axis = find_gap(l, a, b, &gap, &f.at)};
-            if (f.axis < 0 || !(gap < reach && gap > least && gap > worst->amount) ||
-                !find_common(l, a, b, &f) || !fills(l, &f, a, b))
+            double gap = 0;
+            face f = {.axis = 0};
+            if (!find_gap(l, a, b, &f, &gap) || !(gap < reach && gap > least) ||
+                !(gap > worst->amount) || !fills(l, &f, a, b))
                 continue;
             worst->amount = gap;
             worst->axis = f.axis;
@@ -251,12 +253,24 @@ static void look_for_filled_gaps(look *l, double least, csg_joint *worst)
 
 /* ---- one union --------------------------------------------------------------------------------- */
 
-static double distance_of(const csg_box *a, const csg_box *b)
+/* The nearest places of two boxes: of one that goes on without end at 0, where the other does, too.
+ */
+static void find_nearest(csg_box a, csg_box b, double from[3], double to[3])
 {
-    double x = fmax(fmax(a->min.x - b->max.x, b->min.x - a->max.x), 0);
-    double y = fmax(fmax(a->min.y - b->max.y, b->min.y - a->max.y), 0);
-    double z = fmax(fmax(a->min.z - b->max.z, b->min.z - a->max.z), 0);
-    return sqrt(x * x + y * y + z * z);
+    sides one = sides_of(a), other = sides_of(b);
+    for (int k = 0; k < 3; k++) {
+        double middle = 0.5 * (fmax(one.low[k], other.low[k]) + fmin(one.high[k], other.high[k]));
+        middle = isfinite(middle) ? middle : 0;
+        from[k] = fmin(fmax(middle, one.low[k]), one.high[k]);
+        to[k] = fmin(fmax(middle, other.low[k]), other.high[k]);
+    }
+}
+
+static double distance_of(csg_box a, csg_box b)
+{
+    double from[3], to[3];
+    find_nearest(a, b, from, to);
+    return hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
 }
 
 /* Whether the blend changes anything on the way between two solids: at its ends, or by filling it.
@@ -265,15 +279,7 @@ static bool acts_between(look *l, uint32_t a, uint32_t b)
 {
     enum { STEPS = 16 };
     double from[3], to[3];
-    for (int k = 0; k < 3; k++) {
-        double a_low[3], a_high[3], b_low[3], b_high[3];
-        to_array(box_of(l, a)->min, a_low), to_array(box_of(l, a)->max, a_high);
-        to_array(box_of(l, b)->min, b_low), to_array(box_of(l, b)->max, b_high);
-        double middle = 0.5 * (fmax(a_low[k], b_low[k]) + fmin(a_high[k], b_high[k]));
-        middle = isfinite(middle) ? middle : 0;
-        from[k] = isfinite(a_low[k]) ? fmin(fmax(middle, a_low[k]), a_high[k]) : middle;
-        to[k] = isfinite(b_low[k]) ? fmin(fmax(middle, b_low[k]), b_high[k]) : middle;
-    }
+    find_nearest(box_of(l, a), box_of(l, b), from, to);
     for (int i = 0; i <= STEPS; i++) {
         double p[3], value;
         for (int k = 0; k < 3; k++)
@@ -306,9 +312,9 @@ static bool find_hull(const look *l, csg_box *hull)
 {
     *hull = csg_box_empty();
     for (uint32_t k = 0; k < l->node->child_count; k++) {
-        if (csg_box_is_empty(*box_of(l, k)))
+        if (csg_box_is_empty(box_of(l, k)))
             return false;
-        *hull = csg_box_hull(*hull, *box_of(l, k));
+        *hull = csg_box_hull(*hull, box_of(l, k));
     }
     return isfinite(hull->min.x) && isfinite(hull->min.y) && isfinite(hull->max.x) &&
            isfinite(hull->max.y);
@@ -325,12 +331,12 @@ static bool is_looked_at(const csg_node *node)
 static void look_at_union(look *l, csg_joint_take *take, void *user)
 {
     csg_box hull;
-    double support = csg_blend_support(l->blend), apart;
+    double support = csg_blend_support(l->blend);
     if (!find_hull(l, &hull) || !(support > 0))
         return;
     csg_joint joint = {.kind = CSG_JOINT_MISSES, .node = l->node};
-    apart = joint.amount = find_distance(l, support);
-    if (apart > APART * support) {
+    joint.amount = find_distance(l, support);
+    if (joint.amount > APART * support) {
         take(user, &joint);
         return;
     }

@@ -62,7 +62,7 @@ void csg_put_argument(const csg_printer *out, const char *separator, const char 
     csg_put_number(out, value);
 }
 
-static void put_indent(const csg_printer *out, size_t depth)
+void csg_put_indent(const csg_printer *out, size_t depth)
 {
     static const char spaces[] = "                                                                "
                                  "                ";
@@ -72,14 +72,14 @@ static void put_indent(const csg_printer *out, size_t depth)
 
 /* ---- nodes with children ------------------------------------------------------------------- */
 
-static void put_matrix(const csg_printer *out, const csg_affine *a)
+void csg_put_matrix(const csg_printer *out, const csg_affine *a)
 {
     csg_put(out, "multmatrix([");
     for (int i = 0; i < 3; i++) {
         csg_put_list(out, (double[]){a->m[i][0], a->m[i][1], a->m[i][2], a->t[i]}, 4);
         csg_put(out, ", ");
     }
-    csg_put(out, "[0, 0, 0, 1]])\n");
+    csg_put(out, "[0, 0, 0, 1]])");
 }
 
 static void put_color(const csg_printer *out, csg_color color)
@@ -246,7 +246,8 @@ static bool put_node(const csg_printer *out, const csg_node *node)
     const csgm_scene *scene = out->scene;
     switch ((csg_node_kind)node->kind) {
     case CSG_NODE_TRANSFORM:
-        put_matrix(out, &scene->transforms[node->payload]);
+        csg_put_matrix(out, &scene->transforms[node->payload]);
+        csg_put(out, "\n");
         return true;
     case CSG_NODE_COLOR:
         put_look(out, &scene->looks[node->payload]);
@@ -281,7 +282,7 @@ static bool open_children(walk *w, csg_node_id id)
     const csgm_scene *scene = w->out.scene;
     const csg_node *node = &scene->nodes[id];
     void *open = w->open;
-    put_indent(&w->out, w->open_count);
+    csg_put_indent(&w->out, w->open_count);
     if (!put_node(&w->out, node))
         return false;
     if (!node->child_count)
@@ -310,7 +311,7 @@ static csgm_status print_all(walk *w)
         }
         w->open_count--;
         if (has_braces(node)) {
-            put_indent(&w->out, w->open_count);
+            csg_put_indent(&w->out, w->open_count);
             csg_put(&w->out, "}\n");
         }
     }

@@ -20,8 +20,6 @@
 
 #define FACETS "$fn = 96"
 
-enum { MOST_INDENT = 40, STEP = 2 };
-
 typedef struct open_call {
     csg_node_id node;
     uint32_t next_child;
@@ -122,23 +120,6 @@ static csgm_status look_for_obstacles(const csgm_scene *scene)
 
 /* ---- words ------------------------------------------------------------------------------- */
 
-static void put_indent(const openscad_text *w)
-{
-    size_t depth = w->open_count < MOST_INDENT ? w->open_count : MOST_INDENT;
-    for (size_t i = 0; i < depth * STEP; i++)
-        csg_put(&w->out, " ");
-}
-
-static void put_matrix(const csg_printer *out, const csg_affine *a)
-{
-    csg_put(out, "multmatrix([");
-    for (int i = 0; i < 3; i++) {
-        csg_put_list(out, (double[]){a->m[i][0], a->m[i][1], a->m[i][2], a->t[i]}, 4);
-        csg_put(out, ", ");
-    }
-    csg_put(out, "[0, 0, 0, 1]]) ");
-}
-
 static void put_shift(const csg_printer *out, double x, double y, double z)
 {
     if (x == 0 && y == 0 && z == 0)
@@ -197,7 +178,8 @@ static void put_half_space(const csg_printer *out, const double *v, csg_box room
     place.t[1] = foot.y;
     place.t[2] = foot.z;
     double depth = size + fabs(far);
-    put_matrix(out, &place);
+    csg_put_matrix(out, &place);
+    csg_put(out, " ");
     put_shift(out, 0, 0, -depth);
     put_cube(out, "cube", (double[]){2 * size, 2 * size, 2 * depth}, 3);
 }
@@ -382,8 +364,9 @@ static void put_call(const csg_printer *out, const csg_node *node)
     switch ((csg_node_kind)node->kind) {
     case CSG_NODE_TRANSFORM:
         flat = csg_affine_of_plane(scene->transforms[node->payload]);
-        put_matrix(out, node->flags & CSG_FLAG_FLAT ? &flat : &scene->transforms[node->payload]);
-        csg_put(out, "\n");
+        csg_put_matrix(out,
+                       node->flags & CSG_FLAG_FLAT ? &flat : &scene->transforms[node->payload]);
+        csg_put(out, " \n");
         return;
     case CSG_NODE_COLOR:
         put_look(out, &scene->looks[node->payload]);
@@ -456,7 +439,7 @@ static bool open_node(openscad_text *w, csg_node_id id, csg_box room, bool is_so
     const csgm_scene *scene = w->out.scene;
     const csg_node *node = &scene->nodes[id];
     void *open = w->open;
-    put_indent(w);
+    csg_put_indent(&w->out, w->open_count);
     if (is_solid && node->flags & CSG_FLAG_FLAT) {
         put_shift(&w->out, 0, 0, csg_box_center(room).z);
         csg_put_argument(&w->out, "linear_extrude(", "height", csg_box_size(room).z);
@@ -497,7 +480,7 @@ static csgm_status write_all(openscad_text *w, csg_box room)
         bool braces = top->braces;
         w->open_count--;
         if (braces) {
-            put_indent(w);
+            csg_put_indent(&w->out, w->open_count);
             csg_put(&w->out, "}\n");
         }
     }

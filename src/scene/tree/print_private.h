@@ -20,6 +20,10 @@ void csg_put_list(const csg_printer *out, const double *values, int count);
 /* `separator` name = value */
 void csg_put_argument(const csg_printer *out, const char *separator, const char *name,
                       double value);
+/* Two spaces a level, of very deep ones no more. */
+void csg_put_indent(const csg_printer *out, size_t depth);
+/* multmatrix(...), without what follows. */
+void csg_put_matrix(const csg_printer *out, const csg_affine *matrix);
 /* The line of a SOFT node. */
 void csg_put_soft(const csg_printer *out, const csg_node *node);
 /* polygon() or polyhedron(), whose last words are `end`. */
