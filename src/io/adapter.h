@@ -140,6 +140,12 @@ typedef struct csg_xml_calls {
     csgm_status (*text)(void *user, const char *text, size_t length);
 } csg_xml_calls;
 
+/* XML's white space. */
+static inline bool csg_xml_is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
 bool csg_package_available(void);
 /* The bytes stay the caller's and must outlive the package. */
 csgm_status csg_package_open(const uint8_t *bytes, size_t size_bytes, csg_package **out,

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +13,17 @@
 #include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"
+
+bool csg_read_room(const csg_input *input, void *array, size_t *capacity, size_t needed,
+                   size_t bytes)
+{
+    void *data;
+    memcpy(&data, array, sizeof data);
+    if (!csg_memory_reserve(&input->context->memory, &data, capacity, needed, bytes))
+        return false;
+    memcpy(array, &data, sizeof data);
+    return true;
+}
 
 csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *format, ...)
 {

@@ -23,6 +23,10 @@ typedef csgm_status csg_read_fn(csg_input *input, csg_mesh_builder *builder);
 #define CSG_FORMAT(ID, name, ...) csg_read_fn csg_##name##_read;
 #include "io/formats.def"
 
+/* Makes room for so many elements in an array of any type; array: where its pointer stands. False:
+ * out of memory, not reported. */
+bool csg_read_room(const csg_input *input, void *array, size_t *capacity, size_t needed,
+                   size_t bytes);
 /* Report why the file is refused. line 0 = not a text file: name the byte in the message. */
 csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -83,16 +83,6 @@ static csgm_status no_memory(const amf_file *f)
     return csg_context_no_memory(f->input->context);
 }
 
-static bool room(amf_file *f, void *array, size_t *capacity, size_t needed, size_t bytes)
-{
-    void *data;
-    memcpy(&data, array, sizeof data);
-    if (!csg_memory_reserve(&f->input->context->memory, &data, capacity, needed, bytes))
-        return false;
-    memcpy(array, &data, sizeof data);
-    return true;
-}
-
 /* ---- names and numbers ------------------------------------------------------------------ */
 
 static const char *local(const char *name)
@@ -117,19 +107,14 @@ static amf_element element_of(const char *name)
     return OTHER;
 }
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 /* All of the innermost element's text. */
 static bool read_number(const amf_file *f, double *value)
 {
     const char *at = f->text, *end = f->text + f->length;
-    while (at < end && is_blank(*at))
+    while (at < end && csg_xml_is_blank(*at))
         at++;
     at = f->length < MOST_TEXT ? csg_number_parse(at, end, value) : NULL;
-    while (at && at < end && is_blank(*at))
+    while (at && at < end && csg_xml_is_blank(*at))
         at++;
     return at == end && isfinite(*value);
 }
@@ -171,7 +156,8 @@ static csgm_status begin_object(amf_file *f, const char *const *attributes)
     amf_object object = {.first_vertex = f->vertex_count, .first_triangle = f->triangle_count};
     if (!read_id(attributes, "id", &object.id))
         return broken(f, "an object has no good id");
-    if (!room(f, &f->objects, &f->object_room, f->object_count + 1, sizeof *f->objects))
+    if (!csg_read_room(f->input, &f->objects, &f->object_room, f->object_count + 1,
+                       sizeof *f->objects))
         return no_memory(f);
     f->objects[f->object_count++] = object;
     return CSGM_OK;
@@ -182,7 +168,8 @@ static csgm_status begin_instance(amf_file *f, const char *const *attributes)
     amf_instance instance = {.object = 0};
     if (!read_id(attributes, "objectid", &instance.object))
         return broken(f, "an instance names no object");
-    if (!room(f, &f->instances, &f->instance_room, f->instance_count + 1, sizeof *f->instances))
+    if (!csg_read_room(f->input, &f->instances, &f->instance_room, f->instance_count + 1,
+                       sizeof *f->instances))
         return no_memory(f);
     f->instances[f->instance_count++] = instance;
     return CSGM_OK;
@@ -193,7 +180,8 @@ static csgm_status begin_vertex(amf_file *f)
     f->seen = 0;
     if (last_object(f)->vertex_count == UINT32_MAX)
         return csg_read_unsupported(f->input, "more than 4294967295 vertices in one object");
-    if (!room(f, &f->vertices, &f->vertex_room, f->vertex_count + 1, sizeof *f->vertices))
+    if (!csg_read_room(f->input, &f->vertices, &f->vertex_room, f->vertex_count + 1,
+                       sizeof *f->vertices))
         return no_memory(f);
     f->vertices[f->vertex_count++] = (amf_vertex){.at = {0}};
     last_object(f)->vertex_count++;
@@ -203,7 +191,8 @@ static csgm_status begin_vertex(amf_file *f)
 static csgm_status begin_triangle(amf_file *f)
 {
     f->seen = 0;
-    if (!room(f, &f->triangles, &f->triangle_room, f->triangle_count + 1, 3 * sizeof *f->triangles))
+    if (!csg_read_room(f->input, &f->triangles, &f->triangle_room, f->triangle_count + 1,
+                       3 * sizeof *f->triangles))
         return no_memory(f);
     memset(f->triangles + 3 * f->triangle_count++, 0, 3 * sizeof *f->triangles);
     last_object(f)->triangle_count++;

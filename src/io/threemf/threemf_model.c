@@ -57,15 +57,10 @@ static csgm_status broken(const parser *p, const char *what)
                            what);
 }
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
 /* The next of several numbers; NULL when there is none or it is not finite. */
 static const char *next_number(const char *at, double *value)
 {
-    while (is_blank(*at))
+    while (csg_xml_is_blank(*at))
         at++;
     at = csg_number_parse(at, at + strlen(at), value);
     return at && isfinite(*value) ? at : NULL;
@@ -74,7 +69,7 @@ static const char *next_number(const char *at, double *value)
 static bool read_number(const char *const *attributes, const char *name, double *value)
 {
     const char *text = find(attributes, name), *end = text ? next_number(text, value) : NULL;
-    while (end && is_blank(*end))
+    while (end && csg_xml_is_blank(*end))
         end++;
     return end && !*end;
 }
@@ -102,7 +97,7 @@ static bool read_transform(const char *text, double rows[12])
         if (!text)
             return false;
     }
-    while (is_blank(*text))
+    while (csg_xml_is_blank(*text))
         text++;
     return !*text;
 }
@@ -113,16 +108,6 @@ static bool read_transform(const char *text, double rows[12])
 static csgm_status no_memory(const parser *p)
 {
     return csg_context_no_memory(p->m->input->context);
-}
-
-static bool room(parser *p, void *array, size_t *capacity, size_t needed, size_t bytes)
-{
-    void *data;
-    memcpy(&data, array, sizeof data);
-    if (!csg_memory_reserve(&p->m->input->context->memory, &data, capacity, needed, bytes))
-        return false;
-    memcpy(array, &data, sizeof data);
-    return true;
 }
 
 /* The number of a file of the package, read later if it is new. */
@@ -139,7 +124,7 @@ static csgm_status file_number(parser *p, const char *name, uint32_t *number)
         }
     if (m->file_count == MOST)
         return broken(p, "it refers to more than 1000 other models");
-    if (!room(p, &m->files, &m->file_room, m->file_count + 1, sizeof *m->files))
+    if (!csg_read_room(p->m->input, &m->files, &m->file_room, m->file_count + 1, sizeof *m->files))
         return no_memory(p);
     m->files[m->file_count] = csg_arena_strndup(&m->names, name, strlen(name));
     if (!m->files[m->file_count])
@@ -181,7 +166,8 @@ static csgm_status add_group(parser *p, const char *const *attributes)
     csg_3mf_group group = {.file = p->file, .first = m->color_count};
     if (!read_index(find(attributes, "id"), &group.id))
         return broken(p, "a group of colours has no good id");
-    if (!room(p, &m->groups, &m->group_room, m->group_count + 1, sizeof *m->groups))
+    if (!csg_read_room(p->m->input, &m->groups, &m->group_room, m->group_count + 1,
+                       sizeof *m->groups))
         return no_memory(p);
     m->groups[m->group_count++] = group;
     p->last_group = NULL; /* the array may have moved */
@@ -196,7 +182,7 @@ static csgm_status add_color(parser *p, const char *text)
         return CSGM_OK;
     if (!read_color(text, color))
         return broken(p, "a colour is not written as #RRGGBB or #RRGGBBAA");
-    if (!room(p, &m->colors, &m->color_room, m->color_count + 1, 4))
+    if (!csg_read_room(p->m->input, &m->colors, &m->color_room, m->color_count + 1, 4))
         return no_memory(p);
     memcpy(m->colors + 4 * m->color_count++, color, 4);
     m->groups[m->group_count - 1].count++;
@@ -243,7 +229,8 @@ static csgm_status begin_object(parser *p, const char *const *attributes)
         if (!object.name)
             return no_memory(p);
     }
-    if (!room(p, &m->objects, &m->object_room, m->object_count + 1, sizeof *m->objects))
+    if (!csg_read_room(p->m->input, &m->objects, &m->object_room, m->object_count + 1,
+                       sizeof *m->objects))
         return no_memory(p);
     m->objects[m->object_count] = object;
     p->object = &m->objects[m->object_count++];
@@ -280,7 +267,8 @@ static csgm_status add_vertex(parser *p, const char *const *attributes)
         !read_number(attributes, "y", &vertex.at[1]) ||
         !read_number(attributes, "z", &vertex.at[2]))
         return broken(p, "a vertex has a coordinate that is not a finite number");
-    if (!room(p, &m->vertices, &m->vertex_room, m->vertex_count + 1, sizeof vertex))
+    if (!csg_read_room(p->m->input, &m->vertices, &m->vertex_room, m->vertex_count + 1,
+                       sizeof vertex))
         return no_memory(p);
     m->vertices[m->vertex_count++] = vertex;
     return CSGM_OK;
@@ -321,7 +309,8 @@ static csgm_status add_triangle(parser *p, const char *const *attributes)
         if (!read_index(find(attributes, names[k]), &corners[k]) ||
             corners[k] >= m->vertex_count - p->object->first_vertex)
             return broken(p, "a triangle names a vertex that does not exist");
-    if (!room(p, &m->triangles, &m->triangle_room, m->triangle_count + 1, sizeof corners))
+    if (!csg_read_room(p->m->input, &m->triangles, &m->triangle_room, m->triangle_count + 1,
+                       sizeof corners))
         return no_memory(p);
     memcpy(m->triangles + 3 * m->triangle_count++, corners, sizeof corners);
     color_corners(p, attributes, corners);
@@ -341,7 +330,7 @@ static csgm_status add_reference(parser *p, const char *const *attributes,
     csgm_status status = path ? file_number(p, path, &reference.file) : CSGM_OK;
     if (status)
         return status;
-    if (!room(p, array, capacity, *count + 1, sizeof reference))
+    if (!csg_read_room(p->m->input, array, capacity, *count + 1, sizeof reference))
         return no_memory(p);
     (*array)[(*count)++] = reference;
     return CSGM_OK;
