@@ -168,6 +168,12 @@ typedef struct csgm_context_options {
                               own files; default false: one note says how many there are */
     csgm_trace *trace;     /* where its time goes is noted there; outlives it; NULL (the default) =
                               nowhere */
+    /* Asked now and then during every call with this context that can take long: reading a scene or
+     * a mesh, meshing, drawing, comparing, many points. On any thread: be quick and thread safe.
+     * true = the call ends with CSGM_CANCELLED, without a finding about it; say so until it has
+     * ended. Gets `user`; NULL (the default) = nobody asks to stop. A call's own csgm_monitor is
+     * asked too. */
+    bool (*cancelled)(void *user);
 } csgm_context_options;
 
 CSGM_API csgm_context_options csgm_context_options_default(void);
@@ -179,6 +185,9 @@ CSGM_API void csgm_context_destroy(csgm_context *context);
 CSGM_API uint64_t csgm_context_memory(const csgm_context *context, uint64_t *peak_bytes);
 /* The number of threads that long calls use, at least 1. */
 CSGM_API uint32_t csgm_context_threads(const csgm_context *context);
+/* Ends the worker threads until a call needs them again: for a context that is kept because of what
+ * was made with it, and has nothing to do. */
+CSGM_API void csgm_context_rest(csgm_context *context);
 /* "avx512", "avx2", "sse2", "neon" or "scalar"; static storage. */
 CSGM_API const char *csgm_context_isa(const csgm_context *context);
 
@@ -295,6 +304,12 @@ CSGM_API const char *csgm_scene_dependency(const csgm_scene *scene, size_t index
 /* Value and gradient in double precision (operators.md, EvalField), for looking, not for speed.
  * gradient (may be NULL) is zero at critical points. */
 CSGM_API double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient);
+/* The same at many points, by all threads of the context, bit for bit what one point after the
+ * other gives: points has 3 * count numbers, values gets count, gradients (may be NULL) 3 * count.
+ * After a failure they hold what was known by then. */
+CSGM_API csgm_status csgm_scene_eval_points(csgm_context *context, const csgm_scene *scene,
+                                            const double *points, size_t count, double *values,
+                                            double *gradients);
 
 /* Primitives that can change the value at this point (the others may be pruned there). */
 CSGM_API uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec3 at);

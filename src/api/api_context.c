@@ -99,6 +99,8 @@ static void fill_context(csgm_context *context, const csgm_context_options *opti
     context->diags.library_warnings = options->library_warnings;
     context->limits = options->limits;
     context->on_echo = options->on_echo;
+    context->cancelled = options->cancelled;
+    context->cancel_user = options->user;
     context->user = options->user;
 }
 
@@ -174,6 +176,11 @@ uint64_t csgm_context_memory(const csgm_context *context, uint64_t *peak_bytes)
 uint32_t csgm_context_threads(const csgm_context *context)
 {
     return csg_pool_threads(context->pool);
+}
+
+void csgm_context_rest(csgm_context *context)
+{
+    csg_pool_rest(context->pool);
 }
 
 const char *csgm_context_isa(const csgm_context *context)

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Scenes of the public interface: text in, sealed tree out, and what one may ask of it.
  */
+#include <stdatomic.h>
+#include <string.h>
+
 #include "api/options.h"
 #include "api/services.h"
+#include "base/pool.h"
 #include "lang/lang.h"
 #include "scene/boxes/bounds.h"
 #include "scene/reference.h"
@@ -103,6 +107,53 @@ double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradien
     if (gradient)
         *gradient = sample.gradient;
     return sample.value;
+}
+
+/* ---- many points ------------------------------------------------------------------------- */
+
+enum { POINTS_AT_ONCE = 64 };
+
+typedef struct point_job {
+    csgm_context *context;
+    const csgm_scene *scene;
+    const double *points;
+    size_t count;
+    double *values, *gradients;
+    atomic_bool no_memory;
+} point_job;
+
+static bool evaluate_points(void *user, uint32_t worker, size_t index)
+{
+    point_job *job = user;
+    csgm_status status = CSGM_OK;
+    size_t end =
+        (index + 1) * POINTS_AT_ONCE < job->count ? (index + 1) * POINTS_AT_ONCE : job->count;
+    if (csg_context_is_cancelled(job->context))
+        return false;
+    for (size_t i = index * POINTS_AT_ONCE; i < end; i++) {
+        const double *p = job->points + 3 * i;
+        csg_sample sample =
+            csg_reference_eval(job->scene, csg_vec3_make(p[0], p[1], p[2]), &status);
+        job->values[i] = sample.value;
+        if (job->gradients)
+            memcpy(job->gradients + 3 * i, &sample.gradient, sizeof sample.gradient);
+    }
+    if (status != CSGM_OK)
+        atomic_store(&job->no_memory, true);
+    return status == CSGM_OK;
+}
+
+csgm_status csgm_scene_eval_points(csgm_context *context, const csgm_scene *scene,
+                                   const double *points, size_t count, double *values,
+                                   double *gradients)
+{
+    if (!context || !scene || (count && (!points || !values)))
+        return CSGM_ERR_ARGUMENT;
+    point_job job = {context, scene, points, count, values, gradients, false};
+    size_t items = count / POINTS_AT_ONCE + (count % POINTS_AT_ONCE != 0);
+    if (csg_pool_run(context->pool, items, evaluate_points, NULL, &job))
+        return CSGM_OK;
+    return atomic_load(&job.no_memory) ? csg_context_no_memory(context) : CSGM_CANCELLED;
 }
 
 uint32_t csgm_scene_active_primitives(const csgm_scene *scene, csgm_vec3 at)

@@ -15,7 +15,9 @@ struct csgm_context {
     csg_memory memory;
     csg_diag_sink diags;
     csgm_limits limits;
-    csgm_text_fn *on_echo; /* NULL = dropped */
+    csgm_text_fn *on_echo;         /* NULL = dropped */
+    bool (*cancelled)(void *user); /* NULL = nobody asks to stop */
+    void *cancel_user;
     void *user;
     csgm_isa isa;           /* never AUTO */
     csg_pool *pool;         /* threads = 1: still a pool, of the caller alone */
@@ -23,6 +25,12 @@ struct csgm_context {
     csg_held_file *held;    /* those that wait for that, the last first */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
 };
+
+/* Has the caller said that this context's calls shall stop? On any thread. */
+static inline bool csg_context_is_cancelled(const csgm_context *context)
+{
+    return context->cancelled && context->cancelled(context->cancel_user);
+}
 
 /* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY. */
 csgm_status csg_context_no_memory(csgm_context *context);

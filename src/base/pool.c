@@ -19,6 +19,7 @@ typedef struct job {
 typedef struct worker {
     csg_pool *pool;
     uint32_t index;
+    uint64_t seen; /* the last job before it was started */
     pthread_t thread;
 } worker;
 
@@ -26,6 +27,7 @@ struct csg_pool {
     csg_memory *memory;
     csg_trace_lanes *trace; /* NULL = none */
     uint32_t threads;       /* with the caller */
+    uint32_t running;       /* workers that there are: threads - 1, or 0 while the pool rests */
     pthread_mutex_t lock;
     pthread_cond_t wake, idle;
     uint64_t generation; /* of the job; under lock */
@@ -73,7 +75,7 @@ static void *worker_main(void *argument)
 {
     worker *self = argument;
     csg_pool *pool = self->pool;
-    uint64_t seen = 0;
+    uint64_t seen = self->seen;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
         while (!pool->quit && pool->generation == seen)
@@ -96,23 +98,40 @@ static size_t pool_bytes(uint32_t workers)
     return sizeof(csg_pool) + workers * sizeof(worker);
 }
 
+static void start_workers(csg_pool *pool, uint32_t count)
+{
+    for (pool->running = 0; pool->running < count; pool->running++) {
+        worker *w = &pool->workers[pool->running];
+        *w = (worker){.pool = pool, .index = pool->running + 1, .seen = pool->generation};
+        if (pthread_create(&w->thread, NULL, worker_main, w) != 0)
+            break; /* fewer workers give the same bytes */
+    }
+}
+
+void csg_pool_rest(csg_pool *pool)
+{
+    pthread_mutex_lock(&pool->lock);
+    pool->quit = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (uint32_t i = 0; i < pool->running; i++)
+        pthread_join(pool->workers[i].thread, NULL);
+    pool->running = 0;
+    pool->quit = false;
+}
+
 csg_pool *csg_pool_create(csg_memory *memory, uint32_t threads)
 {
     uint32_t extra = threads > 1 ? threads - 1 : 0;
     csg_pool *pool = csg_memory_alloc(memory, pool_bytes(extra));
     if (!pool)
         return NULL;
-    *pool = (csg_pool){.memory = memory, .threads = 1, .allocated = extra};
+    *pool = (csg_pool){.memory = memory, .allocated = extra};
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->wake, NULL);
     pthread_cond_init(&pool->idle, NULL);
-    for (uint32_t i = 0; i < extra; i++) {
-        worker *w = &pool->workers[i];
-        *w = (worker){.pool = pool, .index = pool->threads};
-        if (pthread_create(&w->thread, NULL, worker_main, w) != 0)
-            break; /* fewer workers give the same bytes */
-        pool->threads++;
-    }
+    start_workers(pool, extra);
+    pool->threads = 1 + pool->running;
     return pool;
 }
 
@@ -120,12 +139,7 @@ void csg_pool_destroy(csg_pool *pool)
 {
     if (!pool)
         return;
-    pthread_mutex_lock(&pool->lock);
-    pool->quit = true;
-    pthread_cond_broadcast(&pool->wake);
-    pthread_mutex_unlock(&pool->lock);
-    for (uint32_t i = 0; i + 1 < pool->threads; i++)
-        pthread_join(pool->workers[i].thread, NULL);
+    csg_pool_rest(pool);
     pthread_cond_destroy(&pool->idle);
     pthread_cond_destroy(&pool->wake);
     pthread_mutex_destroy(&pool->lock);
@@ -145,14 +159,16 @@ void csg_pool_set_trace(csg_pool *pool, csg_trace_lanes *lanes)
 bool csg_pool_run(csg_pool *pool, size_t count, csg_pool_work *work, csg_pool_poll *poll,
                   void *user)
 {
+    if (!pool->running && pool->threads > 1 && count > 1)
+        start_workers(pool, pool->threads - 1);
     pthread_mutex_lock(&pool->lock);
     pool->job = (job){work, user, count, pool->trace ? csg_trace_open_name(pool->trace) : NULL};
     atomic_store(&pool->next, 0);
     atomic_store(&pool->done, 0);
     atomic_store(&pool->stopped, false);
-    bool alone = pool->threads == 1 || count < 2;
+    bool alone = pool->running == 0 || count < 2;
     if (!alone) {
-        pool->busy = pool->threads - 1;
+        pool->busy = pool->running;
         pool->generation++;
         pthread_cond_broadcast(&pool->wake);
     }

@@ -18,6 +18,8 @@ typedef struct csg_trace_lanes csg_trace_lanes;
 csg_pool *csg_pool_create(csg_memory *memory, uint32_t threads);
 void csg_pool_destroy(csg_pool *pool); /* NULL is a no-op */
 uint32_t csg_pool_threads(const csg_pool *pool);
+/* Ends the workers; the next run starts them anew, as many as the system has. */
+void csg_pool_rest(csg_pool *pool);
 /* From now on each worker's part of a loop is a zone (trace.h). */
 void csg_pool_set_trace(csg_pool *pool, csg_trace_lanes *lanes);
 

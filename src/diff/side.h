@@ -71,7 +71,8 @@ static inline bool csg_diff_is_cancelled(const csg_diff_pair *pair)
         atomic_store(pair->timed_out, true);
         return true;
     }
-    return pair->monitor->cancelled && pair->monitor->cancelled(pair->monitor->user);
+    return csg_context_is_cancelled(pair->context) ||
+           (pair->monitor->cancelled && pair->monitor->cancelled(pair->monitor->user));
 }
 
 /* A triangle's corner in frame units. */

@@ -67,7 +67,10 @@ static bool add_color(csg_mesh_builder *b, const uint8_t *color)
 static bool has_time(csg_mesh_builder *b)
 {
     enum { EACH = 1 << 10 };
-    if (++b->added % EACH == 0 && b->deadline_s > 0 && csg_clock_now_s() > b->deadline_s)
+    if (++b->added % EACH != 0)
+        return !b->is_late;
+    b->is_cancelled = csg_context_is_cancelled(b->context);
+    if (b->is_cancelled || (b->deadline_s > 0 && csg_clock_now_s() > b->deadline_s))
         b->failed = b->is_late = true;
     return !b->is_late;
 }
@@ -176,6 +179,8 @@ csgm_status csg_builder_why_failed(const csg_mesh_builder *b)
 {
     if (!b->is_late)
         return csg_context_no_memory(b->context);
+    if (b->is_cancelled)
+        return CSGM_CANCELLED;
     csg_diag_plain(&b->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
                    "reading the mesh takes more than %g seconds", b->context->limits.timeout_s);
     return CSGM_ERR_LIMIT;

@@ -21,6 +21,7 @@ typedef struct csg_mesh_builder {
     bool lacks_normals; /* a vertex came without: the mesh will have none */
     bool failed;        /* out of memory or of time; sticky */
     bool is_late;       /* it is time */
+    bool is_cancelled;  /* and why */
     double deadline_s;  /* by csg_clock_now_s, from the limits; 0 = none */
     uint32_t added;     /* vertices and triangles; the clock is looked at now and then */
     bool too_far;       /* a coordinate is beyond what floats hold; sticky */

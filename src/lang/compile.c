@@ -223,6 +223,8 @@ static void compile(compilation *c)
         (*c->out)->parse_s = parsed_s - begin_s;
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
+    if (c->status != CSGM_OK && csg_context_is_cancelled(c->context))
+        c->status = CSGM_CANCELLED;
     csg_diag_sum_up(&c->context->diags);
     csg_program_reset(&program);
 }
@@ -240,6 +242,8 @@ static void hand_over(relay *r)
 static void relay_diag(void *user, const csgm_diag *diag)
 {
     compilation *c = user;
+    if (diag->severity == CSGM_ERROR && csg_context_is_cancelled(c->context))
+        return; /* what failed because of that is nobody's mistake */
     pthread_mutex_lock(&c->relay.mutex);
     c->relay.diag = diag;
     hand_over(&c->relay);

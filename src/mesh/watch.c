@@ -22,7 +22,8 @@ void csg_mesh_watch_begin(csg_mesh_watch *w, csgm_context *context, const csgm_m
 bool csg_mesh_should_stop(void *user)
 {
     csg_mesh_watch *w = user;
-    if (w->monitor->cancelled && w->monitor->cancelled(w->monitor->user))
+    if (csg_context_is_cancelled(w->context) ||
+        (w->monitor->cancelled && w->monitor->cancelled(w->monitor->user)))
         return true;
     if (w->deadline_s > 0 && csg_clock_now_s() > w->deadline_s) {
         atomic_store(&w->timed_out, true);

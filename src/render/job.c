@@ -102,7 +102,8 @@ bool csg_picture_should_stop(void *user)
 {
     csg_picture *picture = user;
     const csgm_monitor *monitor = &picture->options->monitor;
-    if (monitor->cancelled && monitor->cancelled(monitor->user))
+    if (csg_context_is_cancelled(picture->context) ||
+        (monitor->cancelled && monitor->cancelled(monitor->user)))
         return true;
     if (picture->deadline_s > 0 && csg_clock_now_s() > picture->deadline_s) {
         atomic_store(&picture->timed_out, true);

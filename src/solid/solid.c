@@ -39,8 +39,9 @@ bool csg_solid_charge(csg_solid_job *job, uint64_t steps)
 bool csg_solid_check_time(csg_solid_job *job)
 {
     job->clock_steps = job->steps;
-    if (job->deadline_s != 0 && csg_clock_now_s() > job->deadline_s)
-        stop(job, CSGM_ERR_LIMIT);
+    if ((job->deadline_s != 0 && csg_clock_now_s() > job->deadline_s) ||
+        csg_context_is_cancelled(job->builder->context))
+        stop(job, CSGM_ERR_LIMIT); /* the evaluator asks which of both */
     return !job->stop;
 }
 

@@ -79,6 +79,30 @@ static void test_every_item_once(void **state)
     }
 }
 
+static void test_rest(void **state)
+{
+    csg_memory memory;
+    csg_memory_init(&memory, NULL, 0);
+    csg_pool *pool = csg_pool_create(&memory, 4);
+    uint32_t threads = csg_pool_threads(pool);
+    for (int round = 0; round < 5; round++) {
+        csg_pool_rest(pool);
+        csg_pool_rest(pool); /* nobody is there to be ended */
+        for (int run = 0; run < 3; run++) {
+            reset();
+            assert_true(csg_pool_run(pool, ITEMS, work, NULL, &j));
+            for (size_t i = 0; i < ITEMS; i++)
+                assert_int_equal(j.times[i], 1);
+            for (uint32_t k = threads; k < MOST_THREADS; k++)
+                assert_int_equal(j.per_worker[k], 0);
+        }
+        assert_int_equal(csg_pool_threads(pool), threads);
+    }
+    csg_pool_rest(pool);
+    csg_pool_destroy(pool);
+    assert_int_equal(atomic_load(&memory.used_bytes), 0);
+}
+
 static void test_few_items(void **state)
 {
     csg_memory memory;
@@ -126,9 +150,8 @@ static void test_no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_item_once),
-        cmocka_unit_test(test_few_items),
-        cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_every_item_once), cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_few_items),       cmocka_unit_test(test_stop),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,6 +140,10 @@ bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
 bool csg_eval_check_time(csg_eval *e, csg_span where)
 {
     e->clock_steps = e->steps;
+    if (!e->stop && csg_context_is_cancelled(e->context)) {
+        e->stop = true;
+        e->status = CSGM_CANCELLED;
+    }
     if (e->program->deadline_s != 0 && csg_clock_now_s() > e->program->deadline_s)
         csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL,
                        "the evaluation takes more than %g seconds", e->context->limits.timeout_s);

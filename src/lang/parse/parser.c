@@ -349,13 +349,16 @@ static void resynchronize(csg_parser *parser, size_t from)
 static bool is_late(csg_parser *parser)
 {
     const csg_program *program = parser->program;
-    if (program->deadline_s == 0 || (++parser->statements & 63) ||
-        csg_clock_now_s() < program->deadline_s)
+    if (++parser->statements & 63)
         return false;
-    csg_source_report(&program->sources, CSG_DIAG_TIMEOUT, csg_parser_span(parser), NULL,
-                      "parsing takes more than %g seconds", program->context->limits.timeout_s);
+    bool cancelled = csg_context_is_cancelled(program->context);
+    if (!cancelled && (program->deadline_s == 0 || csg_clock_now_s() < program->deadline_s))
+        return false;
+    if (!cancelled)
+        csg_source_report(&program->sources, CSG_DIAG_TIMEOUT, csg_parser_span(parser), NULL,
+                          "parsing takes more than %g seconds", program->context->limits.timeout_s);
     parser->stop = true;
-    parser->status = CSGM_ERR_LIMIT;
+    parser->status = cancelled ? CSGM_CANCELLED : CSGM_ERR_LIMIT;
     parser->at = parser->tokens.count - 1;
     return true;
 }
