@@ -79,6 +79,20 @@ class Package(cli.CliTest):
         scene = os.path.join(pages, "scenes", "parts", "mug.txt")
         self.assert_status(self.run_in(scene, "-r", "16", "-q", "-o", "mug.ply"), 0)
 
+    def test_pages_of_the_manual_and_completions(self):
+        """They are what this program says of itself, where shells and man look for them."""
+        share = os.path.dirname(os.path.dirname(glob.glob(self.path("**/doc/csgmesh"), recursive=True)[0]))
+        names = cli.re.findall(r"csgmesh\\-(\w+) \(1\)", cli.run("man").stdout.decode())
+        self.assertIn("mesh", names)
+        said = {f"man/man1/csgmesh-{name}.1": ["man", name] for name in names}
+        said["man/man1/csgmesh.1"] = ["man"]
+        said["bash-completion/completions/csgmesh"] = ["completion", "bash"]
+        said["zsh/site-functions/_csgmesh"] = ["completion", "zsh"]
+        said["fish/vendor_completions.d/csgmesh.fish"] = ["completion", "fish"]
+        for name, arguments in said.items():
+            with open(os.path.join(share, name), "rb") as file:
+                self.assertEqual(file.read(), cli.run(*arguments).stdout, name)
+
     @unittest.skipUnless(shutil.which("readelf"), "readelf is not installed")
     def test_soname_and_version_node(self):
         library = os.path.join(self.libraries, "libcsgmesh.so")

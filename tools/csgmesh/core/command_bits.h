@@ -10,8 +10,9 @@ enum {
 #define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,
 #include "core/commands.def"
 #undef COMMAND
-    ANY_SCENE = ((1 << CLI_COMMAND_COUNT) - 1) & ~OPENSCAD, /* which has options of its own */
-    ANY = ANY_SCENE
+    ANY = ((1 << CLI_COMMAND_COUNT) - 1) & ~OPENSCAD,      /* which has options of its own */
+    ANY_WORK = ANY & ~(HELP | VERSION | MAN | COMPLETION), /* these only talk */
+    ANY_SCENE = ANY_WORK
 };
 
 #endif

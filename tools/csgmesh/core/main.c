@@ -4,8 +4,8 @@
  */
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "batch/batch_hash.h"
 #include "core/cli.h"
 #include "core/interrupt.h"
 #include "core/roots.h"
@@ -32,25 +32,45 @@ static bool find_command(const char *name, cli_command *command)
     return false;
 }
 
-int cli_print_version(cli_app *app)
+/* "did you mean 'check'?", or how to see all; a name that says nothing is near to nothing. */
+static const char *hint_for(const char *name, char *hint, size_t size)
 {
-    int status = cli_app_open(app);
-    if (status == CLI_DONE)
-        printf("csgmesh %s (%s)\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
-               csgm_build_features(), batch_hash_feature());
-    return cli_finish_stdout(app, status);
+    const char *names[CLI_COMMAND_COUNT + 1] = {NULL};
+    for (int i = 0; i < CLI_COMMAND_COUNT; i++)
+        names[i] = commands[i].name;
+    const char *near = cli_nearest(name, names);
+    snprintf(hint, size, near ? "did you mean '%s'?" : "csgmesh help lists the commands", near);
+    return hint;
 }
 
-static int help(cli_app *app, const char *topic)
+bool cli_command_find(cli_app *app, const char *name, cli_command *out)
 {
-    cli_command command;
-    if (!topic)
-        cli_help();
-    else if (find_command(topic, &command))
-        cli_help_command(command);
-    else
-        return cli_usage_error(app, NULL, "there is no command '%s'", topic);
-    return cli_finish_stdout(app, CLI_DONE);
+    char hint[80];
+    if (find_command(name, out))
+        return true;
+    cli_usage_error(app, hint_for(name, hint, sizeof hint), "there is no command '%.80s'", name);
+    return false;
+}
+
+/* A scene that is not there, or the name of a command with a slip in it? Files have extensions. */
+static bool looks_like_command(const char *text)
+{
+    return *text && !strpbrk(text, "./-") && access(text, F_OK) != 0;
+}
+
+static int refuse_unknown(cli_app *app, const char *name)
+{
+    static const char *const endings[] = {".txt", ".scad"};
+    char hint[128], path[96];
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        snprintf(path, sizeof path, "%.70s%s", name, endings[i]);
+        if (access(path, F_OK) == 0) {
+            snprintf(hint, sizeof hint, "did you mean '%s'?", path);
+            return cli_usage_error(app, hint, "there is no command and no file '%.80s'", name);
+        }
+    }
+    return cli_usage_error(app, hint_for(name, hint, sizeof hint),
+                           "there is no command and no file '%.80s'", name);
 }
 
 static int run_command(cli_app *app, cli_command command, bool is_named, int argc, char **argv)
@@ -62,12 +82,20 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
     }
     bool parsed = cli_options_parse(&app->options, command, argc, argv, &problem);
     cli_console_configure(&app->console, &app->options);
+    if (!is_named && app->options.operands.count &&
+        looks_like_command(app->options.operands.items[0]))
+        return refuse_unknown(app, app->options.operands.items[0]);
     if (!parsed)
         return cli_usage_error(app, problem.hint[0] ? problem.hint : NULL, "%s", problem.message);
     if (app->options.version)
         return cli_print_version(app);
-    if (app->options.help)
-        return help(app, is_named ? commands[command].name : NULL);
+    if (app->options.help) {
+        if (is_named)
+            cli_help_command(command);
+        else
+            cli_help();
+        return cli_finish_stdout(app, CLI_DONE);
+    }
     int status = cli_roots_confine(app);
     if (status == CLI_DONE && app->options.trace) /* it is written whatever the command says */
         status = cli_sources_guard(app);
@@ -96,9 +124,6 @@ static int dispatch(cli_app *app, int argc, char **argv)
         cli_finish_stdout(app, CLI_DONE);
         return CLI_TROUBLE;
     }
-    int operand = cli_options_first_operand(argc, argv);
-    if (operand < argc && strcmp(argv[operand], "help") == 0)
-        return help(app, operand + 1 < argc ? argv[operand + 1] : NULL);
     int named = find_named(argc, argv, &command);
     if (named > 0) /* the options before it go where those behind it are */
         memmove(argv + 2, argv + 1, (size_t)(named - 1) * sizeof *argv);

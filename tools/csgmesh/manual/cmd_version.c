@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ * csgmesh version: what --version and -V say, too.
+ */
+#include <stdio.h>
+
+#include "batch/batch_hash.h"
+#include "core/cli.h"
+
+int cli_print_version(cli_app *app)
+{
+    int status = cli_app_open(app);
+    if (status == CLI_DONE)
+        printf("csgmesh %s (%s)\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
+               csgm_build_features(), batch_hash_feature());
+    return cli_finish_stdout(app, status);
+}
+
+int cli_cmd_version(cli_app *app)
+{
+    if (app->options.operands.count)
+        return cli_usage_error(app, NULL, "version takes no '%s'", app->options.operands.items[0]);
+    return cli_print_version(app);
+}
