@@ -70,7 +70,7 @@ class Text(cli.CliTest):
         self.assertNotIn("not shown", result.stderr)
 
     def test_werror(self):
-        self.write("a.txt", "sphere(r = 1, colour = 2);\n")
+        self.write("a.txt", "sphere(r = 1, d = 2);\n")
         self.assert_status(self.run_in("check", "a.txt"), 0)
         for arguments in (["check", "-Werror", "a.txt"], ["-W", "error", "check", "a.txt"],
                           ["a.txt", "-Werror", "-o", "a.ply"], ["params", "-Werror", "-D", "zz=1",

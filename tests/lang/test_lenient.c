@@ -56,6 +56,12 @@ static const row rows[] = {
     {"polyhedron([[0,0,0], [1,0,0], [0,1,0], [0,0,1]],"
      "[[0,1,2], [0,3,1], [0,2,3], [1,3,2], 5]);",
      327, "faces[4] is not a list of at least 3 indices of points; it is left out", 0},
+    {"sphere(radius = 5);", 204, "no parameter 'radius', this is ignored", 1},
+    {"cube(10, 20, 30);", 205, "takes 2 arguments without a name, this is ignored", 1},
+    {"module m(a) cube(a); m(1, 2);", 205, "'m' takes 1 argument, this is ignored", 2},
+    {"function f(a) = a; cube(f(1, b = 2));", 204, "no parameter 'b', this is ignored", 2},
+    {"union(blend = ricci(2, radius = 3)) { sphere(1); sphere(2); }", 204,
+     "ricci() takes n, range, this is ignored", 3},
 };
 
 static void warnings_say_what_is_left_out(void **state)

@@ -101,7 +101,7 @@ static void the_scene_is_the_same(void **state)
         "hull() { #sphere(1); translate([3, 0, 0]) #sphere(2); }",
         "!rotate([9, 0, 0]) #translate([1, 1, 1]) sphere(3); cube(1);",
         "repeat([5, 0, 0], 3) #translate([1, 0, 0]) sphere(1);",
-        "soft(r = 2) #sphere(1);",
+        "soft(range = 2) #sphere(1);",
     };
     (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {

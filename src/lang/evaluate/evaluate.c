@@ -26,15 +26,20 @@ static void warn_argument(csg_eval *e, const csg_argument *argument, csg_diag_co
 {
     const csg_symbols *symbols = &e->program->symbols;
     const char *name = callee ? csg_symbol_name(symbols, callee) : "the function";
+    char hint[160] = "";
+    for (uint32_t i = 0, at = 0; i < parameters->count && at < sizeof hint; i++)
+        at += (uint32_t)snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "it takes ",
+                                 csg_symbol_name(symbols, parameters->items[i].name));
     if (code == CSG_DIAG_TOO_MANY_ARGUMENTS)
-        csg_eval_report(e, code, argument->where, NULL, "'%s' takes %u argument%s, this is ignored",
-                        name, parameters->count, parameters->count == 1 ? "" : "s");
+        csg_eval_report(e, code, argument->where, NULL, "'%s' takes %u argument%s%s", name,
+                        parameters->count, parameters->count == 1 ? "" : "s",
+                        csg_eval_ignores(e, code, argument->where));
     else if (code == CSG_DIAG_DUPLICATE_ARGUMENT)
         csg_eval_report(e, code, argument->where, NULL, "'%s' gets an argument twice", name);
     else
-        csg_eval_report(e, code, argument->where, NULL,
-                        "'%s' has no parameter '%s', this is ignored", name,
-                        csg_symbol_name(symbols, argument->name));
+        csg_eval_report(
+            e, code, argument->where, hint[0] ? hint : NULL, "'%s' has no parameter '%s'%s", name,
+            csg_symbol_name(symbols, argument->name), csg_eval_ignores(e, code, argument->where));
 }
 
 static void bind_arguments(csg_eval *e, const csg_arguments *parameters,

@@ -84,6 +84,11 @@ bool csg_eval_is_lenient(const csg_eval *e, csg_diag_code code, csg_span where)
     return csg_source_is_lenient(&e->program->sources, code, where);
 }
 
+const char *csg_eval_ignores(const csg_eval *e, csg_diag_code code, csg_span where)
+{
+    return csg_eval_is_lenient(e, code, where) ? ", this is ignored" : "";
+}
+
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                      const char *format, ...)
 {

@@ -101,6 +101,9 @@ void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Is it only a warning there, so that what was left out is to be said (text/source.h)? */
 bool csg_eval_is_lenient(const csg_eval *e, csg_diag_code code, csg_span where);
+/* What a finding about an argument ends in: ", this is ignored" there where it is only a warning.
+ */
+const char *csg_eval_ignores(const csg_eval *e, csg_diag_code code, csg_span where);
 /* The trace of calls, innermost first, as notes; what repeats itself is counted (call_trace.c). */
 void csg_eval_note_calls(const csg_eval *e);
 /* Was this finding reported before at this place? */

@@ -106,8 +106,9 @@ static void unknown(const csg_function_call *call, uint32_t i, const csg_rule *r
         used += (size_t)snprintf(known + used, sizeof known - used, "%s, ",
                                  csg_rule_parameter_of(rule->kind, k).name);
     csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[i].where, NULL,
-                    "%s() takes %s%s; this is ignored", call->name, known,
-                    csg_blend_takes_fields(rule->kind) ? "range" : "step");
+                    "%s() takes %s%s%s", call->name, known,
+                    csg_blend_takes_fields(rule->kind) ? "range" : "step",
+                    csg_eval_ignores(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[i].where));
 }
 
 /* Argument i, whose place in the row is `position` where it has no name. False after a report. */

@@ -77,6 +77,23 @@ static void find_rows(csg_module_call *call, int module)
         call->parameter_count++;
 }
 
+/* The parameter that is called so elsewhere (its text begins with that word: "radius at both
+ * ends"), or that is one letter away; of several the one with the shortest name. NULL: none. */
+static const char *meant_parameter(const csg_module_call *call, const char *name)
+{
+    const char *best = NULL;
+    size_t length = strlen(name);
+    for (uint32_t i = 0; i < call->parameter_count; i++) {
+        const csg_parameter_row *row = &call->parameters[i];
+        bool is_word = strncmp(row->doc, name, length) == 0 &&
+                       (row->doc[length] == '\0' || strchr(" ,;:", row->doc[length]));
+        bool is_near = length > 2 && csg_edit_distance(name, row->name, 1) == 1;
+        if ((is_word || is_near) && (!best || strlen(row->name) < strlen(best)))
+            best = row->name;
+    }
+    return best;
+}
+
 static void warn_unknown(csg_module_call *call, const csg_argument *argument)
 {
     const csg_symbols *symbols = &call->e->program->symbols;
@@ -89,13 +106,18 @@ static void warn_unknown(csg_module_call *call, const csg_argument *argument)
     }
     const char *name = csg_symbol_name(symbols, argument->name);
     bool facets = strcmp(name, "fn") == 0 || strcmp(name, "fa") == 0 || strcmp(name, "fs") == 0;
+    const char *meant = meant_parameter(call, name);
+    uint32_t at = 0;
     if (facets)
         snprintf(hint, sizeof hint, "did you mean '$%s'?", name);
-    for (uint32_t i = 0, at = 0; !facets && i < call->parameter_count && at < sizeof hint; i++)
+    else if (meant)
+        at = (uint32_t)snprintf(hint, sizeof hint, "did you mean '%s'? ", meant);
+    for (uint32_t i = 0; !facets && i < call->parameter_count && at < sizeof hint; i++)
         at += (uint32_t)snprintf(hint + at, sizeof hint - at, "%s%s", i ? ", " : "it takes ",
                                  call->parameters[i].name);
     csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, argument->where, hint[0] ? hint : NULL,
-                    "%s() has no parameter '%s', this is ignored", call->name, name);
+                    "%s() has no parameter '%s'%s", call->name, name,
+                    csg_eval_ignores(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, argument->where));
 }
 
 /* The parameter an argument goes to; parameter_count when there is none (reported). */
@@ -115,13 +137,15 @@ static uint32_t find_slot(csg_module_call *call, const csg_argument *argument, u
         return slot;
     while (named < call->parameter_count && call->parameters[named].positional)
         named++;
+    char list[100];
+    snprintf(list, sizeof list, "a list stands in square brackets: %.40s([1, 2, 3])", call->name);
     csg_eval_report(call->e, CSG_DIAG_TOO_MANY_ARGUMENTS, argument->where,
-                    call->parameter_count && strchr(call->parameters[0].doc, '[')
-                        ? "a list stands in square brackets: [1, 2, 3]"
+                    call->parameter_count && strchr(call->parameters[0].doc, '[') ? list
                     : named < call->parameter_count ? "write the others as name = value"
                                                     : NULL,
-                    "%s() takes %u argument%s without a name, this is ignored", call->name, named,
-                    named == 1 ? "" : "s");
+                    "%s() takes %u argument%s without a name%s", call->name, named,
+                    named == 1 ? "" : "s",
+                    csg_eval_ignores(call->e, CSG_DIAG_TOO_MANY_ARGUMENTS, argument->where));
     return call->parameter_count;
 }
 
@@ -137,7 +161,7 @@ static void warn_misspelt(const csg_module_call *call, const csg_argument *argum
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (csg_edit_distance(name, known[i], 1) == 1) {
             snprintf(hint, sizeof hint, "did you mean '%s'?", known[i]);
-            csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, argument->where, hint,
+            csg_eval_report(call->e, CSG_DIAG_MISSPELT_SPECIAL, argument->where, hint,
                             "the language knows no '%s'", name);
             return;
         }

@@ -28,7 +28,7 @@ static int choose(csg_module_call *call, uint32_t index, const char *const *name
     for (int i = 0; i < count; i++)
         snprintf(hint + strlen(hint), sizeof hint - strlen(hint), "%s\"%s\"", i ? ", " : "it is ",
                  names[i]);
-    csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->spans[index], hint,
+    csg_eval_report(call->e, CSG_DIAG_BAD_ARGUMENT, call->spans[index], hint,
                     "text() knows no such %s, \"%s\" is taken", call->parameters[index].name,
                     names[otherwise]);
     return otherwise;

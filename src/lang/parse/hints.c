@@ -216,12 +216,12 @@ const char *csg_parser_hint(const csg_parser *parser, csg_token_kind expected)
         hint = hint_for_pair(before, found);
     if (!hint && found != CSG_TOKEN_END) /* `i++)` */
         hint = hint_for_pair(kind_at(parser, -2), before);
+    if (!hint) /* `if x > 5`: this x is no sign of multiplication */
+        hint = hint_for_keyword(before, found);
     if (!hint && found == CSG_TOKEN_NAME)
         hint = csg_habit_hint(CSG_HABIT_BETWEEN, parser->text + now.offset, now.length);
     if (!hint && is_word(parser, -1, "not"))
         hint = "logical not is '!'";
-    if (!hint)
-        hint = hint_for_keyword(before, found);
     if (!hint)
         hint = hint_for_expected(expected, before);
     if (!hint && (expected == CSG_TOKEN_CLOSE_ROUND || expected == CSG_TOKEN_CLOSE_SQUARE))
