@@ -4,8 +4,8 @@
 
     instructions.py [--build FOLDER] [--write] [SCENE ...]
 
-Runs S1 to S5, a few models and parts under valgrind, one thread, with AVX2 kernels, and compares the instructions of
-each with instructions.csv beside this file. What needs 10 % more is named, and the exit status is 1; what needs 10 %
+Runs S1 to S5, a few models and parts, and `check` of three scenes that keep the evaluator busy, under valgrind, one
+thread, with AVX2 kernels, and compares the instructions of each with instructions.csv beside this file. What needs 10 % more is named, and the exit status is 1; what needs 10 %
 less is named too, so that the file can be renewed (--write). Counts depend on the compiler and the C library: where they
 are others than those that the file names, nothing can be compared, and the exit status is 77, a skip.
 """
@@ -28,11 +28,12 @@ ALLOWED = 0.10
 CELLS = {"stress": 64, "models": 32, "parts": 32}
 MODELS = ["models/bracket", "models/knob", "models/vase", "parts/bottle", "parts/chess_pawn", "parts/hook", "parts/mug",
           "parts/spool"]
+CHECKED = ["bench/library.scad", "bench/lists.scad", "bench/tree.scad"]  # below tests
 
 
 def scenes():
     found = sorted(glob.glob(os.path.join(ROOT, "scenes", "stress", "s[1-5]*.txt")))
-    return [os.path.relpath(path, os.path.join(ROOT, "scenes")) for path in found] + [name + ".txt" for name in MODELS]
+    return [os.path.relpath(path, os.path.join(ROOT, "scenes")) for path in found] + [name + ".txt" for name in MODELS] + CHECKED
 
 
 def environment(build):
@@ -46,11 +47,14 @@ def environment(build):
 
 def count(program, scene, folder):
     """Instructions of one run, or None where it fails."""
-    path = os.path.join(ROOT, "scenes", scene)
     name = scene.replace(os.sep, "-")
+    if scene in CHECKED:
+        words = ["check", os.path.join(ROOT, "tests", scene), "-q"]
+    else:
+        words = [os.path.join(ROOT, "scenes", scene), "-q", "-j", "1", "-r", str(CELLS[scene.split(os.sep)[0]]), "-o",
+                 os.path.join(folder, name + ".ply")]
     result = subprocess.run(
-        ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", program, path, "-q", "-j", "1", "-r",
-         str(CELLS[scene.split(os.sep)[0]]), "-o", os.path.join(folder, name + ".ply")],
+        ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", program, *words],
         env={**os.environ, "CSGMESH_ISA": "avx2"}, capture_output=True, text=True, check=False)
     found = re.search(r"I\s+refs:\s+([\d,]+)", result.stderr)
     if result.returncode != 0 or not found:

@@ -151,9 +151,10 @@ static bool to_literal(csg_value value, target *out)
 }
 
 /* A variable that holds a function, in this frame or further out. */
-static bool find_literal(csg_eval *e, csg_symbol name, const csg_frame *frame, target *out)
+static bool find_literal(csg_eval *e, const csg_expression *name, const csg_frame *frame,
+                         target *out)
 {
-    const csg_value *found = csg_eval_lookup(e, name, frame);
+    const csg_value *found = csg_eval_find_variable(e, name, frame);
     return found && to_literal(*found, out);
 }
 
@@ -166,8 +167,7 @@ static const char *loss_of_call(const csg_eval *e, csg_span where)
 static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *frame, target *out)
 {
     const csg_expression *callee = call->as.call.callee;
-    const csg_definition *definition;
-    csg_frame *home;
+    csg_called called;
     char hint[96];
     *out = (target){.builtin = -1};
     if (callee->kind != CSG_EXPRESSION_NAME) {
@@ -186,12 +186,12 @@ static bool find_target(csg_eval *e, const csg_expression *call, csg_frame *fram
         return found;
     }
     out->name = callee->as.name;
-    if (e->program->symbols.entries[out->name].variable && find_literal(e, out->name, frame, out))
+    if (e->program->symbols.entries[out->name].variable && find_literal(e, callee, frame, out))
         return true; /* as in OpenSCAD, a variable's function goes before a named one */
-    if (csg_eval_find_definition(e, CSG_MEMBER_FUNCTION, out->name, frame, &home, &definition)) {
-        out->parameters = &definition->parameters;
-        out->body = definition->value;
-        out->home = csg_frame_retain(home);
+    if (csg_eval_find_called(e, CSG_MEMBER_FUNCTION, out->name, callee->slot, frame, &called)) {
+        out->parameters = &called.definition->parameters;
+        out->body = called.definition->value;
+        out->home = csg_frame_retain(called.home);
         return true;
     }
     out->builtin = e->program->symbols.entries[out->name].function;
@@ -319,9 +319,48 @@ static csg_value evaluate_member(csg_eval *e, const csg_expression *x, csg_frame
 /* ---- operators
  * --------------------------------------------------------------------------------------------- */
 
+/* Of two numbers; false: csg_eval_binary has to see to it. */
+static inline bool combine_numbers(uint8_t operation, double a, double b, csg_value *out)
+{
+    switch (operation) {
+    case CSG_TOKEN_PLUS:
+        *out = csg_value_number(a + b);
+        return true;
+    case CSG_TOKEN_MINUS:
+        *out = csg_value_number(a - b);
+        return true;
+    case CSG_TOKEN_STAR:
+        *out = csg_value_number(a * b);
+        return true;
+    case CSG_TOKEN_SLASH:
+        *out = csg_value_number(a / b);
+        return true;
+    case CSG_TOKEN_LESS:
+        *out = csg_value_boolean(a < b);
+        return true;
+    case CSG_TOKEN_LESS_EQUAL:
+        *out = csg_value_boolean(a <= b);
+        return true;
+    case CSG_TOKEN_GREATER:
+        *out = csg_value_boolean(a > b);
+        return true;
+    case CSG_TOKEN_GREATER_EQUAL:
+        *out = csg_value_boolean(a >= b);
+        return true;
+    case CSG_TOKEN_EQUAL:
+        *out = csg_value_boolean(a == b);
+        return true;
+    case CSG_TOKEN_NOT_EQUAL:
+        *out = csg_value_boolean(a != b);
+        return true;
+    default:
+        return false;
+    }
+}
+
 static csg_value evaluate_binary(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
-    csg_value left = csg_evaluate(e, x->as.pair.left, frame);
+    csg_value left = csg_evaluate(e, x->as.pair.left, frame), result;
     if (x->operation == CSG_TOKEN_AND || x->operation == CSG_TOKEN_OR) {
         csg_symbolic_refuse(e, left, x->where, "a condition");
         bool decided = csg_value_is_true(left) == (x->operation == CSG_TOKEN_OR);
@@ -334,7 +373,10 @@ static csg_value evaluate_binary(csg_eval *e, const csg_expression *x, csg_frame
         return csg_value_boolean(truth);
     }
     csg_value right = csg_evaluate(e, x->as.pair.right, frame);
-    csg_value result = csg_eval_binary(e, x, left, right);
+    if (left.kind == CSG_VALUE_NUMBER && right.kind == CSG_VALUE_NUMBER &&
+        combine_numbers(x->operation, left.as.number, right.as.number, &result))
+        return result;
+    result = csg_eval_binary(e, x, left, right);
     csg_value_release(&e->heap, left);
     csg_value_release(&e->heap, right);
     return result;
@@ -359,7 +401,13 @@ static csg_value evaluate_index(csg_eval *e, const csg_expression *x, csg_frame 
     return result;
 }
 
-/* Every kind that is not handled in csg_evaluate's loop. */
+static csg_value evaluate_name(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    const csg_value *found = csg_eval_find_variable(e, x, frame);
+    return found ? csg_value_retain(*found) : csg_eval_no_variable(e, x, frame);
+}
+
+/* Every kind that ends here: those without a tail. */
 static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
     csg_value made;
@@ -373,7 +421,7 @@ static csg_value evaluate_plain(csg_eval *e, const csg_expression *x, csg_frame 
             return csg_value_undef();
         return csg_eval_string(e, x->as.string.text, x->as.string.length);
     case CSG_EXPRESSION_NAME:
-        return csg_eval_variable(e, x->as.name, frame, x->where);
+        return evaluate_name(e, x, frame);
     case CSG_EXPRESSION_UNARY:
         return evaluate_unary(e, x, frame);
     case CSG_EXPRESSION_BINARY:
@@ -483,13 +531,10 @@ static void step_over(csg_eval *e, position *at)
     at->x = x->as.call.body;
 }
 
-csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
+/* Calls, lets and choices, one after the other as long as one is the tail of the one before. */
+static csg_value evaluate_tails(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
     csg_value result = csg_value_undef();
-    if (x->kind == CSG_EXPRESSION_NUMBER)
-        return csg_value_number(x->as.number);
-    if (!csg_eval_check_stack(e, x->where))
-        return result;
     position at = {x, frame, false, false};
     size_t dynamics = e->dynamic_count, trace = e->trace_count;
     bool done = false;
@@ -536,4 +581,38 @@ csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
         e->trace_count = trace;
     }
     return result;
+}
+
+csg_value csg_evaluate(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    switch ((csg_expression_kind)x->kind) {
+    case CSG_EXPRESSION_NUMBER:
+        return csg_value_number(x->as.number);
+    case CSG_EXPRESSION_NAME:
+        return csg_eval_charge(e, 1, x->where) ? evaluate_name(e, x, frame) : csg_value_undef();
+    case CSG_EXPRESSION_CONDITIONAL:
+    case CSG_EXPRESSION_LET:
+    case CSG_EXPRESSION_ASSERT:
+    case CSG_EXPRESSION_ECHO:
+    case CSG_EXPRESSION_CALL:
+        return csg_eval_check_stack(e, x->where) ? evaluate_tails(e, x, frame) : csg_value_undef();
+    case CSG_EXPRESSION_BOOLEAN:
+    case CSG_EXPRESSION_UNDEF:
+    case CSG_EXPRESSION_STRING:
+    case CSG_EXPRESSION_UNARY:
+    case CSG_EXPRESSION_BINARY:
+    case CSG_EXPRESSION_INDEX:
+    case CSG_EXPRESSION_MEMBER:
+    case CSG_EXPRESSION_VECTOR:
+    case CSG_EXPRESSION_RANGE:
+    case CSG_EXPRESSION_FUNCTION:
+    case CSG_EXPRESSION_FOR:
+    case CSG_EXPRESSION_FOR_LOOP:
+    case CSG_EXPRESSION_IF:
+    case CSG_EXPRESSION_EACH:
+        break;
+    }
+    if (!csg_eval_check_stack(e, x->where) || !csg_eval_charge(e, 1, x->where))
+        return csg_value_undef();
+    return evaluate_plain(e, x, frame);
 }

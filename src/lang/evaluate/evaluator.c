@@ -126,20 +126,22 @@ void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char 
 /* ---- limits
  * ---------------------------------------------------------------------------------------- */
 
-bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
+bool csg_eval_look_at_limits(csg_eval *e, csg_span where)
 {
     enum { LOOK_AT_CLOCK = 4096 };
-    if (e->stop)
-        return false;
-    e->steps += steps;
-    if (e->steps > e->context->limits.eval_steps) {
+    const uint64_t most = e->context->limits.eval_steps;
+    if (e->steps > most) {
         csg_eval_limit(e, CSG_DIAG_TOO_MANY_STEPS, where,
                        "is there an endless loop? raise the limit with --max-steps",
-                       "the evaluation takes more than %llu steps",
-                       (unsigned long long)e->context->limits.eval_steps);
+                       "the evaluation takes more than %llu steps", (unsigned long long)most);
         return false;
     }
-    return e->steps - e->clock_steps < LOOK_AT_CLOCK || csg_eval_check_time(e, where);
+    if (e->steps - e->clock_steps >= LOOK_AT_CLOCK && !csg_eval_check_time(e, where))
+        return false;
+    e->next_look = e->clock_steps + LOOK_AT_CLOCK;
+    if (e->next_look > most)
+        e->next_look = most + 1; /* no overflow: it is less than the other */
+    return true;
 }
 
 bool csg_eval_check_time(csg_eval *e, csg_span where)
@@ -155,14 +157,10 @@ bool csg_eval_check_time(csg_eval *e, csg_span where)
     return !e->stop;
 }
 
-bool csg_eval_check_stack(csg_eval *e, csg_span where)
+void csg_eval_stack_ends(csg_eval *e, csg_span where)
 {
-    char here = 0;
-    if (csg_program_has_stack(e->program, &here))
-        return true;
     csg_eval_limit(e, CSG_DIAG_TOO_DEEP, where, NULL,
                    "calls and expressions are nested too deeply");
-    return false;
 }
 
 bool csg_eval_enter(csg_eval *e, csg_span where)
@@ -223,105 +221,6 @@ csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name)
 {
     uint32_t head = e->dynamic_heads[name];
     return head ? e->dynamics[head - 1].value : (csg_value){.kind = CSG_VALUE_UNSET};
-}
-
-/* ---- names
- * --------------------------------------------------------------------------------------------- */
-
-static const csg_value *find_in_frame(csg_eval *e, const csg_frame *frame, csg_symbol name)
-{
-    enum { FEW = 8, NAMES_A_STEP = 16 };
-    if (frame->names) { /* a later one of the same name hides an earlier one */
-        e->steps += frame->count / NAMES_A_STEP;
-        for (uint32_t i = frame->count; i > 0; i--)
-            if (frame->names[i - 1].name == name && frame->values[i - 1].kind != CSG_VALUE_UNSET)
-                return &frame->values[i - 1];
-        return NULL;
-    }
-    uint32_t index = UINT32_MAX;
-    if (frame->count > FEW)
-        index = csg_members_find(&e->program->members, frame->scope->id, CSG_MEMBER_VARIABLE, name);
-    for (uint32_t i = 0; frame->count <= FEW && i < frame->count; i++)
-        if (frame->scope->variables[i].name == name)
-            index = i;
-    return index < frame->count && frame->values[index].kind != CSG_VALUE_UNSET
-               ? &frame->values[index]
-               : NULL;
-}
-
-const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *frame)
-{
-    const csg_value *found = NULL;
-    uint32_t head = e->program->symbols.entries[name].special ? e->dynamic_heads[name] : 0;
-    if (head)
-        return &e->dynamics[head - 1].value;
-    for (const csg_frame *at = frame; at && !found; at = at->parent) {
-        found = at->count ? find_in_frame(e, at, name) : NULL;
-        if (name == e->symbol_children_count && !found && at->children)
-            found = &at->child_count;
-    }
-    return found;
-}
-
-csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where)
-{
-    char hint[96];
-    const csg_value *found = csg_eval_lookup(e, name, frame);
-    if (found)
-        return csg_value_retain(*found);
-    if (name == e->symbol_pi)
-        return csg_value_number(3.14159265358979323846);
-    const char *text = csg_symbol_name(&e->program->symbols, name);
-    bool is_lenient = e->program->sources.items[where.source].lenient;
-    if (text[0] >= '0' && text[0] <= '9' && !is_lenient) { /* where OpenSCAD knows a variable */
-        csg_eval_report(e, CSG_DIAG_BAD_NUMBER, where,
-                        "numbers have no units, a multiplication needs '*'",
-                        "'%s' is not a number, and no variable has this name", text);
-        return csg_value_undef();
-    }
-    csg_eval_report(
-        e, CSG_DIAG_UNKNOWN_VARIABLE, where,
-        csg_suggest(e, CSG_DIAG_UNKNOWN_VARIABLE, name, frame, where, hint, sizeof hint),
-        "there is no variable '%s' here, it counts as undef", text);
-    return csg_value_undef();
-}
-
-static const csg_definition *find_in_scope(const csg_eval *e, const csg_scope *scope,
-                                           csg_member_kind kind, csg_symbol name)
-{
-    bool module = kind == CSG_MEMBER_MODULE;
-    if ((module ? scope->module_count : scope->function_count) == 0)
-        return NULL;
-    uint32_t index = csg_members_find(&e->program->members, scope->id, kind, name);
-    return index == UINT32_MAX ? NULL : module ? scope->modules[index] : scope->functions[index];
-}
-
-static bool find_in_used(csg_eval *e, csg_member_kind kind, csg_symbol name,
-                         const csg_program_file *file, csg_frame **home, const csg_definition **out)
-{
-    for (uint32_t i = file->use_count; i > 0; i--) { /* the last one goes before */
-        *out = find_in_scope(e, file->uses[i - 1]->scope, kind, name);
-        if (*out) {
-            *home = csg_eval_file_frame(e, file->uses[i - 1]);
-            return *home != NULL;
-        }
-    }
-    return false;
-}
-
-bool csg_eval_find_definition(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_frame *frame,
-                              csg_frame **home, const csg_definition **out)
-{
-    for (csg_frame *at = frame; at; at = at->parent) {
-        *out = at->scope ? find_in_scope(e, at->scope, kind, name) : NULL;
-        if (*out) {
-            *home = at;
-            return true;
-        }
-        if (at->file && find_in_used(e, kind, name, at->file, home, out))
-            return true;
-    }
-    return false;
 }
 
 /* ---- scopes
@@ -470,7 +369,7 @@ csgm_status csg_eval_init(csg_eval *e, csg_program *program)
         e->dynamic_head_count = program->symbols.count;
     }
     e->file_frames = csg_arena_calloc(&program->arena, program->file_count, sizeof *e->file_frames);
-    if (!e->file_frames || !e->dynamic_heads) {
+    if (!e->file_frames || !e->dynamic_heads || !csg_eval_make_slots(e)) {
         csg_eval_no_memory(e);
         return e->status;
     }
@@ -491,6 +390,8 @@ void csg_eval_reset(csg_eval *e)
     csg_fonts_destroy(e->fonts);
     csg_heap_reset(&e->heap);
     csg_memory_release(memory, e->dynamics, e->dynamic_capacity * sizeof *e->dynamics);
+    csg_memory_release(memory, e->spare_list.items,
+                       e->spare_list.capacity * sizeof *e->spare_list.items);
     csg_memory_release(memory, e->trace, e->trace_capacity * sizeof *e->trace);
     csg_memory_release(memory, e->parts, e->part_capacity * sizeof *e->parts);
     csg_memory_release(memory, e->marks, e->mark_capacity * sizeof *e->marks);

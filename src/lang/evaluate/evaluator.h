@@ -9,6 +9,8 @@
 #ifndef CSG_LANG_EVALUATOR_H
 #define CSG_LANG_EVALUATOR_H
 
+#include <assert.h>
+
 #include "lang/evaluate/value.h"
 #include "scene/tree/build.h"
 
@@ -39,11 +41,37 @@ typedef struct csg_twister { /* of rands() */
     uint32_t next; /* word, CSG_TWISTER_WORDS = twist first */
 } csg_twister;
 
+/* A list under construction. */
+typedef struct csg_list {
+    csg_value *items;
+    size_t count, capacity;
+} csg_list;
+
 /* What a modifier stands before. */
 typedef struct csg_mark {
     csg_node_id node;
     csg_scene_mark kind;
 } csg_mark;
+
+/* Where a use of a name has found its variable (names.c). */
+typedef struct csg_variable_slot {
+    const void *owner;    /* the names or the scope of that frame; NULL: not known */
+    uint32_t hops, place; /* so many frames outwards; the position in it */
+} csg_variable_slot;
+
+/* Where a call has found its function or module; no definition: it is a builtin, or unknown. */
+typedef struct csg_call_slot {
+    const csg_definition *definition;
+    const csg_program_file *file; /* a used file whose frame is its home, or */
+    const csg_scope *scope;       /* that of the frame which is, so many frames outwards */
+    uint32_t hops;
+    bool is_known;
+} csg_call_slot;
+
+typedef struct csg_called {
+    const csg_definition *definition;
+    csg_frame *home; /* borrowed */
+} csg_called;
 
 typedef struct csg_eval {
     csg_program *program;
@@ -56,6 +84,7 @@ typedef struct csg_eval {
     csgm_status status; /* why stopped; SCENE after a reported mistake */
     uint32_t depth;
     uint64_t steps, clock_steps; /* done so far, and when the clock was last looked at */
+    uint64_t next_look;          /* steps at which clock and limit are looked at again */
 
     csg_dynamic *dynamics;
     size_t dynamic_count, dynamic_capacity;
@@ -68,9 +97,13 @@ typedef struct csg_eval {
     csg_eval_part *parts; /* a stack */
     size_t part_count, part_capacity;
 
+    csg_variable_slot *variable_slots; /* of csg_program.slot_count each */
+    csg_call_slot *call_slots;
     csg_frame **file_frames; /* per file, NULL until asked for */
     uint64_t *reported;      /* places already told about: an open-addressing set */
     size_t reported_count, reported_slots;
+
+    csg_list spare_list; /* room for the next list */
 
     csg_twister *twister; /* two: of calls without a seed, and with; NULL before the first call */
 
@@ -111,31 +144,73 @@ bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
 void csg_eval_no_memory(csg_eval *e);
 void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
-/* Counts steps of work; false: the limit of steps or time is reached. */
-bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where);
+/* Looks at the limits of steps and time; false: one is reached. */
+bool csg_eval_look_at_limits(csg_eval *e, csg_span where);
+/* Counts steps of work; false: the evaluation stops. */
+static inline bool csg_eval_charge(csg_eval *e, uint64_t steps, csg_span where)
+{
+    if (e->stop)
+        return false;
+    e->steps += steps;
+    return e->steps < e->next_look || csg_eval_look_at_limits(e, where);
+}
 /* Before and after what may take long in one step: reports that the time is up. False: stop. */
 bool csg_eval_check_time(csg_eval *e, csg_span where);
 /* Into a call or a nesting; false: too deep. Pair with csg_eval_leave when true. */
 bool csg_eval_enter(csg_eval *e, csg_span where);
 void csg_eval_leave(csg_eval *e);
-/* Is the C stack used up? Reports. */
-bool csg_eval_check_stack(csg_eval *e, csg_span where);
+void csg_eval_stack_ends(csg_eval *e, csg_span where); /* reports, and stops */
+/* Is there room on the C stack? */
+static inline bool csg_eval_check_stack(csg_eval *e, csg_span where)
+{
+    char here = 0;
+    bool has_room = csg_program_has_stack(e->program, &here);
+    if (!has_room)
+        csg_eval_stack_ends(e, where);
+    return has_room;
+}
 void csg_eval_push_trace(csg_eval *e, csg_symbol name, bool module, csg_span where);
 
-/* ---- names ------------------------------------------------------------------------------------
- */
+/* ---- names
+ * (names.c) ------------------------------------------------------------------------------------ */
 
-/* The variable's value; UNDEF and a warning when there is none. */
-csg_value csg_eval_variable(csg_eval *e, csg_symbol name, csg_frame *frame, csg_span where);
-/* The same, borrowed; NULL when there is none. */
+/* False: no memory. */
+bool csg_eval_make_slots(csg_eval *e);
+const csg_value *csg_eval_search_variable(csg_eval *e, const csg_expression *x,
+                                          const csg_frame *frame);
+bool csg_eval_would_find(csg_eval *e, const csg_expression *x, const csg_frame *frame,
+                         const csg_value *found); /* for assertions */
+/* The variable that a NAME is, borrowed; NULL when there is none. */
+static inline const csg_value *csg_eval_find_variable(csg_eval *e, const csg_expression *x,
+                                                      const csg_frame *frame)
+{
+    const csg_variable_slot *slot = &e->variable_slots[x->slot];
+    if (slot->owner) {
+        const csg_frame *at = frame;
+        for (uint32_t hops = slot->hops; hops > 0 && at; hops--)
+            at = at->parent;
+        if (at && (at->names == slot->owner || at->scope == slot->owner) &&
+            at->values[slot->place].kind != CSG_VALUE_UNSET) {
+            assert(csg_eval_would_find(e, x, frame, &at->values[slot->place]));
+            return &at->values[slot->place];
+        }
+    }
+    return csg_eval_search_variable(e, x, frame);
+}
+/* PI, or UNDEF and a warning that there is none. */
+csg_value csg_eval_no_variable(csg_eval *e, const csg_expression *x, csg_frame *frame);
+/* A variable of this name, searched for; borrowed, NULL when there is none. */
 const csg_value *csg_eval_lookup(csg_eval *e, csg_symbol name, const csg_frame *frame);
 /* The value of a $variable, borrowed; UNSET when it has none. */
 csg_value csg_eval_dynamic(const csg_eval *e, csg_symbol name);
 void csg_eval_push_dynamic(csg_eval *e, csg_symbol name, csg_value value); /* consumed */
 void csg_eval_pop_dynamics(csg_eval *e, size_t count);
-/* Where a module or function is defined: its frame (borrowed) and definition; false = nowhere. */
+/* The module or function that a call goes to; slot: that of its name. false = nowhere. */
+bool csg_eval_find_called(csg_eval *e, csg_member_kind kind, csg_symbol name, uint32_t slot,
+                          csg_frame *frame, csg_called *out);
+/* The same, searched for. */
 bool csg_eval_find_definition(csg_eval *e, csg_member_kind kind, csg_symbol name, csg_frame *frame,
-                              csg_frame **home, const csg_definition **out);
+                              csg_called *out);
 /* Evaluates a scope's assignments: a new frame, or `parent` retained when it defines nothing.
  * $variables go to the dynamics: pop them when leaving. NULL: stopped. */
 csg_frame *csg_eval_scope(csg_eval *e, const csg_scope *scope, csg_frame *parent);
@@ -182,11 +257,8 @@ typedef struct csg_iteration {
 bool csg_iteration_begin(csg_eval *e, csg_iteration *iteration, csg_value over, csg_span where);
 bool csg_iteration_next(csg_eval *e, csg_iteration *iteration, csg_value *out, csg_span where);
 
-/* A list under construction. */
-typedef struct csg_list {
-    csg_value *items;
-    size_t count, capacity;
-} csg_list;
+/* ---- lists under construction
+ * ----------------------------------------------------------------------------------- */
 
 void csg_list_push(csg_eval *e, csg_list *list, csg_value element, csg_span where); /* consumed */
 /* Room for `more` elements at once. */

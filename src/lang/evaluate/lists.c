@@ -37,6 +37,36 @@ void csg_list_reserve(csg_eval *e, csg_list *list, double more, csg_span where)
         csg_eval_no_memory(e);
 }
 
+/* The room of a list that has ended serves the next one. */
+static void give_up_room(csg_eval *e, csg_list *list)
+{
+    enum { MOST_SPARE = 4096 };
+    csg_list smaller = e->spare_list, larger = *list;
+    if (smaller.capacity > larger.capacity || larger.capacity > MOST_SPARE) {
+        smaller = larger;
+        larger = e->spare_list;
+    }
+    csg_memory_release(e->heap.memory, smaller.items, smaller.capacity * sizeof *smaller.items);
+    larger.count = 0;
+    e->spare_list = larger;
+    *list = (csg_list){0};
+}
+
+static csg_list begin_list(csg_eval *e)
+{
+    csg_list list = e->spare_list;
+    e->spare_list = (csg_list){0};
+    return list;
+}
+
+static csg_value vector_value(csg_eval *e, csg_vector *made)
+{
+    if (made->depth > e->heap.deepest)
+        csg_eval_limit(e, CSG_DIAG_TOO_DEEP, csg_span_nowhere(), NULL,
+                       "vectors are nested more than %u deep", e->heap.deepest);
+    return csg_value_object(made, CSG_VALUE_VECTOR);
+}
+
 csg_value csg_list_finish(csg_eval *e, csg_list *list)
 {
     csg_vector *made = e->stop ? NULL : csg_vector_create(&e->heap, list->count);
@@ -44,12 +74,8 @@ csg_value csg_list_finish(csg_eval *e, csg_list *list)
         csg_eval_no_memory(e);
     for (size_t i = 0; made && i < list->count; i++)
         csg_vector_set(made, i, list->items[i]);
-    csg_memory_release(e->heap.memory, list->items, list->capacity * sizeof *list->items);
-    *list = (csg_list){0};
-    if (made && made->depth > e->heap.deepest)
-        csg_eval_limit(e, CSG_DIAG_TOO_DEEP, csg_span_nowhere(), NULL,
-                       "vectors are nested more than %u deep", e->heap.deepest);
-    return made ? csg_value_object(made, CSG_VALUE_VECTOR) : csg_value_undef();
+    give_up_room(e, list);
+    return made ? vector_value(e, made) : csg_value_undef();
 }
 
 /* ---- iterating
@@ -183,12 +209,23 @@ static csg_frame *next_round(csg_eval *e, const csg_expression *x, csg_frame *fi
     return made;
 }
 
+/* As next_round gives it, but that nothing is set: so all rounds see frames alike (names.c). */
+static csg_frame *first_round(csg_eval *e, const csg_expression *x, csg_frame *first)
+{
+    csg_frame *made = first ? csg_frame_create(&e->heap, first, x->as.loop.next.count) : NULL;
+    if (made)
+        made->names = x->as.loop.next.items;
+    else
+        csg_eval_no_memory(e);
+    return made;
+}
+
 static void add_loop(csg_eval *e, const csg_expression *x, csg_frame *frame, csg_list *list)
 {
     enum { MOST_ROUNDS = 1000000 }; /* as in OpenSCAD */
     size_t dynamics = e->dynamic_count;
     csg_frame *first = csg_eval_let(e, &x->as.loop.first, frame);
-    csg_frame *now = csg_frame_retain(first);
+    csg_frame *now = first_round(e, x, first);
     for (uint32_t round = 0; now && csg_eval_charge(e, 1, x->where); round++) {
         csg_value condition = csg_evaluate(e, x->as.loop.condition, now);
         bool more = csg_value_is_true(condition);
@@ -211,7 +248,7 @@ static void add_loop(csg_eval *e, const csg_expression *x, csg_frame *frame, csg
 
 static void add_each(csg_eval *e, const csg_expression *x, csg_frame *frame, csg_list *list)
 {
-    csg_list inner = {0};
+    csg_list inner = begin_list(e);
     add_element(e, x->as.inner, frame, &inner);
     for (size_t i = 0; i < inner.count; i++) {
         csg_iteration iteration;
@@ -221,7 +258,7 @@ static void add_each(csg_eval *e, const csg_expression *x, csg_frame *frame, csg
             csg_list_push(e, list, element, x->where);
         csg_value_release(&e->heap, inner.items[i]);
     }
-    csg_memory_release(e->heap.memory, inner.items, inner.capacity * sizeof *inner.items);
+    give_up_room(e, &inner);
 }
 
 static void add_let(csg_eval *e, const csg_expression *x, csg_frame *frame, csg_list *list)
@@ -291,9 +328,26 @@ static void add_element(csg_eval *e, const csg_expression *x, csg_frame *frame, 
         add_element(e, x->as.call.body, frame, list);
 }
 
+/* As many elements as the text has. */
+static csg_value plain_vector(csg_eval *e, const csg_expression *x, csg_frame *frame)
+{
+    uint32_t count = x->as.list.count;
+    csg_vector *made =
+        csg_eval_charge(e, count, x->where) ? csg_vector_create(&e->heap, count) : NULL;
+    if (!made) {
+        csg_eval_no_memory(e);
+        return csg_value_undef();
+    }
+    for (uint32_t i = 0; i < count && !e->stop; i++)
+        csg_vector_set(made, i, csg_evaluate(e, x->as.list.items[i], frame));
+    return vector_value(e, made);
+}
+
 csg_value csg_eval_vector(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
-    csg_list list = {0};
+    if (x->as.list.is_plain)
+        return plain_vector(e, x, frame);
+    csg_list list = begin_list(e);
     for (uint32_t i = 0; i < x->as.list.count && !e->stop; i++)
         add_element(e, x->as.list.items[i], frame, &list);
     return csg_list_finish(e, &list);

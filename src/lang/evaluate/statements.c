@@ -73,11 +73,11 @@ static void run_unknown(csg_eval *e, const csg_statement *statement, csg_frame *
 
 static void run_call(csg_eval *e, const csg_statement *statement, csg_frame *frame, bool spread)
 {
-    csg_frame *home;
-    const csg_definition *module;
+    csg_called called;
     int row = e->program->symbols.entries[statement->name].module;
-    if (csg_eval_find_definition(e, CSG_MEMBER_MODULE, statement->name, frame, &home, &module)) {
-        run_module(e, module, home, statement, frame);
+    if (csg_eval_find_called(e, CSG_MEMBER_MODULE, statement->name, statement->slot, frame,
+                             &called)) {
+        run_module(e, called.definition, called.home, statement, frame);
     } else if (row < 0) {
         run_unknown(e, statement, frame);
     } else if (!csg_eval_enter(e, statement->where)) {

@@ -73,13 +73,12 @@ static const char *hint_of_role(csg_eval *e, csg_member_kind kind, csg_symbol na
                                 csg_frame *frame)
 {
     const csg_symbol_entry *entry = &e->program->symbols.entries[name];
-    const csg_definition *definition;
-    csg_frame *home;
+    csg_called called;
     if (kind == CSG_MEMBER_VARIABLE)
         return NULL;
     csg_member_kind other = kind == CSG_MEMBER_MODULE ? CSG_MEMBER_FUNCTION : CSG_MEMBER_MODULE;
     bool there = (other == CSG_MEMBER_FUNCTION ? entry->function : entry->module) >= 0 ||
-                 csg_eval_find_definition(e, other, name, frame, &home, &definition);
+                 csg_eval_find_definition(e, other, name, frame, &called);
     if (there)
         return other == CSG_MEMBER_FUNCTION
                    ? "it is a function: it gives a value, as in x = name(...), and makes no solid"

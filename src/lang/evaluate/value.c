@@ -9,9 +9,24 @@
 
 #include "lang/evaluate/rule_value.h"
 
+struct csg_heap_block {
+    csg_heap_block *next;
+    size_t size_bytes; /* with this header */
+};
+
+enum {
+    FIRST_BLOCK = 4096,
+    LARGEST_BLOCK = 1 << 18,
+#ifdef __SANITIZE_ADDRESS__
+    LARGEST_SMALL = 0 /* so that it sees what is used after its end */
+#else
+    LARGEST_SMALL = CSG_SMALL_STEP * CSG_SMALL_SIZES
+#endif
+};
+
 void csg_heap_init(csg_heap *heap, csg_memory *memory, uint32_t deepest)
 {
-    *heap = (csg_heap){memory, NULL, deepest};
+    *heap = (csg_heap){.memory = memory, .deepest = deepest};
 }
 
 void csg_heap_reset(csg_heap *heap)
@@ -21,28 +36,91 @@ void csg_heap_reset(csg_heap *heap)
         csg_memory_release(heap->memory, heap->objects, heap->objects->size_bytes);
         heap->objects = next;
     }
+    while (heap->blocks) {
+        csg_heap_block *next = heap->blocks->next;
+        csg_memory_release(heap->memory, heap->blocks, heap->blocks->size_bytes);
+        heap->blocks = next;
+    }
+    csg_heap_init(heap, heap->memory, heap->deepest);
 }
 
-static void *create(csg_heap *heap, csg_value_kind kind, size_t size_bytes)
+static bool add_block(csg_heap *heap)
+{
+    size_t size = heap->blocks ? heap->blocks->size_bytes * 2 : (size_t)FIRST_BLOCK;
+    size = size > LARGEST_BLOCK ? (size_t)LARGEST_BLOCK : size;
+    csg_heap_block *block = csg_memory_alloc(heap->memory, size);
+    if (!block)
+        return false;
+    *block = (csg_heap_block){heap->blocks, size};
+    heap->blocks = block;
+    heap->cursor = (uint8_t *)(block + 1);
+    heap->end = (uint8_t *)block + size;
+    return true;
+}
+
+/* size_bytes: a multiple of CSG_SMALL_STEP. What is left of a block that is too short is lost. */
+static csg_object *create_small(csg_heap *heap, size_t size_bytes)
+{
+    csg_object **died = &heap->free[size_bytes / CSG_SMALL_STEP], *object = *died;
+    if (object) {
+        *died = object->next;
+        return object;
+    }
+    if ((size_t)(heap->end - heap->cursor) < size_bytes && !add_block(heap))
+        return NULL;
+    object = (csg_object *)(void *)heap->cursor;
+    heap->cursor += size_bytes;
+    return object;
+}
+
+static csg_object *create_large(csg_heap *heap, size_t size_bytes)
 {
     csg_object *object = csg_memory_alloc(heap->memory, size_bytes);
     if (!object)
         return NULL;
-    *object = (csg_object){NULL, heap->objects, size_bytes, 1, (uint8_t)kind};
+    object->previous = NULL;
+    object->next = heap->objects;
     if (heap->objects)
         heap->objects->previous = object;
     heap->objects = object;
     return object;
 }
 
+static void *create(csg_heap *heap, csg_value_kind kind, size_t size_bytes)
+{
+    size_t size = (size_bytes + CSG_SMALL_STEP - 1) & ~(size_t)(CSG_SMALL_STEP - 1);
+    csg_object *object =
+        size <= LARGEST_SMALL ? create_small(heap, size) : create_large(heap, size);
+    if (!object)
+        return NULL;
+    object->size_bytes = size;
+    object->references = 1;
+    object->kind = (uint8_t)kind;
+    return object;
+}
+
 static void unlink_object(csg_heap *heap, csg_object *object)
 {
+    if (object->size_bytes <= LARGEST_SMALL)
+        return;
     if (object->next)
         object->next->previous = object->previous;
     if (object->previous)
         object->previous->next = object->next;
     else
         heap->objects = object->next;
+}
+
+/* An object that is on no list any more. */
+static void give_back(csg_heap *heap, csg_object *object)
+{
+    if (object->size_bytes > LARGEST_SMALL) {
+        csg_memory_release(heap->memory, object, object->size_bytes);
+        return;
+    }
+    csg_object **died = &heap->free[object->size_bytes / CSG_SMALL_STEP];
+    object->next = *died;
+    *died = object;
 }
 
 /* ---- releasing ------------------------------------------------------------------------------ */
@@ -93,7 +171,7 @@ void csg_object_release(csg_heap *heap, csg_object *object)
         } else if (object->kind == CSG_VALUE_FRAME) {
             drop_frame(heap, (const csg_frame *)object, &dying);
         }
-        csg_memory_release(heap->memory, object, object->size_bytes);
+        give_back(heap, object);
     }
 }
 

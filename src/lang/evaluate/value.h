@@ -3,8 +3,9 @@
  * ranges, functions and frames are counted objects of a heap. Values never change once made.
  *
  * Ownership: a function that returns a csg_value gives it to the caller, who releases it once;
- * arguments are borrowed unless a comment says "consumed". Every object is also on the heap's
- * list, so that the end of an evaluation frees all, also cycles and what an error left behind.
+ * arguments are borrowed unless a comment says "consumed". Every object lies in one of the heap's
+ * blocks or is on its list, so that the end of an evaluation frees all, also cycles and what an
+ * error left behind.
  */
 #ifndef CSG_LANG_VALUE_H
 #define CSG_LANG_VALUE_H
@@ -33,7 +34,7 @@ typedef enum csg_value_kind {
 } csg_value_kind;
 
 typedef struct csg_object {
-    struct csg_object *previous, *next;
+    struct csg_object *previous, *next; /* of large ones, and of the dead */
     size_t size_bytes;
     uint32_t references;
     uint8_t kind;
@@ -103,10 +104,20 @@ struct csg_frame {
     csg_value values[];
 };
 
+enum {
+    CSG_SMALL_STEP = 16, /* small objects are cut from blocks, in sizes of so many bytes more */
+    CSG_SMALL_SIZES = 32
+};
+
+typedef struct csg_heap_block csg_heap_block;
+
 typedef struct csg_heap {
     csg_memory *memory;
-    csg_object *objects; /* all of them */
-    uint32_t deepest;    /* most levels of nested vectors */
+    csg_object *objects;                   /* the large ones */
+    csg_object *free[CSG_SMALL_SIZES + 1]; /* small ones that have died, by their size */
+    csg_heap_block *blocks;                /* newest first */
+    uint8_t *cursor, *end;                 /* of the newest block */
+    uint32_t deepest;                      /* most levels of nested vectors */
 } csg_heap;
 
 enum {

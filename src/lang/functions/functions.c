@@ -76,7 +76,7 @@ static csg_value evaluate_argument(csg_eval *e, int index, const csg_expression 
                                    csg_frame *frame)
 {
     bool is_asked = index == ROW_is_undef && x->kind == CSG_EXPRESSION_NAME;
-    if (is_asked && !csg_eval_lookup(e, x->as.name, frame))
+    if (is_asked && !csg_eval_find_variable(e, x, frame))
         return x->as.name == e->symbol_pi ? csg_value_number(1) : csg_value_undef();
     return csg_evaluate(e, x, frame);
 }
@@ -176,13 +176,12 @@ csg_value csg_function_round(const csg_function_call *call)
 /* round(x) with one positional argument, and no function of the scene in its place. */
 static bool is_round_call(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
-    csg_frame *home;
-    const csg_definition *definition;
+    csg_called called;
     return x->kind == CSG_EXPRESSION_CALL && x->as.call.callee->kind == CSG_EXPRESSION_NAME &&
            x->as.call.callee->as.name == e->symbol_round && x->as.call.arguments.count == 1 &&
            !x->as.call.arguments.items[0].name &&
-           !csg_eval_find_definition(e, CSG_MEMBER_FUNCTION, e->symbol_round, frame, &home,
-                                     &definition);
+           !csg_eval_find_called(e, CSG_MEMBER_FUNCTION, e->symbol_round, x->as.call.callee->slot,
+                                 frame, &called);
 }
 
 csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *frame)

@@ -11,7 +11,6 @@ static const struct {
     const char *name;
     uint32_t rgb;
 } colors[] = {
-    {"transparent", 0},
 #define CSG_COLOR(name, rgb) {#name, rgb},
 #include "lang/modules/colors.def"
 #undef CSG_COLOR
@@ -45,11 +44,19 @@ bool csg_color_parse(const char *text, size_t length, csg_color *out)
 {
     if (length && text[0] == '#')
         return parse_digits(text + 1, length - 1, out);
-    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
-        if (strcasecmp(colors[i].name, text) == 0) {
-            uint32_t rgb = colors[i].rgb;
-            *out = from_bytes(rgb >> 16, rgb >> 8 & 255, rgb & 255, i == 0 ? 0 : 255);
+    if (strcasecmp(text, "transparent") == 0) {
+        *out = from_bytes(0, 0, 0, 0);
+        return true;
+    }
+    for (size_t low = 0, high = sizeof colors / sizeof *colors; low < high;) {
+        size_t middle = (low + high) / 2;
+        uint32_t rgb = colors[middle].rgb;
+        int order = strcasecmp(text, colors[middle].name);
+        *out = from_bytes(rgb >> 16, rgb >> 8 & 255, rgb & 255, 255);
+        if (order == 0)
             return true;
-        }
+        low = order > 0 ? middle + 1 : low;
+        high = order < 0 ? middle : high;
+    }
     return false;
 }

@@ -4,6 +4,7 @@
  */
 #include "lang/modules/modules.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -66,15 +67,29 @@ void csg_modules_intern(csg_symbols *symbols, bool *ok)
 /* ---- binding
  * --------------------------------------------------------------------------------------- */
 
-static void find_rows(csg_module_call *call, int module)
+/* The rows of a module stand side by side; found once for all. */
+typedef struct parameter_range {
+    uint16_t first, count;
+} parameter_range;
+
+static parameter_range ranges[MODULE_COUNT];
+static pthread_once_t ranges_once = PTHREAD_ONCE_INIT;
+
+static void find_ranges(void)
 {
     enum { COUNT = sizeof parameters / sizeof *parameters };
-    size_t first = 0;
-    while (first < COUNT && parameters[first].module != module)
-        first++;
-    call->parameters = parameters + first;
-    for (; first < COUNT && parameters[first].module == module; first++)
-        call->parameter_count++;
+    for (size_t i = 0; i < COUNT; i++) {
+        parameter_range *range = &ranges[parameters[i].module];
+        if (range->count++ == 0)
+            range->first = (uint16_t)i;
+    }
+}
+
+static void find_rows(csg_module_call *call, int module)
+{
+    pthread_once(&ranges_once, find_ranges);
+    call->parameters = parameters + ranges[module].first;
+    call->parameter_count = ranges[module].count;
 }
 
 /* The parameter that is called so elsewhere (its text begins with that word: "radius at both

@@ -34,6 +34,7 @@ struct csg_expression {
     uint8_t operation; /* UNARY, BINARY: csg_token_kind */
     csg_span where;    /* operators: of the operator sign; else of the first token or name */
     csg_span whole;    /* from its first to its last byte */
+    uint32_t slot;     /* NAME: its own among the program's, where the evaluator keeps what it is */
     union {
         double number;
         bool boolean;
@@ -58,6 +59,7 @@ struct csg_expression {
         struct {
             csg_expression **items;
             uint32_t count;
+            bool is_plain; /* each item is one element, none a part of a list comprehension */
         } list;
         struct {
             csg_expression
@@ -99,6 +101,7 @@ typedef struct csg_statement {
     bool childless;                   /* CALL: a ';' stands where children may */
     csg_span where;                   /* of the name */
     csg_symbol name;
+    uint32_t slot; /* CALL: as of a NAME */
     csg_arguments arguments;
     csg_expression *condition;   /* IF */
     csg_scope *children, *other; /* IF: then and else, may be NULL; CALL: children, never NULL */
@@ -130,6 +133,7 @@ typedef struct csg_program {
     csg_program_file **files; /* files[0] is the scene; the others are used */
     uint32_t file_count;
     uint32_t scope_count;
+    uint32_t slot_count; /* names that are used: csg_expression, csg_statement */
     const char **dependencies;
     uint32_t dependency_count;
     double deadline_s;  /* of the monotonic clock; 0 = none */

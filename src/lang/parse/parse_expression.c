@@ -359,11 +359,22 @@ static csg_expression *parse_range(csg_parser *parser, csg_expression *first, cs
                : NULL;
 }
 
+/* Is it one element of a list, whatever its value is? */
+static bool is_one_element(const csg_expression *x)
+{
+    return x->kind != CSG_EXPRESSION_FOR && x->kind != CSG_EXPRESSION_FOR_LOOP &&
+           x->kind != CSG_EXPRESSION_IF && x->kind != CSG_EXPRESSION_EACH &&
+           x->kind != CSG_EXPRESSION_LET && x->kind != CSG_EXPRESSION_ASSERT &&
+           x->kind != CSG_EXPRESSION_ECHO;
+}
+
 static csg_expression *parse_bracketed(csg_parser *parser)
 {
     csg_span open = csg_parser_span(parser);
     csg_expression *made = make_expression(parser, CSG_EXPRESSION_VECTOR, open);
     csg_parser_next(parser);
+    if (made)
+        made->as.list.is_plain = true;
     while (made && csg_parser_peek(parser) != CSG_TOKEN_CLOSE_SQUARE) {
         if (csg_parser_accept(parser, CSG_TOKEN_COMMA))
             continue;
@@ -380,6 +391,7 @@ static csg_expression *parse_bracketed(csg_parser *parser)
             return NULL;
         }
         *place = element;
+        made->as.list.is_plain = made->as.list.is_plain && is_one_element(element);
         if (csg_parser_peek(parser) != CSG_TOKEN_COMMA)
             break;
     }
@@ -412,6 +424,7 @@ static csg_expression *parse_literal(csg_parser *parser)
     case CSG_TOKEN_NAME:
         made->kind = CSG_EXPRESSION_NAME;
         made->as.name = csg_parser_symbol(parser, where);
+        made->slot = parser->program->slot_count++;
         break;
     case CSG_TOKEN_TRUE:
     case CSG_TOKEN_FALSE:

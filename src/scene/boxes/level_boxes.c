@@ -566,13 +566,28 @@ static bool has_opaque_nodes(const csgm_scene *scene)
     return false;
 }
 
+/* Nothing but leaves that are moved and united sharply: no operand's box is cut by another's, so
+ * the first way up is the last. */
+static bool is_plain_union(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        bool joins = node->kind == CSG_NODE_UNION && node->blend == CSG_BLEND_SHARP;
+        if (node->child_count && !joins && node->kind != CSG_NODE_TRANSFORM &&
+            node->kind != CSG_NODE_COLOR)
+            return false;
+    }
+    return true;
+}
+
 /* Up and down until nothing changes. */
 static void settle(table *t, csg_box *out)
 {
+    const int passes = is_plain_union(t->scene) ? 1 : MOST_PASSES;
     for (size_t slot = 0; slot < t->slot_count; slot++)
         t->regions[slot] = csg_box_all();
     csg_box last = csg_box_all();
-    for (int pass = 0; pass < MOST_PASSES; pass++) {
+    for (int pass = 0; pass < passes; pass++) {
         compute_upward(t);
         *out = box_at(t, t->scene->root, 0);
         if (is_same_box(*out, last) && pass > 1)
