@@ -403,7 +403,11 @@ typedef enum csgm_stage {
     CSGM_STAGE_OCTREE,
     CSGM_STAGE_MESH,
     CSGM_STAGE_WRITE,
-    CSGM_STAGE_RENDER
+    CSGM_STAGE_RENDER,
+    CSGM_STAGE_RESHAPE, /* of csgm_mesh_options.tolerance, simplify and improve, with its proofs */
+    CSGM_STAGE_CERTIFY,
+    CSGM_STAGE_COMPARE, /* csgm_diff_meshes */
+    CSGM_STAGE_COUNT
 } csgm_stage;
 
 /* Watches a long call and can stop it. All zero means that nobody watches. */
@@ -1000,7 +1004,7 @@ typedef struct csgm_diff_options {
                                     by then says so; default false */
     const csgm_scene *scene_a, *scene_b; /* whose mesh the side is: the other side is measured
                                             against its field too; NULL (default) = not */
-    csgm_monitor monitor;                /* progress is not called */
+    csgm_monitor monitor;                /* stage CSGM_STAGE_COMPARE */
 } csgm_diff_options;
 
 CSGM_API csgm_diff_options csgm_diff_options_default(void);

@@ -77,6 +77,11 @@ static bool measure_run(void *user, uint32_t worker, size_t index)
     return !csg_diff_is_cancelled(w->pair);
 }
 
+static void report_runs(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((point_work *)user)->pair, done, count);
+}
+
 csgm_status csg_diff_measure_points(csg_diff_pair *pair)
 {
     for (int from = 0; from < 2; from++) {
@@ -86,7 +91,9 @@ csgm_status csg_diff_measure_points(csg_diff_pair *pair)
         if (!side->distance || !side->nearest)
             return csg_context_no_memory(pair->context);
         point_work w = {pair, from};
-        if (!csg_pool_run(pair->context->pool, run_count(side->point_count), measure_run, NULL, &w))
+        csg_diff_take(pair, 0.05);
+        if (!csg_pool_run(pair->context->pool, run_count(side->point_count), measure_run,
+                          report_runs, &w))
             return CSGM_CANCELLED;
     }
     return CSGM_OK;
@@ -280,6 +287,11 @@ static void summarize_colors(const sample_work *w, csgm_diff_attribute *out)
     out->share = fmax(out->share, (double)differing / (double)w->sampler.count);
 }
 
+static void report_samples(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((sample_work *)user)->pair, done, count);
+}
+
 csgm_status csg_diff_measure_samples(csg_diff_pair *pair, int from, uint64_t count,
                                      csgm_diff_distance *out, csgm_diff_attribute *colors,
                                      csgm_diff_place *largest)
@@ -295,7 +307,8 @@ csgm_status csg_diff_measure_samples(csg_diff_pair *pair, int from, uint64_t cou
         status = csg_context_no_memory(pair->context);
     } else {
         w.colors = colors ? (float *)(w.distances + count) : NULL;
-        if (!csg_pool_run(pair->context->pool, run_count(count), sample_run, NULL, &w))
+        csg_diff_take(pair, 0.3);
+        if (!csg_pool_run(pair->context->pool, run_count(count), sample_run, report_samples, &w))
             status = CSGM_CANCELLED;
     }
     if (status == CSGM_OK && colors)

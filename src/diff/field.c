@@ -119,6 +119,11 @@ static void take_value(field_work *w, double value, csg_vec3 at)
     w->out->at = from_scene(w, at);
 }
 
+static void report_probes(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((field_work *)user)->pair, done, count);
+}
+
 /* Probes all patches and keeps those whose bound is too wide, in their order; the bounds of the
  * others are in out->upper. */
 static csgm_status probe_patches(field_work *w)
@@ -128,7 +133,9 @@ static csgm_status probe_patches(field_work *w)
     w->probes = csg_memory_alloc(memory, size);
     if (!w->probes)
         return csg_context_no_memory(w->pair->context);
-    if (!csg_pool_run(w->pair->context->pool, (w->count + RUN - 1) / RUN, probe_run, NULL, w)) {
+    csg_diff_take(w->pair, 0.3);
+    if (!csg_pool_run(w->pair->context->pool, (w->count + RUN - 1) / RUN, probe_run, report_probes,
+                      w)) {
         csg_memory_release(memory, w->probes, size);
         return csg_diff_is_cancelled(w->pair) ? CSGM_CANCELLED
                                               : csg_context_no_memory(w->pair->context);
@@ -233,7 +240,7 @@ static csgm_status average_samples(field_work *w, int from, uint64_t count)
     if (!w->values || !csg_diff_sampler_make(&w->sampler, side, count))
         status = csg_context_no_memory(w->pair->context);
     else if (!csg_pool_run(w->pair->context->pool, (size_t)((count + RUN - 1) / RUN), value_run,
-                           NULL, w))
+                           report_probes, w))
         status = csg_diff_is_cancelled(w->pair) ? CSGM_CANCELLED
                                                 : csg_context_no_memory(w->pair->context);
     double sum = 0;

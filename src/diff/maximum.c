@@ -332,6 +332,20 @@ static bool join_outcomes(engine *e)
     return ok;
 }
 
+static void report_items(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((engine *)user)->pair, done, count);
+}
+
+/* Batches are of equal work, and triangles that need none of it come last. */
+static void report_batches(void *user, size_t done, size_t count)
+{
+    engine *e = user;
+    (void)done;
+    (void)count;
+    csg_diff_tell(e->pair, e->next_key, e->key_count ? e->key_count : 1);
+}
+
 static csgm_status run_batch(engine *e)
 {
     csg_memory *memory = &e->pair->context->memory;
@@ -341,7 +355,7 @@ static csgm_status run_batch(engine *e)
         return csg_context_no_memory(e->pair->context);
     for (size_t i = 0; i < e->item_count; i++)
         e->outcomes[i] = (outcome){.lower = e->search->lower};
-    bool ran = csg_pool_run(e->pair->context->pool, e->item_count, work_on_item, NULL, e);
+    bool ran = csg_pool_run(e->pair->context->pool, e->item_count, work_on_item, report_batches, e);
     bool out_of_memory = false;
     for (size_t i = 0; i < e->item_count; i++)
         out_of_memory |= e->outcomes[i].out_of_memory;
@@ -365,6 +379,7 @@ static csgm_status run_batches(engine *e)
     csgm_status status = CSGM_OK;
     csg_diff_maximum *search = e->search;
     search->is_refined = true;
+    csg_diff_take(e->pair, search->from == 0 ? 0.45 : 0.8);
     for (size_t size = FIRST_BATCH; status == CSGM_OK; size = size < LAST_BATCH ? 2 * size : size) {
         bool is_settled = search->verdict_only && search->lower > search->tolerance;
         if (is_settled || e->cuts > CUTS_MOST) {
@@ -411,10 +426,11 @@ csgm_status csg_diff_find_maximum(csg_diff_pair *pair, csg_diff_maximum *search)
     e.keys = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e.keys);
     csgm_status status = CSGM_OK;
     search->upper = 0;
+    csg_diff_take(pair, 0.05);
     if (!e.bounds || !e.keys)
         status = csg_context_no_memory(pair->context);
     else if (!csg_pool_run(pair->context->pool, (side->chain.count + RUN - 1) / RUN, bound_run,
-                           NULL, &e))
+                           report_items, &e))
         status = CSGM_CANCELLED;
     if (status == CSGM_OK) {
         start_from_points(&e);

@@ -191,6 +191,25 @@ static void enter_frame(csg_diff_pair *pair)
     pair->precision = 0x1p-23 * largest_coordinate(pair->box) * pair->frame.scale;
 }
 
+void csg_diff_take(csg_diff_pair *pair, double part)
+{
+    csg_diff_progress *p = &pair->progress;
+    p->before += p->share;
+    p->share = part * (1 - p->before);
+}
+
+void csg_diff_tell(csg_diff_pair *pair, size_t done, size_t count)
+{
+    enum { REPORTS_PER_SECOND = 20 };
+    csg_diff_progress *p = &pair->progress;
+    double now = csg_clock_now_s();
+    if (!pair->monitor->progress || now - p->last_report_s < 1.0 / REPORTS_PER_SECOND)
+        return;
+    p->last_report_s = now;
+    pair->monitor->progress(pair->monitor->user, CSGM_STAGE_COMPARE,
+                            p->before + p->share * ((double)done / (double)count));
+}
+
 csgm_status csg_diff_pair_make(csg_diff_pair *pair, csgm_context *context, const csgm_mesh_view *a,
                                const csgm_mesh_view *b, bool may_turn_b)
 {
@@ -313,11 +332,17 @@ static bool prepare_side(void *user, uint32_t worker, size_t index)
     return p->status[index] == CSGM_OK;
 }
 
+static void report_sides(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((preparation *)user)->pair, done, count);
+}
+
 csgm_status csg_diff_pair_prepare(csg_diff_pair *pair, bool with_trees)
 {
     CSG_ZONE(pair->context, "trees");
     preparation p = {pair, with_trees, {CSGM_OK, CSGM_OK}};
-    if (csg_pool_run(pair->context->pool, 2, prepare_side, NULL, &p))
+    csg_diff_take(pair, 0.1);
+    if (csg_pool_run(pair->context->pool, 2, prepare_side, report_sides, &p))
         return CSGM_OK;
     return p.status[0] == CSGM_ERR_LIMIT || p.status[1] == CSGM_ERR_LIMIT
                ? CSGM_ERR_LIMIT

@@ -37,6 +37,12 @@ typedef struct csg_diff_side {
     uint32_t *nearest; /* place in the other's tree */
 } csg_diff_side;
 
+/* Of the comparison as a whole: steps of which nobody knows how many come. */
+typedef struct csg_diff_progress {
+    double before, share; /* the steps behind, and the one at hand */
+    double last_report_s;
+} csg_diff_progress;
+
 typedef struct csg_diff_pair {
     csgm_context *context;
     csg_diff_side sides[2]; /* A, B */
@@ -47,6 +53,7 @@ typedef struct csg_diff_pair {
     csg_box box;      /* of both, scene units */
     double precision; /* frame units: csgm_diff_report.precision */
     const csgm_monitor *monitor;
+    csg_diff_progress progress;
     double deadline_s; /* 0: there is none */
     atomic_bool *timed_out;
 } csg_diff_pair;
@@ -64,6 +71,11 @@ csg_vec3 csg_diff_turned(csg_diff_turn turn, csg_vec3 p);
 csg_vec3 csg_diff_vertex(const csg_diff_side *side, uint64_t vertex);
 /* The turn of B in which its bounds and the spread of its area are most like A's; sound views. */
 csg_diff_turn csg_diff_find_turn(const csgm_mesh_view *a, const csgm_mesh_view *b);
+
+/* The next step is `part` of what is left of the comparison. */
+void csg_diff_take(csg_diff_pair *pair, double part);
+/* Of the step at hand, on the calling thread. */
+void csg_diff_tell(csg_diff_pair *pair, size_t done, size_t count);
 
 static inline bool csg_diff_is_cancelled(const csg_diff_pair *pair)
 {

@@ -186,6 +186,11 @@ static void summarize(const casting *c, csgm_diff_volume *out)
     out->both = fmax(0, fmin(fabs(a) - out->only_a, fabs(b) - out->only_b));
 }
 
+static void report_rows(void *user, size_t done, size_t count)
+{
+    csg_diff_tell(((casting *)user)->pair, done, count);
+}
+
 static csgm_status cast_all(casting *c, csgm_diff_volume *out)
 {
     csg_memory *memory = &c->pair->context->memory;
@@ -197,7 +202,8 @@ static csgm_status cast_all(casting *c, csgm_diff_volume *out)
     bool out_of_memory = !c->workers || !c->row_sums;
     for (uint32_t i = 0; i < threads && c->workers; i++)
         c->workers[i].memory = memory;
-    if (!out_of_memory && !csg_pool_run(c->pair->context->pool, c->rows, cast_row, NULL, c))
+    csg_diff_take(c->pair, 0.5);
+    if (!out_of_memory && !csg_pool_run(c->pair->context->pool, c->rows, cast_row, report_rows, c))
         status = CSGM_CANCELLED;
     for (uint32_t i = 0; i < threads && c->workers; i++) {
         out_of_memory |= c->workers[i].out_of_memory;

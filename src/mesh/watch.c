@@ -55,9 +55,24 @@ void csg_mesh_report_progress(void *user, double fraction)
         monitor->progress(monitor->user, w->stage, fraction);
         return;
     }
-    /* parts alternate between the stages: a half each of what is told as one */
-    fraction = (fraction + (w->stage == CSGM_STAGE_OCTREE ? 0 : 1)) / 2;
-    monitor->progress(monitor->user, CSGM_STAGE_MESH, w->part_before + w->part_amount * fraction);
+    /* parts alternate between the stages: an equal share each of what is told as one */
+    int shares = w->taken[CSGM_STAGE_RESHAPE] > 0 ? 3 : 2;
+    int before = w->stage == CSGM_STAGE_MESH ? 1 : w->stage == CSGM_STAGE_RESHAPE ? 2 : 0;
+    fraction = w->part_before + w->part_amount * (fraction + before) / shares;
+    if (fraction < w->told_of_part)
+        return;
+    w->told_of_part = fraction;
+    monitor->progress(monitor->user, CSGM_STAGE_MESH, fraction);
+}
+
+void csg_mesh_take(csg_mesh_watch *w, csgm_stage stage, double part)
+{
+    if (w->stage != stage)
+        w->last_report_s = 0; /* a new stage is told at once */
+    w->stage = stage;
+    w->stage_done = w->taken[stage];
+    w->stage_share = part * (1 - w->taken[stage]);
+    w->taken[stage] += w->stage_share;
 }
 
 csgm_status csg_mesh_why_stopped(csg_mesh_watch *w)

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -110,6 +111,36 @@ class Outputs(cli.CliTest):
         shown = self.run_in("a.txt", "-r", "64", "--progress=always", "-o", "a.ply")
         self.assertIn(" %", shown.stderr)
         self.assertEqual(self.run_in("a.txt", "-r", "64", "-o", "a.ply").stderr, "")
+        self.write("b.txt", cli.BLEND)
+        for arguments, stage in ((["a.txt", "-r", "16", "--certify", "-o", "b.ply"], "proving"),
+                                 (["b.txt", "-e", "0.05", "-o", "b.ply"], "thinning"),
+                                 (["diff", "a.ply", "b.ply"], "comparing"),
+                                 (["info", "a.txt"], "sampling")):
+            said = self.run_in(*arguments, "--progress=always").stderr
+            shares = [int(share) for share in re.findall(rf"{stage} +\[[=> ]+\] +(\d+) %", said)]
+            self.assertTrue(shares, said)
+            self.assertEqual(shares, sorted(shares), said)
+            self.assertEqual(self.run_in(*arguments, "--progress=always", "-q").stderr, "")
+
+    def test_one_bar_for_all_pairs_of_folders(self):
+        for folder in ("old", "new"):
+            os.mkdir(self.path(folder))
+            for i in range(3):
+                self.assert_status(self.run_in("a.txt", "-r", "10" if folder == "old" else "12", "-o",
+                                               f"{folder}/{i}.ply"), 0)
+        said = self.run_in("diff", "old", "new", "--progress=always").stderr
+        shares = [int(share) for share in re.findall(r"\w+ +\[[=> ]+\] +(\d+) %", said)]
+        self.assertEqual(shares, sorted(shares), said)
+        self.assertTrue(any(33 <= share < 66 for share in shares), said)
+
+    def test_colour_of_results(self):
+        self.assert_status(self.run_in("a.txt", "-r", "10", "-o", "a.ply"), 0)
+        self.assert_status(self.run_in("a.txt", "-r", "12", "-o", "b.ply"), 0)
+        self.assertIn("\033[1;31mdifferent\033[0m: ", self.run_in("diff", "--color=always", "a.ply", "b.ply").stdout.decode())
+        self.assertIn("\033[1;32msame\033[0m: ", self.run_in("diff", "--color=always", "a.ply", "a.ply").stdout.decode())
+        self.assertNotIn("\033", self.run_in("diff", "a.ply", "b.ply").stdout.decode())
+        batch = self.run_in("batch", "a.txt", "-d", "out", "-r", "8", "--color=always").stdout.decode()
+        self.assertIn("\033[1;32mmade ", batch)
         self.write("bad.txt", "sphere(;\n")
         colored = self.run_in("check", "--color=always", "bad.txt")
         self.assertIn("\033[1;31merror E", colored.stderr)

@@ -381,6 +381,34 @@ static void test_tolerances(void **state)
     diff_shape_release(&b);
 }
 
+typedef struct teller {
+    int calls;
+    double last;
+    bool is_wrong;
+} teller;
+
+static void tell(void *user, csgm_stage stage, double fraction)
+{
+    teller *t = user;
+    t->is_wrong |= stage != CSGM_STAGE_COMPARE || fraction < t->last || fraction > 1;
+    t->last = fraction;
+    t->calls++;
+}
+
+static void test_progress_never_falls(void **state)
+{
+    const csgm_vec3 high = {1.01, 1, 1};
+    diff_shape a = diff_box(ORIGIN, ONE, 40), b = diff_box(ORIGIN, high, 50);
+    csgm_diff_options options = few_samples();
+    teller t = {0};
+    options.monitor = (csgm_monitor){.progress = tell, .user = &t};
+    assert_true(compare_with(&a, &b, &options, 2).is_different);
+    assert_true(t.calls > 0);
+    assert_false(t.is_wrong);
+    diff_shape_release(&a);
+    diff_shape_release(&b);
+}
+
 /* Far from zero floats are coarse: what that does is in the bound, not added to the tolerance. */
 static void test_never_same_above_tolerance(void **state)
 {
@@ -514,6 +542,7 @@ int main(void)
         cmocka_unit_test(test_open),
         cmocka_unit_test(test_bad_views),
         cmocka_unit_test(test_tolerances),
+        cmocka_unit_test(test_progress_never_falls),
         cmocka_unit_test(test_never_same_above_tolerance),
         cmocka_unit_test(test_turned),
         cmocka_unit_test(test_attributes),

@@ -44,6 +44,7 @@ typedef struct proof {
     piece *pieces;
     size_t count;
     uint64_t looked_at; /* before these pieces */
+    double settled, at; /* triangles whose pieces are proven, and that of the latest piece */
     atomic_bool out_of_memory;
 } proof;
 
@@ -344,11 +345,19 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
 /* ---- all of them -------------------------------------------------------------------------------
  */
 
+static void report_groups(void *user, size_t done, size_t count)
+{
+    const proof *p = user;
+    double share = (double)done / (double)count;
+    csg_mesh_report_progress(p->remesh->watch, (p->settled + share * (p->at - p->settled)) /
+                                                   p->remesh->corners.triangle_count);
+}
+
 static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof *out)
 {
     const csg_remesh *r = p->remesh;
     size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
-    bool done = csg_pool_run(r->context->pool, groups, settle_group, NULL, p);
+    bool done = csg_pool_run(r->context->pool, groups, settle_group, report_groups, p);
     if (atomic_load(&p->out_of_memory))
         return csg_context_no_memory(r->context);
     if (!done)
@@ -362,6 +371,7 @@ static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof 
     }
     p->count = 0;
     p->looked_at = 0;
+    p->settled = p->at;
     for (size_t i = 0; i < p->settler_count; i++)
         p->looked_at += p->settlers[i].pieces;
     out->stopped = p->looked_at > MOST_PIECES;
@@ -437,14 +447,17 @@ static void end(proof *p)
 csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
                                uint8_t *pending, csg_distance_proof *out)
 {
-    static const double HOPELESS = 0.95; /* pieces would have to be small, and many */
+    static const double HOPELESS = 0.95;   /* pieces would have to be small, and many */
+    static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
     proof p = {.remesh = remesh, .error = error, .farthest = patient ? 1 : HOPELESS};
     *out = (csg_distance_proof){0};
+    csg_mesh_take(remesh->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
     csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->context);
     const csg_corners *m = &remesh->corners;
     for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
         if (csg_corners_is_live(m, t) && pending[t]) {
             pending[t] = 0;
+            p.at = t;
             status = prove_triangle(&p, t, pending, out);
         }
     if (status == CSGM_OK && p.count && !out->stopped)

@@ -23,6 +23,7 @@ enum {
 
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
 static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
+static const double SHARE = 0.2; /* of what is left of the stage, for progress */
 /* How near a sheet's gradients must be to their middle, of the field's slope. */
 static const double SMOOTH = 0.5, CREASED = 0.45;
 
@@ -343,6 +344,12 @@ static void end(walk *w)
     csg_octree_destroy(w->octree);
 }
 
+static void report_cubes(void *user, size_t done, size_t count)
+{
+    const walk *w = user;
+    csg_mesh_report_progress(w->remesh->watch, (double)done / (double)count);
+}
+
 /* Few cubes take much more than the others. */
 static bool look_again(walk *w)
 {
@@ -359,7 +366,9 @@ static bool look_again(walk *w)
     w->most_cubes = ALL_AGAIN / (count + 1);
     if (w->most_cubes > AGAIN_CUBES)
         w->most_cubes = AGAIN_CUBES;
-    bool done = !count || csg_pool_run(w->remesh->context->pool, count, look_at_cube, NULL, w);
+    csg_mesh_take(w->remesh->watch, CSGM_STAGE_RESHAPE, SHARE);
+    bool done =
+        !count || csg_pool_run(w->remesh->context->pool, count, look_at_cube, report_cubes, w);
     csg_memory_release(memory, w->again, bytes);
     w->again = NULL;
     return done;
@@ -402,7 +411,9 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch) : status;
     bool begun = begin(&w);
-    bool done = begun && csg_pool_run(r->context->pool, w.segment_count, look_at_cube, NULL, &w) &&
+    csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, SHARE);
+    bool done = begun &&
+                csg_pool_run(r->context->pool, w.segment_count, look_at_cube, report_cubes, &w) &&
                 look_again(&w);
     if (done)
         done = gather_segments(&w, out);

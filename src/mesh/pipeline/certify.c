@@ -107,7 +107,9 @@ static csgm_status certify(const csg_mesh_input *in, csg_mesh_watch *watch, csg_
     double size = in->options->certify_size;
     csg_certify_options options = {.size = size > 0 ? size : in->lattice.cell_size / 64,
                                    .cancelled = csg_mesh_should_stop,
+                                   .progress = csg_mesh_report_progress,
                                    .user = watch};
+    csg_mesh_take(watch, CSGM_STAGE_CERTIFY, 1);
     csgm_status status = csg_certify_run(in->context, in->field, &in->lattice, &options, &report);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : status;

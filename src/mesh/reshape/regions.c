@@ -15,6 +15,7 @@
 #include "mesh/reshape/decimate.h"
 
 enum { MOST_OF_REGION = 10000, DEEPEST = 16, ROUNDS = 3 };
+static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
 
 /* A cube and the triangles that meet it; those in it are changed there. */
 typedef struct region {
@@ -224,6 +225,12 @@ static csgm_status make_tree_again(csg_remesh *r)
     return csg_triangle_tree_make(&r->tree, &r->corners, r->at) ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
+static void report_regions(void *user, size_t done, size_t count)
+{
+    const cutting *c = user;
+    csg_mesh_report_progress(c->d->remesh->watch, (double)done / (double)count);
+}
+
 static csgm_status run_round(cutting *c, int round)
 {
     csg_remesh *r = c->d->remesh;
@@ -232,7 +239,8 @@ static csgm_status run_round(cutting *c, int round)
     c->d->region_of = c->region_of;
     for (uint32_t i = 0; i < c->worker_count; i++)
         c->workers[i].decimation.region_of = c->region_of;
-    if (!csg_pool_run(r->context->pool, c->region_count, thin_out_region, NULL, c))
+    csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
+    if (!csg_pool_run(r->context->pool, c->region_count, thin_out_region, report_regions, c))
         return (csgm_status)atomic_load(&c->status);
     for (size_t i = 0; i < c->region_count; i++)
         r->corners.live -= c->regions[i].removed;

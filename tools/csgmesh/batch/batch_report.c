@@ -145,6 +145,11 @@ static void put_summary_json(const batch_run *run, double seconds)
 
 /* ---- the summary ---------------------------------------------------------------------- */
 
+static cli_mood mood_of(batch_outcome outcome)
+{
+    return outcome == BATCH_FAILED ? CLI_BAD : outcome == BATCH_NOT_RUN ? CLI_MIXED : CLI_GOOD;
+}
+
 static void put_row(const batch_run *run, batch_outcome outcome)
 {
     size_t jobs = 0, files = 0;
@@ -160,7 +165,11 @@ static void put_row(const batch_run *run, batch_outcome outcome)
     }
     if (!jobs)
         return;
-    printf("%-10s %6zu", batch_outcome_name(outcome), jobs);
+    char name[16], painted[40];
+    snprintf(name, sizeof name, "%-10s", batch_outcome_name(outcome));
+    printf("%s %6zu",
+           cli_console_paint(&run->app->console, name, mood_of(outcome), painted, sizeof painted),
+           jobs);
     if (files)
         printf(" %8zu %10.1f", files, (double)bytes / (1 << 20));
     putchar('\n');

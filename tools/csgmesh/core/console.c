@@ -20,9 +20,11 @@ cli_console cli_console_make(void)
 {
     const char *no_color = getenv("NO_COLOR");
     bool is_terminal = isatty(STDERR_FILENO);
+    bool may_color = !(no_color && *no_color);
     return (cli_console){.out = stderr,
                          .is_terminal = is_terminal,
-                         .color = is_terminal && !(no_color && *no_color),
+                         .color = is_terminal && may_color,
+                         .color_results = may_color && isatty(STDOUT_FILENO),
                          .stage = -1};
 }
 
@@ -30,7 +32,7 @@ void cli_console_configure(cli_console *console, const cli_options *options)
 {
     enum { AUTO, ALWAYS };
     if (options->color != AUTO)
-        console->color = options->color == ALWAYS;
+        console->color = console->color_results = options->color == ALWAYS;
     console->quiet = options->quiet;
     console->json = options->diagnostics == 1;
     console->progress = options->progress;
@@ -185,6 +187,15 @@ void cli_console_summary(cli_console *console)
     fputc('\n', console->out);
 }
 
+const char *cli_console_paint(const cli_console *console, const char *text, cli_mood mood,
+                              char *buffer, size_t size)
+{
+    static const char *const colors[] = {"\033[1;32m", "\033[1;33m", "\033[1;31m"};
+    snprintf(buffer, size, console->color_results ? "%s%s%s" : "%.0s%s%.0s", colors[mood], text,
+             RESET);
+    return buffer;
+}
+
 void cli_console_diag(void *user, const csgm_diag *diag)
 {
     cli_console *console = user;
@@ -266,7 +277,11 @@ static const double PATIENCE_S = 0.5; /* shorter work shows no bar */
 static void draw_bar(const cli_console *console, csgm_stage stage, double fraction,
                      double elapsed_s)
 {
-    static const char *const names[] = {"sampling", "meshing ", "writing ", "drawing "};
+    static const char *const names[] = {
+        [CSGM_STAGE_OCTREE] = "sampling",  [CSGM_STAGE_MESH] = "meshing ",
+        [CSGM_STAGE_WRITE] = "writing ",   [CSGM_STAGE_RENDER] = "drawing ",
+        [CSGM_STAGE_RESHAPE] = "thinning", [CSGM_STAGE_CERTIFY] = "proving ",
+        [CSGM_STAGE_COMPARE] = "comparing"};
     char bar[BAR_WIDTH + 1];
     int filled = (int)(fraction * BAR_WIDTH);
     for (int i = 0; i < BAR_WIDTH; i++)
@@ -286,6 +301,12 @@ void cli_console_progress(void *user, csgm_stage stage, double fraction)
     enum { AUTO, ALWAYS, NEVER };
     cli_console *console = user;
     double now_s = cli_now_s();
+    if (console->work_count >
+        1) { /* its stages come again and again: how many are behind is told */
+        double within = stage == CSGM_STAGE_COMPARE ? fraction : 0;
+        fraction = ((double)console->work_index + within) / (double)console->work_count;
+        stage = CSGM_STAGE_COMPARE;
+    }
     if ((int)stage != console->stage) {
         console->stage = (int)stage;
         console->stage_start_s = now_s;
@@ -295,6 +316,14 @@ void cli_console_progress(void *user, csgm_stage stage, double fraction)
                                         now_s - console->stage_start_s > PATIENCE_S);
     if (wanted && !console->quiet && !console->json)
         draw_bar(console, stage, fraction < 1 ? fraction : 1, now_s - console->stage_start_s);
+}
+
+void cli_console_set_work(cli_console *console, size_t index, size_t count)
+{
+    console->work_index = index;
+    console->work_count = count;
+    if (count > 1)
+        cli_console_progress(console, CSGM_STAGE_COMPARE, 0);
 }
 
 void cli_console_end_progress(cli_console *console)

@@ -16,6 +16,7 @@ enum { CLI_KINDS_MOST = 32 };
 typedef struct cli_console {
     FILE *out; /* standard error, but for one of many jobs */
     bool quiet, color, json, is_terminal;
+    bool color_results;         /* on standard output */
     bool mute_notes;            /* they belong to a warning that was not shown */
     uint32_t errors;            /* said so far, warnings made errors by -Werror included */
     uint32_t warnings, lenient; /* the same; lenient: those that are errors in a strict text */
@@ -25,13 +26,20 @@ typedef struct cli_console {
     } kinds[CLI_KINDS_MOST]; /* of the lenient ones */
     int progress;            /* index of --progress: auto, always, never */
     double stage_start_s;
-    int stage;  /* csgm_stage, -1 before the first */
+    int stage;                     /* csgm_stage, -1 before the first */
+    size_t work_index, work_count; /* cli_console_set_work */
     FILE *held; /* --diagnostics=json: a finding that waits for its notes, or NULL */
     cli_json held_json;
     bool held_has_notes;
     char *held_text;
     size_t held_length;
 } cli_console;
+
+typedef enum cli_mood { CLI_GOOD, CLI_MIXED, CLI_BAD } cli_mood;
+
+/* A word of results in its colour, where standard output has any. Returns the buffer. */
+const char *cli_console_paint(const cli_console *console, const char *text, cli_mood mood,
+                              char *buffer, size_t size);
 
 /* Where messages go before the options are known. */
 cli_console cli_console_make(void);
@@ -54,6 +62,8 @@ void cli_console_summary(cli_console *console);
 
 /* csgm_monitor.progress; user is a cli_console. */
 void cli_console_progress(void *user, csgm_stage stage, double fraction);
+/* From here on `index` of `count` comparisons are behind: of several there is one bar for all. */
+void cli_console_set_work(cli_console *console, size_t index, size_t count);
 void cli_console_end_progress(cli_console *console);
 
 #endif

@@ -49,8 +49,9 @@ static int read_ignored(cli_app *app, uint32_t *ignored)
 }
 
 /* With --tol-volume alone distances do not decide. */
-static csgm_diff_options diff_options(const cli_options *options, uint32_t ignored)
+static csgm_diff_options diff_options(cli_app *app, uint32_t ignored)
 {
+    const cli_options *options = &app->options;
     csgm_diff_options diff = csgm_diff_options_default();
     bool has_tolerance =
         options->given[CLI_OPTION_diff_tol] || options->given[CLI_OPTION_diff_tol_rel];
@@ -65,6 +66,7 @@ static csgm_diff_options diff_options(const cli_options *options, uint32_t ignor
         diff.samples = options->diff_samples;
     diff.verdict_only = options->quiet && !options->diff_json && !options->diff_heatmap &&
                         !options->diff_png && !options->diff_html;
+    diff.monitor = (csgm_monitor){.progress = cli_console_progress, .user = &app->console};
     return diff;
 }
 
@@ -332,11 +334,14 @@ static int compare_pairs(cli_app *app, const csgm_diff_options *options, diff_re
         if (results->of_folders && !name_in_a(app, a, b, result))
             return CLI_TROUBLE;
         diff_report_begin(results, i);
+        cli_console_set_work(&app->console, i, results->count);
         work_on(app, options, result);
         worst = result->exit_status > worst ? result->exit_status : worst;
         same += result->outcome == DIFF_SAME;
+        cli_console_end_progress(&app->console);
         if (is_shown)
-            diff_print(result, !results->of_folders || result->outcome == DIFF_DIFFERENT);
+            diff_print(&app->console, result,
+                       !results->of_folders || result->outcome == DIFF_DIFFERENT);
     }
     if (is_shown && results->of_folders)
         printf("%zu of %zu same\n", same, results->count);
@@ -393,7 +398,7 @@ int cli_cmd_diff(cli_app *app)
         status =
             cli_sources_guard_file(app, i % 2 ? results.items[i / 2].b : results.items[i / 2].a);
     if (status == CLI_DONE) {
-        csgm_diff_options options = diff_options(&app->options, ignored);
+        csgm_diff_options options = diff_options(app, ignored);
         if (!app->options.diff_update) /* what is accepted is there at once */
             csgm_files_hold(app->context);
         status = write_reports(app, &results, compare_pairs(app, &options, &results));

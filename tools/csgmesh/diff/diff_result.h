@@ -35,7 +35,7 @@ typedef struct diff_results {
 /* A sentence without a newline: "0.83 apart, more than 0.01". */
 void diff_explain(const diff_result *result, char *text, size_t size);
 /* Five lines, or one for what there is nothing to measure about. */
-void diff_print(const diff_result *result, bool with_details);
+void diff_print(const cli_console *console, const diff_result *result, bool with_details);
 /* --json and --junit. CLI_DONE or CLI_TROUBLE. */
 int diff_write_json(cli_app *app, const diff_results *results);
 int diff_write_junit(cli_app *app, const diff_results *results);

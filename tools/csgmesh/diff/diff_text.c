@@ -148,12 +148,14 @@ static void print_fields(const csgm_diff_report *r)
                    r->field[i].lower, r->field[i].upper, r->field[i].lipschitz);
 }
 
-void diff_print(const diff_result *result, bool with_details)
+void diff_print(const cli_console *console, const diff_result *result, bool with_details)
 {
     static const char *const verdicts[] = {"same", "different", "different", "different", "failed"};
-    char reason[512];
+    char reason[512], verdict[40];
     diff_explain(result, reason, sizeof reason);
-    printf("%s: %s%s%s: %s%s\n", verdicts[result->outcome], result->a ? result->a : "",
+    cli_console_paint(console, verdicts[result->outcome],
+                      result->outcome == DIFF_SAME ? CLI_GOOD : CLI_BAD, verdict, sizeof verdict);
+    printf("%s: %s%s%s: %s%s\n", verdict, result->a ? result->a : "",
            result->a && result->b ? " " : "", result->b ? result->b : "", reason,
            result->is_updated ? "; A is now B" : "");
     const csgm_diff_report *r = &result->report;
