@@ -42,6 +42,15 @@ double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
                                                     : 0;
 }
 
+/* At most one goal of thinning out. */
+static bool adopt_options(csgm_mesh_options *own, const csgm_mesh_options *given)
+{
+    if (!csg_options_adopt(own, sizeof *own, given))
+        return false;
+    int goals = (own->tolerance > 0) + (own->simplify_error > 0) + (own->simplify_share > 0);
+    return goals <= 1;
+}
+
 csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
                             const csgm_mesh_options *options, csgm_mesh **out,
                             csgm_mesh_stats *stats)
@@ -50,7 +59,7 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
     if (!out)
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
-    if (!context || !field || !csg_options_adopt(&own, sizeof own, options) ||
+    if (!context || !field || !adopt_options(&own, options) ||
         !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats made = csgm_mesh_stats_default();
@@ -105,8 +114,7 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     csgm_mesh_options joined = csgm_mesh_options_default();
     csgm_write_options own = csgm_write_options_default();
     if (!context || !field || !path || format >= CSGM_FORMAT_COUNT ||
-        !csg_options_adopt(&joined, sizeof joined, options) ||
-        !csg_options_adopt(&own, sizeof own, write_options) ||
+        !adopt_options(&joined, options) || !csg_options_adopt(&own, sizeof own, write_options) ||
         !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats found = csgm_mesh_stats_default();

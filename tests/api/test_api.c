@@ -175,6 +175,12 @@ static void test_options_not_made_by_default(void **state)
     assert_int_equal(go(&r, NULL, scene_text, &mesh_options), CSGM_ERR_ARGUMENT);
     assert_null(r.mesh);
     end(&r);
+    mesh_options = coarse(); /* two goals of thinning out */
+    mesh_options.simplify_error = 0.1;
+    mesh_options.simplify_share = 0.5;
+    assert_int_equal(go(&r, NULL, scene_text, &mesh_options), CSGM_ERR_ARGUMENT);
+    assert_null(r.mesh);
+    end(&r);
 }
 
 /* The sizes that a struct may have: its own, and a shorter one that another release had. Members

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""Names of types, and the options of each function: they are libcsgmesh's, whose header says what each means."""
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, Optional, TypedDict, Union
+
+if TYPE_CHECKING:
+    from ._solid import Expression
+
+Path = Union[str, "os.PathLike[str]"]
+Point = Sequence[float]
+Box = Sequence[Point]
+
+#: What an argument of a solid may be: what the scene language has values for. A function becomes a formula.
+Value = Union[None, bool, int, float, str, "Expression", Sequence[Any], Mapping[str, Any], "os.PathLike[str]", Callable[..., Any]]
+
+#: progress(stage, fraction), or a bar of tqdm
+Progress = Union[Callable[[str, float], Any], Any, None]
+
+
+class RunOptions(TypedDict, total=False):
+    """How the work is done; for all functions."""
+
+    threads: int  # 0, the default: one per core
+    isa: Literal["auto", "scalar", "sse2", "avx2", "avx512", "neon"]
+    max_depth: int
+    max_nodes: int
+    max_steps: int
+    max_memory: int  # bytes
+    timeout: float  # seconds
+    warnings_as_errors: bool
+    library_warnings: bool
+    progress: Progress
+    echo: Optional[Callable[[str], Any]]  # gets what the scene echoes; without it: standard output
+
+
+class SceneOptions(RunOptions, total=False):
+    """How a scene's text is read."""
+
+    define: Mapping[str, Value]  # replaces assignments at the top of the text
+    include: Union[Path, Sequence[Path]]  # folders for include, use and import
+    parameter_file: Path
+    parameter_set: str
+    facets: Literal["round", "exact"]
+    leniency: Literal["strict", "by_file", "lenient"]
+    openscad_version: Union[str, int]  # "2021.01"
+    flat: Literal["plate", "drawing", "both", "kept"]
+
+
+class BuildOptions(TypedDict, total=False):
+    """How a field is meshed: csgm_mesh_options."""
+
+    bounds: Box
+    cell_size: float
+    resolution: int
+    normals: Literal["none", "vertex", "crease"]
+    features: Literal["sharp", "smooth"]
+    colors: bool
+    prune: bool
+    tolerance: float
+    simplify_error: float
+    simplify_share: float
+    improve: bool
+    certify: bool
+    certify_size: float
+    quality: Literal["normal", "draft", "fine"]
+    triangles: int
+
+
+class MeshOptions(RunOptions, BuildOptions, total=False):
+    """For a scene that is read already."""
+
+
+class SceneMeshOptions(SceneOptions, BuildOptions, total=False):
+    """For a text or a solid."""
+
+
+class FileOptions(TypedDict, total=False):
+    """How a file is written: csgm_write_options."""
+
+    ascii: bool
+    draco: bool
+    draco_position_bits: int
+    draco_normal_bits: int
+    draco_color_bits: int
+    draco_level: int
+    y_up: bool
+    sync: bool
+    only_if_changed: bool
+    unit: Literal["none", "mm", "cm", "m", "in"]
+    comment: str
+
+
+class WriteOptions(RunOptions, FileOptions, total=False):
+    """For a mesh."""
+
+
+class SceneWriteOptions(SceneOptions, BuildOptions, FileOptions, total=False):
+    """For a scene, a text or a solid that goes straight into a file."""
+
+
+class PictureOptions(TypedDict, total=False):
+    """How a picture is drawn: csgm_render_options and its csgm_camera."""
+
+    width: int
+    height: int
+    samples: int
+    view: Sequence[float]  # azimuth and elevation, degrees
+    eye: Point
+    target: Point
+    up: Point
+    projection: Literal["perspective", "orthographic"]
+    fov: float
+    view_height: float
+    zoom: float
+    frame: Box
+    turns: bool
+    background: Union[str, Sequence[int]]  # "#rrggbb", "#rrggbbaa", "white", "black", "transparent"; or four numbers
+    occlusion: bool
+    shadows: bool
+    bounds: Box
+    slice: tuple[Literal["x", "y", "z"], float]
+    iso_step: float
+    wireframe: bool
+    flat: bool
+    evaluator: Literal["fast", "lazy"]
+    lazy: bool
+    bounds_used: bool
+
+
+class RenderOptions(RunOptions, PictureOptions, total=False):
+    """For a scene, a solid or a mesh."""
+
+
+class DiffOptions(RunOptions, total=False):
+    """What a comparison looks at: csgm_diff_options."""
+
+    tolerance: float
+    tolerance_relative: float
+    tolerance_volume: float
+    material: Literal["any", "added", "removed"]
+    ignore: Union[str, Sequence[str]]  # "order", "normals", "colors", "names", "up", "topology"
+    samples: int
+    verdict_only: bool
+    field: bool  # measure against the exact field of a scene, too
+    mesh: BuildOptions  # how scenes are meshed
