@@ -265,6 +265,9 @@ typedef struct csgm_scene_options {
     uint32_t openscad_version; /* what version_num() says: 20210100 is 2021.01; 0 (the default): the
                                   newest one that is fully supported */
     csgm_flat flat;            /* default PLATE */
+    bool only_check;           /* the text is only looked at for mistakes, and no scene is made:
+                                  *out stays NULL. Hulls, Minkowski sums and shadows that nothing
+                                  else depends on are left out, with what only they would show */
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

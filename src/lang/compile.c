@@ -191,7 +191,9 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
         status = CSGM_ERR_SCENE;
     }
     csg_eval_reset(&e);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && program->options->only_check)
+        csg_scene_destroy(scene);
+    else if (status == CSGM_OK)
         *out = scene;
     return status;
 }
@@ -219,7 +221,7 @@ static void compile(compilation *c)
         c->status = csg_customizer_take_values(&program, c->params);
     else if (c->status == CSGM_OK)
         c->status = evaluate(&program, errors, c->out);
-    if (c->status == CSGM_OK && c->out) {
+    if (c->status == CSGM_OK && c->out && *c->out) {
         (*c->out)->parse_s = parsed_s - begin_s;
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }

@@ -81,6 +81,9 @@ csg_node_id csg_solid_hull(csg_solid_job *job, csg_node_id all)
         return csg_solid_empty(job);
     csg_solid_pieces pieces;
     csg_node_id node = CSG_NODE_NONE;
+    if (!csg_solid_is_flat(job, all) &&
+        csg_solid_sketch(job, csg_build_box(job->builder, all), &node))
+        return node;
     csg_pieces_init(&pieces, job->memory);
     if (csg_pieces_collect(job->builder->scene, all, &pieces))
         node = hull_of_pieces(job, &pieces, size, csg_solid_is_flat(job, all));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What is asked of whole nodes: is the field an exact distance, polygons of a flat node, triangles
- * and the tight box of a solid.
+ * and the tight box of a solid; sketches of what is not asked.
  */
 #ifndef CSG_SOLID_MEASURE_H
 #define CSG_SOLID_MEASURE_H
@@ -16,6 +16,10 @@ csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triang
 /* The box of the node's solid, tight where its pieces are known, else within a cell of a
  * tessellation. */
 csgm_status csg_tight_box(csg_solid_job *job, csg_node_id node, csg_box *out);
+/* Where the job only sketches: the box as a solid, or what it covers of the plane. False: it does
+ * not, or the box has no volume, so that what it is about may be nothing. */
+bool csg_solid_sketch(csg_solid_job *job, csg_box box, csg_node_id *out);
+bool csg_solid_sketch_flat(csg_solid_job *job, csg_box box, csg_node_id *out);
 /* Longest side of the node's box; reports and fails where it is infinite. */
 bool csg_finite_size(csg_solid_job *job, csg_node_id node, double *out);
 

@@ -290,6 +290,11 @@ csg_node_id csg_solid_minkowski(csg_solid_job *job, csg_node_id a, csg_node_id b
         return csg_solid_is_empty(job, a) ? a : b;
     if (!csg_finite_size(job, a, &sizes[0]) || !csg_finite_size(job, b, &sizes[1]))
         return csg_solid_empty(job);
+    csg_box boxes[2] = {csg_build_box(job->builder, a), csg_build_box(job->builder, b)};
+    const csg_box sum = {csg_vec3_add(boxes[0].min, boxes[1].min),
+                         csg_vec3_add(boxes[0].max, boxes[1].max)};
+    if (!csg_solid_is_flat(job, a) && csg_solid_sketch(job, sum, &node))
+        return node;
     summing s = {
         .job = job, .size = sizes[0] + sizes[1], .flat = csg_solid_is_flat(job, a), .ok = true};
     csg_pieces_init(&s.a, job->memory);

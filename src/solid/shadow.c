@@ -229,13 +229,16 @@ csg_node_id csg_solid_shadow(csg_solid_job *job, csg_node_id solid)
     double size;
     if (!csg_finite_size(job, solid, &size))
         return csg_solid_empty(job);
+    csg_node_id node = CSG_NODE_NONE;
+    if (csg_solid_sketch_flat(job, csg_build_box(job->builder, solid), &node))
+        return node;
     csg_pieces_init(&pieces, job->memory);
     if (!csg_pieces_collect(job->builder->scene, solid, &pieces))
         csg_solid_no_memory(job);
     for (size_t i = 0; i < pieces.count && !job->stop; i++)
         cast_piece(&s, &pieces.items[i], size);
     csg_pieces_release(&pieces);
-    csg_node_id node = job->stop ? CSG_NODE_NONE : csg_solid_union(job, s.nodes, s.count);
+    node = job->stop ? CSG_NODE_NONE : csg_solid_union(job, s.nodes, s.count);
     csg_memory_release(job->memory, s.nodes, s.capacity * sizeof *s.nodes);
     return node;
 }

@@ -46,6 +46,8 @@ typedef struct csg_solid_job {
     csg_memory *memory;         /* for what is forgotten before the end */
     csg_span where;             /* of the nodes */
     csg_tessellate *tessellate; /* NULL: there is none, and what needs one fails */
+    bool sketches;              /* nobody will look at what is made: a hull, a sum or a shadow of
+                                   solids may be its box */
     uint64_t most_steps;        /* steps this may take */
     double deadline_s;          /* by csg_clock_now_s; 0: none */
 

@@ -273,6 +273,24 @@ static void test_params(void **state)
     csgm_context_destroy(context);
 }
 
+/* Only checked: findings and statuses as ever, and no scene. */
+static void test_only_check(void **state)
+{
+    (void)state;
+    const char good[] = "hull() { sphere(1); cube(3); }", bad[] = "hull() { torus(-1); }";
+    csgm_context *context;
+    csgm_scene *scene = NULL;
+    csgm_scene_options options = csgm_scene_options_default();
+    options.only_check = true;
+    assert_int_equal(csgm_context_create(NULL, &context), CSGM_OK);
+    assert_int_equal(csgm_scene_parse(context, good, strlen(good), "t", &options, &scene), CSGM_OK);
+    assert_null(scene);
+    assert_int_equal(csgm_scene_parse(context, bad, strlen(bad), "t", &options, &scene),
+                     CSGM_ERR_SCENE);
+    assert_null(scene);
+    csgm_context_destroy(context);
+}
+
 static void test_null_arguments(void **state)
 {
     csgm_context *context;
@@ -441,6 +459,7 @@ int main(void)
         cmocka_unit_test(test_options_of_other_versions),
         cmocka_unit_test(test_tolerance_of_a_quality),
         cmocka_unit_test(test_params),
+        cmocka_unit_test(test_only_check),
         cmocka_unit_test(test_null_arguments),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_findings_reach_the_caller),

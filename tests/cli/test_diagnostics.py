@@ -163,6 +163,20 @@ class Json(cli.CliTest):
         self.assertTrue(all((f["end_line"], f["end_column"]) > (f["line"], f["column"])
                             for f in found))
 
+    def test_check_makes_only_what_findings_depend_on(self):
+        """A hull of nothing whose boxes meet: only making it shows that it is nothing."""
+        nothing = "hull() intersection() { sphere(1); translate([1.3, 1.3, 1.3]) sphere(1); }\n"
+        around = {"": False, "translate([1, 0, 0]) difference() { union() children(); cube(1); } ": False,
+                  "minkowski() { cube(1); children(); } ": False, "resize([3, 0, 0]) children(); ": True,
+                  "projection() children(); ": True, "blend(fillet(1)) children(); ": True}
+        for text, is_made in around.items():
+            self.write("a.txt", f"module a() {{ {text or 'children();'} }}\na() {nothing}")
+            for words, told in (((), is_made), (("--solids",), True)):
+                codes = [f["code"] for f in self.findings("check", *words, "a.txt", status=0)]
+                self.assertEqual("W0390" in codes, told, (words, text))
+        self.write("b.txt", nothing + "union(blend = fillet(1)) { cube(3); translate([8, 0, 0]) cube(1); }\n")
+        self.assertEqual(self.findings("check", "b.txt", status=0), self.findings("check", "--solids", "b.txt", status=0))
+
     def test_quiet(self):
         self.write("a.txt", "a = 1;\na = 2;\ntorus(-a);\necho(1);\n")
         found = self.findings("check", "-q", "a.txt", status=1)

@@ -83,6 +83,7 @@ typedef struct csg_eval {
     bool stop;
     csgm_status status; /* why stopped; SCENE after a reported mistake */
     uint32_t depth;
+    uint32_t asking; /* modules in progress that ask for more of their children than a sketch */
     uint64_t steps, clock_steps; /* done so far, and when the clock was last looked at */
     uint64_t next_look;          /* steps at which clock and limit are looked at again */
 

@@ -247,6 +247,19 @@ static void warn_childless(const csg_module_call *call, int row)
                             call->name);
 }
 
+/* Does it ask for more of its children's solids than their boxes and whether they are flat? */
+static bool asks_of_children(int row)
+{
+    static const module_id passing[] = {
+        MODULE_translate, MODULE_rotate, MODULE_scale, MODULE_mirror,       MODULE_multmatrix,
+        MODULE_color,     MODULE_part,   MODULE_union, MODULE_intersection, MODULE_difference,
+        MODULE_material,  MODULE_group,  MODULE_hull,  MODULE_minkowski,    MODULE_render};
+    for (size_t i = 0; i < sizeof passing / sizeof *passing; i++)
+        if (row == (int)passing[i])
+            return false;
+    return modules[row].children;
+}
+
 static void run_module(csg_eval *e, int row, const csg_statement *statement, csg_frame *frame)
 {
     csg_module_call call = {
@@ -259,7 +272,10 @@ static void run_module(csg_eval *e, int row, const csg_statement *statement, csg
                         "is a ';' missing before it?", "%s() takes no children, this is ignored",
                         call.name);
     warn_childless(&call, row);
+    bool asks = asks_of_children(row);
+    e->asking += asks;
     csg_node_id node = e->stop ? CSG_NODE_NONE : modules[row].handler(&call);
+    e->asking -= asks;
     if (node != CSG_NODE_NONE && !e->stop)
         csg_push_part(e, csg_part_plain(node));
     if (modules[row].children == 2)

@@ -53,15 +53,19 @@ csg_solid_job csg_shape_job(csg_module_call *call)
 {
     csg_eval *e = call->e;
     uint64_t most = e->context->limits.eval_steps;
-    return (csg_solid_job){.builder = &e->builder,
-                           .memory = e->heap.memory,
-                           .where = call->statement->where,
-                           .tessellate =
-                               e->program->services ? e->program->services->tessellate : NULL,
-                           .most_steps = most > e->steps ? most - e->steps : 0,
-                           .deadline_s = e->program->deadline_s,
-                           .stop = e->stop,
-                           .failed = call->failed};
+    const csg_symbol_entry *blend = &e->program->symbols.entries[e->symbol_blend];
+    /* what is found out about blends depends on all solids around them */
+    bool sees_all = blend->variable || blend->called || e->asking > 0;
+    return (csg_solid_job){
+        .builder = &e->builder,
+        .memory = e->heap.memory,
+        .where = call->statement->where,
+        .tessellate = e->program->services ? e->program->services->tessellate : NULL,
+        .sketches = e->program->options && e->program->options->only_check && !sees_all,
+        .most_steps = most > e->steps ? most - e->steps : 0,
+        .deadline_s = e->program->deadline_s,
+        .stop = e->stop,
+        .failed = call->failed};
 }
 
 static void tell_of_failure(csg_module_call *call, const csg_solid_reason *reason)

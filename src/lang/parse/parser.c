@@ -485,6 +485,7 @@ static bool parse_call(csg_parser *parser, csg_scope *scope)
     made->kind = CSG_STATEMENT_CALL;
     made->name = csg_parser_symbol(parser, made->where);
     made->slot = parser->program->slot_count++;
+    parser->program->symbols.entries[made->name].called = true;
     csg_parser_next(parser);
     if (csg_parser_peek(parser) != CSG_TOKEN_OPEN_ROUND) {
         csg_parser_unexpected(

@@ -30,15 +30,20 @@ static csg_symbol append(csg_symbols *symbols, const char *name, size_t length, 
                             symbols->count + 2, sizeof *symbols->entries))
         return 0;
     if (symbols->count == 0)
-        symbols->entries[symbols->count++] = (csg_symbol_entry){"", 0, 0, false, -1, -1, -1, false};
+        symbols->entries[symbols->count++] =
+            (csg_symbol_entry){.name = "", .function = -1, .module = -1, .unsupported = -1};
     const char *copy = csg_arena_strndup(symbols->arena, name, length);
     if (!copy)
         return 0;
-    symbols->entries[symbols->count] =
-        (csg_symbol_entry){copy, (uint32_t)length,
-                           hash, length > 0 && name[0] == '$' && strcmp(copy, "$children") != 0,
-                           -1,   -1,
-                           -1,   false};
+    symbols->entries[symbols->count] = (csg_symbol_entry){
+        .name = copy,
+        .length = (uint32_t)length,
+        .hash = hash,
+        .special = length > 0 && name[0] == '$' && strcmp(copy, "$children") != 0,
+        .function = -1,
+        .module = -1,
+        .unsupported = -1,
+    };
     return (csg_symbol)symbols->count++;
 }
 

@@ -17,6 +17,7 @@ typedef struct csg_symbol_entry {
     int16_t module;      /* row in modules.def, -1 = none */
     int16_t unsupported; /* row in unsupported_modules.def, -1 = none */
     bool variable;       /* the text gives it a value somewhere */
+    bool called;         /* a statement calls it */
 } csg_symbol_entry;
 
 typedef struct csg_symbols {

@@ -143,3 +143,8 @@ csgm_status csg_hull(csg_memory *memory, const csg_vec3 *points, size_t count, c
         csg_triangles_release(out);
     return status;
 }
+
+bool csg_hull_is_available(void)
+{
+    return true;
+}

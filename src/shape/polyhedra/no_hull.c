@@ -10,3 +10,8 @@ csgm_status csg_hull(csg_memory *memory, const csg_vec3 *points, size_t count, c
     csg_triangles_init(out, memory);
     return CSGM_ERR_UNSUPPORTED;
 }
+
+bool csg_hull_is_available(void)
+{
+    return false;
+}

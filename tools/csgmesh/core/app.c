@@ -195,6 +195,7 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
     if (status == CSGM_OK && !read_level(app, &options.openscad_version))
         status = CSGM_ERR_ARGUMENT;
     options.flat = app->flat;
+    options.only_check = app->only_checks;
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
         status = load(app, wanted, &options);

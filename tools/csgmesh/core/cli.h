@@ -19,6 +19,7 @@ typedef struct cli_app {
     const char *zone_note;  /* in it: what the context is at work on; NULL = the first operand */
     cli_list arguments;     /* of CLI_OPENSCAD: all that stands behind the command's name */
     csgm_flat flat;         /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
+    bool only_checks;       /* scenes are looked at for mistakes and not made */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */
 } cli_app;
