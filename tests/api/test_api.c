@@ -319,7 +319,7 @@ static void test_null_arguments(void **state)
 
 static void test_names(void **state)
 {
-    assert_string_equal(csgm_version(), "0.1.0");
+    assert_string_equal(csgm_version(), PROJECT_VERSION);
     assert_string_equal(csgm_status_name(CSGM_ERR_SYNTAX), "ERR_SYNTAX");
     assert_string_equal(csgm_status_name((csgm_status)999), "unknown");
     for (int f = CSGM_FORMAT_OBJ; f < CSGM_FORMAT_COUNT; f++)

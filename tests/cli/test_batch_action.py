@@ -106,6 +106,55 @@ class Steps(BatchTest):
         comment = self.read("gh.log").decode() if os.path.exists(self.path("gh.log")) else ""
         return self.read("outputs.txt").decode().strip(), comment
 
+    def stand_in(self, name, text):
+        self.write(f"bin/{name}", f"#!/bin/sh\necho \"{name} $*\" >>'{self.path('calls.log')}'\n{text}\n")
+        os.chmod(self.path(f"bin/{name}"), 0o755)
+
+    def install(self, status=0, csgmesh="csgmesh-of-the-package", package="", source=""):
+        for name in ("calls.log", "path.txt"):
+            self.write(name, "")
+        result = self.step("install.sh", status, CSGMESH=csgmesh, PACKAGE=package, SOURCE=source,
+                           GITHUB_PATH=self.path("path.txt"))
+        return result.stdout, self.read("calls.log").decode()
+
+    def test_install_a_package(self):
+        """apt-get gets the file, or what curl brought; then the program is there."""
+        self.stand_in("sudo", '"$@"')
+        self.stand_in("apt-get", f"case $* in *' install '*) cp '{cli.PROGRAM}' '{self.path('bin')}/csgmesh-of-the-package';; esac")
+        self.stand_in("curl", 'while [ "$1" != --output ]; do shift; done; echo a package >"$2"')
+        self.write("a.deb", "a package")
+        said, calls = self.install(package="a.deb")
+        self.assertIn(f"install {self.path('a.deb')}\n", calls)
+        self.assertNotIn("curl", calls)
+        self.assertIn("csgmesh ", said)
+        os.remove(self.path("bin/csgmesh-of-the-package"))
+        _, calls = self.install(package="https://example.org/b.deb")
+        self.assertIn("https://example.org/b.deb\n", calls)
+        self.assertIn(f"install {self.path('temp/csgmesh.deb')}\n", calls)
+
+    def test_install_from_source(self):
+        os.makedirs(self.path("clone/tools"))
+        self.write("clone/tools/run", "#!/bin/sh\nmkdir -p clone/build/tools/csgmesh\n"
+                   f"cp '{cli.PROGRAM}' clone/build/tools/csgmesh/csgmesh-of-the-package\n")
+        os.chmod(self.path("clone/tools/run"), 0o755)
+        self.install(source="clone")
+        self.assertEqual(self.read("path.txt").decode(), os.path.realpath(self.path("clone/build/tools/csgmesh")) + "\n")
+
+    def test_install_that_fails(self):
+        self.stand_in("curl", "exit 22")
+        self.stand_in("apt-get", "exit 100")
+        for status, words, arguments in (
+                (2, "give the action a package", {}),
+                (2, "there is no package none.deb", {"package": "none.deb"}),
+                (2, "https://example.org/b.deb could not be had", {"package": "https://example.org/b.deb"}),
+                (2, "is no clone of csgmesh", {"source": "bin"}),
+                (2, "give one", {"source": "bin", "package": "a.deb"})):
+            said, _ = self.install(status, **arguments)
+            self.assertIn("::error::csgmesh: ", said)
+            self.assertIn(words, said)
+        said, calls = self.install(csgmesh=cli.PROGRAM) # it is there already
+        self.assertEqual(calls, "")
+
     def test_without_goldens(self):
         self.step("mesh.sh")
         self.assertEqual(sorted(self.outputs()), ["ball.glb", "mug.glb"])

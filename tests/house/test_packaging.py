@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""tools/package and tools/packaging: one version, a source archive of the same bytes each time, recipes that their
+languages can read (where these are installed). What takes minutes, the packages themselves, is in the checklist of
+tools/packaging/README.md.
+"""
+import os
+import re
+import shutil
+import subprocess
+import tarfile
+import tempfile
+import unittest
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+PACKAGING = os.path.join(ROOT, "tools", "packaging")
+
+
+def text_of(*path):
+    with open(os.path.join(ROOT, *path), encoding="utf-8") as file:
+        return file.read()
+
+
+class InACopy(unittest.TestCase):
+    """Of the files that tools/package reads; no clone, so that nothing depends on git."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        for name in ("meson.build", "CHANGELOG.md", "LICENSE", "include/csgmesh/csgmesh.h", "tools/package",
+                     "tools/setup.sh"):
+            os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
+            shutil.copy2(os.path.join(ROOT, name), os.path.join(self.folder, name))
+        shutil.copytree(PACKAGING, os.path.join(self.folder, "tools/packaging"))
+
+    def package(self, *arguments, status=0):
+        result = subprocess.run([os.path.join(self.folder, "tools/package"), *arguments], capture_output=True, text=True,
+                                check=False, env={**os.environ, "GIT_CEILING_DIRECTORIES": os.path.dirname(self.folder)})
+        self.assertEqual(result.returncode, status, result.stderr)
+        return result.stdout if status == 0 else result.stderr
+
+    def read(self, name, mode="r"):
+        with open(os.path.join(self.folder, name), mode) as file:
+            return file.read()
+
+    def test_version(self):
+        now = self.package("version").strip()
+        self.assertEqual(now, re.search(r"^  version: '(.*)',$", text_of("meson.build"), re.M).group(1))
+        self.package("version", "12.34.56")
+        self.assertEqual(self.package("version"), "12.34.56\n")
+        header = self.read("include/csgmesh/csgmesh.h")
+        self.assertEqual(re.findall(r"#define CSGM_VERSION_\w+ (\d+)", header), ["12", "34", "56"])
+        self.assertIn('/* "12.34.56"; static storage', header)
+        for bad in ("1.2", "v1.2.3", "1.2.3-rc1", ""):
+            self.assertIn("a version is three numbers", self.package("version", bad, status=2))
+        self.assertEqual(self.package("version"), "12.34.56\n")
+
+    def test_unknown_words(self):
+        self.assertIn("there is no package 'rpm'", self.package("rpm", status=2))
+        self.assertIn("wants the URL", self.package("homebrew", status=2))
+        self.assertIn("tools/package deb", self.package())
+
+    def test_source_and_formula(self):
+        for name in ("build/a.o", "build-test/b.o", ".git/config", "tests/io/node_modules/c.js"):
+            os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
+            with open(os.path.join(self.folder, name), "w", encoding="utf-8"):
+                pass
+        self.package("source")
+        version = self.package("version").strip()
+        archive = f"build-package/csgmesh-{version}.tar.gz"
+        first = self.read(archive, "rb")
+        with tarfile.open(os.path.join(self.folder, archive)) as tar:
+            names = tar.getnames()
+            self.assertEqual({(member.uid, member.gid) for member in tar}, {(0, 0)})
+        self.assertIn(f"csgmesh-{version}/meson.build", names)
+        self.assertEqual([name for name in names if re.search(r"\.o$|\.git/|node_modules|build-package", name)], [])
+        for name in ("meson.build", "tools"): # times of files and folders are not those of the commit
+            os.utime(os.path.join(self.folder, name), (1, 1))
+        self.package("source")
+        self.assertEqual(self.read(archive, "rb"), first)
+        self.package("homebrew", f"https://example.org/releases/csgmesh-{version}.tar.gz")
+        formula = self.read("build-package/csgmesh.rb")
+        self.assertNotIn("@", formula.replace("https://", ""))
+        self.assertIn(f'version "{version}"', formula)
+        self.assertIn('homepage "https://example.org/releases"', formula)
+        if shutil.which("sha256sum"):
+            sum_of = subprocess.run(["sha256sum", os.path.join(self.folder, archive)], capture_output=True, text=True,
+                                    check=True).stdout.split()[0]
+            self.assertIn(f'sha256 "{sum_of}"', formula)
+        if shutil.which("ruby"):
+            subprocess.run(["ruby", "-c", os.path.join(self.folder, "build-package/csgmesh.rb")], check=True,
+                           capture_output=True)
+
+
+class Recipes(unittest.TestCase):
+    def test_debian_builds_with_what_tools_run_installs(self):
+        ours = set(re.findall(r"[\w.+-]+-dev\b", re.search(r"need_packages gcc.*?\"\$@\"", text_of("tools/setup.sh"),
+                                                           re.S).group(0)))
+        control = text_of("tools/packaging/debian/control")
+        theirs = set(re.findall(r"[\w.+-]+-dev\b", re.search(r"Build-Depends:(.*?)\nStandards", control, re.S).group(1)))
+        self.assertGreater(len(ours), 10)
+        self.assertEqual(theirs - {"libcmocka-dev"}, ours)
+        soversion = re.search(r"soversion: '(\d+)'", text_of("src/api/meson.build")).group(1)
+        self.assertIn(f"\nPackage: libcsgmesh{soversion}\n", control)
+        for package in re.findall(r"^Package: (\S+)", control, re.M):
+            self.assertTrue(os.path.exists(os.path.join(PACKAGING, "debian", f"{package}.install")), package)
+
+    def test_the_readme_names_what_there_is(self):
+        for page in ("README.md", "tools/packaging/README.md"):
+            for word in re.findall(r"tools/package (\w+)", text_of(page)):
+                self.assertIn(f"\n{word}) ", text_of("tools/package"), page)
+
+    @unittest.skipUnless(shutil.which("nix-instantiate"), "nix-instantiate is not installed")
+    def test_nix(self):
+        subprocess.run(["nix-instantiate", "--parse", os.path.join(PACKAGING, "nix/default.nix")], check=True,
+                       capture_output=True)
+
+    @unittest.skipUnless(shutil.which("hadolint"), "hadolint is not installed")
+    def test_dockerfile(self):
+        subprocess.run(["hadolint", os.path.join(PACKAGING, "Dockerfile")], check=True)
+
+    @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
+    def test_scripts(self):
+        for name in ("package", "run", "packaging/binary.sh"):
+            subprocess.run(["shellcheck", "-s", "sh", "-x", "-P", os.path.join(ROOT, "tools"), "-e", "SC2154",
+                            os.path.join(ROOT, "tools", name)], check=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
