@@ -6,14 +6,14 @@
 
 BUILD: a folder for the environment and the package's build, kept between runs. LIBRARY: the built libcsgmesh.so that the
 package is built over, so that nothing but the package is compiled. What is needed comes from PyPI once (nanobind,
-meson-python, numpy, pytest, trimesh, tqdm); where it does not, exit status 77, a skip.
+meson-python, numpy, pytest, trimesh, tqdm, mypy); where it does not, exit status 77, a skip.
 """
 import os
 import subprocess
 import sys
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-NEEDED = ["nanobind>=2.4", "meson-python>=0.15", "ninja", "numpy", "pytest", "trimesh", "tqdm"]
+NEEDED = ["nanobind>=2.4", "meson-python>=0.15", "ninja", "numpy", "pytest", "trimesh", "tqdm", "mypy"]
 
 
 def skip(why):

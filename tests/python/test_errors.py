@@ -43,7 +43,21 @@ def test_warnings_are_warnings():
         csgmesh.parse(text, warnings_as_errors=True)
 
 
+def test_check(folder, recwarn):
+    (folder / "s.txt").write_text("cube(1);\nspere(2);\ncilinder(3);\n")
+    assert [(d.code, d.line) for d in csgmesh.check(pathlib.Path("s.txt"))] == [("E0201", 2), ("E0201", 3)]
+    found = csgmesh.check("union(blend = 3) { sphere(1); translate([50, 0, 0]) sphere(1); }")
+    assert [d.code for d in found] == ["W0304"]
+    assert csgmesh.check(BALL) == csgmesh.check(csgmesh.sphere(1)) == []
+    found = csgmesh.check(csgmesh.tube([[0, 0, 0]], degree=7))
+    assert found[0].severity == "error" and found[0].made_at.startswith(__file__)
+    assert not recwarn.list
+    with pytest.raises(TypeError, match="no option 'only_check'"):
+        csgmesh.parse(BALL, only_check=True)
+
+
 @pytest.mark.parametrize("kind, call", [
+    (TypeError, lambda: csgmesh.check(3)),
     (TypeError, lambda: csgmesh.mesh(3)),
     (TypeError, lambda: csgmesh.mesh(None)),
     (TypeError, lambda: csgmesh.parse(b"cube(1);")),

@@ -4,7 +4,9 @@ import base64
 import html
 import importlib.resources
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 import csgmesh
+from csgmesh import _page
 from conftest import ROOT, csgmesh_program
 
 EXAMPLES = re.findall(r"^```python\n(.*?)^```\n(?:\n^```text\n(.*?)^```\n)?", (ROOT / "docs" / "python.md").read_text(), re.S | re.M)
@@ -49,8 +52,8 @@ def test_a_type_checker_agrees(folder):
     (folder / "use.py").write_text(
         "import csgmesh\nmesh = csgmesh.mesh('sphere(1);', tolerance=0.05)\nreveal_type(mesh.write('a.ply'))\n"
         "solid = (csgmesh.sphere(10) | csgmesh.cube(8)).fillet(2)\nreveal_type(solid)\ncsgmesh.mesh('', quality='best')\n")
-    out = subprocess.run([sys.executable, "-m", "mypy", "use.py"], capture_output=True, text=True, check=False).stdout
-    assert 'Revealed type is "csgmesh._modules.Solid"' in out and "use.py:6: error" in out and out.count("error:") == 1
+    out = subprocess.run([sys.executable, "-m", "mypy", "--python-executable", sys.executable, "use.py"], capture_output=True, text=True, check=False).stdout
+    assert 'Revealed type is "csgmesh._modules.Solid"' in out and "use.py:6: error" in out and out.count("error:") == 1, out
 
 
 def page_data(page):
@@ -79,3 +82,46 @@ def test_in_a_notebook():
         inner = html.unescape(re.fullmatch(r'<iframe sandbox="allow-scripts" [^>]*srcdoc="([^"]*)"></iframe>', frame, re.S).group(1))
         assert page_data(inner)["a"]["triangles"] == len(mesh.triangles)
     assert page_data(csgmesh.mesh("intersection() { cube(1); translate([5, 0, 0]) cube(1); }").to_html())["a"]["triangles"] == 0
+
+
+def test_a_large_mesh_is_a_picture(monkeypatch):
+    mesh = csgmesh.mesh("sphere(3);", resolution=16)
+    monkeypatch.setattr(_page, "MOST", len(mesh.triangles) - 1)
+    if "without libpng" in csgmesh.features:
+        pytest.skip("no libpng")
+    shown = mesh._repr_html_()
+    assert base64.b64decode(re.search("base64,([^\"]*)", shown).group(1)).startswith(b"\x89PNG") and "<iframe" not in shown
+    assert page_data(mesh.to_html())["a"]["triangles"] == len(mesh.triangles)
+
+
+CHROMIUM = os.environ.get("CSGMESH_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+# What the page shows when it is there, and after keys: how much of it is drawn, and where the camera is.
+LOOK = """<script>
+const seen = [];
+const look = () => {
+  const gl = view.gl, pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  view.draw();
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  let red = 0;
+  for (let i = 0; i < pixels.length; i += 4) red += pixels[i] > 40 && pixels[i] > 3 * pixels[i + 1] && pixels[i] > 3 * pixels[i + 2];
+  seen.push({ red: red / (pixels.length / 4), azimuth: view.camera.azimuth, distance: view.camera.distance });
+};
+const press = (key) => view.canvas.dispatchEvent(new KeyboardEvent("keydown", { key }));
+look(); press("ArrowLeft"); look(); press("+"); look();
+document.body.dataset.seen = JSON.stringify(seen);
+</script></body>"""
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="no Chromium")
+def test_the_page_in_a_browser(folder):
+    page = csgmesh.mesh('color("red") sphere(3);', resolution=24).to_html()
+    (folder / "page.html").write_text(page.replace("</body>", LOOK))
+    out = subprocess.run(
+        [CHROMIUM, "--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--window-size=600,400", f"--user-data-dir={folder}/profile",
+         "--virtual-time-budget=3000", "--dump-dom", f"file://{folder}/page.html"], capture_output=True, text=True, check=False)
+    found = re.search('data-seen="([^"]*)"', out.stdout)
+    if not found and "WebGL 2." in out.stdout:
+        pytest.skip("this Chromium draws no WebGL 2")
+    first, turned, nearer = json.loads(html.unescape(found.group(1)))
+    assert 0.02 < first["red"] < 0.9 and turned["azimuth"] > first["azimuth"] and nearer["distance"] < turned["distance"]
+    assert nearer["red"] > turned["red"]

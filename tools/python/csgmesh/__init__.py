@@ -15,7 +15,7 @@ from . import _core, _modules, functions
 from ._errors import (ArgumentError, Diagnostic, Error, FileError, FormatError, InternalError, LimitError, MissingFileError,
                       OutOfMemoryError, SceneError, SceneSyntaxError, SceneWarning, UnsupportedError)
 from ._modules import Solid
-from ._results import Diff, Mesh, Part, Scene, diff, load, mesh, parse, read, render, write, write_image
+from ._results import Diff, Mesh, Part, Scene, check, diff, load, mesh, parse, read, render, write, write_image
 from ._solid import Expression, code
 from ._modules import *  # noqa: F403 the modules of the scene language
 from .functions import *  # noqa: F403 its blends
@@ -33,7 +33,7 @@ def formats() -> "list[dict[str, object]]":
 __all__ = [
     "ArgumentError", "Diagnostic", "Diff", "Error", "Expression", "FileError", "FormatError", "InternalError", "LimitError",
     "Mesh", "MissingFileError", "OutOfMemoryError", "Part", "Scene", "SceneError", "SceneSyntaxError", "SceneWarning", "Solid",
-    "UnsupportedError", "code", "diff", "features", "formats", "functions", "load", "mesh", "parse", "read", "render", "write",
+    "UnsupportedError", "check", "code", "diff", "features", "formats", "functions", "load", "mesh", "parse", "read", "render", "write",
     "write_image",
 ]
 __all__ += [*_modules.__all__, *functions.__all__]

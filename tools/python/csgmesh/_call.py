@@ -15,6 +15,7 @@ from ._solid import expression_text
 Options = Mapping[str, Any]
 
 _CONTEXT = set(_core.option_names["run"])
+_OWN = {"only_check"}  # functions of their own set these
 _COLORS = {"white": (255, 255, 255, 255), "black": (0, 0, 0, 255), "gray": (128, 128, 128, 255),
            "transparent": (0, 0, 0, 0)}
 
@@ -114,10 +115,11 @@ class Call:
             self.settings[name] = value
             return
         for kind in kinds:
-            if name in _core.option_names[kind]:
+            if name in _core.option_names[kind] and name not in _OWN:
                 self.of[kind][name] = value
                 return
         known = ["progress", "echo", *_CONTEXT, *(n for kind in kinds for n in _core.option_names[kind])]
+        known = [word for word in known if word not in _OWN]
         near = difflib.get_close_matches(name, known, 1)
         raise TypeError(f"{self.doing} has no option '{name}'" + (f": did you mean '{near[0]}'?" if near else ""))
 

@@ -8,6 +8,7 @@ import html
 import json
 import math
 import os
+import tempfile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 STEPS = 65535
+MOST = 250000  # triangles in a notebook: as many as csgmesh diff --html draws of a mesh
 HEIGHT = 420  # of the frame in a notebook, in CSS pixels
 AZIMUTH, ELEVATION = math.radians(35), math.radians(25)  # as csgmesh render looks
 
@@ -65,7 +67,22 @@ def page(mesh: Mesh, title: str) -> str:
     return "".join(out)
 
 
+def picture(mesh: Mesh) -> str:
+    """A mesh that is too large to be kept in a notebook, as it looks."""
+    from ._results import write_image
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "mesh.png")
+        write_image(mesh.render(width=720, height=HEIGHT), path)
+        with open(path, "rb") as file:
+            data = base64.b64encode(file.read()).decode()
+    return (f'<figure style="margin: 0"><img width="720" height="{HEIGHT}" alt="the mesh" src="data:image/png;base64,{data}">'
+            f"<figcaption>{html.escape(_words(mesh))}: too many to be turned here; mesh.to_html() makes a page of all, "
+            'mesh(quality="draft") has fewer</figcaption></figure>')
+
+
 def frame(mesh: Mesh) -> str:
     """For _repr_html_: the page in a frame of its own, so that it neither sees nor changes the notebook."""
+    if len(mesh.triangles) > MOST:
+        return picture(mesh)
     return (f'<iframe sandbox="allow-scripts" style="width: 100%; max-width: 720px; height: {HEIGHT}px; border: 0" '
             f'srcdoc="{html.escape(page(mesh, "csgmesh"))}"></iframe>')

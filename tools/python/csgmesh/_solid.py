@@ -197,7 +197,7 @@ class SolidBase:
         has_file = any(key == "file" for key, _ in given)
         if takes and not solids and not has_file and name not in (*JOINING, "group", "hull", "minkowski"):
             raise TypeError(f"{name}() needs a solid: {name}(..., solid), or solid.{name}(...)")
-        texts = [(key, expression_text(value)) for key, value in given]
+        texts: list[tuple[Optional[str], str]] = [(key, expression_text(value)) for key, value in given]
         if len(texts) == 1 and positional and texts[0][0] == positional[0][0]:
             texts = [(None, texts[0][1])]
         return cls._make(name, texts, solids)

@@ -232,6 +232,7 @@ const Row<csgm_scene_options> scene_rows[] = {
     CHOICE(csgm_scene_options, "leniency", leniency, "strict", "by_file", "lenient"),
     OF(openscad_version),
     CHOICE(csgm_scene_options, "flat", flat, "plate", "drawing", "both", "kept"),
+    OF(only_check),
 };
 #undef OF
 

@@ -21,7 +21,7 @@ nb::tuple scene_result(csgm_status status, const Run &run, csgm_scene *scene)
     auto out = std::make_unique<Scene>();
     out->context = run.context;
     out->scene.reset(scene);
-    return result_of(status, status == CSGM_OK
+    return result_of(status, status == CSGM_OK && scene /* none where a text is only checked */
                                  ? nb::cast(out.release(), nb::rv_policy::take_ownership)
                                  : nb::none());
 }
