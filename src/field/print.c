@@ -6,10 +6,9 @@
 
 #include "field/field.h"
 #include "field/rule_layout.h"
+#include "scene/warp_kinds.h"
 
-static const char *const op_names[CSG_OP_COUNT] = {
-#define CSG_PRIMITIVE(NAME, name, ...) [CSG_OP_##NAME] = #name,
-#include "scene/primitives/primitives.def"
+static const char *const op_names[CSG_OP_FIRST_PRIMITIVE] = {
     [CSG_OP_FIELD] = "field",
     [CSG_OP_SHAPE] = "shape",
     [CSG_OP_UNION] = "union",
@@ -24,6 +23,11 @@ static const char *const op_names[CSG_OP_COUNT] = {
     [CSG_OP_RULE_INTERSECTION] = "rule_intersection",
     [CSG_OP_EMPTY] = "empty",
 };
+
+static const char *op_name(uint8_t op)
+{
+    return csg_op_is_primitive(op) ? csg_node_kind_name(csg_op_node_kind(op)) : op_names[op];
+}
 
 static const char *const curve_names[] = {
 #define CSG_FALLOFF(NAME, name, iso, steepest, steepest_at, doc) [CSG_CURVE_##NAME] = #name,
@@ -96,7 +100,7 @@ csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, vo
           field->depth, field->center.x, field->center.y, field->center.z);
     for (uint32_t i = 0; i < field->tape.count; i++) {
         const csg_tape_node *node = &field->tape.nodes[i];
-        print(&out, "%u %s", i, op_names[node->op]);
+        print(&out, "%u %s", i, op_name(node->op));
         if (csg_op_is_leaf(node->op))
             print_leaf(&out, &field->tape, node);
         else

@@ -16,8 +16,6 @@
 #include "scene/primitives/primitive.h"
 
 typedef enum csg_op {
-#define CSG_PRIMITIVE(NAME, ...) CSG_OP_##NAME,
-#include "scene/primitives/primitives.def"
     CSG_OP_FIELD,
     CSG_OP_SHAPE,
     CSG_OP_UNION, /* sharp or folded: the joins of its children did the work */
@@ -31,21 +29,23 @@ typedef enum csg_op {
     CSG_OP_RULE_UNION, /* of fields: its children's joins did the work, what is left it delivers */
     CSG_OP_RULE_INTERSECTION,
     CSG_OP_EMPTY, /* -infinity (or +infinity, negated): only ever the whole tape */
-    CSG_OP_COUNT
+    CSG_OP_FIRST_PRIMITIVE
 } csg_op;
 
-/* Operators of the tape begin with the primitives, in the order of nodes. */
+/* Primitives stand behind the others, in the order of nodes (scene/primitives/kinds.h). */
+#define CSG_OP_OF(PRIMITIVE)                                                                       \
+    (CSG_OP_FIRST_PRIMITIVE + (CSG_NODE_##PRIMITIVE - CSG_NODE_FIRST_PRIMITIVE))
 static inline bool csg_op_is_primitive(uint8_t op)
 {
-    return op < CSG_OP_FIELD;
+    return op >= CSG_OP_FIRST_PRIMITIVE;
 }
-static inline csg_node_kind csg_op_node_kind(uint8_t op)
+static inline csg_primitive_kind csg_op_node_kind(uint8_t op)
 {
-    return (csg_node_kind)(CSG_NODE_FIRST_PRIMITIVE + op);
+    return CSG_NODE_FIRST_PRIMITIVE + op - CSG_OP_FIRST_PRIMITIVE;
 }
-static inline uint8_t csg_op_of_primitive(csg_node_kind kind)
+static inline uint8_t csg_op_of_primitive(csg_primitive_kind kind)
 {
-    return (uint8_t)(kind - CSG_NODE_FIRST_PRIMITIVE);
+    return (uint8_t)(CSG_OP_FIRST_PRIMITIVE + (kind - CSG_NODE_FIRST_PRIMITIVE));
 }
 /* Whether this is a leaf whose primitive has the trait. */
 static inline bool csg_op_has(uint8_t op, unsigned trait)
@@ -54,7 +54,7 @@ static inline bool csg_op_has(uint8_t op, unsigned trait)
 }
 static inline bool csg_op_is_leaf(uint8_t op)
 {
-    return op < CSG_OP_UNION || op == CSG_OP_EMPTY;
+    return op < CSG_OP_UNION || op >= CSG_OP_EMPTY;
 }
 static inline bool csg_op_is_union(uint8_t op)
 {

@@ -4,6 +4,7 @@
  */
 #include "scene/reference.h"
 
+#include "scene/formula/formula.h"
 #include "scene/operators/choice.h"
 #include "scene/operators/fillet.h"
 #include "scene/operators/rule.h"

@@ -12,7 +12,7 @@ typedef struct csg_sample {
 } csg_sample;
 
 /* One primitive (no field) in its own frame, parameters as in primitives.def (operators.md 1). */
-csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p);
+csg_sample csg_reference_primitive(csg_primitive_kind kind, const double *parameters, csg_vec3 p);
 
 /* f_b(x, n) and its derivative (operators.md 2.1), x >= 0. Not for SHARP and ROUND. */
 void csg_reference_blend_function(csg_blend blend, double x, double *value, double *derivative);

@@ -7,6 +7,7 @@
 
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 #include "shape/plane/drawing.h"
 
 typedef struct kind_row {
@@ -32,7 +33,7 @@ const char *csg_node_kind_name(csg_node_kind kind)
     return kinds[kind].name;
 }
 
-uint32_t csg_primitive_parameter_count(csg_node_kind kind)
+uint32_t csg_primitive_parameter_count(csg_primitive_kind kind)
 {
     assert((size_t)kind < sizeof kinds / sizeof *kinds);
     return kinds[kind].parameter_count;

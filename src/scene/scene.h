@@ -34,7 +34,8 @@
 #include "base/context.h"
 #include "base/geometry.h"
 #include "base/span.h"
-#include "scene/formula/formula.h"
+#include "scene/formula/step.h"
+#include "scene/node_kinds.h"
 #include "scene/operators/blend.h"
 #include "scene/primitives/warp.h"
 #include "shape/shape.h"
@@ -48,43 +49,10 @@ typedef struct csg_operand csg_operand;
 typedef uint32_t csg_node_id;
 #define CSG_NODE_NONE UINT32_MAX
 
-typedef enum csg_node_kind {
-    CSG_NODE_EMPTY,
-    CSG_NODE_FIELD,
-    CSG_NODE_SHAPE,
-#define CSG_PRIMITIVE(NAME, ...) CSG_NODE_##NAME,
-#include "scene/primitives/primitives.def"
-    CSG_NODE_TRANSFORM,
-    CSG_NODE_COLOR,
-    CSG_NODE_OFFSET,
-    CSG_NODE_WARP,
-    CSG_NODE_COMBINE,
-    CSG_NODE_SOFT,
-    CSG_NODE_UNION,
-    CSG_NODE_INTERSECTION,
-    CSG_NODE_DIFFERENCE
-} csg_node_kind;
-
-#define CSG_NODE_FIRST_PRIMITIVE ((csg_node_kind)(CSG_NODE_SHAPE + 1))
-
-/* A row of primitives.def. */
-static inline bool csg_node_is_named_primitive(csg_node_kind kind)
-{
-    return kind >= CSG_NODE_FIRST_PRIMITIVE && kind < CSG_NODE_TRANSFORM;
-}
-/* A leaf that is a solid: a field or a shape too. */
-static inline bool csg_node_is_primitive(csg_node_kind kind)
-{
-    return kind > CSG_NODE_EMPTY && kind < CSG_NODE_TRANSFORM;
-}
-static inline bool csg_node_is_operator(csg_node_kind kind)
-{
-    return kind >= CSG_NODE_UNION;
-}
 /* "sphere", "union", ...; static storage. */
 const char *csg_node_kind_name(csg_node_kind kind);
 /* Doubles in a primitive's payload; a field and a shape have none. */
-uint32_t csg_primitive_parameter_count(csg_node_kind kind);
+uint32_t csg_primitive_parameter_count(csg_primitive_kind kind);
 
 typedef struct csg_color {
     float r, g, b, a; /* 0..1, sRGB */

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "scene/primitives/kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/polyhedra/hull.h"
 #include "solid/pieces.h"

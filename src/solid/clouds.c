@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "scene/primitives/primitive.h"
+#include "scene/warp_kinds.h"
 #include "shape/plane/region.h"
 #include "solid/facets.h"
 #include "solid/measure.h"

@@ -7,6 +7,8 @@
 
 #include "scene/operators/rule.h"
 #include "scene/outlines/unite.h"
+#include "scene/primitives/kinds.h"
+#include "scene/warp_kinds.h"
 #include "shape/plane/polygons.h"
 #include "solid/measure.h"
 #include "solid/operations.h"

@@ -8,6 +8,7 @@
 #include "scene/operators/blend_kinds.h"
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/primitive.h"
+#include "scene/warp_kinds.h"
 #include "solid/measure.h"
 #include "solid/pieces.h"
 

@@ -63,7 +63,8 @@ csg_node_id csg_solid_tube(csg_solid_job *job, const csg_knot *knots, size_t cou
 csg_node_id csg_solid_spline(csg_solid_job *job, const csg_knot *knots, size_t count, bool closed);
 /* A tube along a curve (scene/primitives/curve.h) as a union of capsules within 1e-4 of its largest
  * radius. */
-csg_node_id csg_solid_capsules(csg_solid_job *job, csg_node_kind kind, const double *parameters);
+csg_node_id csg_solid_capsules(csg_solid_job *job, csg_primitive_kind kind,
+                               const double *parameters);
 
 typedef enum csg_periodic_kind {
     CSG_PERIODIC_GYROID,

@@ -10,6 +10,7 @@
  */
 #include <math.h>
 
+#include "scene/formula/formula.h"
 #include "solid/operations.h"
 
 typedef struct writer { /* of a formula */

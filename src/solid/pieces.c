@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"

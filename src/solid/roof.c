@@ -8,6 +8,8 @@
  */
 #include <math.h>
 
+#include "scene/formula/formula.h"
+#include "scene/primitives/kinds.h"
 #include "solid/measure.h"
 #include "solid/operations.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What stands for a hull, a sum or a shadow where nobody will look at it: its box (solid.h).
  */
+#include "scene/primitives/kinds.h"
 #include "shape/polyhedra/hull.h"
 #include "solid/measure.h"
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "scene/primitives/curve.h"
+#include "scene/primitives/kinds.h"
 #include "solid/operations.h"
 
 typedef struct skeleton {
@@ -80,7 +81,7 @@ static void curve_to(skeleton *s, const csg_knot *c, int degree)
         return;
     }
     s->ok = s->ok && csg_solid_charge(job, 10);
-    csg_node_kind kind = degree == 2 ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    csg_primitive_kind kind = degree == 2 ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
     if (s->ok)
         add_part(s, csg_build_primitive(job->builder, kind, v, where));
     s->last = c[degree];
@@ -144,7 +145,8 @@ csg_node_id csg_solid_spline(csg_solid_job *job, const csg_knot *knots, size_t c
     return unite_parts(&s);
 }
 
-csg_node_id csg_solid_capsules(csg_solid_job *job, csg_node_kind kind, const double *parameters)
+csg_node_id csg_solid_capsules(csg_solid_job *job, csg_primitive_kind kind,
+                               const double *parameters)
 {
     const double tolerance = 1e-4, most = 1e5; /* of the largest radius */
     csg_curve curve = csg_curve_make(kind, parameters);

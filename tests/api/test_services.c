@@ -15,6 +15,7 @@
 
 #include "api/services.h"
 #include "io/formats.h"
+#include "scene/primitives/kinds.h"
 #include "scene/tree/build.h"
 #include "shape/polyhedra/polyhedron.h"
 

@@ -15,6 +15,7 @@
 #include "field/kernels/dispatch.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 #include "scene/tree/build.h"
 
 enum { EDGE = 128, COUNT = EDGE * EDGE * EDGE, LEAST_ROUNDS = 1, MOST_ROUNDS = 100 };

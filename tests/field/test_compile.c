@@ -9,6 +9,7 @@
 
 #include "field/field_support.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 
 #define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})
 
@@ -43,8 +44,8 @@ static void test_signs(void **state)
     csg_node_id minus = two(b, CSG_NODE_UNION, SHARP, ball(b, 0.3, -0.5), inner);
     test_subject_compile(&s, two(b, CSG_NODE_DIFFERENCE, SHARP, ball(b, 1, 0), minus));
     const csg_tape *tape = &s.field->tape;
-    static const uint8_t ops[] = {CSG_OP_SPHERE, CSG_OP_SPHERE, CSG_OP_SPHERE,
-                                  CSG_OP_SPHERE, CSG_OP_UNION,  CSG_OP_INTERSECTION};
+    static const uint8_t ops[] = {CSG_OP_OF(SPHERE), CSG_OP_OF(SPHERE), CSG_OP_OF(SPHERE),
+                                  CSG_OP_OF(SPHERE), CSG_OP_UNION,      CSG_OP_INTERSECTION};
     static const uint8_t joins[] = {CSG_JOIN_NONE,  CSG_JOIN_INTERSECTION, CSG_JOIN_NONE,
                                     CSG_JOIN_UNION, CSG_JOIN_INTERSECTION, CSG_JOIN_NONE};
     static const float sigmas[] = {1, -1, -1, 1};

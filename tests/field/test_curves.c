@@ -11,6 +11,7 @@
 #include "field/field_support.h"
 #include "field/gradients/cone_curve.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
 #include <float.h>
@@ -165,7 +166,7 @@ static void check_cone(const test_subject *s, csg_random *random, uint32_t *clai
     }
 }
 
-static void check_kind(csg_node_kind kind)
+static void check_kind(csg_primitive_kind kind)
 {
     csg_random random = {7000 + (uint64_t)kind + seed_of_run};
     static test_points points;
@@ -232,7 +233,7 @@ static void test_pieces(void **state)
                                                          (csg_node_id[]){ball, tube}, 2, NOWHERE);
         test_subject_compile(&s, root);
         const csg_tape *tape = &s.field->tape;
-        assert_int_equal(count_ops(tape, CSG_OP_QUADRATIC_TUBE), count);
+        assert_int_equal(count_ops(tape, CSG_OP_OF(QUADRATIC_TUBE)), count);
         assert_int_equal(count_ops(tape, CSG_OP_UNION), how == 2 ? 0 : 1);
         assert_int_equal(count_ops(tape, CSG_OP_INTERSECTION), how == 2 ? 1 : 0);
         assert_int_equal(tape->nodes[tape->count - 1].size, tape->count);

@@ -9,7 +9,9 @@
 
 #include "field/field_support.h"
 #include "field/kernels/functions.h"
+#include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/random_formula.h"
 
 /* ---- functions ------------------------------------------------------------------------------ */

@@ -12,6 +12,7 @@
 
 #include "field/field_support.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
 enum frame_kind {
@@ -53,7 +54,7 @@ static csg_affine make_frame(csg_random *random, enum frame_kind kind)
 
 /* Own-frame places where formulas change their mind: centres, axes, corners, ends, and the surface.
  */
-static void add_special_points(test_points *points, csg_random *random, csg_node_kind kind,
+static void add_special_points(test_points *points, csg_random *random, csg_primitive_kind kind,
                                const double *v, const csg_affine *place, csg_vec3 center)
 {
     csg_vec3 own[256];
@@ -199,7 +200,7 @@ static void check_slack(const test_subject *subject, const test_points *points,
     }
 }
 
-static void check_primitive(csg_random *random, csg_node_kind kind, enum frame_kind frame)
+static void check_primitive(csg_random *random, csg_primitive_kind kind, enum frame_kind frame)
 {
     static test_points points;
     static test_results results;
@@ -225,7 +226,7 @@ static void check_primitive(csg_random *random, csg_node_kind kind, enum frame_k
 }
 
 /* Tubes are in test_curves.c, gauges (by powers of floats: with more error) in test_rules.c. */
-static bool is_tested_here(csg_node_kind kind)
+static bool is_tested_here(csg_primitive_kind kind)
 {
     return !csg_primitive_has(kind, CSG_TRAIT_CURVE | CSG_TRAIT_GAUGE);
 }
@@ -233,7 +234,7 @@ static bool is_tested_here(csg_node_kind kind)
 static void test_primitives(void **state)
 {
     csg_random random = {1};
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END; kind++)
         for (int frame = 0; frame < FRAMES; frame++)
             for (int turn = 0; turn < 6 && is_tested_here(kind); turn++)
                 check_primitive(&random, kind, (enum frame_kind)frame);
@@ -243,7 +244,7 @@ static void test_primitives(void **state)
 static void test_extreme_primitives(void **state)
 {
     static const struct {
-        csg_node_kind kind;
+        csg_primitive_kind kind;
         double v[4];
     } rows[] = {
         {CSG_NODE_ELLIPSOID, {1, 1, 1}},         {CSG_NODE_ELLIPSOID, {1, 0.01, 0.01}},
@@ -290,7 +291,7 @@ static csg_node_id colored_operand(csg_scene_builder *builder, csg_random *rando
         node = csg_build_primitive(builder, CSG_NODE_SPHERE, (double[]){0.5}, NOWHERE);
         place = csg_affine_translate(csg_vec3_make(index % 2 ? 0.25 : -0.25, 0, 0));
     } else {
-        csg_node_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 7);
+        csg_primitive_kind kind = CSG_NODE_SPHERE + csg_random_below(random, 7);
         node = test_random_primitive(builder, random, kind, NULL);
         place = test_random_affine(random, 0.6, 1.3, 0.4);
     }

@@ -13,6 +13,7 @@
 #include "field/prune_support.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 
 static const csg_blend_kind kinds[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) CSG_BLEND_##NAME,
@@ -276,7 +277,7 @@ static void test_each_rule(void **state)
 
 static csg_node_id random_operand(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = test_random_solid_kind(random);
+    csg_primitive_kind kind = test_random_solid_kind(random);
     bool super = csg_random_below(random, 8) == 0;
     double v[6] = {uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6),
                    uniform(random, 1, 5),     uniform(random, 1, 5),     1};

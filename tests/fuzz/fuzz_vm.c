@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "fuzz/fuzz.h"
+#include "scene/formula/formula.h"
 #include "scene/formula/vm.h"
 
 static void check_bound(csg_memory *memory, const csg_formula_step *steps, uint32_t count)

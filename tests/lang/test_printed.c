@@ -12,6 +12,7 @@
 
 #include "lang/bench_fixture.h"
 #include "scene/collected_text.h"
+#include "scene/formula/formula.h"
 #include "scene/random_scene.h"
 #include "scene/tree/build.h"
 #include "scene/tree/print.h"

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "scene/primitives/kinds.h"
+
 static void note_finding(void *user, const csgm_diag *diag)
 {
     mesh_case *c = user;

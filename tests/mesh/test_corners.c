@@ -7,6 +7,7 @@
 
 #include "mesh/mesh_support.h"
 #include "mesh/remesh/corners.h"
+#include "scene/primitives/kinds.h"
 
 static void inspect(mesh_case *c, const csg_corners *m, csgm_mesh_check *check)
 {

@@ -15,6 +15,7 @@
 #include "base/random.h"
 #include "mesh/weld.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 
 static unsigned pose_count = 4;
 
@@ -23,7 +24,7 @@ enum { RESOLUTION = 64 };
 /* ---- solids ------------------------------------------------------------------------------------
  */
 
-static csg_node_id primitive(mesh_case *c, csg_node_kind kind, const double *parameters)
+static csg_node_id primitive(mesh_case *c, csg_primitive_kind kind, const double *parameters)
 {
     return csg_build_primitive(&c->builder, kind, parameters, csg_span_nowhere());
 }

@@ -4,6 +4,7 @@
  */
 #include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
+#include "scene/primitives/kinds.h"
 
 #include <stdio.h>
 

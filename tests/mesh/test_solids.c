@@ -4,12 +4,13 @@
  */
 #include "base/mesh_codes.h"
 #include "mesh/mesh_support.h"
+#include "scene/primitives/kinds.h"
 
 #define PI 3.14159265358979323846
 
 typedef csg_node_id make_fn(mesh_case *c);
 
-static csg_node_id primitive(mesh_case *c, csg_node_kind kind, double a, double b, double d)
+static csg_node_id primitive(mesh_case *c, csg_primitive_kind kind, double a, double b, double d)
 {
     return csg_build_primitive(&c->builder, kind, (double[]){a, b, d, 0}, NOWHERE);
 }

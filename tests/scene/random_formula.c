@@ -5,6 +5,8 @@
 
 #include <assert.h>
 
+#include "scene/formula/formula.h"
+
 typedef struct maker {
     csg_formula_builder builder;
     csg_random *random;

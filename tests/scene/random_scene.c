@@ -9,6 +9,7 @@
 #include "random_rule.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
@@ -47,13 +48,13 @@ csg_affine test_random_affine(csg_random *random, double low, double high, doubl
     return a;
 }
 
-void test_random_parameters(csg_random *random, csg_node_kind kind, double *v)
+void test_random_parameters(csg_random *random, csg_primitive_kind kind, double *v)
 {
     csg_primitive_of(kind)->example(random, v);
 }
 
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
-                                  csg_node_kind kind, double *parameters)
+                                  csg_primitive_kind kind, double *parameters)
 {
     double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
     test_random_parameters(random, kind, v);
@@ -62,12 +63,12 @@ csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random
     return csg_build_primitive(builder, kind, v, nowhere);
 }
 
-csg_node_kind test_random_solid_kind(csg_random *random)
+csg_primitive_kind test_random_solid_kind(csg_random *random)
 {
     csg_node_kind kinds[32];
     const unsigned wanted = CSG_TRAIT_BOUNDED | CSG_TRAIT_EXACT;
     uint32_t count = 0;
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END; kind++)
         if ((csg_primitive_of(kind)->traits & (wanted | CSG_TRAIT_FLAT)) == wanted)
             kinds[count++] = kind;
     return kinds[csg_random_below(random, count)];
@@ -156,14 +157,14 @@ bool test_random_fillets = false;
 
 static csg_node_id random_tube(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = chance(random, 0.3) ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    csg_primitive_kind kind = chance(random, 0.3) ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
     return test_random_primitive(builder, random, kind, NULL);
 }
 
 /* A bounded primitive somewhere, one in eight of them cut by a half-space. */
 static csg_node_id random_leaf(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = test_random_solid_kind(random);
+    csg_primitive_kind kind = test_random_solid_kind(random);
     bool shaped = test_random_shapes && chance(random, 0.25);
     if (test_random_rules && chance(random, 0.1))
         kind = CSG_NODE_SUPERELLIPSOID;

@@ -39,12 +39,12 @@ csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
 
 /* One of the bounded solids that are exact distances. */
-csg_node_kind test_random_solid_kind(csg_random *random);
+csg_primitive_kind test_random_solid_kind(csg_random *random);
 /* A primitive of this kind with random parameters (its example), not placed; they are also copied
  * to `parameters` (room for CSG_PRIMITIVE_MOST_PARAMETERS) unless that is NULL. */
 csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random,
-                                  csg_node_kind kind, double *parameters);
-void test_random_parameters(csg_random *random, csg_node_kind kind, double *parameters);
+                                  csg_primitive_kind kind, double *parameters);
+void test_random_parameters(csg_random *random, csg_primitive_kind kind, double *parameters);
 
 /* A turn about a random axis after a scale, its three factors between low and high (equal when
  * low = high), then a shift of at most `shift` along each axis. */

@@ -2,7 +2,10 @@
  * Solids made of figures of the plane and of warps; see random_scene.h.
  */
 #include "random_scene.h"
+#include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
+#include "scene/warp_kinds.h"
 #include "shape/plane/region.h"
 
 static const csg_span nowhere = {.source = UINT32_MAX};
@@ -100,7 +103,7 @@ static csg_warp random_twist(csg_random *random)
 
 static csg_node_id solid(csg_scene_builder *builder, csg_random *random)
 {
-    csg_node_kind kind = test_random_solid_kind(random);
+    csg_primitive_kind kind = test_random_solid_kind(random);
     return test_random_primitive(builder, random, kind, NULL);
 }
 

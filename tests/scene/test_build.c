@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "random_scene.h"
+#include "scene/primitives/kinds.h"
 
 typedef struct fixture {
     csgm_context context;
@@ -249,7 +250,7 @@ static void test_bad_parameters(void **state)
 {
     const double bad[] = {NAN, INFINITY, -INFINITY, -1, 1e300, -1e-300};
     const struct {
-        csg_node_kind kind;
+        csg_primitive_kind kind;
         double v[4];
     } good[] = {
         {CSG_NODE_SPHERE, {1}},           {CSG_NODE_BOX, {1, 2, 3, 0.5}},
@@ -276,7 +277,7 @@ static void test_bad_parameters(void **state)
 static void test_bad_combinations(void **state)
 {
     const struct {
-        csg_node_kind kind;
+        csg_primitive_kind kind;
         double v[4];
         const char *problem;
     } rows[] = {

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "scene/primitives/curve.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive_box.h"
 
 /* tools/soak has many more, of other seeds. */
@@ -20,7 +21,7 @@ static uint64_t seed_of_run = 0;
 
 enum { AT_A_CURVE = 50, BALLS = 400 };
 
-static csg_sample sample_of(csg_node_kind kind, const double *v, csg_vec3 p)
+static csg_sample sample_of(csg_primitive_kind kind, const double *v, csg_vec3 p)
 {
     return csg_reference_primitive(kind, v, p);
 }
@@ -55,7 +56,8 @@ static void check_nearest(const chain *c, csg_vec3 p, double value)
     assert_true(value <= best + c->speed * 0.5 / BALLS + 1e-14);
 }
 
-static void check_pair(csg_node_kind kind, const double *v, csg_vec3 p, double value, csg_vec3 q)
+static void check_pair(csg_primitive_kind kind, const double *v, csg_vec3 p, double value,
+                       csg_vec3 q)
 {
     double distance = csg_vec3_norm(csg_vec3_sub(p, q));
     double difference = fabs(value - sample_of(kind, v, q).value);
@@ -63,7 +65,7 @@ static void check_pair(csg_node_kind kind, const double *v, csg_vec3 p, double v
 }
 
 /* False where two balls are nearest within a step. */
-static bool check_gradient(csg_node_kind kind, const double *v, csg_vec3 p, csg_sample s)
+static bool check_gradient(csg_primitive_kind kind, const double *v, csg_vec3 p, csg_sample s)
 {
     const double step = 1e-5;
     double gradient[3] = {s.gradient.x, s.gradient.y, s.gradient.z};
@@ -79,7 +81,7 @@ static bool check_gradient(csg_node_kind kind, const double *v, csg_vec3 p, csg_
     return true;
 }
 
-static void check_box(csg_node_kind kind, const double *v, const chain *c)
+static void check_box(csg_primitive_kind kind, const double *v, const chain *c)
 {
     csg_affine place = csg_affine_identity();
     csg_box box = csg_primitive_box(kind, v, &place, 0), balls = csg_box_empty();
@@ -92,7 +94,7 @@ static void check_box(csg_node_kind kind, const double *v, const chain *c)
     assert_true(csg_box_contains_box(csg_box_grow(balls, c->speed * 0.5 / BALLS), box));
 }
 
-static void check_kind(csg_node_kind kind)
+static void check_kind(csg_primitive_kind kind)
 {
     csg_random random = {4000 + (uint64_t)kind + seed_of_run};
     int smooth = 0;

@@ -6,6 +6,7 @@
 #include "random_scene.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/fillet.h"
+#include "scene/primitives/kinds.h"
 
 enum { MOST = 24 };
 

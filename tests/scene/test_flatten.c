@@ -12,6 +12,8 @@
 #include "failing.h"
 #include "scene/outlines/flatten.h"
 #include "scene/outlines/unite.h"
+#include "scene/primitives/kinds.h"
+#include "scene/warp_kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
 
@@ -199,7 +201,7 @@ static void sharp_operators_and_offsets(void **state)
 
 /* ---- united ------------------------------------------------------------------------------- */
 
-static size_t nodes_below(csg_node_id node, csg_node_kind kind)
+static size_t nodes_below(csg_node_id node, unsigned kind)
 {
     csgm_scene *scene;
     size_t count = 0;

@@ -6,6 +6,7 @@
  */
 #include "golden_rows.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 
 static const double tolerance = 1e-12;
 
@@ -69,7 +70,7 @@ static void test_round(void **state)
 /* "quadratic Bezier (x,y,z)(x,y,z)(x,y,z)" or cubic, four points. */
 static csg_node_id build_curve(csg_scene_builder *builder, const char *text, double radius)
 {
-    csg_node_kind kind = *text == 'q' ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
+    csg_primitive_kind kind = *text == 'q' ? CSG_NODE_QUADRATIC_TUBE : CSG_NODE_CUBIC_TUBE;
     double v[16];
     int points = kind == CSG_NODE_QUADRATIC_TUBE ? 3 : 4;
     for (int i = 0; i < points; i++) {

@@ -6,6 +6,7 @@
 #include "golden_rows.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 
 #include "scene/primitives/primitive.h"
 

@@ -10,11 +10,13 @@
 #include <stdlib.h>
 
 #include "random_scene.h"
+#include "scene/formula/formula.h"
 #include "scene/lazy/lazy_private.h"
+#include "scene/primitives/kinds.h"
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
 
-static csg_node_id primitive(csg_node_kind kind, double a, double b, double c, double d)
+static csg_node_id primitive(csg_primitive_kind kind, double a, double b, double c, double d)
 {
     return csg_build_primitive(&builder, kind, (double[]){a, b, c, d}, NOWHERE);
 }

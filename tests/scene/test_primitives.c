@@ -8,6 +8,7 @@
 #include "scene_support.h"
 
 #include "random_scene.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
 enum { SETS = 5, SURFACE_POINTS = 2000, QUERIES = 60 };
@@ -66,7 +67,7 @@ static bool is_in_torus(const double *v, csg_vec3 p)
     return csg_vec3_norm(csg_vec3_sub(p, nearest)) <= v[1];
 }
 
-static bool is_inside(csg_node_kind kind, const double *v, csg_vec3 p)
+static bool is_inside(csg_primitive_kind kind, const double *v, csg_vec3 p)
 {
     section s = {v, p};
     switch (kind) {
@@ -91,7 +92,7 @@ static bool is_inside(csg_node_kind kind, const double *v, csg_vec3 p)
 
 /* ---- against the surface ------------------------------------------------------------------ */
 
-static csg_vec3 inner_point(csg_node_kind kind, const double *v, csg_random *random)
+static csg_vec3 inner_point(csg_primitive_kind kind, const double *v, csg_random *random)
 {
     if (kind == CSG_NODE_TORUS) {
         double half = v[2] * (3.14159265358979323846 / 180);
@@ -103,7 +104,7 @@ static csg_vec3 inner_point(csg_node_kind kind, const double *v, csg_random *ran
     return csg_vec3_make(0, 0, 0);
 }
 
-static csg_vec3 surface_point(csg_node_kind kind, const double *v, csg_random *random)
+static csg_vec3 surface_point(csg_primitive_kind kind, const double *v, csg_random *random)
 {
     csg_vec3 from = inner_point(kind, v, random), along = test_direction(random);
     double low = 0, high = 8;
@@ -127,7 +128,7 @@ static double distance_to(const csg_vec3 *surface, csg_vec3 p)
 }
 
 /* p - f grad f is on the surface: one side of it is inside, the other is not. */
-static void check_foot(csg_node_kind kind, const double *v, csg_vec3 p, csg_sample s)
+static void check_foot(csg_primitive_kind kind, const double *v, csg_vec3 p, csg_sample s)
 {
     const double step = 1e-6;
     if (fabs(csg_vec3_norm(s.gradient) - 1) > 1e-9)
@@ -144,7 +145,8 @@ static void check_foot(csg_node_kind kind, const double *v, csg_vec3 p, csg_samp
     test_near(touch, 0, 1e-12);
 }
 
-static void check_query(csg_node_kind kind, const double *v, const csg_vec3 *surface, csg_vec3 p)
+static void check_query(csg_primitive_kind kind, const double *v, const csg_vec3 *surface,
+                        csg_vec3 p)
 {
     csg_sample s = csg_reference_primitive(kind, v, p);
     if (fabs(s.value) > 1e-9)
@@ -158,7 +160,7 @@ static void check_query(csg_node_kind kind, const double *v, const csg_vec3 *sur
     check_foot(kind, v, p, s);
 }
 
-static void check_distance(csg_node_kind kind)
+static void check_distance(csg_primitive_kind kind)
 {
     static csg_vec3 surface[SURFACE_POINTS];
     csg_random random = {100 + (uint64_t)kind};
@@ -176,8 +178,8 @@ static void check_distance(csg_node_kind kind)
 
 static void test_distance(void **state)
 {
-    const csg_node_kind known[] = {CSG_NODE_SPHERE,  CSG_NODE_BOX,   CSG_NODE_FRUSTUM,
-                                   CSG_NODE_CAPSULE, CSG_NODE_TORUS, CSG_NODE_ELLIPSOID};
+    const csg_primitive_kind known[] = {CSG_NODE_SPHERE,  CSG_NODE_BOX,   CSG_NODE_FRUSTUM,
+                                        CSG_NODE_CAPSULE, CSG_NODE_TORUS, CSG_NODE_ELLIPSOID};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         check_distance(known[i]);
 }
@@ -188,7 +190,7 @@ static void test_distance(void **state)
  * solid no point that is inside is beyond h(n).
  */
 
-static void check_support(csg_node_kind kind, const double *v, csg_vec3 p, csg_vec3 n)
+static void check_support(csg_primitive_kind kind, const double *v, csg_vec3 p, csg_vec3 n)
 {
     const csg_primitive *primitive = csg_primitive_of(kind);
     bool is_convex = primitive->traits & CSG_TRAIT_CONVEX && primitive->traits & CSG_TRAIT_OUTSIDE;
@@ -207,7 +209,7 @@ static void check_support(csg_node_kind kind, const double *v, csg_vec3 p, csg_v
 static void test_support(void **state)
 {
     csg_random random = {150};
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END; kind++)
         for (int set = 0; set < 200; set++) {
             double v[CSG_PRIMITIVE_MOST_PARAMETERS];
             csg_refusal refusal = {0};
@@ -228,7 +230,7 @@ static void test_plane(void **state)
 
 /* ---- Lipschitz constant and gradient ----------------------------------------------------- */
 
-static void check_pair(csg_node_kind kind, const double *v, csg_vec3 p, csg_vec3 q)
+static void check_pair(csg_primitive_kind kind, const double *v, csg_vec3 p, csg_vec3 q)
 {
     double a = csg_reference_primitive(kind, v, p).value;
     double b = csg_reference_primitive(kind, v, q).value;
@@ -238,7 +240,8 @@ static void check_pair(csg_node_kind kind, const double *v, csg_vec3 p, csg_vec3
 
 static void test_lipschitz(void **state)
 {
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++) {
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
         bool is_curve = csg_primitive_has(kind, CSG_TRAIT_CURVE); /* costly */
         csg_random random = {200 + (uint64_t)kind};
         for (int set = 0; set < (is_curve ? 20 : 200); set++) {
@@ -266,7 +269,7 @@ static csg_vec3 shifted(csg_vec3 p, int axis, double by)
 }
 
 /* False where the field has a crease within a step. */
-static bool check_gradient(csg_node_kind kind, const double *v, csg_vec3 p)
+static bool check_gradient(csg_primitive_kind kind, const double *v, csg_vec3 p)
 {
     const double step = 1e-5;
     csg_sample s = csg_reference_primitive(kind, v, p);
@@ -286,7 +289,8 @@ static bool check_gradient(csg_node_kind kind, const double *v, csg_vec3 p)
 
 static void test_gradient(void **state)
 {
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++) {
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
         csg_random random = {300 + (uint64_t)kind};
         int checked = 0;
         if (csg_primitive_has(kind, CSG_TRAIT_CURVE))
@@ -308,7 +312,7 @@ static void test_critical_points(void **state)
 {
     const csg_vec3 origin = {0, 0, 0}, zero = {0, 0, 0};
     const struct {
-        csg_node_kind kind;
+        csg_primitive_kind kind;
         double v[4];
         csg_vec3 at;
         double value;

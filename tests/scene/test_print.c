@@ -11,7 +11,10 @@
 
 #include "collected_text.h"
 #include "random_scene.h"
+#include "scene/formula/formula.h"
+#include "scene/primitives/kinds.h"
 #include "scene/tree/print.h"
+#include "scene/warp_kinds.h"
 
 static void check_text(csg_node_id root, const char *expected)
 {
@@ -24,7 +27,7 @@ static void check_text(csg_node_id root, const char *expected)
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
 }
 
-static csg_node_id primitive(csg_node_kind kind, double a, double b, double c, double d)
+static csg_node_id primitive(csg_primitive_kind kind, double a, double b, double c, double d)
 {
     return csg_build_primitive(&builder, kind, (double[]){a, b, c, d}, NOWHERE);
 }

@@ -7,6 +7,7 @@
 #include "scene_fixture.h"
 
 #include "random_scene.h"
+#include "scene/primitives/kinds.h"
 
 static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 {
@@ -19,7 +20,7 @@ static csgm_scene *random_scene(uint64_t seed, csg_random *random)
     return test_seal(&builder, test_random_scene(&builder, random, 1 + (unsigned)seed % 60));
 }
 
-static csg_node_id primitive(csg_node_kind kind, double a, double b, double c, double d)
+static csg_node_id primitive(csg_primitive_kind kind, double a, double b, double c, double d)
 {
     return csg_build_primitive(&builder, kind, (double[]){a, b, c, d}, NOWHERE);
 }

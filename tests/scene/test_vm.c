@@ -11,8 +11,11 @@
 
 #include "collected_text.h"
 #include "random_scene.h"
+#include "scene/formula/formula.h"
 #include "scene/formula/formulate.h"
+#include "scene/formula/terms.h"
 #include "scene/formula/vm.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "scene/reference.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -96,7 +99,7 @@ static void check_scene(csgm_scene *scene, csg_random *random, const char *what)
 static void test_primitives(void **state)
 {
     csg_random random = {1};
-    for (csg_node_kind kind = CSG_NODE_FIRST_PRIMITIVE; csg_node_is_named_primitive(kind); kind++)
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END; kind++)
         for (int i = 0; i < 60 && !csg_primitive_has(kind, CSG_TRAIT_CURVE); i++) /* chords only */
             check_scene(test_seal(&builder, test_random_primitive(&builder, &random, kind, NULL)),
                         &random, csg_node_kind_name(kind));

@@ -10,6 +10,7 @@
 #include "field/kernels/dispatch.h"
 #include "field/kernels/warp_kernel.h"
 #include "field/rule_layout.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/point.h"
 
 typedef csg_compile_frame frame;

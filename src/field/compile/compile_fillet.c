@@ -8,6 +8,7 @@
 
 #include "field/rule_layout.h"
 #include "scene/operators/fillet.h"
+#include "scene/primitives/kinds.h"
 
 /* The plane with this number lies where the operand ends that reaches farthest, of those that end.
  * False: fewer than two do, so that none of the operands' unions ends there. */

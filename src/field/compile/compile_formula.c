@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#include "scene/formula/formula.h"
+
 static const double degree = 0.017453292519943295;
 
 static csg_formula_id scaled(csg_formula_builder *builder, csg_formula_id u, double factor)

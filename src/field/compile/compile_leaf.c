@@ -24,7 +24,7 @@ void csg_leaf_place(csg_leaf *l, const csg_affine *place)
 }
 
 void csg_leaf_primitive(csg_leaf *l, const csg_affine *at, double factor, bool negate,
-                        csg_node_kind kind, const double *p)
+                        csg_primitive_kind kind, const double *p)
 {
     csg_affine place = *at;
     const csg_primitive *primitive = csg_primitive_of(kind);

@@ -17,7 +17,7 @@ void csg_leaf_place(csg_leaf *leaf, const csg_affine *place);
 /* A placed primitive; of a curve a gentle piece (compile_curve.h). factor: product of its
  * ancestors' smallest singular values. */
 void csg_leaf_primitive(csg_leaf *leaf, const csg_affine *place, double factor, bool negate,
-                        csg_node_kind kind, const double *parameters);
+                        csg_primitive_kind kind, const double *parameters);
 /* The leaf's parameters as tape.h lays them out; returns how many. */
 size_t csg_leaf_pack(const csg_leaf *leaf, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS]);
 

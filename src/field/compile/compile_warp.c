@@ -2,6 +2,7 @@
  * A warp on its way into the tape.
  */
 #include "field/kernels/warp_kernel.h"
+#include "scene/warp_kinds.h"
 
 #define RADIANS (3.14159265358979323846 / 180)
 

@@ -6,6 +6,7 @@
 #include "field/gradients/cone_formula.h"
 
 #include "field/kernels/functions.h"
+#include "scene/formula/formula.h"
 
 static const range ONE = {1, 1}, NOTHING = {0, 0}, UNKNOWN = {NAN, NAN};
 

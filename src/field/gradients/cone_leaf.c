@@ -120,7 +120,7 @@ static bool add_formula(csg_cone_leaf *l, const csg_tape *tape)
     return true;
 }
 
-static bool add_primitive(csg_cone_leaf *l, csg_node_kind kind)
+static bool add_primitive(csg_cone_leaf *l, csg_primitive_kind kind)
 {
     double g[3], spread;
     if (!csg_node_is_curve(kind))

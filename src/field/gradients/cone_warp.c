@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "field/kernels/functions.h"
+#include "scene/warp_kinds.h"
 
 /* The square root of the largest row sum of |M^T M|. */
 double csg_cone_norm(const float *m)

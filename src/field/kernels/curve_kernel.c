@@ -320,7 +320,7 @@ static size_t find_nearest_balls(const csg_tape_node *node, const float *paramet
         g->z[i] = q.z;
     }
     int varies = own[CSG_TUBE_VARIES] != 0;
-    if (node->op == CSG_OP_CUBIC_TUBE)
+    if (node->op == CSG_OP_OF(CUBIC_TUBE))
         (varies ? search_cubic_varying : search_cubic)(own, g);
     else
         (varies ? search_quadratic_varying : search_quadratic)(own, g);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Tubes along Bezier curves over batches of points: what a build of curve_kernel.c for one
- * instruction set offers to leaf_kernel.c. node: a CSG_OP_QUADRATIC_TUBE or CSG_OP_CUBIC_TUBE.
+ * instruction set offers to leaf_kernel.c. node: a CSG_OP_OF(QUADRATIC_TUBE) or
+ * CSG_OP_OF(CUBIC_TUBE).
  */
 #ifndef CSG_FIELD_CURVE_KERNEL_H
 #define CSG_FIELD_CURVE_KERNEL_H

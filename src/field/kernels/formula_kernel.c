@@ -8,6 +8,7 @@
 #include "field/kernels/formula_kernel.h"
 
 #include "field/kernels/functions.h"
+#include "scene/formula/formula.h"
 
 enum {
     VALUE_FLOATS = 16384, /* CSG_FORMULA_SLOTS chunks of CSG_LANES at least */

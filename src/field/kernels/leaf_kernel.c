@@ -135,11 +135,11 @@ static void own_values(const csg_tape *tape, const csg_tape_node *node, csg_poin
     const float *parameters = tape->parameters + node->parameters;
     switch (node->op) {
 #define CSG_PRIMITIVE(NAME, name, ...)                                                             \
-    case CSG_OP_##NAME:                                                                            \
+    case CSG_OP_OF(NAME):                                                                          \
         name##_values(node, parameters, p, out);                                                   \
         break;
 #define CSG_CURVE_PRIMITIVE(NAME, ...)                                                             \
-    case CSG_OP_##NAME:                                                                            \
+    case CSG_OP_OF(NAME):                                                                          \
         CSG_THIS_CURVE_KERNEL.values(node, parameters, p, out);                                    \
         break;
 #include "scene/primitives/primitives.def"
@@ -201,11 +201,11 @@ static void own_gradients(const csg_tape *tape, const csg_tape_node *node, csg_p
     const float *parameters = tape->parameters + node->parameters;
     switch (node->op) {
 #define CSG_PRIMITIVE(NAME, name, ...)                                                             \
-    case CSG_OP_##NAME:                                                                            \
+    case CSG_OP_OF(NAME):                                                                          \
         name##_gradients(node, parameters, p, out, gx, gy, gz);                                    \
         break;
 #define CSG_CURVE_PRIMITIVE(NAME, ...)                                                             \
-    case CSG_OP_##NAME:                                                                            \
+    case CSG_OP_OF(NAME):                                                                          \
         CSG_THIS_CURVE_KERNEL.gradients(node, parameters, p, out, gx, gy, gz);                     \
         break;
 #include "scene/primitives/primitives.def"
@@ -258,7 +258,7 @@ static int falls_outwards(const csg_tape_node *node, const float *own)
         return 0;
     switch (node->op) {
 #define CSG_PRIMITIVE(NAME, name, ...)                                                             \
-    case CSG_OP_##NAME:                                                                            \
+    case CSG_OP_OF(NAME):                                                                          \
         return csg_##name##_falls_outwards(own);
 #define CSG_CURVE_PRIMITIVE(...)
 #include "scene/primitives/primitives.def"

@@ -8,6 +8,7 @@
 
 #include "field/kernels/functions.h"
 #include "scene/primitives/point.h"
+#include "scene/warp_kinds.h"
 
 #define HALF_TURN 3.14159274f
 

@@ -7,6 +7,7 @@
 #define CSG_LANG_SYMBOLIC_H
 
 #include "lang/evaluate/builtins.h"
+#include "scene/formula/formula.h"
 
 static inline bool csg_value_is_scalar(csg_value value)
 {

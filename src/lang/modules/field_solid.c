@@ -7,6 +7,7 @@
 #include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
 #include "lang/modules/formula_call.h"
+#include "scene/formula/formula.h"
 
 static csg_value point_of_terms(csg_eval *e)
 {

@@ -7,6 +7,8 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "scene/primitives/kinds.h"
+#include "scene/warp_kinds.h"
 
 csg_node_id csg_module_slab(csg_module_call *call)
 {

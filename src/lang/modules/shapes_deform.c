@@ -5,6 +5,7 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "scene/warp_kinds.h"
 #include "solid/measure.h"
 
 /* ---- resize ---------------------------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "scene/primitives/kinds.h"
 #include "shape/plane/polygons.h"
 
 csg_node_id csg_module_circle(csg_module_call *call)

@@ -3,6 +3,7 @@
  * (solid/ has the rest).
  */
 #include "lang/modules/shapes.h"
+#include "scene/warp_kinds.h"
 #include "solid/operations.h"
 
 /* Children of the first one's dimension, united. */

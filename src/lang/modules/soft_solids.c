@@ -7,6 +7,7 @@
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
 #include "scene/operators/soft.h"
+#include "scene/primitives/kinds.h"
 
 static bool read_falloff(csg_module_call *call, uint32_t index, csg_falloff *out)
 {

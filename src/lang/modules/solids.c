@@ -6,8 +6,10 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "scene/primitives/kinds.h"
 
-static csg_node_id primitive(csg_module_call *call, csg_node_kind kind, const double *parameters)
+static csg_node_id primitive(csg_module_call *call, csg_primitive_kind kind,
+                             const double *parameters)
 {
     return csg_build_primitive(&call->e->builder, kind, parameters, call->statement->where);
 }

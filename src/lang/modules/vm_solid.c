@@ -5,6 +5,7 @@
 #include "lang/modules/formula_call.h"
 #include "lang/modules/imports.h"
 #include "outline/input.h"
+#include "scene/formula/formula.h"
 #include "scene/formula/vm.h"
 
 /* The tape's steps, from the heap's memory: *bytes; NULL after a report. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
 #include "shape/polyhedra/prism.h"

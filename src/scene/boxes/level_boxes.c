@@ -17,6 +17,7 @@
 #include "scene/boxes/half_spaces.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/combine.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive_box.h"
 
 enum {

@@ -10,8 +10,8 @@
 #ifndef CSG_SCENE_FORMULA_H
 #define CSG_SCENE_FORMULA_H
 
-#include "base/geometry.h"
 #include "base/table.h"
+#include "scene/formula/step.h"
 
 typedef enum csg_formula_op {
 #define CSG_FORMULA_OP(NAME, name, arity) CSG_FORMULA_##NAME,
@@ -29,51 +29,16 @@ static inline bool csg_formula_op_is_unary(csg_formula_op op)
 const char *csg_formula_op_name(csg_formula_op op);
 uint32_t csg_formula_op_arity(csg_formula_op op);
 
-typedef struct csg_formula_step {
-    uint8_t op;      /* csg_formula_op */
-    uint32_t a, b;   /* earlier steps; 0 where the operation has fewer operands */
-    double constant; /* of CONSTANT, else 0 */
-} csg_formula_step;
-
-/* What bounds by intervals say of a function g of x >= 0. */
-typedef struct csg_profile {
-    double slope[2], value[2]; /* least and largest; where nothing is known infinite */
-    double support;            /* g is 0 from there on; INFINITY: not seen to be */
-} csg_profile;
-
-/* A formula of a scene. */
-typedef struct csg_formula {
-    uint32_t first, count; /* into the scene's steps */
-    double lipschitz;
-    bool trusted;        /* the constant was stated as one that is proven, and could not be tried */
-    csg_box bounds;      /* finite, or all of space */
-    csg_profile profile; /* of a combine node with the blend PROFILE */
-    /* the profile itself is the next formula */
-    uint8_t joins; /* csg_node_kind of the operator that such a node stands for */
-} csg_formula;
-
-/* Values are kept within +- this; it also stands for NaN, with a minus: squares of it are floats.
- */
-#define CSG_FORMULA_FAR 1e18
-
-enum {
-    CSG_LONGEST_FORMULA = 1 << 16,
-    CSG_FORMULA_SLOTS = 512 /* most values that a formula may need at once, coordinates included */
-};
-
 /* ---- building ----------------------------------------------------------------------------- */
 
-typedef uint32_t csg_formula_id;
-#define CSG_FORMULA_NONE UINT32_MAX
-
-typedef struct csg_formula_builder {
+struct csg_formula_builder {
     csg_memory *memory;
     csg_formula_step *steps;
     csg_table table; /* of the steps */
     size_t count, capacity;
     size_t most;   /* steps: CSG_LONGEST_FORMULA */
     bool too_long; /* NONE was returned for CSG_LONGEST_FORMULA, not for memory */
-} csg_formula_builder;
+};
 
 void csg_formula_begin(csg_formula_builder *builder, csg_memory *memory);
 void csg_formula_end(csg_formula_builder *builder);
@@ -95,11 +60,6 @@ bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32
 /* One operation on numbers, in degrees. */
 double csg_formula_value(csg_formula_op op, double a, double b);
 
-typedef struct csg_formula_dual {
-    double value;
-    csg_vec3 gradient;
-} csg_formula_dual;
-
 /* Value and gradient at p (zero at critical points); work: room for formula->count. */
 csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_formula *formula,
                                       csg_vec3 p, csg_formula_dual *work);
@@ -116,13 +76,13 @@ typedef enum csg_slope_verdict {
 } csg_slope_verdict;
 
 /* What became of a Lipschitz constant that somebody stated. */
-typedef struct csg_slope_trial {
+struct csg_slope_trial {
     csg_slope_verdict verdict;
     double
         bound; /* unless it is refuted: a constant that holds, perhaps INFINITY; NAN: no memory */
     csg_vec3 place; /* where it is refuted: a point beside which */
     double slope;   /* the formula changes by as much along one unit of length */
-} csg_slope_trial;
+};
 
 /* With the work of csg_formula_lipschitz; a constant that this gives is proven. */
 csg_slope_trial csg_formula_try_lipschitz(csg_memory *memory, const csg_formula_step *steps,

@@ -4,6 +4,9 @@
  */
 #include "scene/formula/formulate.h"
 
+#include "scene/formula/terms.h"
+#include "scene/warp_kinds.h"
+
 #include <string.h>
 
 #define PI 3.14159265358979323846

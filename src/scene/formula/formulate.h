@@ -7,7 +7,7 @@
 #ifndef CSG_SCENE_FORMULATE_H
 #define CSG_SCENE_FORMULATE_H
 
-#include "scene/formula/terms.h"
+#include "scene/formula/step.h"
 #include "scene/scene.h"
 
 /* The result's step in `terms`, which was begun. CSGM_ERR_UNSUPPORTED: *obstacle is a node that no
@@ -18,7 +18,7 @@ csgm_status csg_formulate(const csgm_scene *scene, csg_terms *terms, csg_term *r
 /* ---- parts of it ----------------------------------------------------------------------------- */
 
 /* A primitive at the point p (three terms). */
-csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double *v,
+csg_term csg_formulate_primitive(csg_terms *t, csg_primitive_kind kind, const double *v,
                                  const csg_term p[3]);
 /* A shape; false: not convex. */
 bool csg_formulate_shape(csg_terms *t, const csg_shape *shape, const csg_term p[3],

@@ -4,6 +4,7 @@
  * the distance to their triangles.
  */
 #include "scene/formula/formulate.h"
+#include "scene/formula/terms.h"
 
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"

@@ -7,9 +7,6 @@
 
 #include "scene/formula/formula.h"
 
-typedef csg_formula_builder csg_terms;
-typedef csg_formula_id csg_term;
-
 /* Steepness of csg_term_step: a jump for all that lengths can show. */
 #define CSG_STEP_SLOPE 1e15
 

@@ -6,7 +6,7 @@
 #ifndef CSG_SCENE_VM_H
 #define CSG_SCENE_VM_H
 
-#include "scene/formula/terms.h"
+#include "scene/formula/step.h"
 #include "scene/scene.h"
 
 typedef struct csg_vm_problem {

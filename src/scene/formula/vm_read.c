@@ -2,6 +2,7 @@
  * Lines of a .vm tape -> steps of a formula; see vm.h. Names are looked up in a hash table of where
  * they stand in the text.
  */
+#include "scene/formula/terms.h"
 #include "scene/formula/vm.h"
 
 #include <stdarg.h>

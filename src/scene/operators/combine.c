@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "scene/formula/formula.h"
+
 /* Larger than any operand that matters; finite, so that products are. */
 #define FARTHEST 1e15
 

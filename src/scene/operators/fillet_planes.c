@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
 enum {

@@ -5,6 +5,7 @@
 #include "scene/outlines/flatten.h"
 
 #include "scene/outlines/trace.h"
+#include "scene/primitives/kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
 

@@ -7,6 +7,7 @@
 
 #include "scene/operators/blend_kinds.h"
 #include "scene/outlines/flatten.h"
+#include "scene/primitives/kinds.h"
 #include "scene/tree/build_private.h"
 #include "shape/plane/region.h"
 

@@ -10,7 +10,9 @@
 #include <float.h>
 #include <string.h>
 
-csg_curve csg_curve_make(csg_node_kind kind, const double *parameters)
+#include "scene/primitives/kinds.h"
+
+csg_curve csg_curve_make(csg_primitive_kind kind, const double *parameters)
 {
     csg_curve curve = {.degree = kind == CSG_NODE_QUADRATIC_TUBE ? 2 : 3};
     memcpy(curve.at, parameters, (size_t)(curve.degree + 1) * sizeof curve.at[0]);

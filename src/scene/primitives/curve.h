@@ -16,14 +16,14 @@ typedef struct csg_curve {
     int degree;                                /* 2 or 3 */
 } csg_curve;
 
-static inline bool csg_node_is_curve(csg_node_kind kind)
+static inline bool csg_node_is_curve(csg_primitive_kind kind)
 {
     return csg_primitive_has(kind, CSG_TRAIT_CURVE);
 }
 
 /* kind: of a curve; parameters as in primitives.def, which are those of `at`, one after the other.
  */
-csg_curve csg_curve_make(csg_node_kind kind, const double *parameters);
+csg_curve csg_curve_make(csg_primitive_kind kind, const double *parameters);
 /* De Casteljau: both halves. */
 void csg_curve_halve(const csg_curve *curve, csg_curve *low, csg_curve *high);
 /* x y z r at t. */

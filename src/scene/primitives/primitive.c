@@ -8,6 +8,7 @@
 
 #include "scene/formula/formulate.h"
 #include "scene/primitives/every_primitive.h"
+#include "scene/primitives/kinds.h"
 
 /* What every primitive has; the line of a tube ends here. */
 #define COMMON(name, count, traits, call, otherwise, usual)                                        \
@@ -38,20 +39,20 @@ static const csg_primitive rows[] = {
     _Static_assert((traits)&CSG_TRAIT_CURVE, #name);
 #include "scene/primitives/primitives.def"
 
-const csg_primitive *csg_primitive_of(csg_node_kind kind)
+const csg_primitive *csg_primitive_of(csg_primitive_kind kind)
 {
     assert(csg_node_is_named_primitive(kind));
     return &rows[kind - CSG_NODE_FIRST_PRIMITIVE];
 }
 
-csg_sample csg_reference_primitive(csg_node_kind kind, const double *parameters, csg_vec3 p)
+csg_sample csg_reference_primitive(csg_primitive_kind kind, const double *parameters, csg_vec3 p)
 {
     if (kind == CSG_NODE_EMPTY)
         return (csg_sample){-INFINITY, csg_vec3_make(0, 0, 0)};
     return csg_primitive_of(kind)->distance(parameters, p);
 }
 
-csg_term csg_formulate_primitive(csg_terms *t, csg_node_kind kind, const double *v,
+csg_term csg_formulate_primitive(csg_terms *t, csg_primitive_kind kind, const double *v,
                                  const csg_term p[3])
 {
     if (kind == CSG_NODE_EMPTY)

@@ -8,7 +8,7 @@
 #define CSG_SCENE_PRIMITIVE_H
 
 #include "base/random.h"
-#include "scene/formula/terms.h"
+#include "scene/formula/step.h"
 #include "scene/primitives/cone_ball.h"
 #include "scene/primitives/leaf.h"
 #include "scene/primitives/sizes.h"
@@ -88,8 +88,8 @@ typedef struct csg_primitive {
 } csg_primitive;
 
 /* kind: of a primitive, no field and no shape. */
-const csg_primitive *csg_primitive_of(csg_node_kind kind);
-static inline bool csg_primitive_has(csg_node_kind kind, unsigned trait)
+const csg_primitive *csg_primitive_of(csg_primitive_kind kind);
+static inline bool csg_primitive_has(csg_primitive_kind kind, unsigned trait)
 {
     return csg_node_is_named_primitive(kind) && csg_primitive_of(kind)->traits & trait;
 }

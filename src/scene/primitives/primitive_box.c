@@ -15,7 +15,7 @@ static double rounding_room(const double *row, double reach, double shift)
     return used > 1 && isfinite(reach) ? 4 * DBL_EPSILON * (fabs(reach) + fabs(shift)) : 0;
 }
 
-csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const csg_affine *map,
+csg_box csg_primitive_box(csg_primitive_kind kind, const double *parameters, const csg_affine *map,
                           double level)
 {
     double low[3], high[3];

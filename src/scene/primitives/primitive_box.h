@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 /* Box of the image under `map` of {f >= -level}. */
-csg_box csg_primitive_box(csg_node_kind kind, const double *parameters, const csg_affine *map,
+csg_box csg_primitive_box(csg_primitive_kind kind, const double *parameters, const csg_affine *map,
                           double level);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "scene/primitives/capsule.h"
 #include "scene/primitives/curve.h"
+#include "scene/primitives/kinds.h"
 
 /* Own parameters of a piece, s = -1 to 1 along it, its middle the origin: coefficients of Q for s,
  * s^2, s^3, of r for 1, s, s^2, s^3, and of Q . Q' for s to s^5; whether r varies. */
@@ -19,7 +20,7 @@ enum {
     CSG_TUBE_OWN
 };
 
-static inline bool csg_tube_check(csg_node_kind kind, csg_refusal *refusal, const double *v)
+static inline bool csg_tube_check(csg_primitive_kind kind, csg_refusal *refusal, const double *v)
 {
     double most = 0;
     for (uint32_t i = 0; i < csg_primitive_parameter_count(kind); i++) {
@@ -32,7 +33,7 @@ static inline bool csg_tube_check(csg_node_kind kind, csg_refusal *refusal, cons
     return most >= CSG_SMALLEST_LENGTH || csg_refuse(refusal, "one of the radii must be positive");
 }
 
-static inline csg_sample csg_tube_distance(csg_node_kind kind, const double *v, csg_vec3 p)
+static inline csg_sample csg_tube_distance(csg_primitive_kind kind, const double *v, csg_vec3 p)
 {
     csg_curve bezier = csg_curve_make(kind, v);
     csg_vec3 to;
@@ -40,7 +41,7 @@ static inline csg_sample csg_tube_distance(csg_node_kind kind, const double *v, 
     return (csg_sample){value, csg_vec3_normalize(to)};
 }
 
-static inline double csg_tube_support(csg_node_kind kind, const double *v, csg_vec3 n)
+static inline double csg_tube_support(csg_primitive_kind kind, const double *v, csg_vec3 n)
 {
     csg_curve bezier = csg_curve_make(kind, v);
     return csg_curve_support(&bezier, n, csg_vec3_norm(n));
@@ -71,7 +72,7 @@ static inline csg_term csg_tube_chord_term(csg_terms *t, const double *a, const 
 }
 
 /* No formula of a point's nearest ball is short: chords within 1e-4 of the largest radius. */
-static inline csg_term csg_tube_term(csg_node_kind kind, csg_terms *t, const double *v,
+static inline csg_term csg_tube_term(csg_primitive_kind kind, csg_terms *t, const double *v,
                                      const csg_term p[3])
 {
     csg_curve bezier = csg_curve_make(kind, v);
@@ -91,14 +92,14 @@ static inline csg_term csg_tube_term(csg_node_kind kind, csg_terms *t, const dou
     return all;
 }
 
-static inline double csg_tube_depth(csg_node_kind kind, const double *v)
+static inline double csg_tube_depth(csg_primitive_kind kind, const double *v)
 {
     csg_curve bezier = csg_curve_make(kind, v);
     return csg_curve_only_radius(&bezier);
 }
 
 /* Those between chords of which the tube differs from their hull by little. */
-static inline bool csg_tube_balls(csg_node_kind kind, csg_ball_sink *to, const double *v)
+static inline bool csg_tube_balls(csg_primitive_kind kind, csg_ball_sink *to, const double *v)
 {
     const double most = 4000;
     csg_curve bezier = csg_curve_make(kind, v);
@@ -113,7 +114,7 @@ static inline bool csg_tube_balls(csg_node_kind kind, csg_ball_sink *to, const d
 
 /* Control points within about [-1, 1]^3: tame, wild, straight, with cusps, loops, sides of no
  * length and control points that coincide; of one radius, with changing radii, pointed. */
-static inline void csg_tube_example(csg_node_kind kind, csg_random *random, double *v)
+static inline void csg_tube_example(csg_primitive_kind kind, csg_random *random, double *v)
 {
     int count = (int)csg_primitive_parameter_count(kind) / CSG_CURVE_AXES;
     uint32_t shape = csg_random_below(random, 8), radii = csg_random_below(random, 4);

@@ -5,6 +5,8 @@
 
 #include <assert.h>
 
+#include "scene/warp_kinds.h"
+
 #define PI 3.14159265358979323846
 
 static csg_vec3 vec3(double x, double y, double z)
@@ -228,6 +230,7 @@ static const warp_row rows[CSG_WARP_COUNT] = {
     [CSG_WARP_##NAME] = {#name,         given,     traits,       name##_check,                     \
                          name##_settle, name##_at, name##_scale, name##_box},
 #include "scene/primitives/warps.def"
+
 };
 
 static const warp_row *row_of(csg_warp_kind kind)

@@ -13,17 +13,6 @@
 #include "base/geometry.h"
 #include "scene/primitives/sizes.h"
 
-typedef enum csg_warp_kind {
-#define CSG_WARP(NAME, ...) CSG_WARP_##NAME,
-#include "scene/primitives/warps.def"
-    CSG_WARP_COUNT
-} csg_warp_kind;
-
-enum {
-    CSG_WARP_IS_FLAT = 1, /* its field does not depend on z */
-    CSG_WARP_IS_CUT = 2   /* needs its child's box, and the builder cuts what lies outside */
-};
-
 enum {
     CSG_WARP_PARAMETERS = 5,
     CSG_MOST_WARPS = 8 /* one below the other */
@@ -31,16 +20,10 @@ enum {
 
 /* Parameters: those given, as in warps.def, then those that csg_warp_settle finds. */
 typedef struct csg_warp {
-    uint8_t kind; /* csg_warp_kind */
+    uint8_t kind; /* csg_warp_kind (scene/warp_kinds.h) */
     double parameters[CSG_WARP_PARAMETERS];
 } csg_warp;
 
-enum { CSG_TWIST_RATE, CSG_TWIST_LOW, CSG_TWIST_HIGH, CSG_TWIST_REACH };
-enum { CSG_BEND_RADIUS, CSG_BEND_NEAREST, CSG_BEND_ANGLE /* radians */ };
-
-const char *csg_warp_name(csg_warp_kind kind);
-uint32_t csg_warp_given(csg_warp_kind kind);
-unsigned csg_warp_traits(csg_warp_kind kind);
 /* The parameters given; finite. */
 bool csg_warp_check(const csg_warp *warp, csg_refusal *refusal);
 

@@ -4,8 +4,10 @@
  * blends become chains); nested n-ary operators are flattened when the scene is sealed (seal.c).
  */
 #include "scene/tree/build.h"
+#include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
@@ -173,7 +175,7 @@ csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where)
 
 /* ---- primitives ---------------------------------------------------------------------- */
 
-csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
+csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_primitive_kind kind,
                                 const double *parameters, csg_span where)
 {
     double values[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};

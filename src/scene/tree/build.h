@@ -29,7 +29,7 @@ void csg_build_abandon(csg_scene_builder *builder);
 
 csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where);
 /* parameters as in primitives.def; checked: finite and in range. */
-csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_node_kind kind,
+csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_primitive_kind kind,
                                 const double *parameters, csg_span where);
 /* Sphere-swept segment between any two points with radii >= 0, not both 0; a ball where one end
  * swallows the other. */

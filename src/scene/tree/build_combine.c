@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "scene/formula/formula.h"
 #include "scene/operators/combine.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"

@@ -4,8 +4,10 @@
  */
 #include "scene/boxes/bounds.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
+#include "scene/warp_kinds.h"
 
 #include <string.h>
 

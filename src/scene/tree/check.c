@@ -7,8 +7,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "scene/formula/formula.h"
 #include "scene/operators/rule.h"
 #include "scene/primitives/primitive.h"
+#include "scene/warp_kinds.h"
 
 /* A map whose smallest stretch is below this part of its largest is as good as singular. */
 #define SMALLEST_STRETCH 1e-13
@@ -50,7 +52,7 @@ static bool check_radii(csg_scene_builder *builder, double r1, double r2)
     return is_fine(builder, csg_check_radii(&refusal, r1, r2), &refusal);
 }
 
-bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *v)
+bool csg_check_primitive(csg_scene_builder *builder, csg_primitive_kind kind, double *v)
 {
     csg_refusal refusal = {0};
     if (!csg_node_is_named_primitive(kind))

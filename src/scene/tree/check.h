@@ -13,7 +13,7 @@ void csg_check_fail(csg_scene_builder *builder, csgm_status status, const char *
 
 /* values as in primitives.def; a plane's normal becomes a unit vector, a gauge's constant is
  * found. */
-bool csg_check_primitive(csg_scene_builder *builder, csg_node_kind kind, double *values);
+bool csg_check_primitive(csg_scene_builder *builder, csg_primitive_kind kind, double *values);
 bool csg_check_field(csg_scene_builder *builder, const csg_formula_step *steps, uint32_t count,
                      csg_box bounds, double lipschitz);
 /* The formula's Lipschitz constant: the bound that was found where none is stated (0); else the

@@ -9,6 +9,7 @@
 
 #include "scene/operators/rule.h"
 #include "scene/tree/print_private.h"
+#include "scene/warp_kinds.h"
 
 enum { DEEPEST_INDENT = 40, INDENT = 2 };
 

@@ -9,14 +9,17 @@
  */
 #include "scene/tree/print_openscad.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/scene_codes.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "scene/tree/print_private.h"
 #include "scene/tree/texts.h"
+#include "scene/warp_kinds.h"
 
 #define FACETS "$fn = 96"
 
@@ -55,6 +58,31 @@ static bool grows_by_balls(const csgm_scene *scene, const csg_node *node)
             csg_primitive_has((csg_node_kind)node->kind, CSG_TRAIT_EXACT | CSG_TRAIT_BOUNDED));
 }
 
+/* NULL: put_leaf says it. */
+static const char *primitive_obstacle(csg_primitive_kind kind)
+{
+    switch (kind) {
+    case CSG_NODE_SPHERE:
+    case CSG_NODE_CIRCLE:
+    case CSG_NODE_BOX:
+    case CSG_NODE_RECTANGLE:
+    case CSG_NODE_FRUSTUM:
+    case CSG_NODE_CAPSULE:
+    case CSG_NODE_TORUS:
+    case CSG_NODE_ELLIPSOID:
+    case CSG_NODE_PLANE:
+    case CSG_NODE_SLAB:
+        return NULL;
+    case CSG_NODE_SUPERELLIPSOID:
+        return "superellipsoids";
+    case CSG_NODE_QUADRATIC_TUBE:
+    case CSG_NODE_CUBIC_TUBE:
+        return "tubes along curves";
+    default: /* one that nobody has written a translation for */
+        return csg_node_kind_name((csg_node_kind)kind);
+    }
+}
+
 /* NULL: it can be said. */
 static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
 {
@@ -66,11 +94,6 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
         return node->blend == CSG_BLEND_PROFILE ? "blends" : "solids by a formula";
     case CSG_NODE_SOFT:
         return "soft solids";
-    case CSG_NODE_SUPERELLIPSOID:
-        return "superellipsoids";
-    case CSG_NODE_QUADRATIC_TUBE:
-    case CSG_NODE_CUBIC_TUBE:
-        return "tubes along curves";
     case CSG_NODE_WARP:
         if (scene->warps[node->payload].kind == CSG_WARP_BEND)
             return "bent solids";
@@ -87,9 +110,15 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:
         return node->blend == CSG_BLEND_SHARP || is_plate(node) ? NULL : "blends";
-    default:
+    case CSG_NODE_EMPTY:
+    case CSG_NODE_SHAPE:
+    case CSG_NODE_TRANSFORM:
+    case CSG_NODE_COLOR:
         return NULL;
+    case CSG_NODE_FIRST_PRIMITIVE:
+        break;
     }
+    return primitive_obstacle(node->kind);
 }
 
 static csgm_status refuse(const csgm_scene *scene, csg_node_id id, const char *obstacle)
@@ -237,7 +266,7 @@ static void put_frustum(const csg_printer *out, const double *v)
 static void put_primitive(const csg_printer *out, const csg_node *node, csg_box room)
 {
     const double *v = csg_scene_parameters(out->scene, node);
-    switch ((csg_node_kind)node->kind) {
+    switch (node->kind) {
     case CSG_NODE_SPHERE:
         put_ball(out, "sphere", v[0]);
         break;
@@ -274,8 +303,11 @@ static void put_primitive(const csg_printer *out, const csg_node *node, csg_box 
     case CSG_NODE_PLANE:
         put_half_space(out, v, room);
         break;
-    default: /* SLAB: the others are obstacles */
+    case CSG_NODE_SLAB:
         put_slab(out, v[0], room);
+        break;
+    default:
+        assert(!"primitive_obstacle refuses the others");
     }
     csg_put(out, "\n");
 }
