@@ -57,7 +57,7 @@ static void put_head(const char *name, const char *summary)
     printf(".\\\" SPDX-License-Identifier: MIT\n.TH ");
     for (const char *c = name; *c; c++)
         putchar(*c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
-    printf(" 1 \"\" \"csgmesh %s\" \"csgmesh\"\n.SH NAME\n", csgm_version());
+    printf(" 1 \"\" \"csgmesh %s\" \"csgmesh\"\n.nh\n.SH NAME\n", csgm_version());
     put_text(name);
     printf(" \\- ");
     put_line(summary);
