@@ -225,6 +225,44 @@ static void test_triangle_count(void **state)
     mesh_case_end(&c);
 }
 
+/* ---- how few -----------------------------------------------------------------------------------
+ */
+
+/* Where the surface is curved in one way, sides of large cells get a vertex between: there are half
+ * as many triangles to begin with. */
+static void test_bulges(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, make_cylinder(&c, 20, 50));
+    csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+    mesh_build_closed(&c, &options, "a cylinder");
+    assert_true(c.stats.triangles_before < 6000);
+    assert_true(fabs(c.check.volume - 40e3 * 3.14159265) < 200 * 3.14159265);
+    assert_uncrossed(c.mesh, "a cylinder");
+    mesh_case_end(&c);
+}
+
+/* A tight rounding is no crease, although its triangles meet at more than 20 degrees: it is thinned
+ * out along itself. True creases stay beside it. */
+static void test_tight_roundings(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    csg_node_id rod = joined(&c, CSG_NODE_INTERSECTION, ROUND(0.5), make_box(&c, 20, 100, 100),
+                             make_box(&c, 100, 15, 100));
+    rod = joined(&c, CSG_NODE_INTERSECTION, ROUND(0.5), rod, make_half_space(&c, 0, 0, 1, 10));
+    mesh_case_compile(
+        &c, joined(&c, CSG_NODE_INTERSECTION, SHARP, rod, make_half_space(&c, 0, 0, -1, 10)));
+    csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+    mesh_build_closed(&c, &options, "rounded and sharp edges");
+    assert_true(c.mesh->triangle_count < 200);
+    assert_uncrossed(c.mesh, "rounded and sharp edges");
+    for (uint64_t i = 0; i < c.mesh->vertex_count; i++)
+        assert_true(mesh_vertex(&c, i).z > -9.9 || mesh_vertex(&c, i).z < -10 + 1e-5);
+    mesh_case_end(&c);
+}
+
 /* ---- random scenes -----------------------------------------------------------------------------
  */
 
@@ -274,6 +312,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_thin_sheets),     cmocka_unit_test(test_within_tolerance),
         cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
         cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_bulges),          cmocka_unit_test(test_tight_roundings),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

@@ -139,7 +139,7 @@ static bool is_judged(const csg_cell_at_hand *c, const csg_polygon_side *side)
 /* What is in a face that the judge has not seen. False: nothing, or, which the cell will say, there
  * is no vertex at one end. */
 static bool find_crease(csg_cell_at_hand *c, const csg_polygon_side *side, int axis, unsigned upper,
-                        float at[3])
+                        csg_placed_vertex *found)
 {
     csg_cell_loop *w = c->loop;
     const csg_bricks *b = w->x->bricks;
@@ -156,7 +156,10 @@ static bool find_crease(csg_cell_at_hand *c, const csg_polygon_side *side, int a
     face.ends[0] = point_of(&w->vertices[a]);
     face.ends[1] = point_of(&w->vertices[z]);
     csg_sheets_meet_in_faces(c->probe, &face, 1);
-    csg_vec3_to_floats(at, face.at);
+    csg_sheets_bulge_in_faces(c->probe, &face, 1, w->x->judge->bulge);
+    csg_vec3_to_floats(found->at, face.at);
+    csg_vec3_to_floats(found->gradient, face.gradient);
+    found->is_crease = !face.is_smooth;
     return face.is_there;
 }
 
@@ -171,8 +174,7 @@ static bool look_into_faces(csg_cell_at_hand *c)
         if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
             (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
             continue;
-        csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, brick, c->at, side->crease),
-                               .is_crease = true};
+        csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, brick, c->at, side->crease)};
         if (is_judged(c, side)) {
             unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
             low[axis] += upper;
@@ -181,10 +183,12 @@ static bool look_into_faces(csg_cell_at_hand *c)
             if (!found)
                 continue;
             memcpy(v.at, found->at, sizeof v.at);
-        } else if (!find_crease(c, side, axis, upper, v.at)) {
+            memcpy(v.gradient, found->gradient, sizeof v.gradient);
+            v.is_crease = !found->is_smooth;
+        } else if (!find_crease(c, side, axis, upper, &v)) {
             continue;
         }
-        w->workers[c->worker].creases++;
+        w->workers[c->worker].creases += v.is_crease;
         if (!csg_cells_add_vertex(w, c->worker, &v))
             return false;
     }
@@ -223,7 +227,7 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
     csg_cell_loop *w = c->loop;
     const csg_brick *brick = c->shell->brick;
     bool creased = !has_several(brick, c->at);
-    out->count = 0;
+    out->count = out->in_faces = 0;
     for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
         const csg_polygon_side *side = &c->polygons.side[i];
         uint32_t v =
@@ -231,6 +235,7 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
         if (v == CSG_TABLE_NONE || out->count + 2 > CSG_POLYGON_MOST)
             return csg_cells_is_missing(c);
         out->vertex[out->count] = v;
+        out->faces[out->count] = csg_local_faces(side->from);
         out->is_crease[out->count] = false;
         out->point[out->count++] = point_of(&w->vertices[v]);
         uint32_t crease = CSG_TABLE_NONE;
@@ -242,8 +247,10 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
         if (crease == CSG_TABLE_NONE)
             continue;
         out->vertex[out->count] = crease;
-        out->is_crease[out->count] = true;
+        out->faces[out->count] = csg_local_faces(side->face);
+        out->is_crease[out->count] = w->vertices[crease].is_crease;
         out->point[out->count++] = point_of(&w->vertices[crease]);
+        out->in_faces++;
     }
     return true;
 }

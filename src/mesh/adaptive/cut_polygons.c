@@ -50,6 +50,112 @@ bool csg_cut_plain(csg_cut_polygon *piece)
     return true;
 }
 
+/* ---- between vertices in faces -----------------------------------------------------------------
+ */
+
+enum { MOST_BETWEEN = CSG_CUT_MOST_CORNERS / 3 + 2 /* vertices */ };
+
+/* Cosine: where gradients are farther from their mean, an edge may lie between them. */
+static const double ONE_WAY = 0.95;
+/* Of its length: what a diagonal costs where the surface is plane. */
+static const double LENGTH_SHARE = 0.02;
+
+/* How far the surface is from a diagonal; INFINITY: it would lie in a face, where the next cell may
+ * have it, too. */
+static double cost_of(const csg_polygon *p, int a, int b)
+{
+    if (p->faces[a] & p->faces[b])
+        return INFINITY;
+    csg_vec3 way = csg_vec3_sub(p->point[b].at, p->point[a].at);
+    csg_vec3 turn = csg_vec3_sub(csg_vec3_normalize(p->point[b].gradient),
+                                 csg_vec3_normalize(p->point[a].gradient));
+    return fabs(csg_vec3_dot(way, turn)) / 8 + LENGTH_SHARE * csg_vec3_norm(way);
+}
+
+/* Puts the triangles between two vertices, and those behind theirs, into the cut. */
+static int list_triangles(uint8_t apex[MOST_BETWEEN][MOST_BETWEEN], int a, int b, int count,
+                          uint8_t *cut)
+{
+    if (b - a < 2)
+        return count;
+    int c = apex[a][b];
+    cut[3 * count] = (uint8_t)a, cut[3 * count + 1] = (uint8_t)c, cut[3 * count + 2] = (uint8_t)b;
+    count = list_triangles(apex, a, c, count + 1, cut);
+    return list_triangles(apex, c, b, count, cut);
+}
+
+/* The cheapest diagonals, by those of ever more vertices in a row. */
+static bool choose_cut(csg_cut_polygon *piece)
+{
+    const csg_polygon *p = &piece->polygon;
+    double least[MOST_BETWEEN][MOST_BETWEEN] = {{0}};
+    uint8_t apex[MOST_BETWEEN][MOST_BETWEEN];
+    int n = p->count;
+    for (int width = 2; width < n; width++)
+        for (int a = 0; a + width < n; a++) {
+            int b = a + width;
+            least[a][b] = INFINITY;
+            for (int c = a + 1; c < b; c++) {
+                double sum = least[a][c] + least[c][b];
+                if (sum < least[a][b]) {
+                    least[a][b] = sum;
+                    apex[a][b] = (uint8_t)c;
+                }
+            }
+            if (width < n - 1)
+                least[a][b] += cost_of(p, a, b);
+        }
+    return least[0][n - 1] < INFINITY && list_triangles(apex, 0, n - 1, 0, piece->cut) == n - 2;
+}
+
+/* Whether triangles, and those of a fan around the middle, all look one way: then they meet
+ * nowhere. */
+static bool looks_one_way(const csg_cut_polygon *piece)
+{
+    const csg_polygon *p = &piece->polygon;
+    csg_vec3 middle = {0, 0, 0}, mean = {0, 0, 0};
+    for (int i = 0; i < p->count; i++)
+        middle = csg_vec3_add(middle, csg_vec3_scale(p->point[i].at, 1.0 / p->count));
+    for (int i = 0; i < p->count; i++) {
+        csg_vec3 a = csg_vec3_sub(p->point[i].at, middle),
+                 b = csg_vec3_sub(p->point[(i + 1) % p->count].at, middle);
+        mean = csg_vec3_add(mean, csg_vec3_cross(a, b));
+    }
+    for (int i = 0; i < p->count; i++) {
+        csg_vec3 a = csg_vec3_sub(p->point[i].at, middle),
+                 b = csg_vec3_sub(p->point[(i + 1) % p->count].at, middle);
+        if (!(csg_vec3_dot(mean, csg_vec3_cross(a, b)) > 0))
+            return false;
+    }
+    for (int t = 0; t < csg_cut_triangle_count(piece); t++) {
+        int corner[3];
+        csg_vec3 v[3];
+        csg_cut_triangle(piece, t, corner, v);
+        csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+        if (!(csg_vec3_dot(mean, n) > 0))
+            return false;
+    }
+    return true;
+}
+
+bool csg_cut_without_apex(csg_cut_polygon *piece)
+{
+    const csg_polygon *p = &piece->polygon;
+    if (!p->in_faces)
+        return csg_cut_plain(piece);
+    piece->is_fan = false;
+    csg_vec3 mean = {0, 0, 0};
+    for (int i = 0; i < p->count; i++) {
+        mean = csg_vec3_add(mean, csg_vec3_normalize(p->point[i].gradient));
+        if (p->is_crease[i])
+            return false;
+    }
+    for (int i = 0; i < p->count; i++)
+        if (!(csg_gradients_cosine(p->point[i].gradient, mean) > ONE_WAY))
+            return false;
+    return p->count <= MOST_BETWEEN && choose_cut(piece) && looks_one_way(piece);
+}
+
 /* ---- distances ---------------------------------------------------------------------------------
  */
 
@@ -95,6 +201,11 @@ static bool add_points(points *q, const csg_cut_polygon *piece, double least_hei
         add_point(q, csg_vec3_scale(csg_vec3_add(b, c), 0.5));
         if (!piece->is_fan) /* the next triangle of a fan has it */
             add_point(q, csg_vec3_scale(csg_vec3_add(c, a), 0.5));
+        if (!piece->is_fan && piece->polygon.in_faces) /* it is large */
+            for (int k = 0; k < 3; k++)
+                add_point(q,
+                          csg_vec3_add(csg_vec3_scale(v[k], 0.4),
+                                       csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 0.2)));
     }
     return true;
 }

@@ -7,16 +7,18 @@
 #include "mesh/adaptive/sheets.h"
 #include "mesh/marching/tables.h"
 
+enum { CSG_CUT_MOST_CORNERS = 30 };
+
 /* Around an apex, or without a point inside. */
 typedef struct csg_cut_polygon {
     csg_polygon polygon;
     bool is_fan;
     csg_vec3 apex;
-    csg_apex_kind kind;                 /* of the apex */
-    uint8_t cut[CSG_CELL_MOST_INDICES]; /* three corners per triangle */
-    uint8_t cell, number;               /* the polygon's, in its cell */
-    bool is_cut;                        /* as the mesh is to have it */
-    double distance;                    /* from the surface, as it was last cut */
+    csg_apex_kind kind;                /* of the apex */
+    uint8_t cut[CSG_CUT_MOST_CORNERS]; /* three corners per triangle */
+    uint8_t cell, number;              /* the polygon's, in its cell */
+    bool is_cut;                       /* as the mesh is to have it */
+    double distance;                   /* from the surface, as it was last cut */
 } csg_cut_polygon;
 
 int csg_cut_triangle_count(const csg_cut_polygon *piece);
@@ -27,6 +29,10 @@ void csg_cut_triangle(const csg_cut_polygon *piece, int triangle, int corner[3],
  * are on, from the same vertex on as the mesh will have it: other triangles have other distances.
  * False: it has no such cut. */
 bool csg_cut_plain(csg_cut_polygon *piece);
+
+/* The same of one that may have smooth vertices in faces: between those, where the surface is
+ * curved least. */
+bool csg_cut_without_apex(csg_cut_polygon *piece);
 
 /* The largest distance from the surface of each, as |f| over the slope, at points of the triangles.
  * INFINITY: a triangle higher than `least_height` looks inwards. */

@@ -48,13 +48,10 @@ static bool add_fans(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 static bool fan(csg_cell_at_hand *c, unsigned polygon, const csg_cut_polygon *piece)
 {
     csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
-    unsigned creases = 0;
-    for (int i = 0; i < piece->polygon.count; i++)
-        creases += piece->polygon.is_crease[i];
     const csg_judged_apex *judged =
-        c->is_border
-            ? NULL
-            : csg_judged_apex_of(c->shell->brick->judged, csg_cells_bit(c), polygon, creases);
+        c->is_border ? NULL
+                     : csg_judged_apex_of(c->shell->brick->judged, csg_cells_bit(c), polygon,
+                                          (unsigned)piece->polygon.in_faces);
     if (judged) {
         room->piece_count--;
         return add_fan(c->loop, c->worker, &piece->polygon, judged->at,
@@ -94,6 +91,19 @@ static bool cut_whole(csg_cell_at_hand *c)
     return true;
 }
 
+/* The same where there are vertices in faces. */
+static bool add_cut(csg_cell_at_hand *c, const csg_cut_polygon *piece)
+{
+    const uint32_t *vertex = piece->polygon.vertex;
+    for (int t = 0; t < csg_cut_triangle_count(piece); t++) {
+        const uint8_t *cut = piece->cut + 3 * (ptrdiff_t)t;
+        if (!csg_cells_add_triangle(c->loop, c->worker, vertex[cut[0]], vertex[cut[1]],
+                                    vertex[cut[2]]))
+            return false;
+    }
+    return true;
+}
+
 static bool make_triangles(csg_cell_at_hand *c)
 {
     const csg_brick *brick = c->shell->brick;
@@ -101,15 +111,15 @@ static bool make_triangles(csg_cell_at_hand *c)
     if (brick->several >> bit & 1 && c->is_whole)
         return cut_whole(c);
     for (unsigned polygon = 0; polygon < c->polygons.count; polygon++) {
-        const csg_cut_polygon *piece = csg_cells_set_aside(c, polygon);
+        csg_cut_polygon *piece = csg_cells_set_aside(c, polygon);
         if (!piece)
             return false;
-        unsigned sides = c->polygons.first[polygon + 1] - c->polygons.first[polygon];
-        bool plain = c->is_whole && (unsigned)piece->polygon.count == sides;
-        if (plain && c->polygons.count == 1 && brick->flat >> bit & 1) {
+        bool flat = c->is_whole && c->polygons.count == 1 && brick->flat >> bit & 1;
+        if (flat && (!piece->polygon.in_faces || csg_cut_without_apex(piece))) {
             c->loop->x->judge->rooms[c->worker].piece_count--;
-            return cut_whole(c);
+            return piece->polygon.in_faces ? add_cut(c, piece) : cut_whole(c);
         }
+        piece->is_fan = true;
         if (!fan(c, polygon, piece))
             return false;
     }

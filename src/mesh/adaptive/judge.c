@@ -16,6 +16,8 @@ enum { E = CSG_BRICK_EDGE };
 static const double FAILURE = 4;
 /* The same where a cell has several polygons. */
 static const double SEVERAL = 1;
+/* Of the tolerance: how near triangles between vertices in faces are; else a fan is made. */
+static const double NEARER = 0.6;
 /* Of a cell: how far beside each other's triangles its polygons are. */
 static const double APART = 1e-3;
 
@@ -227,7 +229,7 @@ static csg_face_crease face_of(const csg_judge_room *room, const csg_cell_box *b
 /* Looks for creases in the faces of cells with one polygon, and for those that all wedges have, in
  * each face once for both cells. */
 static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg_bricks *b,
-                         const csg_brick *brick, bool sharp)
+                         const csg_brick *brick, const csg_judge *judge)
 {
     memset(room->face, CSG_NO_FACE, sizeof room->face);
     room->face_count = 0;
@@ -236,7 +238,7 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
         csg_brick_cell_place(cell, at);
         const csg_cell_polygons *polygons = &room->polygons[cell];
         csg_cell_box box = csg_judge_cell_box(b, brick, at);
-        bool creased = sharp && polygons->count == 1;
+        bool creased = judge->sharp && polygons->count == 1;
         for (unsigned i = 0; i < polygons->first[polygons->count]; i++) {
             const csg_polygon_side *side = &polygons->side[i];
             unsigned slot = slot_of_place(side->face, at, true);
@@ -247,6 +249,7 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
         }
     }
     csg_sheets_meet_in_faces(probe, room->faces, room->face_count);
+    csg_sheets_bulge_in_faces(probe, room->faces, room->face_count, judge->bulge);
 }
 
 enum { MOST_PIECES = CSG_JUDGED_MOST_APEXES / CSG_BRICK_CELLS /* of a cell */ };
@@ -368,27 +371,23 @@ static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_pol
     const csg_cell_polygons *polygons = &room->polygons[cell];
     unsigned at[3];
     csg_brick_cell_place(cell, at);
-    p->count = 0;
+    p->count = p->in_faces = 0;
     for (unsigned i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
         uint8_t face = room->face[slot_of_place(side->face, at, true)];
         p->vertex[p->count] = csg_local_edge(side->from);
+        p->faces[p->count] = csg_local_faces(side->from);
         p->is_crease[p->count] = false;
         p->point[p->count++] = point_of(room, side->from, at);
         bool creased = polygons->count == 1 && side->alone;
         if (!(side->pierced || creased) || face == CSG_NO_FACE || !room->faces[face].is_there)
             continue;
-        p->is_crease[p->count] = true;
-        p->point[p->count++].at = room->faces[face].at;
+        p->faces[p->count] = csg_local_faces(side->face);
+        p->is_crease[p->count] = !room->faces[face].is_smooth;
+        p->point[p->count++] =
+            (csg_surface_point){room->faces[face].at, room->faces[face].gradient};
+        p->in_faces++;
     }
-}
-
-static int crease_count(const csg_polygon *p)
-{
-    int creases = 0;
-    for (int i = 0; i < p->count; i++)
-        creases += p->is_crease[i];
-    return creases;
 }
 
 /* The polygons of the cells that may be good. */
@@ -415,7 +414,7 @@ static void gather_pieces(brick_work *w)
     }
 }
 
-/* Cuts what can be cut without a point inside: polygons of whole cells that have no creases. */
+/* Cuts what can be cut without a point inside: polygons that have no creases. */
 static void cut_plain(brick_work *w)
 {
     csg_judge_room *room = w->room;
@@ -425,13 +424,13 @@ static void cut_plain(brick_work *w)
         csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
         csg_brick_cell_place(piece->cell, at);
-        if (!has_pierced_edge(w->brick, at) && !crease_count(&piece->polygon) &&
-            csg_cut_plain(piece))
+        if (!has_pierced_edge(w->brick, at) && csg_cut_without_apex(piece))
             tried[count++] = piece;
     }
     csg_cuts_find_distances(&w->probe, tried, count, w->least);
     for (int i = 0; i < count; i++) {
-        tried[i]->is_cut = tried[i]->distance <= w->judge->tolerance;
+        double most = (tried[i]->polygon.in_faces ? NEARER : 1) * w->judge->tolerance;
+        tried[i]->is_cut = tried[i]->distance <= most;
         if (tried[i]->is_cut && room->polygons[tried[i]->cell].count == 1)
             w->brick->flat |= (uint8_t)(1u << tried[i]->cell);
     }
@@ -544,6 +543,8 @@ static uint8_t list_creases(const csg_judge_room *room, csg_judged_crease *creas
         if (face == CSG_NO_FACE || !room->faces[face].is_there)
             continue;
         creases[count] = (csg_judged_crease){.slot = (uint8_t)slot};
+        creases[count].is_smooth = room->faces[face].is_smooth;
+        csg_vec3_to_floats(creases[count].gradient, room->faces[face].gradient);
         csg_vec3_to_floats(creases[count++].at, room->faces[face].at);
     }
     return (uint8_t)count;
@@ -558,7 +559,7 @@ static uint8_t list_apexes(const csg_judge_room *room, uint8_t cells, csg_judged
             continue;
         apexes[count] = (csg_judged_apex){.cell = piece->cell,
                                           .polygon = piece->number,
-                                          .creases = (uint8_t)crease_count(&piece->polygon),
+                                          .in_faces = (uint8_t)piece->polygon.in_faces,
                                           .kind = (uint8_t)piece->kind};
         csg_vec3_to_floats(apexes[count++].at, piece->apex);
     }
@@ -614,7 +615,7 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     memset(room->first_triangle, 0, sizeof room->first_triangle);
     memset(room->end_triangle, 0, sizeof room->end_triangle);
     make_polygons(&w);
-    find_creases(&w.probe, room, b, brick, judge->sharp);
+    find_creases(&w.probe, room, b, brick, judge);
     unsigned wanted = find_bad(&w);
     /* Where nothing is hidden in a cell, nothing is in a brick in its place. */
     uint8_t cells = (uint8_t)(CSG_BRICK_ALL_CELLS & ~(wanted | brick->searched));

@@ -41,6 +41,7 @@ typedef struct csg_judge_room {
 typedef struct csg_judge {
     csg_judge_room *rooms; /* one per worker */
     double tolerance;      /* how far triangles may be from the surface */
+    double bulge;          /* how far sides of polygons may be, before they get a vertex between */
     bool sharp;            /* look for creases */
     float noise;           /* of values */
     csg_plain_polygons plain;

@@ -52,12 +52,12 @@ const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned
 }
 
 const csg_judged_apex *csg_judged_apex_of(const csg_judged *judged, unsigned cell, unsigned polygon,
-                                          unsigned creases)
+                                          unsigned in_faces)
 {
     for (unsigned i = 0; judged && i < judged->apex_count; i++) {
         const csg_judged_apex *apex = &judged->apexes[i];
         if (apex->cell == cell && apex->polygon == polygon)
-            return apex->creases == creases ? apex : NULL;
+            return apex->in_faces == in_faces ? apex : NULL;
     }
     return NULL;
 }

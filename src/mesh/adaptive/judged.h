@@ -36,14 +36,15 @@ typedef struct csg_judged_root {
 
 /* A vertex in a face. */
 typedef struct csg_judged_crease {
-    float at[3];
+    float at[3], gradient[3];
     uint8_t slot;
+    bool is_smooth; /* it has a gradient */
 } csg_judged_crease;
 
 /* The point in the middle of a fan, as long as the polygon has so many vertices in faces. */
 typedef struct csg_judged_apex {
     float at[3];
-    uint8_t cell, polygon, creases;
+    uint8_t cell, polygon, in_faces;
     uint8_t kind; /* a csg_apex_kind */
 } csg_judged_apex;
 
@@ -64,6 +65,6 @@ const csg_pierced *csg_judged_pierced(const csg_judged *judged);
 const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot);
 /* NULL: it was not cut that way, or had other vertices. */
 const csg_judged_apex *csg_judged_apex_of(const csg_judged *judged, unsigned cell, unsigned polygon,
-                                          unsigned creases);
+                                          unsigned in_faces);
 
 #endif

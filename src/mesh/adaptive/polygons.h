@@ -82,6 +82,16 @@ static inline void csg_local_place(unsigned place, unsigned out[3])
     out[0] = place % 5, out[1] = place / 5 % 5, out[2] = place / 25;
 }
 
+/* The faces of a cell that a middle is in: bit 2 axis + upper. */
+static inline uint8_t csg_local_faces(unsigned place)
+{
+    unsigned q[3], faces = 0;
+    csg_local_place(place, q);
+    for (unsigned axis = 0; axis < 3; axis++)
+        faces |= (q[axis] == 0 ? 1u : q[axis] == 4 ? 2u : 0u) << (2 * axis);
+    return (uint8_t)faces;
+}
+
 /* The number that csg_cell_tables gives an edge of a cell, by its middle. */
 static inline uint8_t csg_local_edge(unsigned place)
 {

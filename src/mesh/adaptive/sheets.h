@@ -42,18 +42,26 @@ typedef struct csg_face_crease {
                       a place always, where its sheets meet, else where the surface is beside the
                       edge */
     bool is_there;
-    csg_vec3 at;
+    bool is_smooth; /* no crease: the surface, and its gradient, half way between the points */
+    csg_vec3 at, gradient;
 } csg_face_crease;
 
 enum { CSG_MOST_FACES = 36 }; /* at once: those of a brick */
 
 void csg_sheets_meet_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count);
 
-/* A loop on the faces of a cell: vertices on its edges, which have gradients, and crease points
- * within its faces, which have none. */
+/* Of those faces through which no crease goes: a place half way between the points where the
+ * surface, curved, is farther than `most` from the straight way between them (bulges.c). */
+void csg_sheets_bulge_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count,
+                               double most);
+
+/* A loop on the faces of a cell: vertices on its edges, which have gradients, and within its faces,
+ * where crease points have none. */
 typedef struct csg_polygon {
-    int count;
+    int count, in_faces;
     uint32_t vertex[CSG_POLYGON_MOST];
+    uint8_t
+        faces[CSG_POLYGON_MOST]; /* of a whole cell: those that a vertex is in, a bit for each */
     csg_surface_point point[CSG_POLYGON_MOST];
     bool is_crease[CSG_POLYGON_MOST];
 } csg_polygon;

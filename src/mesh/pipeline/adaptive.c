@@ -17,11 +17,12 @@
 #include "mesh/pipeline/workers.h"
 
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
- * triangles may use before they are thinned out. */
+ * triangles may use before they are thinned out, and sides of their polygons before a vertex is put
+ * between: with fewer of these, cells fail for their triangles, with more, they have too many. */
 enum { FIRST_CELLS = 24, LEAST_LEVELS = 3 };
 /* Cells along the longest side of the lattice that looks for what is missed. */
 enum { COMPARED_CELLS = 128 };
-static const double SHARE_OF_CELLS = 0.8;
+static const double SHARE_OF_CELLS = 0.8, SHARE_OF_SIDES = 0.6;
 /* Bricks that a tolerance may take: what needs more of them gets twice the tolerance. A sheet that
  * is hardly thicker than the tolerance and lies across the cells takes the square of its length. */
 enum { MOST_BRICKS = 1 << 19 };
@@ -104,6 +105,7 @@ static csgm_status create_judge(adaptive *a)
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
     a->judge = (csg_judge){.tolerance = SHARE_OF_CELLS * cells_error(a->goal),
+                           .bulge = SHARE_OF_SIDES * cells_error(a->goal),
                            .sharp = a->goal->sharp,
                            .noise = m->noise,
                            .end_distance = (float)fmin(

@@ -15,11 +15,6 @@ static const double SHARP_TURN_COS = 0.85; /* of a crease at a vertex: a corner 
 /* ---- creases ----------------------------------------------------------------------------------
  */
 
-typedef struct face {
-    csg_vec3 normal; /* unit */
-    bool flat;       /* on the surface, and no sliver */
-} face;
-
 static csg_vec3 normal_of(const csg_remesh *r, uint32_t triangle)
 {
     return csg_vec3_normalize(csg_triangle_cross(csg_remesh_corner(r, 3 * triangle),
@@ -27,6 +22,7 @@ static csg_vec3 normal_of(const csg_remesh *r, uint32_t triangle)
                                                  csg_remesh_corner(r, 3 * triangle + 2)));
 }
 
+/* Whether it is on the surface, where the field has this value, and no sliver. */
 static bool is_flat(const csg_remesh *r, uint32_t triangle, float value)
 {
     const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * triangle),
@@ -71,16 +67,13 @@ double csg_remesh_common_value(float *values, size_t count)
     return count ? (double)values[count - 1 - count / 50] : 0;
 }
 
-/* What the creases at a vertex make it. */
-static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const face *faces)
+/* What the creases at a vertex make it. creased: the edges, by the corners that face them. */
+static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const uint8_t *creased)
 {
     uint32_t first = r->corners.corner[vertex], c = first, creases = 0;
     csg_vec3 way[2] = {{0, 0, 0}, {0, 0, 0}};
     do {
-        const face *left = &faces[c / 3];
-        const face *right = &faces[r->corners.across[csg_corner_previous(c)] / 3];
-        if (left->flat && right->flat &&
-            csg_vec3_dot(left->normal, right->normal) < CSG_CREASE_COS) {
+        if (creased[csg_corner_previous(c)]) {
             csg_vec3 to = csg_remesh_corner(r, csg_corner_next(c));
             if (creases < 2)
                 way[creases] = csg_vec3_normalize(csg_vec3_sub(to, r->at[vertex]));
@@ -94,46 +87,107 @@ static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const face 
     return creases <= 2 && straight ? CSG_VERTEX_CREASE : CSG_VERTEX_CORNER;
 }
 
-/* Triangles at edges where normals turn: of these alone it matters whether they are flat. */
-static void find_turns(const csg_remesh *r, const face *faces, uint8_t *turns)
+/* Edges at which normals turn, by the corners that face them; and the triangles at these. */
+static void find_turns(const csg_remesh *r, const csg_vec3 *normals, uint8_t *creased,
+                       uint8_t *turns)
 {
     const csg_corners *m = &r->corners;
     memset(turns, 0, m->triangle_count);
+    memset(creased, 0, 3 * (size_t)m->triangle_count);
     for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
-        if (!csg_corners_is_live(m, c / 3))
+        uint32_t other = m->across[c];
+        if (!csg_corners_is_live(m, c / 3) ||
+            !(csg_vec3_dot(normals[c / 3], normals[other / 3]) < CSG_CREASE_COS))
             continue;
-        uint32_t other = m->across[c] / 3;
-        if (csg_vec3_dot(faces[c / 3].normal, faces[other].normal) < CSG_CREASE_COS)
-            turns[c / 3] = turns[other] = 1;
+        creased[c] = 1;
+        turns[c / 3] = turns[other / 3] = 1;
     }
 }
 
-static void find_kinds(csg_remesh *r, face *faces, uint8_t *turns, float *value)
+/* Takes those edges back at which a triangle is a sliver or, in equal cells, off the surface. */
+static void take_back_bent(csg_remesh *r, uint8_t *creased, uint8_t *turns, float *value)
+{
+    const csg_corners *m = &r->corners;
+    bool equal = !r->marching->bricks;
+    if (equal)
+        csg_remesh_values_at_centroids(r, turns, value);
+    for (uint32_t t = 0; t < m->triangle_count; t++)
+        turns[t] = turns[t] && is_flat(r, t, equal ? value[t] : 0);
+    for (uint32_t c = 0; c < 3 * m->triangle_count; c++)
+        creased[c] = creased[c] && turns[c / 3] && turns[m->across[c] / 3];
+}
+
+/* A place in a triangle, beside the edge that a corner faces. */
+static void place_beside(const csg_remesh *r, uint32_t corner, float at[3])
+{
+    static const double NEAR = 0.15; /* of the way to the corner */
+    csg_vec3 middle =
+        csg_vec3_scale(csg_vec3_add(csg_remesh_corner(r, csg_corner_next(corner)),
+                                    csg_remesh_corner(r, csg_corner_previous(corner))),
+                       0.5);
+    csg_vec3 way = csg_vec3_sub(csg_remesh_corner(r, corner), middle);
+    csg_vec3_to_floats(at, csg_vec3_add(middle, csg_vec3_scale(way, NEAR)));
+}
+
+static double angle(csg_vec3 a, csg_vec3 b)
+{
+    return acos(fmin(fmax(csg_vec3_dot(csg_vec3_normalize(a), csg_vec3_normalize(b)), -1), 1));
+}
+
+/* Takes those edges back on both sides of which the field's gradients differ by much less than the
+ * triangles do: there the surface is curved. */
+static void take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *creased)
+{
+    static const double MOST_OF_TURN = 0.6;
+    const csg_corners *m = &r->corners;
+    float at[BATCH][3], g[BATCH][3];
+    uint32_t of[BATCH / 2], n = 0, count = 3 * m->triangle_count;
+    for (uint32_t c = 0; c < count; c++) {
+        if (creased[c] && c < m->across[c]) {
+            place_beside(r, c, at[2 * n]);
+            place_beside(r, m->across[c], at[2 * n + 1]);
+            of[n++] = c;
+        }
+        if (n < BATCH / 2 && c + 1 < count)
+            continue;
+        csg_probe_gradients(&r->probe, (const float(*)[3])at, 2 * n, g);
+        for (uint32_t i = 0; i < n; i++) {
+            double turn = angle(normals[of[i] / 3], normals[m->across[of[i]] / 3]);
+            double own = angle(csg_vec3_from_floats(g[2 * i]), csg_vec3_from_floats(g[2 * i + 1]));
+            creased[of[i]] = creased[m->across[of[i]]] = own >= MOST_OF_TURN * turn;
+        }
+        n = 0;
+    }
+}
+
+static void find_kinds(csg_remesh *r, csg_vec3 *normals, uint8_t *creased, uint8_t *turns,
+                       float *value)
 {
     uint32_t count = r->corners.triangle_count;
     for (uint32_t t = 0; t < count; t++)
-        faces[t].normal =
-            csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
-    find_turns(r, faces, turns);
-    csg_remesh_values_at_centroids(r, turns, value);
-    for (uint32_t t = 0; t < count; t++)
-        faces[t].flat = turns[t] && is_flat(r, t, value[t]);
+        normals[t] = csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
+    find_turns(r, normals, creased, turns);
+    take_back_bent(r, creased, turns, value);
+    if (r->marching->bricks)
+        take_back_curved(r, normals, creased);
     for (uint32_t v = 0; v < r->corners.vertex_count; v++)
-        r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, faces);
+        r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, creased);
 }
 
 static bool find_creases(csg_remesh *r)
 {
     size_t count = r->corners.triangle_count;
     float *value = csg_memory_alloc(r->memory, count * sizeof *value);
-    face *faces = csg_memory_alloc(r->memory, count * sizeof *faces);
+    csg_vec3 *normals = csg_memory_alloc(r->memory, count * sizeof *normals);
     uint8_t *turns = csg_memory_alloc(r->memory, count);
-    bool done = value && faces && turns;
+    uint8_t *creased = csg_memory_alloc(r->memory, 3 * count);
+    bool done = value && normals && turns && creased;
     if (done)
-        find_kinds(r, faces, turns, value);
+        find_kinds(r, normals, creased, turns, value);
     csg_memory_release(r->memory, value, count * sizeof *value);
-    csg_memory_release(r->memory, faces, count * sizeof *faces);
+    csg_memory_release(r->memory, normals, count * sizeof *normals);
     csg_memory_release(r->memory, turns, count);
+    csg_memory_release(r->memory, creased, 3 * count);
     return done;
 }
 

@@ -43,8 +43,9 @@ typedef struct csg_remesh {
 } csg_remesh;
 
 /* Of a mesh, whose creases are found by angle: where triangles that lie on the surface meet at 20
- * degrees or more. marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or
- * CSGM_ERR_INTERNAL: not a closed manifold. */
+ * degrees or more, and, where cells follow the shape, the field turns there and not beside it.
+ * marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL:
+ * not a closed manifold. */
 csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, const csg_marching *marching,
                              csg_mesh_watch *watch);
 void csg_remesh_end(csg_remesh *remesh);
