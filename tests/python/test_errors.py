@@ -60,6 +60,7 @@ def test_check(folder, recwarn):
     (TypeError, lambda: csgmesh.check(3)),
     (TypeError, lambda: csgmesh.mesh(3)),
     (TypeError, lambda: csgmesh.mesh(None)),
+    (ValueError, lambda: csgmesh.mesh("parts/a.txt")),
     (TypeError, lambda: csgmesh.parse(b"cube(1);")),
     (TypeError, lambda: csgmesh.load(7)),
     (TypeError, lambda: csgmesh.mesh(BALL, resolution="fine")),

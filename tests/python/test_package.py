@@ -39,6 +39,11 @@ def test_version_and_features():
     assert all(line in version for line in csgmesh.features.splitlines())
 
 
+def test_help_names_the_options():
+    assert "simplify_share" in csgmesh.mesh.__doc__ and "define" in csgmesh.mesh.__doc__ and "progress" in csgmesh.read.__doc__
+    assert "radius" in csgmesh.sphere.__doc__ and "only_check" not in csgmesh.check.__doc__
+
+
 def test_types_are_there():
     files = importlib.resources.files("csgmesh")
     for name in ("py.typed", "_core.pyi", "_modules.py", "functions.py", "view.js"):

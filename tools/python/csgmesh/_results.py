@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-
+import re
+import textwrap
 from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
@@ -369,6 +370,9 @@ def scene_of(source: Source, options: Any) -> Scene:
         return Scene._of(*call.settle(
             _core.parse(call.run, str(source).encode("utf-8", "surrogatepass"), b"solid", call.of["scene"]), source._origin))
     if isinstance(source, str):
+        if re.fullmatch(r"[^;(){}\n]+\.(txt|scad|csg)", source):
+            raise ValueError(f"{source!r} is the name of a file, where a scene's text is wanted: "
+                             f"csgmesh.load({source!r}) or pathlib.Path({source!r})")
         return parse(source, **options)
     if isinstance(source, os.PathLike):
         return load(source, **options)
@@ -591,3 +595,20 @@ def _compare(call: Call, given: list[Union[Scene, Mesh]], how: dict[str, Any], u
              for side, other in zip(given, reversed(given))]
     fields = [side._core if use_field and isinstance(side, Scene) else None for side in given]
     return Diff(*call.settle(_core.diff(call.run, sides[0]._core, sides[1]._core, fields[0], fields[1], call.of["diff"])))
+
+
+def _document() -> None:
+    """Docstrings end with the options that a function takes."""
+    of = _core.option_names
+    common = ["progress", "echo", *of["run"]]
+    scene = [name for name in of["scene"] if name != "only_check"]
+    documented: list[tuple[Any, list[str]]] = [
+        (load, scene), (parse, scene), (check, scene), (mesh, [*of["mesh"], *scene]), (Scene.mesh, of["mesh"]),
+        (write, [*of["mesh"], *of["write"], *scene]), (Mesh.write, of["write"]), (render, [*of["render"], *scene]),
+        (diff, [*of["diff"], "field", "mesh"]), (read, []), (Scene.field, [])]
+    for function, options in documented:
+        names = textwrap.fill(", ".join([*options, *common]), 110, initial_indent="    ", subsequent_indent="    ")
+        function.__doc__ = f"{function.__doc__}\n\n    Options:\n{names}"
+
+
+_document()
