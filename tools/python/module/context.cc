@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 
 #include <chrono>
+#include <iterator>
 #include <system_error>
 
 #include "module/options.h"
@@ -17,7 +18,9 @@ namespace
 
 constexpr auto LOOK_EACH = std::chrono::milliseconds(50);
 
-const char *const stage_names[] = {"octree", "mesh", "write", "render"};
+const char *const stage_names[] = {"octree",  "mesh",    "write",  "render",
+                                   "reshape", "certify", "compare"};
+static_assert(std::size(stage_names) == CSGM_STAGE_COUNT, "a name for each csgm_stage");
 const char *const severity_names[] = {"note", "warning", "error"};
 
 std::optional<std::string> copy(const char *text)

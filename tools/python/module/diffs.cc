@@ -17,6 +17,7 @@ nb::tuple compare(const Run &run, nb::object a, nb::object b, nb::object scene_a
     Keep keep;
     csgm_diff *diff = nullptr;
     csgm_diff_options options = csgm_diff_options_default();
+    options.monitor = run.context->monitor();
     fill_diff_options(options, given, keep);
     const csgm_mesh_view &left = nb::cast<const Mesh &>(a).view;
     const csgm_mesh_view &right = nb::cast<const Mesh &>(b).view;
