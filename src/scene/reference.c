@@ -289,12 +289,18 @@ csg_sample csg_reference_node(const csgm_scene *scene, const csg_node *node, csg
         return combine_by_formula(work, scene, node, samples, at);
     case CSG_NODE_SOFT:
         return soften(scene, node, samples[at[0]]);
-    default:
-        if (!csg_node_is_operator(node->kind))
-            return sample_leaf(work, scene, node, p);
+    case CSG_NODE_UNION:
+    case CSG_NODE_INTERSECTION:
+    case CSG_NODE_DIFFERENCE:
         return csg_blend_takes_fields(node->blend) ? combine_fields(work, scene, node, samples, at)
                                                    : combine(work, scene, node, p, samples, at);
+    case CSG_NODE_EMPTY:
+    case CSG_NODE_FIELD:
+    case CSG_NODE_SHAPE:
+    case CSG_NODE_FIRST_PRIMITIVE:
+        break;
     }
+    return sample_leaf(work, scene, node, p);
 }
 
 static void evaluate(workspace *w, const csgm_scene *scene, csg_node_id first, csg_node_id root)

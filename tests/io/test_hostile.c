@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 
 #include "base/random.h"
+#include "io/format_table.h"
 
 typedef struct sample {
     const char *name;
@@ -133,6 +134,19 @@ static void damage(const sample *s, const uint8_t *bytes, size_t size)
     }
     free(copy);
     io_context_check(&io);
+}
+
+static void every_reader_has_a_sample(void **state)
+{
+    (void)state;
+    for (int f = CSGM_FORMAT_AUTO + 1; f < CSGM_FORMAT_COUNT; f++) {
+        const csg_format_row *row = csg_format_find((csgm_format)f);
+        bool is_there = !row->read;
+        for (int i = 0; i < SAMPLES && !is_there; i++)
+            is_there = csg_format_from_path(samples[i].name) == row->id;
+        if (!is_there)
+            fail_msg("%s files are read, but no sample of them is broken here", row->title);
+    }
 }
 
 static void every_reader_survives(void **state)
@@ -367,9 +381,9 @@ static void memory_may_run_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_reader_survives), cmocka_unit_test(lies_are_told_apart),
-        cmocka_unit_test(deep_json_is_refused),  cmocka_unit_test(draco_counts_are_not_believed),
-        cmocka_unit_test(memory_may_run_out),
+        cmocka_unit_test(every_reader_has_a_sample),     cmocka_unit_test(every_reader_survives),
+        cmocka_unit_test(lies_are_told_apart),           cmocka_unit_test(deep_json_is_refused),
+        cmocka_unit_test(draco_counts_are_not_believed), cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

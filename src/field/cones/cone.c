@@ -75,15 +75,25 @@ bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
 /* Operators whose gradient is such a combination. */
 static bool operator_combines(const csg_tape_node *node)
 {
-    switch (node->op) {
+    switch ((csg_op)node->op) {
     case CSG_OP_UNION:
     case CSG_OP_INTERSECTION:
     case CSG_OP_ROUND_UNION:
     case CSG_OP_ROUND_INTERSECTION:
         return node->blend < CSG_BLEND_COUNT || node->blend == CSG_BLEND_ORTHOGONAL;
-    default:
-        return false;
+    case CSG_OP_FIELD:
+    case CSG_OP_SHAPE:
+    case CSG_OP_FILLET_UNION:
+    case CSG_OP_FILLET_INTERSECTION:
+    case CSG_OP_COMBINE:
+    case CSG_OP_SOFTEN:
+    case CSG_OP_RULE_UNION:
+    case CSG_OP_RULE_INTERSECTION:
+    case CSG_OP_EMPTY:
+    case CSG_OP_FIRST_PRIMITIVE:
+        break;
     }
+    return false;
 }
 
 static bool is_sharp(const csg_tape_node *node)

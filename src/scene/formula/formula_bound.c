@@ -5,7 +5,6 @@
  * Three rules know more than interval arithmetic: u * u is no product of strangers, the root of a
  * sum of squares is smooth enough at 0, and a minimum has the gradient of one of its operands.
  */
-#include <assert.h>
 #include <float.h>
 
 #include "scene/formula/formula_bound.h"
@@ -252,10 +251,16 @@ static range value_of(csg_formula_op op, range a, range b)
         return power(a, b);
     case CSG_FORMULA_ATAN2:
         return angle(a, b);
-    default:
-        assert(op == CSG_FORMULA_MOD);
+    case CSG_FORMULA_MOD:
         return remainder_of(a, b);
+    case CSG_FORMULA_CONSTANT: /* these have no operands */
+    case CSG_FORMULA_X:
+    case CSG_FORMULA_Y:
+    case CSG_FORMULA_Z:
+    case CSG_FORMULA_OP_COUNT:
+        break;
     }
+    return unknown();
 }
 
 static range exactly(double value)
@@ -267,9 +272,8 @@ static range exactly(double value)
 static void partials(csg_formula_op op, range a, range b, range v, range *da, range *db)
 {
     const range one = {1, 1};
-    *da = one;
-    *db = (range){0, 0};
     range distance;
+    *da = one, *db = (range){0, 0};
     switch (op) {
     case CSG_FORMULA_NEG:
         *da = negative(one);
@@ -331,10 +335,18 @@ static void partials(csg_formula_op op, range a, range b, range v, range *da, ra
         if (b.low <= 0 && holds(a, 0)) /* the cut */
             *da = *db = unknown();
         break;
-    default:
-        assert(op == CSG_FORMULA_MOD);
+    case CSG_FORMULA_MOD:
         *db = exactly(-whole_quotient(a, b));
         *da = is_known(*db) ? one : unknown();
+        break;
+    case CSG_FORMULA_MIN: /* extreme() takes these */
+    case CSG_FORMULA_MAX:
+    case CSG_FORMULA_CONSTANT: /* these have no operands */
+    case CSG_FORMULA_X:
+    case CSG_FORMULA_Y:
+    case CSG_FORMULA_Z:
+    case CSG_FORMULA_OP_COUNT:
+        *da = *db = unknown();
     }
 }
 

@@ -51,9 +51,14 @@ double csg_formula_value(csg_formula_op op, double a, double b)
         return atan2(a, b) / DEGREE;
     case CSG_FORMULA_MOD:
         return fmod(a, b);
-    default: /* CONSTANT, X, Y, Z have no operands */
-        return NAN;
+    case CSG_FORMULA_CONSTANT: /* these have no operands */
+    case CSG_FORMULA_X:
+    case CSG_FORMULA_Y:
+    case CSG_FORMULA_Z:
+    case CSG_FORMULA_OP_COUNT:
+        break;
     }
+    return NAN;
 }
 
 /* Derivatives by the two operands; v is the value. */
@@ -81,10 +86,8 @@ static void partials(csg_formula_op op, double a, double b, double v, double *da
         *da = DEGREE * (1 + v * v);
         break;
     case CSG_FORMULA_ASIN:
-        *da = 1 / (DEGREE * sqrt((1 - a) * (1 + a)));
-        break;
     case CSG_FORMULA_ACOS:
-        *da = -1 / (DEGREE * sqrt((1 - a) * (1 + a)));
+        *da = (op == CSG_FORMULA_ASIN ? 1 : -1) / (DEGREE * sqrt((1 - a) * (1 + a)));
         break;
     case CSG_FORMULA_ATAN:
         *da = 1 / (DEGREE * (1 + a * a));
@@ -96,11 +99,9 @@ static void partials(csg_formula_op op, double a, double b, double v, double *da
         *da = 1 / a;
         break;
     case CSG_FORMULA_ADD:
-        *da = *db = 1;
-        break;
     case CSG_FORMULA_SUB:
         *da = 1;
-        *db = -1;
+        *db = op == CSG_FORMULA_ADD ? 1 : -1;
         break;
     case CSG_FORMULA_MUL:
         *da = b;
@@ -130,7 +131,12 @@ static void partials(csg_formula_op op, double a, double b, double v, double *da
         *da = 1;
         *db = -trunc(a / b);
         break;
-    default: /* FLOOR is flat */
+    case CSG_FORMULA_FLOOR: /* is flat */
+    case CSG_FORMULA_CONSTANT:
+    case CSG_FORMULA_X:
+    case CSG_FORMULA_Y:
+    case CSG_FORMULA_Z:
+    case CSG_FORMULA_OP_COUNT:
         break;
     }
     *da = isfinite(*da) ? *da : 0;

@@ -42,9 +42,16 @@ static bool is_made_of_children(const csg_node *node)
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:
         return csg_blend_is_sharp(node->blend);
-    default:
-        return false;
+    case CSG_NODE_EMPTY:
+    case CSG_NODE_FIELD:
+    case CSG_NODE_SHAPE:
+    case CSG_NODE_WARP:
+    case CSG_NODE_COMBINE:
+    case CSG_NODE_SOFT:
+    case CSG_NODE_FIRST_PRIMITIVE:
+        break;
     }
+    return false;
 }
 
 /* The most by which the plane part of the map stretches. */

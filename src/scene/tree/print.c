@@ -273,9 +273,13 @@ static bool put_node(const csg_printer *out, const csg_node *node)
         else
             put_operator(out, node);
         return true;
-    default:
-        return csg_put_leaf(out, node);
+    case CSG_NODE_EMPTY:
+    case CSG_NODE_FIELD:
+    case CSG_NODE_SHAPE:
+    case CSG_NODE_FIRST_PRIMITIVE:
+        break;
     }
+    return csg_put_leaf(out, node);
 }
 
 static bool open_children(walk *w, csg_node_id id)

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT
+ * What a row of primitives.def promises beside its distance: balls whose hull is the solid, how
+ * deep it is at its skeleton, and where its field may have a crease. Wrong ones would make a hull
+ * too small, blends of soft solids uneven, and edges round, each without a word.
+ */
+#include "scene_support.h"
+
+#include "random_scene.h"
+#include "scene/primitives/kinds.h"
+#include "scene/primitives/primitive.h"
+
+static void example(csg_random *random, csg_primitive_kind kind, double *v)
+{
+    csg_refusal refusal = {0};
+    test_random_parameters(random, kind, v);
+    assert_true(csg_primitive_of(kind)->check(&refusal, v));
+}
+
+/* ---- balls: the largest n . p over their hull is that of the solid ---------------------------- */
+
+typedef struct hull {
+    csg_vec3 n;
+    double most;
+} hull;
+
+static void take_ball(void *user, csg_vec3 at, double radius)
+{
+    hull *h = user;
+    h->most = fmax(h->most, csg_vec3_dot(h->n, at) + radius * csg_vec3_norm(h->n));
+}
+
+static void take_arc(void *user, double radius, double height, double half_deg, double ball_radius)
+{
+    const hull *h = user;
+    const double degree = 0.017453292519943295;
+    double towards = atan2(h->n.y, h->n.x) / degree,
+           angle = fmax(-half_deg, fmin(half_deg, towards));
+    double ends[3] = {angle, -half_deg, half_deg};
+    for (int i = 0; i < 3; i++) {
+        double x = radius * cos(ends[i] * degree), y = radius * sin(ends[i] * degree);
+        take_ball(user, csg_vec3_make(x, y, height), ball_radius);
+    }
+}
+
+/* The sink's directions are those before the solid is stretched. */
+static bool find_hull(csg_primitive_kind kind, const double *v, csg_vec3 n, double within,
+                      hull *out)
+{
+    csg_vec3 axes = {1, 1, 1};
+    for (int round = 0; round < 2; round++) { /* the axes are known once it has been asked */
+        *out = (hull){csg_vec3_make(n.x * axes.x, n.y * axes.y, n.z * axes.z), -INFINITY};
+        csg_ball_sink sink = {out, take_ball, take_arc, within, {1, 1, 1}};
+        if (!csg_primitive_of(kind)->balls(&sink, v))
+            return false;
+        axes = sink.axes;
+    }
+    return true;
+}
+
+static void test_balls(void **state)
+{
+    const double within = 1e-3;
+    csg_random random = {901};
+    size_t rows = 0;
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
+        bool has_balls = false;
+        for (int set = 0; set < 100; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            example(&random, kind, v);
+            csg_vec3 n = test_direction(&random);
+            n.z = csg_primitive_has(kind, CSG_TRAIT_FLAT) ? 0 : n.z; /* a figure of the plane */
+            hull h;
+            has_balls = find_hull(kind, v, n, within, &h);
+            double support = csg_primitive_of(kind)->support(v, n);
+            if (has_balls && (h.most > support + 1e-9 || h.most < support - within - 1e-9))
+                fail_msg("%s: its balls reach %.9g, the solid %.9g",
+                         csg_node_kind_name((csg_node_kind)kind), h.most, support);
+        }
+        rows += has_balls;
+    }
+    assert_true(rows >= 5);
+}
+
+/* ---- depth: as far inside as that, and no farther, along the gradient ------------------------- */
+
+static void test_depth(void **state)
+{
+    csg_random random = {902};
+    size_t rows = 0;
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
+        const csg_primitive *primitive = csg_primitive_of(kind);
+        size_t reached = 0, deep = 0;
+        for (int set = 0; set < 100; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            example(&random, kind, v);
+            double depth = primitive->depth(v);
+            assert_true(depth >= 0);
+            for (int i = 0; i < 100 && depth > 0; i++) {
+                csg_vec3 p = test_point(&random, 1);
+                csg_sample s = primitive->distance(v, p);
+                assert_true(s.value <= depth + 1e-9);
+                if (!(primitive->traits & CSG_TRAIT_OUTSIDE) ||
+                    fabs(csg_vec3_norm(s.gradient) - 1) > 1e-9)
+                    continue;
+                csg_vec3 to = csg_vec3_add(p, csg_vec3_scale(s.gradient, depth - s.value));
+                deep++;
+                reached += primitive->distance(v, to).value > depth - 1e-6;
+            }
+        }
+        if (reached != deep)
+            fail_msg("%s: %zu of %zu ways to its skeleton are not as deep as it says",
+                     csg_node_kind_name((csg_node_kind)kind), deep - reached, deep);
+        rows += deep > 0;
+    }
+    assert_true(rows >= 3);
+}
+
+/* ---- may_crease: never no where a gradient jumps ----------------------------------------------- */
+
+/* Gradients so far apart cannot come from curvature over such a step in solids of these sizes. */
+static bool has_jump(const csg_primitive *primitive, const double *v, csg_vec3 p, csg_vec3 step)
+{
+    csg_vec3 a = primitive->distance(v, csg_vec3_sub(p, step)).gradient;
+    csg_vec3 b = primitive->distance(v, csg_vec3_add(p, step)).gradient;
+    return csg_vec3_norm(csg_vec3_sub(a, b)) > 0.9;
+}
+
+static bool may_crease(const csg_primitive *primitive, const double *v, csg_vec3 p, double reach,
+                       csg_band band)
+{
+    csg_leaf leaf = {.sigma = 1, .to_own = csg_affine_identity()};
+    float own[CSG_LEAF_MOST_OWN];
+    primitive->pack(&leaf, v, 1);
+    for (int i = 0; i < CSG_LEAF_MOST_OWN; i++)
+        own[i] = (float)leaf.own[i];
+    csg_vec3 at = csg_affine_point(&leaf.to_own, p);
+    const float q[3] = {(float)at.x, (float)at.y, (float)at.z};
+    return primitive->may_crease(own, q, (float)reach, band);
+}
+
+static void test_creases(void **state)
+{
+    const double step = 1e-3;
+    size_t rows = 0;
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
+        const csg_primitive *primitive = csg_primitive_of(kind);
+        csg_random random = {903};
+        size_t jumps = 0, missed = 0;
+        if (primitive->traits & CSG_TRAIT_CURVE)
+            continue; /* its leaves are pieces: tests/field/test_curves.c */
+        for (int set = 0; set < 60; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            example(&random, kind, v);
+            for (int i = 0; i < 4000; i++) {
+                csg_vec3 p = test_point(&random, 1);
+                if (!has_jump(primitive, v, p, csg_vec3_scale(test_direction(&random), step)))
+                    continue;
+                float f = (float)primitive->distance(v, p).value, room = (float)(2 * step);
+                jumps++;
+                missed += !may_crease(primitive, v, p, 2 * step, (csg_band){f - room, f + room});
+            }
+        }
+        if (missed)
+            fail_msg("%s: may_crease says no at %zu of %zu jumps of the gradient",
+                     csg_node_kind_name((csg_node_kind)kind), missed, jumps);
+        rows += jumps > 0;
+    }
+    assert_true(rows >= 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_balls),
+        cmocka_unit_test(test_depth),
+        cmocka_unit_test(test_creases),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
