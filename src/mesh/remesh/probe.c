@@ -10,12 +10,17 @@
 #include "field/kernels/dispatch.h"
 #include "mesh/mesh.h"
 
+enum { NO_POINT = UINT16_MAX };
+
 typedef struct csg_probe_room {
     float x[CSG_PROBE_MOST], y[CSG_PROBE_MOST], z[CSG_PROBE_MOST];
     float channels[4][CSG_PROBE_MOST];
     uint32_t which[CSG_PROBE_MOST]; /* points of the tape at hand */
     const csg_tape_node *nodes[CSG_PROBE_MOST];
     uint32_t node_count[CSG_PROBE_MOST];
+    uint16_t next[CSG_PROBE_MOST]; /* point of the same tape; NO_POINT ends them */
+    uint16_t first[CSG_PROBE_MOST], last_of[CSG_PROBE_MOST]; /* of each tape */
+    uint16_t slots[2 * CSG_PROBE_MOST];                      /* tapes by the hash of their place */
     uint32_t last[3]; /* the block looked up last, and what was found: neighbours follow */
     const csg_block *found;
     bool has_last;
@@ -119,19 +124,42 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
     }
 }
 
-/* Gathers the points that share the tape of point `first`; their tapes are then crossed out. */
-static size_t gather(csg_probe_room *room, const float (*at)[3], size_t first, size_t count)
+/* Links the points of each tape, in their order. How many tapes there are: their first points are
+ * in the order of these. */
+static size_t link_points(csg_probe_room *room, size_t count)
 {
-    const csg_tape_node *nodes = room->nodes[first];
-    size_t n = 0;
-    for (size_t i = first; i < count; i++) {
-        if (room->nodes[i] != nodes)
+    size_t size = 2, tapes = 0;
+    while (size < 2 * count)
+        size *= 2;
+    memset(room->slots, 0xFF, size * sizeof *room->slots);
+    for (size_t i = 0; i < count; i++) {
+        size_t slot = (uintptr_t)room->nodes[i] * (size_t)0x9E3779B97F4A7C15u >> 32 & (size - 1);
+        while (room->slots[slot] != NO_POINT &&
+               room->nodes[room->first[room->slots[slot]]] != room->nodes[i])
+            slot = (slot + 1) & (size - 1);
+        room->next[i] = NO_POINT;
+        if (room->slots[slot] == NO_POINT) {
+            room->slots[slot] = (uint16_t)tapes;
+            room->first[tapes] = room->last_of[tapes] = (uint16_t)i;
+            tapes++;
             continue;
-        room->nodes[i] = NULL;
+        }
+        uint16_t *last = &room->last_of[room->slots[slot]];
+        room->next[*last] = (uint16_t)i;
+        *last = (uint16_t)i;
+    }
+    return tapes;
+}
+
+/* Gathers the points that are linked from this one on. */
+static size_t gather(csg_probe_room *room, const float (*at)[3], uint16_t first)
+{
+    size_t n = 0;
+    for (uint16_t i = first; i != NO_POINT; i = room->next[i]) {
         room->x[n] = at[i][0];
         room->y[n] = at[i][1];
         room->z[n] = at[i][2];
-        room->which[n++] = (uint32_t)i;
+        room->which[n++] = i;
     }
     size_t padded = (n + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
     for (size_t i = n; i < padded; i++) {
@@ -152,12 +180,12 @@ static void each_tape(csg_probe *probe, const float (*at)[3], size_t count, visi
     csg_tape tape = probe->marching->field->tape;
     for (size_t i = 0; i < count; i++)
         choose_tape(probe, at[i], i);
-    for (size_t i = 0; i < count; i++) {
-        if (!room->nodes[i])
-            continue;
-        tape.nodes = room->nodes[i];
-        tape.count = room->node_count[i];
-        visit(probe, &tape, gather(room, at, i, count), out);
+    size_t tapes = link_points(room, count);
+    for (size_t k = 0; k < tapes; k++) {
+        uint16_t first = room->first[k];
+        tape.nodes = room->nodes[first];
+        tape.count = room->node_count[first];
+        visit(probe, &tape, gather(room, at, first), out);
     }
     probe->evaluations += count;
 }
