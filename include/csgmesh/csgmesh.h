@@ -635,6 +635,17 @@ typedef struct csgm_mesh_check {
 CSGM_API csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
                                        csgm_mesh_check *out);
 
+/* For drawing a mesh with fewer triangles than it has: the vertices in each cell of a grid over
+ * `frame` become one, and cells grow until at most most_triangles have their corners in three of
+ * them (or eight cells lie along the longest side). cluster_of gets vertex_count numbers below
+ * *cluster_count, in the order of the cells. *cell_size: the edge of a cell; 0: there are few
+ * enough triangles, and each vertex is its own cluster. Indices must be in range:
+ * CSGM_ERR_ARGUMENT. */
+CSGM_API csgm_status csgm_mesh_cluster(csgm_context *context, const csgm_mesh_view *mesh,
+                                       csgm_box frame, uint64_t most_triangles,
+                                       uint32_t *cluster_of, uint32_t *cluster_count,
+                                       double *cell_size);
+
 /* Largest |f| over the mesh's vertices, in double precision (lambda = 1: their distance to the
  * surface is at least this). In a scene of many nodes it looks at evenly spaced vertices only, so
  * that it ends within seconds; *measured (may be NULL) says at how many. */

@@ -11,6 +11,7 @@
 #include "io/formats.h"
 #include "io/parts.h"
 #include "io/stream.h"
+#include "mesh/cluster.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
 #include "mesh/pipeline/adaptive.h"
@@ -154,6 +155,20 @@ csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
     if (!context || !out || !csg_view_is_sound(mesh))
         return CSGM_ERR_ARGUMENT;
     return csg_mesh_inspect(context, mesh, out);
+}
+
+csgm_status csgm_mesh_cluster(csgm_context *context, const csgm_mesh_view *mesh, csgm_box frame,
+                              uint64_t most_triangles, uint32_t *cluster_of,
+                              uint32_t *cluster_count, double *cell_size)
+{
+    if (!context || !csg_view_is_sound(mesh) || (mesh->vertex_count && !cluster_of) ||
+        !cluster_count || !cell_size)
+        return CSGM_ERR_ARGUMENT;
+    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
+        if (mesh->indices[i] >= mesh->vertex_count)
+            return CSGM_ERR_ARGUMENT;
+    return csg_mesh_cluster(context, mesh, frame, most_triangles, cluster_of, cluster_count,
+                            cell_size);
 }
 
 /* Vertices of [first, end), every step-th. */

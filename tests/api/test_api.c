@@ -239,6 +239,52 @@ static void test_tolerance_of_a_quality(void **state)
     end(&r);
 }
 
+/* Few enough triangles, and no cluster is larger than a cell. */
+static void test_clusters(void **state)
+{
+    enum { MOST = 500 };
+    run r;
+    csgm_mesh_options options = coarse();
+    options.resolution = 40;
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(r.mesh);
+    csgm_mesh_check check;
+    assert_int_equal(csgm_mesh_inspect(r.context, &view, &check), CSGM_OK);
+    assert_true(view.triangle_count > 4 * MOST);
+    uint32_t *cluster_of = malloc(view.vertex_count * sizeof *cluster_of), count;
+    double cell;
+    assert_int_equal(
+        csgm_mesh_cluster(r.context, &view, check.bounds, MOST, cluster_of, &count, &cell),
+        CSGM_OK);
+    uint64_t left = 0;
+    for (uint64_t t = 0; t < view.triangle_count; t++) {
+        uint32_t c[3];
+        for (int k = 0; k < 3; k++)
+            c[k] = cluster_of[view.indices[3 * t + (uint64_t)k]];
+        left += c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
+    }
+    assert_in_range(left, MOST / 4, MOST);
+    for (uint64_t i = 0; i < view.vertex_count; i++) {
+        assert_true(cluster_of[i] < count);
+        for (uint64_t k = i + 1; k < view.vertex_count && k < i + 50; k++)
+            for (int axis = 0; axis < 3 && cluster_of[i] == cluster_of[k]; axis++)
+                assert_true(fabs((double)view.positions[3 * i + (uint64_t)axis] -
+                                 (double)view.positions[3 * k + (uint64_t)axis]) <= cell * 1.0001);
+    }
+    assert_int_equal(csgm_mesh_cluster(r.context, &view, check.bounds, view.triangle_count,
+                                       cluster_of, &count, &cell),
+                     CSGM_OK);
+    assert_true(cell == 0 && count == view.vertex_count && cluster_of[count - 1] == count - 1);
+    static const uint32_t outside[3] = {0, 1, UINT32_MAX};
+    view.indices = outside;
+    view.triangle_count = 1;
+    assert_int_equal(
+        csgm_mesh_cluster(r.context, &view, check.bounds, 0, cluster_of, &count, &cell),
+        CSGM_ERR_ARGUMENT);
+    free(cluster_of);
+    end(&r);
+}
+
 static void test_params(void **state)
 {
     static const char text[] = "// how wide\nwidth = 3; // [1:5]\ncube(width);\n";
@@ -458,6 +504,7 @@ int main(void)
         cmocka_unit_test(test_options_not_made_by_default),
         cmocka_unit_test(test_options_of_other_versions),
         cmocka_unit_test(test_tolerance_of_a_quality),
+        cmocka_unit_test(test_clusters),
         cmocka_unit_test(test_params),
         cmocka_unit_test(test_only_check),
         cmocka_unit_test(test_null_arguments),

@@ -89,13 +89,17 @@ def test_in_a_notebook():
     assert page_data(csgmesh.mesh("intersection() { cube(1); translate([5, 0, 0]) cube(1); }").to_html())["a"]["triangles"] == 0
 
 
-def test_a_large_mesh_is_a_picture(monkeypatch):
-    mesh = csgmesh.mesh("sphere(3);", resolution=16)
-    monkeypatch.setattr(_page, "MOST", len(mesh.triangles) - 1)
-    if "without libpng" in csgmesh.features:
-        pytest.skip("no libpng")
-    shown = mesh._repr_html_()
-    assert base64.b64decode(re.search("base64,([^\"]*)", shown).group(1)).startswith(b"\x89PNG") and "<iframe" not in shown
+def test_a_large_mesh_is_thinned_out(monkeypatch):
+    mesh = csgmesh.mesh('color("red") sphere(3);', resolution=64)
+    monkeypatch.setattr(_page, "MOST", 2000)
+    inner = html.unescape(re.search('srcdoc="([^"]*)"', mesh._repr_html_()).group(1))
+    model = page_data(inner)["a"]
+    assert 500 < model["triangles"] <= 2000 and f"{len(mesh.triangles)} triangles (drawn with {model['triangles']})" in inner
+    steps = np.frombuffer(base64.b64decode(model["positions"]), "<u2").reshape(-1, 3)
+    indices = np.frombuffer(base64.b64decode(model["indices"]), "<u4").reshape(-1, 3)
+    distances = np.linalg.norm((steps / 65535 - 0.5) * 6, axis=1)
+    assert indices.max() < len(steps) and 2.7 < distances.min() and distances.max() < 3.01
+    assert set(base64.b64decode(model["colors"])) == {0, 255}
     assert page_data(mesh.to_html())["a"]["triangles"] == len(mesh.triangles)
 
 

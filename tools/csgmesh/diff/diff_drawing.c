@@ -125,6 +125,7 @@ bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side side
     const csgm_diff_report *report = csgm_diff_get_report(diff);
     *out =
         (diff_drawing){.box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}};
+    out->context = app->context;
     for (int i = 0; i < 2; i++) {
         out->sides[i] = sides[i].view;
         out->distances[i] = csgm_diff_vertex_distances(diff, i);

@@ -14,7 +14,8 @@ typedef struct diff_drawing {
     csgm_box box;              /* of both; a unit cube when both are empty */
     double most;               /* the distance that is dark red; 0: nothing differs */
     csgm_vec3 toward;          /* unit vector from the middle toward the eye */
-    float *turned;             /* own memory of sides[1].positions, or NULL */
+    csgm_context *context;
+    float *turned; /* own memory of sides[1].positions, or NULL */
 } diff_drawing;
 
 /* False: out of memory (reported). The diff and the sides must outlive it. */

@@ -8,10 +8,12 @@ import html
 import json
 import math
 import os
-import tempfile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from . import _core
+from ._call import Call
 
 if TYPE_CHECKING:
     from ._results import Mesh
@@ -36,29 +38,47 @@ def _model(positions: Any, triangles: Any, colors: Any, low: Any, size: Any) -> 
     return model
 
 
-def _models(mesh: Mesh) -> dict[str, Any]:
+def _thinned(mesh: Mesh, most: int) -> tuple[Any, Any, Any]:
+    """Positions, triangles and colours; where there are more triangles than `most`, each cluster of vertices as one."""
+    positions, triangles, colors = mesh.positions, mesh.triangles, mesh.colors
+    if len(triangles) <= most:
+        return positions, triangles, colors
+    cluster_of = np.empty(len(positions), np.uint32)
+    call = Call("a page", {})
+    low, high = (tuple(map(float, corner)) for corner in mesh.bounds)
+    (count, _), _ = call.settle(_core.cluster(call.run, mesh._core, low, high, most, cluster_of))
+    sizes = np.bincount(cluster_of, minlength=count)
+
+    def means(columns: Any) -> Any:
+        return np.stack([np.bincount(cluster_of, column, count) / sizes for column in columns.T], axis=1)
+    joined = cluster_of[triangles]
+    kept = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
+    return means(positions), joined[kept], None if colors is None else np.round(means(colors)).astype(np.uint8)
+
+
+def _models(mesh: Mesh, most: int) -> dict[str, Any]:
     low, high = mesh.bounds - np.array(mesh.origin) if len(mesh.positions) else np.array([[0.0] * 3, [1.0] * 3])
     toward = [math.cos(ELEVATION) * math.sin(AZIMUTH), -math.cos(ELEVATION) * math.cos(AZIMUTH), math.sin(ELEVATION)]
     nothing = np.empty((0, 3))
-    return {"a": _model(mesh.positions, mesh.triangles, mesh.colors, low, high - low),
-            "b": _model(nothing, nothing, None, low, high - low),
+    return {"a": _model(*_thinned(mesh, most), low, high - low), "b": _model(nothing, nothing, None, low, high - low),
             "box": [*low, *high], "toward": toward, "most": 0, "stops": [[0, 0, 0]] * 5}
 
 
-def _words(mesh: Mesh) -> str:
+def _words(mesh: Mesh, drawn: int) -> str:
     if not len(mesh.triangles):
         return "no triangles"
-    size = mesh.bounds[1] - mesh.bounds[0]
-    return f"{len(mesh.triangles)} triangles, " + " × ".join(f"{side:.5g}" for side in size)
+    size, fewer = mesh.bounds[1] - mesh.bounds[0], f" (drawn with {drawn})" if drawn < len(mesh.triangles) else ""
+    return f"{len(mesh.triangles)} triangles{fewer}, " + " × ".join(f"{side:.5g}" for side in size)
 
 
-def page(mesh: Mesh, title: str) -> str:
+def page(mesh: Mesh, title: str, most: int) -> str:
     texts = {}
     for name in ("page.html", "view.js"):
         with open(os.path.join(_HERE, name), encoding="utf-8") as file:
             texts[name] = file.read()
-    data = json.dumps(_models(mesh)).replace("<", "\\u003c")
-    filled = {"title": html.escape(title), "words": html.escape(_words(mesh)), "data": data, "js": texts["view.js"]}
+    models = _models(mesh, most)
+    data, words = json.dumps(models).replace("<", "\\u003c"), _words(mesh, models["a"]["triangles"])
+    filled = {"title": html.escape(title), "words": html.escape(words), "data": data, "js": texts["view.js"]}
     parts = texts["page.html"].split("{{")  # filled once: what is put in is not looked at again
     out = [parts[0]]
     for part in parts[1:]:
@@ -67,22 +87,7 @@ def page(mesh: Mesh, title: str) -> str:
     return "".join(out)
 
 
-def picture(mesh: Mesh) -> str:
-    """A mesh that is too large to be kept in a notebook, as it looks."""
-    from ._results import write_image
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "mesh.png")
-        write_image(mesh.render(width=720, height=HEIGHT), path)
-        with open(path, "rb") as file:
-            data = base64.b64encode(file.read()).decode()
-    return (f'<figure style="margin: 0"><img width="720" height="{HEIGHT}" alt="the mesh" src="data:image/png;base64,{data}">'
-            f"<figcaption>{html.escape(_words(mesh))}: too many to be turned here; mesh.to_html() makes a page of all, "
-            'mesh(quality="draft") has fewer</figcaption></figure>')
-
-
 def frame(mesh: Mesh) -> str:
     """For _repr_html_: the page in a frame of its own, so that it neither sees nor changes the notebook."""
-    if len(mesh.triangles) > MOST:
-        return picture(mesh)
     return (f'<iframe sandbox="allow-scripts" style="width: 100%; max-width: 720px; height: {HEIGHT}px; border: 0" '
-            f'srcdoc="{html.escape(page(mesh, "csgmesh"))}"></iframe>')
+            f'srcdoc="{html.escape(page(mesh, "csgmesh", MOST))}"></iframe>')

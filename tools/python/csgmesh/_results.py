@@ -193,9 +193,9 @@ class Mesh:
         kept = {name: array for name, array in given.items() if array is not None}
         return trimesh.Trimesh(self.vertices, self.triangles, process=False, metadata={"parts": self.parts}, **kept)
 
-    def to_html(self, title: str = "csgmesh") -> str:
-        """A page that shows it, to be turned: whole in itself, without any network."""
-        return _page.page(self, title)
+    def to_html(self, title: str = "csgmesh", triangles: int = 1_000_000) -> str:
+        """A page that shows it, to be turned: whole in itself, without any network. It holds at most so many triangles."""
+        return _page.page(self, title, triangles)
 
     def _repr_html_(self) -> str:
         return _page.frame(self)

@@ -4,7 +4,6 @@
 #include "module/context.h"
 
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
 #include <chrono>
@@ -166,6 +165,10 @@ void Context::attend(nb::handle progress, nb::handle echo)
     } catch (nb::python_error &error) {
         error_.emplace(std::move(error));
         cancelled_ = true;
+    } catch (const std::exception &error) {
+        PyErr_SetString(PyExc_RuntimeError, error.what());
+        error_.emplace();
+        cancelled_ = true;
     }
 }
 
@@ -228,18 +231,10 @@ void define_context(nb::module_ &module)
                 new (self) Run{std::make_shared<Context>(settings), progress, echo};
             },
             nb::arg("settings"), nb::arg("progress").none(), nb::arg("echo").none())
-        .def_prop_ro("findings",
-                     [](const Run &run) {
-                         nb::list out;
-                         for (const Finding &f : run.context->findings)
-                             out.append(describe(f));
-                         return out;
-                     })
-        .def_prop_ro("status", [](const Run &run) { return csgm_status_name(run.context->status); })
-        .def_prop_ro("threads",
-                     [](const Run &run) { return csgm_context_threads(run.context->get()); })
-        .def_prop_ro("memory", [](const Run &run) {
-            uint64_t peak = 0, now = csgm_context_memory(run.context->get(), &peak);
-            return std::pair<uint64_t, uint64_t>(now, peak);
+        .def_prop_ro("findings", [](const Run &run) {
+            nb::list out;
+            for (const Finding &f : run.context->findings)
+                out.append(describe(f));
+            return out;
         });
 }

@@ -216,6 +216,24 @@ nb::tuple inspect(const Run &run, const Mesh &self)
     return result_of(status, check_of(check));
 }
 
+/* (status, (clusters, size of a cell)); cluster_of has a number for each vertex. */
+nb::tuple cluster(const Run &run, const Mesh &self, nb::tuple low, nb::tuple high, uint64_t most,
+                  nb::ndarray<uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu> cluster_of)
+{
+    uint32_t count = 0;
+    double cell_size = 0;
+    auto at = [](nb::tuple point) {
+        return csgm_vec3{nb::cast<double>(point[0]), nb::cast<double>(point[1]),
+                         nb::cast<double>(point[2])};
+    };
+    csgm_box frame{at(low), at(high)};
+    csgm_status status = run.work([&] {
+        return csgm_mesh_cluster(run.context->get(), &self.view, frame, most, cluster_of.data(),
+                                 &count, &cell_size);
+    });
+    return result_of(status, nb::make_tuple(count, cell_size));
+}
+
 /* ---- arrays of the caller ---------------------------------------------------------------------- */
 
 using Positions = Rows3<const float>;
@@ -325,6 +343,8 @@ void define_meshes(nb::module_ &module)
     module.def("as_file", as_file, nb::arg("run"), nb::arg("mesh"), nb::arg("format"),
                nb::arg("options"));
     module.def("inspect", inspect, nb::arg("run"), nb::arg("mesh"));
+    module.def("cluster", cluster, nb::arg("run"), nb::arg("mesh"), nb::arg("low"), nb::arg("high"),
+               nb::arg("most"), nb::arg("cluster_of").noconvert());
     module.def("mesh_of_arrays", mesh_of_arrays, nb::arg("origin"), nb::arg("positions"),
                nb::arg("triangles"), nb::arg("normals").none(), nb::arg("colors").none(),
                nb::arg("parts"));
