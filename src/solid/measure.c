@@ -135,6 +135,12 @@ static csgm_status tessellate_in_time(csg_solid_job *job, const csgm_scene *scen
 csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triangles *out)
 {
     enum { CELLS = 160 };
+    return csg_solid_triangles_by(job, node, CELLS, out);
+}
+
+csgm_status csg_solid_triangles_by(csg_solid_job *job, csg_node_id node, uint32_t cells,
+                                   csg_triangles *out)
+{
     csgm_scene *scene = NULL;
     csg_vec3 size = csg_box_size(csg_build_box(job->builder, node));
     csg_triangles_init(out, job->memory);
@@ -145,7 +151,7 @@ csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triang
     csgm_status status = csg_build_snapshot(job->builder, node, &scene);
     if (status != CSGM_OK)
         return status;
-    status = tessellate_in_time(job, scene, CELLS, out);
+    status = tessellate_in_time(job, scene, cells, out);
     csg_scene_destroy(scene);
     return status;
 }

@@ -11,8 +11,11 @@
 bool csg_distance_is_exact(const csg_solid_job *job, csg_node_id node, bool outside);
 /* Clean polygons of a flat node: its own corners, arcs within 1e-5 of its size. */
 csgm_status csg_flat_outline(csg_solid_job *job, csg_node_id node, csg_outline *out);
-/* Triangles on the surface of a solid, by marching cubes. */
+/* Triangles on the surface of a solid, by marching cubes: 160 cells along its longest side, or as
+ * told. */
 csgm_status csg_solid_triangles(csg_solid_job *job, csg_node_id node, csg_triangles *out);
+csgm_status csg_solid_triangles_by(csg_solid_job *job, csg_node_id node, uint32_t cells,
+                                   csg_triangles *out);
 /* The box of the node's solid, tight where its pieces are known, else within a cell of a
  * tessellation. */
 csgm_status csg_tight_box(csg_solid_job *job, csg_node_id node, csg_box *out);

@@ -5,8 +5,9 @@
  *   prisms along z: the sum of their figures, extruded over the sum of their heights;
  *   convex solids: the hull of the sums of their corners and balls (hull.c says how exact);
  *   unions: the union of the sums of their members;
- *   figures of the plane: by polygons, when one is convex.
- * Other pairs are errors: no sum of two solids that both have hollows is known to be a field.
+ *   figures of the plane: by polygons, with each convex part of one of them;
+ *   other solids: the union of the sums of their convex parts (convex_pieces.c), of which there may
+ *   be too many: then it is an error.
  */
 #include <math.h>
 
@@ -128,6 +129,38 @@ static csg_node_id refuse(csg_solid_job *job, const char *what, const char *hint
     return csg_solid_empty(job);
 }
 
+/* The union of the sums of a with each convex part of b. */
+static csgm_status add_polygons(csg_solid_job *job, const csg_outline *a, const csg_outline *b,
+                                csg_outline *out)
+{
+    csg_outline parts, sums;
+    csg_outline_init(out, job->memory);
+    csgm_status status = csg_polygons_convex_parts(b, job->memory, &parts);
+    csg_outline_init(&sums, job->memory);
+    for (size_t loop = 0; loop < parts.loop_count && status == CSGM_OK; loop++) {
+        size_t first = csg_outline_first(&parts, loop);
+        uint32_t end = (uint32_t)(parts.ends[loop] - first);
+        const csg_outline part = {.memory = job->memory,
+                                  .points = parts.points + first,
+                                  .ends = &end,
+                                  .point_count = end,
+                                  .loop_count = 1};
+        csg_outline sum;
+        csg_outline_init(&sum, job->memory);
+        status = csg_solid_charge(job, (uint64_t)a->point_count + end)
+                     ? csg_polygons_minkowski(a, &part, &sum)
+                     : CSGM_ERR_LIMIT;
+        if (status == CSGM_OK && !csg_outline_append(&sums, &sum))
+            status = CSGM_ERR_MEMORY;
+        csg_outline_release(&sum);
+    }
+    if (status == CSGM_OK)
+        status = csg_polygons_clean(&sums, CSG_FILL_NONZERO, out);
+    csg_outline_release(&sums);
+    csg_outline_release(&parts);
+    return status;
+}
+
 static csg_node_id sum_polygons(summing *s, const csg_solid_piece *a, const csg_solid_piece *b)
 {
     csg_solid_job *job = s->job;
@@ -141,7 +174,9 @@ static csg_node_id sum_polygons(summing *s, const csg_solid_piece *a, const csg_
             node == CSG_NODE_NONE ? CSGM_ERR_MEMORY : csg_flat_outline(job, node, &outlines[made]);
     }
     if (status == CSGM_OK)
-        status = csg_polygons_minkowski(&outlines[0], &outlines[1], &sum);
+        status = csg_piece_is_convex(job, b)
+                     ? csg_polygons_minkowski(&outlines[0], &outlines[1], &sum)
+                     : add_polygons(job, &outlines[0], &outlines[1], &sum);
     else
         made--;
     while (made-- > 0)
@@ -164,10 +199,7 @@ static csg_node_id sum_flat(summing *s, const csg_solid_piece *a, const csg_soli
                                {.items = (csg_solid_piece[]){*b}, .count = 1}};
     if (convex[0] && convex[1])
         return sum_convex(s, &one[0], &one[1], true);
-    if (convex[0] || convex[1])
-        return convex[0] ? sum_polygons(s, b, a) : sum_polygons(s, a, b);
-    return refuse(s->job, "two figures that are both not convex",
-                  "make one of them a union of convex ones");
+    return convex[0] ? sum_polygons(s, b, a) : sum_polygons(s, a, b);
 }
 
 /* The sum of prisms; *done tells whether both are. */
@@ -200,6 +232,53 @@ static csg_node_id sum_prisms(summing *s, const csg_solid_piece *a, const csg_so
     return node;
 }
 
+/* ---- solids that are not convex -------------------------------------------------------------- */
+
+/* The union of the sums of all their convex parts. */
+static csg_node_id sum_clouds(summing *s, const csg_clouds *a, const csg_clouds *b)
+{
+    csg_solid_job *job = s->job;
+    summing parts = {.job = job, .ok = true};
+    for (size_t i = 0; i < a->count && parts.ok; i++)
+        for (size_t k = 0; k < b->count && parts.ok; k++) {
+            csg_cloud sum;
+            csg_cloud_init(&sum, job->memory);
+            csgm_status status = sum_of_clouds(job, &a->items[i], &b->items[k], &sum);
+            csg_node_id node = status != CSGM_OK ? csg_solid_failed(job, status, "add these solids")
+                                                 : csg_cloud_hull(job, &sum, s->size * tolerance);
+            csg_cloud_release(&sum);
+            add_sum(&parts, node);
+        }
+    csg_node_id node = parts.ok ? csg_solid_union(job, parts.sums, parts.count) : CSG_NODE_NONE;
+    csg_memory_release(job->memory, parts.sums, parts.capacity * sizeof *parts.sums);
+    return node;
+}
+
+static csg_node_id sum_parts(summing *s, const csg_solid_piece *a, const csg_solid_piece *b)
+{
+    enum { MOST_SUMS = 20000 };
+    csg_solid_job *job = s->job;
+    csg_clouds clouds[2];
+    csg_node_id node;
+    csg_clouds_init(&clouds[0], job->memory);
+    csg_clouds_init(&clouds[1], job->memory);
+    csgm_status status = csg_piece_convex_clouds(job, a, s->size * tolerance, &clouds[0]);
+    if (status == CSGM_OK)
+        status = csg_piece_convex_clouds(job, b, s->size * tolerance, &clouds[1]);
+    if (status == CSGM_OK && clouds[0].count * clouds[1].count > MOST_SUMS)
+        status = CSGM_ERR_LIMIT;
+    if (status == CSGM_ERR_LIMIT && !job->stop)
+        node = refuse(job, "two solids with so many hollows",
+                      "write them as unions of convex solids, or use a sphere");
+    else if (status != CSGM_OK)
+        node = csg_solid_failed(job, status, "take these solids apart");
+    else
+        node = sum_clouds(s, &clouds[0], &clouds[1]);
+    csg_clouds_release(&clouds[0]);
+    csg_clouds_release(&clouds[1]);
+    return node;
+}
+
 /* ---- pairs ----------------------------------------------------------------------------------- */
 
 static csg_node_id sum_solids(summing *s, const csg_solid_piece *a, const csg_solid_piece *b)
@@ -218,8 +297,7 @@ static csg_node_id sum_solids(summing *s, const csg_solid_piece *a, const csg_so
                                {.items = (csg_solid_piece[]){*b}, .count = 1}};
     if (csg_piece_is_convex(job, a) && csg_piece_is_convex(job, b))
         return sum_convex(s, &one[0], &one[1], false);
-    return refuse(s->job, "a solid that is not convex and one that is no ball",
-                  "write it as a union of convex solids, or use a sphere");
+    return sum_parts(s, a, b);
 }
 
 /* Exact growth of a whole union at once, when the other operand is one ball. */

@@ -70,6 +70,21 @@ csg_node_id csg_piece_placed(csg_solid_job *job, const csg_solid_piece *piece);
 /* The piece is a ball. */
 bool csg_piece_ball(const csgm_scene *scene, const csg_solid_piece *piece, csg_ball *out);
 
+typedef struct csg_clouds {
+    csg_memory *memory;
+    csg_cloud *items;
+    size_t count, capacity;
+} csg_clouds;
+
+enum { CSG_MOST_CONVEX_PIECES = 3000 };
+
+void csg_clouds_init(csg_clouds *clouds, csg_memory *memory);
+void csg_clouds_release(csg_clouds *clouds);
+/* Appends clouds whose hulls' union is the piece (convex_pieces.c says how nearly). CSGM_ERR_LIMIT:
+ * there are too many. */
+csgm_status csg_piece_convex_clouds(csg_solid_job *job, const csg_solid_piece *piece, double within,
+                                    csg_clouds *out);
+
 /* The hull of the balls as a node; flat: of discs in the plane. */
 csg_node_id csg_cloud_hull(csg_solid_job *job, const csg_cloud *cloud, double tolerance);
 csg_node_id csg_cloud_hull_flat(csg_solid_job *job, const csg_cloud *cloud, double tolerance);

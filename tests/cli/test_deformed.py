@@ -25,6 +25,8 @@ SCENES = {
     "bent far": ("bend(10) cube([58, 4, 4], center = true);", 58 * 4 * 4, 2),
     "bent holes": ("bend(20) difference() { cube([60, 8, 4], center = true); for (x = [-20, 0, 20]) translate([x, 0, 0]) "
                    "cylinder(h = 9, r = 2, center = true); }", None, -4),
+    "sum with a cavity": ("minkowski() { difference() { cube(19, center = true); cube(11, center = true); } cube(1, center = true); }",
+                          20 ** 3 - 10 ** 3, 4),
     "repeated": ("repeat([7, 7, 7], [3, 2, 2]) sphere(3);", 12 * 36 * math.pi, 24),
     "revolved part": ("rotate_extrude(angle = 250) translate([8, 0]) square([4, 6]);", 250 / 360 * math.pi * (144 - 64) * 6, 2),
 }

@@ -44,5 +44,8 @@ csgm_status csg_polygons_hull(const csg_outline *in, csg_outline *out);
  * more than some seconds. (Our own: triangulate.c.) */
 csgm_status csg_polygons_triangulate(const csg_outline *in, csg_memory *memory, uint32_t **indices,
                                      size_t *index_count);
+/* Convex loops, counter-clockwise, whose union is the area of a clean outline: fewer than its
+ * triangles. CSGM_ERR_LIMIT as there. (Our own: convex_parts.c.) */
+csgm_status csg_polygons_convex_parts(const csg_outline *in, csg_memory *memory, csg_outline *out);
 
 #endif
