@@ -65,6 +65,8 @@ make_static_libraries() {
     [ ! -d "$prefix/share/pkgconfig" ] || cp "$prefix"/share/pkgconfig/*.pc "$prefix/lib/pkgconfig"
     # Debian's static library has another name, which qhull_r.pc does not say
     write_pc qhull_r "$(pkg-config --modversion qhull_r)" "$(pkg-config --cflags qhull_r)" -lqhullstatic_r
+    # its header is compiled in; there is a shared library only, which is not needed
+    write_pc tinygltf "$(pkg-config --modversion tinygltf)" "$(pkg-config --cflags tinygltf)" ""
     touch "$prefix/complete"
 }
 
