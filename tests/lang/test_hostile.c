@@ -188,6 +188,19 @@ static void the_memory_limit_holds(void **state)
     b.context.memory.limit_bytes = 0;
 }
 
+/* What lists of one length have left is there for those of another: 28 rounds take what the largest
+ * of them does, not the sum of all. */
+static void the_dead_make_room(void **state)
+{
+    (void)state;
+    b.context.memory.limit_bytes = 40 << 20;
+    assert_int_equal(
+        bench_compile(&b, "function made(n, k) = len([for (i = [1 : n]) [for (j = [1 : k]) j]]);"
+                          "x = [for (k = [1 : 28]) made(20000, k)]; cube(x[0]);"),
+        CSGM_OK);
+    b.context.memory.limit_bytes = 0;
+}
+
 /* ---- noise
  * ------------------------------------------------------------------------------------------ */
 
@@ -254,7 +267,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(loops_and_recursion_end),    cmocka_unit_test(nesting_ends),
         cmocka_unit_test(long_chains_are_no_nesting), cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(the_memory_limit_holds),     cmocka_unit_test(noise_never_crashes),
+        cmocka_unit_test(the_memory_limit_holds),     cmocka_unit_test(the_dead_make_room),
+        cmocka_unit_test(noise_never_crashes),
     };
     return cmocka_run_group_tests(tests, open_bench, close_bench);
 }

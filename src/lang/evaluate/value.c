@@ -9,14 +9,20 @@
 
 #include "lang/evaluate/rule_value.h"
 
+/* Room for objects of one size. The last one that dies takes the block with it, but for one block
+ * of each size: what a text has dropped is there for objects of all sizes. */
 struct csg_heap_block {
-    csg_heap_block *next;
-    size_t size_bytes; /* with this header */
+    csg_heap_block *next, *previous;           /* among all */
+    csg_heap_block *next_open, *previous_open; /* among those of this size that have room */
+    size_t size_bytes;                         /* with this header */
+    uint32_t object_bytes, live;
+    csg_object *died;      /* room that was used */
+    uint8_t *cursor, *end; /* room that never was */
 };
 
 enum {
     FIRST_BLOCK = 4096,
-    LARGEST_BLOCK = 1 << 18,
+    LARGEST_BLOCK = 1 << 16,
 #ifdef __SANITIZE_ADDRESS__
     LARGEST_SMALL = 0 /* so that it sees what is used after its end */
 #else
@@ -44,32 +50,82 @@ void csg_heap_reset(csg_heap *heap)
     csg_heap_init(heap, heap->memory, heap->deepest);
 }
 
-static bool add_block(csg_heap *heap)
+static void open_block(csg_heap *heap, csg_heap_block *block)
 {
-    size_t size = heap->blocks ? heap->blocks->size_bytes * 2 : (size_t)FIRST_BLOCK;
+    csg_heap_block **first = &heap->open[block->object_bytes / CSG_SMALL_STEP];
+    block->previous_open = NULL;
+    block->next_open = *first;
+    if (*first)
+        (*first)->previous_open = block;
+    *first = block;
+}
+
+static void close_block(csg_heap *heap, csg_heap_block *block)
+{
+    if (block->next_open)
+        block->next_open->previous_open = block->previous_open;
+    if (block->previous_open)
+        block->previous_open->next_open = block->next_open;
+    else
+        heap->open[block->object_bytes / CSG_SMALL_STEP] = block->next_open;
+}
+
+/* Each block of a size is twice as large as the one before. */
+static csg_heap_block *add_block(csg_heap *heap, size_t object_bytes)
+{
+    size_t *last = &heap->block_bytes[object_bytes / CSG_SMALL_STEP];
+    size_t size = *last ? 2 * *last : (size_t)FIRST_BLOCK;
     size = size > LARGEST_BLOCK ? (size_t)LARGEST_BLOCK : size;
     csg_heap_block *block = csg_memory_alloc(heap->memory, size);
     if (!block)
-        return false;
-    *block = (csg_heap_block){heap->blocks, size};
+        return NULL;
+    *last = size;
+    *block = (csg_heap_block){.next = heap->blocks,
+                              .size_bytes = size,
+                              .object_bytes = (uint32_t)object_bytes,
+                              .cursor = (uint8_t *)(block + 1),
+                              .end = (uint8_t *)block + size};
+    if (heap->blocks)
+        heap->blocks->previous = block;
     heap->blocks = block;
-    heap->cursor = (uint8_t *)(block + 1);
-    heap->end = (uint8_t *)block + size;
-    return true;
+    open_block(heap, block);
+    return block;
 }
 
-/* size_bytes: a multiple of CSG_SMALL_STEP. What is left of a block that is too short is lost. */
+static void remove_block(csg_heap *heap, csg_heap_block *block)
+{
+    close_block(heap, block);
+    if (block->next)
+        block->next->previous = block->previous;
+    if (block->previous)
+        block->previous->next = block->next;
+    else
+        heap->blocks = block->next;
+    csg_memory_release(heap->memory, block, block->size_bytes);
+}
+
+static bool has_room(const csg_heap_block *block)
+{
+    return block->died || (size_t)(block->end - block->cursor) >= block->object_bytes;
+}
+
+/* size_bytes: a multiple of CSG_SMALL_STEP. */
 static csg_object *create_small(csg_heap *heap, size_t size_bytes)
 {
-    csg_object **died = &heap->free[size_bytes / CSG_SMALL_STEP], *object = *died;
-    if (object) {
-        *died = object->next;
-        return object;
-    }
-    if ((size_t)(heap->end - heap->cursor) < size_bytes && !add_block(heap))
+    csg_heap_block *block = heap->open[size_bytes / CSG_SMALL_STEP];
+    if (!block && !(block = add_block(heap, size_bytes)))
         return NULL;
-    object = (csg_object *)(void *)heap->cursor;
-    heap->cursor += size_bytes;
+    csg_object *object = block->died;
+    if (object) {
+        block->died = object->next;
+    } else {
+        object = (csg_object *)(void *)block->cursor;
+        block->cursor += size_bytes;
+    }
+    object->block = block;
+    block->live++;
+    if (!has_room(block))
+        close_block(heap, block);
     return object;
 }
 
@@ -118,9 +174,16 @@ static void give_back(csg_heap *heap, csg_object *object)
         csg_memory_release(heap->memory, object, object->size_bytes);
         return;
     }
-    csg_object **died = &heap->free[object->size_bytes / CSG_SMALL_STEP];
-    object->next = *died;
-    *died = object;
+    csg_heap_block *block = object->block;
+    bool was_open = has_room(block);
+    object->next = block->died;
+    block->died = object;
+    block->live--;
+    if (!was_open)
+        open_block(heap, block);
+    bool is_only = !block->next_open && !block->previous_open;
+    if (block->live == 0 && !is_only)
+        remove_block(heap, block);
 }
 
 /* ---- releasing ------------------------------------------------------------------------------ */

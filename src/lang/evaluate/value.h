@@ -33,8 +33,14 @@ typedef enum csg_value_kind {
     CSG_VALUE_FRAME /* never seen by a scene */
 } csg_value_kind;
 
+typedef struct csg_heap_block csg_heap_block;
+
 typedef struct csg_object {
-    struct csg_object *previous, *next; /* of large ones, and of the dead */
+    union {
+        struct csg_object *previous; /* of large ones */
+        csg_heap_block *block;       /* of small ones */
+    };
+    struct csg_object *next; /* of large ones, and of the dead */
     size_t size_bytes;
     uint32_t references;
     uint8_t kind;
@@ -109,15 +115,13 @@ enum {
     CSG_SMALL_SIZES = 32
 };
 
-typedef struct csg_heap_block csg_heap_block;
-
 typedef struct csg_heap {
     csg_memory *memory;
-    csg_object *objects;                   /* the large ones */
-    csg_object *free[CSG_SMALL_SIZES + 1]; /* small ones that have died, by their size */
-    csg_heap_block *blocks;                /* newest first */
-    uint8_t *cursor, *end;                 /* of the newest block */
-    uint32_t deepest;                      /* most levels of nested vectors */
+    csg_object *objects;                       /* the large ones */
+    csg_heap_block *blocks;                    /* newest first; those of small ones */
+    csg_heap_block *open[CSG_SMALL_SIZES + 1]; /* with room, by the size of their objects */
+    size_t block_bytes[CSG_SMALL_SIZES + 1];   /* of the last one made for that size; 0: none */
+    uint32_t deepest;                          /* most levels of nested vectors */
 } csg_heap;
 
 enum {
