@@ -26,16 +26,18 @@ class InACopy(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        self.outer = os.path.realpath(folder.name)
+        self.folder = os.path.join(self.outer, "copy")
         for name in ("meson.build", "CHANGELOG.md", "LICENSE", "include/csgmesh/csgmesh.h", "tools/package",
                      "tools/setup.sh"):
             os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
             shutil.copy2(os.path.join(ROOT, name), os.path.join(self.folder, name))
         shutil.copytree(PACKAGING, os.path.join(self.folder, "tools/packaging"))
 
-    def package(self, *arguments, status=0):
+    def package(self, *arguments, status=0, path=""):
         result = subprocess.run([os.path.join(self.folder, "tools/package"), *arguments], capture_output=True, text=True,
-                                check=False, env={**os.environ, "GIT_CEILING_DIRECTORIES": os.path.dirname(self.folder)})
+                                check=False, env={**os.environ, "PATH": path + os.environ["PATH"],
+                                                  "GIT_CEILING_DIRECTORIES": os.path.dirname(self.outer)})
         self.assertEqual(result.returncode, status, result.stderr)
         return result.stdout if status == 0 else result.stderr
 
@@ -90,6 +92,63 @@ class InACopy(unittest.TestCase):
         if shutil.which("ruby"):
             subprocess.run(["ruby", "-c", os.path.join(self.folder, "build-package/csgmesh.rb")], check=True,
                            capture_output=True)
+
+    def names_in_archive(self):
+        with tarfile.open(os.path.join(self.folder, f"build-package/csgmesh-{self.package('version').strip()}.tar.gz")) as tar:
+            return {name.split("/", 1)[1] for name in tar.getnames()}
+
+    def git(self, folder, *arguments):
+        subprocess.run(["git", "-C", folder, *arguments], check=True, capture_output=True)
+
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
+    def test_source_within_another_repository(self):
+        self.package("source")
+        alone = self.names_in_archive()
+        self.git(self.outer, "init")
+        with open(os.path.join(self.outer, "theirs"), "w", encoding="utf-8"):
+            pass
+        self.git(self.outer, "add", "theirs")
+        self.git(self.outer, "-c", "user.name=a", "-c", "user.email=a@example.org", "commit", "-m", "theirs")
+        os.utime(os.path.join(self.folder, "CHANGELOG.md"), (1000000, 1000000))
+        self.package("source")
+        self.assertEqual(self.names_in_archive(), alone)
+        version = self.package("version").strip()
+        with tarfile.open(os.path.join(self.folder, f"build-package/csgmesh-{version}.tar.gz")) as tar:
+            self.assertEqual({member.mtime for member in tar}, {1000000}) # not that of their commit
+
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
+    def test_source_of_a_clone(self):
+        self.git(self.folder, "init")
+        error = self.package("source", status=2)
+        self.assertEqual(error.count("error:"), 1, error)
+        self.assertIn("meson.build is not among the sources", error)
+        self.assertEqual([name for name in os.listdir(os.path.join(self.folder, "build-package")) if name.endswith("gz")], [])
+        for name in ("größe.csg", "unknown"):
+            with open(os.path.join(self.folder, name), "w", encoding="utf-8"):
+                pass
+        self.git(self.folder, "add", "meson.build", "größe.csg")
+        self.package("source")
+        self.assertEqual(self.names_in_archive(), {"meson.build", "größe.csg"})
+
+    def test_a_failed_archive_replaces_none(self):
+        self.package("source")
+        archive = f"build-package/csgmesh-{self.package('version').strip()}.tar.gz"
+        first = self.read(archive, "rb")
+        for name in ("tar", "gzip"):
+            folder = os.path.join(self.outer, "no-" + name)
+            os.mkdir(folder)
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write("#!/bin/sh\necho half\nexit 1\n")
+            os.chmod(os.path.join(folder, name), 0o755)
+            self.assertIn(f"{name} could not", self.package("source", status=2, path=folder + ":"))
+            self.assertEqual(self.read(archive, "rb"), first)
+
+    def test_any_url(self):
+        url = "https://example.org/a&b|c\\d/get?x=1&y=2"
+        self.package("homebrew", url)
+        formula = self.read("build-package/csgmesh.rb")
+        self.assertIn(f'url "{url}"', formula)
+        self.assertIn('homepage "https://example.org/a&b|c\\d"', formula)
 
 
 class Recipes(unittest.TestCase):

@@ -128,12 +128,14 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
  * in the order of these. */
 static size_t link_points(csg_probe_room *room, size_t count)
 {
+    _Static_assert((CSG_PROBE_MOST & (CSG_PROBE_MOST - 1)) == 0, "a size below is within slots");
     size_t size = 2, tapes = 0;
     while (size < 2 * count)
         size *= 2;
     memset(room->slots, 0xFF, size * sizeof *room->slots);
     for (size_t i = 0; i < count; i++) {
-        size_t slot = (uintptr_t)room->nodes[i] * (size_t)0x9E3779B97F4A7C15u >> 32 & (size - 1);
+        uint64_t hash = (uint64_t)(uintptr_t)room->nodes[i] * UINT64_C(0x9E3779B97F4A7C15);
+        size_t slot = (size_t)(hash >> 32) & (size - 1);
         while (room->slots[slot] != NO_POINT &&
                room->nodes[room->first[room->slots[slot]]] != room->nodes[i])
             slot = (slot + 1) & (size - 1);

@@ -135,8 +135,8 @@ static double angle(csg_vec3 a, csg_vec3 b)
 }
 
 /* Takes those edges back on both sides of which the field's gradients differ by much less than the
- * triangles do: there the surface is curved. */
-static void take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *creased)
+ * triangles do: there the surface is curved. False: stopped. */
+static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *creased)
 {
     static const double MOST_OF_TURN = 0.6;
     const csg_corners *m = &r->corners;
@@ -150,6 +150,8 @@ static void take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
         }
         if (n < BATCH / 2 && c + 1 < count)
             continue;
+        if (csg_mesh_should_stop(r->watch))
+            return false;
         csg_probe_gradients(&r->probe, (const float(*)[3])at, 2 * n, g);
         for (uint32_t i = 0; i < n; i++) {
             double turn = angle(normals[of[i] / 3], normals[m->across[of[i]] / 3]);
@@ -158,9 +160,10 @@ static void take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
         }
         n = 0;
     }
+    return true;
 }
 
-static void find_kinds(csg_remesh *r, csg_vec3 *normals, uint8_t *creased, uint8_t *turns,
+static bool find_kinds(csg_remesh *r, csg_vec3 *normals, uint8_t *creased, uint8_t *turns,
                        float *value)
 {
     uint32_t count = r->corners.triangle_count;
@@ -168,12 +171,14 @@ static void find_kinds(csg_remesh *r, csg_vec3 *normals, uint8_t *creased, uint8
         normals[t] = csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
     find_turns(r, normals, creased, turns);
     take_back_bent(r, creased, turns, value);
-    if (r->marching->bricks)
-        take_back_curved(r, normals, creased);
+    if (r->marching->bricks && !take_back_curved(r, normals, creased))
+        return false;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++)
         r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, creased);
+    return true;
 }
 
+/* False: stopped, or without memory; the watch knows. */
 static bool find_creases(csg_remesh *r)
 {
     size_t count = r->corners.triangle_count;
@@ -182,8 +187,10 @@ static bool find_creases(csg_remesh *r)
     uint8_t *turns = csg_memory_alloc(r->memory, count);
     uint8_t *creased = csg_memory_alloc(r->memory, 3 * count);
     bool done = value && normals && turns && creased;
-    if (done)
-        find_kinds(r, normals, creased, turns, value);
+    if (!done)
+        csg_mesh_stop_without_memory(r->watch);
+    else
+        done = find_kinds(r, normals, creased, turns, value);
     csg_memory_release(r->memory, value, count * sizeof *value);
     csg_memory_release(r->memory, normals, count * sizeof *normals);
     csg_memory_release(r->memory, turns, count);
@@ -247,16 +254,18 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching 
                                                  mesh->triangle_count, mesh->vertex_count);
     if (result == CSG_CORNERS_NOT_CLOSED)
         return csg_mesh_report_open(watch);
-    bool done = result == CSG_CORNERS_MADE && take_arrays(r) &&
-                csg_probe_make(&r->probe, marching, r->memory);
+    bool done = (result == CSG_CORNERS_MADE && take_arrays(r) &&
+                 csg_probe_make(&r->probe, marching, r->memory)) ||
+                csg_mesh_stop_without_memory(watch);
     if (done) {
         copy_vertices(r);
-        done = find_creases(r) && csg_triangle_tree_make(&r->tree, &r->corners, r->at);
+        done = find_creases(r) && (csg_triangle_tree_make(&r->tree, &r->corners, r->at) ||
+                                   csg_mesh_stop_without_memory(watch));
     }
     if (done)
         return CSGM_OK;
     csg_remesh_end(r);
-    return csg_context_no_memory(context);
+    return csg_mesh_why_stopped(watch);
 }
 
 void csg_remesh_end(csg_remesh *r)
