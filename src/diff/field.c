@@ -239,10 +239,13 @@ static csgm_status average_samples(field_work *w, int from, uint64_t count)
     w->values = csg_memory_alloc(memory, size);
     if (!w->values || !csg_diff_sampler_make(&w->sampler, side, count))
         status = csg_context_no_memory(w->pair->context);
-    else if (!csg_pool_run(w->pair->context->pool, (size_t)((count + RUN - 1) / RUN), value_run,
-                           report_probes, w))
-        status = csg_diff_is_cancelled(w->pair) ? CSGM_CANCELLED
-                                                : csg_context_no_memory(w->pair->context);
+    if (status == CSGM_OK) {
+        csg_diff_take(w->pair, 0.3);
+        if (!csg_pool_run(w->pair->context->pool, (size_t)((count + RUN - 1) / RUN), value_run,
+                          report_probes, w))
+            status = csg_diff_is_cancelled(w->pair) ? CSGM_CANCELLED
+                                                    : csg_context_no_memory(w->pair->context);
+    }
     double sum = 0;
     for (uint64_t i = 0; i < count && status == CSGM_OK; i++) {
         sum += w->values[i];

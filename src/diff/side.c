@@ -206,8 +206,8 @@ void csg_diff_tell(csg_diff_pair *pair, size_t done, size_t count)
     if (!pair->monitor->progress || now - p->last_report_s < 1.0 / REPORTS_PER_SECOND)
         return;
     p->last_report_s = now;
-    pair->monitor->progress(pair->monitor->user, CSGM_STAGE_COMPARE,
-                            p->before + p->share * ((double)done / (double)count));
+    p->told = fmax(p->told, p->before + p->share * ((double)done / (double)count));
+    pair->monitor->progress(pair->monitor->user, CSGM_STAGE_COMPARE, p->told);
 }
 
 csgm_status csg_diff_pair_make(csg_diff_pair *pair, csgm_context *context, const csgm_mesh_view *a,

@@ -41,6 +41,7 @@ typedef struct csg_diff_side {
 typedef struct csg_diff_progress {
     double before, share; /* the steps behind, and the one at hand */
     double last_report_s;
+    double told; /* what was last reported: it never falls */
 } csg_diff_progress;
 
 typedef struct csg_diff_pair {

@@ -191,7 +191,7 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
         status = CSGM_ERR_SCENE;
     }
     csg_eval_reset(&e);
-    if (status == CSGM_OK && program->options->only_check)
+    if (status == CSGM_OK && program->options && program->options->only_check)
         csg_scene_destroy(scene);
     else if (status == CSGM_OK)
         *out = scene;

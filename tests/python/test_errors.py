@@ -186,6 +186,29 @@ def test_echo():
         csgmesh.parse("echo(1);" + ENDLESS, echo=fails)
 
 
+def resident_bytes():
+    pages = int(pathlib.Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="resident memory is looked up in /proc")
+def test_a_callback_that_raises_leaks_nothing():
+    """The scene holds its text, so that each scene that is lost is a megabyte."""
+    text = "echo(1); sphere(1); //" + "x" * 1_000_000
+
+    def fails(line):
+        raise Enough(line)
+
+    def parse(times):
+        for _ in range(times):
+            with pytest.raises(Enough):
+                csgmesh.parse(text, echo=fails)
+    parse(5)
+    before = resident_bytes()
+    parse(60)
+    assert resident_bytes() - before < 25_000_000
+
+
 def test_echo_is_printed(capsys):
     csgmesh.parse("echo(5); sphere(1);")
     assert capsys.readouterr().out == "ECHO: 5\n"

@@ -52,9 +52,10 @@ bool csg_color_parse(const char *text, size_t length, csg_color *out)
         size_t middle = (low + high) / 2;
         uint32_t rgb = colors[middle].rgb;
         int order = strcasecmp(text, colors[middle].name);
-        *out = from_bytes(rgb >> 16, rgb >> 8 & 255, rgb & 255, 255);
-        if (order == 0)
+        if (order == 0) {
+            *out = from_bytes(rgb >> 16, rgb >> 8 & 255, rgb & 255, 255);
             return true;
+        }
         low = order > 0 ? middle + 1 : low;
         high = order < 0 ? middle : high;
     }

@@ -59,9 +59,8 @@ nb::dict describe(const Finding &f)
 
 /* ---- what libcsgmesh calls, without the GIL ---------------------------------------------------- */
 
-void Context::take_finding(void *user, const csgm_diag *diag)
+void Context::keep_finding(const csgm_diag *diag)
 {
-    auto *self = static_cast<Context *>(user);
     Finding f{diag->severity,
               diag->code,
               copy(diag->source_name),
@@ -80,14 +79,35 @@ void Context::take_finding(void *user, const csgm_diag *diag)
         f.source_line.emplace(diag->source_line, diag->source_line_length);
     f.text.resize(csgm_diag_format(diag, nullptr, 0));
     csgm_diag_format(diag, f.text.data(), f.text.size() + 1);
-    self->findings.push_back(std::move(f));
+    findings.push_back(std::move(f));
+}
+
+/* Nothing may be thrown through C: the work stops, and the call ends without memory. */
+void Context::lose() noexcept
+{
+    no_memory_ = true;
+    cancelled_ = true;
+}
+
+void Context::take_finding(void *user, const csgm_diag *diag)
+{
+    auto *self = static_cast<Context *>(user);
+    try {
+        self->keep_finding(diag);
+    } catch (const std::exception &) {
+        self->lose();
+    }
 }
 
 void Context::take_echo(void *user, const char *text, size_t length)
 {
     auto *self = static_cast<Context *>(user);
-    std::lock_guard<std::mutex> lock(self->mutex_);
-    self->echoes_.append(text, length);
+    try {
+        std::lock_guard<std::mutex> lock(self->mutex_);
+        self->echoes_.append(text, length);
+    } catch (const std::exception &) {
+        self->lose();
+    }
 }
 
 void Context::take_progress(void *user, csgm_stage stage, double fraction)
@@ -212,6 +232,8 @@ csgm_status Context::work(nb::handle progress, nb::handle echo,
     }
     attend(progress, echo);
     cancelled_ = false;
+    if (no_memory_.exchange(false))
+        result = CSGM_ERR_MEMORY;
     if (error_) {
         nb::python_error error(std::move(*error_));
         error_.reset();

@@ -57,6 +57,8 @@ class Context
     std::vector<Finding> findings;
 
   private:
+    void keep_finding(const csgm_diag *diag);
+    void lose() noexcept;
     static void take_finding(void *user, const csgm_diag *diag);
     static void take_echo(void *user, const char *text, size_t length);
     static void take_progress(void *user, csgm_stage stage, double fraction);
@@ -67,7 +69,8 @@ class Context
 
     csgm_context *context_ = nullptr;
     std::atomic<bool> cancelled_{false};
-    std::mutex mutex_; /* of what follows */
+    std::atomic<bool> no_memory_{false}; /* for a finding or an echo */
+    std::mutex mutex_;                   /* of what follows */
     std::condition_variable changed_;
     bool done_ = false, has_progress_ = false;
     csgm_stage stage_ = CSGM_STAGE_OCTREE;

@@ -15,7 +15,8 @@ nb::tuple compare(const Run &run, nb::object a, nb::object b, nb::object scene_a
                   nb::object scene_b, nb::dict given)
 {
     Keep keep;
-    csgm_diff *diff = nullptr;
+    auto out = std::make_unique<Diff>(); /* frees the comparison if a callback of Python raises */
+    out->context = run.context;
     csgm_diff_options options = csgm_diff_options_default();
     options.monitor = run.context->monitor();
     fill_diff_options(options, given, keep);
@@ -25,15 +26,16 @@ nb::tuple compare(const Run &run, nb::object a, nb::object b, nb::object scene_a
         options.scene_a = nb::cast<const Scene &>(scene_a).scene.get();
     if (!scene_b.is_none())
         options.scene_b = nb::cast<const Scene &>(scene_b).scene.get();
-    csgm_status status = run.work(
-        [&] { return csgm_diff_meshes(run.context->get(), &left, &right, &options, &diff); });
-    auto out = std::make_unique<Diff>();
+    csgm_status status = run.work([&] {
+        csgm_diff *diff = nullptr;
+        csgm_status made = csgm_diff_meshes(run.context->get(), &left, &right, &options, &diff);
+        out->diff.reset(diff);
+        return made;
+    });
     if (status != CSGM_OK)
         return result_of(status, nb::none());
-    out->context = run.context;
     out->a = a;
     out->b = b;
-    out->diff.reset(diff);
     return result_of(status, nb::cast(out.release(), nb::rv_policy::take_ownership));
 }
 

@@ -104,14 +104,19 @@ nb::dict all_stats_of(const csgm_mesh_stats &stats)
     return out;
 }
 
-nb::tuple mesh_result(csgm_status status, const Run &run, csgm_mesh *mesh, nb::object stats)
+/* Its own before the work begins, so that the mesh is freed if a callback of Python raises. */
+std::unique_ptr<Mesh> mesh_of(const Run &run)
 {
     auto out = std::make_unique<Mesh>();
+    out->context = run.context;
+    return out;
+}
+
+nb::tuple mesh_result(csgm_status status, std::unique_ptr<Mesh> out, nb::object stats)
+{
     if (status != CSGM_OK)
         return result_of(status, nb::none());
-    out->context = run.context;
-    out->mesh.reset(mesh);
-    out->view = csgm_mesh_get_view(mesh);
+    out->view = csgm_mesh_get_view(out->mesh.get());
     out->stats = stats;
     return result_of(status, nb::cast(out.release(), nb::rv_policy::take_ownership));
 }
@@ -135,17 +140,19 @@ csgm_status compile(const Run &run, const Scene &scene, FieldPointer &field)
 nb::tuple build(const Run &run, const Scene &scene, nb::dict given)
 {
     Keep keep;
-    csgm_mesh *mesh = nullptr;
+    auto out = mesh_of(run);
     csgm_mesh_options options = options_of(run, given, keep);
     csgm_mesh_stats stats = csgm_mesh_stats_default();
     csgm_status status = run.work([&] {
         FieldPointer field{nullptr, csgm_field_destroy};
+        csgm_mesh *mesh = nullptr;
         csgm_status made = compile(run, scene, field);
-        return made != CSGM_OK
-                   ? made
-                   : csgm_mesh_build(run.context->get(), field.get(), &options, &mesh, &stats);
+        if (made == CSGM_OK)
+            made = csgm_mesh_build(run.context->get(), field.get(), &options, &mesh, &stats);
+        out->mesh.reset(mesh);
+        return made;
     });
-    return mesh_result(status, run, mesh, all_stats_of(stats));
+    return mesh_result(status, std::move(out), all_stats_of(stats));
 }
 
 /* (status, (vertices, triangles, stats)). */
@@ -175,12 +182,16 @@ nb::tuple build_file(const Run &run, const Scene &scene, nb::bytes path, nb::byt
 nb::tuple read_mesh(const Run &run, nb::bytes path, nb::bytes format)
 {
     Keep keep;
-    csgm_mesh *mesh = nullptr;
+    auto out = mesh_of(run);
     const char *name = keep.text(path, "path");
     csgm_format as = csgm_format_from_name(keep.text(format, "format"));
-    csgm_status status =
-        run.work([&] { return csgm_mesh_read(run.context->get(), name, as, &mesh); });
-    return mesh_result(status, run, mesh, nb::none());
+    csgm_status status = run.work([&] {
+        csgm_mesh *mesh = nullptr;
+        csgm_status read = csgm_mesh_read(run.context->get(), name, as, &mesh);
+        out->mesh.reset(mesh);
+        return read;
+    });
+    return mesh_result(status, std::move(out), nb::none());
 }
 
 nb::tuple write_mesh(const Run &run, const Mesh &self, nb::bytes path, nb::bytes format,
@@ -199,13 +210,17 @@ nb::tuple write_mesh(const Run &run, const Mesh &self, nb::bytes path, nb::bytes
 nb::tuple as_file(const Run &run, const Mesh &self, nb::bytes format, nb::dict given)
 {
     Keep keep;
-    csgm_mesh *mesh = nullptr;
+    auto out = mesh_of(run);
     csgm_write_options options = csgm_write_options_default();
     fill_write_options(options, given, keep);
     csgm_format as = csgm_format_from_name(keep.text(format, "format"));
-    csgm_status status = run.work(
-        [&] { return csgm_mesh_as_file(run.context->get(), &self.view, as, &options, &mesh); });
-    return mesh_result(status, run, mesh, nb::none());
+    csgm_status status = run.work([&] {
+        csgm_mesh *mesh = nullptr;
+        csgm_status made = csgm_mesh_as_file(run.context->get(), &self.view, as, &options, &mesh);
+        out->mesh.reset(mesh);
+        return made;
+    });
+    return mesh_result(status, std::move(out), nb::none());
 }
 
 nb::tuple inspect(const Run &run, const Mesh &self)

@@ -12,13 +12,18 @@ namespace
 
 using Pixels = nb::ndarray<const uint8_t, nb::shape<-1, -1, 4>, nb::c_contig, nb::device::cpu>;
 
-nb::tuple image_result(csgm_status status, const Run &run, csgm_image *image)
+/* Its own before the work begins, so that the image is freed if a callback of Python raises. */
+std::unique_ptr<Image> image_of(const Run &run)
 {
     auto out = std::make_unique<Image>();
+    out->context = run.context;
+    return out;
+}
+
+nb::tuple image_result(csgm_status status, std::unique_ptr<Image> out)
+{
     if (status != CSGM_OK)
         return result_of(status, nb::none());
-    out->context = run.context;
-    out->image.reset(image);
     return result_of(status, nb::cast(out.release(), nb::rv_policy::take_ownership));
 }
 
@@ -33,28 +38,34 @@ csgm_render_options options_of(const Run &run, nb::dict given, Keep &keep)
 nb::tuple render_scene(const Run &run, const Scene &scene, nb::dict given)
 {
     Keep keep;
-    csgm_image *image = nullptr;
+    auto out = image_of(run);
     csgm_render_options options = options_of(run, given, keep);
     csgm_status status = run.work([&] {
         csgm_field *field = nullptr;
+        csgm_image *image = nullptr;
         csgm_status made = csgm_field_compile(run.context->get(), scene.scene.get(), &field);
         FieldPointer owner{field, csgm_field_destroy};
-        return made != CSGM_OK
-                   ? made
-                   : csgm_render_scene(run.context->get(), field, &options, &image, nullptr);
+        if (made == CSGM_OK)
+            made = csgm_render_scene(run.context->get(), field, &options, &image, nullptr);
+        out->image.reset(image);
+        return made;
     });
-    return image_result(status, run, image);
+    return image_result(status, std::move(out));
 }
 
 nb::tuple render_mesh(const Run &run, const Mesh &mesh, nb::dict given)
 {
     Keep keep;
-    csgm_image *image = nullptr;
+    auto out = image_of(run);
     csgm_render_options options = options_of(run, given, keep);
     csgm_status status = run.work([&] {
-        return csgm_render_mesh(run.context->get(), &mesh.view, &options, &image, nullptr);
+        csgm_image *image = nullptr;
+        csgm_status made =
+            csgm_render_mesh(run.context->get(), &mesh.view, &options, &image, nullptr);
+        out->image.reset(image);
+        return made;
     });
-    return image_result(status, run, image);
+    return image_result(status, std::move(out));
 }
 
 nb::object pixels_of(nb::handle self)

@@ -11,17 +11,33 @@
 namespace
 {
 
+struct Text {
+    std::string text;
+    bool is_whole = true; /* memory was enough for all of it */
+};
+
+/* Called from C, through which nothing may be thrown. */
 void append_text(void *user, const char *text, size_t length)
 {
-    static_cast<std::string *>(user)->append(text, length);
+    auto *to = static_cast<Text *>(user);
+    try {
+        to->text.append(text, length);
+    } catch (const std::exception &) {
+        to->is_whole = false;
+    }
 }
 
-nb::tuple scene_result(csgm_status status, const Run &run, csgm_scene *scene)
+/* Its own before the work begins, so that the scene is freed if a callback of Python raises. */
+std::unique_ptr<Scene> scene_of(const Run &run)
 {
     auto out = std::make_unique<Scene>();
     out->context = run.context;
-    out->scene.reset(scene);
-    return result_of(status, status == CSGM_OK && scene /* none where a text is only checked */
+    return out;
+}
+
+nb::tuple scene_result(csgm_status status, std::unique_ptr<Scene> out)
+{
+    return result_of(status, status == CSGM_OK && out->scene /* none where it is only checked */
                                  ? nb::cast(out.release(), nb::rv_policy::take_ownership)
                                  : nb::none());
 }
@@ -29,27 +45,34 @@ nb::tuple scene_result(csgm_status status, const Run &run, csgm_scene *scene)
 nb::tuple load(const Run &run, nb::bytes path, nb::dict given)
 {
     Keep keep;
-    csgm_scene *scene = nullptr;
+    auto out = scene_of(run);
     csgm_scene_options options = csgm_scene_options_default();
     fill_scene_options(options, given, keep);
     const char *name = keep.text(path, "path");
-    csgm_status status =
-        run.work([&] { return csgm_scene_load(run.context->get(), name, &options, &scene); });
-    return scene_result(status, run, scene);
+    csgm_status status = run.work([&] {
+        csgm_scene *scene = nullptr;
+        csgm_status loaded = csgm_scene_load(run.context->get(), name, &options, &scene);
+        out->scene.reset(scene);
+        return loaded;
+    });
+    return scene_result(status, std::move(out));
 }
 
 nb::tuple parse(const Run &run, nb::bytes text, nb::bytes name, nb::dict given)
 {
     Keep keep;
-    csgm_scene *scene = nullptr;
+    auto out = scene_of(run);
     csgm_scene_options options = csgm_scene_options_default();
     fill_scene_options(options, given, keep);
     const char *path = keep.text(name, "name");
     csgm_status status = run.work([&] {
-        return csgm_scene_parse(run.context->get(), text.c_str(), text.size(), path, &options,
-                                &scene);
+        csgm_scene *scene = nullptr;
+        csgm_status parsed =
+            csgm_scene_parse(run.context->get(), text.c_str(), text.size(), path, &options, &scene);
+        out->scene.reset(scene);
+        return parsed;
     });
-    return scene_result(status, run, scene);
+    return scene_result(status, std::move(out));
 }
 
 nb::dict info(const Scene &self)
@@ -89,12 +112,13 @@ nb::tuple eval_points(const Run &run, const Scene &self, Rows3<const double> poi
 
 nb::tuple dump(const Run &run, const Scene &self, int what)
 {
-    std::string text;
+    Text out;
     csgm_status status = run.work([&] {
-        return csgm_scene_dump(run.context->get(), self.scene.get(), (csgm_dump)what, append_text,
-                               &text);
+        csgm_status dumped = csgm_scene_dump(run.context->get(), self.scene.get(), (csgm_dump)what,
+                                             append_text, &out);
+        return dumped == CSGM_OK && !out.is_whole ? CSGM_ERR_MEMORY : dumped;
     });
-    return result_of(status, text_of(text.c_str()));
+    return result_of(status, text_of(out.text.c_str()));
 }
 
 nb::tuple draw(const Run &run, const Scene &self, nb::bytes path, nb::dict given)
