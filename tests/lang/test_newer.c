@@ -174,9 +174,11 @@ static csgm_status load_poor_scene(bench *poor)
 
 static void every_allocation_may_fail(void **state)
 {
-    static const char scene[] = "o = object(object(a = [1]), [[\"b\", 2], [\"a\"]], c = str(3));\n"
-                                "x = [for (k = o) [k, o[k]]]; d = import(\"a.json\");\n"
-                                "cube(len(x)); fill() square(2);";
+    static const char scene[] =
+        "o = object(object(a = [1]), [[\"b\", 2], [\"a\"]], c = str(3));\n"
+        "x = [for (k = o) [k, o[k]]]; d = import(\"a.json\");\n"
+        "y = [for (i = [1 : 60]) str([for (j = [1 : 200]) j + i])]; /* no small values */\n"
+        "cube(len(x)); fill() square(2);";
     (void)state;
     write_text("a.json", "{\"b\": [1, {\"x\": \"y\"}], \"a\": 1}");
     write_text("poor.scad", scene);
