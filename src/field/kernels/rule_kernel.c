@@ -13,6 +13,11 @@
 
 /* Relative rounding of a join or of a field function, and of N_S and N_A after it. */
 #define ROUNDING 0x1p-20f
+/* Room of what a soft node delivers as a value, in units of |scale| + |shift|, which no such value
+ * exceeds: that of scale and shift, and of the folds of lengths above, which round by a few units
+ * in the last place of their operands and have no room of their own. Leaves have it in their slack.
+ */
+#define VALUE_ROUNDING 0x1p-19f
 
 /* ---- soft nodes and deliveries ----------------------------------------------------------------
  */
@@ -159,13 +164,15 @@ static void deliver_intervals(const csg_tape *tape, const csg_tape_node *node, f
     const float *delivery = delivery_of(tape, node);
     hand_over(delivery, low, CSG_OCTANTS);
     hand_over(delivery, high, CSG_OCTANTS);
-    const float shift = delivery[CSG_DELIVER_SHIFT];
-    if (delivery[CSG_DELIVER_LOW] != 0) /* a value: the rounding of its scale and its shift */
+    if (delivery[CSG_DELIVER_LOW] != 0) {
+        const float scale = delivery[CSG_DELIVER_SCALE], sign = scale < 0 ? -1.0f : 1.0f;
+        const float room =
+            VALUE_ROUNDING * (absolute(scale) + absolute(delivery[CSG_DELIVER_SHIFT]));
         for (int o = 0; o < CSG_OCTANTS; o++) {
-            float sign = delivery[CSG_DELIVER_SCALE] < 0 ? -1.0f : 1.0f;
-            low[o] -= sign * ROUNDING * (absolute(low[o]) + absolute(shift));
-            high[o] += sign * ROUNDING * (absolute(high[o]) + absolute(shift));
+            low[o] -= sign * room;
+            high[o] += sign * room;
         }
+    }
     for (int o = 0; o < CSG_OCTANTS && delivery[CSG_DELIVER_SCALE] < 0; o++) {
         float turned = low[o];
         low[o] = high[o];
