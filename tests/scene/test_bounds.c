@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 #include "random_scene.h"
+#include "scene/boxes/exterior.h"
+#include "scene/boxes/level_boxes.h"
 #include "scene/formula/formula.h"
 #include "scene/primitives/kinds.h"
 #include "scene/warp_kinds.h"
@@ -342,6 +344,31 @@ static void test_random_trees_are_contained(void **state)
     assert_true(inside > 5000);
 }
 
+/* Found from what leaves are far away, soft ones and rules too: nothing is solid beyond it. */
+static void test_nothing_is_beyond_the_exterior_box(void **state)
+{
+    int found = 0, beyond = 0, rescued = 0;
+    for (uint64_t seed = 3001; seed < 3400; seed += 3) { /* with rules */
+        csg_random random;
+        csgm_scene *scene = random_scene(seed, &random);
+        csg_box box;
+        assert_int_equal(csg_exterior_box(scene, &box), CSGM_OK);
+        bool is_found = csg_box_is_finite(box);
+        found += is_found;
+        for (int i = 0; i < 300 && is_found; i++) {
+            csg_vec3 p = test_point(&random, i % 3 == 0 ? 100 : i % 3 == 1 ? 6 : 2);
+            bool is_outside = !csg_box_contains_box(box, (csg_box){p, p});
+            beyond += is_outside;
+            assert_true(!is_outside || test_sample(scene, p).value < 0);
+        }
+        csg_box all = csg_box_all();
+        assert_int_equal(csg_level_box_of_root(scene, &all), CSGM_OK);
+        rescued += is_found && !csg_box_is_finite(all) && !csg_box_is_empty(all);
+        csg_scene_destroy(scene);
+    }
+    assert_true(found > 60 && beyond > 10000 && rescued > 15);
+}
+
 /* Walking outwards from solid points must not leave the box before the solid: boxes that are
  * wrong by little show here. */
 static void test_surface_is_contained(void **state)
@@ -443,6 +470,7 @@ int main(void)
         TEST(test_ancestors_cut),
         TEST(test_turned_groups),
         TEST(test_random_trees_are_contained),
+        TEST(test_nothing_is_beyond_the_exterior_box),
         TEST(test_surface_is_contained),
         TEST(test_band_is_exact),
         TEST(test_worked_example),

@@ -5,6 +5,7 @@
  */
 #include "scene/boxes/bounds.h"
 
+#include "scene/boxes/exterior.h"
 #include "scene/boxes/field_levels.h"
 #include "scene/boxes/level_boxes.h"
 #include "scene/operators/blend_kinds.h"
@@ -36,7 +37,12 @@ csgm_status csg_bounds_fill(csgm_scene *scene)
     if (status == CSGM_OK && !is_union_of_placed_leaves(scene))
         status = csg_level_box_of_root(scene, &root);
     if (status == CSGM_OK)
+        root = scene->bounds[scene->root] = csg_box_intersect(scene->bounds[scene->root], root);
+    bool is_known = csg_box_is_finite(root) || csg_box_is_empty(root);
+    if (status == CSGM_OK && scene->softness && !is_known) { /* else levels have said it all */
+        status = csg_exterior_box(scene, &root);
         scene->bounds[scene->root] = csg_box_intersect(scene->bounds[scene->root], root);
+    }
     return status;
 }
 
