@@ -88,6 +88,60 @@ static void test_random_fillet_scenes(void **state)
     assert_true(totals.cells > 3000 && totals.shortened > 400 && totals.in_band > 10000);
 }
 
+/* A cross of two bars, or two blocks with a gap between them; a ball in the middle of the first,
+ * never within 2 r of it, asks for the evaluation of any number of operands. Both are equal to the
+ * last bit on diagonal planes, or in the middle of the gap, where they face each other. */
+static void two_blocks(test_subject *s, csg_node_kind how, double apart, unsigned count)
+{
+    static const double bars[2][3] = {{1, 0.6, 0.6}, {0.6, 1, 0.6}}, block[3] = {0.6, 0.6, 0.6};
+    csg_node_id nodes[3];
+    test_subject_begin(s);
+    csg_scene_builder *builder = &s->builder;
+    for (unsigned k = 0; k < count; k++) {
+        csg_color color = {(float)k * 0.5f, 0.5f, 1, 1};
+        csg_affine place = csg_affine_translate(csg_vec3_make(k == 1 ? apart : -apart, 0, 0));
+        csg_node_id node =
+            k == 2
+                ? csg_build_primitive(builder, CSG_NODE_SPHERE, (double[]){0.1}, NOWHERE)
+                : csg_build_primitive(builder, CSG_NODE_BOX, apart > 0 ? block : bars[k], NOWHERE);
+        nodes[k] = csg_build_color(builder, color,
+                                   csg_build_transform(builder, &place, node, NOWHERE), NOWHERE);
+    }
+    csg_blend blend = {CSG_BLEND_FILLET, 0.2};
+    test_subject_compile(s, csg_build_operator(builder, how, blend, nodes, count, NOWHERE));
+}
+
+/* Two operands are evaluated on their own; more of them, in another way, have the same bits. */
+static void test_pairs_of_fillets(void **state)
+{
+    static test_points points;
+    static test_results pair, three;
+    csg_random random = {24};
+    for (int i = 0; i < 60; i++) {
+        test_subject s[2];
+        csg_node_kind how = i % 3 ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE;
+        double apart = i % 3 == 2 ? 0.7 : 0;
+        for (unsigned k = 0; k < 2; k++)
+            two_blocks(&s[k], how, apart, 2 + k);
+        test_points_clear(&points);
+        while (points.count < 256) {
+            csg_vec3 p = test_point(&random, how == CSG_NODE_UNION ? 1.3 : 0.2);
+            bool equal = points.count % 3 == 0;
+            p.y = equal && apart == 0 ? copysign(p.x, p.y) : p.y;
+            p.x = equal && apart > 0 ? 0 : p.x;
+            if (how == CSG_NODE_DIFFERENCE) /* where the first bar is not in the second */
+                p.x += copysign(0.8, p.x);
+            test_points_add(&points, p);
+        }
+        const csg_kernel *kernel = csg_kernel_for(csg_cpu_best_isa(CSGM_ISA_AUTO));
+        test_evaluate(kernel, &s[0].field->tape, &points, &pair);
+        test_evaluate(kernel, &s[1].field->tape, &points, &three);
+        test_same_bits(&pair, &three, points.count, false, csg_node_kind_name(how));
+        test_subject_end(&s[0]);
+        test_subject_end(&s[1]);
+    }
+}
+
 /* ---- on the threshold
  * ------------------------------------------------------------------------------ */
 
@@ -201,7 +255,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),        cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_random_fillet_scenes), cmocka_unit_test(test_threshold),
-        cmocka_unit_test(test_one_of_many),
+        cmocka_unit_test(test_one_of_many),          cmocka_unit_test(test_pairs_of_fillets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,7 @@
 
 #include "base/select.h"
 #include "field/kernels/batch.h"
+#include "field/kernels/fillet_pair.h"
 #include "scene/operators/fillet.h"
 
 /* The operator's arrays: value k is values[k * stride + i], its channels are channels[(k * per +
@@ -140,18 +141,6 @@ static float fillet_mean(const fillet_arrays *a, const fillet_mix *mix, uint32_t
     return out;
 }
 
-/* The result takes the place of the first operand: value, gradient and `colors` more channels. */
-static void fillet_combine(const fillet_arrays *a, int colors, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        fillet_mix mix = fillet_at(a, i);
-        for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++)
-            fillet_channel(a, 0, c)[i] = mix.is_ended && c < 3 ? fillet_channel(a, mix.plane, c)[i]
-                                                               : fillet_mean(a, &mix, c, i);
-        a->values[i] = a->turn * mix.value;
-    }
-}
-
 /* How far the operand that reaches farthest does so beyond the plane. */
 static float fillet_beyond(const fillet_arrays *a, uint32_t plane)
 {
@@ -159,6 +148,90 @@ static float fillet_beyond(const fillet_arrays *a, uint32_t plane)
     for (uint32_t k = 0; k < a->operands; k++)
         most = larger(most, a->parameters[a->numbers[k] + a->numbers[plane]]);
     return most;
+}
+
+/* Shares of a pair's operands, value by value; those of points where they are equal as fillet_at
+ * has them. */
+static void fillet_pair_shares(const fillet_arrays *a, size_t count, const fillet_pairs *pairs,
+                               float *restrict value, float *restrict shares[2],
+                               float *restrict plane)
+{
+    const float *first = a->values, *second = a->values + a->stride;
+    for (size_t i = 0; i < count; i++) {
+        float v = a->turn * first[i], w = a->turn * second[i];
+        double level = pairs->largest[i] + pairs->excess[i];
+        bool blends = (pairs->excess[i] > 0) & (level > pairs->largest[i]);
+        float lower = blends ? pairs->lower[i] : 0, higher = 1.0f - lower;
+        value[i] = blends ? (float)level : larger(w, v);
+        shares[0][i] = w > v ? lower : higher;
+        shares[1][i] = w > v ? higher : lower;
+        plane[i] = blends ? pairs->plane[i] : 0;
+    }
+    for (size_t i = 0; i < count; i++)
+        if (first[i] == second[i]) {
+            fillet_mix mix = fillet_at(a, i);
+            value[i] = mix.value;
+            plane[i] = mix.is_ended ? (float)mix.plane : 0;
+            shares[0][i] = shares[1][i] = 0;
+            for (uint32_t k = 0; k < mix.count; k++)
+                shares[mix.at[k]][i] = mix.share[k];
+        }
+}
+
+/* As fillet_combine, of two operands. */
+static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count)
+{
+    fillet_pairs pairs;
+    float value[CSG_BATCH], first[CSG_BATCH], second[CSG_BATCH], plane[CSG_BATCH];
+    float *shares[2] = {first, second};
+    const float *const gradients[2][3] = {
+        {fillet_channel(a, 0, 0), fillet_channel(a, 0, 1), fillet_channel(a, 0, 2)},
+        {fillet_channel(a, 1, 0), fillet_channel(a, 1, 1), fillet_channel(a, 1, 2)},
+    };
+    fillet_pairs_blend(a->turn, a->radius, a->values, a->values + a->stride, gradients, count,
+                       &pairs);
+    for (size_t i = 0; i < count; i++) {
+        pairs.end[i] = INFINITY;
+        pairs.plane[i] = 0;
+    }
+    for (uint32_t p = 2; p < 2 + a->planes; p++)
+        fillet_pairs_meet(a->turn, (float)p, fillet_beyond(a, p), a->values + p * a->stride, count,
+                          &pairs);
+    if (a->planes)
+        fillet_pairs_end(count, &pairs);
+    fillet_pair_shares(a, count, &pairs, value, shares, plane);
+    for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++) {
+        float *restrict u = fillet_channel(a, 0, c);
+        const float *restrict v = fillet_channel(a, 1, c);
+        for (size_t i = 0; i < count; i++) {
+            float both = first[i] * u[i] + second[i] * v[i];
+            both = second[i] == 0 ? u[i] : both;
+            u[i] = first[i] == 0 ? v[i] : both;
+        }
+        for (uint32_t p = 2; p < 2 + a->planes && c < 3; p++) {
+            const float *restrict end = fillet_channel(a, p, c);
+            for (size_t i = 0; i < count; i++)
+                u[i] = plane[i] == (float)p ? end[i] : u[i];
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        a->values[i] = a->turn * value[i];
+}
+
+/* The result takes the place of the first operand: value, gradient and `colors` more channels. */
+static void fillet_combine(const fillet_arrays *a, int colors, size_t count)
+{
+    if (a->operands == 2) {
+        fillet_combine_pair(a, colors, count);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        fillet_mix mix = fillet_at(a, i);
+        for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++)
+            fillet_channel(a, 0, c)[i] = mix.is_ended && c < 3 ? fillet_channel(a, mix.plane, c)[i]
+                                                               : fillet_mean(a, &mix, c, i);
+        a->values[i] = a->turn * mix.value;
+    }
 }
 
 static float fillet_least_beyond(const fillet_arrays *a, uint32_t plane)
