@@ -201,6 +201,50 @@ static void wrapped_children_bring_their_own_blend(void **state)
     assert_true(bench_has(&b, -304));
 }
 
+/* A union grows by its blend within the region, what is cut shrinks there. */
+static void blends_are_bounded_by_regions(void **state)
+{
+    (void)state;
+    check_same("union(blend = 1) { sphere(2); blend_within() cube(9); cube(3); }",
+               "union() { union() { sphere(2); cube(3); } intersection() { union(blend = 1) { "
+               "sphere(2); cube(3); } cube(9); } }");
+    check_same("difference(blend = 1) { sphere(2); cube(3); blend_within(0.5) cube(9); }",
+               "difference() { difference() { sphere(2); cube(3); } difference(blend = 0.5) { "
+               "cube(9); difference(blend = 1) { sphere(2); cube(3); } } }");
+    check_same("intersection(blend = 1) { blend_within() cube(9); sphere(2); cube(3); }",
+               "difference() { intersection() { sphere(2); cube(3); } difference() { cube(9); "
+               "intersection(blend = 1) { sphere(2); cube(3); } } }");
+    /* several regions, solids of loops, children with blends of their own */
+    check_same("union(blend = 1) { for (x = [0, 2]) translate([x, 0, 0]) sphere(2); "
+               "blend_within(border = 1) cube(3); blend_within() cube(1); }",
+               "module two(b) union(blend = b) { sphere(2); translate([2, 0, 0]) sphere(2); } "
+               "union() { two(0); intersection(blend = 1) { two(1); cube(3); } intersection() { "
+               "two(1); cube(1); } }");
+    check_same("union() { sphere(2); blend(1) cube(3); blend_within() cube(9); }",
+               "union() { sphere(2); cube(3); intersection() { union(blend = 1) { sphere(2); "
+               "cube(3); } cube(9); } }");
+    /* two half-spaces at a right angle, as in the test of blends: rounded for z > 0 only */
+    const double at = 2 - 2 / sqrt(2), planes = -at;
+    const char *corner = "union(blend = 2) { plane([1, 0, 0], 0); plane([0, 1, 0], 0); "
+                         "blend_within() plane([0, 0, -1], 0); }";
+    check(corner, at, at, 5, 0);
+    check(corner, at, at, -5, planes);
+    static const char *const without_use[] = {
+        "union() { sphere(2); cube(3); blend_within() cube(9); }",
+        "union(blend = 1) { sphere(2); blend_within() cube(9); }",
+        "sphere(2); translate([1, 0, 0]) blend_within() cube(9);",
+        "combine(function (a, b) max(a, b)) { sphere(2); cube(3); blend_within() cube(9); }",
+        "minkowski() { sphere(2); cube(3); blend_within() cube(9); }",
+    };
+    for (size_t i = 0; i < sizeof without_use / sizeof *without_use; i++) {
+        assert_int_equal(bench_compile(&b, without_use[i]), CSGM_OK);
+        assert_true(bench_has(&b, -304));
+    }
+    assert_int_equal(bench_compile(&b, "union(blend = 1) { sphere(2); cube(3); "
+                                       "blend_within(-1) cube(9); }"),
+                     CSGM_ERR_SCENE);
+}
+
 static void colors_are_read(void **state)
 {
     static const struct {
@@ -303,6 +347,7 @@ int main(void)
         cmocka_unit_test(operators_mean_what_they_say),
         cmocka_unit_test(blends_reach_their_operators),
         cmocka_unit_test(wrapped_children_bring_their_own_blend),
+        cmocka_unit_test(blends_are_bounded_by_regions),
         cmocka_unit_test(colors_are_read),
         cmocka_unit_test(the_mug_of_the_manual_compiles),
         cmocka_unit_test(printed_scenes_parse_back),

@@ -17,9 +17,10 @@
 /* A solid that waits to be joined with its neighbours. */
 typedef struct csg_eval_part {
     csg_node_id node;
-    bool wrapped; /* in blend(b): joins with `blend`, whatever its operator says */
-    csg_blend blend;
-    csg_span where; /* of the wrapper */
+    bool wrapped;    /* in blend(b): joins with `blend`, whatever its operator says */
+    bool is_region;  /* in blend_within(): no operand, but where its operator blends */
+    csg_blend blend; /* of a region: how the blend ends there */
+    csg_span where;  /* of the wrapper */
 } csg_eval_part;
 
 typedef struct csg_dynamic { /* a binding of a $variable */
@@ -298,6 +299,8 @@ void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
 size_t csg_parts_drop_unlike(csg_eval *e, size_t first, bool flat);
 /* The same by the first part's dimension; warns of the others. */
 void csg_parts_keep_alike(csg_eval *e, size_t first, csg_span where);
+/* Takes off the regions of blend_within() above `first`, which `name` has no use for, and warns. */
+void csg_parts_drop_regions(csg_eval *e, size_t first, const char *name);
 /* At the end of a scene (flat_scene.c): where only a drawing is asked for, solids beside figures
  * are left out, told; */
 void csg_eval_keep_drawn(csg_eval *e, csg_span where);

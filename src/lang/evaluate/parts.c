@@ -96,14 +96,11 @@ csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_bl
     return csg_join_mixed_parts(e, first, kind, blend, where);
 }
 
-csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
-                                 csg_span where)
+/* Joins `count` parts that are no regions; the first is what the others join. */
+static csg_node_id join_operands(csg_eval *e, csg_eval_part *parts, size_t count,
+                                 csg_node_kind kind, csg_blend blend, csg_span where)
 {
-    if (e->stop)
-        return CSG_NODE_NONE;
-    size_t count = e->part_count - first, bytes = (count ? count : 1) * sizeof(csg_node_id);
-    csg_eval_part *parts = count ? e->parts + first : NULL;
-    put_plain_first(e, parts, count, kind);
+    size_t bytes = (count ? count : 1) * sizeof(csg_node_id);
     csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
     if (children) {
         size_t plain = gather(parts, count, children);
@@ -114,6 +111,110 @@ csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, 
         csg_eval_no_memory(e);
     }
     csg_memory_release(&e->context->memory, children, bytes);
+    return node;
+}
+
+/* ---- where a blend acts ----------------------------------------------------------------------
+ * A union S is larger where it blends, B, and B within a region R is S, B and R: S or (B and R). An
+ * intersection or a difference is smaller there: S without (R without B). A border makes B and R,
+ * or R without B, smaller where they end.
+ */
+
+/* Moves the regions behind the operands, each in their order; how many operands there are. */
+static size_t put_regions_last(csg_eval_part *parts, size_t count)
+{
+    size_t operands = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (parts[i].is_region)
+            continue;
+        csg_eval_part operand = parts[i];
+        memmove(parts + operands + 1, parts + operands, (i - operands) * sizeof *parts);
+        parts[operands++] = operand;
+    }
+    return operands;
+}
+
+static bool blends(const csg_eval_part *parts, size_t count, csg_blend blend)
+{
+    bool any = count > 1 && !csg_blend_is_sharp(blend.kind);
+    for (size_t i = 1; i < count; i++)
+        any = any || (parts[i].wrapped && !csg_blend_is_sharp(parts[i].blend.kind));
+    return any;
+}
+
+/* S: of copies of the operands. */
+static csg_node_id join_sharply(csg_eval *e, const csg_eval_part *parts, size_t count,
+                                csg_node_kind kind, csg_span where)
+{
+    size_t bytes = count * sizeof *parts;
+    csg_node_id node = CSG_NODE_NONE;
+    csg_eval_part *copies = csg_memory_alloc(&e->context->memory, bytes);
+    if (!copies) {
+        csg_eval_no_memory(e);
+        return CSG_NODE_NONE;
+    }
+    for (size_t i = 0; i < count && !e->stop; i++)
+        copies[i] =
+            csg_part_plain(csg_check_node(e, csg_build_copy(&e->builder, parts[i].node), where));
+    if (!e->stop)
+        node = join_operands(e, copies, count, kind, CSG_SHARP, where);
+    csg_memory_release(&e->context->memory, copies, bytes);
+    return node;
+}
+
+static csg_node_id join_within(csg_eval *e, csg_eval_part *parts, size_t operands, size_t count,
+                               csg_node_kind kind, csg_blend blend, csg_span where)
+{
+    bool is_union = kind == CSG_NODE_UNION;
+    csg_node_id node = join_sharply(e, parts, operands, kind, where);
+    csg_node_id blended =
+        e->stop ? CSG_NODE_NONE : join_operands(e, parts, operands, kind, blend, where);
+    for (size_t i = operands; i < count && !e->stop; i++) {
+        csg_node_id whole = blended, region = parts[i].node;
+        if (i + 1 < count)
+            whole = csg_check_node(e, csg_build_copy(&e->builder, blended), where);
+        csg_node_id of[2] = {is_union ? whole : region, is_union ? region : whole};
+        csg_node_kind how = is_union ? CSG_NODE_INTERSECTION : CSG_NODE_DIFFERENCE;
+        csg_node_id pair[2] = {node, CSG_NODE_NONE};
+        if (!e->stop)
+            pair[1] = csg_check_node(
+                e, csg_build_operator(&e->builder, how, parts[i].blend, of, 2, parts[i].where),
+                where);
+        if (!e->stop)
+            node = csg_check_node(
+                e,
+                csg_build_operator(&e->builder, is_union ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE,
+                                   CSG_SHARP, pair, 2, where),
+                where);
+    }
+    return e->stop ? CSG_NODE_NONE : node;
+}
+
+void csg_parts_drop_regions(csg_eval *e, size_t first, const char *name)
+{
+    size_t operands = e->stop ? 0 : put_regions_last(e->parts + first, e->part_count - first);
+    for (size_t i = first + operands; i < e->part_count && !e->stop; i++)
+        csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, e->parts[i].where, NULL,
+                        "%s has no blend, this blend_within() is not used", name);
+    if (!e->stop)
+        e->part_count = first + operands;
+}
+
+csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
+                                 csg_span where)
+{
+    if (e->stop)
+        return CSG_NODE_NONE;
+    size_t count = e->part_count - first;
+    csg_eval_part *parts = count ? e->parts + first : NULL;
+    size_t operands = put_regions_last(parts, count);
+    put_plain_first(e, parts, operands, kind);
+    bool is_bounded = operands < count && blends(parts, operands, blend);
+    if (operands < count && !is_bounded)
+        csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, parts[operands].where, NULL,
+                        "there is no blend here that this blend_within() could bound");
+    csg_node_id node = is_bounded ? join_within(e, parts, operands, count, kind, blend, where)
+                                  : join_operands(e, parts, operands, kind, blend, where);
     e->part_count = first;
     return node;
 }

@@ -15,6 +15,7 @@ static uint32_t take_operands(csg_module_call *call, csg_node_id operands[CSG_CO
     csg_span where = call->statement->where;
     size_t first = e->part_count;
     csg_run_scope(e, call->statement->children, call->frame, false);
+    csg_parts_drop_regions(e, first, "combine()");
     size_t count = e->stop ? 0 : e->part_count - first;
     bool fits = count >= 1 && count <= CSG_COMBINE_MOST;
     for (size_t i = 0; fits && i < count; i++) {

@@ -23,6 +23,7 @@ csg_node_id csg_module_minkowski(csg_module_call *call)
     csg_run_scope(e, call->statement->children, call->frame, false);
     if (e->stop)
         return CSG_NODE_NONE;
+    csg_parts_drop_regions(e, first, "minkowski()");
     csg_parts_keep_alike(e, first, call->statement->where);
     if (e->part_count == first)
         return csg_shape_empty(call);
