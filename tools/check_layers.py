@@ -16,12 +16,15 @@ PARTS = {
     "shape": ["plane", "polyhedra"],
     "outline": ["letters", "svg", "dxf", "heights"],
     "scene": ["formula", "primitives", "operators", "boxes", "tree", "lazy", "outlines"],
-    "lang": ["parse", "evaluate", "functions", "modules", "parameters"],
+    "lang": ["parse", "evaluate", "functions", "modules", "parameters", "edit"],
     "field": ["kernels", "gradients", "prune", "compile", "cones"],
     "grid": ["octree", "adaptive", "certify"],
     "mesh": ["marching", "features", "remesh", "adaptive", "distance", "reshape", "own", "pipeline"],
     "io": ["text", "formats", "gltf", "threemf", "drawings"],
 }
+
+# What customers include.
+PUBLIC = {"csgmesh/csgmesh.h", "csgmesh/editing.h"}
 
 # Made by the build.
 GENERATED = {"report_page.inc"}
@@ -63,7 +66,7 @@ def fault_in_layer(layer, quote, name):
     """Why a file of `layer` may not include `name`, or None."""
     if quote == "<":
         return "the public header is included with quotes" if name.startswith("csgmesh/") else None
-    if name == "csgmesh/csgmesh.h":
+    if name in PUBLIC:
         return None
     folder = name.split("/")[0]
     if "/" not in name or folder not in ORDER:
@@ -159,12 +162,12 @@ def check_tools(root):
     for path in sources(tools):
         program = os.path.join(tools, os.path.relpath(path, tools).split(os.sep)[0])
         for number, quote, name in includes(path):
-            if quote != '"' or name == "csgmesh/csgmesh.h":
+            if quote != '"' or name in PUBLIC:
                 continue
             if name in GENERATED or os.path.exists(os.path.join(program, name)):
                 continue
             if name.split("/")[0] in ORDER:
-                yield path, number, "tools/ includes csgmesh/csgmesh.h only"
+                yield path, number, "tools/ includes csgmesh/editing.h and csgmesh/csgmesh.h only"
             else:
                 yield path, number, f"no file '{name}' in the program's folder"
 

@@ -38,8 +38,9 @@ typedef struct compilation {
     csgm_context *context;
     const csg_lang_input *input;
     csgm_scene_options options;
-    csgm_scene **out;    /* NULL: the parameters are asked for */
+    csgm_scene **out;    /* NULL: it is not asked for */
     csgm_params *params; /* filled then */
+    bool only_syntax;    /* neither is asked for, and no other file is read */
     csgm_status status;
     size_t stack_bytes;
     relay relay;
@@ -88,7 +89,10 @@ static csgm_status parse(csg_program *program, const compilation *c)
     csgm_status status = open_source(program, c->input, &source);
     if (status != CSGM_OK)
         return status;
+    program->is_alone = c->only_syntax;
     status = csg_parse_program(program, source, &c->options);
+    if (c->only_syntax)
+        return status;
     if (status == CSGM_OK && c->params)
         status = csg_customizer_collect(program, c->params);
     if (status == CSGM_ERR_MEMORY || status == CSGM_ERR_LIMIT)
@@ -219,7 +223,7 @@ static void compile(compilation *c)
     double parsed_s = csg_clock_now_s();
     if (c->status == CSGM_OK && c->params)
         c->status = csg_customizer_take_values(&program, c->params);
-    else if (c->status == CSGM_OK)
+    else if (c->status == CSGM_OK && c->out)
         c->status = evaluate(&program, errors, c->out);
     if (c->status == CSGM_OK && c->out && *c->out) {
         (*c->out)->parse_s = parsed_s - begin_s;
@@ -438,6 +442,13 @@ csgm_status csg_lang_parameters(csgm_context *context, const csg_lang_input *inp
     else
         csg_params_destroy(params);
     return status;
+}
+
+csgm_status csg_lang_check_syntax(csgm_context *context, const csg_lang_input *input)
+{
+    if (!context || !input || (!input->text && !input->path))
+        return CSGM_ERR_ARGUMENT;
+    return compile_with(&(compilation){.context = context, .input = input, .only_syntax = true});
 }
 
 void csg_params_destroy(csgm_params *params)

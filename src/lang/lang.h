@@ -23,6 +23,8 @@ csgm_status csg_lang_compile(csgm_context *context, const csg_lang_input *input,
 /* Only parses, applies what is set from outside and lists the parameters (customizer.h). */
 csgm_status csg_lang_parameters(csgm_context *context, const csg_lang_input *input,
                                 csgm_params **out);
+/* Only parses, and only this one text: what it includes and uses is not looked for. */
+csgm_status csg_lang_check_syntax(csgm_context *context, const csg_lang_input *input);
 void csg_params_destroy(csgm_params *params);
 
 #endif

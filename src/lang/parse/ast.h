@@ -138,6 +138,7 @@ typedef struct csg_program {
     uint32_t dependency_count;
     double deadline_s;  /* of the monotonic clock; 0 = none */
     bool failed_io;     /* a file could not be read */
+    bool is_alone;      /* only the scene's own text is read */
     bool exact_facets;  /* $fn, $fa and $fs everywhere, as in OpenSCAD */
     const char **fonts; /* files behind use <font.ttf> */
     uint32_t font_count;

@@ -573,6 +573,8 @@ static bool parse_include(csg_parser *parser, csg_scope *scope)
     }
     csg_parser_next(parser);
     csg_parser_accept(parser, CSG_TOKEN_SEMICOLON);
+    if (parser->program->is_alone)
+        return true;
     if (use)
         csg_load_use(parser, path);
     else
