@@ -70,10 +70,8 @@ static void ask(csg_feature_probe *p, int domain, gathered *at, size_t count, fl
     const csg_kernel *kernel = p->marching->kernel;
     for (size_t i = count; i % CSG_LANES; i++)
         at->x[i] = at->x[0], at->y[i] = at->y[0], at->z[i] = at->z[0];
-    if (f)
-        kernel->values(&tape, at->x, at->y, at->z, count, at->f, p->scratch, p->scratch_floats);
-    kernel->gradients(&tape, at->x, at->y, at->z, count, at->g[0], at->g[1], at->g[2], p->scratch,
-                      p->scratch_floats);
+    kernel->values_and_gradients(&tape, at->x, at->y, at->z, count, at->f, at->g[0], at->g[1],
+                                 at->g[2], p->scratch, p->scratch_floats);
     p->evaluations += count;
     for (size_t i = 0; i < count; i++) {
         uint32_t to = at->from[i];
