@@ -42,29 +42,57 @@ static void place_vertex(const ring *r, const float at[3])
         memcpy(r->f[k]->corner[r->corner[k]], at, 3 * sizeof *at);
 }
 
-/* The point of the surface near *at and its outward normal. False: it is not of this sheet. */
-static bool to_surface(csg_feature_probe *probe, csg_vec3 *at, csg_vec3 *normal)
+/* Places to try around one vertex or apex. */
+enum { WAYS = 16 };
+
+typedef struct places {
+    csg_vec3 at[WAYS], normal[WAYS];
+    bool good[WAYS];
+} places;
+
+/* One step of a place to the surface, from the field there. False: it is not of this sheet. */
+static bool step_to_surface(csg_vec3 *at, csg_vec3 *normal, csg_vec3 sheet, double f, csg_vec3 d,
+                            double cell)
+{
+    static const double ALIKE = 0.97; /* cosine */
+    double square = csg_vec3_dot(d, d);
+    if (!(square > 1e-6) || !(fabs(f) < 0.5 * cell))
+        return false;
+    *normal = csg_vec3_scale(d, -1 / sqrt(square));
+    *at = csg_vec3_sub(*at, csg_vec3_scale(d, f / square));
+    return csg_vec3_dot(*normal, sheet) > ALIKE;
+}
+
+/* Moves the places to the points of the surface near them, all at once, and finds its outward
+ * normals there: good are those that are of the sheet with this normal. */
+static void to_surface(csg_feature_probe *probe, csg_vec3 sheet, places *p)
 {
     enum { STEPS = 3 };
-    static const double ALIKE = 0.97; /* cosine */
     double cell = probe->marching->lattice->cell_size;
-    csg_vec3 n = *normal;
-    float f = NAN, g[3][1];
+    double least = 1e-4 * cell + 4 * (double)probe->marching->noise;
+    float x[WAYS], y[WAYS], z[WAYS], f[WAYS], g[3][WAYS];
     for (int step = 0; step <= STEPS; step++) {
-        float x = (float)at->x, y = (float)at->y, z = (float)at->z;
-        csg_feature_probe_points(probe, &x, &y, &z, 1, &f, (float *const[3]){g[0], g[1], g[2]});
-        csg_vec3 d = {(double)g[0][0], (double)g[1][0], (double)g[2][0]};
-        double square = csg_vec3_dot(d, d);
-        if (!(square > 1e-6) || !(fabs((double)f) < 0.5 * cell))
-            return false;
-        n = csg_vec3_scale(d, -1 / sqrt(square));
-        if (!(csg_vec3_dot(n, *normal) > ALIKE))
-            return false;
-        if (step < STEPS)
-            *at = csg_vec3_sub(*at, csg_vec3_scale(d, (double)f / square));
+        int which[WAYS];
+        size_t count = 0;
+        for (int i = 0; i < WAYS; i++) {
+            if (step && !p->good[i])
+                continue;
+            x[count] = (float)p->at[i].x, y[count] = (float)p->at[i].y;
+            z[count] = (float)p->at[i].z;
+            which[count++] = i;
+        }
+        csg_feature_probe_points(probe, x, y, z, count, f, (float *const[3]){g[0], g[1], g[2]});
+        for (size_t k = 0; k < count; k++) {
+            csg_vec3 d = {(double)g[0][k], (double)g[1][k], (double)g[2][k]};
+            csg_vec3 *at = &p->at[which[k]], before = *at;
+            bool good = step_to_surface(at, &p->normal[which[k]], sheet, (double)f[k], d, cell);
+            if (step == STEPS) {
+                *at = before;
+                good = good && fabs((double)f[k]) <= least;
+            }
+            p->good[which[k]] = good;
+        }
     }
-    *normal = n;
-    return fabs((double)f) <= 1e-4 * cell + 4 * (double)probe->marching->noise;
 }
 
 /* Least height of a triangle around a moved vertex. */
@@ -128,7 +156,7 @@ static bool keep(csg_feature_store *store, const csg_feature *asker, const ring 
 
 /* A place to try in the plane of a sheet: around the vertex first, then around the apex that it is
  * to make way for. */
-enum { RINGS = 6, APEX_RINGS = 3, WAYS = 16 };
+enum { RINGS = 6, APEX_RINGS = 3 };
 
 static csg_vec3 place_of(int i, csg_vec3 vertex, csg_vec3 apex, csg_vec3 normal, double cell)
 {
@@ -158,15 +186,18 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
         before[k] = *r.f[k];
     memcpy(from, f->corner[corner], sizeof from);
     csg_vec3 n = csg_vec3_from_floats(f->normal[f->sheet[corner]]);
-    for (int i = around * WAYS; i < (around + 1) * WAYS; i++) {
-        csg_vec3 normal = n, at = place_of(i, csg_vec3_from_floats(from),
-                                           csg_vec3_from_floats(f->at), n, store->cell_size);
-        if (!to_surface(probe, &at, &normal))
+    places p;
+    for (int i = 0; i < WAYS; i++)
+        p.at[i] = place_of(around * WAYS + i, csg_vec3_from_floats(from),
+                           csg_vec3_from_floats(f->at), n, store->cell_size);
+    to_surface(probe, n, &p);
+    for (int i = 0; i < WAYS; i++) {
+        if (!p.good[i])
             continue;
-        to[0] = (float)at.x, to[1] = (float)at.y, to[2] = (float)at.z;
+        to[0] = (float)p.at[i].x, to[1] = (float)p.at[i].y, to[2] = (float)p.at[i].z;
         place_vertex(&r, to);
-        if (ring_holds(store, tables, &r, normal)) {
-            if (keep(store, f, &r, from, normal))
+        if (ring_holds(store, tables, &r, p.normal[i])) {
+            if (keep(store, f, &r, from, p.normal[i]))
                 return true;
             probe->around->out_of_memory = true; /* ends the run: another mesh would come out */
         }
