@@ -9,6 +9,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 typedef float csg_four __attribute__((vector_size(16)));
 typedef int32_t csg_four_mask __attribute__((vector_size(16))); /* per lane: all ones, or 0 */
 
@@ -29,6 +33,16 @@ static inline csg_four csg_four_all(float x)
 static inline csg_four csg_four_choose(csg_four_mask mask, csg_four a, csg_four b)
 {
     return (csg_four)((mask & (csg_four_mask)a) | (~mask & (csg_four_mask)b));
+}
+/* Bit i: lane i of the mask. */
+static inline unsigned csg_four_bits(csg_four_mask mask)
+{
+#ifdef __SSE2__
+    return (unsigned)_mm_movemask_ps((__m128)mask);
+#else
+    return ((unsigned)mask[0] & 1) | ((unsigned)mask[1] & 2) | ((unsigned)mask[2] & 4) |
+           ((unsigned)mask[3] & 8);
+#endif
 }
 static inline csg_four csg_four_smaller(csg_four a, csg_four b)
 {

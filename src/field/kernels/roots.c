@@ -41,6 +41,46 @@ static void evaluate(csg_edges *e, const csg_tape *tape, float *out, float *scra
     CSG_THIS_KERNEL.values(tape, e->x, e->y, e->z, e->count, out, scratch, scratch_floats);
 }
 
+/* Whether the edge's root is still looked for. */
+static bool is_live(const csg_edges *e, size_t i)
+{
+    return fabsf(e->f[i]) > e->tolerance[i];
+}
+
+static size_t count_live(const csg_edges *e)
+{
+    uint32_t live = 0;
+    for (size_t i = 0; i < e->count; i++)
+        live += is_live(e, i);
+    return live;
+}
+
+/* The values of live edges; where few are left these alone are asked, and the others' stay what
+ * they are. Returns how many were asked. */
+static size_t evaluate_live(csg_edges *e, const csg_tape *tape, float *scratch,
+                            size_t scratch_floats)
+{
+    uint16_t which[CSG_BLOCK_MOST_EDGES];
+    float f[CSG_BLOCK_MOST_EDGES];
+    size_t n = 0;
+    if (count_live(e) > e->count / 2) {
+        evaluate(e, tape, e->f, scratch, scratch_floats);
+        return e->count;
+    }
+    place(e);
+    for (size_t i = 0; i < e->count; i++) {
+        e->x[n] = e->x[i], e->y[n] = e->y[i], e->z[n] = e->z[i];
+        which[n] = (uint16_t)i;
+        n += is_live(e, i);
+    }
+    for (size_t i = n; i % CSG_LANES; i++)
+        e->x[i] = e->x[0], e->y[i] = e->y[0], e->z[i] = e->z[0];
+    CSG_THIS_KERNEL.values(tape, e->x, e->y, e->z, n, f, scratch, scratch_floats);
+    for (size_t i = 0; i < n; i++)
+        e->f[which[i]] = f[i];
+    return n;
+}
+
 static void set_all(float *array, size_t count, float value)
 {
     for (size_t i = 0; i < count; i++)
@@ -114,8 +154,7 @@ uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float noise, float *
     set_all(e->f, n, INFINITY); /* no lane is done */
     for (int step = 0; step < MOST_STEPS; step++) {
         propose(e, step % BISECTION_EVERY == BISECTION_EVERY - 1);
-        evaluate(e, tape, e->f, scratch, scratch_floats);
-        evaluations += e->count;
+        evaluations += evaluate_live(e, tape, scratch, scratch_floats);
         for (size_t i = e->count; i < n; i++)
             e->f[i] = 0;
         if (!shrink(e))

@@ -25,7 +25,8 @@ enum {
     ITEMS_PER_WORKER = 16,
     /* Blocks with longer tapes are split into parts with tapes of their own. Measured on a million
      * spheres: see tests/bench/log.md. */
-    LONG_TAPE = 6
+    LONG_TAPE = 6,
+    LONG_LIST = 4
 };
 
 /* What one item of a level produced, and where it is. */
@@ -218,11 +219,23 @@ static bool keep_doubt(walk *w, worker *self, const csg_scan *scan)
     return true;
 }
 
+/* Whether parts of a block are worth tapes of their own: it has many nodes, or a shape of which
+ * much is near. */
+static bool is_long(const csg_tape *tape)
+{
+    bool any = tape->count > LONG_TAPE;
+    for (uint32_t i = 0; i < tape->count && !any; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        any = node->op == CSG_OP_SHAPE && node->near && node->near->count >= LONG_LIST;
+    }
+    return any;
+}
+
 static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
 {
     csg_arena_mark mark = csg_arena_get_mark(&self->tapes[0]);
     self->candidate.parts = NULL;
-    if (w->options.prune && tape->count > LONG_TAPE && !split_block(w, self, at, tape))
+    if (w->options.prune && is_long(tape) && !split_block(w, self, at, tape))
         return false;
     count_samples(self, tape);
     csg_scan scan = {0};

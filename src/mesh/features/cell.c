@@ -61,13 +61,15 @@ static unsigned pattern_of(const csg_marching *m, const csg_tape *tape, const ui
 {
     float x[CSG_LANES], y[CSG_LANES], z[CSG_LANES], f[CSG_LANES];
     unsigned pattern = 0, border = 0;
-    for (unsigned c = 0; c < CSG_LANES; c++) {
-        const uint32_t at[3] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
+    for (unsigned c = 0; c < CSG_LANES; c++) { /* the lanes behind the corners repeat the first */
+        unsigned corner = c < 8 ? c : 0;
+        const uint32_t at[3] = {cell[0] + (corner & 1), cell[1] + (corner >> 1 & 1),
+                                cell[2] + (corner >> 2 & 1)};
         x[c] = csg_lattice_coordinate(m->lattice, 0, at[0]);
         y[c] = csg_lattice_coordinate(m->lattice, 1, at[1]);
         z[c] = csg_lattice_coordinate(m->lattice, 2, at[2]);
         for (int axis = 0; axis < 3; axis++)
-            border |= (unsigned)(at[axis] == 0 || at[axis] >= m->lattice->cells[axis]) << (c & 7);
+            border |= (unsigned)(at[axis] == 0 || at[axis] >= m->lattice->cells[axis]) << corner;
     }
     m->kernel->values(tape, x, y, z, 8, f, scratch, scratch_floats);
     for (unsigned c = 0; c < 8; c++)

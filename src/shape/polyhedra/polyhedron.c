@@ -110,16 +110,18 @@ static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *
     static const double UNCERTAIN = 1e-3;
     const csg_tree_triangle *t = &solid->tree.triangles[place];
     csg_triangle_part part;
-    csg_vec3 away = csg_vec3_sub(p, csg_triangle_locate(t, p, &part));
+    csg_vec3 foot = csg_triangle_locate(t, p, &part);
     if (part == CSG_PART_CORNER || !is_plain(solid, place))
         return false;
-    csg_vec3 normal = outward(t);
-    if (part != CSG_PART_FACE) {
-        uint32_t other = solid->beside[place][part];
-        if (other == NO_PLACE || !is_plain(solid, other))
-            return false;
-        normal = csg_vec3_add(normal, outward(&solid->tree.triangles[other]));
+    if (part == CSG_PART_FACE) {
+        *winding = csg_vec3_dot(csg_vec3_sub(p, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
+        return true;
     }
+    uint32_t other = solid->beside[place][part];
+    if (other == NO_PLACE || !is_plain(solid, other))
+        return false;
+    csg_vec3 away = csg_vec3_sub(p, foot);
+    csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
     *winding = along < 0;
     return fabs(along) > UNCERTAIN * csg_vec3_norm(away);

@@ -111,9 +111,8 @@ static inline size_t push_near(const csg_tree_node *node, csg_four squared, floa
                                entry *stack, size_t depth)
 {
     size_t bottom = depth;
-    for (uint32_t i = 0; i < 4; i++) {
-        if (squared[i] > limit)
-            continue;
+    for (unsigned near = csg_four_bits(squared <= csg_four_all(limit)); near; near &= near - 1) {
+        unsigned i = (unsigned)__builtin_ctz(near);
         size_t at = depth++;
         for (; at > bottom && stack[at - 1].squared < squared[i]; at--)
             stack[at] = stack[at - 1];
@@ -149,11 +148,13 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
                             csg_triangle_hit *best)
 {
     csg_four least = disc_distances(leaf, q);
+    unsigned near = csg_four_bits(least <= csg_four_all(q->limit)) & ((1u << leaf->count) - 1);
     best->leaves++;
-    for (uint32_t i = 0; i < leaf->count; i++) {
-        if (least[i] > q->limit)
-            continue;
+    for (; near; near &= near - 1) {
+        unsigned i = (unsigned)__builtin_ctz(near);
         uint32_t place = leaf->first + i;
+        if (least[i] > q->limit || place == best->place)
+            continue;
         double squared = triangle_squared(&tree->triangles[place], p);
         if (squared < best->squared || (squared == best->squared && place < best->place)) {
             best->squared = squared;
@@ -234,11 +235,14 @@ static const csg_tree_leaf *near_leaf(const csg_tree *tree, const uint32_t *item
             uint32_t item = child ? child : items[i];
             const csg_tree_node *node = node_of(tree, item);
             csg_four squared = item_distances(node, item, p);
-            for (uint32_t k = 0; k < 4; k++)
+            unsigned near = csg_four_bits(squared < csg_four_all(least));
+            for (; near; near &= near - 1) {
+                unsigned k = (unsigned)__builtin_ctz(near);
                 if (squared[k] < least) {
                     least = squared[k];
                     next = node->children[k];
                 }
+            }
         }
         child = next;
         count = 1;
@@ -298,14 +302,13 @@ static inquiry inquiry_of(csg_vec3 center, csg_vec3 half, double reach)
 static uint32_t open_item(const csg_tree *tree, uint32_t item, const inquiry *q, uint32_t out[5])
 {
     const csg_tree_node *node = node_of(tree, item);
-    csg_four_mask near = comes_near(node, q), is_leaf = leaf_mask(node);
+    unsigned near = csg_four_bits(comes_near(node, q)), is_leaf = csg_four_bits(leaf_mask(node));
     uint32_t count = 0;
-    if (near[0] & is_leaf[0] || near[1] & is_leaf[1] || near[2] & is_leaf[2] ||
-        near[3] & is_leaf[3])
+    if (near & is_leaf)
         out[count++] = item | CSG_TREE_LEAVES_ONLY;
-    for (uint32_t k = 0; k < 4 && !(item & CSG_TREE_LEAVES_ONLY); k++)
-        if (near[k] && !is_leaf[k])
-            out[count++] = node->children[k];
+    near = item & CSG_TREE_LEAVES_ONLY ? 0 : near & ~is_leaf;
+    for (; near; near &= near - 1)
+        out[count++] = node->children[__builtin_ctz(near)];
     return count;
 }
 
