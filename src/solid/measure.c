@@ -23,6 +23,7 @@ typedef struct exact_stack {
     csg_memory *memory;
     exactness *items;
     size_t count, capacity;
+    bool of_leaves; /* operators, blends and offsets do not count */
 } exact_stack;
 
 static bool add_exactness(exact_stack *stack, csg_node_id node, bool outside)
@@ -44,18 +45,20 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
     if (node->kind == CSG_NODE_SHAPE || node->kind == CSG_NODE_EMPTY)
         return true;
     if (csg_node_is_named_primitive(node->kind))
-        return csg_primitive_has(node->kind, at.outside ? CSG_TRAIT_OUTSIDE : CSG_TRAIT_INSIDE);
+        return csg_primitive_has(node->kind, at.outside || stack->of_leaves ? CSG_TRAIT_OUTSIDE
+                                                                            : CSG_TRAIT_INSIDE);
     if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_SOFT ||
         node->kind == CSG_NODE_COMBINE)
         return false;
     if (node->kind == CSG_NODE_TRANSFORM &&
         !csg_affine_is_similarity(&scene->transforms[node->payload]))
         return false;
-    if (node->kind == CSG_NODE_OFFSET && (scene->parameters[node->payload] > 0) != at.outside)
+    if (node->kind == CSG_NODE_OFFSET && !stack->of_leaves &&
+        (scene->parameters[node->payload] > 0) != at.outside)
         return false;
     if (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind != CSG_WARP_REVOLVE)
         return false;
-    if (csg_node_is_operator(node->kind) &&
+    if (csg_node_is_operator(node->kind) && !stack->of_leaves &&
         !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
         (!csg_blend_is_sharp(node->blend) || (!joins && !meets)))
         return false;
@@ -67,14 +70,24 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
     return true;
 }
 
+static bool is_exact(exact_stack *stack, const csgm_scene *scene, csg_node_id node, bool outside)
+{
+    bool exact = add_exactness(stack, node, outside);
+    while (exact && stack->count)
+        exact = look_at(scene, stack->items[--stack->count], stack);
+    csg_memory_release(stack->memory, stack->items, stack->capacity * sizeof *stack->items);
+    return exact;
+}
+
 bool csg_distance_is_exact(const csg_solid_job *job, csg_node_id node, bool outside)
 {
-    exact_stack stack = {.memory = job->memory};
-    bool exact = add_exactness(&stack, node, outside);
-    while (exact && stack.count)
-        exact = look_at(job->builder->scene, stack.items[--stack.count], &stack);
-    csg_memory_release(stack.memory, stack.items, stack.capacity * sizeof *stack.items);
-    return exact;
+    return is_exact(&(exact_stack){.memory = job->memory}, job->builder->scene, node, outside);
+}
+
+bool csg_distances_are_joined(const csg_solid_job *job, csg_node_id node)
+{
+    exact_stack stack = {.memory = job->memory, .of_leaves = true};
+    return is_exact(&stack, job->builder->scene, node, true);
 }
 
 /* ---- sizes ----------------------------------------------------------------------------------- */

@@ -9,6 +9,15 @@
 
 /* Is the field below the node the exact distance outside (or inside) of its solid? */
 bool csg_distance_is_exact(const csg_solid_job *job, csg_node_id node, bool outside);
+/* Is it made of distances (tubes and tori count as such), by whatever operators and blends? */
+bool csg_distances_are_joined(const csg_solid_job *job, csg_node_id node);
+/* How far the surface of a solid moves at most where `by` is added to its field, as sampled, and
+ * where; 0: nothing was found. */
+typedef struct csg_growth {
+    double most;
+    csg_vec3 at;
+} csg_growth;
+csgm_status csg_sample_growth(csg_solid_job *job, csg_node_id node, double by, csg_growth *out);
 /* Clean polygons of a flat node: its own corners, arcs within 1e-5 of its size. */
 csgm_status csg_flat_outline(csg_solid_job *job, csg_node_id node, csg_outline *out);
 /* Triangles on the surface of a solid, by marching cubes: 160 cells along its longest side, or as

@@ -599,8 +599,35 @@ static csgm_status compile_all_shapes(bench *poor)
         " [0,2,3], [1,3,2]]); }\n"
         "linear_extrude(1) projection() rotate([20, 0, 0]) cube(2);\n"
         "translate([9, 0, 0]) { #cube(1); %union() { sphere(1); cube(2); } #circle(1); }\n"
-        "shell(0.1) resize([1, 2, 3]) repeat([2, 0, 0], 2) tube([[0,0,0], [1,0,0]], 0.5);\n";
+        "shell(0.1) resize([1, 2, 3]) repeat([2, 0, 0], 2) tube([[0,0,0], [1,0,0]], 0.5);\n"
+        "offset3d(1) superellipsoid([9, 3, 3], 4);\n";
     return bench_compile(poor, scene);
+}
+
+/* The gauge of a superellipsoid moves its farthest end by the longest semi-axis over the shortest,
+ * scale by its factor; blends and edges of distances are not told of. */
+static void offsets_of_bounds_are_told(void **state)
+{
+    static const struct {
+        const char *scene;
+        bool told;
+    } rows[] = {
+        {"offset3d(2) superellipsoid([9, 3, 3], 4);", true},
+        {"shell(0.5) superellipsoid([6, 3, 3], 4);", true},
+        {"offset3d(2) superellipsoid([3.3, 3, 3], 2);", false},
+        {"offset3d(-1) scale([1, 2.5, 1]) cube(9);", true},
+        {"offset3d(1) scale([1, 1.1, 1]) cube(9);", false},
+        {"offset3d(0) scale([1, 2.5, 1]) cube(9);", false},
+        {"linear_extrude(2) offset3d(1) scale([3, 1]) circle(2);", true},
+        {"offset3d(1) scale(3) ellipsoid([1, 2, 5]);", false},
+        {"shell(1) difference(blend = 1) { cube(9); sphere(5); }", false},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(bench_compile(&b, rows[i].scene), CSGM_OK);
+        if (bench_has(&b, -348) != rows[i].told)
+            fail_msg("W0348 %s: %s", rows[i].told ? "is missing" : "came", rows[i].scene);
+    }
 }
 
 static void every_allocation_may_fail(void **state)
@@ -628,6 +655,7 @@ int main(void)
         cmocka_unit_test(a_small_fn_makes_polygons),
         cmocka_unit_test(exact_facets_follow_fa_and_fs),
         cmocka_unit_test(what_cannot_be_is_told),
+        cmocka_unit_test(offsets_of_bounds_are_told),
         cmocka_unit_test(real_files_run),
         cmocka_unit_test(flat_transforms_keep_the_plane),
         cmocka_unit_test(every_allocation_may_fail),

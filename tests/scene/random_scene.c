@@ -66,10 +66,11 @@ csg_node_id test_random_primitive(csg_scene_builder *builder, csg_random *random
 csg_primitive_kind test_random_solid_kind(csg_random *random)
 {
     csg_node_kind kinds[32];
-    const unsigned wanted = CSG_TRAIT_BOUNDED | CSG_TRAIT_EXACT;
+    const unsigned wanted = CSG_TRAIT_BOUNDED | CSG_TRAIT_OUTSIDE;
+    const unsigned others = CSG_TRAIT_FLAT | CSG_TRAIT_CURVE;
     uint32_t count = 0;
     for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END; kind++)
-        if ((csg_primitive_of(kind)->traits & (wanted | CSG_TRAIT_FLAT)) == wanted)
+        if ((csg_primitive_of(kind)->traits & (wanted | others)) == wanted)
             kinds[count++] = kind;
     return kinds[csg_random_below(random, count)];
 }

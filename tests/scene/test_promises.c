@@ -117,6 +117,42 @@ static void test_depth(void **state)
     assert_true(rows >= 3);
 }
 
+/* ---- exact: |f| along the gradient lies the surface ------------------------------------------ */
+
+/* Since f never changes faster than 1, f(p) is the distance where p - f(p) grad f(p) is on the
+ * surface. What a row does not promise fails somewhere: the manual's table says no less than holds.
+ */
+static void test_exactness(void **state)
+{
+    csg_random random = {904};
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
+        const csg_primitive *primitive = csg_primitive_of(kind);
+        size_t off[2] = {0, 0}, seen[2] = {0, 0};
+        for (int set = 0; set < 200; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            example(&random, kind, v);
+            for (int i = 0; i < 60; i++) {
+                csg_vec3 p = test_point(&random, i % 2 ? 2 : 0.3);
+                csg_sample s = primitive->distance(v, p);
+                if (csg_vec3_norm(s.gradient) == 0) /* at a skeleton any direction would do */
+                    continue;
+                csg_vec3 foot = csg_vec3_sub(p, csg_vec3_scale(s.gradient, s.value));
+                bool inside = s.value > 0;
+                seen[inside]++;
+                off[inside] += fabs(primitive->distance(v, foot).value) > 1e-7;
+            }
+        }
+        const char *name = csg_node_kind_name((csg_node_kind)kind);
+        bool exact[2] = {primitive->traits & CSG_TRAIT_OUTSIDE,
+                         primitive->traits & CSG_TRAIT_INSIDE};
+        for (int inside = 0; inside < 2; inside++)
+            if (seen[inside] < 100 || exact[inside] != (off[inside] == 0))
+                fail_msg("%s: %zu of %zu points %s are not as far as they say", name, off[inside],
+                         seen[inside], inside ? "inside" : "outside");
+    }
+}
+
 /* ---- may_crease: never no where a gradient jumps ----------------------------------------------- */
 
 /* Gradients so far apart cannot come from curvature over such a step in solids of these sizes. */
@@ -174,6 +210,7 @@ static void test_creases(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_exactness),
         cmocka_unit_test(test_balls),
         cmocka_unit_test(test_depth),
         cmocka_unit_test(test_creases),

@@ -116,6 +116,22 @@ def rules(space):
     return table(["blend, parameters", "what it is", "facts and ranges", "is an operand itself where"], rows)
 
 
+def distances():
+    """Primitives by what their fields are, as their traits promise."""
+    groups = {}
+    for macro, fields in calls("src/scene/primitives/primitives.def"):
+        if macro in ("CSG_PRIMITIVE", "CSG_CURVE_PRIMITIVE"):
+            exact = "CSG_TRAIT_EXACT" in fields[3]
+            kind = (exact or "CSG_TRAIT_OUTSIDE" in fields[3], exact or "CSG_TRAIT_INSIDE" in fields[3])
+            name = code(fields[4].split("(")[0])
+            if name not in groups.setdefault(kind, []):
+                groups[kind].append(name)
+    words = {True: "exact", False: "a bound"}
+    return table(["solid", "field outside", "field inside"],
+                 [[", ".join(names), words[outside], words[inside]]
+                  for (outside, inside), names in sorted(groups.items(), reverse=True)])
+
+
 def steps():
     rows = [[code(f"{name}({least} .. {most})"), standard, "yes" if even == "1" else "no", doc]
             for _, (_, name, standard, least, most, _, even, doc) in calls("src/scene/operators/steps.def")]
@@ -174,6 +190,7 @@ PAGES = {
     "scenes/README.md": {
         "figures": lambda: modules("figures"),
         "solids": lambda: modules("solids"),
+        "distances": distances,
         "shaping": lambda: modules("shaping"),
         "transforms": lambda: modules("transforms"),
         "rules of lengths": lambda: rules("LENGTHS"),

@@ -87,11 +87,44 @@ static csg_node_id grown(csg_module_call *call, csg_node_id node, double by)
                           csg_build_offset(&call->e->builder, by, node, call->statement->where));
 }
 
+/* Beyond this part of what was asked for there is a warning. */
+#define GROWTH_TOLD 1.2
+
+static double without_dust(double x, double size)
+{
+    return fabs(x) > 1e-6 * size ? x : 0;
+}
+
+/* Tells of solids that have no distance for a field: what is added to it moves the surface farther.
+ * What blends and edges make of distances, a little more than sqrt(2), the manual says. */
+static void tell_of_growth(csg_module_call *call, csg_node_id node, double by)
+{
+    csg_eval *e = call->e;
+    csg_solid_job job = csg_shape_job(call);
+    csg_growth growth;
+    if (node == CSG_NODE_NONE || csg_eval_is_empty(e, node) || csg_distances_are_joined(&job, node))
+        return;
+    csgm_status status = csg_sample_growth(&job, node, by, &growth);
+    if (status == CSGM_ERR_MEMORY)
+        csg_eval_no_memory(e);
+    if (status != CSGM_OK || growth.most <= GROWTH_TOLD * fabs(by))
+        return;
+    double size = csg_vec3_norm(growth.at);
+    csg_eval_report(e, CSG_DIAG_NO_DISTANCE, call->statement->where,
+                    by > 0 ? "minkowski() with a sphere adds the same everywhere" : NULL,
+                    "%s(%g): the field is no distance here, the surface moves by %g and up to "
+                    "%.3g, near [%.3g, %.3g, %.3g]",
+                    call->name, fabs(by), fabs(by), growth.most, without_dust(growth.at.x, size),
+                    without_dust(growth.at.y, size), without_dust(growth.at.z, size));
+}
+
 /* Of figures too: there it is what offset() does where their field is a distance. */
 csg_node_id csg_module_offset3d(csg_module_call *call)
 {
     double r = csg_argument_number(call, 0, 1, CSG_ANY);
     csg_node_id node = csg_module_children(call);
+    if (!call->failed)
+        tell_of_growth(call, node, r);
     return call->failed ? csg_shape_empty(call) : grown(call, node, r);
 }
 
@@ -106,6 +139,7 @@ csg_node_id csg_module_shell(csg_module_call *call)
         return outer;
     if (call->failed)
         return csg_shape_empty(call);
+    tell_of_growth(call, outer, -thickness);
     csg_node_id inner =
         grown(call, csg_shape_done(call, csg_build_copy(builder, outer)), -thickness);
     if (inner == CSG_NODE_NONE)
