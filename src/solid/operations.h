@@ -47,8 +47,11 @@ csg_node_id csg_solid_offset_sharp(csg_solid_job *job, csg_node_id child, double
 /* The figure without its holes: polygons. */
 csg_node_id csg_solid_fill(csg_solid_job *job, csg_node_id child);
 
-/* As high over the figure as the outline is far; straight: only over convex ones. */
+/* As high over the figure as the outline is far; straight: as far as the edges, moving inwards,
+ * have come when they reach a point. */
 csg_node_id csg_solid_roof(csg_solid_job *job, csg_node_id flat, bool straight);
+/* The straight roof over a clean outline, which is released. */
+csg_node_id csg_solid_straight_roof(csg_solid_job *job, csg_outline *clean);
 
 /* ---- of numbers (tubes.c, periodic.c) -------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * roof(): over each point of a figure as high as it is from the figure's outline, which is the roof
  * of slope 1 by OpenSCAD's method "voronoi": ridges lie over the medial axis. Over convex polygons
- * the straight skeleton gives the same roof; over others it is not computed.
+ * the straight skeleton gives the same roof; over others it is straight_roof.c's.
  *
  * With the figure's distance d, inside is d(x, y) >= z: a formula of two fields, that of the figure
  * and that of the half-space below z = 0.
@@ -27,20 +27,19 @@ static bool is_convex(const csg_outline *outline)
     return outline->loop_count == 1;
 }
 
-/* A figure whose field is its distance inside. */
-static csg_node_id exact_figure(csg_solid_job *job, csg_node_id flat, bool straight)
+/* A figure whose field is its distance inside, for a straight roof a convex one; or
+ * the roof itself. */
+static csg_node_id exact_figure(csg_solid_job *job, csg_node_id flat, bool straight, bool *is_roof)
 {
     csg_outline outline;
+    *is_roof = false;
     if (!straight && csg_distance_is_exact(job, flat, false))
         return flat;
     csgm_status status = csg_flat_outline(job, flat, &outline);
     if (status != CSGM_OK)
         return csg_solid_failed(job, status, "make polygons of this figure");
-    if (!straight || is_convex(&outline))
-        return csg_solid_region(job, &outline);
-    csg_outline_release(&outline);
-    return csg_solid_failed(job, CSGM_ERR_SCENE,
-                            "make a straight roof over a figure that is not convex");
+    *is_roof = straight && !is_convex(&outline);
+    return *is_roof ? csg_solid_straight_roof(job, &outline) : csg_solid_region(job, &outline);
 }
 
 csg_node_id csg_solid_roof(csg_solid_job *job, csg_node_id flat, bool straight)
@@ -50,8 +49,9 @@ csg_node_id csg_solid_roof(csg_solid_job *job, csg_node_id flat, bool straight)
     double size;
     if (!csg_finite_size(job, flat, &size))
         return csg_solid_empty(job);
-    flat = exact_figure(job, flat, straight);
-    if (csg_solid_is_empty(job, flat))
+    bool is_roof;
+    flat = exact_figure(job, flat, straight, &is_roof);
+    if (flat == CSG_NODE_NONE || is_roof || csg_solid_is_empty(job, flat))
         return flat;
     csg_box box = csg_build_box(job->builder, flat);
     csg_vec3 sides = csg_box_size(box);

@@ -166,6 +166,24 @@ static void the_level_can_be_set(void **state)
     check("assert(version_num() > 20230000);", "");
 }
 
+/* What a used file assigns to a special variable holds in it, but undef only where there is none.
+ */
+static void files_say_that_there_is_a_variable(void **state)
+{
+    csgm_scene_options old = {.struct_size = sizeof old, .openscad_version = 20210100};
+    (void)state;
+    write_text("used.scad", "$given = undef; $own = 1;\n"
+                            "function given() = [$given, $own];\n"
+                            "module with(x) { $given = x; $own = x; children(); }\n");
+    write_text("scene.scad", "use <used.scad>\n"
+                             "echo(given()); with(3) { echo(given()); with(4) echo(given()); }\n"
+                             "echo(given($given = 5, $own = 5));");
+    assert_int_equal(bench_load(&b, path_of("scene.scad"), NULL), CSGM_OK);
+    assert_string_equal(b.echo, "[undef, 1]\n[3, 1]\n[4, 1]\n[5, 5]\n");
+    assert_int_equal(bench_load(&b, path_of("scene.scad"), &old), CSGM_OK);
+    assert_string_equal(b.echo, "[undef, 1]\n[undef, 1]\n[undef, 1]\n[5, 5]\n");
+}
+
 static csgm_status load_poor_scene(bench *poor)
 {
     return bench_load(poor, path_of("poor.scad"), NULL);
@@ -193,6 +211,7 @@ int main(void)
         cmocka_unit_test(drawings_are_measured),
         cmocka_unit_test(letters_are_measured),
         cmocka_unit_test(the_level_can_be_set),
+        cmocka_unit_test(files_say_that_there_is_a_variable),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

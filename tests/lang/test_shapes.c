@@ -132,7 +132,8 @@ static void figures_have_their_areas(void **state)
     CHECK_ALL(solids);
 }
 
-/* As high as the outline is far: over corners that point inwards there are cones. */
+/* As high as the outline is far: over corners that point inwards there are cones, or where it is
+ * straight the planes of the edges. */
 static void roofs_follow_the_distance(void **state)
 {
     (void)state;
@@ -144,6 +145,16 @@ static void roofs_follow_the_distance(void **state)
         {"roof(method = \"voronoi\", convexity = 3) circle(5);",
          125 * PI / 3,
          {{-5, -5, 0}, {5, 5, 5}}},
+        {"scale([1, 1, 5]) roof(\"straight\") { square([30, 7]); square([11, 20]); }",
+         5 * 726.8333,
+         {{0, 0, 0}, {30, 20, 27.5}}},
+        {"scale([1, 1, 5]) roof(\"straight\") difference() {\n"
+         "square(20); translate([5, 5]) square(8); }",
+         5 * 517.3333,
+         {{0, 0, 0}, {20, 20, 17.5}}},
+        {"scale([1, 1, 9]) roof(\"straight\") difference() { circle(10); circle(6); }",
+         9 * 64 * PI,
+         {{-10, -10, 0}, {10, 10, 18}}},
         {"roof() difference() { square(20); translate([5, 5]) square([20, 10]); }",
          304.678, /* summed over 400 x 400 points */
          {{0, 0, 0}, {20, 20, 2.92893}}},

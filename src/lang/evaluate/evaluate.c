@@ -70,16 +70,22 @@ static void bind_arguments(csg_eval *e, const csg_arguments *parameters,
     }
 }
 
-/* A call into a used file: the $variables that the file assigns hold in it. */
+/* A call into a used file: the $variables that the file assigns hold in it. One that it assigns
+ * undef hides nothing: newer files say so that there is such a name, for their callers to give a
+ * value; to 2021.01 it was a value like any other. */
 static void push_file_dynamics(csg_eval *e, const csg_frame *home, const csg_frame *caller)
 {
     if (!home || !home->has_dynamics)
         return;
+    const csgm_scene_options *options = e->program->options;
+    bool hides_all = options && options->openscad_version && options->openscad_version <= 20210100;
     while (caller && caller->parent)
         caller = caller->parent;
     for (uint32_t i = 0; caller != home && i < home->count && !e->stop; i++) {
         csg_symbol name = home->scope->variables[i].name;
-        if (e->program->symbols.entries[name].special)
+        bool hides = hides_all || home->values[i].kind != CSG_VALUE_UNDEF ||
+                     csg_eval_dynamic(e, name).kind == CSG_VALUE_UNSET;
+        if (e->program->symbols.entries[name].special && hides)
             csg_eval_push_dynamic(e, name, csg_value_retain(home->values[i]));
     }
 }
