@@ -271,46 +271,52 @@ static bool is_needle(const csg_tree_triangle *t)
     return !(csg_vec3_dot(normal, normal) > 0x1p-52 * longest * longest);
 }
 
-/* Of the least circle around the triangle: the middle of the longest side where the angle across is
- * not acute, else the centre of the circle through the corners. */
-static csg_vec3 disc_center(const csg_tree_triangle *t)
+static csg_vec3 longest_side(const csg_tree_triangle *t)
 {
-    double b = csg_vec3_dot(t->ab, t->ab), c = csg_vec3_dot(t->ac, t->ac),
-           d = csg_vec3_dot(t->ab, t->ac);
-    csg_vec3 bc = csg_vec3_add(t->ab, t->ac);
-    if (d <= 0)
-        return csg_vec3_add(t->a, csg_vec3_scale(bc, 0.5));
-    if (c <= d)
-        return csg_vec3_add(t->a, csg_vec3_scale(t->ab, 0.5));
-    if (b <= d)
-        return csg_vec3_add(t->a, csg_vec3_scale(t->ac, 0.5));
-    double w = 2 * (b * c - d * d);
-    if (!(w > 0))
-        return csg_vec3_add(t->a, csg_vec3_scale(t->ab, 0.5));
-    double u = c * (b - d) / w, v = b * (c - d) / w;
-    return csg_vec3_add(t->a, csg_vec3_add(csg_vec3_scale(t->ab, u), csg_vec3_scale(t->ac, v)));
+    csg_vec3 bc = csg_vec3_sub(t->ac, t->ab), side = t->ab;
+    side = csg_vec3_dot(t->ac, t->ac) > csg_vec3_dot(side, side) ? t->ac : side;
+    return csg_vec3_dot(bc, bc) > csg_vec3_dot(side, side) ? bc : side;
 }
 
-static void set_disc(csg_tree_leaf *leaf, uint32_t slot, const csg_tree_triangle *t)
+/* Axes at right angles. Those across a needle may be any: it has no width in them. */
+static void find_axes(const csg_tree_triangle *t, csg_vec3 axis[3])
 {
-    csg_vec3 center = disc_center(t), normal = csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac));
-    csg_vec3 ca = csg_vec3_sub(t->a, center), cb = csg_vec3_add(ca, t->ab),
-             cc = csg_vec3_add(ca, t->ac);
-    double radius2 = fmax(csg_vec3_dot(ca, ca), fmax(csg_vec3_dot(cb, cb), csg_vec3_dot(cc, cc)));
-    const double at[3] = {center.x, center.y, center.z}, up[3] = {normal.x, normal.y, normal.z};
-    for (int k = 0; k < 3; k++) {
-        leaf->center[k][slot] = (float)at[k];
-        leaf->normal[k][slot] = t->is_needle ? 0 : (float)up[k];
+    axis[0] = csg_vec3_normalize(longest_side(t));
+    csg_vec3 normal = csg_vec3_cross(t->ab, t->ac);
+    if (t->is_needle) {
+        bool is_x = fabs(axis[0].x) > 0.7;
+        normal = csg_vec3_cross(axis[0], csg_vec3_make(is_x ? 0 : 1, is_x ? 1 : 0, 0));
     }
-    leaf->radius[slot] = (float)sqrt(radius2) * 1.000001f;
+    axis[2] = csg_vec3_normalize(normal);
+    axis[1] = csg_vec3_cross(axis[2], axis[0]);
 }
 
-static void set_discs(csg_tree *tree)
+static void set_rectangle(csg_tree_leaf *leaf, uint32_t slot, const csg_tree_triangle *t)
+{
+    csg_vec3 axis[3], center = t->a;
+    find_axes(t, axis);
+    for (int e = 0; e < 2; e++) {
+        double b = csg_vec3_dot(axis[e], t->ab), c = csg_vec3_dot(axis[e], t->ac);
+        double low = fmin(0, fmin(b, c)), high = fmax(0, fmax(b, c));
+        center = csg_vec3_add(center, csg_vec3_scale(axis[e], 0.5 * (low + high)));
+        leaf->half[e][slot] = (float)(0.5 * (high - low)) * 1.000001f;
+    }
+    for (int e = 0; e < 3; e++) {
+        leaf->axis[e][0][slot] = (float)axis[e].x;
+        leaf->axis[e][1][slot] = (float)axis[e].y;
+        leaf->axis[e][2][slot] = (float)axis[e].z;
+    }
+    leaf->center[0][slot] = (float)center.x;
+    leaf->center[1][slot] = (float)center.y;
+    leaf->center[2][slot] = (float)center.z;
+}
+
+static void set_rectangles(csg_tree *tree)
 {
     for (size_t i = 0; i < tree->leaf_count; i++) {
         csg_tree_leaf *leaf = &tree->leaves[i];
         for (uint32_t slot = 0; slot < leaf->count; slot++)
-            set_disc(leaf, slot, &tree->triangles[leaf->first + slot]);
+            set_rectangle(leaf, slot, &tree->triangles[leaf->first + slot]);
     }
 }
 
@@ -357,7 +363,7 @@ bool csg_tree_make(csg_memory *memory, csg_arena *scratch, const csg_triangles *
         range whole = {0, (uint32_t)chain->count, 0, bounds_of(b.items, chain->count)};
         if (build_nodes(&b, &whole)) {
             place_triangles(&b, chain);
-            set_discs(out);
+            set_rectangles(out);
             csg_arena_release_to(scratch, mark);
             return true;
         }

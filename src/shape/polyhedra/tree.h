@@ -17,10 +17,11 @@ typedef struct csg_tree_triangle {
     uint32_t is_needle; /* so thin that the plane is lost in rounding: its edges stand for it */
 } csg_tree_triangle;
 
-/* Up to four triangles that follow each other, and for each a disc that holds it: what can be said
- * of its distance in float, for four at once. */
+/* Up to four triangles that follow each other, and for each a rectangle in its plane that holds it:
+ * what can be said of its distance in float, for four at once. Axes: along the triangle's longest
+ * side, across it, and its normal; half: of the rectangle's sides. */
 typedef struct csg_tree_leaf {
-    float center[3][4], normal[3][4], radius[4];
+    float center[3][4], axis[3][3][4], half[2][4];
     uint32_t first, count;
 } csg_tree_leaf;
 

@@ -126,28 +126,27 @@ typedef struct query {
     float p[3], error, limit;
 } query;
 
-/* Squared distances that the triangles of a leaf have at least: from their planes, and along these
- * from their discs. */
-static inline csg_four disc_distances(const csg_tree_leaf *leaf, const query *q)
+/* Squared distances that the triangles of a leaf have at least: those from their rectangles. */
+static inline csg_four least_distances(const csg_tree_leaf *leaf, const query *q)
 {
-    csg_four along2 = csg_four_all(0), height = csg_four_all(0);
-    for (int k = 0; k < 3; k++) {
-        csg_four away = csg_four_all(q->p[k]) - csg_four_load(leaf->center[k]);
-        height += away * csg_four_load(leaf->normal[k]);
-        along2 += away * away;
+    csg_four away[3], error = csg_four_all(q->error), sum = csg_four_all(0);
+    for (int k = 0; k < 3; k++)
+        away[k] = csg_four_all(q->p[k]) - csg_four_load(leaf->center[k]);
+    for (int e = 0; e < 3; e++) {
+        csg_four along = away[0] * csg_four_load(leaf->axis[e][0]) +
+                         away[1] * csg_four_load(leaf->axis[e][1]) +
+                         away[2] * csg_four_load(leaf->axis[e][2]);
+        csg_four within = e < 2 ? csg_four_load(leaf->half[e]) + error : error;
+        along = csg_four_positive(csg_four_abs(along) - within);
+        sum += along * along;
     }
-    along2 = along2 * csg_four_all(0.999999f) - height * height;
-    csg_four error = csg_four_all(q->error);
-    csg_four beside = csg_four_sqrt(csg_four_positive(along2));
-    beside = csg_four_positive(beside - (csg_four_load(leaf->radius) + error));
-    height = csg_four_positive(csg_four_abs(height) - error);
-    return height * height + beside * beside;
+    return sum;
 }
 
 static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg_vec3 p, query *q,
                             csg_triangle_hit *best)
 {
-    csg_four least = disc_distances(leaf, q);
+    csg_four least = least_distances(leaf, q);
     unsigned near = csg_four_bits(least <= csg_four_all(q->limit)) & ((1u << leaf->count) - 1);
     best->leaves++;
     for (; near; near &= near - 1) {

@@ -52,6 +52,21 @@ static bool meets(csg_vec3 p, csg_vec3 q, const corners *t)
     return low >= 0 || high <= 0;
 }
 
+/* Whether all corners of a triangle lie on one side of the plane of another, but for one that they
+ * share: then they do not meet. */
+static bool is_beside(const corners *a, const corners *plane, int shared_corner)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        if (k == shared_corner)
+            continue;
+        double height = volume(plane->at[0], plane->at[1], plane->at[2], a->at[k]);
+        least = height < least ? height : least;
+        most = height > most ? height : most;
+    }
+    return least > 0 || most < 0;
+}
+
 /* Edges without a corner of the other triangle. Triangles that share an edge can only lie in one
  * plane, and then their normals are opposite. */
 static bool edges_meet(const corners *a, const corners *b, int shared_corner)
@@ -73,7 +88,8 @@ static bool is_crossing(const corners *a, const corners *b)
                 of_a = i;
                 of_b = k;
             }
-    return shared < 2 && (edges_meet(a, b, of_a) || edges_meet(b, a, of_b));
+    return shared < 2 && !is_beside(b, a, of_b) && !is_beside(a, b, of_a) &&
+           (edges_meet(a, b, of_a) || edges_meet(b, a, of_b));
 }
 
 static csg_box box_of(const corners *t)
