@@ -135,12 +135,23 @@ typedef struct crossing_search {
     csg_box box;
 } crossing_search;
 
+/* Whether three numbers lie all below or all above a stretch. */
+static inline bool is_outside(double a, double b, double c, double low, double high)
+{
+    return (a < low && b < low && c < low) || (a > high && b > high && c > high);
+}
+
 static bool is_apart(void *user, uint32_t place)
 {
     const crossing_search *s = user;
-    corners other = corners_of(&s->tree->triangles[place]);
-    return place == s->place || csg_box_is_empty(csg_box_intersect(s->box, box_of(&other))) ||
-           !is_crossing(&s->own, &other);
+    const csg_tree_triangle *t = &s->tree->triangles[place];
+    csg_vec3 a = t->a, b = csg_vec3_add(a, t->ab), c = csg_vec3_add(a, t->ac); /* exact */
+    if (is_outside(a.x, b.x, c.x, s->box.min.x, s->box.max.x) ||
+        is_outside(a.y, b.y, c.y, s->box.min.y, s->box.max.y) ||
+        is_outside(a.z, b.z, c.z, s->box.min.z, s->box.max.z) || place == s->place)
+        return true;
+    corners other = {{a, b, c}};
+    return !is_crossing(&s->own, &other);
 }
 
 static bool crosses_some(const csg_tree *tree, uint32_t place)
