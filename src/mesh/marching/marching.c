@@ -364,42 +364,55 @@ void csg_marching_triangles(const csg_marching *m, const csg_block *block, csg_m
 /* ---- loose triangles
  * ----------------------------------------------------------------------------- */
 
-/* Whether the edge from point (i, j, k) along an axis ends inside the block and is crossed. */
-static bool is_crossed(const csg_block *block, int axis, const int at[3])
+/* Of a row of points, those whose edge along an axis ends inside the block and is crossed. */
+static unsigned crossed_in_row(const csg_block *block, int axis, int j, int k)
 {
-    int end[3] = {at[0], at[1], at[2]};
-    if (++end[axis] > E)
-        return false;
-    return ((block->inside[at[2]][at[1]] >> at[0]) ^ (block->inside[end[2]][end[1]] >> end[0])) & 1;
+    unsigned row = block->inside[k][j];
+    if (axis == 0)
+        return (row ^ row >> 1) & ((1u << E) - 1);
+    if ((axis == 1 ? j : k) == E)
+        return 0;
+    return (row ^ (axis == 1 ? block->inside[k][j + 1] : block->inside[k + 1][j])) &
+           ((1u << N) - 1);
 }
 
-/* The part that a point belongs to; those of the upper rim to the last. */
-static unsigned part_of(const int at[3])
+/* Points of a block along each axis, from the first up to before the end. */
+typedef struct point_range {
+    int first[3], end[3];
+} point_range;
+
+/* Those of a part of the block; points of the upper rim belong to the last ones. */
+static point_range points_of_part(unsigned octant)
 {
-    unsigned octant = 0;
-    for (int axis = 0; axis < 3; axis++)
-        octant |= (unsigned)(at[axis] >= CSG_PART_EDGE) << axis;
-    return octant;
+    point_range r;
+    for (int axis = 0; axis < 3; axis++) {
+        bool upper = octant >> axis & 1;
+        r.first[axis] = upper ? CSG_PART_EDGE : 0;
+        r.end[axis] = upper ? N : CSG_PART_EDGE;
+    }
+    return r;
 }
 
-/* Lists crossed edges, the rim's too, of one part or (parts = false) of the whole block. */
-static void collect_all_edges(const csg_block *block, const block_lines *lines, bool parts,
-                              unsigned octant, csg_edges *e)
+/* Lists crossed edges, the rim's too, of the points in a range. */
+static void collect_all_edges(const csg_block *block, const block_lines *lines, point_range r,
+                              csg_edges *e)
 {
     uint32_t n = 0;
+    unsigned columns = (1u << r.end[0]) - (1u << r.first[0]);
     for (int axis = 0; axis < 3; axis++)
-        for (int point = 0; point < CSG_BLOCK_POINTS; point++) {
-            int at[3] = {point % N, point / N % N, point / (N * N)};
-            if (!is_crossed(block, axis, at) || (parts && part_of(at) != octant))
-                continue;
-            e->ax[n] = lines->point[0][at[0]];
-            e->ay[n] = lines->point[1][at[1]];
-            e->az[n] = lines->point[2][at[2]];
-            e->dx[n] = axis == 0 ? lines->step[0][at[0]] : 0;
-            e->dy[n] = axis == 1 ? lines->step[1][at[1]] : 0;
-            e->dz[n] = axis == 2 ? lines->step[2][at[2]] : 0;
-            e->rank[n++] = (uint16_t)(axis * CSG_BLOCK_POINTS + point);
-        }
+        for (int k = r.first[2]; k < r.end[2]; k++)
+            for (int j = r.first[1]; j < r.end[1]; j++)
+                for (unsigned rest = crossed_in_row(block, axis, j, k) & columns; rest;
+                     rest &= rest - 1) {
+                    int i = __builtin_ctz(rest);
+                    e->ax[n] = lines->point[0][i];
+                    e->ay[n] = lines->point[1][j];
+                    e->az[n] = lines->point[2][k];
+                    e->dx[n] = axis == 0 ? lines->step[0][i] : 0;
+                    e->dy[n] = axis == 1 ? lines->step[1][j] : 0;
+                    e->dz[n] = axis == 2 ? lines->step[2][k] : 0;
+                    e->rank[n++] = (uint16_t)(axis * CSG_BLOCK_POINTS + (k * N + j) * N + i);
+                }
     e->count = n;
 }
 
@@ -416,7 +429,8 @@ uint64_t csg_marching_roots(const csg_marching *m, const csg_block *block, csg_e
             continue;
         tape.nodes = part ? part->nodes : block->nodes;
         tape.count = part ? part->node_count : block->node_count;
-        collect_all_edges(block, &lines, part != NULL, octant, edges);
+        point_range range = part ? points_of_part(octant) : (point_range){{0, 0, 0}, {N, N, N}};
+        collect_all_edges(block, &lines, range, edges);
         edges->end_distance = m->end_distance;
         if (edges->count)
             evaluations += m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
