@@ -604,8 +604,11 @@ typedef struct csgm_mesh_view {
     const csgm_mesh_part *parts; /* part_count, all triangles in order; NULL = one without a name */
     uint64_t part_count;
     const uint16_t *materials; /* 2 * vertex_count: metallic and roughness times 10000, or NULL */
-    bool split; /* built with CSGM_NORMALS_CREASE. Formats without CSGM_KEEPS_CREASES join the
-                   vertices of one place again, with the mean of their normals */
+    bool split;       /* built with CSGM_NORMALS_CREASE. Formats without CSGM_KEEPS_CREASES join the
+                         vertices of one place again, with the mean of their normals */
+    bool equal_cells; /* built of one solid with equal cells. glTF then has nothing that needs all
+                         of the mesh at once, so that it is the same where csgm_mesh_build_file
+                         fills the file while the mesh is made */
 } csgm_mesh_view;
 
 CSGM_API csgm_mesh_view csgm_mesh_get_view(const csgm_mesh *mesh);
@@ -690,8 +693,12 @@ typedef enum csgm_format_trait {
     CSGM_HEEDS_UP = 1 << 14,        /* y_up */
     CSGM_HEEDS_UNIT = 1 << 15,
     CSGM_HEEDS_COMMENT = 1 << 16,
-    CSGM_HEEDS_DRACO = 1 << 17,     /* draco; with it draco_*_bits and draco_level */
-    CSGM_HEEDS_DRACO_BITS = 1 << 18 /* draco_*_bits and draco_level always */
+    CSGM_HEEDS_DRACO = 1 << 17,      /* draco; with it draco_*_bits and draco_level */
+    CSGM_HEEDS_DRACO_BITS = 1 << 18, /* draco_*_bits and draco_level always */
+    CSGM_HEEDS_METADATA = 1 << 19,
+    CSGM_HEEDS_MESHOPT = 1 << 20,
+    CSGM_HEEDS_UV = 1 << 21,
+    CSGM_HEEDS_LEVELS = 1 << 22
 } csgm_format_trait;
 
 /* AUTO when the extension (or name, e.g. "ply") is unknown. */
@@ -716,6 +723,19 @@ typedef enum csgm_unit {
     CSGM_UNIT_IN
 } csgm_unit;
 
+/* Texture coordinates, in scene units, for pictures that repeat. */
+typedef enum csgm_uv {
+    CSGM_UV_NONE,
+    CSGM_UV_BOX,     /* each triangle from the side that it faces most */
+    CSGM_UV_CYLINDER /* around the Z axis through the middle; caps from above and below */
+} csgm_uv;
+
+/* A coarser mesh of the same solid, for where it is seen from afar. */
+typedef struct csgm_level {
+    csgm_mesh_view mesh;
+    double error; /* how far it is from the solid, in scene units; the file says it */
+} csgm_level;
+
 /* How a mesh file is written. A format ignores what it has no place for. */
 typedef struct csgm_write_options {
     uint32_t struct_size;         /* set by csgm_write_options_default; do not touch */
@@ -731,10 +751,22 @@ typedef struct csgm_write_options {
                   leaves the old file or the new one; default true */
     bool only_if_changed; /* a file that holds these bytes already is left alone, with its time of
                              change; default false */
-    csgm_unit unit; /* what a scene unit is; NONE. glTF and GLB: one node scales it to metres; 3MF:
-                       the file says it, millimetres where it is NONE */
+    csgm_unit unit; /* what a scene unit is; default MM. glTF and GLB: one node scales it to metres,
+                       not at all where it is NONE; 3MF and AMF: the file says it, millimetres
+                       where it is NONE */
     const char *comment; /* one line of up to 255 bytes for PLY's header and the extras of glTF's
                             asset; other formats leave it out; NULL (default) = none */
+    const char *const *metadata; /* metadata_count times "KEY=VALUE", such as "title=Mug"; title,
+                                    author, license, source and version have places of their own
+                                    where a format has such. The last one of a key counts. Formats
+                                    without CSGM_HEEDS_METADATA leave them out */
+    size_t metadata_count;
+    bool meshopt; /* GLB and glTF: positions quantised (KHR_mesh_quantization), all compressed by
+                     EXT_meshopt_compression; default false. Not together with draco */
+    csgm_uv uv;   /* GLB and glTF; default NONE */
+    const csgm_level *levels; /* level_count of them, each coarser than the one before: further
+                                 levels of detail in GLB and glTF (MSFT_lod) */
+    size_t level_count;       /* default 0, at most 8 */
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);

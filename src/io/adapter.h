@@ -98,6 +98,47 @@ csgm_status csg_draco_decode(const uint8_t *bytes, size_t size_bytes, const csg_
                              uint64_t most_bytes, csg_draco_decoded *out, csg_adapter_error *error);
 void csg_draco_release_decoded(csg_draco_decoded *decoded);
 
+/* ---- meshoptimizer (meshopt.c) ---------------------------------------------------- */
+
+typedef enum csg_meshopt_mode {
+    CSG_MESHOPT_ATTRIBUTES,
+    CSG_MESHOPT_TRIANGLES, /* indices of uint32_t, a multiple of three */
+    CSG_MESHOPT_INDICES    /* uint32_t in any order */
+} csg_meshopt_mode;
+
+typedef enum csg_meshopt_filter {
+    CSG_MESHOPT_NONE,
+    CSG_MESHOPT_OCTAHEDRAL,
+    CSG_MESHOPT_QUATERNION,
+    CSG_MESHOPT_EXPONENTIAL
+} csg_meshopt_filter;
+
+bool csg_meshopt_available(void);
+/* Orders triangles and vertices for caches and codecs. to[v]: vertex v's number, UINT32_MAX where
+ * no triangle uses it. The number of those used. */
+uint32_t csg_meshopt_order(uint32_t *indices, uint64_t index_count, uint64_t vertex_count,
+                           uint32_t *to);
+/* Bytes that csg_meshopt_encode may need. Strides of attributes are multiples of four up to 256. */
+uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride,
+                           uint64_t vertex_count);
+/* The bytes written; 0: there was not room enough. */
+uint64_t csg_meshopt_encode(csg_meshopt_mode mode, const void *data, uint64_t count,
+                            uint64_t stride, uint8_t *out, uint64_t room);
+/* normals: four floats each, the last one zero. out: what the octahedral filter unpacks. */
+void csg_meshopt_pack_normals(int8_t *out, const float *normals, uint64_t count, int bits);
+
+/* A compressed view whose numbers obey the extension's rules. */
+typedef struct csg_meshopt_view {
+    csg_meshopt_mode mode;
+    csg_meshopt_filter filter;
+    uint64_t count, stride;
+    const uint8_t *bytes;
+    uint64_t size;
+} csg_meshopt_view;
+
+/* out: count * stride bytes. False: the bytes are broken, or of a later version. */
+bool csg_meshopt_decode(const csg_meshopt_view *view, void *out);
+
 /* ---- glTF reading (gltf.cc) ------------------------------------------------------- */
 
 /* A part with the place that its node gives it: row-major 3x4, glTF's own axes. */

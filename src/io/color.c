@@ -10,6 +10,11 @@ static double srgb_to_linear(double s)
     return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
 }
 
+double csg_color_linear(uint8_t srgb)
+{
+    return srgb_to_linear(srgb / 255.0);
+}
+
 static uint16_t snap(double value, uint32_t bits, bool wide)
 {
     double steps = bits < 16 ? (double)((1u << bits) - 1) : 65535.0;

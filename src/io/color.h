@@ -15,6 +15,7 @@ typedef struct csg_color_table {
 
 /* bits: values are snapped to 2^bits - 1 steps, 16 = all; wide false gives 0..255. */
 csg_color_table csg_color_table_make(uint32_t bits, bool wide);
+double csg_color_linear(uint8_t srgb);
 /* Linear 0..1 -> sRGB byte; the inverse of the 16-bit table. Anything, NaN too, gives a byte. */
 uint8_t csg_color_to_srgb(float linear);
 /* 0..1 -> byte, rounded. */

@@ -103,6 +103,11 @@ uint8_t *csg_stream_room(csg_stream_view *stream, uint32_t worker, uint64_t byte
     return NULL;
 }
 
+void csg_stream_no_memory(csg_stream_view *stream)
+{
+    keep_error(stream_of(stream), ENOMEM);
+}
+
 bool csg_stream_cut(csg_stream_view *stream, uint64_t size_bytes)
 {
     csg_stream *s = stream_of(stream);

@@ -40,6 +40,8 @@ typedef struct csg_stream_kind {
 bool csg_stream_write_at(csg_stream_view *stream, const void *bytes, uint64_t count, uint64_t at);
 /* The worker's own buffer for at least so many bytes; NULL = out of memory. */
 uint8_t *csg_stream_room(csg_stream_view *stream, uint32_t worker, uint64_t bytes);
+/* Memory has run out. */
+void csg_stream_no_memory(csg_stream_view *stream);
 /* The file ends after so many bytes; those never written are zero. */
 bool csg_stream_cut(csg_stream_view *stream, uint64_t size_bytes);
 

@@ -16,6 +16,7 @@
 #include "io/file.h"
 #include "io/format_table.h"
 #include "io/formats.h"
+#include "io/metadata.h"
 #include "io/parts.h"
 #include "io/rounding.h"
 #include "mesh/weld.h"
@@ -29,7 +30,7 @@ csgm_write_options csg_write_options_default(void)
                                 .draco_level = 7,
                                 .y_up = true,
                                 .sync = true,
-                                .unit = CSGM_UNIT_NONE};
+                                .unit = CSGM_UNIT_MM};
 }
 
 csgm_status csg_write_refuse(csg_sink *sink, const char *hint, const char *format, ...)
@@ -52,6 +53,38 @@ static csgm_status bad_option(csgm_context *context, const char *file, const cha
     return CSGM_ERR_ARGUMENT;
 }
 
+static csgm_status check_metadata(csgm_context *context, const csgm_write_options *o,
+                                  const char *file)
+{
+    char what[160];
+    if (o->metadata_count && !o->metadata)
+        return CSGM_ERR_ARGUMENT;
+    for (size_t i = 0; i < o->metadata_count; i++) {
+        if (!o->metadata[i])
+            return CSGM_ERR_ARGUMENT;
+        const char *fault = csg_metadata_fault(o->metadata[i]);
+        if (!fault)
+            continue;
+        snprintf(what, sizeof what, "the metadata '%.60s' %s", o->metadata[i], fault);
+        return bad_option(context, file, what);
+    }
+    return CSGM_OK;
+}
+
+static csgm_status check_levels(csgm_context *context, const csgm_write_options *o,
+                                const char *file)
+{
+    enum { LEVELS_MOST = 8 };
+    if (o->level_count > LEVELS_MOST)
+        return bad_option(context, file, "there are more than 8 further levels of detail");
+    if (o->level_count && !o->levels)
+        return CSGM_ERR_ARGUMENT;
+    for (size_t i = 0; i < o->level_count; i++)
+        if (!(o->levels[i].error >= 0))
+            return bad_option(context, file, "the error of a level of detail is no length");
+    return check_metadata(context, o, file);
+}
+
 static csgm_status check_options(csgm_context *context, const csgm_write_options *o,
                                  const char *file)
 {
@@ -67,7 +100,17 @@ static csgm_status check_options(csgm_context *context, const csgm_write_options
         return bad_option(context, file, "Draco's level must be from 0 to 10");
     if (o->unit < CSGM_UNIT_NONE || o->unit > CSGM_UNIT_IN)
         return bad_option(context, file, "the unit is none of the known ones");
-    return CSGM_OK;
+    if (o->draco && o->meshopt)
+        return bad_option(context, file, "Draco and meshoptimizer exclude each other");
+    if (o->meshopt && o->draco_position_bits > 16)
+        return bad_option(context, file, "glTF has quantised positions of 16 bits at most");
+    if (o->uv < CSGM_UV_NONE || o->uv > CSGM_UV_CYLINDER)
+        return bad_option(context, file, "the projection is none of the known ones");
+    if (o->uv != CSGM_UV_NONE && o->draco)
+        return bad_option(context, file,
+                          "texture coordinates are not written with Draco: compress "
+                          "with meshoptimizer, or not");
+    return check_levels(context, o, file);
 }
 
 /* Not finite = all bits of the exponent set. Integers, since the compiler may not reorder a sum of
@@ -138,7 +181,13 @@ static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, co
         return status;
     if (options->draco && (*row)->traits & CSGM_HEEDS_DRACO && !csg_draco_available())
         return csg_format_no_library(context, file, "Draco", "compressed glTF");
-    return check_mesh(context, mesh, file);
+    if (options->meshopt && (*row)->traits & CSGM_HEEDS_MESHOPT && !csg_meshopt_available())
+        return csg_format_no_library(context, file, "meshoptimizer", "glTF compressed by it");
+    status = check_mesh(context, mesh, file);
+    for (size_t i = 0; i < options->level_count && !status; i++)
+        if ((*row)->traits & CSGM_HEEDS_LEVELS)
+            status = check_mesh(context, &options->levels[i].mesh, file);
+    return status;
 }
 
 /* ---- writing ---------------------------------------------------------------------- */

@@ -85,5 +85,6 @@ csgm_mesh_view csg_mesh_view(const csgm_mesh *mesh)
                             .parts = mesh->parts,
                             .part_count = mesh->part_count,
                             .materials = mesh->materials,
-                            .split = mesh->split};
+                            .split = mesh->split,
+                            .equal_cells = mesh->equal_cells};
 }

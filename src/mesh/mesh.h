@@ -17,8 +17,9 @@ struct csgm_mesh {
     uint16_t *materials; /* 2 * vertex_count or NULL */
     csgm_mesh_part *parts;
     size_t part_count, part_room;
-    csg_arena names; /* of parts */
-    bool split;      /* csgm_mesh_view.split */
+    csg_arena names;  /* of parts */
+    bool split;       /* csgm_mesh_view.split */
+    bool equal_cells; /* csgm_mesh_view.equal_cells */
 };
 
 /* A channel in 0..1 as a vertex's colour has it. */

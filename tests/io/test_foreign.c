@@ -203,11 +203,11 @@ static void nodes_are_applied_and_turned(void **state)
         "\"buffers\":[{\"byteLength\":52,\"uri\":\"a%20b.bin\"}]}");
     assert_int_equal(mesh->vertex_count, 6);
     assert_int_equal(mesh->triangle_count, 2);
-    expect_position(mesh, 0, 0, 0, 5); /* y up became z up */
-    expect_position(mesh, 1, 2, 0, 5);
-    expect_position(mesh, 2, 0, 0, 7);
+    expect_position(mesh, 0, 0, 0, 5000); /* y up became z up, metres millimetres */
+    expect_position(mesh, 1, 2000, 0, 5000);
+    expect_position(mesh, 2, 0, 0, 7000);
     expect_triangle(mesh, 0, 0, 1, 2);
-    expect_position(mesh, 4, -1, 0, 0);
+    expect_position(mesh, 4, -1000, 0, 0);
     expect_triangle(mesh, 1, 3, 5, 4); /* mirrored: turned around */
     csg_mesh_destroy(mesh);
     io_folder_remove(folder);
@@ -221,10 +221,12 @@ static void strips_become_triangles(void **state)
         skip();
     io_context io;
     io_context_init(&io, 0);
-    /* positions of signed bytes, normalised, without indices, strip of four */
+    /* positions of signed bytes, normalised, without indices, strip of four; an older file of
+     * ours, whose numbers are taken as they are */
     csgm_mesh *mesh = read_text(
         &io, "a.gltf",
-        "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+        "{\"asset\":{\"version\":\"2.0\",\"generator\":\"csgmesh "
+        "0.1.0\"},\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
         "\"accessors\":[{\"bufferView\":0,\"componentType\":5120,\"normalized\":true,\"count\":4,"
         "\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":16,\"byteStride\":4}],"
         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],"
@@ -275,6 +277,74 @@ static size_t draco_size(io_context *io, const csgm_mesh_view *view, csgm_write_
     return size;
 }
 
+/* The scene's coordinates, to the bit, whatever the file's root does to them. */
+static void units_come_back(void **state)
+{
+    (void)state;
+    if (!csg_format_available(CSGM_FORMAT_GLB, true))
+        skip();
+    io_context io;
+    char folder[128], path[256];
+    io_context_init(&io, 0);
+    io_folder_make(folder, sizeof folder);
+    snprintf(path, sizeof path, "%s/a.glb", folder);
+    csgm_mesh *mesh = io_sphere_make(&io.context, 40, 26);
+    for (int unit = CSGM_UNIT_NONE; unit <= CSGM_UNIT_IN; unit++)
+        for (int up = 0; up < 2; up++)
+            for (int far = 0; far < 2; far++) {
+                csgm_mesh *back = NULL;
+                csgm_write_options options = csg_write_options_default();
+                options.unit = (csgm_unit)unit;
+                options.y_up = up;
+                mesh->origin = far ? (csgm_vec3){1024, -2048.5, 4096} : (csgm_vec3){0, 0, 0};
+                csgm_mesh_view view = csg_mesh_view(mesh);
+                assert_int_equal(csg_io_write(&io.context, &view, path, CSGM_FORMAT_AUTO, &options),
+                                 CSGM_OK);
+                assert_int_equal(csg_io_read(&io.context, path, CSGM_FORMAT_AUTO, &back), CSGM_OK);
+                const double *a = &mesh->origin.x, *b = &back->origin.x;
+                for (uint64_t i = 0; i < 3 * view.vertex_count; i++)
+                    assert_true((float)(a[i % 3] + (double)mesh->positions[i]) ==
+                                (float)(b[i % 3] + (double)back->positions[i]));
+                csg_mesh_destroy(back);
+            }
+    csg_mesh_destroy(mesh);
+    io_folder_remove(folder);
+    io_context_check(&io);
+}
+
+/* One colour is a material's; each byte of it comes back, and that there was none, too. */
+static void single_colors_come_back(void **state)
+{
+    (void)state;
+    if (!csg_format_available(CSGM_FORMAT_GLB, true))
+        skip();
+    io_context io;
+    char folder[128], path[256];
+    io_context_init(&io, 0);
+    io_folder_make(folder, sizeof folder);
+    snprintf(path, sizeof path, "%s/a.glb", folder);
+    csgm_mesh *mesh = io_shape_make(&io.context, IO_TETRAHEDRON);
+    csgm_mesh_view view = csg_mesh_view(mesh);
+    uint8_t colors[4 * 4];
+    assert_int_equal(view.vertex_count, 4);
+    for (int level = 0; level <= 256; level++) {
+        csgm_mesh *back = NULL;
+        for (int i = 0; i < 16; i++)
+            colors[i] = (uint8_t)(level + i % 4 * 85);
+        view.colors = level < 256 ? colors : NULL;
+        assert_int_equal(csg_io_write(&io.context, &view, path, CSGM_FORMAT_AUTO, NULL), CSGM_OK);
+        assert_int_equal(csg_io_read(&io.context, path, CSGM_FORMAT_AUTO, &back), CSGM_OK);
+        if (level < 256)
+            assert_memory_equal(back->colors, colors, sizeof colors);
+        else
+            assert_null(back->colors);
+        csg_mesh_destroy(back);
+    }
+    csg_mesh_destroy(mesh);
+    io_folder_remove(folder);
+    io_context_check(&io);
+}
+
 static void draco_options_count(void **state)
 {
     (void)state;
@@ -301,12 +371,12 @@ static void draco_options_count(void **state)
     io_context_check(&io);
 }
 
-/* 1.7 GB of zeros that are never touched for writing stand in for a mesh of 140 million vertices.
+/* 2.2 GB of zeros that are never touched for writing stand in for a mesh of 180 million vertices.
  */
 static void four_gigabytes_are_refused(void **state)
 {
     (void)state;
-    const uint64_t vertices = 140000000;
+    const uint64_t vertices = 180000000;
     io_context io;
     io_context_init(&io, 0);
     void *zeros =
@@ -333,7 +403,8 @@ int main(void)
         cmocka_unit_test(off_of_other_forms),           cmocka_unit_test(pipe_is_told_by_content),
         cmocka_unit_test(nodes_are_applied_and_turned), cmocka_unit_test(strips_become_triangles),
         cmocka_unit_test(all_colors_survive_gltf),      cmocka_unit_test(draco_options_count),
-        cmocka_unit_test(four_gigabytes_are_refused),
+        cmocka_unit_test(four_gigabytes_are_refused),   cmocka_unit_test(units_come_back),
+        cmocka_unit_test(single_colors_come_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

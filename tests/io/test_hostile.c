@@ -11,23 +11,26 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "io/adapter.h"
+
 #include "base/random.h"
 #include "io/format_table.h"
 
 typedef struct sample {
     const char *name;
     io_shape shape;
-    bool ascii, draco;
+    bool ascii, draco, meshopt;
 } sample;
 
 static const sample samples[] = {
-    {"a.ply", IO_CUBE, false, false},       {"b.ply", IO_CUBE, true, false},
-    {"c.stl", IO_CUBE, false, false},       {"d.stl", IO_TETRAHEDRON, true, false},
-    {"e.obj", IO_CUBE, false, false},       {"f.off", IO_CUBE, false, false},
-    {"g.glb", IO_CUBE, false, false},       {"h.gltf", IO_TETRAHEDRON, false, false},
-    {"i.drc", IO_CUBE, false, true},        {"j.glb", IO_TETRAHEDRON, false, true},
-    {"k.ply", IO_TETRAHEDRON, true, false}, {"l.3mf", IO_PARTS, false, false},
-    {"m.obj", IO_PARTS, false, false},      {"n.amf", IO_TETRAHEDRON, false, false},
+    {"a.ply", IO_CUBE, false, false, false},       {"b.ply", IO_CUBE, true, false, false},
+    {"c.stl", IO_CUBE, false, false, false},       {"d.stl", IO_TETRAHEDRON, true, false, false},
+    {"e.obj", IO_CUBE, false, false, false},       {"f.off", IO_CUBE, false, false, false},
+    {"g.glb", IO_CUBE, false, false, false},       {"h.gltf", IO_TETRAHEDRON, false, false, false},
+    {"i.drc", IO_CUBE, false, true, false},        {"j.glb", IO_TETRAHEDRON, false, true, false},
+    {"k.ply", IO_TETRAHEDRON, true, false, false}, {"l.3mf", IO_PARTS, false, false, false},
+    {"m.obj", IO_PARTS, false, false, false},      {"n.amf", IO_TETRAHEDRON, false, false, false},
+    {"o.glb", IO_CUBE, false, false, true},
 };
 
 enum {
@@ -71,6 +74,7 @@ static uint8_t *make_sample(const sample *s, const char *folder, size_t *size)
     csgm_write_options options = csg_write_options_default();
     options.ascii = s->ascii;
     options.draco = s->draco;
+    options.meshopt = s->meshopt;
     io_context_init(&io, 0);
     csgm_mesh *mesh = io_shape_make(&io.context, s->shape);
     csgm_mesh_view view = csg_mesh_view(mesh);
@@ -83,7 +87,8 @@ static uint8_t *make_sample(const sample *s, const char *folder, size_t *size)
 static bool usable(const sample *s)
 {
     return csg_format_available(csg_format_from_path(s->name), true) &&
-           (!s->draco || csg_format_available(CSGM_FORMAT_DRC, true));
+           (!s->draco || csg_format_available(CSGM_FORMAT_DRC, true)) &&
+           (!s->meshopt || csg_meshopt_available());
 }
 
 /* Text may lose its last line end and still be whole; anything shorter is refused. */
@@ -266,8 +271,8 @@ static const lie lies[] = {
      "not a file beside it", 0},
     {"a.gltf", GLTF("\"buffers\":[{\"byteLength\":12,\"uri\":\"http://127.0.0.1/a.bin\"}]"),
      "not a file", 0},
-    {"a.gltf", GLTF("\"extensionsRequired\":[\"EXT_meshopt_compression\"]"),
-     "EXT_meshopt_compression", 0},
+    {"a.gltf", GLTF("\"extensionsRequired\":[\"EXT_mesh_of_tomorrow\"]"), "EXT_mesh_of_tomorrow",
+     0},
     {"a.gltf", "{\"asset\":{\"version\":\"1.0\"}}", "version 1.0", 0},
     {"a.gltf", "{\"asset\":", "JSON is broken", 0},
     {"a.gltf", "[]", "JSON object", 0},

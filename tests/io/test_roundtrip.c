@@ -8,11 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/adapter.h"
+
 /* A format with options, as its row says. */
 typedef struct way {
     const char *name; /* of the file */
     uint32_t traits;
-    bool ascii, draco;
+    bool ascii, draco, meshopt;
     bool keeps_vertices; /* same order and number; else corners are compared triangle by triangle */
 } way;
 
@@ -106,6 +108,7 @@ static void check_way(const way *w, io_shape shape, const char *folder)
     csgm_write_options options = csg_write_options_default();
     options.ascii = w->ascii;
     options.draco = w->draco;
+    options.meshopt = w->meshopt;
     io_context_init(&io, 64 << 20);
     csgm_mesh *mesh = io_shape_make(&io.context, shape), *back = NULL;
     csgm_mesh_view view = csg_mesh_view(mesh);
@@ -132,7 +135,7 @@ static void check_way(const way *w, io_shape shape, const char *folder)
     csgm_mesh_view read = csg_mesh_view(back);
     bool far = shape == IO_FAR;
     bool floats_only = far && !(w->traits & CSGM_KEEPS_DOUBLES);
-    if (w->draco) {
+    if (w->draco || w->meshopt) {
         if (!floats_only) /* floats and 14 bits: only the count survives */
             same_solid(w, &view, &read);
     } else {
@@ -176,6 +179,10 @@ static void every_shape_in_every_format(void **state)
         w.draco = w.traits & CSGM_HEEDS_DRACO && csg_format_available(CSGM_FORMAT_DRC, false);
         w.ascii = w.keeps_vertices = false;
         if (w.draco)
+            check_shapes(&w, folder);
+        w.meshopt = w.traits & CSGM_HEEDS_MESHOPT && csg_meshopt_available();
+        w.draco = false;
+        if (w.meshopt)
             check_shapes(&w, folder);
         count++;
     }

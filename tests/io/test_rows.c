@@ -94,6 +94,34 @@ static void compress(csgm_mesh *mesh, sample *s)
     s->options.draco = true;
 }
 
+static void compress_otherwise(csgm_mesh *mesh, sample *s)
+{
+    (void)mesh;
+    s->options.meshopt = true;
+}
+
+static void entitle(csgm_mesh *mesh, sample *s)
+{
+    static const char *const texts[] = {"title=Mug"};
+    (void)mesh;
+    s->options.metadata = texts;
+    s->options.metadata_count = 1;
+}
+
+static void project(csgm_mesh *mesh, sample *s)
+{
+    (void)mesh;
+    s->options.uv = CSGM_UV_BOX;
+}
+
+static void repeat_as_level(csgm_mesh *mesh, sample *s)
+{
+    static csgm_level level;
+    level = (csgm_level){.mesh = csg_mesh_view(mesh), .error = 0.5};
+    s->options.levels = &level;
+    s->options.level_count = 1;
+}
+
 static void round_more(csgm_mesh *mesh, sample *s)
 {
     (void)mesh;
@@ -112,6 +140,10 @@ static const change changes[] = {
     {CSGM_HEEDS_UNIT, "unit", measure_in_inches},
     {CSGM_HEEDS_COMMENT, "comment", add_comment},
     {CSGM_HEEDS_DRACO, "draco", compress},
+    {CSGM_HEEDS_MESHOPT, "meshopt", compress_otherwise},
+    {CSGM_HEEDS_UV, "uv", project},
+    {CSGM_HEEDS_LEVELS, "levels", repeat_as_level},
+    {CSGM_HEEDS_METADATA, "metadata", entitle},
     {CSGM_HEEDS_DRACO_BITS, "draco bits", round_more},
 };
 
@@ -131,9 +163,12 @@ static uint8_t *write_sample(const char *folder, csgm_format format, const chang
     snprintf(path, sizeof path, "%s/a.%s", folder, csg_format_name(format));
     csgm_status status = csg_io_write(&io.context, &s.view, path, format, &s.options);
     bool lacks_draco = s.options.draco && !csg_format_available(CSGM_FORMAT_DRC, false);
-    assert_int_equal(status, lacks_draco && csg_format_traits(format) & CSGM_HEEDS_DRACO
-                                 ? CSGM_ERR_UNSUPPORTED
-                                 : CSGM_OK);
+    bool lacks_meshopt = s.options.meshopt && !csg_meshopt_available();
+    assert_int_equal(status,
+                     (lacks_draco && csg_format_traits(format) & CSGM_HEEDS_DRACO) ||
+                             (lacks_meshopt && csg_format_traits(format) & CSGM_HEEDS_MESHOPT)
+                         ? CSGM_ERR_UNSUPPORTED
+                         : CSGM_OK);
     csg_mesh_destroy(mesh);
     io_context_check(&io);
     uint8_t *bytes = status == CSGM_OK ? io_file_load(path, size) : NULL;

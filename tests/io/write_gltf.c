@@ -7,18 +7,31 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/adapter.h"
+
 typedef struct variant {
     const char *name;
     bool draco, z_up;
     csgm_unit unit;
+    bool meshopt;
+    csgm_uv uv;
+    bool levels;
 } variant;
 
 static int write_one(io_context *io, const csgm_mesh_view *view, const char *folder,
                      const char *shape, const variant *v, const char *extension)
 {
+    static const char *const metadata[] = {"title=A \"mug\"", "licence=MIT", "title=Mug"};
     char path[512];
     csgm_write_options options = csg_write_options_default();
     options.draco = v->draco;
+    options.meshopt = v->meshopt;
+    options.uv = v->uv;
+    const csgm_level level = {.mesh = *view, .error = 0.5};
+    options.levels = &level;
+    options.level_count = v->levels && view->triangle_count ? 1 : 0;
+    options.metadata = metadata;
+    options.metadata_count = sizeof metadata / sizeof *metadata;
     options.y_up = !v->z_up;
     options.unit = v->unit;
     snprintf(path, sizeof path, "%s/%s-%s.%s", folder, shape, v->name, extension);
@@ -32,12 +45,22 @@ static int write_variants(io_context *io, const csgm_mesh_view *view, const char
                           const char *shape)
 {
     static const variant variants[] = {
-        {"plain", false, false, CSGM_UNIT_NONE}, {"zup", false, true, CSGM_UNIT_NONE},
-        {"mm", false, false, CSGM_UNIT_MM},      {"inch-zup", false, true, CSGM_UNIT_IN},
-        {"draco", true, false, CSGM_UNIT_NONE},  {"draco-cm", true, false, CSGM_UNIT_CM}};
+        {"plain", false, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
+        {"zup", false, true, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
+        {"mm", false, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, false},
+        {"inch-zup", false, true, CSGM_UNIT_IN, false, CSGM_UV_NONE, false},
+        {"draco", true, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
+        {"draco-cm", true, false, CSGM_UNIT_CM, false, CSGM_UV_NONE, false},
+        {"meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_NONE, false},
+        {"meshopt-zup", false, true, CSGM_UNIT_NONE, true, CSGM_UV_NONE, false},
+        {"box", false, false, CSGM_UNIT_MM, false, CSGM_UV_BOX, true},
+        {"cylinder-meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_CYLINDER, true},
+        {"levels-draco", true, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, true}};
     int failed = 0;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         if (variants[i].draco && !csg_format_available(CSGM_FORMAT_DRC, false))
+            continue;
+        if (variants[i].meshopt && !csg_meshopt_available())
             continue;
         failed |= write_one(io, view, folder, shape, &variants[i], "glb");
         failed |= write_one(io, view, folder, shape, &variants[i], "gltf");

@@ -130,7 +130,7 @@ def test_options_are_those_of_the_header():
     header = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
     renamed = {"scene": {"defines": "define", "define_count": None, "include_dirs": "include", "include_dir_count": None},
                "render": {"camera": None, "slice_axis": "slice", "slice_at": None}, "diff": {"ignored": "ignore", "scene_a": None, "scene_b": None},
-               "mesh": {}, "write": {}}
+               "mesh": {}, "write": {"metadata_count": None, "level_count": None}}
     more = {"render": {"view", "eye", "target", "up", "projection", "fov", "view_height", "zoom"}}
     typed = {"scene": "SceneOptions", "mesh": "BuildOptions", "write": "FileOptions", "render": "PictureOptions", "diff": "DiffOptions"}
     from csgmesh import _core, _types

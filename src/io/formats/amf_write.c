@@ -3,6 +3,7 @@
  * colours of vertices. AMF has no centimetre: lengths are then written in millimetres. Normals are
  * left out: there they would bend the triangles.
  */
+#include "io/metadata.h"
 #include "io/parts.h"
 #include "io/writers.h"
 
@@ -67,6 +68,20 @@ static const char *unit_name(csgm_unit unit)
     return unit == CSGM_UNIT_M ? "meter" : unit == CSGM_UNIT_IN ? "inch" : "millimeter";
 }
 
+/* The file's own, by the keys that they have; where the scene came from is nothing a printer asks.
+ */
+static void put_metadata(csg_sink *sink, const csgm_write_options *options)
+{
+    for (size_t i = 0; i < options->metadata_count; i++) {
+        csg_metadata m = csg_metadata_split(options->metadata[i]);
+        if (csg_metadata_is(&m, "source") || csg_metadata_recurs(options, i))
+            continue;
+        csg_sink_format(sink, "<metadata type=\"%.*s\">", (int)m.key_length, m.key);
+        put_escaped(sink, m.value);
+        csg_sink_text(sink, "</metadata>\n");
+    }
+}
+
 csgm_status csg_amf_write(csg_sink *sink, const csgm_mesh_view *mesh,
                           const csgm_write_options *options)
 {
@@ -76,6 +91,7 @@ csgm_status csg_amf_write(csg_sink *sink, const csgm_mesh_view *mesh,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<amf unit=\"%s\" version=\"1.1\">\n"
         "<metadata type=\"producer\">" CSG_WRITTEN_BY "</metadata>\n",
         unit_name(options->unit));
+    put_metadata(sink, options);
     for (uint64_t i = 0; i < csg_part_count(mesh); i++) {
         if (mesh->part_count && !mesh->parts[i].triangle_count)
             continue;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The only file that names tinygltf (and nlohmann's JSON, which it parses with): a glTF document ->
+ * The only file that names tinygltf: a glTF document ->
  * its triangles, node by node. tinygltf turns the JSON into accessors, views, meshes and nodes;
  * what it does not do is done here. Before it: the document is cut down to what geometry needs
  * (free-form "extras" would let it recurse without bound), buffers are resolved without copies, and
@@ -7,11 +7,10 @@
  * number is checked against the bytes that are there before anything is allocated. Not read: sparse
  * accessors, morph targets, skins, required extensions that change geometry in other ways.
  */
-#include "io/adapter.h"
+#include "io/gltf/gltf_cut.hh"
 
 #include <algorithm>
 #include <array>
-#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -32,211 +31,21 @@
 namespace
 {
 
-using nlohmann::json;
-
-struct trouble {
-    csgm_status status;
-    std::string text;
-};
-
-[[noreturn]] void refuse(csgm_status status, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-void refuse(csgm_status status, const char *format, ...)
-{
-    char text[sizeof(csg_adapter_error)];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    throw trouble{status, text};
-}
+using namespace csg_gltf;
 
 struct span {
     const uint8_t *bytes;
     size_t size;
 };
 
-struct compressed {
-    int64_t view;
-    csg_draco_ids ids;
-};
-
 struct document {
     const csg_gltf_calls *calls;
     std::vector<span> buffers;
-    std::vector<std::vector<unsigned char>> embedded;      /* bytes of data URIs */
-    std::map<std::pair<size_t, size_t>, compressed> draco; /* by mesh and primitive */
+    std::vector<std::vector<unsigned char>> embedded;        /* bytes of data URIs */
+    mutable std::map<size_t, std::vector<uint8_t>> unpacked; /* views, when they are asked for */
+    facts told;
     tinygltf::Model model;
 };
-
-/* ---- before tinygltf: a smaller document ------------------------------------------------------
- */
-
-/* The parser itself does not recurse, but what walks its result may. And neither it nor tinygltf
- * can be told how much memory there is: what they will take is bounded from what is in the text. */
-void check_document(const char *text, size_t size, const csg_gltf_calls *calls)
-{
-    constexpr int most = 64; /* our documents need 9 */
-    /* arrays that grow hold half as much again as they had, beside it */
-    constexpr uint64_t element =
-        3 * std::max({sizeof(tinygltf::Node), sizeof(tinygltf::Mesh), sizeof(tinygltf::Primitive),
-                      sizeof(tinygltf::Scene), sizeof(tinygltf::Accessor),
-                      sizeof(tinygltf::BufferView)});
-    /* as trees of nlohmann's, twice at the same time */
-    constexpr uint64_t value = 2 * 3 * sizeof(json), key = 2 * (sizeof(std::string) + 64);
-    uint64_t bytes = 4 * size;
-    int depth = 0;
-    bool quoted = false;
-    for (size_t i = 0; i < size; i++) {
-        char c = text[i];
-        if (quoted) {
-            i += c == '\\';
-            quoted = c != '"';
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > most)
-                refuse(CSGM_ERR_FORMAT, "the JSON is nested more than %d deep", most);
-            bytes += c == '{' ? element + value : value;
-        } else if (c == ',') {
-            bytes += value;
-        } else if (c == ':') {
-            bytes += key;
-        } else if (c == ']' || c == '}') {
-            depth--;
-        }
-    }
-    if (!calls->allows(calls->user, bytes))
-        refuse(CSGM_ERR_MEMORY, "the document takes too much memory");
-}
-
-json parse(const char *text, size_t size, const csg_gltf_calls *calls)
-{
-    check_document(text, size, calls);
-    try {
-        json root = json::parse(text, text + size);
-        if (!root.is_object())
-            refuse(CSGM_ERR_FORMAT, "a glTF document is a JSON object");
-        return root;
-    } catch (const json::parse_error &e) {
-        refuse(CSGM_ERR_FORMAT, "the JSON is broken at byte %zu of it", e.byte);
-    }
-}
-
-const json *member(const json &object, const char *name)
-{
-    if (!object.is_object())
-        return nullptr;
-    auto at = object.find(name);
-    return at == object.end() ? nullptr : &*at;
-}
-
-/* The members named, of each object of an array. */
-json keep_members(const json &array, const std::vector<const char *> &names)
-{
-    json out = json::array();
-    for (const json &from : array) {
-        json to = json::object();
-        for (const char *name : names)
-            if (const json *value = member(from, name))
-                to[name] = *value;
-        out.push_back(std::move(to));
-    }
-    return out;
-}
-
-int64_t integer(const json *value, int64_t otherwise)
-{
-    return value && value->is_number_integer() ? value->get<int64_t>() : otherwise;
-}
-
-/* Remembers a compressed primitive; its indices accessor has no view, which tinygltf refuses. */
-void note_draco(document &doc, size_t mesh, size_t primitive, const json &from, json &to)
-{
-    const json *extensions = member(from, "extensions");
-    const json *draco = extensions ? member(*extensions, "KHR_draco_mesh_compression") : nullptr;
-    const json *ids = draco ? member(*draco, "attributes") : nullptr;
-    if (!draco)
-        return;
-    if (!ids)
-        refuse(CSGM_ERR_FORMAT, "a compressed primitive names no attributes");
-    doc.draco[{mesh, primitive}] = {integer(member(*draco, "bufferView"), -1),
-                                    {integer(member(*ids, "POSITION"), -1),
-                                     integer(member(*ids, "NORMAL"), -1),
-                                     integer(member(*ids, "COLOR_0"), -1)}};
-    to.erase("indices");
-}
-
-json keep_meshes(document &doc, const json &meshes)
-{
-    json out = json::array();
-    for (const json &mesh : meshes) {
-        json primitives = json::array();
-        if (const json *from = member(mesh, "primitives"); from && from->is_array()) {
-            primitives = keep_members(*from, {"attributes", "indices", "mode"});
-            for (size_t i = 0; i < from->size(); i++)
-                note_draco(doc, out.size(), i, (*from)[i], primitives[i]);
-        }
-        out.push_back({{"primitives", std::move(primitives)}});
-        if (const json *name = member(mesh, "name"); name && name->is_string())
-            out.back()["name"] = *name;
-    }
-    return out;
-}
-
-json cut_down(document &doc, const json &root)
-{
-    json out = json::object();
-    auto copy = [&](const char *name, const std::vector<const char *> &names) {
-        if (const json *array = member(root, name); array && array->is_array())
-            out[name] = keep_members(*array, names);
-    };
-    out["asset"] = {{"version", "2.0"}};
-    if (const json *scene = member(root, "scene"))
-        out["scene"] = *scene;
-    copy("scenes", {"nodes"});
-    copy("nodes", {"children", "mesh", "name", "matrix", "translation", "rotation", "scale"});
-    copy("accessors",
-         {"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "sparse"});
-    copy("bufferViews", {"buffer", "byteOffset", "byteLength", "byteStride"});
-    if (const json *meshes = member(root, "meshes"); meshes && meshes->is_array())
-        out["meshes"] = keep_meshes(doc, *meshes);
-    return out;
-}
-
-/* Materials and textures do not change triangles; anything else that is required may. */
-void check_extensions(const json &root)
-{
-    const json *required = member(root, "extensionsRequired");
-    if (!required || !required->is_array())
-        return;
-    for (const json &item : *required) {
-        std::string name = item.is_string() ? item.get<std::string>() : "?";
-        bool harmless = name.rfind("KHR_materials_", 0) == 0 ||
-                        name.rfind("KHR_texture_", 0) == 0 || name.rfind("EXT_texture_", 0) == 0 ||
-                        name == "KHR_lights_punctual" || name == "KHR_mesh_quantization";
-        if (name == "KHR_draco_mesh_compression") {
-            if (!csg_draco_available())
-                refuse(CSGM_ERR_UNSUPPORTED, "it is compressed with Draco, and this csgmesh was "
-                                             "built without Draco");
-        } else if (!harmless) {
-            refuse(CSGM_ERR_UNSUPPORTED, "it requires the extension '%.80s', which is not read",
-                   name.c_str());
-        }
-    }
-}
-
-void check_version(const json &root)
-{
-    const json *asset = member(root, "asset");
-    const json *version = asset ? member(*asset, "version") : nullptr;
-    if (!version || !version->is_string())
-        refuse(CSGM_ERR_FORMAT, "the document has no asset.version");
-    if (version->get<std::string>().rfind("2.", 0) != 0)
-        refuse(CSGM_ERR_UNSUPPORTED, "glTF version %.20s is not read, only 2.0",
-               version->get<std::string>().c_str());
-}
 
 /* ---- buffers ------------------------------------------------------------------------------------
  */
@@ -289,6 +98,8 @@ void resolve_buffers(document &doc, const json &root, span bin)
             found = find_buffer(doc, uri->get_ref<const std::string &>());
         else if (doc.buffers.empty() && bin.bytes)
             found = bin;
+        else if (!uri && !doc.told.packed_views.empty())
+            told = 0; /* it stands for what is unpacked */
         else
             refuse(CSGM_ERR_FORMAT, "buffer %zu has no bytes", doc.buffers.size());
         if (told < 0 || static_cast<uint64_t>(told) > found.size)
@@ -302,10 +113,43 @@ void resolve_buffers(document &doc, const json &root, span bin)
 /* ---- accessors ----------------------------------------------------------------------------------
  */
 
+/* Each is unpacked once. */
+span unpack(const document &doc, size_t index, const packed &from)
+{
+    auto done = doc.unpacked.find(index);
+    if (done != doc.unpacked.end())
+        return {done->second.data(), done->second.size()};
+    csg_meshopt_view view = from.view;
+    if (static_cast<size_t>(from.buffer) >= doc.buffers.size())
+        refuse(CSGM_ERR_FORMAT, "there is no buffer %lld", static_cast<long long>(from.buffer));
+    const span &buffer = doc.buffers[static_cast<size_t>(from.buffer)];
+    view.size = static_cast<uint64_t>(from.size);
+    if (static_cast<uint64_t>(from.offset) > buffer.size ||
+        view.size > buffer.size - static_cast<uint64_t>(from.offset))
+        refuse(CSGM_ERR_FORMAT, "compressed bufferView %zu goes beyond the end of its buffer",
+               index);
+    view.bytes = buffer.bytes + from.offset;
+    /* eight elements take a bit or more: what says more is broken */
+    if (view.count / 8 > 64 * (view.size + 16))
+        refuse(CSGM_ERR_FORMAT, "compressed bufferView %zu has too few bytes", index);
+    uint64_t bytes = view.count * view.stride;
+    if (!doc.calls->allows(doc.calls->user, bytes))
+        refuse(CSGM_ERR_MEMORY, "a compressed view takes too much memory");
+    std::vector<uint8_t> &out = doc.unpacked[index];
+    out.resize(bytes);
+    if (!csg_meshopt_decode(&view, out.data()))
+        refuse(CSGM_ERR_FORMAT, "compressed bufferView %zu is broken, or of a later version",
+               index);
+    return {out.data(), out.size()};
+}
+
 span view_bytes(const document &doc, int64_t index)
 {
     if (index < 0 || static_cast<uint64_t>(index) >= doc.model.bufferViews.size())
         refuse(CSGM_ERR_FORMAT, "there is no bufferView %lld", static_cast<long long>(index));
+    auto compressed_view = doc.told.packed_views.find(static_cast<size_t>(index));
+    if (compressed_view != doc.told.packed_views.end())
+        return unpack(doc, static_cast<size_t>(index), compressed_view->second);
     const tinygltf::BufferView &view = doc.model.bufferViews[static_cast<size_t>(index)];
     if (view.buffer < 0 || static_cast<size_t>(view.buffer) >= doc.buffers.size())
         refuse(CSGM_ERR_FORMAT, "there is no buffer %d", view.buffer);
@@ -489,7 +333,33 @@ struct origin {
     bool begins;
 };
 
-void emit_compressed(const document &doc, const compressed &from, const origin &at)
+/* Hands a part over, with its material's colour. */
+void emit(const document &doc, csg_adapter_part &part, const origin &at, int material)
+{
+    std::vector<float> colors;
+    size_t index = static_cast<size_t>(material);
+    if (material >= 0 && index < doc.told.materials.size() && doc.told.materials[index].is_told) {
+        const float *factor = doc.told.materials[index].rgba;
+        uint32_t components = part.colors ? part.color_components : 0;
+        colors.resize(4 * part.vertex_count);
+        for (size_t i = 0; i < part.vertex_count; i++)
+            for (size_t k = 0; k < 4; k++)
+                colors[4 * i + k] =
+                    factor[k] * (k < components ? part.colors[components * i + k] : 1);
+        part.colors = colors.data();
+        part.color_components = 4;
+    }
+    part.begins = at.begins;
+    part.name = at.name;
+    transform place = at.place;
+    for (double &entry : place)
+        entry *= doc.told.enlarge;
+    csgm_status status = doc.calls->part(doc.calls->user, &part, place.data());
+    if (status)
+        throw trouble{status, ""};
+}
+
+void emit_compressed(const document &doc, const compressed &from, const origin &at, int material)
 {
     span bytes = view_bytes(doc, from.view);
     csg_adapter_error error = {};
@@ -503,12 +373,14 @@ void emit_compressed(const document &doc, const compressed &from, const origin &
         doc.calls->allows(doc.calls->user, UINT64_MAX / 2); /* it is noted as refused */
     if (status)
         refuse(status, "a compressed primitive: %s", error.text);
-    decoded.part.begins = at.begins;
-    decoded.part.name = at.name;
-    status = doc.calls->part(doc.calls->user, &decoded.part, at.place.data());
-    csg_draco_release_decoded(&decoded);
-    if (status)
-        throw trouble{status, ""};
+    struct guard {
+        csg_draco_decoded &of;
+        ~guard()
+        {
+            csg_draco_release_decoded(&of);
+        }
+    } release{decoded};
+    emit(doc, decoded.part, at, material);
 }
 
 void emit_primitive(const document &doc, size_t mesh, size_t index, const origin &at)
@@ -516,9 +388,9 @@ void emit_primitive(const document &doc, size_t mesh, size_t index, const origin
     const tinygltf::Primitive &primitive = doc.model.meshes[mesh].primitives[index];
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
         return; /* points and lines are no surface */
-    auto draco = doc.draco.find({mesh, index});
-    if (draco != doc.draco.end()) {
-        emit_compressed(doc, draco->second, at);
+    auto draco = doc.told.draco.find({mesh, index});
+    if (draco != doc.told.draco.end()) {
+        emit_compressed(doc, draco->second, at, primitive.material);
         return;
     }
     arrays in = read_plain(doc, primitive);
@@ -530,11 +402,7 @@ void emit_primitive(const document &doc, size_t mesh, size_t index, const origin
     part.indices = in.indices.data();
     part.vertex_count = in.positions.size() / 3;
     part.index_count = in.indices.size();
-    part.begins = at.begins;
-    part.name = at.name;
-    csgm_status status = doc.calls->part(doc.calls->user, &part, at.place.data());
-    if (status)
-        throw trouble{status, ""};
+    emit(doc, part, at, primitive.material);
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------
@@ -567,7 +435,7 @@ transform from_quaternion(const std::vector<double> &q, const std::vector<double
             (1 - 2 * (x * x + y * y)) * s[2], 0};
 }
 
-transform node_transform(const tinygltf::Node &node)
+transform local_transform(const tinygltf::Node &node)
 {
     transform out = identity();
     if (node.matrix.size() == 16) { /* column-major */
@@ -585,7 +453,24 @@ transform node_transform(const tinygltf::Node &node)
     return out;
 }
 
-void emit_mesh(const document &doc, int mesh, const transform &place, const std::string &node_name)
+/* Of a root, divided by the length of a scene unit: the matrix that we write becomes a whole one.
+ */
+transform node_transform(const tinygltf::Node &node, double divisor)
+{
+    transform out = local_transform(node);
+    for (double &entry : out)
+        entry /= divisor;
+    return out;
+}
+
+/* What undoes the turn of a scene that was not turned. */
+transform upright(const document &doc)
+{
+    return doc.told.z_up ? transform{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0} : identity();
+}
+
+void emit_mesh(const document &doc, int mesh, const transform &place, const std::string &node_name,
+               bool more)
 {
     if (mesh < 0)
         return;
@@ -594,10 +479,11 @@ void emit_mesh(const document &doc, int mesh, const transform &place, const std:
     const tinygltf::Mesh &from = doc.model.meshes[static_cast<size_t>(mesh)];
     const std::string &name = node_name.empty() ? from.name : node_name;
     for (size_t i = 0; i < from.primitives.size(); i++)
-        emit_primitive(doc, static_cast<size_t>(mesh), i, {place, name.c_str(), i == 0});
+        emit_primitive(doc, static_cast<size_t>(mesh), i, {place, name.c_str(), i == 0 && !more});
 }
 
-/* The nodes of the scene that is shown, or, without scenes, those that are nobody's children. */
+/* The nodes of the scene that is shown, or, without scenes, those that are nobody's children.
+ */
 std::vector<int> root_nodes(const tinygltf::Model &model)
 {
     if (!model.scenes.empty()) {
@@ -618,18 +504,23 @@ std::vector<int> root_nodes(const tinygltf::Model &model)
     return roots;
 }
 
-/* Depth first with a stack of its own; children come out in their order. Every node has one parent
- * at most, so one that comes twice is shared or its own ancestor. */
+/* Depth first with a stack of its own; children come out in their order. Every node has one
+ * parent at most, so one that comes twice is shared or its own ancestor. */
 void walk(const document &doc)
 {
     const std::vector<tinygltf::Node> &nodes = doc.model.nodes;
     std::vector<bool> seen(nodes.size(), false);
-    std::vector<std::pair<int, transform>> stack;
+    struct visit {
+        int node;
+        transform parent;
+        double divisor;
+    };
+    std::vector<visit> stack;
     std::vector<int> roots = root_nodes(doc.model);
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        stack.push_back({*root, identity()});
+        stack.push_back({*root, upright(doc), doc.told.scale});
     while (!stack.empty()) {
-        auto [index, parent] = stack.back();
+        auto [index, parent, divisor] = stack.back();
         stack.pop_back();
         if (index < 0 || static_cast<size_t>(index) >= nodes.size())
             refuse(CSGM_ERR_FORMAT, "there is no node %d", index);
@@ -637,24 +528,27 @@ void walk(const document &doc)
             refuse(CSGM_ERR_FORMAT, "node %d has two parents or is its own ancestor", index);
         seen[static_cast<size_t>(index)] = true;
         const tinygltf::Node &node = nodes[static_cast<size_t>(index)];
-        transform place = multiply(parent, node_transform(node));
-        emit_mesh(doc, node.mesh, place, node.name);
+        transform place = multiply(parent, node_transform(node, divisor));
+        emit_mesh(doc, node.mesh, place, node.name, doc.told.more[static_cast<size_t>(index)]);
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            stack.push_back({*child, place});
+            stack.push_back({*child, place, 1});
     }
     for (size_t i = 0; nodes.empty() && i < doc.model.meshes.size(); i++)
-        emit_mesh(doc, static_cast<int>(i), identity(), {});
+        emit_mesh(doc, static_cast<int>(i), identity(), {}, false);
 }
 
 void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
 {
     document doc;
     doc.calls = calls;
-    json root = parse(text, size, calls);
+    json root = parse(text, size, calls,
+                      std::max({sizeof(tinygltf::Node), sizeof(tinygltf::Mesh),
+                                sizeof(tinygltf::Primitive), sizeof(tinygltf::Scene),
+                                sizeof(tinygltf::Accessor), sizeof(tinygltf::BufferView)}));
     check_version(root);
     check_extensions(root);
+    std::string small = cut_down(doc.told, root).dump();
     resolve_buffers(doc, root, bin);
-    std::string small = cut_down(doc, root).dump();
     root = nullptr; /* base64 buffers are large */
     std::string error, warning;
     tinygltf::TinyGLTF loader;

@@ -223,8 +223,11 @@ csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
                            const csgm_mesh_options *options, csgm_mesh **out,
                            csgm_mesh_stats *stats)
 {
-    return field->part_count ? build_parts(context, field, options, out, stats)
-                             : build_part(context, field, options, NULL, out, stats);
+    csgm_status status = field->part_count ? build_parts(context, field, options, out, stats)
+                                           : build_part(context, field, options, NULL, out, stats);
+    if (status == CSGM_OK)
+        (*out)->equal_cells = csg_mesh_can_stream(field, options);
+    return status;
 }
 
 bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *options)

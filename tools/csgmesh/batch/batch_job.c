@@ -96,7 +96,12 @@ static int refuse_empty(maker *m)
 
 static int write_view(maker *m, const csgm_mesh_view *view, const char *path, const char *format)
 {
-    csgm_write_options options = cli_outputs_options(&m->app.options);
+    csgm_write_options options = cli_outputs_options(&m->app, m->job->scene);
+    if (m->app.options.given[CLI_OPTION_lod] && !m->job->by_part) {
+        int status = cli_work_mesh_levels(&m->app, &m->work, &options);
+        if (status != CLI_DONE)
+            return status;
+    }
     csgm_drawing_format drawing = csgm_drawing_format_from_name(format);
     if (!batch_make_folders(path, false)) {
         cli_console_say(&m->app.console, CSGM_ERROR, NULL, "cannot write %s: %s", path,
@@ -199,7 +204,7 @@ static int write_whole(maker *m, const csgm_mesh_view *view)
 /* One file need not be in memory as a mesh. */
 static int write_stream(maker *m)
 {
-    csgm_write_options options = cli_outputs_options(&m->app.options);
+    csgm_write_options options = cli_outputs_options(&m->app, m->job->scene);
     const char *path = m->job->outputs.items[0], *format = m->job->formats.items[0];
     if (!batch_make_folders(path, false)) {
         cli_console_say(&m->app.console, CSGM_ERROR, NULL, "cannot write %s: %s", path,
@@ -225,7 +230,8 @@ static int write_all(maker *m)
     bool is_plate = m->app.flat == CSGM_FLAT_PLATE;
     if (m->app.flat == CSGM_FLAT_DRAWING) /* drawings alone need no mesh */
         return write_whole(m, NULL);
-    if (m->job->outputs.count == 1 && !m->job->by_part && is_plate && m->app.options.warnings == 0)
+    if (m->job->outputs.count == 1 && !m->job->by_part && is_plate &&
+        m->app.options.warnings == 0 && !m->app.options.given[CLI_OPTION_lod])
         return write_stream(m);
     int status = cli_work_mesh(&m->app, &m->work);
     if (status != CLI_DONE)

@@ -61,6 +61,20 @@ static int take_defines(const reader *r, const batch_value *value)
     return CLI_DONE;
 }
 
+static int take_metadata(const reader *r, const batch_value *value)
+{
+    batch_arena *arena = &r->plan->arena;
+    if (value->kind != CSGM_JSON_OBJECT || !value->first)
+        return refuse(r, NULL, "\"meta\" wants an object, as {\"title\": \"Mug\"}");
+    for (const batch_value *v = value->first; v; v = v->next) {
+        bool text = v->kind == CSGM_JSON_STRING || v->kind == CSGM_JSON_NUMBER;
+        if (!text || !*v->text || !*v->key || strchr(v->key, '='))
+            return refuse(r, "a text or a number", "\"meta\": \"%.60s\" has no value", v->key);
+        batch_add(arena, &r->entry->settings.meta, batch_printf(arena, "%s=%s", v->key, v->text));
+    }
+    return CLI_DONE;
+}
+
 static int take_includes(const reader *r, const batch_value *value)
 {
     cli_list folders;
@@ -73,9 +87,9 @@ static int take_includes(const reader *r, const batch_value *value)
 
 static int refuse_unknown(const reader *r, const char *key)
 {
-    static const char *const own[] = {"scene",   "jobs", "directory",      "formats",
-                                      "name",    "sets", "parameter_file", "defines",
-                                      "include", "out",  "$schema",        NULL};
+    static const char *const own[] = {"scene",   "jobs",           "directory", "formats", "name",
+                                      "sets",    "parameter_file", "defines",   "include", "out",
+                                      "$schema", "meta",           NULL};
     char hint[120];
     const char *near = cli_nearest(key, own);
     if (!near)
@@ -108,6 +122,8 @@ static int take_member(const reader *r, const batch_value *v)
         return take_text(r, v, &entry->name);
     if (strcmp(v->key, "defines") == 0)
         return take_defines(r, v);
+    if (strcmp(v->key, "meta") == 0)
+        return take_metadata(r, v);
     if (strcmp(v->key, "include") == 0)
         return take_includes(r, v);
     if (strcmp(v->key, "parameter_file") == 0) {

@@ -35,6 +35,7 @@ static bool is_of_batch(cli_option_id id)
         CLI_OPTION_diagnostics, CLI_OPTION_threads,        CLI_OPTION_roots,
         CLI_OPTION_help,        CLI_OPTION_version,        CLI_OPTION_json,
         CLI_OPTION_defines,     CLI_OPTION_include_dirs,   CLI_OPTION_trace,
+        CLI_OPTION_meta,
     };
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
         if (ids[i] == id)
@@ -180,6 +181,7 @@ void batch_options_given(batch_arena *arena, const cli_options *options, batch_s
     }
     out->defines = options->defines;
     out->include_dirs = options->include_dirs;
+    out->meta = options->meta;
 }
 
 /* ---- layers --------------------------------------------------------------------------- */
@@ -198,7 +200,7 @@ static size_t name_length(const char *define)
     return strcspn(define, "=");
 }
 
-/* A later definition of the same name replaces the earlier one. */
+/* A later definition of the same name replaces the earlier one; so does a later KEY=VALUE. */
 static void add_define(batch_arena *arena, cli_list *defines, const char *define)
 {
     size_t length = name_length(define);
@@ -216,6 +218,7 @@ void batch_settings_overlay(batch_arena *arena, batch_settings *settings,
 {
     bool fineness = false;
     cli_list defines = settings->defines, include_dirs = settings->include_dirs;
+    cli_list meta = settings->meta;
     for (size_t i = 0; i < ROWS; i++)
         fineness = fineness || (is_fineness(&rows[i]) && over->arguments[rows[i].id]);
     for (size_t i = 0; i < ROWS; i++) {
@@ -223,11 +226,16 @@ void batch_settings_overlay(batch_arena *arena, batch_settings *settings,
         if (argument || (fineness && is_fineness(&rows[i])))
             settings->arguments[rows[i].id] = argument;
     }
-    settings->defines = settings->include_dirs = (cli_list){0}; /* the layers keep their own */
+    /* the layers keep their own */
+    settings->defines = settings->include_dirs = settings->meta = (cli_list){0};
     for (size_t i = 0; i < defines.count; i++)
         add_define(arena, &settings->defines, defines.items[i]);
     for (size_t i = 0; i < over->defines.count; i++)
         add_define(arena, &settings->defines, over->defines.items[i]);
+    for (size_t i = 0; i < meta.count; i++)
+        add_define(arena, &settings->meta, meta.items[i]);
+    for (size_t i = 0; i < over->meta.count; i++)
+        add_define(arena, &settings->meta, over->meta.items[i]);
     for (size_t i = 0; i < over->include_dirs.count; i++) /* searched first */
         batch_add(arena, &settings->include_dirs, over->include_dirs.items[i]);
     for (size_t i = 0; i < include_dirs.count; i++)
@@ -247,6 +255,8 @@ cli_list batch_settings_arguments(batch_arena *arena, const batch_settings *sett
     for (size_t i = 0; i < settings->include_dirs.count; i++)
         batch_add(arena, &list,
                   batch_printf(arena, "--include=%s", settings->include_dirs.items[i]));
+    for (size_t i = 0; i < settings->meta.count; i++)
+        batch_add(arena, &list, batch_printf(arena, "--meta=%s", settings->meta.items[i]));
     return list;
 }
 
@@ -259,4 +269,6 @@ void batch_settings_hash(const batch_settings *settings, batch_hasher *hasher)
     }
     for (size_t i = 0; i < settings->defines.count; i++)
         batch_hash_text(hasher, settings->defines.items[i]);
+    for (size_t i = 0; i < settings->meta.count; i++)
+        batch_hash_text(hasher, settings->meta.items[i]);
 }

@@ -14,6 +14,7 @@ typedef struct batch_settings {
     const char *arguments[CLI_OPTION_COUNT]; /* "--resolution=64"; "" takes an earlier one back */
     cli_list defines;                        /* "radius=5" */
     cli_list include_dirs;
+    cli_list meta; /* "title=Mug" */
 } batch_settings;
 
 /* A key of a manifest, "cell_size" or "cell-size"; CLI_OPTION_COUNT: no option of a job. */

@@ -33,6 +33,8 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
     for (size_t i = 0; i < job->formats.count; i++)
         batch_hash_text(&hasher, job->formats.items[i]);
     batch_hash_text(&hasher, job->by_part ? "parts" : "whole");
+    const char *slash = strrchr(job->scene, '/'); /* files name their source */
+    batch_hash_text(&hasher, slash ? slash + 1 : job->scene);
     return batch_hash_end(&hasher);
 }
 

@@ -8,6 +8,7 @@
 #include "batch/batch_report.h"
 #include "core/work.h"
 #include "emit/emit.h"
+#include "mesh/outputs.h"
 
 static int check_usage(cli_app *app)
 {
@@ -17,6 +18,8 @@ static int check_usage(cli_app *app)
                                "no manifest and no scenes given");
     if (options->keep_going && options->fail_fast)
         return cli_usage_error(app, NULL, "--keep-going and --fail-fast exclude each other");
+    if (cli_outputs_check_contents(app) != CLI_DONE)
+        return CLI_TROUBLE;
     int status = cli_work_check(app);
     if (status != CLI_DONE)
         return status;

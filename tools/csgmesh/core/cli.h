@@ -10,15 +10,20 @@
 /* As diff(1). */
 enum { CLI_DONE = 0, CLI_INPUT_AT_FAULT = 1, CLI_TROUBLE = 2 };
 
+enum { CLI_META_MOST = 64 };
+
 typedef struct cli_app {
     cli_options options;
     cli_console console;
     csgm_context *context; /* from cli_app_open on */
     double start_s;
-    csgm_trace *trace;      /* of --trace, or NULL */
-    const char *zone_note;  /* in it: what the context is at work on; NULL = the first operand */
-    cli_list arguments;     /* of CLI_OPENSCAD: all that stands behind the command's name */
-    csgm_flat flat;         /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
+    csgm_trace *trace;     /* of --trace, or NULL */
+    const char *zone_note; /* in it: what the context is at work on; NULL = the first operand */
+    cli_list arguments;    /* of CLI_OPENSCAD: all that stands behind the command's name */
+    csgm_flat flat;        /* what a flat scene is to be: of the -o files (mesh/drawings.h) */
+    /* --meta, and the scene's file before it (cli_outputs_options) */
+    const char *metadata[CLI_META_MOST + 1];
+    char source[280];
     bool only_checks;       /* scenes are looked at for mistakes and not made */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */

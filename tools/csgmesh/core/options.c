@@ -527,6 +527,7 @@ void cli_options_release(cli_options *options)
     free(options->outputs.items);
     free(options->defines.items);
     free(options->include_dirs.items);
+    free(options->meta.items);
     free(options->diff_ignore.items);
     free(options->points.items);
     free(options->roots.items);

@@ -104,6 +104,55 @@ int cli_work_mesh(cli_app *app, cli_work *work)
     return cli_exit_status(status);
 }
 
+/* Within a tolerance that is proven: so its error is known of every point. */
+static csgm_status mesh_level(cli_app *app, cli_work *work, double tolerance, size_t index)
+{
+    csgm_mesh_options options = mesh_options(app, work);
+    csgm_mesh_stats stats = csgm_mesh_stats_default();
+    csgm_level *level = &work->levels[index];
+    options.resolution = 0;
+    options.cell_size = options.simplify_error = options.simplify_share = 0;
+    options.triangles = 0;
+    options.certify = false;
+    options.tolerance = tolerance;
+    csgm_status status =
+        csgm_mesh_build(app->context, work->field, &options, &work->level_meshes[index], &stats);
+    if (status != CSGM_OK)
+        return status;
+    level->mesh = csgm_mesh_get_view(work->level_meshes[index]);
+    level->error = isfinite(stats.max_distance_bound)
+                       ? fmax(stats.max_distance_bound, stats.max_distance_measured)
+                       : fmax(tolerance, stats.max_distance_measured);
+    return CSGM_OK;
+}
+
+int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write_options)
+{
+    size_t wanted = (size_t)app->options.lod;
+    csgm_status status = CSGM_OK;
+    uint64_t before = csgm_mesh_get_view(work->mesh).triangle_count;
+    double tolerance =
+        app->options.tolerance > 0 ? app->options.tolerance
+        : work->stats.tolerance > 0
+            ? work->stats.tolerance
+            : csgm_quality_tolerance((csgm_quality)app->options.quality, work->info.bounds);
+    while (status == CSGM_OK && !work->is_leveled && work->level_count + 1 < wanted) {
+        tolerance *= 4;
+        status = mesh_level(app, work, tolerance, work->level_count);
+        uint64_t count =
+            status == CSGM_OK ? work->levels[work->level_count].mesh.triangle_count : 0;
+        if (!count || count >= before)
+            break;
+        before = count;
+        work->level_count++;
+    }
+    work->is_leveled = true;
+    write_options->levels = work->levels;
+    write_options->level_count = work->level_count;
+    cli_console_end_progress(&app->console);
+    return cli_exit_status(status);
+}
+
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
                        const csgm_write_options *write_options, uint64_t *triangle_count)
 {
@@ -125,6 +174,8 @@ int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_form
 
 void cli_work_release(cli_work *work)
 {
+    for (size_t i = 0; i < CLI_LEVELS_MOST; i++)
+        csgm_mesh_destroy(work->level_meshes[i]);
     csgm_mesh_destroy(work->mesh);
     csgm_field_destroy(work->field);
     csgm_scene_destroy(work->scene);

@@ -6,12 +6,18 @@
 
 #include "core/cli.h"
 
+enum { CLI_LEVELS_MOST = 8 }; /* of --lod, without the first */
+
 typedef struct cli_work {
     csgm_scene *scene;
     csgm_field *field;
     csgm_mesh *mesh;
     csgm_scene_info info;
     csgm_mesh_stats stats;
+    csgm_mesh *level_meshes[CLI_LEVELS_MOST]; /* of --lod */
+    csgm_level levels[CLI_LEVELS_MOST];
+    size_t level_count;
+    bool is_leveled; /* they are made */
     double compile_s;
     const csgm_normals *normals; /* instead of those that the outputs want, NULL: none */
     double
@@ -26,6 +32,9 @@ double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality
 /* Each returns an exit status; failures are reported. */
 int cli_work_load(cli_app *app, cli_work *work, const char *path);
 int cli_work_mesh(cli_app *app, cli_work *work);
+/* The coarser levels of --lod, and the write options' part that names them. A level that is not
+ * coarser than the one before ends them. */
+int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write_options);
 /* Straight into a file, without the whole mesh in memory where the format allows it; work->mesh
  * stays NULL. A mesh without triangles writes nothing and is an error. */
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,

@@ -99,6 +99,7 @@ static int check_scene_options(cli_app *app)
                 {CLI_OPTION_colors, "--colors"},
                 {CLI_OPTION_up, "--up"},
                 {CLI_OPTION_unit, "--unit"},
+                {CLI_OPTION_compress, "--compress"},
                 {CLI_OPTION_draco, "--draco"},
                 {CLI_OPTION_draco_bits, "--draco-bits"},
                 {CLI_OPTION_draco_level, "--draco-level"},

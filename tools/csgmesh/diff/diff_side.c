@@ -46,7 +46,7 @@ static bool is_compressed(const char *path)
 /* The scene's mesh as the other file would hold it. */
 static int mesh_scene(cli_app *app, diff_side *side)
 {
-    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_write_options options = cli_outputs_options(app, NULL);
     side->work.normals = side->as == CSGM_FORMAT_AUTO ? NULL : &side->normals;
     int status = cli_work_mesh(app, &side->work);
     if (status != CLI_DONE)
@@ -228,7 +228,7 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
         status = diff_side_mesh(app, b);
     if (status != CLI_DONE)
         return status;
-    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_write_options options = cli_outputs_options(app, NULL);
     options.ascii |= ascii;
     options.draco |= csgm_format_traits(format) & CSGM_HEEDS_DRACO && is_compressed(path_a);
     csgm_mesh_view view = b->work.mesh ? csgm_mesh_get_view(b->work.mesh) : b->view;

@@ -194,7 +194,7 @@ static int name_outputs(cli_app *app, int status)
     return status == CLI_DONE ? cli_exit_status(named) : status;
 }
 
-static int write_all(cli_app *app, const cli_work *work, run_report *report)
+static int write_all(cli_app *app, cli_work *work, run_report *report)
 {
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
     if (view.triangle_count == 0 && app->options.outputs.count) {
@@ -203,7 +203,8 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
         return CLI_INPUT_AT_FAULT;
     }
     double begin_s = cli_now_s();
-    int status = name_outputs(app, cli_outputs_write(app, &view));
+    int status = cli_outputs_write(app, work);
+    status = name_outputs(app, status);
     if (status == CLI_DONE && app->options.depfile)
         status = cli_depfile_write(app, work->scene);
     double end_s = cli_now_s();
@@ -224,12 +225,13 @@ static int write_all(cli_app *app, const cli_work *work, run_report *report)
 static bool goes_straight_to_file(const cli_options *options)
 {
     return options->outputs.count == 1 && !cli_drawings_count(options) &&
-           strcmp(options->outputs.items[0], "-") != 0 && !options->stats && options->warnings == 0;
+           !options->given[CLI_OPTION_lod] && strcmp(options->outputs.items[0], "-") != 0 &&
+           !options->stats && options->warnings == 0;
 }
 
 static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
 {
-    csgm_write_options write_options = cli_outputs_options(&app->options);
+    csgm_write_options write_options = cli_outputs_options(app, app->options.operands.items[0]);
     uint64_t triangle_count;
     int status =
         cli_work_mesh_file(app, work, app->options.outputs.items[0],

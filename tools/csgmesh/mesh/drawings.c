@@ -55,7 +55,7 @@ static int check_layers(cli_app *app, const csgm_scene *scene)
 int cli_drawings_write_one(cli_app *app, const csgm_scene *scene, const char *path,
                            csgm_drawing_format format)
 {
-    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_write_options options = cli_outputs_options(app, NULL);
     int status = check_layers(app, scene);
     if (status == CLI_DONE)
         status = cli_exit_status(csgm_scene_draw(app->context, scene, path, format, &options));
@@ -64,7 +64,7 @@ int cli_drawings_write_one(cli_app *app, const csgm_scene *scene, const char *pa
 
 int cli_drawings_write(cli_app *app, const csgm_scene *scene)
 {
-    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_write_options options = cli_outputs_options(app, NULL);
     int worst = CLI_DONE;
     if (check_layers(app, scene) != CLI_DONE)
         return CLI_INPUT_AT_FAULT;

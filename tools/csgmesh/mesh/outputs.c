@@ -88,6 +88,14 @@ int cli_outputs_check_place(cli_app *app, const char *path)
 /* The values of --normals, in their order. */
 enum { AUTO, VERTEX, CREASE, NONE };
 
+/* The values of --compress, in their order. */
+enum { UNCOMPRESSED, MESHOPT, DRACO };
+
+bool cli_outputs_draco(const cli_options *options)
+{
+    return options->draco || options->compress == DRACO;
+}
+
 /* An option that no output of this run can follow is said to be so, not dropped in silence. */
 static void warn_without_effect(cli_app *app)
 {
@@ -100,7 +108,11 @@ static void warn_without_effect(cli_app *app)
         {CLI_OPTION_ascii, "--ascii", CSGM_HEEDS_ASCII},
         {CLI_OPTION_up, "--up", CSGM_HEEDS_UP},
         {CLI_OPTION_unit, "--unit", CSGM_HEEDS_UNIT},
+        {CLI_OPTION_meta, "--meta", CSGM_HEEDS_METADATA},
         {CLI_OPTION_draco, "--draco", CSGM_HEEDS_DRACO},
+        {CLI_OPTION_compress, "--compress", CSGM_HEEDS_MESHOPT},
+        {CLI_OPTION_uv, "--uv", CSGM_HEEDS_UV},
+        {CLI_OPTION_lod, "--lod", CSGM_HEEDS_LEVELS},
         {CLI_OPTION_draco_bits, "--draco-bits", CSGM_HEEDS_DRACO_BITS},
         {CLI_OPTION_draco_level, "--draco-level", CSGM_HEEDS_DRACO_BITS},
     };
@@ -110,7 +122,7 @@ static void warn_without_effect(cli_app *app)
         traits |= cli_drawings_format(options, i) != CSGM_DRAWING_NONE
                       ? CSGM_HEEDS_UNIT
                       : csgm_format_traits(cli_outputs_format(options, i));
-    if (options->draco && traits & CSGM_HEEDS_DRACO)
+    if ((options->draco || options->compress) && traits & CSGM_HEEDS_DRACO)
         traits |= CSGM_HEEDS_DRACO_BITS;
     if (options->normals == CREASE && !(traits & CSGM_KEEPS_CREASES))
         cli_console_say(&app->console, CSGM_WARNING, NULL,
@@ -122,6 +134,29 @@ static void warn_without_effect(cli_app *app)
                 &app->console, CSGM_WARNING, NULL, "%s has no effect: no output is %s%s",
                 rows[i].name, cli_formats_in_words(wanted, sizeof wanted, rows[i].heeded_by),
                 rows[i].heeded_by == CSGM_HEEDS_DRACO_BITS ? " (.drc, or --draco with .glb)" : "");
+}
+
+int cli_outputs_check_contents(cli_app *app)
+{
+    const cli_list *given = &app->options.meta;
+    for (size_t i = 0; i < given->count; i++) {
+        const char *value = strchr(given->items[i], '=');
+        if (!value || value == given->items[i] || !value[1])
+            return cli_usage_error(app, "as --meta title=Mug", "--meta wants KEY=VALUE, not '%s'",
+                                   given->items[i]);
+    }
+    if (app->options.given[CLI_OPTION_lod] &&
+        (app->options.lod < 2 || app->options.lod > CLI_LEVELS_MOST + 1))
+        return cli_usage_error(app, NULL, "--lod wants 2 to %d levels, the first one too",
+                               CLI_LEVELS_MOST + 1);
+    if (app->options.draco && app->options.compress == MESHOPT)
+        return cli_usage_error(app, NULL, "--draco and --compress meshopt exclude each other");
+    if (app->options.uv && cli_outputs_draco(&app->options))
+        return cli_usage_error(app, NULL,
+                               "--uv is not written with Draco: take --compress meshopt");
+    if (given->count > CLI_META_MOST)
+        return cli_usage_error(app, NULL, "--meta may be given %d times at most", CLI_META_MOST);
+    return CLI_DONE;
 }
 
 int cli_outputs_check(cli_app *app, const char *scene_path)
@@ -136,6 +171,8 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
     }
     if (!options->outputs.count && !options->stats)
         return refuse_no_output(app, scene_path);
+    if (cli_outputs_check_contents(app) != CLI_DONE)
+        return CLI_TROUBLE;
     for (size_t i = 0; i < options->outputs.count && status == CLI_DONE; i++) {
         status = cli_outputs_check_place(app, options->outputs.items[i]);
         if (status == CLI_DONE)
@@ -158,15 +195,34 @@ csgm_normals cli_outputs_normals(const cli_options *options)
     return CSGM_NORMALS_VERTEX;
 }
 
-csgm_write_options cli_outputs_options(const cli_options *options)
+/* The name alone: no file says where a folder is. */
+static void describe(cli_app *app, const char *scene_path, csgm_write_options *write)
 {
+    const cli_list *given = &app->options.meta;
+    const char *slash = scene_path ? strrchr(scene_path, '/') : NULL;
+    if (scene_path && strcmp(scene_path, "-") != 0) {
+        snprintf(app->source, sizeof app->source, "source=%s", slash ? slash + 1 : scene_path);
+        app->metadata[write->metadata_count++] = app->source;
+    }
+    for (size_t i = 0; i < given->count && i < CLI_META_MOST; i++)
+        app->metadata[write->metadata_count++] = given->items[i];
+    write->metadata = app->metadata;
+}
+
+csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
+{
+    static const csgm_unit units[] = {CSGM_UNIT_MM, CSGM_UNIT_CM, CSGM_UNIT_M, CSGM_UNIT_IN,
+                                      CSGM_UNIT_NONE}; /* the values of --unit */
+    const cli_options *options = &app->options;
     csgm_write_options write = csgm_write_options_default();
     write.ascii = options->ascii;
-    write.draco = options->draco;
+    write.draco = cli_outputs_draco(options);
+    write.meshopt = options->compress == MESHOPT;
+    write.uv = (csgm_uv)options->uv; /* its values stand in the enum's order */
     write.y_up = options->up == 0;
     write.sync = !options->no_sync;
     write.only_if_changed = options->if_changed;
-    write.unit = (csgm_unit)options->unit; /* the values of --unit stand in the enum's order */
+    write.unit = units[options->unit];
     if (options->given[CLI_OPTION_draco_bits]) {
         write.draco_position_bits = options->draco_bits.position;
         write.draco_normal_bits = options->draco_bits.normal;
@@ -174,13 +230,23 @@ csgm_write_options cli_outputs_options(const cli_options *options)
     }
     if (options->given[CLI_OPTION_draco_level])
         write.draco_level = options->draco_level;
+    describe(app, scene_path, &write);
     return write;
 }
 
-int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh)
+int cli_outputs_write(cli_app *app, cli_work *work)
 {
-    csgm_write_options options = cli_outputs_options(&app->options);
+    csgm_mesh_view view = csgm_mesh_get_view(work->mesh), *mesh = &view;
+    csgm_write_options options = cli_outputs_options(app, app->options.operands.items[0]);
     int worst = CLI_DONE;
+    bool leveled = false;
+    for (size_t i = 0; i < app->options.outputs.count; i++)
+        leveled |=
+            (csgm_format_traits(cli_outputs_format(&app->options, i)) & CSGM_HEEDS_LEVELS) != 0;
+    if (leveled && app->options.given[CLI_OPTION_lod])
+        worst = cli_work_mesh_levels(app, work, &options);
+    if (worst != CLI_DONE)
+        return worst;
     for (size_t i = 0; i < app->options.outputs.count; i++) {
         const char *path = app->options.outputs.items[i];
         csgm_format format = cli_outputs_format(&app->options, i);

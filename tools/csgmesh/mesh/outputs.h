@@ -5,16 +5,22 @@
 #ifndef CLI_OUTPUTS_H
 #define CLI_OUTPUTS_H
 
-#include "core/cli.h"
+#include "core/work.h"
 
 /* The format of output `index`; AUTO when neither its name nor -f says. */
 csgm_format cli_outputs_format(const cli_options *options, size_t index);
 /* Usage, formats of this build, directories that cannot be written. CLI_DONE or CLI_TROUBLE. */
 int cli_outputs_check(cli_app *app, const char *scene_path);
+/* --meta, --lod, --uv and --compress. CLI_DONE or CLI_TROUBLE, reported. */
+int cli_outputs_check_contents(cli_app *app);
 /* What --normals asks for, given the formats. */
+/* --compress draco or --draco. */
+bool cli_outputs_draco(const cli_options *options);
 csgm_normals cli_outputs_normals(const cli_options *options);
-csgm_write_options cli_outputs_options(const cli_options *options);
-int cli_outputs_write(cli_app *app, const csgm_mesh_view *mesh);
+/* scene_path: the file names it as its source; NULL = it names none. The app keeps the texts. */
+csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path);
+/* Meshes the levels of --lod, too. */
+int cli_outputs_write(cli_app *app, cli_work *work);
 
 /* What would fail after minutes of work is refused now: a missing or locked folder. CLI_DONE or
  * CLI_TROUBLE, reported. */

@@ -58,6 +58,22 @@ def _define(given: Any) -> dict[bytes, bytes]:
     return {name.encode(): expression_text(value).encode("utf-8", "surrogatepass") for name, value in given.items()}
 
 
+def _metadata(given: Any) -> list[bytes]:
+    if not isinstance(given, Mapping) or not all(isinstance(part, str) for pair in given.items() for part in pair):
+        raise TypeError(f"metadata must be a dict of texts, not {given!r}")
+    for key in given:
+        if "=" in key:
+            raise ValueError(f"metadata: {key!r} has a =")
+    return [f"{key}={value}".encode("utf-8", "surrogatepass") for key, value in given.items()]
+
+
+def _levels(given: Any) -> list[Any]:
+    try:
+        return [(mesh._core, error) for mesh, error in given]
+    except (TypeError, ValueError, AttributeError):
+        raise TypeError(f"levels must be a list of pairs of a mesh and a number, not {given!r}") from None
+
+
 def _include(given: Any) -> list[bytes]:
     folders = [given] if isinstance(given, (str, bytes, os.PathLike)) else given
     return [path_bytes(folder, "include") for folder in folders]
@@ -90,7 +106,7 @@ def _words(given: Any) -> list[Any]:
     return [given] if isinstance(given, str) else list(given)
 
 
-_CONVERT = {"define": _define, "include": _include, "openscad_version": _level, "comment": _text, "background": _color,
+_CONVERT = {"define": _define, "include": _include, "openscad_version": _level, "comment": _text, "metadata": _metadata, "levels": _levels, "background": _color,
             "ignore": _words, "parameter_set": _text, "parameter_file": lambda path: path_bytes(path, "parameter_file")}
 
 

@@ -91,6 +91,10 @@ class FileOptions(TypedDict, total=False):
     only_if_changed: bool
     unit: Literal["none", "mm", "cm", "m", "in"]
     comment: str
+    meshopt: bool
+    uv: Literal["none", "box", "cylinder"]
+    levels: Sequence[tuple[Any, float]]  # coarser meshes of the same solid, and how far each is from it
+    metadata: Mapping[str, str]  # what the file says about itself: title, author, license, source, version
 
 
 class WriteOptions(RunOptions, FileOptions, total=False):

@@ -3,6 +3,8 @@
  */
 #include "module/options.h"
 
+#include "module/objects.h"
+
 #include <nanobind/stl/string.h>
 
 #include <cmath>
@@ -256,6 +258,29 @@ const Row<csgm_mesh_options> mesh_rows[] = {
 };
 #undef OF
 
+void take_metadata(csgm_write_options &options, nb::handle value, const char *name, Keep &keep)
+{
+    for (nb::handle text : nb::cast<nb::list>(value))
+        keep.metadata.push_back(keep.text(text, name));
+    options.metadata = keep.metadata.data();
+    options.metadata_count = keep.metadata.size();
+}
+
+/* Pairs of a coarser mesh and how far it is from the solid. */
+void take_levels(csgm_write_options &options, nb::handle value, const char *name, Keep &keep)
+{
+    static const char *const wanted = "a list of pairs (mesh, error)";
+    for (nb::handle pair : nb::cast<nb::list>(value)) {
+        nb::tuple both = nb::cast<nb::tuple>(pair);
+        Mesh *mesh;
+        if (nb::len(both) != 2 || !nb::try_cast(both[0], mesh))
+            refuse(PyExc_TypeError, name, wanted, value);
+        keep.levels.push_back({mesh->view, number_of(both[1], name)});
+    }
+    options.levels = keep.levels.data();
+    options.level_count = keep.levels.size();
+}
+
 #define OF(member) MEMBER(csgm_write_options, member)
 const Row<csgm_write_options> write_rows[] = {
     OF(ascii),
@@ -269,6 +294,10 @@ const Row<csgm_write_options> write_rows[] = {
     OF(only_if_changed),
     CHOICE(csgm_write_options, "unit", unit, "none", "mm", "cm", "m", "in"),
     OF(comment),
+    {"metadata", take_metadata},
+    OF(meshopt),
+    CHOICE(csgm_write_options, "uv", uv, "none", "box", "cylinder"),
+    {"levels", take_levels},
 };
 #undef OF
 

@@ -19,7 +19,8 @@ namespace nb = nanobind;
 struct Keep {
     std::list<std::string> texts;
     std::vector<csgm_define> defines;
-    std::vector<const char *> folders;
+    std::vector<const char *> folders, metadata;
+    std::vector<csgm_level> levels;
 
     const char *text(nb::handle bytes, const char *name);
 };
