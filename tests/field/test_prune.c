@@ -93,7 +93,8 @@ static void test_random_fillet_scenes(void **state)
  * last bit on diagonal planes, or in the middle of the gap, where they face each other. */
 static void two_blocks(test_subject *s, csg_node_kind how, double apart, unsigned count)
 {
-    static const double bars[2][3] = {{1, 0.6, 0.6}, {0.6, 1, 0.6}}, block[3] = {0.6, 0.6, 0.6};
+    static const double bars[2][4] = {{1, 0.6, 0.6, 0}, {0.6, 1, 0.6, 0}};
+    static const double block[4] = {0.6, 0.6, 0.6, 0};
     csg_node_id nodes[3];
     test_subject_begin(s);
     csg_scene_builder *builder = &s->builder;
