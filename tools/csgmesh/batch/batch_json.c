@@ -86,22 +86,31 @@ static char *read_file(cli_app *app, const char *path, size_t *length)
     return text;
 }
 
-int batch_json_load(cli_app *app, batch_arena *arena, const char *path, batch_value **out)
+csgm_status batch_json_parse(csgm_context *context, batch_arena *arena, const char *text,
+                             size_t length, const char *name, batch_value **out, bool *too_deep)
 {
     batch_value root = {0};
     builder b = {.arena = arena, .open = {&root}, .latest = {&root.first}};
+    csgm_status status = csgm_json_read(context, text, length, name, take_event, &b);
+    *too_deep = b.too_deep;
+    *out = root.first;
+    return status;
+}
+
+int batch_json_load(cli_app *app, batch_arena *arena, const char *path, batch_value **out)
+{
     size_t length;
+    bool too_deep;
     char *text = read_file(app, path, &length);
     if (!text)
         return CLI_TROUBLE;
-    csgm_status status = csgm_json_read(app->context, text, length, path, take_event, &b);
+    csgm_status status = batch_json_parse(app->context, arena, text, length, path, out, &too_deep);
     free(text);
-    if (status == CSGM_OK && (b.too_deep || arena->failed)) {
+    if (status == CSGM_OK && (too_deep || arena->failed)) {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read %s: %s", path,
-                        b.too_deep ? "more than 32 brackets are nested" : "out of memory");
+                        too_deep ? "more than 32 brackets are nested" : "out of memory");
         return CLI_TROUBLE;
     }
-    *out = root.first;
     return cli_exit_status(status);
 }
 

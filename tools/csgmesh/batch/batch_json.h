@@ -16,6 +16,10 @@ typedef struct batch_value {
 
 /* CLI_DONE, or an exit status after a report. */
 int batch_json_load(cli_app *app, batch_arena *arena, const char *path, batch_value **out);
+/* A text that is in memory. *too_deep: more brackets are nested than any message has; without
+ * memory arena->failed is set. */
+csgm_status batch_json_parse(csgm_context *context, batch_arena *arena, const char *text,
+                             size_t length, const char *name, batch_value **out, bool *too_deep);
 /* The member of an object; NULL: there is none. */
 const batch_value *batch_json_member(const batch_value *object, const char *key);
 

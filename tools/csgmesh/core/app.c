@@ -64,6 +64,16 @@ static csgm_limits limits_from(const cli_options *options)
     return limits;
 }
 
+csgm_context_options cli_app_context_options(const cli_app *app)
+{
+    csgm_context_options options = csgm_context_options_default();
+    options.threads = (uint32_t)app->options.threads;
+    options.limits = limits_from(&app->options);
+    options.warnings_as_errors = app->options.warnings == 1;
+    options.library_warnings = app->options.warnings == 2;
+    return options;
+}
+
 int cli_app_open(cli_app *app)
 {
     if (app->options.strict && app->options.lenient)
@@ -71,11 +81,7 @@ int cli_app_open(cli_app *app)
     int guarded = cli_sources_guard(app);
     if (guarded != CLI_DONE)
         return guarded;
-    csgm_context_options options = csgm_context_options_default();
-    options.threads = (uint32_t)app->options.threads;
-    options.limits = limits_from(&app->options);
-    options.warnings_as_errors = app->options.warnings == 1;
-    options.library_warnings = app->options.warnings == 2;
+    csgm_context_options options = cli_app_context_options(app);
     options.on_diag = cli_console_diag;
     options.on_echo = cli_console_echo;
     options.user = &app->console;
@@ -177,7 +183,7 @@ static bool read_level(cli_app *app, uint32_t *out)
     return true;
 }
 
-static csgm_status load_with_options(cli_app *app, const request *wanted)
+csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out)
 {
     const cli_list *texts = &app->options.defines;
     csgm_scene_options options = csgm_scene_options_default();
@@ -196,15 +202,28 @@ static csgm_status load_with_options(cli_app *app, const request *wanted)
         status = CSGM_ERR_ARGUMENT;
     options.flat = app->flat;
     options.only_check = app->only_checks;
+    *out = (cli_scene_settings){options, defines};
+    return status;
+}
+
+void cli_scene_settings_release(cli_scene_settings *settings)
+{
+    for (size_t i = 0; settings->defines && i < settings->options.define_count; i++)
+        free((char *)settings->defines[i].name);
+    free(settings->defines);
+}
+
+static csgm_status load_with_options(cli_app *app, const request *wanted)
+{
+    cli_scene_settings settings;
+    csgm_status status = cli_scene_settings_make(app, &settings);
     uint32_t errors = app->console.errors;
     if (status == CSGM_OK)
-        status = load(app, wanted, &options);
+        status = load(app, wanted, &settings.options);
     if (status != CSGM_OK && status != CSGM_ERR_ARGUMENT && app->console.errors == errors)
         cli_console_say(&app->console, CSGM_ERROR, "please report it, with the scene",
                         "%s failed without saying why: %s", wanted->path, csgm_status_name(status));
-    for (size_t i = 0; defines && i < texts->count; i++)
-        free((char *)defines[i].name);
-    free(defines);
+    cli_scene_settings_release(&settings);
     return status;
 }
 

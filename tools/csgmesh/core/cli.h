@@ -31,6 +31,16 @@ typedef struct cli_app {
 
 /* Makes the context from the options. CLI_DONE, or the exit status. */
 int cli_app_open(cli_app *app);
+/* Limits, threads and warnings as the options say; nobody is told of findings. */
+csgm_context_options cli_app_context_options(const cli_app *app);
+/* How scenes are read, as the options say. */
+typedef struct cli_scene_settings {
+    csgm_scene_options options;
+    csgm_define *defines; /* of the options */
+} cli_scene_settings;
+/* Failures are reported but for CSGM_ERR_MEMORY. Release the settings in either case. */
+csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out);
+void cli_scene_settings_release(cli_scene_settings *settings);
 /* -Werror, and there was one. */
 bool cli_app_is_refused(const cli_app *app);
 /* path "-" is standard input. Failures are reported. */

@@ -1,0 +1,617 @@
+/* SPDX-License-Identifier: MIT
+ * The requests, one function each; the table is at the end.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lsp/lsp.h"
+
+/* ---- beginning and end ------------------------------------------------------------------------- */
+
+static bool offers_utf8(const batch_value *params)
+{
+    const batch_value *general =
+        batch_json_member(batch_json_member(params, "capabilities"), "general");
+    const batch_value *encodings = batch_json_member(general, "positionEncodings");
+    for (const batch_value *e = encodings ? encodings->first : NULL; e; e = e->next)
+        if (e->text && strcmp(e->text, "utf-8") == 0)
+            return true;
+    return false;
+}
+
+static int initialize(lsp_call *call)
+{
+    lsp_server *server = call->server;
+    server->is_utf8 = server->checker.is_utf8 = offers_utf8(call->params);
+    server->is_ready = true;
+    cli_json_open(call->json, "result", '{');
+    cli_json_open(call->json, "capabilities", '{');
+    cli_json_string(call->json, "positionEncoding", server->is_utf8 ? "utf-8" : "utf-16");
+    cli_json_verbatim(call->json, "textDocumentSync",
+                      "{\"openClose\": true, \"change\": 2, \"save\": true}");
+    cli_json_verbatim(call->json, "completionProvider", "{\"triggerCharacters\": [\"$\", \"(\"]}");
+    cli_json_verbatim(call->json, "signatureHelpProvider",
+                      "{\"triggerCharacters\": [\"(\", \",\", \"=\"]}");
+    static const char *const flags[] = {"hoverProvider",        "definitionProvider",
+                                        "referencesProvider",   "documentSymbolProvider",
+                                        "foldingRangeProvider", "documentFormattingProvider",
+                                        "colorProvider",        "documentHighlightProvider"};
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        cli_json_bool(call->json, flags[i], true);
+    cli_json_verbatim(call->json, "renameProvider", "{\"prepareProvider\": true}");
+    cli_json_verbatim(call->json, "codeLensProvider", "{\"resolveProvider\": false}");
+    cli_json_end(call->json, '}');
+    cli_json_open(call->json, "serverInfo", '{');
+    cli_json_string(call->json, "name", "csgmesh");
+    cli_json_string(call->json, "version", csgm_version());
+    cli_json_end(call->json, '}');
+    cli_json_end(call->json, '}');
+    return 0;
+}
+
+static int shut_down(lsp_call *call)
+{
+    call->server->is_shut_down = true;
+    cli_json_verbatim(call->json, "result", "null");
+    return 0;
+}
+
+/* ---- names ------------------------------------------------------------------------------------- */
+
+/* Several answers in one list. */
+typedef struct listing {
+    lsp_call *call;
+    uint32_t depth;   /* of symbols that are open */
+    bool is_declared; /* references: with the definition */
+    bool found;
+    uint32_t count;
+    const char *new_name;
+    const char *path; /* rename: of the file whose edits are being written */
+    lsp_place begin, end;
+} listing;
+
+/* Modules are classes, as they have parts; so do editors show them. */
+static int symbol_kind(csgm_name_kind kind)
+{
+    enum { CLASS = 5, FUNCTION = 12, VARIABLE = 13 };
+    return kind == CSGM_NAME_MODULE ? CLASS : kind == CSGM_NAME_FUNCTION ? FUNCTION : VARIABLE;
+}
+
+static void close_symbols(listing *list, uint32_t depth)
+{
+    for (; list->depth > depth; list->depth--) {
+        cli_json_end(list->call->json, ']');
+        cli_json_end(list->call->json, '}');
+    }
+}
+
+static bool take_symbol(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    lsp_call *call = list->call;
+    close_symbols(list, name->depth);
+    cli_json_open(call->json, NULL, '{');
+    cli_json_string(call->json, "name", name->name);
+    cli_json_string(call->json, "detail", name->signature);
+    cli_json_integer(call->json, "kind", symbol_kind(name->kind));
+    lsp_put_range(call, "range", call->text, call->length, name->whole_begin, name->whole_end);
+    lsp_put_range(call, "selectionRange", call->text, call->length, name->begin, name->end);
+    cli_json_open(call->json, "children", '[');
+    list->depth++;
+    return true;
+}
+
+static int symbols(lsp_call *call)
+{
+    listing list = {.call = call};
+    if (!call->text)
+        return LSP_REQUEST_FAILED;
+    cli_json_open(call->json, "result", '[');
+    csgm_workspace_list(call->server->workspace, call->path, take_symbol, &list);
+    close_symbols(&list, 0);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+static void put_markdown(cli_json *json, const char *key, const csgm_name *name)
+{
+    cli_text text;
+    if (!cli_text_open(&text))
+        return;
+    fprintf(text.out, "```csgmesh\n%s\n```\n", name->signature ? name->signature : name->name);
+    bool is_comment = name->path != NULL; /* lines of comments stay lines */
+    for (const char *c = name->documentation ? name->documentation : ""; *c; c++)
+        fprintf(text.out, *c == '\n' && is_comment ? "  \n" : "%c", *c);
+    char *words = cli_text_close(&text);
+    cli_json_open(json, key, '{');
+    cli_json_string(json, "kind", "markdown");
+    cli_json_string(json, "value", words ? words : "");
+    cli_json_end(json, '}');
+    free(words);
+}
+
+static bool take_hover(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    cli_json_open(list->call->json, "result", '{');
+    put_markdown(list->call->json, "contents", name);
+    cli_json_end(list->call->json, '}');
+    list->found = true;
+    return false;
+}
+
+static int hover(lsp_call *call)
+{
+    listing list = {.call = call};
+    if (call->text)
+        csgm_workspace_find(call->server->workspace, call->path, call->offset, take_hover, &list);
+    if (!list.found)
+        cli_json_verbatim(call->json, "result", "null");
+    return 0;
+}
+
+/* Text of a file while a question about another one is answered: the library lends it. */
+static void put_location(listing *list, const csgm_name *name)
+{
+    lsp_call *call = list->call;
+    size_t length = 0;
+    char *uri = lsp_uri_of(name->path);
+    const char *text = csgm_workspace_text(call->server->workspace, name->path, &length);
+    for (lsp_document *d = call->server->documents; d && uri; d = d->next)
+        if (strcmp(d->path, name->path) == 0) { /* as the editor spells it */
+            free(uri);
+            uri = strdup(d->uri);
+        }
+    if (uri && text) {
+        cli_json_open(call->json, NULL, '{');
+        cli_json_string(call->json, "uri", uri);
+        lsp_put_range(call, "range", text, length, name->begin, name->end);
+        cli_json_end(call->json, '}');
+    }
+    free(uri);
+}
+
+static bool take_location(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    if (name->path && list->is_declared)
+        put_location(list, name);
+    list->is_declared = true;
+    return true;
+}
+
+static int definition(lsp_call *call)
+{
+    listing list = {.call = call, .is_declared = true};
+    cli_json_open(call->json, "result", '[');
+    if (call->text)
+        csgm_workspace_find(call->server->workspace, call->path, call->offset, take_location,
+                            &list);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+static int references(lsp_call *call)
+{
+    const batch_value *context = batch_json_member(call->params, "context");
+    const batch_value *declared = batch_json_member(context, "includeDeclaration");
+    listing list = {.call = call};
+    list.is_declared = !declared || !declared->text || strcmp(declared->text, "false") != 0;
+    cli_json_open(call->json, "result", '[');
+    if (call->text)
+        csgm_workspace_uses(call->server->workspace, call->path, call->offset, take_location,
+                            &list);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+static bool take_highlight(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    lsp_call *call = list->call;
+    if (!name->path || strcmp(name->path, call->path) != 0)
+        return true;
+    cli_json_open(call->json, NULL, '{');
+    lsp_put_range(call, "range", call->text, call->length, name->begin, name->end);
+    cli_json_end(call->json, '}');
+    return true;
+}
+
+static int highlights(lsp_call *call)
+{
+    listing list = {.call = call};
+    cli_json_open(call->json, "result", '[');
+    if (call->text)
+        csgm_workspace_uses(call->server->workspace, call->path, call->offset, take_highlight,
+                            &list);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+/* ---- renaming ---------------------------------------------------------------------------------- */
+
+static bool is_name(const char *text)
+{
+    static const char *const words[] = {"true", "false", "undef", "module",  "function",
+                                        "if",   "else",  "for",   "let",     "assert",
+                                        "echo", "each",  "use",   "include", NULL};
+    size_t length = text ? strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
+                                        "0123456789$")
+                         : 0;
+    const char *dollar = length ? strchr(text + 1, '$') : NULL;
+    bool ok = length > 0 && !text[length] && !dollar && !(*text >= '0' && *text <= '9');
+    for (size_t i = 0; ok && words[i]; i++)
+        ok = strcmp(text, words[i]) != 0;
+    return ok;
+}
+
+/* Only what a file defines has another name one day. */
+static bool take_own(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    list->found = name->path != NULL;
+    return false;
+}
+
+static bool may_rename(lsp_call *call)
+{
+    listing list = {.call = call};
+    if (call->text)
+        csgm_workspace_find(call->server->workspace, call->path, call->offset, take_own, &list);
+    snprintf(call->server->problem, sizeof call->server->problem,
+             "there is no name here that a scene defines");
+    return list.found;
+}
+
+static int prepare_rename(lsp_call *call)
+{
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789$";
+    if (!may_rename(call)) {
+        cli_json_verbatim(call->json, "result", "null");
+        return 0;
+    }
+    uint32_t begin = call->offset;
+    while (begin > 0 && strchr(letters, call->text[begin - 1]))
+        begin--;
+    lsp_put_range(call, "result", call->text, call->length, begin,
+                  begin + (uint32_t)strspn(call->text + begin, letters));
+    return 0;
+}
+
+static bool take_edit(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    lsp_call *call = list->call;
+    size_t length = 0;
+    if (!name->path)
+        return true;
+    const char *text = csgm_workspace_text(call->server->workspace, name->path, &length);
+    if (!text || strcmp(name->path, list->path) != 0)
+        return true;
+    cli_json_open(call->json, NULL, '{');
+    lsp_put_range(call, "range", text, length, name->begin, name->end);
+    cli_json_string(call->json, "newText", list->new_name);
+    cli_json_end(call->json, '}');
+    return true;
+}
+
+/* The files that have a use, each once. */
+typedef struct file_list {
+    batch_arena *arena;
+    cli_list paths;
+} file_list;
+
+static bool take_file(void *user, const csgm_name *name)
+{
+    file_list *files = user;
+    for (size_t i = 0; i < files->paths.count; i++)
+        if (strcmp(files->paths.items[i], name->path) == 0)
+            return true;
+    batch_add(files->arena, &files->paths, batch_strdup(files->arena, name->path));
+    return true;
+}
+
+static int rename_name(lsp_call *call)
+{
+    lsp_server *server = call->server;
+    listing list = {.call = call, .new_name = lsp_text(call->params, "newName")};
+    file_list files = {call->arena, {0}};
+    if (!is_name(list.new_name)) {
+        snprintf(server->problem, sizeof server->problem,
+                 "a name is made of a-z, A-Z, 0-9 and _, and is no word of the language");
+        return LSP_INVALID_PARAMS;
+    }
+    if (!may_rename(call))
+        return LSP_REQUEST_FAILED;
+    csgm_workspace_uses(server->workspace, call->path, call->offset, take_file, &files);
+    cli_json_open(call->json, "result", '{');
+    cli_json_open(call->json, "changes", '{');
+    for (size_t i = 0; i < files.paths.count; i++) {
+        char *uri = lsp_uri_of(files.paths.items[i]);
+        list.path = files.paths.items[i];
+        for (lsp_document *d = server->documents; d && uri; d = d->next)
+            if (strcmp(d->path, list.path) == 0) {
+                free(uri);
+                uri = strdup(d->uri);
+            }
+        if (uri) {
+            cli_json_open(call->json, uri, '[');
+            csgm_workspace_uses(server->workspace, call->path, call->offset, take_edit, &list);
+            cli_json_end(call->json, ']');
+        }
+        free(uri);
+    }
+    cli_json_end(call->json, '}');
+    cli_json_end(call->json, '}');
+    return 0;
+}
+
+/* ---- completion and calls ---------------------------------------------------------------------- */
+
+static bool take_item(void *user, const csgm_name *name)
+{
+    enum { FUNCTION = 3, VARIABLE = 6, CLASS = 7, PROPERTY = 10, KEYWORD = 14 };
+    static const int kinds[] = {[CSGM_NAME_MODULE] = CLASS,
+                                [CSGM_NAME_FUNCTION] = FUNCTION,
+                                [CSGM_NAME_VARIABLE] = VARIABLE,
+                                [CSGM_NAME_PARAMETER] = VARIABLE,
+                                [CSGM_NAME_KEYWORD] = KEYWORD};
+    listing *list = user;
+    cli_json *json = list->call->json;
+    bool is_argument = name->kind == CSGM_NAME_PARAMETER && !name->path;
+    cli_json_open(json, NULL, '{');
+    cli_json_string(json, "label", name->name);
+    cli_json_integer(json, "kind", is_argument ? PROPERTY : kinds[name->kind]);
+    if (name->signature)
+        cli_json_string(json, "detail", name->signature);
+    if (name->documentation)
+        put_markdown(json, "documentation", name);
+    if (is_argument) {
+        char *text = malloc(strlen(name->name) + 4);
+        if (text) {
+            sprintf(text, "%s = ", name->name);
+            cli_json_string(json, "insertText", text);
+            cli_json_string(json, "sortText", " ");
+        }
+        free(text);
+    }
+    cli_json_end(json, '}');
+    return true;
+}
+
+static int completion(lsp_call *call)
+{
+    enum { MOST = 400 };
+    bool is_complete = true;
+    listing list = {.call = call};
+    cli_json_open(call->json, "result", '{');
+    cli_json_open(call->json, "items", '[');
+    if (call->text)
+        csgm_workspace_complete(call->server->workspace, call->path, call->offset, MOST, take_item,
+                                &list, &is_complete);
+    cli_json_end(call->json, ']');
+    cli_json_bool(call->json, "isIncomplete", !is_complete);
+    cli_json_end(call->json, '}');
+    return 0;
+}
+
+/* The parameters in a signature, as places in it. */
+static void put_parameters(cli_json *json, const char *signature)
+{
+    const char *open = strchr(signature, '('), *end = strrchr(signature, ')');
+    int depth = 0;
+    cli_json_open(json, "parameters", '[');
+    for (const char *c = open ? open + 1 : NULL, *from = c; c && end && c <= end && end > open + 1;
+         c++) {
+        bool ends = c == end || (*c == ',' && depth == 0);
+        depth += *c == '(' || *c == '[';
+        depth -= *c == ')' || *c == ']';
+        if (!ends)
+            continue;
+        from += strspn(from, " ");
+        cli_json_open(json, NULL, '{');
+        cli_json_open(json, "label", '[');
+        cli_json_integer(json, NULL, from - signature);
+        cli_json_integer(json, NULL, c - signature);
+        cli_json_end(json, ']');
+        cli_json_end(json, '}');
+        from = c + 1;
+    }
+    cli_json_end(json, ']');
+}
+
+static bool take_signature(void *user, const csgm_name *name)
+{
+    listing *list = user;
+    cli_json *json = list->call->json;
+    cli_json_open(json, "result", '{');
+    cli_json_open(json, "signatures", '[');
+    cli_json_open(json, NULL, '{');
+    cli_json_string(json, "label", name->signature);
+    if (name->documentation)
+        put_markdown(json, "documentation", name);
+    put_parameters(json, name->signature);
+    cli_json_end(json, '}');
+    cli_json_end(json, ']');
+    list->found = true;
+    return false;
+}
+
+static int signature(lsp_call *call)
+{
+    listing list = {.call = call};
+    uint32_t parameter = 0;
+    if (call->text)
+        csgm_workspace_call(call->server->workspace, call->path, call->offset, take_signature,
+                            &list, &parameter);
+    if (!list.found) {
+        cli_json_verbatim(call->json, "result", "null");
+        return 0;
+    }
+    cli_json_count(call->json, "activeSignature", 0);
+    cli_json_count(call->json, "activeParameter", parameter < 1000 ? parameter : 1000);
+    cli_json_end(call->json, '}');
+    return 0;
+}
+
+/* ---- the text ---------------------------------------------------------------------------------- */
+
+static bool take_fold(void *user, const csgm_fold *fold)
+{
+    lsp_call *call = user;
+    cli_json_open(call->json, NULL, '{');
+    cli_json_count(call->json, "startLine", fold->first_line);
+    cli_json_count(call->json, "endLine", fold->last_line);
+    if (fold->is_comment)
+        cli_json_string(call->json, "kind", "comment");
+    cli_json_end(call->json, '}');
+    return true;
+}
+
+static int folds(lsp_call *call)
+{
+    cli_json_open(call->json, "result", '[');
+    if (call->text)
+        csgm_workspace_folds(call->server->workspace, call->path, take_fold, call);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+/* One edit from the first to the last line that differ. */
+static void take_layout(void *user, const char *text, size_t length)
+{
+    lsp_call *call = user;
+    size_t same = 0, begin = 0, tail = 0, least = length < call->length ? length : call->length;
+    while (same < least && text[same] == call->text[same])
+        if (text[same++] == '\n')
+            begin = same;
+    if (same == length && same == call->length)
+        return;
+    while (tail < least - begin && text[length - 1 - tail] == call->text[call->length - 1 - tail])
+        tail++;
+    while (tail > 0 && text[length - 1 - tail] != '\n')
+        tail--; /* whole lines */
+    cli_text made;
+    if (!cli_text_open(&made))
+        return;
+    fwrite(text + begin, 1, length - tail - begin, made.out);
+    char *words = cli_text_close(&made);
+    cli_json_open(call->json, NULL, '{');
+    lsp_put_range(call, "range", call->text, call->length, (uint32_t)begin,
+                  (uint32_t)(call->length - tail));
+    cli_json_string(call->json, "newText", words ? words : "");
+    cli_json_end(call->json, '}');
+    free(words);
+}
+
+static int format(lsp_call *call)
+{
+    if (!call->text)
+        return LSP_REQUEST_FAILED;
+    cli_json_open(call->json, "result", '[');
+    csgm_status status = csgm_scene_format(call->server->context, call->text, call->length,
+                                           call->path, take_layout, call);
+    cli_json_end(call->json, ']');
+    return status == CSGM_OK ? 0 : LSP_REQUEST_FAILED;
+}
+
+static bool take_color(void *user, const csgm_text_color *color)
+{
+    lsp_call *call = user;
+    cli_json_open(call->json, NULL, '{');
+    lsp_put_range(call, "range", call->text, call->length, color->begin, color->end);
+    cli_json_open(call->json, "color", '{');
+    cli_json_number(call->json, "red", color->red);
+    cli_json_number(call->json, "green", color->green);
+    cli_json_number(call->json, "blue", color->blue);
+    cli_json_number(call->json, "alpha", color->alpha);
+    cli_json_end(call->json, '}');
+    cli_json_end(call->json, '}');
+    return true;
+}
+
+static int colors(lsp_call *call)
+{
+    cli_json_open(call->json, "result", '[');
+    if (call->text)
+        csgm_workspace_colors(call->server->workspace, call->path, take_color, call);
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+static unsigned byte_of(const batch_value *color, const char *key)
+{
+    const batch_value *value = batch_json_member(color, key);
+    double share = value && value->text ? strtod(value->text, NULL) : 1;
+    return share > 0 ? share < 1 ? (unsigned)lround(255 * share) : 255 : 0;
+}
+
+static int present_color(lsp_call *call)
+{
+    char text[16];
+    const batch_value *color = batch_json_member(call->params, "color");
+    unsigned alpha = byte_of(color, "alpha");
+    int length = snprintf(text, sizeof text, "\"#%02x%02x%02x", byte_of(color, "red"),
+                          byte_of(color, "green"), byte_of(color, "blue"));
+    if (alpha < 255)
+        length += snprintf(text + length, sizeof text - (size_t)length, "%02x", alpha);
+    snprintf(text + length, sizeof text - (size_t)length, "\"");
+    cli_json_open(call->json, "result", '[');
+    cli_json_open(call->json, NULL, '{');
+    cli_json_string(call->json, "label", text);
+    cli_json_end(call->json, '}');
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+/* At the first line: the view of this file. */
+static int lenses(lsp_call *call)
+{
+    const char *uri = lsp_text(batch_json_member(call->params, "textDocument"), "uri");
+    cli_json_open(call->json, "result", '[');
+    if (call->text && uri) {
+        cli_json_open(call->json, NULL, '{');
+        lsp_put_range(call, "range", call->text, call->length, 0, 0);
+        cli_json_open(call->json, "command", '{');
+        cli_json_string(call->json, "title", "View");
+        cli_json_string(call->json, "command", "csgmesh.view");
+        cli_json_open(call->json, "arguments", '[');
+        cli_json_string(call->json, NULL, uri);
+        cli_json_end(call->json, ']');
+        cli_json_end(call->json, '}');
+        cli_json_end(call->json, '}');
+    }
+    cli_json_end(call->json, ']');
+    return 0;
+}
+
+lsp_answer *lsp_answer_find(const char *method)
+{
+    static const struct {
+        const char *method;
+        lsp_answer *answer;
+    } table[] = {
+        {"initialize", initialize},
+        {"shutdown", shut_down},
+        {"textDocument/documentSymbol", symbols},
+        {"textDocument/hover", hover},
+        {"textDocument/definition", definition},
+        {"textDocument/references", references},
+        {"textDocument/documentHighlight", highlights},
+        {"textDocument/prepareRename", prepare_rename},
+        {"textDocument/rename", rename_name},
+        {"textDocument/completion", completion},
+        {"textDocument/signatureHelp", signature},
+        {"textDocument/foldingRange", folds},
+        {"textDocument/formatting", format},
+        {"textDocument/documentColor", colors},
+        {"textDocument/colorPresentation", present_color},
+        {"textDocument/codeLens", lenses},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strcmp(table[i].method, method) == 0)
+            return table[i].answer;
+    return NULL;
+}
