@@ -166,6 +166,17 @@ class Names(Lsp):
         client.change(uri, text := MAIN + "// sph")
         self.assertEqual(labels("// sph", 6), {})
 
+    def test_completion_of_paths(self):
+        os.makedirs(self.path("lib/whole"))
+        self.write("lib/whole/inner.scad", "")
+        self.write("lib/whole/data.csv", "")
+        client = self.start("-I", self.path("lib"))
+        for text, want in (("use <whe", ["wheel.txt"]), ("include <whole/", ["inner.scad"]), ("use <wh", ["wheel.txt", "whole"]),
+                           ("use <none/", []), ("x = 1 <whe", ["wheel.txt"][:0])):
+            uri = client.open(self.path("a.txt"), text)
+            items = client.ask("textDocument/completion", {"textDocument": {"uri": uri}, "position": {"line": 0, "character": len(text)}})["items"]
+            self.assertEqual(sorted(i["label"] for i in items), want, text)
+
     def test_signature(self):
         client = self.start()
         text = MAIN + "wheel(1, [2, f(3)], "

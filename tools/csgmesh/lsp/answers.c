@@ -30,7 +30,8 @@ static int initialize(lsp_call *call)
     cli_json_string(call->json, "positionEncoding", server->is_utf8 ? "utf-8" : "utf-16");
     cli_json_verbatim(call->json, "textDocumentSync",
                       "{\"openClose\": true, \"change\": 2, \"save\": true}");
-    cli_json_verbatim(call->json, "completionProvider", "{\"triggerCharacters\": [\"$\", \"(\"]}");
+    cli_json_verbatim(call->json, "completionProvider",
+                      "{\"triggerCharacters\": [\"$\", \"(\", \"<\", \"/\"]}");
     cli_json_verbatim(call->json, "signatureHelpProvider",
                       "{\"triggerCharacters\": [\"(\", \",\", \"=\"]}");
     static const char *const flags[] = {"hoverProvider",        "definitionProvider",
@@ -388,7 +389,7 @@ static int completion(lsp_call *call)
     listing list = {.call = call};
     cli_json_open(call->json, "result", '{');
     cli_json_open(call->json, "items", '[');
-    if (call->text)
+    if (call->text && !lsp_complete_path(call))
         csgm_workspace_complete(call->server->workspace, call->path, call->offset, MOST, take_item,
                                 &list, &is_complete);
     cli_json_end(call->json, ']');

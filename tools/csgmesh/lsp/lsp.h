@@ -117,6 +117,9 @@ typedef int lsp_answer(lsp_call *call);
 /* The handler of a request; NULL: there is none. */
 lsp_answer *lsp_answer_find(const char *method);
 
+/* Items for the path that is written behind include < or use <; false: none is. */
+bool lsp_complete_path(lsp_call *call);
+
 lsp_document *lsp_document_find(lsp_server *server, const char *uri);
 /* textDocument/didOpen, didChange, didClose, didSave. */
 void lsp_document_event(lsp_server *server, const char *method, const batch_value *params);
