@@ -1,11 +1,35 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/context.h"
 
+#include <sys/resource.h>
+
 #include "base/mesh_codes.h"
+
+/* Memory has ended, and nobody has said so yet. */
+static csgm_status say_why_ended(csgm_context *context)
+{
+    csg_memory_end_when(&context->memory, NULL, NULL);
+    if (csg_context_is_cancelled(context))
+        return CSGM_CANCELLED;
+    csg_diag_plain(&context->diags, CSG_DIAG_TIMEOUT, NULL, NULL, "this takes more than %g seconds",
+                   context->limits.timeout_s);
+    return CSGM_ERR_LIMIT;
+}
+
+/* What the system lets this process have at most, where the program or a shell has said so; 0: as
+ * much as there is. */
+static uint64_t process_limit_bytes(void)
+{
+    struct rlimit limit;
+    return getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? limit.rlim_cur
+                                                                                  : 0;
+}
 
 csgm_status csg_context_no_memory(csgm_context *context)
 {
     csg_memory *memory = &context->memory;
+    if (csg_memory_has_ended(memory))
+        return say_why_ended(context);
     if (atomic_exchange(&memory->limit_refused, false))
         csg_diag_plain(
             &context->diags, CSG_DIAG_OUT_OF_MEMORY, NULL,
@@ -13,6 +37,12 @@ csgm_status csg_context_no_memory(csgm_context *context)
             "lower -r",
             "more memory is needed than the limit of %llu MiB",
             (unsigned long long)(memory->limit_bytes >> 20));
+    else if (process_limit_bytes())
+        csg_diag_plain(&context->diags, CSG_DIAG_OUT_OF_MEMORY, NULL,
+                       "raise the limit with --max-memory, or that of the shell (ulimit -d)",
+                       "more memory is needed, with what libraries take, than the %llu MiB that "
+                       "the process may have",
+                       (unsigned long long)(process_limit_bytes() >> 20));
     else
         csg_diag_plain(
             &context->diags, CSG_DIAG_OUT_OF_MEMORY, NULL,

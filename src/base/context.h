@@ -32,7 +32,9 @@ static inline bool csg_context_is_cancelled(const csgm_context *context)
     return context->cancelled && context->cancelled(context->cancel_user);
 }
 
-/* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY. */
+/* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY; where memory was refused since it was
+ * time to end (csg_memory_end_when), says that instead and returns CSGM_ERR_LIMIT, or
+ * CSGM_CANCELLED, and memory is to be had again. */
 csgm_status csg_context_no_memory(csgm_context *context);
 
 #endif

@@ -5,6 +5,25 @@
 
 #include <string.h>
 
+/* Twice the arc sine of the half angle's sine, which is halved until the series is short. */
+double csg_arc_cosine(double cosine)
+{
+    enum { HALVINGS = 3, TERMS = 14 };
+    cosine = fmin(fmax(cosine, -1), 1);
+    double sine = sqrt((1 - cosine) / 2), rest = sqrt((1 + cosine) / 2);
+    for (int i = 0; i < HALVINGS; i++) {
+        sine /= sqrt(2 * (1 + rest));
+        rest = sqrt((1 + rest) / 2);
+    }
+    double term = sine, sum = sine;
+    for (int k = 1; k < TERMS; k++) {
+        double odd = 2 * k - 1;
+        term *= sine * sine * odd / (odd + 1);
+        sum += term / (odd + 2);
+    }
+    return 2 * (1 << HALVINGS) * sum;
+}
+
 csg_box csg_box_empty(void)
 {
     return (csg_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

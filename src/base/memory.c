@@ -30,6 +30,30 @@ void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64
     atomic_init(&memory->used_bytes, 0);
     atomic_init(&memory->peak_bytes, 0);
     atomic_init(&memory->limit_refused, false);
+    csg_memory_end_when(memory, NULL, NULL);
+}
+
+void csg_memory_end_when(csg_memory *memory, bool (*ends)(void *user), void *user)
+{
+    memory->ends = ends;
+    memory->ends_user = user;
+    atomic_init(&memory->has_ended, false);
+}
+
+bool csg_memory_has_ended(csg_memory *memory)
+{
+    if (!memory->ends)
+        return false;
+    if (!atomic_load(&memory->has_ended) && memory->ends(memory->ends_user))
+        atomic_store(&memory->has_ended, true);
+    return atomic_load(&memory->has_ended);
+}
+
+/* Small blocks are given without asking: a clock costs as much as they do. */
+static bool is_too_late(csg_memory *memory, size_t size_bytes)
+{
+    enum { LARGER = 4096 };
+    return size_bytes >= LARGER && csg_memory_has_ended(memory);
 }
 
 static void raise_peak(csg_memory *memory, uint64_t used)
@@ -57,7 +81,7 @@ void *csg_memory_alloc(csg_memory *memory, size_t size_bytes)
 {
     uint64_t used = atomic_fetch_add(&memory->used_bytes, size_bytes) + size_bytes;
     void *pointer = NULL;
-    if (is_within_limit(memory, used))
+    if (!is_too_late(memory, size_bytes) && is_within_limit(memory, used))
         pointer = memory->allocator.alloc(memory->allocator.user, size_bytes);
     if (!pointer) {
         atomic_fetch_sub(&memory->used_bytes, size_bytes);
@@ -80,7 +104,7 @@ static void *grow_by_default(csg_memory *memory, void *data, size_t before, size
 {
     uint64_t more = after - before, used = atomic_fetch_add(&memory->used_bytes, more) + more;
     void *fresh = NULL;
-    if (is_within_limit(memory, used))
+    if (!is_too_late(memory, after) && is_within_limit(memory, used))
         fresh = realloc(data, after);
     if (fresh)
         raise_peak(memory, used);

@@ -18,6 +18,9 @@ typedef struct csg_memory {
     uint64_t limit_bytes; /* 0 = none */
     atomic_uint_fast64_t used_bytes, peak_bytes;
     atomic_bool limit_refused; /* something that the system might have given; for messages */
+    bool (*ends)(void *user);  /* csg_memory_end_when */
+    void *ends_user;
+    atomic_bool has_ended;
 } csg_memory;
 
 void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64_t limit_bytes);
@@ -26,6 +29,12 @@ void csg_memory_init(csg_memory *memory, const csgm_allocator *allocator, uint64
 void *csg_memory_alloc(csg_memory *memory, size_t size_bytes);
 /* Would the limit allow so many bytes that others allocate? Else it is noted as refused. */
 bool csg_memory_allows(csg_memory *memory, uint64_t size_bytes);
+/* Until it is called again, with NULL: larger blocks are refused once `ends` says so, which any
+ * thread that allocates asks. So what allocates while it works ends soon after it should (a time
+ * limit, the caller's wish), although it knows nothing of either. */
+void csg_memory_end_when(csg_memory *memory, bool (*ends)(void *user), void *user);
+/* Asks `ends`: for long work that allocates nothing. Once true it stays so. */
+bool csg_memory_has_ended(csg_memory *memory);
 /* size_bytes as allocated; NULL is a no-op. */
 void csg_memory_release(csg_memory *memory, void *pointer, size_t size_bytes);
 

@@ -202,6 +202,14 @@ static csgm_status evaluate(csg_program *program, uint32_t errors, csgm_scene **
     return status;
 }
 
+/* For csg_memory_end_when; on any thread. */
+static bool is_late(void *user)
+{
+    const csg_program *program = user;
+    return (program->deadline_s != 0 && csg_clock_now_s() > program->deadline_s) ||
+           csg_context_is_cancelled(program->context);
+}
+
 static void compile(compilation *c)
 {
     CSG_ZONE(c->context, "scene");
@@ -217,6 +225,7 @@ static void compile(compilation *c)
     program.services = c->input->services;
     program.exact_facets = c->options.facets == CSGM_FACETS_EXACT;
     program.stack_end = (uintptr_t)&here - c->stack_bytes;
+    csg_memory_end_when(&c->context->memory, is_late, &program);
     double begin_s = csg_clock_now_s();
     if (c->status == CSGM_OK)
         c->status = parse(&program, c);
@@ -229,6 +238,7 @@ static void compile(compilation *c)
         (*c->out)->parse_s = parsed_s - begin_s;
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
+    csg_memory_end_when(&c->context->memory, NULL, NULL);
     if (c->status != CSGM_OK && csg_context_is_cancelled(c->context))
         c->status = CSGM_CANCELLED;
     csg_diag_sum_up(&c->context->diags);

@@ -171,6 +171,85 @@ static void test_readers(void **state)
     csgm_context_destroy(context);
 }
 
+/* Parses with these options, and is cancelled at half of the questions and at the last of them. */
+static void assert_stops_late(csgm_context *context, watcher *w, const char *text,
+                              const csgm_scene_options *options, int least)
+{
+    csgm_scene *scene;
+    atomic_store(&w->left, -1);
+    atomic_store(&w->asked, 0);
+    assert_int_equal(csgm_scene_parse(context, text, strlen(text), "a.txt", options, &scene),
+                     CSGM_OK);
+    csgm_scene_destroy(scene);
+    int asked = atomic_load(&w->asked);
+    print_message("asked %d times\n", asked);
+    assert_true(asked >= least);
+    for (int left = asked / 2; left < asked; left += asked - asked / 2 - 1) {
+        atomic_store(&w->left, left);
+        assert_int_equal(csgm_scene_parse(context, text, strlen(text), "a.txt", options, &scene),
+                         CSGM_CANCELLED);
+        assert_null(scene);
+    }
+    atomic_store(&w->left, -1);
+}
+
+/* The layers of a flat scene, traced where a blend is; and an import that is mended: a comb of
+ * open triangles, whose reading asks three times and whose mending does it often. */
+static void test_drawings_and_repairs(void **state)
+{
+    enum { TEETH = 700 };
+    watcher w;
+    csgm_context *context = make_context(&w, 1);
+    csgm_scene_options options = csgm_scene_options_default();
+    options.flat = CSGM_FLAT_DRAWING;
+    if (csgm_format_available(CSGM_FORMAT_STL, false))
+        assert_stops_late(context, &w, "union(blend = 1) { circle(5); square(6); }", &options,
+                          1000);
+    FILE *file = fopen("comb.off", "w");
+    assert_non_null(file);
+    fprintf(file, "OFF\n%d %d 0\n", 4 * TEETH, 3 * TEETH);
+    for (int i = 0; i < TEETH; i++)
+        fprintf(file, "%d 0 0\n%d 1 0\n%d 0 1\n%d.5 0 0\n", i, i, i, i);
+    for (int i = 0; i < 4 * TEETH; i += 4) /* a tetrahedron without its last side */
+        fprintf(file, "3 %d %d %d\n3 %d %d %d\n3 %d %d %d\n", i, i + 1, i + 3, i + 1, i + 2, i + 3,
+                i + 2, i, i + 3);
+    fclose(file);
+    assert_stops_late(context, &w, "import(\"comb.off\");", NULL, TEETH);
+    unlink("comb.off");
+    csgm_context_destroy(context);
+}
+
+/* Wherever meshes whose cells follow the shape are: also where creases are taken back that are none
+ * (the tight rounding), on one thread, so that every run asks the same. */
+static void test_adaptive_meshes(void **state)
+{
+    enum { TRIED = 24 };
+    watcher w;
+    csgm_context *context = make_context(&w, 1);
+    csgm_scene *scene =
+        parse(context, "difference(blend = 0.4) { cube([9, 8, 7]); sphere(r = 5); }");
+    csgm_field *field;
+    csgm_mesh *mesh;
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.quality = CSGM_QUALITY_DRAFT;
+    assert_int_equal(csgm_field_compile(context, scene, &field), CSGM_OK);
+    atomic_store(&w.asked, 0);
+    assert_int_equal(csgm_mesh_build(context, field, &options, &mesh, NULL), CSGM_OK);
+    csgm_mesh_destroy(mesh);
+    int asked = atomic_load(&w.asked);
+    print_message("asked %d times\n", asked);
+    for (int i = 0; i < TRIED; i++) { /* the later ones are nearer to each other */
+        int late = asked - 1 - (i < 16 ? i : (i - 15) * (asked - 17) / (TRIED - 15));
+        atomic_store(&w.left, late);
+        assert_int_equal(csgm_mesh_build(context, field, &options, &mesh, NULL), CSGM_CANCELLED);
+        assert_null(mesh);
+    }
+    assert_int_equal(w.findings, 0);
+    csgm_field_destroy(field);
+    csgm_scene_destroy(scene);
+    csgm_context_destroy(context);
+}
+
 static void test_points(void **state)
 {
     enum { COUNT = 1000 };
@@ -211,10 +290,9 @@ static void test_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scenes),
-        cmocka_unit_test(test_meshes_and_pictures),
-        cmocka_unit_test(test_readers),
-        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_scenes),          cmocka_unit_test(test_meshes_and_pictures),
+        cmocka_unit_test(test_readers),         cmocka_unit_test(test_drawings_and_repairs),
+        cmocka_unit_test(test_adaptive_meshes), cmocka_unit_test(test_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,6 +59,37 @@ static void keep(void *user, void *memory, size_t size)
 {
 }
 
+static bool ends_at_zero(void *user)
+{
+    int *left = user;
+    return (*left)-- <= 0;
+}
+
+static void test_end(void **state)
+{
+    csg_memory memory;
+    size_t capacity = 0;
+    void *data = NULL;
+    int left = 2;
+    csg_memory_init(&memory, NULL, 0);
+    assert_false(csg_memory_has_ended(&memory));
+    csg_memory_end_when(&memory, ends_at_zero, &left);
+    void *a = csg_memory_alloc(&memory, 5000), *b = csg_memory_alloc(&memory, 10);
+    assert_int_equal(left, 1); /* small blocks are given without asking */
+    assert_false(csg_memory_has_ended(&memory));
+    assert_null(csg_memory_alloc(&memory, 5000));
+    assert_false(csg_memory_reserve(&memory, &data, &capacity, 5000, 1));
+    left = 100; /* it stays so */
+    assert_true(csg_memory_has_ended(&memory));
+    assert_int_equal(used(&memory), 5010);
+    csg_memory_end_when(&memory, NULL, NULL);
+    assert_true(csg_memory_reserve(&memory, &data, &capacity, 5000, 1));
+    csg_memory_release(&memory, data, capacity);
+    csg_memory_release(&memory, a, 5000);
+    csg_memory_release(&memory, b, 10);
+    assert_int_equal(used(&memory), 0);
+}
+
 static void test_own_allocator(void **state)
 {
     int calls = 0;
@@ -177,10 +208,11 @@ static void test_arena_limit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_counts),        cmocka_unit_test(test_limit),
-        cmocka_unit_test(test_own_allocator), cmocka_unit_test(test_reserve),
-        cmocka_unit_test(test_arena_room),    cmocka_unit_test(test_arena_text),
-        cmocka_unit_test(test_arena_marks),   cmocka_unit_test(test_arena_limit),
+        cmocka_unit_test(test_counts),      cmocka_unit_test(test_limit),
+        cmocka_unit_test(test_end),         cmocka_unit_test(test_own_allocator),
+        cmocka_unit_test(test_reserve),     cmocka_unit_test(test_arena_room),
+        cmocka_unit_test(test_arena_text),  cmocka_unit_test(test_arena_marks),
+        cmocka_unit_test(test_arena_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """--root: whatever a scene or a command line names, nothing outside is read or written. Over 100 escapes."""
 import os
+import platform
+import shutil
+import subprocess
 import unittest
 
 import cli
@@ -125,6 +128,109 @@ class Untrusted(cli.CliTest):
         result = cli.run("check", "ok.txt", "--root", "none", cwd=self.path("in"))
         self.assert_status(result, 2)
         self.assertIn("--root none: No such file or directory", result.stderr)
+
+
+# Stands before the C library's open(): when the scene is opened it tries what a sandbox forbids, and says how each went.
+PROBE = r"""
+#define _GNU_SOURCE
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#define TELL(what, call) do { errno = 0; long r = (long)(call); fprintf(stderr, "probe %s %s\n", what, r != -1 ? "done" : errno == EPERM ? "refused" : strerror(errno)); } while (0)
+static void try_all(void)
+{
+    static int tried;
+    char *none[] = {"true", NULL}, byte = 0;
+    if (tried++)
+        return;
+    TELL("internet", socket(AF_INET, SOCK_STREAM, 0));
+    TELL("internet6", socket(AF_INET6, SOCK_DGRAM, 0));
+    TELL("local", socket(AF_UNIX, SOCK_STREAM, 0));
+    TELL("netlink", socket(AF_NETLINK, SOCK_RAW, 0));
+    TELL("pair", socketpair(AF_UNIX, SOCK_STREAM, 0, (int[2]){0}));
+    TELL("ring", syscall(425, 1, &byte));
+    TELL("exec", execve("/no/such/program", none, NULL));
+    TELL("execat", syscall(SYS_execveat, AT_FDCWD, "/no/such/program", none, NULL, 0));
+    TELL("signal", kill(getppid(), 0));
+    TELL("trace", ptrace(PTRACE_ATTACH, 0x7fffffff, 0, 0));
+    TELL("namespace", syscall(SYS_unshare, 0));
+    TELL("own-signal", kill(getpid(), 0));
+}
+int open(const char *path, int flags, ...)
+{
+    va_list list;
+    va_start(list, flags);
+    int mode = va_arg(list, int);
+    va_end(list);
+    if (strstr(path, "probed"))
+        try_all();
+    return (int)syscall(SYS_openat, AT_FDCWD, path, flags, mode);
+}
+int open64(const char *path, int flags, ...) __attribute__((alias("open")));
+"""
+
+
+@unittest.skipUnless(platform.system() == "Linux" and platform.machine() in ("x86_64", "aarch64", "riscv64"),
+                     "--sandbox is for Linux on some processors")
+class Sandbox(cli.CliTest):
+    def probe(self, *arguments, **environment):
+        """What the probe in the process could do: its words by their names."""
+        if os.environ.get("CSGMESH_SANITIZED") == "1" or not shutil.which("cc"):
+            self.skipTest("needs a compiler, and a build without sanitizers")
+        self.write("probe.c", PROBE)
+        subprocess.run(["cc", "-shared", "-fPIC", "-w", "-o", self.path("probe.so"), self.path("probe.c")], check=True)
+        self.write("probed.txt", "sphere(1);\n")
+        result = cli.run("check", "probed.txt", *arguments, cwd=self.folder,
+                         env={"LD_PRELOAD": self.path("probe.so"), **environment})
+        self.assert_status(result, 0)
+        return dict(line.split(" ", 2)[1:] for line in result.stderr.splitlines() if line.startswith("probe "))
+
+    def test_nothing_gets_out(self):
+        free = self.probe()
+        if not free:
+            self.skipTest("this program cannot be probed: it is linked without shared libraries")
+        self.assertEqual(len(free), 12)
+        self.assertEqual([free["local"], free["exec"], free["signal"]], ["done", "No such file or directory", "done"])
+        for kept in (self.probe("--sandbox"), self.probe(CSGMESH_SANDBOX="1")):
+            self.assertEqual(kept.pop("own-signal"), "done")
+            self.assertEqual(set(kept.values()), {"refused"}, kept)
+
+    def test_work_goes_on(self):
+        self.write("a.txt", "union(blend = 1) { cube(5); sphere(3); }\n")
+        with open(self.path("free.stl"), "wb") as file:
+            file.write(cli.run("a.txt", "-f", "stl", "-o", "-", cwd=self.folder).stdout)
+        for arguments in (["a.txt", "-o", "a.stl", "--stats=s.json"], ["a.txt", "-o", "-", "-f", "stl"],
+                          ["diff", "a.stl", "a.txt", "--html", "d.html"], ["render", "a.txt", "-o", "a.ppm", "--size", "32x32"],
+                          ["batch", "a.txt", "-d", "out", "-f", "ply"], ["info", "a.stl"]):
+            with self.subTest(arguments):
+                self.assert_status(cli.run(*arguments, "--sandbox", "--threads", "2", cwd=self.folder), 0)
+        with open(self.path("a.stl"), "rb") as one, open(self.path("free.stl"), "rb") as other:
+            self.assertEqual(one.read(), other.read())
+
+
+@unittest.skipIf(platform.system() != "Linux" or os.environ.get("CSGMESH_SANITIZED") == "1",
+                 "the system counts other memory, or sanitizers have their own")
+class Fence(cli.CliTest):
+    """--max-memory holds for what libraries take, too."""
+
+    def test_draco(self):
+        if not cli.has_library("Draco"):
+            self.skipTest("no Draco")
+        self.write("a.txt", "sphere(10);\n")
+        self.assert_status(cli.run("a.txt", "-r", "400", "-q", "-o", "a.drc", cwd=self.folder), 0)
+        self.assert_status(cli.run("info", "a.drc", "--max-memory", "500M", cwd=self.folder), 0)
+        result = cli.run("info", "a.drc", "--max-memory", "8M", "--threads", "1", cwd=self.folder)
+        self.assert_status(result, 2)
+        self.assertIn("E0901", result.stderr)
+        self.assertIn("that the process may have", result.stderr)
 
 
 if __name__ == "__main__":

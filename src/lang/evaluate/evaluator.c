@@ -110,6 +110,12 @@ void csg_eval_no_memory(csg_eval *e)
     e->stop = true;
 }
 
+void csg_eval_no_memory_at(csg_eval *e, csg_span where)
+{
+    if (!csg_memory_has_ended(&e->context->memory) || csg_eval_check_time(e, where))
+        csg_eval_no_memory(e);
+}
+
 void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                     const char *format, ...)
 {
@@ -151,9 +157,11 @@ bool csg_eval_check_time(csg_eval *e, csg_span where)
         e->stop = true;
         e->status = CSGM_CANCELLED;
     }
-    if (e->program->deadline_s != 0 && csg_clock_now_s() > e->program->deadline_s)
-        csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL,
-                       "the evaluation takes more than %g seconds", e->context->limits.timeout_s);
+    if (e->program->deadline_s == 0 || csg_clock_now_s() <= e->program->deadline_s)
+        return !e->stop;
+    csg_memory_end_when(&e->context->memory, NULL, NULL); /* what is left is to say so */
+    csg_eval_limit(e, CSG_DIAG_TIMEOUT, where, NULL, "the evaluation takes more than %g seconds",
+                   e->context->limits.timeout_s);
     return !e->stop;
 }
 

@@ -144,6 +144,8 @@ void csg_eval_note_calls(const csg_eval *e);
 /* Was this finding reported before at this place? */
 bool csg_eval_has_told(const csg_eval *e, csg_diag_code code, csg_span where);
 void csg_eval_no_memory(csg_eval *e);
+/* Where it was refused since it is time to end, that is said of this place. */
+void csg_eval_no_memory_at(csg_eval *e, csg_span where);
 void csg_eval_limit(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                     const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Looks at the limits of steps and time; false: one is reached. */

@@ -36,7 +36,7 @@ static void draw(csg_eval *e, csg_node_id node, csg_span where)
     if (isfinite(size.x) && isfinite(size.y))
         status = csg_draw_layers(&e->builder, node, fine * fmax(size.x, size.y), &e->drawing);
     if (status == CSGM_ERR_MEMORY)
-        csg_eval_no_memory(e);
+        csg_eval_no_memory_at(e, where);
     else if (status == CSGM_ERR_SCENE)
         csg_eval_report(e, CSG_DIAG_NOT_EXACT, where, "cut it first, by an intersection",
                         "the figure has no bounds: it cannot be drawn");

@@ -136,7 +136,7 @@ csg_node_id csg_shape_made(csg_module_call *call, const csg_solid_job *job, csg_
     call->failed = call->failed || job->failed;
     csg_eval_charge(e, job->steps, where); /* tells what limit the job came to, if one */
     if (job->stop && job->status == CSGM_ERR_MEMORY)
-        csg_eval_no_memory(e);
+        csg_eval_no_memory_at(e, where);
     if (job->stop && !e->stop && e->builder.status != CSGM_OK)
         csg_check_node(e, CSG_NODE_NONE, where);
     if (job->stop && !e->stop)

@@ -96,7 +96,7 @@ static bool step(approach *a, double f, csg_vec3 g)
 
 static double angle(csg_vec3 a, csg_vec3 b)
 {
-    return acos(fmin(fmax(csg_gradients_cosine(a, b), -1), 1));
+    return csg_arc_cosine(csg_gradients_cosine(a, b));
 }
 
 /* Whether the gradient turns on the way to the middle, and from there on. */

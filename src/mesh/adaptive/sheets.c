@@ -169,8 +169,7 @@ typedef struct turn {
 
 static turn turn_of(const sheets *s)
 {
-    double cosine = csg_gradients_cosine(s->plane[0].g, s->plane[1].g);
-    return (turn){acos(fmin(fmax(cosine, -1), 1)),
+    return (turn){csg_arc_cosine(csg_gradients_cosine(s->plane[0].g, s->plane[1].g)),
                   csg_vec3_norm(csg_vec3_sub(s->from[1], s->from[0]))};
 }
 

@@ -131,7 +131,7 @@ static void place_beside(const csg_remesh *r, uint32_t corner, float at[3])
 
 static double angle(csg_vec3 a, csg_vec3 b)
 {
-    return acos(fmin(fmax(csg_vec3_dot(csg_vec3_normalize(a), csg_vec3_normalize(b)), -1), 1));
+    return csg_arc_cosine(csg_vec3_dot(csg_vec3_normalize(a), csg_vec3_normalize(b)));
 }
 
 /* Takes those edges back on both sides of which the field's gradients differ by much less than the

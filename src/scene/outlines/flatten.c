@@ -255,7 +255,7 @@ static csgm_status flatten_tree(flattener *f, csg_node_id root, double tolerance
         return CSGM_ERR_MEMORY;
     csgm_status status = CSGM_OK;
     for (size_t i = f->step_count; i-- > 0 && !status;)
-        status = make(f, f->steps[i]);
+        status = csg_memory_has_ended(f->memory) ? CSGM_ERR_MEMORY : make(f, f->steps[i]);
     return status;
 }
 

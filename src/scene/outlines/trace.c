@@ -13,6 +13,8 @@
 #include "scene/reference.h"
 
 enum { ROOT_STEPS = 30 };
+/* How often it asks whether to end: a field may be a formula of a millisecond. */
+enum { EVALUATIONS_PER_QUESTION = 16 };
 
 /* Lattice edges are named by their lower end and direction: x, y, upwards or not. */
 typedef uint64_t edge_name;
@@ -168,7 +170,7 @@ static const edge_name taken = UINT64_MAX;
 static bool follow(tracer *t, way *first, csg_outline *out)
 {
     for (way *w = first; w && w->to != taken;) {
-        if (!csg_outline_add(out, root_on(t, w->from)))
+        if (csg_memory_has_ended(t->memory) || !csg_outline_add(out, root_on(t, w->from)))
             return false;
         edge_name to = w->to;
         w->to = taken;
@@ -194,9 +196,11 @@ static csgm_status trace(tracer *t, uint32_t cells, csg_outline *out)
 {
     if (!push_square(t, (square){0, 0, cells}))
         return t->status;
-    while (t->waiting_count) {
+    for (size_t seen = 0; t->waiting_count; seen++) {
         if (!visit(t, t->waiting[--t->waiting_count]))
             return t->status;
+        if (seen % EVALUATIONS_PER_QUESTION == 0 && csg_memory_has_ended(t->memory))
+            return CSGM_ERR_MEMORY;
     }
     if (!close_loops(t, out))
         return CSGM_ERR_MEMORY;

@@ -387,6 +387,8 @@ static bool turn_inverted_pieces(csg_arena *scratch, polyhedron *solid, csg_chai
         return false;
     size_t count = list_inverted(chain, keys);
     for (size_t i = 0; i < count && i < MOST; i++) {
+        if (csg_memory_has_ended(scratch->memory))
+            return false;
         uint32_t piece = (uint32_t)keys[i];
         csg_tree_filter others = {chain->pieces, turned, piece};
         csg_vec3 p = solid->tree.triangles[places[piece]].a;

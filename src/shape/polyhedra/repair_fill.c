@@ -5,7 +5,7 @@
  */
 #include "shape/polyhedra/repair.h"
 
-enum { EXACT_MOST = 128, EXACT_LEAST = 12 };
+enum { EXACT_MOST = 128, EXACT_LEAST = 12, CHORDS_PER_QUESTION = 4096 };
 
 static double distance2(const csg_triangles *triangles, uint32_t a, uint32_t b)
 {
@@ -129,6 +129,8 @@ static bool zip(csg_triangles *triangles, zipper *z, size_t count, size_t goal)
     uint32_t at = 0;
     for (size_t left = count; left > goal;) {
         chord top = pop(z);
+        if (left % CHORDS_PER_QUESTION == 0 && csg_memory_has_ended(triangles->memory))
+            return false;
         if (top.stamp != z->stamps[top.tip])
             continue;
         uint32_t before = z->previous[top.tip], after = z->next[top.tip];

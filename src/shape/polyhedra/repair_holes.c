@@ -68,7 +68,8 @@ static bool close_loop(csg_arena *scratch, csg_triangles *triangles, walk *w, si
                        uint64_t *effort, csg_repairs *repairs)
 {
     size_t before = triangles->count, filled = 0;
-    if (!csg_repair_fill_loop(scratch, triangles, w->path + begin, w->length - begin, effort))
+    if (csg_memory_has_ended(triangles->memory) ||
+        !csg_repair_fill_loop(scratch, triangles, w->path + begin, w->length - begin, effort))
         return false;
     for (size_t t = before; t < triangles->count; t++)
         filled += !csg_repair_is_flat(triangles, triangles->corners[t]);

@@ -129,6 +129,7 @@ static uint32_t keep_or_find(rims *r, uint32_t point)
 bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
                           const csg_triangle_edges *edges, size_t *welded)
 {
+    enum { EDGES_PER_QUESTION = 1024 };
     size_t open = 0;
     for (size_t i = 0; i < edges->count; i++)
         open += edges->edges[i].count == 1;
@@ -142,6 +143,10 @@ bool csg_repair_weld_rims(csg_arena *scratch, csg_triangles *triangles,
         return false;
     memset(number, 0xff, triangles->point_count * sizeof *number);
     for (size_t i = 0; i < edges->count; i++) {
+        if (i % EDGES_PER_QUESTION == 0 && csg_memory_has_ended(scratch->memory)) {
+            csg_table_release(&r.cells);
+            return false;
+        }
         uint32_t ends[2] = {edges->edges[i].low, edges->edges[i].high};
         for (int k = 0; k < 2 && edges->edges[i].count == 1; k++) {
             if (number[ends[k]] == UINT32_MAX) {

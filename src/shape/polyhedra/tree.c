@@ -234,6 +234,7 @@ enum { TASKS_MOST = 3 * (DEPTH_MOST + 32) + 4 };
 
 static bool build_nodes(builder *b, const range *whole)
 {
+    enum { NODES_PER_QUESTION = 1024 };
     csg_tree *tree = b->tree;
     task tasks[TASKS_MOST];
     size_t left = 0;
@@ -242,6 +243,8 @@ static bool build_nodes(builder *b, const range *whole)
         return false;
     while (left) {
         task t = tasks[--left];
+        if (tree->node_count % NODES_PER_QUESTION == 0 && csg_memory_has_ended(tree->memory))
+            return false;
         range parts[4];
         uint32_t count = split_to_four(b, &t.r, parts);
         clear_node(&tree->nodes[t.node]);

@@ -8,7 +8,7 @@
 
 #include "core/cli.h"
 #include "core/interrupt.h"
-#include "core/roots.h"
+#include "core/sandbox.h"
 #include "core/sources.h"
 #include "core/trace.h"
 
@@ -96,7 +96,7 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
             cli_help();
         return cli_finish_stdout(app, CLI_DONE);
     }
-    int status = cli_roots_confine(app);
+    int status = cli_confine(app);
     if (status == CLI_DONE && app->options.trace) /* it is written whatever the command says */
         status = cli_sources_guard(app);
     if (status == CLI_DONE)

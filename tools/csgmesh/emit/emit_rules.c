@@ -43,6 +43,8 @@ static void add_roots(batch_plan *plan, emit_rule *rule)
     for (size_t i = 0; i < roots->count; i++)
         add_word(plan, rule,
                  (emit_word){.kind = EMIT_SOURCE, .prefix = "--root=", .path = roots->items[i]});
+    if (plan->app->options.sandbox)
+        add_text(plan, rule, "--sandbox");
 }
 
 static void add_mesh_words(batch_plan *plan, emit_rule *rule)

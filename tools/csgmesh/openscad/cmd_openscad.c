@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/roots.h"
+#include "core/sandbox.h"
 #include "core/sources.h"
 #include "core/textfile.h"
 #include "mesh/depfile.h"
@@ -390,7 +390,7 @@ int cli_cmd_openscad(cli_app *app)
         status = cli_print_version(app);
     } else if (status == CLI_DONE) {
         openscad_run run = {.line = &line, .is_first = true, .needs_rule = line.depfile != NULL};
-        status = cli_roots_confine(app);
+        status = cli_confine(app);
         if (status == CLI_DONE)
             status = guard(app, &line);
         uint64_t end = line.frames ? line.end_frame : 1;
