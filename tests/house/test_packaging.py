@@ -144,11 +144,11 @@ class InACopy(unittest.TestCase):
             self.assertEqual(self.read(archive, "rb"), first)
 
     def test_any_url(self):
-        url = "https://example.org/a&b|c\\d/get?x=1&y=2"
-        self.package("homebrew", url)
+        self.package("homebrew", "https://example.org/a&b|c\\d\"#{e}/get?x=1&y=2")
         formula = self.read("build-package/csgmesh.rb")
-        self.assertIn(f'url "{url}"', formula)
-        self.assertIn('homepage "https://example.org/a&b|c\\d"', formula)
+        inside = 'https://example.org/a&b|c\\\\d\\"\\#{e}'  # as Ruby wants it within quotes
+        self.assertIn(f'url "{inside}/get?x=1&y=2"', formula)
+        self.assertIn(f'homepage "{inside}"', formula)
 
 
 class Recipes(unittest.TestCase):
