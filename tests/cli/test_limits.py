@@ -107,6 +107,13 @@ class Harm(cli.CliTest):
                 with self.subTest(opening, options=options):
                     self.check(scene, "E0903", options)
 
+    @unittest.skipIf(SANITIZED, "takes minutes there")
+    def test_creases_in_little_memory(self):
+        """What is known of 93 000 vertices on creases has room beside the blocks: 237 MB of mesh under 100 MiB."""
+        self.write("lattice.txt", "intersection() { cube([40, 40, 40]); gyroid(cell = 4, thickness = 0.6); }")
+        self.assert_status(cli.run("lattice.txt", "-r", "256", "-q", "--max-memory", "100M", "--threads", "2", "-o", "a.ply",
+                                   cwd=self.folder), 0)
+
     def test_large_files(self):
         with open(self.path("large.txt"), "wb") as file:
             file.truncate(1 << 30)

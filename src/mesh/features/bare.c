@@ -236,53 +236,61 @@ static int compare_runs(const void *a, const void *b)
     return (p->block > q->block) - (p->block < q->block);
 }
 
-/* Adds a run to its block, whose features go to `to`; *next is behind them. */
-static void merge_block(const adding *a, csg_feature_block *block, const run *r, csg_feature *to,
-                        uint32_t *next)
+/* Adds a run to its block and moves the block's features back in the store, in place: they end
+ * before *end, which is moved to where they begin. Blocks are merged from the last to the first, so
+ * nothing is written over that is still needed. */
+static void merge_block(const adding *a, csg_feature_block *block, const run *r, uint32_t *end)
 {
-    uint32_t first = block->first, end = first + block->count;
-    block->first = *next;
-    for (size_t i = 0; i < r->count; i++) {
-        const csg_feature *f = &a->features[r->first + i];
-        while (first < end && place_of(&a->store->features[first]) < place_of(f))
-            to[(*next)++] = a->store->features[first++];
-        to[(*next)++] = *f;
+    csg_feature *features = a->store->features;
+    const csg_feature *added = r ? a->features + r->first : NULL;
+    uint32_t old = block->count, fresh = r ? (uint32_t)r->count : 0, count = old + fresh;
+    const csg_feature *before = features + block->first;
+    block->bare = fresh;
+    block->count = count;
+    block->first = *end - count;
+    if (features + block->first == before && !fresh) { /* nothing moves */
+        *end = block->first;
+        return;
     }
-    while (first < end)
-        to[(*next)++] = a->store->features[first++];
-    block->count = *next - block->first;
-    block->bare = (uint32_t)r->count;
+    while (old || fresh) {
+        bool is_old = old && (!fresh || place_of(&before[old - 1]) >= place_of(&added[fresh - 1]));
+        features[--*end] = is_old ? before[--old] : added[--fresh];
+    }
+}
+
+/* Blocks that had no features get their places behind the others. */
+static void add_blocks(adding *a)
+{
+    csg_feature_store *store = a->store;
+    size_t known = store->block_count;
+    for (size_t i = 0; i < a->run_count; i++) {
+        const run *r = &a->runs[i];
+        if (r->block >= known)
+            store->blocks[store->block_count++] =
+                (csg_feature_block){.at = {r->at[0], r->at[1], r->at[2]}};
+    }
 }
 
 static bool merge(adding *a)
 {
     csg_feature_store *store = a->store;
-    size_t blocks = store->block_count, capacity = store->count + a->count, r = 0;
-    csg_feature *to = csg_memory_alloc(store->memory, capacity * sizeof *to);
-    if (!to || !csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
-                                   blocks + a->run_count, sizeof *store->blocks)) {
-        csg_memory_release(store->memory, to, capacity * sizeof *to);
+    size_t known = store->block_count, count = store->count + a->count, r = a->run_count;
+    if (!csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity, count,
+                            sizeof *store->features) ||
+        !csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
+                            known + a->run_count, sizeof *store->blocks))
         return false;
-    }
-    uint32_t next = 0;
     qsort(a->runs, a->run_count, sizeof *a->runs, compare_runs);
     for (size_t i = 0; i < a->run_count; i++)
         qsort(a->features + a->runs[i].first, a->runs[i].count, sizeof *a->features,
               compare_features);
-    for (size_t b = 0; b < blocks; b++) {
-        static const run none = {0};
-        bool grows = r < a->run_count && a->runs[r].block == b;
-        merge_block(a, &store->blocks[b], grows ? &a->runs[r] : &none, to, &next);
-        r += grows;
+    add_blocks(a);
+    uint32_t end = (uint32_t)count;
+    for (size_t b = store->block_count; b-- > 0;) {
+        bool grows = r > 0 && (b >= known || a->runs[r - 1].block == b);
+        merge_block(a, &store->blocks[b], grows ? &a->runs[--r] : NULL, &end);
     }
-    for (; r < a->run_count; r++) {
-        csg_feature_block *block = &store->blocks[store->block_count++];
-        *block = (csg_feature_block){.at = {a->runs[r].at[0], a->runs[r].at[1], a->runs[r].at[2]}};
-        merge_block(a, block, &a->runs[r], to, &next);
-    }
-    csg_memory_release(store->memory, store->features, store->capacity * sizeof *to);
-    store->features = to;
-    store->count = store->capacity = capacity;
+    store->count = count;
     store->bare = a->count;
     return csg_feature_store_index(store);
 }

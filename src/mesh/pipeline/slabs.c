@@ -23,15 +23,17 @@ csgm_status csg_mesh_walk_octree(csg_mesh_slabs *s, const csg_mesh_input *in)
 }
 
 /* Frontier cells whose blocks may be in memory at once: as many as half of the memory left can
- * hold, and not more than take a gigabyte at the very worst (in practice a third of it). */
-static size_t cells_per_slab(const csg_memory *memory)
+ * hold, a sixth where creases need the most of it, and not more than take a gigabyte at the very
+ * worst (in practice a third of it). */
+static size_t cells_per_slab(const csg_memory *memory, bool sharp)
 {
     enum { BYTES_PER_CELL = 8 * 600, LEAST_CELLS = 16 }; /* eight blocks with tapes and index */
     uint64_t bytes = (uint64_t)1 << 30;
     if (memory->limit_bytes) {
         uint64_t used = atomic_load(&memory->used_bytes);
         uint64_t left = memory->limit_bytes > used ? memory->limit_bytes - used : 0;
-        bytes = left / 2 < bytes ? left / 2 : bytes;
+        uint64_t share = left / (sharp ? 6 : 2);
+        bytes = share < bytes ? share : bytes;
     }
     uint64_t cells = bytes / BYTES_PER_CELL;
     return cells > LEAST_CELLS ? (size_t)cells : (size_t)LEAST_CELLS;
@@ -40,7 +42,8 @@ static size_t cells_per_slab(const csg_memory *memory)
 static csgm_status divide_frontier(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    size_t cells = csg_octree_frontier_count(s->octree), per_slab = cells_per_slab(memory);
+    size_t cells = csg_octree_frontier_count(s->octree),
+           per_slab = cells_per_slab(memory, s->creases->sharp);
     s->count = cells ? (cells + per_slab - 1) / per_slab : 1;
     s->slabs = csg_memory_alloc(memory, s->count * sizeof(csg_slab));
     if (!s->slabs)
