@@ -346,9 +346,9 @@ static void take_curly(walker *w, uint32_t piece, csg_token_kind kind)
     end_child(w, piece);
 }
 
-static bool must_be_statement(const walker *w, csg_token_kind kind, frame_role role)
+/* Does it stand in no brackets? Then those that are open were forgotten. */
+static bool must_be_statement(csg_token_kind kind, frame_role role)
 {
-    (void)w;
     return kind == CSG_TOKEN_OPEN_CURLY || kind == CSG_TOKEN_CLOSE_CURLY ||
            kind == CSG_TOKEN_MODULE || kind == CSG_TOKEN_INCLUDE || kind == CSG_TOKEN_USE ||
            (kind == CSG_TOKEN_SEMICOLON && role != BINDINGS);
@@ -385,7 +385,7 @@ static void take_link(walker *w, uint32_t piece)
 static void take_token(walker *w, uint32_t piece)
 {
     csg_token_kind kind = at(w, piece)->token;
-    if (top(w)->role != BLOCK && must_be_statement(w, kind, top(w)->role))
+    if (top(w)->role != BLOCK && must_be_statement(kind, top(w)->role))
         close_brackets(w, at(w, piece)->offset);
     if (top(w)->role == BLOCK && top(w)->state == START && w->first == NONE)
         w->first = piece;
