@@ -19,7 +19,7 @@ PARTS = {
     "lang": ["parse", "evaluate", "functions", "modules", "parameters", "edit"],
     "field": ["kernels", "gradients", "prune", "compile", "cones"],
     "grid": ["octree", "adaptive", "certify"],
-    "mesh": ["marching", "features", "remesh", "adaptive", "distance", "reshape", "own", "pipeline"],
+    "mesh": ["marching", "features", "remesh", "adaptive", "distance", "reshape", "own", "foreign", "pipeline"],
     "io": ["text", "formats", "gltf", "threemf", "drawings"],
 }
 

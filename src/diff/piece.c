@@ -154,5 +154,7 @@ uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle
     }
     if (inside->count >= 3)
         parts[count++] = *inside;
-    return most <= PART_MOST * whole ? count : 0;
+    /* a polygon that is only a line and lies on an edge's plane is on both sides of it, whole: no
+     * cut */
+    return most < PART_MOST * whole ? count : 0;
 }

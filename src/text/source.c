@@ -218,7 +218,7 @@ static csgm_status check_content(const csg_sources *sources, csg_span from, cons
             length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0);
         report_file(sources, CSG_DIAG_BINARY_FILE, from, name,
                     utf16 ? "it looks like UTF-16: save it as UTF-8"
-                          : "a scene is a text file in UTF-8",
+                          : "a scene is a text file in UTF-8; meshes are read by import()",
                     "this is not a text file");
         return CSGM_ERR_SYNTAX;
     }

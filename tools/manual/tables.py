@@ -180,6 +180,35 @@ def formats():
                  rows)
 
 
+def command_options(command):
+    """The options that a command takes, from the table that its help is made of; its own words for them win."""
+    with open(os.path.join(ROOT, "tools/csgmesh/core/options.def"), encoding="utf-8") as file:
+        text = re.sub(r"/\*.*?\*/", " ", file.read(), flags=re.S)
+    with open(os.path.join(ROOT, "tools/csgmesh/core/command_bits.h"), encoding="utf-8") as file:
+        sets = dict(re.findall(r"^ *(ANY\w*) = (.*?),?(?: */\*.*)?$", file.read(), flags=re.M))
+
+    def takes(names):
+        if "& ~" in names:
+            taken, _, without = names.partition("& ~")
+            return takes(taken) and not takes(without.strip("() "))
+        found = [name.strip("() ") for name in names.split("|")]
+        return any(name == command or "CLI_COMMAND_COUNT" in name or (name in sets and takes(sets[name])) for name in found)
+
+    string = r'"((?:[^"\\]|\\.|"\s*")*)"'
+    own = {field: words for field, commands, words in
+           re.findall(r"HELP_FOR\((\w+), ([^,]*),\s*" + string + r"\)", text) if takes(commands)}
+    rows = []
+    for field, letter, name, _, argument, commands, words in re.findall(
+            r"OPTION\((\w+), ('.'|0), (\"[\w-]+\"|NULL), (\w+),\s*(\"[^\"]*\"|NULL),\s*([^,]*),\s*" + string + r"\)", text):
+        if not takes(commands):
+            continue
+        forms = ([f"-{letter[1]}"] if letter != "0" else []) + ([f"--{name.strip(chr(34))}"] if name != "NULL" else [])
+        value = "" if argument == "NULL" else " " + argument.strip('"')
+        words = re.sub(r'"\s*"', "", own.get(field, words))
+        rows.append([code(", ".join(forms) + value), words])
+    return table(["option", "what it does"], rows)
+
+
 def format_names(way="READ_ONLY", between=", "):
     """The names of the formats, without those of one way."""
     return between.join(name for name, _, row_way, _, _ in format_rows() if row_way != way)
@@ -187,6 +216,7 @@ def format_names(way="READ_ONLY", between=", "):
 
 PAGES = {
     "README.md": {"formats": formats},
+    "docs/convert.md": {"convert options": lambda: command_options("CONVERT")},
     "scenes/README.md": {
         "figures": lambda: modules("figures"),
         "solids": lambda: modules("solids"),

@@ -160,37 +160,6 @@ csg_node_id csg_shape_area(csg_module_call *call, csg_outline *outline, bool eve
     return csg_shape_made(call, &job, node);
 }
 
-/* "3 holes filled, 2 triangles turned over". */
-static void describe(const csg_repairs *repairs, char *text, size_t size)
-{
-    const struct {
-        size_t count;
-        const char *one, *many;
-    } rows[] = {
-        {repairs->holes, "hole filled", "holes filled"},
-        {repairs->flipped, "triangle turned over", "triangles turned over"},
-        {repairs->nonmanifold, "edge of more than two triangles",
-         "edges of more than two triangles"},
-        {repairs->duplicate, "triangle twice", "triangles twice"},
-        {repairs->degenerate, "triangle without area left out", "triangles without area left out"},
-    };
-    size_t at = 0;
-    text[0] = '\0';
-    for (size_t i = 0; i < sizeof rows / sizeof *rows && at < size; i++)
-        if (rows[i].count)
-            at += (size_t)snprintf(text + at, size - at, "%s%zu %s", at ? ", " : "", rows[i].count,
-                                   rows[i].count == 1 ? rows[i].one : rows[i].many);
-    if (repairs->overlapping && at < size)
-        snprintf(text + at, size - at, "%s",
-                 at ? ", and it overlaps itself" : "it overlaps itself");
-}
-
-static bool is_mended(const csg_repairs *repairs)
-{
-    return repairs->holes || repairs->flipped || repairs->nonmanifold || repairs->duplicate ||
-           repairs->overlapping;
-}
-
 csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, bool told)
 {
     csg_solid_job job = csg_shape_job(call);
@@ -198,8 +167,8 @@ csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, boo
     char text[256];
     csg_node_id node = csg_solid_of_triangles(&job, triangles, &repairs);
     node = csg_shape_made(call, &job, node);
-    if (told && node != CSG_NODE_NONE && is_mended(&repairs)) {
-        describe(&repairs, text, sizeof text);
+    if (told && node != CSG_NODE_NONE && csg_repairs_are_any(&repairs)) {
+        csg_repairs_describe(&repairs, text, sizeof text);
         csg_eval_report(call->e, CSG_DIAG_MENDED, call->statement->where, NULL,
                         "%s(): the surface was mended: %s", call->name, text);
     }

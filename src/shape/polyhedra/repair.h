@@ -17,10 +17,13 @@ typedef struct csg_chain {
     uint32_t *pieces;        /* per triangle; pieces share no edge */
     size_t piece_count;
     double *volumes; /* per piece, in the frame */
+    uint32_t
+        *welded; /* per point: its number among the places of the input's corners, in their order */
 } csg_chain;
 
 /* CSGM_ERR_SCENE: not finite, out of range, or nothing is left that bounds a volume.
- * `scratch` holds pieces and volumes; triangles are from `memory` and only there on CSGM_OK. */
+ * `scratch` holds pieces, volumes and numbers; triangles are from `memory` and only there on
+ * CSGM_OK. */
 csgm_status csg_repair(csg_memory *memory, csg_arena *scratch, const csg_triangles *in,
                        csg_chain *out, csg_repairs *repairs);
 

@@ -142,11 +142,13 @@ static bool drop_flat(csg_arena *scratch, csg_chain *chain, csg_repairs *repairs
 }
 
 /* Points that no triangle has any more go. */
-static bool drop_points(csg_arena *scratch, csg_triangles *triangles)
+static bool drop_points(csg_arena *scratch, csg_chain *chain)
 {
     size_t kept = 0;
+    csg_triangles *triangles = &chain->triangles;
     uint32_t *number = csg_arena_calloc(scratch, triangles->point_count, sizeof *number);
-    if (!number)
+    chain->welded = csg_arena_alloc(scratch, triangles->point_count * sizeof *chain->welded);
+    if (!number || !chain->welded)
         return false;
     for (size_t t = 0; t < triangles->count; t++)
         for (int k = 0; k < 3; k++)
@@ -155,6 +157,7 @@ static bool drop_points(csg_arena *scratch, csg_triangles *triangles)
         if (!number[i])
             continue;
         triangles->points[kept] = triangles->points[i];
+        chain->welded[kept] = (uint32_t)i;
         number[i] = (uint32_t)kept++;
     }
     triangles->point_count = kept;
@@ -168,7 +171,7 @@ csgm_status csg_repair_pieces(csg_arena *scratch, const csg_triangle_edges *edge
                               csg_repairs *repairs)
 {
     if (!find_pieces(scratch, edges, chain) || !drop_flat(scratch, chain, repairs) ||
-        !drop_points(scratch, &chain->triangles) || !measure_pieces(scratch, chain))
+        !drop_points(scratch, chain) || !measure_pieces(scratch, chain))
         return CSGM_ERR_MEMORY;
     if (!chain->triangles.count)
         return CSGM_ERR_SCENE;

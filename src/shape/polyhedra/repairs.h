@@ -19,4 +19,9 @@ typedef struct csg_repairs {
     bool overlapping;     /* some places are inside more than once (a hint of self-intersection) */
 } csg_repairs;
 
+/* Is there anything that its owner should know? Points that lay on another are no fault. */
+bool csg_repairs_are_any(const csg_repairs *repairs);
+/* "3 holes filled, 2 triangles turned over"; as far as it fits. */
+void csg_repairs_describe(const csg_repairs *repairs, char *text, size_t size);
+
 #endif

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/mesh_files.h"
 #include "core/sources.h"
 #include "core/textfile.h"
 #include "core/trace.h"
@@ -135,6 +136,10 @@ static csgm_status parse(cli_app *app, const request *wanted, const char *text, 
 
 static csgm_status load(cli_app *app, const request *wanted, const csgm_scene_options *options)
 {
+    if (cli_path_is_mesh(wanted->path)) {
+        cli_refuse_mesh(app, wanted->path);
+        return CSGM_ERR_FORMAT;
+    }
     if (strcmp(wanted->path, "-") != 0)
         return wanted->scene
                    ? csgm_scene_load(app->context, wanted->path, options, wanted->scene)
@@ -143,7 +148,11 @@ static csgm_status load(cli_app *app, const request *wanted, const csgm_scene_op
     char *text = cli_read_stdin(app, &length);
     if (!text)
         return CSGM_ERR_IO;
-    csgm_status status = parse(app, wanted, text, length, options);
+    csgm_status status = CSGM_ERR_FORMAT;
+    if (cli_text_is_mesh(text, length))
+        cli_refuse_mesh(app, "-");
+    else
+        status = parse(app, wanted, text, length, options);
     free(text);
     return status;
 }

@@ -522,6 +522,19 @@ int cli_options_first_operand(int argc, char **argv)
     return argc;
 }
 
+bool cli_options_unfit(const cli_options *options, cli_command as, size_t *at, char *label,
+                       size_t size)
+{
+    while (*at < ROW_COUNT) {
+        const row *option = &rows[(*at)++];
+        if (options->given[option->id] && !(option->commands & 1 << as)) {
+            row_label(option, label, size);
+            return true;
+        }
+    }
+    return false;
+}
+
 void cli_options_release(cli_options *options)
 {
     free(options->outputs.items);

@@ -84,6 +84,10 @@ bool cli_options_parse(cli_options *options, cli_command command, int argc, char
 /* The index of the first argument that is neither an option nor an option's value; argc: none. What
  * is wrong with the options is not told here. */
 int cli_options_first_operand(int argc, char **argv);
+/* The next option that was given and that another command does not take; *at: 0 for the first.
+ * false: there is none. */
+bool cli_options_unfit(const cli_options *options, cli_command as, size_t *at, char *label,
+                       size_t size);
 void cli_options_release(cli_options *options);
 
 /* The name in `names` (NULL at the end) nearest to `text`, NULL when none is near. */

@@ -7,7 +7,9 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include "convert/convert.h"
 #include "core/facts.h"
+#include "core/mesh_files.h"
 #include "core/textfile.h"
 #include "core/work.h"
 #include "mesh/certify.h"
@@ -289,6 +291,11 @@ int cli_cmd_mesh(cli_app *app)
     if (operands->count > 1)
         return cli_usage_error(app, "an output file is given as -o FILE",
                                "one scene at a time: '%s' is one too many", operands->items[1]);
+    if (cli_path_is_mesh(operands->items[0]))
+        return cli_convert_operand(app, operands->items[0]);
+    if (app->options.smooth)
+        return cli_usage_error(app, "blends and offset() round a scene",
+                               "--smooth is for meshes, not for scenes");
     int status = cli_outputs_check(app, operands->items[0]);
     if (status == CLI_DONE)
         status = cli_work_check(app);
