@@ -19,12 +19,13 @@ except ImportError:
     yaml = None
 
 ACTION = os.path.join(os.environ["CSGMESH_SHARE"], "github/csgmesh")
+# Stands for GitHub: the list has the comment that this folder remembers, POST and PATCH write its body.
 GH = """#!/bin/sh
 echo "$*" >>'{log}'
-for word; do
-    if [ "$word" = --edit-last ]; then exit 1; fi
-    if [ -f "$word" ]; then cat "$word" >>'{log}'; fi
-done
+case $* in
+*--paginate*) if [ -f '{comment}' ] && head -1 '{comment}' | grep -qF "$(echo "$*" | sed 's/.*startswith("//; s/").*//')"; then echo 4711; fi ;;
+*) for word; do case $word in body=@*) cat "${{word#body=@}}" >'{comment}' ;; esac; done ;;
+esac
 """
 
 
@@ -82,14 +83,14 @@ class Steps(BatchTest):
         self.scenes()
         for folder in ("bin", "temp"):
             os.mkdir(self.path(folder))
-        self.write("bin/gh", GH.format(log=self.path("gh.log")))
+        self.write("bin/gh", GH.format(log=self.path("gh.log"), comment=self.path("comment.md")))
         os.chmod(self.path("bin/gh"), 0o755)
         self.write("parts.json", json.dumps({"resolution": 12, "jobs": ["mug.txt", "ball.txt"]}))
 
     def step(self, script, status=0, **variables):
         env = {**os.environ, "PATH": self.path("bin") + ":" + os.environ["PATH"],
                "RUNNER_TEMP": self.path("temp"), "GITHUB_STEP_SUMMARY": self.path("summary.md"),
-               "GITHUB_OUTPUT": self.path("outputs.txt"), "PULL_REQUEST": "7",
+               "GITHUB_OUTPUT": self.path("outputs.txt"), "PULL_REQUEST": "7", "GITHUB_REPOSITORY": "me/parts",
                "CSGMESH": cli.PROGRAM, "MANIFEST": "parts.json", "DIRECTORY": "out",
                "OPTIONS": "-q", "GOLDENS": "goldens", "TOLERANCE": "0.001", **variables}
         result = subprocess.run(["bash", os.path.join(ACTION, script)], cwd=self.folder, env=env,
@@ -104,6 +105,10 @@ class Steps(BatchTest):
         self.step("comment.sh")
         self.step("outcome.sh", status)
         comment = self.read("gh.log").decode() if os.path.exists(self.path("gh.log")) else ""
+        if "--method" in comment:
+            comment += self.read("comment.md").decode()
+        else:
+            comment = ""
         return self.read("outputs.txt").decode().strip(), comment
 
     def stand_in(self, name, text):
@@ -166,7 +171,7 @@ class Steps(BatchTest):
         self.assertIn("ball.txt:1:8: error", result.stderr)
         outcome, comment = self.verdict(1)
         self.assertEqual(outcome, "outcome=failed")
-        self.assertIn("pr comment 7 --body-file", comment)
+        self.assertIn("--method POST repos/me/parts/issues/7/comments", comment)
         self.assertIn("Not all scenes could be meshed", comment)
 
     @unittest.skipUnless(diff_is_there(), "no csgmesh diff in this build")
@@ -176,6 +181,7 @@ class Steps(BatchTest):
         self.step("mesh.sh")
         self.step("compare.sh")
         self.assertEqual(self.verdict(0), ("outcome=same", ""))
+        before = self.read("mug.txt")
         self.write("mug.txt", "include <lib/base.txt>\nradius = 5;\nbase(radius);\n")
         self.step("mesh.sh")
         self.step("compare.sh")
@@ -185,6 +191,24 @@ class Steps(BatchTest):
         self.assertRegex(comment, r"\| mug.glb \| different: .*\| \+\d+\.\d+ % \|")
         self.assertNotIn("ball.glb", comment)
         self.assertIn("Meshes differ", self.read("summary.md").decode())
+        self.assertIn("--method POST", comment)
+        outcome, comment = self.verdict(1) # the comment is there: it is brought up to date
+        self.assertIn("--method PATCH repos/me/parts/issues/comments/4711", comment)
+        self.write("mug.txt", before)
+        self.step("mesh.sh")
+        self.step("compare.sh")
+        outcome, comment = self.verdict(0)
+        self.assertEqual(outcome, "outcome=same")
+        self.assertIn("--method PATCH", comment)
+        self.assertIn("All meshes are well again", comment)
+
+    def test_another_marker_is_another_comment(self):
+        self.write("ball.txt", "sphere(;\n")
+        self.step("mesh.sh")
+        self.verdict(1)
+        self.step("comment.sh", MARKER="of another workflow")
+        self.assertIn("<!-- csgmesh meshes of another workflow -->", self.read("comment.md").decode())
+        self.assertEqual(self.read("gh.log").decode().count("--method POST"), 2)
 
     def test_table_of_one_comparison(self):
         self.write("d.json", json.dumps({

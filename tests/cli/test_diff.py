@@ -301,6 +301,50 @@ class AgainstScipy(diff_support.DiffTest):
             self.assertLess(report[key]["mean"], away.max())
 
 
+@unittest.skipUnless(shutil.which("git"), "no git")
+class Git(cli.CliTest):
+    """The lines of docs/diff.md, as they stand there."""
+
+    def setUp(self):
+        super().setUp()
+        page = os.path.join(os.path.dirname(__file__), "../../docs/diff.md")
+        with open(page, encoding="utf-8") as file:
+            self.lines = [line.strip() for line in file if line.startswith("git config diff.csgmesh.")]
+        os.mkdir(self.path("bin"))
+        os.symlink(cli.PROGRAM, self.path("bin/csgmesh"))
+        self.git("init -q .")
+        self.write(".gitattributes", "*.stl diff=csgmesh\n")
+        for height in (10, 11):
+            self.write("part.txt", f"cube([10, 10, {height}]);\n")
+            self.assertEqual(cli.run("part.txt", "-o", "part.stl", cwd=self.folder).returncode, 0)
+            if height == 10:
+                self.git("add -A")
+                self.git("-c user.name=a -c user.email=a@example.org commit -qm first")
+
+    def git(self, words):
+        result = subprocess.run(words if words.startswith("git") else "git " + words, shell=True, cwd=self.folder,
+                                capture_output=True, text=True, check=False,
+                                env={**os.environ, "PATH": self.path("bin") + ":" + os.environ["PATH"],
+                                     "HOME": self.folder, "GIT_CONFIG_NOSYSTEM": "1", "GIT_PAGER": "cat"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def test_textconv(self):
+        for line in self.lines:
+            if "textconv" in line:
+                self.git(line)
+        said = self.git("diff -- part.stl")
+        changed = [line for line in said.splitlines() if line[0] in "+-" and line[:3] not in ("+++", "---")]
+        self.assertTrue(any("volume" in line and "1000" in line for line in changed), said)
+        self.assertTrue(any("volume" in line and "1100" in line for line in changed), said)
+        self.assertNotIn("/tmp", "".join(changed))
+        self.assertFalse(any("triangles" in line for line in changed), said)
+
+    def test_command(self):
+        self.git(next(line for line in self.lines if "diff.csgmesh.command" in line))
+        self.assertIn("different:", self.git("diff -- part.stl"))
+
+
 if __name__ == "__main__":
     if "--thorough" in sys.argv:
         sys.argv.remove("--thorough")
