@@ -6,8 +6,8 @@
 
 #include "api/options.h"
 #include "api/view.h"
-#include "base/clock.h"
 #include "base/mesh_codes.h"
+#include "csgmesh/reshaping.h"
 #include "diff/diff.h"
 #include "mesh/foreign/foreign.h"
 

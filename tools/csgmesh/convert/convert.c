@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/facts.h"
+#include "csgmesh/reshaping.h"
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
 
