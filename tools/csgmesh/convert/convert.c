@@ -129,8 +129,10 @@ static int write(cli_app *app, const conversion *c)
     for (size_t i = 0; i < o->outputs.count; i++)
         cli_convert_warn_of_losses(app, &c->view, CSGM_UNIT_NONE, o->outputs.items[i],
                                    cli_outputs_format(o, i));
-    if (status == CLI_DONE)
-        status = cli_outputs_write(app, &c->view);
+    if (status == CLI_DONE) {
+        csgm_write_options options = cli_outputs_options(app, c->path);
+        status = cli_outputs_write_view(app, &c->view, &options);
+    }
     bool refused = cli_app_is_refused(app);
     if (refused && status == CLI_DONE)
         status = CLI_INPUT_AT_FAULT;

@@ -234,19 +234,10 @@ csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
     return write;
 }
 
-int cli_outputs_write(cli_app *app, cli_work *work)
+int cli_outputs_write_view(cli_app *app, const csgm_mesh_view *mesh,
+                           const csgm_write_options *options)
 {
-    csgm_mesh_view view = csgm_mesh_get_view(work->mesh), *mesh = &view;
-    csgm_write_options options = cli_outputs_options(app, app->options.operands.items[0]);
     int worst = CLI_DONE;
-    bool leveled = false;
-    for (size_t i = 0; i < app->options.outputs.count; i++)
-        leveled |=
-            (csgm_format_traits(cli_outputs_format(&app->options, i)) & CSGM_HEEDS_LEVELS) != 0;
-    if (leveled && app->options.given[CLI_OPTION_lod])
-        worst = cli_work_mesh_levels(app, work, &options);
-    if (worst != CLI_DONE)
-        return worst;
     for (size_t i = 0; i < app->options.outputs.count; i++) {
         const char *path = app->options.outputs.items[i];
         csgm_format format = cli_outputs_format(&app->options, i);
@@ -254,10 +245,24 @@ int cli_outputs_write(cli_app *app, cli_work *work)
             continue; /* it is written already */
         csgm_status status = strcmp(path, "-") == 0
                                  ? csgm_mesh_write_fd(app->context, mesh, STDOUT_FILENO,
-                                                      "standard output", format, &options)
-                                 : csgm_mesh_write(app->context, mesh, path, format, &options);
+                                                      "standard output", format, options)
+                                 : csgm_mesh_write(app->context, mesh, path, format, options);
         int exit_status = cli_exit_status(status);
         worst = exit_status > worst ? exit_status : worst;
     }
     return worst;
+}
+
+int cli_outputs_write(cli_app *app, cli_work *work)
+{
+    csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
+    csgm_write_options options = cli_outputs_options(app, app->options.operands.items[0]);
+    int status = CLI_DONE;
+    bool leveled = false;
+    for (size_t i = 0; i < app->options.outputs.count; i++)
+        leveled |=
+            (csgm_format_traits(cli_outputs_format(&app->options, i)) & CSGM_HEEDS_LEVELS) != 0;
+    if (leveled && app->options.given[CLI_OPTION_lod])
+        status = cli_work_mesh_levels(app, work, &options);
+    return status == CLI_DONE ? cli_outputs_write_view(app, &view, &options) : status;
 }

@@ -19,6 +19,9 @@ bool cli_outputs_draco(const cli_options *options);
 csgm_normals cli_outputs_normals(const cli_options *options);
 /* scene_path: the file names it as its source; NULL = it names none. The app keeps the texts. */
 csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path);
+/* To all -o files. An exit status; failures are reported. */
+int cli_outputs_write_view(cli_app *app, const csgm_mesh_view *mesh,
+                           const csgm_write_options *options);
 /* Meshes the levels of --lod, too. */
 int cli_outputs_write(cli_app *app, cli_work *work);
 
