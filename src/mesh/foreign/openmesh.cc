@@ -75,6 +75,33 @@ triple corners_of(const mesh_type &mesh, face f)
     return {a, b, c};
 }
 
+/* Squared distance; the barycentric coordinates of the nearest point. */
+double nearest_in(const triple &t, const point &p, double weights[3])
+{
+    point ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
+    double d1 = ab | ap, d2 = ac | ap, aa = ab | ab, cc = ac | ac, x = ab | ac;
+    double det = aa * cc - x * x;
+    double v = det > 0 ? (cc * d1 - x * d2) / det : -1;
+    double w = det > 0 ? (aa * d2 - x * d1) / det : -1;
+    if (v >= 0 && w >= 0 && v + w <= 1) {
+        weights[0] = 1 - v - w, weights[1] = v, weights[2] = w;
+        return (t.a + ab * v + ac * w - p).sqrnorm();
+    }
+    double least = HUGE_VAL;
+    const point *ends[3] = {&t.a, &t.b, &t.c};
+    for (int k = 0; k < 3; k++) {
+        const point &from = *ends[k], &to = *ends[(k + 1) % 3];
+        double length = (to - from).sqrnorm();
+        double s = length > 0 ? std::clamp(((p - from) | (to - from)) / length, 0.0, 1.0) : 0;
+        double away = (from + (to - from) * s - p).sqrnorm();
+        if (away >= least)
+            continue;
+        least = away;
+        weights[k] = 1 - s, weights[(k + 1) % 3] = s, weights[(k + 2) % 3] = 0;
+    }
+    return least;
+}
+
 /* ---- modules of the decimater ------------------------------------------------------------ */
 
 /* Asks now and then whether to go on, and forbids everything from then on; tells how far the first
@@ -137,57 +164,7 @@ template <class MeshT> class ModColorT : public OpenMesh::Decimater::ModBaseT<Me
     {
         gather(ci);
     }
-    void postprocess_collapse(const CollapseInfo &ci) override
-    {
-        Mesh &mesh = Base::mesh();
-        for (auto f = mesh.vf_iter(ci.v1); f.is_valid(); ++f)
-            mesh.property(gone_, *f).erase(
-                std::remove_if(mesh.property(gone_, *f).begin(), mesh.property(gone_, *f).end(),
-                               [this](uint32_t v) {
-                                   return std::find(gone_here_.begin(), gone_here_.end(), v) !=
-                                          gone_here_.end();
-                               }),
-                mesh.property(gone_, *f).end());
-        for (uint32_t v : gone_here_) {
-            face nearest;
-            double least = HUGE_VAL;
-            for (auto f = mesh.vf_iter(ci.v1); f.is_valid(); ++f) {
-                triple t = corners_of(mesh, *f);
-                double weights[3], away = nearest_in(t, (*first_)[v], weights);
-                if (away < least)
-                    least = away, nearest = *f;
-            }
-            if (nearest.is_valid())
-                mesh.property(gone_, nearest).push_back(v);
-        }
-    }
-
-    /* Squared distance; the barycentric coordinates of the nearest point. */
-    static double nearest_in(const triple &t, const point &p, double weights[3])
-    {
-        point ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
-        double d1 = ab | ap, d2 = ac | ap, aa = ab | ab, cc = ac | ac, x = ab | ac;
-        double det = aa * cc - x * x;
-        double v = det > 0 ? (cc * d1 - x * d2) / det : -1;
-        double w = det > 0 ? (aa * d2 - x * d1) / det : -1;
-        if (v >= 0 && w >= 0 && v + w <= 1) {
-            weights[0] = 1 - v - w, weights[1] = v, weights[2] = w;
-            return (t.a + ab * v + ac * w - p).sqrnorm();
-        }
-        double least = HUGE_VAL;
-        const point *ends[3] = {&t.a, &t.b, &t.c};
-        for (int k = 0; k < 3; k++) {
-            const point &from = *ends[k], &to = *ends[(k + 1) % 3];
-            double length = (to - from).sqrnorm();
-            double s = length > 0 ? std::clamp(((p - from) | (to - from)) / length, 0.0, 1.0) : 0;
-            double away = (from + (to - from) * s - p).sqrnorm();
-            if (away >= least)
-                continue;
-            least = away;
-            weights[k] = 1 - s, weights[(k + 1) % 3] = s, weights[(k + 2) % 3] = 0;
-        }
-        return least;
-    }
+    void postprocess_collapse(const CollapseInfo &ci) override;
 
   private:
     /* The vertices that lie in the triangles around v0, and v0. */
@@ -200,31 +177,7 @@ template <class MeshT> class ModColorT : public OpenMesh::Decimater::ModBaseT<Me
                               mesh.property(gone_, *f).end());
         gone_here_.push_back(mesh.property(came_as_, ci.v0));
     }
-    bool is_met(const Mesh &mesh, const CollapseInfo &ci, uint32_t v)
-    {
-        double least = HUGE_VAL, found[3] = {0, 0, 0};
-        for (auto f = mesh.cvf_iter(ci.v0); f.is_valid(); ++f) {
-            if (*f == ci.fl || *f == ci.fr)
-                continue;
-            vertex at[3];
-            int k = 0;
-            for (auto corner = mesh.cfv_iter(*f); corner.is_valid(); ++corner)
-                at[k++] = *corner == ci.v0 ? ci.v1 : *corner;
-            triple t = {mesh.point(at[0]), mesh.point(at[1]), mesh.point(at[2])};
-            double weights[3], away = nearest_in(t, (*first_)[v], weights);
-            if (away >= least)
-                continue;
-            least = away;
-            for (int channel = 0; channel < 3; channel++)
-                found[channel] = weights[0] * color(at[0], channel) +
-                                 weights[1] * color(at[1], channel) +
-                                 weights[2] * color(at[2], channel);
-        }
-        for (int channel = 0; channel < 3; channel++)
-            if (std::fabs(found[channel] - double(colors_[3 * v + uint32_t(channel)])) > within_)
-                return false;
-        return true;
-    }
+    bool is_met(const Mesh &mesh, const CollapseInfo &ci, uint32_t v);
     double color(vertex v, int channel)
     {
         return double(colors_[3 * size_t(Base::mesh().property(came_as_, v)) + size_t(channel)]);
@@ -237,6 +190,58 @@ template <class MeshT> class ModColorT : public OpenMesh::Decimater::ModBaseT<Me
     double within_ = 0;
     const std::vector<point> *first_ = nullptr;
 };
+
+template <class MeshT> void ModColorT<MeshT>::postprocess_collapse(const CollapseInfo &ci)
+{
+    Mesh &mesh = Base::mesh();
+    for (auto f = mesh.vf_iter(ci.v1); f.is_valid(); ++f)
+        mesh.property(gone_, *f).erase(
+            std::remove_if(mesh.property(gone_, *f).begin(), mesh.property(gone_, *f).end(),
+                           [this](uint32_t v) {
+                               return std::find(gone_here_.begin(), gone_here_.end(), v) !=
+                                      gone_here_.end();
+                           }),
+            mesh.property(gone_, *f).end());
+    for (uint32_t v : gone_here_) {
+        face nearest;
+        double least = HUGE_VAL;
+        for (auto f = mesh.vf_iter(ci.v1); f.is_valid(); ++f) {
+            triple t = corners_of(mesh, *f);
+            double weights[3], away = nearest_in(t, (*first_)[v], weights);
+            if (away < least)
+                least = away, nearest = *f;
+        }
+        if (nearest.is_valid())
+            mesh.property(gone_, nearest).push_back(v);
+    }
+}
+
+template <class MeshT>
+bool ModColorT<MeshT>::is_met(const Mesh &mesh, const CollapseInfo &ci, uint32_t v)
+{
+    double least = HUGE_VAL, found[3] = {0, 0, 0};
+    for (auto f = mesh.cvf_iter(ci.v0); f.is_valid(); ++f) {
+        if (*f == ci.fl || *f == ci.fr)
+            continue;
+        vertex at[3];
+        int k = 0;
+        for (auto corner = mesh.cfv_iter(*f); corner.is_valid(); ++corner)
+            at[k++] = *corner == ci.v0 ? ci.v1 : *corner;
+        triple t = {mesh.point(at[0]), mesh.point(at[1]), mesh.point(at[2])};
+        double weights[3], away = nearest_in(t, (*first_)[v], weights);
+        if (away >= least)
+            continue;
+        least = away;
+        for (int channel = 0; channel < 3; channel++)
+            found[channel] = weights[0] * color(at[0], channel) +
+                             weights[1] * color(at[1], channel) +
+                             weights[2] * color(at[2], channel);
+    }
+    for (int channel = 0; channel < 3; channel++)
+        if (std::fabs(found[channel] - double(colors_[3 * v + uint32_t(channel)])) > within_)
+            return false;
+    return true;
+}
 
 /* Only vertices with a needle around them go, and only where triangles become better on the average
  * and none worse than the worst. */
@@ -565,8 +570,7 @@ void reshaper::relax(double most, OpenMesh::VPropHandleT<double> &moved)
             int k = 0;
             for (auto corner = mesh.cfv_iter(*f); corner.is_valid(); ++corner)
                 at[k++] = old[size_t((*corner).idx())];
-            least = std::min(least, ModColorT<mesh_type>::nearest_in({at[0], at[1], at[2]},
-                                                                     mesh.point(v), weights));
+            least = std::min(least, nearest_in({at[0], at[1], at[2]}, mesh.point(v), weights));
         }
         double away = std::sqrt(least) + mesh.property(moved, v);
         if (away > most)

@@ -100,7 +100,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-static void join(uint32_t *parent, uint32_t a, uint32_t b)
+static void join_sets(uint32_t *parent, uint32_t a, uint32_t b)
 {
     uint32_t i = root_of(parent, a), j = root_of(parent, b);
     if (i < j)
@@ -154,8 +154,8 @@ static bool shade(csg_arena *arena, const csg_halfedge_mesh *mesh, shading *s)
         if (edges.edges[i].count != 2 ||
             csg_vec3_dot(s->faces[pair[0] / 3], s->faces[pair[1] / 3]) < CREASE_COSINE)
             continue;
-        join(s->cluster, pair[0], next_of(pair[1]));
-        join(s->cluster, next_of(pair[0]), pair[1]);
+        join_sets(s->cluster, pair[0], next_of(pair[1]));
+        join_sets(s->cluster, next_of(pair[0]), pair[1]);
     }
     sum_normals(mesh, s);
     return true;

@@ -172,7 +172,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-static void join(uint32_t *parent, uint32_t a, uint32_t b)
+static void join_sets(uint32_t *parent, uint32_t a, uint32_t b)
 {
     uint32_t i = root_of(parent, a), j = root_of(parent, b);
     if (i < j)
@@ -204,8 +204,8 @@ static bool split_fans(csg_foreign_piece *piece, const csg_chain *chain,
         parent[i] = i;
     for (uint32_t i = 0; i < halves; i++)
         if (partner[i] != NONE) {
-            join(parent, i, next_of(partner[i]));
-            join(parent, next_of(i), partner[i]);
+            join_sets(parent, i, next_of(partner[i]));
+            join_sets(parent, next_of(i), partner[i]);
         }
     for (uint32_t i = 0; i < halves; i++) { /* a root is the first corner of its fan */
         if (root_of(parent, i) == i) {
@@ -344,7 +344,7 @@ static bool find_seams(csg_foreign_piece *piece, const uint32_t *partner)
         seams[half] = other != NONE && (!are_alike(piece, half, next_of(other)) ||
                                         !are_alike(piece, next_of(half), other));
         if (other != NONE && !seams[half])
-            join(piece->group, half / 3, other / 3);
+            join_sets(piece->group, half / 3, other / 3);
     }
     memset(piece->first_corner, 0xff, piece->mesh.vertex_count * sizeof(uint32_t));
     for (uint32_t half = (uint32_t)(3 * count); half-- > 0;) {

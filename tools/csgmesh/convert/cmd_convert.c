@@ -125,7 +125,7 @@ static int make_folder(cli_app *app)
     return CLI_TROUBLE;
 }
 
-static int run(cli_app *app, const targets *t, cli_json *json)
+static int convert_all(cli_app *app, const targets *t, cli_json *json)
 {
     return t->paths ? convert_to_folder(app, t, json)
                     : cli_convert_file(app, app->options.operands.items[0], json);
@@ -135,14 +135,14 @@ static int convert(cli_app *app, const targets *t)
 {
     cli_text text;
     if (!app->options.stats)
-        return run(app, t, NULL);
+        return convert_all(app, t, NULL);
     if (!cli_text_open(&text))
         return cli_text_write(app, &text, app->options.stats);
     cli_json json = cli_json_make(text.out, true);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "csgmesh", csgm_version());
     cli_json_open(&json, "conversions", '[');
-    int status = run(app, t, &json);
+    int status = convert_all(app, t, &json);
     cli_json_end(&json, ']');
     cli_json_number(&json, "total_s", cli_now_s() - app->start_s);
     cli_json_end(&json, '}');
