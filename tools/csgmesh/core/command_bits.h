@@ -12,7 +12,7 @@ enum {
 #undef COMMAND
     ANY = ((1 << CLI_COMMAND_COUNT) - 1) & ~OPENSCAD,      /* which has options of its own */
     ANY_WORK = ANY & ~(HELP | VERSION | MAN | COMPLETION), /* these only talk */
-    ANY_SCENE = ANY_WORK & ~(FORMAT | CONVERT)                         /* which evaluate nothing */
+    ANY_SCENE = ANY_WORK & ~(FORMAT | CONVERT)             /* which evaluate nothing */
 };
 
 #endif
