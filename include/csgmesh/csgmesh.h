@@ -304,6 +304,17 @@ CSGM_API csgm_scene_info csgm_scene_get_info(const csgm_scene *scene);
  * Returns NULL when index is past the end. */
 CSGM_API const char *csgm_scene_dependency(const csgm_scene *scene, size_t index);
 
+/* What modifiers of the text set off from the rest, for those who show the scene. */
+typedef enum csgm_mark {
+    CSGM_MARK_HIGHLIGHT,  /* #: the solid has it, too */
+    CSGM_MARK_BACKGROUND, /* %: the solid has it not */
+    CSGM_MARK_COUNT
+} csgm_mark;
+
+/* All that is marked so, as a scene of its own that lives as long as this one; NULL = nothing. It
+ * may be infinite: give bounds to mesh it. */
+CSGM_API const csgm_scene *csgm_scene_get_marked(const csgm_scene *scene, csgm_mark mark);
+
 /* Value and gradient in double precision (operators.md, EvalField), for looking, not for speed.
  * gradient (may be NULL) is zero at critical points. */
 CSGM_API double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient);

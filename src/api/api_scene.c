@@ -98,6 +98,11 @@ const char *csgm_scene_dependency(const csgm_scene *scene, size_t index)
     return index < scene->dependency_count ? scene->dependencies[index] : NULL;
 }
 
+const csgm_scene *csgm_scene_get_marked(const csgm_scene *scene, csgm_mark mark)
+{
+    return (unsigned)mark < CSGM_MARK_COUNT ? scene->marked[mark] : NULL;
+}
+
 double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient)
 {
     csgm_status status = CSGM_OK;

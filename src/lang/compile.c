@@ -126,10 +126,10 @@ static bool keep_texts(const csg_program *program, csgm_scene *scene)
 }
 
 /* What modifiers mark, as scenes of their own. */
-static csgm_status seal_marks(csg_eval *e, csgm_scene *out[CSG_MARK_COUNT])
+static csgm_status seal_marks(csg_eval *e, csgm_scene *out[CSGM_MARK_COUNT])
 {
     csgm_status status = CSGM_OK;
-    for (int i = 0; i < CSG_MARK_COUNT && status == CSGM_OK; i++)
+    for (int i = 0; i < CSGM_MARK_COUNT && status == CSGM_OK; i++)
         if (e->marked[i] != CSG_NODE_NONE)
             status = csg_build_snapshot(&e->builder, e->marked[i], &out[i]);
     return status == CSGM_ERR_MEMORY ? csg_context_no_memory(e->context) : status;
@@ -139,7 +139,7 @@ static csgm_status seal(csg_eval *e, csg_node_id root, csgm_scene **out)
 {
     CSG_ZONE(e->context, "seal");
     const csg_program *program = e->program;
-    csgm_scene *marked[CSG_MARK_COUNT] = {NULL, NULL};
+    csgm_scene *marked[CSGM_MARK_COUNT] = {NULL, NULL};
     csgm_status status = seal_marks(e, marked);
     if (status == CSGM_OK) {
         status = csg_build_finish(&e->builder, root, program->dependencies,
@@ -147,7 +147,7 @@ static csgm_status seal(csg_eval *e, csg_node_id root, csgm_scene **out)
         if (status == CSGM_ERR_MEMORY)
             csg_context_no_memory(e->context);
     }
-    for (int i = 0; i < CSG_MARK_COUNT; i++)
+    for (int i = 0; i < CSGM_MARK_COUNT; i++)
         if (status == CSGM_OK)
             (*out)->marked[i] = marked[i];
         else

@@ -65,7 +65,7 @@ csgm_status csg_layers_of_marks(csg_layer layers[CSG_LAYERS], csgm_context *cont
                                 const csgm_scene *scene, const csgm_render_options *options)
 {
     csgm_status status = CSGM_OK;
-    for (int i = 0; i < CSG_MARK_COUNT && status == CSGM_OK; i++) {
+    for (int i = 0; i < CSGM_MARK_COUNT && status == CSGM_OK; i++) {
         const csgm_scene *marked = scene ? scene->marked[i] : NULL;
         if (!marked)
             continue;

@@ -18,7 +18,7 @@ typedef struct csg_layer {
     csg_tracer tracer;
 } csg_layer;
 
-enum { CSG_LAYERS = 1 + CSG_MARK_COUNT }; /* the solid, and each mark at 1 + its number */
+enum { CSG_LAYERS = 1 + CSGM_MARK_COUNT }; /* the solid, and each mark at 1 + its number */
 
 /* The solid's field, met with the options' bounds. What fails is reported. */
 csgm_status csg_layer_of_solid(csg_layer *layer, csgm_context *context, const csgm_field *field,

@@ -84,9 +84,9 @@ static void shade_rays(const scene_job *job, tile_room *room)
 /* ---- marks over it --------------------------------------------------------------------------- */
 
 /* sRGB and opacity, about those of OpenSCAD's preview. */
-static const float mark_looks[CSG_MARK_COUNT][4] = {
-    [CSG_MARK_HIGHLIGHT] = {1.0f, 0.32f, 0.32f, 0.5f},
-    [CSG_MARK_BACKGROUND] = {0.65f, 0.65f, 0.65f, 0.5f}};
+static const float mark_looks[CSGM_MARK_COUNT][4] = {
+    [CSGM_MARK_HIGHLIGHT] = {1.0f, 0.32f, 0.32f, 0.5f},
+    [CSGM_MARK_BACKGROUND] = {0.65f, 0.65f, 0.65f, 0.5f}};
 
 /* By how much a mark may seem to lie behind the solid and still be the same surface: rays stop some
  * tolerances before it, and the more the flatter they meet it. */
@@ -99,7 +99,7 @@ static float slack_at(const csg_tracer *tracer, const csg_rays *rays, uint32_t i
     return tolerances * tolerance / fmaxf(cosine, flattest);
 }
 
-static void lay_over(const scene_job *job, tile_room *room, csg_scene_mark kind)
+static void lay_over(const scene_job *job, tile_room *room, csgm_mark kind)
 {
     const csg_rays *rays = &room->over->rays;
     const csg_picture *picture = job->picture;
@@ -169,7 +169,7 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
             continue;
         aim(job, room, b, &layers[i].tracer, &room->over->rays);
         csg_tracer_trace(&layers[i].tracer, room->over);
-        lay_over(job, room, (csg_scene_mark)(i - 1));
+        lay_over(job, room, (csgm_mark)(i - 1));
     }
 }
 

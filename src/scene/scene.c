@@ -157,7 +157,7 @@ void csg_scene_destroy(csgm_scene *scene)
     csg_memory *memory = &scene->context->memory;
     for (size_t i = 0; i < scene->shape_count; i++)
         csg_shape_release(scene->shapes[i]);
-    for (int i = 0; i < CSG_MARK_COUNT; i++) /* these have none themselves */
+    for (int i = 0; i < CSGM_MARK_COUNT; i++) /* these have none themselves */
         csg_scene_destroy(scene->marked[i]);
     csg_drawing_destroy(scene->drawing);
     csg_arena_reset(&scene->arena);

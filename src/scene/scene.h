@@ -114,13 +114,6 @@ typedef struct csg_scene_text {
     uint32_t length;
 } csg_scene_text;
 
-/* What modifiers mark for pictures: # (in the solid as well) and % (not in it). */
-typedef enum csg_scene_mark {
-    CSG_MARK_HIGHLIGHT,
-    CSG_MARK_BACKGROUND,
-    CSG_MARK_COUNT
-} csg_scene_mark;
-
 struct csgm_scene {
     csgm_context *context;
     csg_arena arena; /* holds all arrays, once sealed */
@@ -150,7 +143,7 @@ struct csgm_scene {
     size_t dependency_count;
     const csg_scene_text *texts; /* a span's source is an index; copied into arena, or borrowed */
     size_t text_count;
-    csgm_scene *marked[CSG_MARK_COUNT]; /* owned; NULL: nothing is marked so */
+    csgm_scene *marked[CSGM_MARK_COUNT]; /* owned; NULL: nothing is marked so */
     struct csg_drawing *drawing; /* owned; NULL: none was asked for (shape/plane/drawing.h) */
     double parse_s, evaluate_s;  /* wall time it took to get here; filled by lang/ */
 };

@@ -17,7 +17,7 @@
 #include "scene/tree/print.h"
 
 /* Its field at a point; NAN: nothing is marked so. */
-static double mark_at(csg_scene_mark kind, double x, double y, double z)
+static double mark_at(csgm_mark kind, double x, double y, double z)
 {
     csgm_status status = CSGM_OK;
     if (!b.scene->marked[kind])
@@ -35,7 +35,7 @@ static void compile(const char *scene)
     assert_int_equal(status, CSGM_OK);
 }
 
-static void expect(const char *scene, csg_scene_mark kind, double x, double y, double z, double f)
+static void expect(const char *scene, csgm_mark kind, double x, double y, double z, double f)
 {
     compile(scene);
     double value = mark_at(kind, x, y, z);
@@ -46,38 +46,38 @@ static void expect(const char *scene, csg_scene_mark kind, double x, double y, d
 static void marks_stand_where_the_scene_has_them(void **state)
 {
     (void)state;
-    expect("#sphere(2);", CSG_MARK_HIGHLIGHT, 0, 0, 0, 2);
-    expect("sphere(2);", CSG_MARK_HIGHLIGHT, 0, 0, 0, NAN);
-    expect("#sphere(2);", CSG_MARK_BACKGROUND, 0, 0, 0, NAN);
+    expect("#sphere(2);", CSGM_MARK_HIGHLIGHT, 0, 0, 0, 2);
+    expect("sphere(2);", CSGM_MARK_HIGHLIGHT, 0, 0, 0, NAN);
+    expect("#sphere(2);", CSGM_MARK_BACKGROUND, 0, 0, 0, NAN);
     expect("translate([5, 0, 0]) { cube(1); %translate([0, 1, 0]) sphere(2); }",
-           CSG_MARK_BACKGROUND, 5, 1, 0, 2);
+           CSGM_MARK_BACKGROUND, 5, 1, 0, 2);
     expect("difference() { cube(9); rotate([0, 0, 90]) translate([3, 0, 0]) #sphere(2); }",
-           CSG_MARK_HIGHLIGHT, 0, 3, 0, 2);
+           CSGM_MARK_HIGHLIGHT, 0, 3, 0, 2);
     expect("module m() { scale(2) children(); } translate([1, 0, 0]) m() #sphere(1);",
-           CSG_MARK_HIGHLIGHT, 1, 0, 0, 2);
+           CSGM_MARK_HIGHLIGHT, 1, 0, 0, 2);
     expect("for (i = [0 : 3]) translate([10 * i, 0, 0]) #color(\"red\") sphere(2);",
-           CSG_MARK_HIGHLIGHT, 30, 0, 0, 2);
-    expect("#translate([3, 0, 0]) #sphere(1); %sphere(2);", CSG_MARK_HIGHLIGHT, 3, 0, 0, 1);
-    expect("translate([4, 0, 0]) %sphere(2);", CSG_MARK_BACKGROUND, 4, 0, 0, 2);
+           CSGM_MARK_HIGHLIGHT, 30, 0, 0, 2);
+    expect("#translate([3, 0, 0]) #sphere(1); %sphere(2);", CSGM_MARK_HIGHLIGHT, 3, 0, 0, 1);
+    expect("translate([4, 0, 0]) %sphere(2);", CSGM_MARK_BACKGROUND, 4, 0, 0, 2);
 }
 
 static void one_alone_has_its_own_marks(void **state)
 {
     (void)state;
     const char *scene = "#sphere(9); translate([5, 0, 0]) !union() { cube(1); #sphere(2); }";
-    expect(scene, CSG_MARK_HIGHLIGHT, 0, 0, 0, 2);
-    expect("!cube(1); #sphere(2);", CSG_MARK_HIGHLIGHT, 0, 0, 0, NAN);
-    expect("!#sphere(2); cube(1);", CSG_MARK_HIGHLIGHT, 0, 0, 0, 2);
+    expect(scene, CSGM_MARK_HIGHLIGHT, 0, 0, 0, 2);
+    expect("!cube(1); #sphere(2);", CSGM_MARK_HIGHLIGHT, 0, 0, 0, NAN);
+    expect("!#sphere(2); cube(1);", CSGM_MARK_HIGHLIGHT, 0, 0, 0, 2);
 }
 
 static void figures(void **state)
 {
     (void)state;
-    expect("circle(1); translate([3, 0, 7]) %circle(2);", CSG_MARK_BACKGROUND, 3, 0, 0, 0.5);
-    expect("cube(1); linear_extrude(3) { circle(1); #square(2); }", CSG_MARK_HIGHLIGHT, 0, 0, 0,
+    expect("circle(1); translate([3, 0, 7]) %circle(2);", CSGM_MARK_BACKGROUND, 3, 0, 0, 0.5);
+    expect("cube(1); linear_extrude(3) { circle(1); #square(2); }", CSGM_MARK_HIGHLIGHT, 0, 0, 0,
            NAN);
     expect("cube(1); rotate([90, 0, 0]) rotate_extrude() %translate([2, 0]) circle(1);",
-           CSG_MARK_BACKGROUND, 0, 0, 0, NAN);
+           CSGM_MARK_BACKGROUND, 0, 0, 0, NAN);
 }
 
 static text printed(const char *scene)

@@ -51,7 +51,7 @@ typedef struct csg_list {
 /* What a modifier stands before. */
 typedef struct csg_mark {
     csg_node_id node;
-    csg_scene_mark kind;
+    csgm_mark kind;
 } csg_mark;
 
 /* Where a use of a name has found its variable (names.c). */
@@ -118,7 +118,7 @@ typedef struct csg_eval {
 
     csg_node_id root; /* what a ! modifier chose, or NONE */
     csg_node_id
-        marked[CSG_MARK_COUNT]; /* after the run, or once there is a root: each mark's solid */
+        marked[CSGM_MARK_COUNT]; /* after the run, or once there is a root: each mark's solid */
     csg_symbol symbol_pi, symbol_children_count, symbol_parent_modules, symbol_fn, symbol_fa,
         symbol_fs, symbol_round, symbol_x, symbol_y, symbol_z, symbol_begin, symbol_step,
         symbol_end, symbol_blend, symbol_n, symbol_r, symbol_children, symbol_w;

@@ -4,13 +4,13 @@
 #include "lang/evaluate/marks.h"
 
 /* What is in the solid as well is copied: the builder changes nodes that it moves. */
-void csg_marks_add(csg_eval *e, size_t first_part, csg_scene_mark kind, csg_span where)
+void csg_marks_add(csg_eval *e, size_t first_part, csgm_mark kind, csg_span where)
 {
     for (size_t i = first_part; i < e->part_count && !e->stop; i++) {
         csg_node_id node = e->parts[i].node;
         if (csg_eval_is_empty(e, node))
             continue;
-        if (kind == CSG_MARK_HIGHLIGHT)
+        if (kind == CSGM_MARK_HIGHLIGHT)
             node = csg_check_node(e, csg_build_copy(&e->builder, node), where);
         if (node == CSG_NODE_NONE)
             return;
@@ -33,7 +33,7 @@ static csg_node_id unite_nodes(csg_eval *e, const csg_node_id *nodes, size_t cou
 }
 
 /* Those of one kind and dimension from `first` on, united; NONE where there is none. */
-static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool flat, csg_span where)
+static csg_node_id unite(csg_eval *e, size_t first, csgm_mark kind, bool flat, csg_span where)
 {
     size_t most = e->mark_count - first, bytes = most * sizeof(csg_node_id), count = 0;
     if (most == 0 || e->stop)
@@ -53,10 +53,10 @@ static csg_node_id unite(csg_eval *e, size_t first, csg_scene_mark kind, bool fl
 
 void csg_marks_move(csg_eval *e, size_t first, const csg_affine *by, csg_span where)
 {
-    csg_mark moved[2 * CSG_MARK_COUNT];
+    csg_mark moved[2 * CSGM_MARK_COUNT];
     size_t count = 0;
-    for (int i = 0; i < 2 * CSG_MARK_COUNT && e->mark_count > first; i++) {
-        csg_scene_mark kind = (csg_scene_mark)(i / 2);
+    for (int i = 0; i < 2 * CSGM_MARK_COUNT && e->mark_count > first; i++) {
+        csgm_mark kind = (csgm_mark)(i / 2);
         bool flat = i % 2;
         csg_affine map = flat ? csg_affine_of_plane(*by) : *by;
         csg_node_id node = unite(e, first, kind, flat, where);
@@ -71,11 +71,11 @@ void csg_marks_move(csg_eval *e, size_t first, const csg_affine *by, csg_span wh
         e->marks[e->mark_count++] = moved[i];
 }
 
-void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[CSG_MARK_COUNT])
+void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[CSGM_MARK_COUNT])
 {
-    for (int kind = 0; kind < CSG_MARK_COUNT; kind++) {
-        csg_node_id both[2] = {unite(e, first, (csg_scene_mark)kind, false, where),
-                               unite(e, first, (csg_scene_mark)kind, true, where)};
+    for (int kind = 0; kind < CSGM_MARK_COUNT; kind++) {
+        csg_node_id both[2] = {unite(e, first, (csgm_mark)kind, false, where),
+                               unite(e, first, (csgm_mark)kind, true, where)};
         if (both[1] != CSG_NODE_NONE) /* as thick as a scene that is flat */
             both[1] = csg_eval_plate(e, both[1], where);
         if (both[0] == CSG_NODE_NONE || both[1] == CSG_NODE_NONE)

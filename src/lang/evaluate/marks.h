@@ -9,10 +9,10 @@
 #include "lang/evaluate/evaluator.h"
 
 /* Marks the parts from `first` on. */
-void csg_marks_add(csg_eval *e, size_t first_part, csg_scene_mark kind, csg_span where);
+void csg_marks_add(csg_eval *e, size_t first_part, csgm_mark kind, csg_span where);
 /* Moves the marks from `first` on; they become at most one a kind and dimension. */
 void csg_marks_move(csg_eval *e, size_t first, const csg_affine *by, csg_span where);
 /* Takes the marks from `first` on away: a solid for each kind, NONE for none. */
-void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[CSG_MARK_COUNT]);
+void csg_marks_take(csg_eval *e, size_t first, csg_span where, csg_node_id out[CSGM_MARK_COUNT]);
 
 #endif

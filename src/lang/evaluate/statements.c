@@ -129,9 +129,9 @@ void csg_run_statement(csg_eval *e, const csg_statement *statement, csg_frame *f
     else
         run_call(e, statement, frame, spread);
     if (statement->background)
-        csg_marks_add(e, first, CSG_MARK_BACKGROUND, statement->where);
+        csg_marks_add(e, first, CSGM_MARK_BACKGROUND, statement->where);
     else if (statement->highlight)
-        csg_marks_add(e, first, CSG_MARK_HIGHLIGHT, statement->where);
+        csg_marks_add(e, first, CSGM_MARK_HIGHLIGHT, statement->where);
     if (statement->background && !e->stop)
         e->part_count = first; /* % : left out of the mesh */
     if (statement->root && !e->stop)

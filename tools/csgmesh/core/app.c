@@ -86,6 +86,7 @@ int cli_app_open(cli_app *app)
     options.on_diag = cli_console_diag;
     options.on_echo = cli_console_echo;
     options.user = &app->console;
+    options.cancelled = app->cancelled;
     options.trace = app->trace;
     csgm_status status = csgm_context_create(&options, &app->context);
     if (status != CSGM_OK && !app->console.errors)

@@ -24,6 +24,8 @@ typedef struct cli_app {
     /* --meta, and the scene's file before it (cli_outputs_options) */
     const char *metadata[CLI_META_MOST + 1];
     char source[280];
+    /* Whether to stop, asked on any thread; NULL: nobody asks. */
+    bool (*cancelled)(void *console);
     bool only_checks;       /* scenes are looked at for mistakes and not made */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */

@@ -5,13 +5,14 @@
 
 #include "batch/batch_hash.h"
 #include "core/cli.h"
+#include "view/view_server.h"
 
 int cli_print_version(cli_app *app)
 {
     int status = cli_app_open(app);
     if (status == CLI_DONE)
-        printf("csgmesh %s (%s)\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
-               csgm_build_features(), batch_hash_feature());
+        printf("csgmesh %s (%s)\n%s\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
+               csgm_build_features(), batch_hash_feature(), view_server_feature());
     return cli_finish_stdout(app, status);
 }
 

@@ -32,6 +32,7 @@ pkgs.stdenv.mkDerivation {
     fribidi
     harfbuzz
     libb2
+    libmicrohttpd
     libpng
     libzip
     nlohmann_json

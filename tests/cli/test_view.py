@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh view: what its server answers, that it follows files, and the page itself in headless Chromium (tools/view
+has the driver; without it those tests are skipped).
+"""
+import http.client
+import json
+import os
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import time
+import unittest
+from urllib.parse import urlsplit
+
+import cli
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+VIEW = os.path.join(HERE, "../../tools/view")
+CHROMIUM = os.environ.get("CSGMESH_CHROMIUM", "/usr/bin/chromium")
+HAS_BROWSER = (os.path.isdir(os.path.join(VIEW, "node_modules/playwright-core"))
+               and os.access(CHROMIUM, os.X_OK) and shutil.which("node") is not None)
+needs_browser = unittest.skipUnless(HAS_BROWSER, "no Chromium, or no npm ci --prefix tools/view")
+
+PLATE = """/* [Plate] */
+width = 30; // [10:60]
+label = "lid"; // what stands on it
+echo(width);
+difference() { cube([width, 20, 10]); #translate([15, 10, -1]) cylinder(h = 12, r = 5); }
+%translate([0, 0, 15]) sphere(3);
+"""
+
+
+class Running:
+    """A csgmesh view that is at work, and what its page would ask."""
+
+    def __init__(self, folder, *arguments):
+        self.program = subprocess.Popen([cli.PROGRAM, "view", *map(str, arguments), "--no-open"], cwd=folder,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.url = self.program.stdout.readline().decode().strip()
+        self.address = urlsplit(self.url)
+        self.version = 0
+
+    def ask(self, method, path, body=None, host=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.address.port, timeout=120)
+        try:
+            connection.request(method, path, body=body, headers={"Host": host} if host else {})
+            response = connection.getresponse()
+            return response.status, response.read(), response.headers
+        finally:
+            connection.close()
+
+    def get(self, path):
+        return self.ask("GET", self.address.path + path)
+
+    def set(self, lines):
+        return self.ask("POST", self.address.path + "set", lines.encode())[0]
+
+    def wait(self, *phases):
+        """The next state that is in one of these phases."""
+        while True:
+            status, body, _ = self.get(f"state?after={self.version}")
+            if status == 204:
+                continue
+            state = json.loads(body)
+            self.version = state["version"]
+            if state["scene"]["phase"] in phases:
+                return state
+
+    def model(self, number):
+        """Header, and the bytes behind it; None: it is gone."""
+        status, body, _ = self.get(f"model?number={number}")
+        if status != 200:
+            return None
+        length = struct.unpack_from("<I", body)[0]
+        return json.loads(body[4:4 + length]), body[4 + length:]
+
+    def end(self, number=signal.SIGINT):
+        if self.program.poll() is None:
+            self.program.send_signal(number)
+        out, err = self.program.communicate(timeout=120)
+        return self.program.returncode, out.decode(), err.decode()
+
+
+class ViewTest(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        if not cli.has_library("libmicrohttpd"):
+            self.skipTest("this build has no libmicrohttpd")
+        self.running = None
+
+    def start(self, *arguments):
+        self.running = Running(self.folder, *arguments)
+        self.addCleanup(self.running.end, signal.SIGKILL)
+        self.assertRegex(self.running.url, r"^http://127\.0\.0\.1:\d+/[0-9a-f]{32}/$")
+        return self.running
+
+    def bounds(self, state):
+        header, data = self.running.model(state["scene"]["model"])
+        layer = header["layers"][0]
+        places = struct.unpack_from(f"<{3 * layer['vertices']}f", data, layer["positions"])
+        return [(min(places[k::3]) + layer["origin"][k], max(places[k::3]) + layer["origin"][k]) for k in range(3)]
+
+
+class Server(ViewTest):
+    def test_state_and_model(self):
+        self.write("plate.scad", PLATE)
+        running = self.start("plate.scad")
+        state = running.wait("done")
+        self.assertEqual(state["scene"]["name"], "plate.scad")
+        self.assertEqual([row["name"] for row in state["parameters"]], ["width", "label"])
+        self.assertEqual(state["parameters"][0]["max"], 60)
+        self.assertIn("ECHO: 30", state["findings"][0]["echo"])
+        for (low, high), (least, most) in zip(self.bounds(state), [(0, 30), (0, 20), (0, 10)]):
+            self.assertAlmostEqual(low, least, delta=0.02)
+            self.assertAlmostEqual(high, most, delta=0.02)
+        header, data = running.model(state["scene"]["model"])
+        self.assertEqual([layer["kind"] for layer in header["layers"]], ["solid", "highlight", "background"])
+        self.assertEqual(header["layers"][0]["triangles"], state["scene"]["mesh"]["triangles"])
+        last = header["layers"][-1]
+        self.assertEqual(last["indices"] + 12 * last["triangles"], len(data))
+        for layer in header["layers"]:
+            corners = struct.unpack_from(f"<{3 * layer['triangles']}I", data, layer["indices"])
+            self.assertEqual(max(corners) + 1, layer["vertices"])
+        self.assertIsNone(running.model(state["scene"]["model"] + 1))
+        status, out, err = running.end()
+        self.assertEqual((status, out), (0, ""))
+        self.assertIn("Ctrl-C ends it", err)
+
+    def test_follows_files(self):
+        """A saved change, one of an include, a new file in the old one's place, an error, a file that is gone."""
+        self.write("size.scad", "size = 10;\n")
+        self.write("main.scad", "include <size.scad>\ncube(size);\n")
+        running = self.start("main.scad")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 10, places=5)
+        self.write("size.scad", "size = 12;\n")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 12, places=5)
+        self.write("new", "include <size.scad>\ncube(size + 1);\n")
+        os.replace(self.path("new"), self.path("main.scad"))
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 13, places=5)
+        self.write("main.scad", "cube(;\n")
+        state = running.wait("failed")
+        self.assertEqual((state["findings"][0]["line"], state["findings"][0]["severity"]), (1, "error"))
+        self.assertIsNotNone(running.model(state["scene"]["model"]), "the model before the error stays")
+        os.remove(self.path("main.scad"))
+        finding = running.wait("failed")["findings"][0]
+        self.assertEqual((finding["file"], finding["severity"]), ("main.scad", "error"))
+        self.write("main.scad", "cube(5);\n")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 5, places=5)
+        self.assertEqual(running.end(signal.SIGTERM)[0], 0)
+
+    def test_what_was_missing_comes(self):
+        self.write("main.txt", "include <later.txt>\ncube(size);\n")
+        running = self.start("main.txt")
+        running.wait("failed")
+        self.write("later.txt", "size = 4;\n")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 4, places=5)
+
+    def test_values(self):
+        """Those of the page win over -D; a wrong one is a finding, and the next one is taken."""
+        self.write("plate.scad", PLATE)
+        running = self.start("plate.scad", "-D", "width=40")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 40, places=4)
+        self.assertEqual(running.set('width=50\nlabel="a\\nb"'), 204)
+        state = running.wait("done")
+        self.assertAlmostEqual(self.bounds(state)[0][1], 50, places=4)
+        self.assertEqual([row.get("value") for row in state["parameters"]], [50, "a\nb"])
+        self.assertEqual(running.set("width"), 204)
+        self.assertIn("NAME=EXPR", running.wait("failed")["findings"][0]["message"])
+        self.assertEqual(running.set(""), 204)
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 40, places=4)
+        self.assertEqual(running.set("a=" + "1" * 100000), 413)
+
+    def test_mesh(self):
+        self.write("ball.txt", cli.BALL)
+        self.run_in("ball.txt", "-o", "ball.ply", "-r", 16)
+        running = self.start("ball.ply")
+        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 1, delta=0.01)
+
+    def test_who_may_ask(self):
+        self.write("ball.txt", cli.BALL)
+        running = self.start("ball.txt")
+        path, port = running.address.path, running.address.port
+        status, page, headers = running.get("")
+        self.assertEqual(status, 200)
+        self.assertIn(b"class SolidView extends View", page)
+        self.assertNotIn(b"{{", page)
+        self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+        self.assertEqual(running.ask("GET", path, host=f"localhost:{port}")[0], 200)
+        for host in ("evil.example", f"evil.example:{port}", f"127.0.0.1:{port + 1}", "127.0.0.1"):
+            self.assertEqual(running.ask("GET", path, host=host)[0], 403, host)
+        for wrong in ("/", "/state", path[:-2] + "/", path.upper() + "x", "/" + "0" * 32 + "/state"):
+            self.assertEqual(running.ask("GET", wrong)[0], 404, wrong)
+        for method in ("PUT", "DELETE", "POST"):
+            self.assertEqual(running.ask(method, path + "state")[0], 404, method)
+        self.assertEqual(running.ask("GET", path + "../../../etc/passwd")[0], 404)
+        with socket.create_connection(("127.0.0.1", port), timeout=60) as nonsense:
+            nonsense.sendall(b"\x00\xff nonsense\r\n\r\n")
+            nonsense.recv(100)
+        self.assertEqual(running.get("")[0], 200)
+
+    def test_long_work_is_given_up(self):
+        """A change is shown although the mesh before it would take minutes; so is the end."""
+        self.write("main.scad", cli.ENDLESS)
+        running = self.start("main.scad", "--max-steps", "1e15")
+        running.wait("reading")
+        self.write("main.scad", "cube(5);\n")
+        running.wait("done")
+        self.write("main.scad", cli.ENDLESS)
+        running.wait("reading")
+        self.assertEqual(running.end()[0], 0)
+
+
+class Faults(ViewTest):
+    def refused(self, status, words, *arguments):
+        self.assert_refused(self.run_in("view", *arguments, "--no-open"), status, words)
+
+    def test_command_line(self):
+        self.write("ball.txt", cli.BALL)
+        self.refused(2, "no scene given")
+        self.refused(2, "one scene", "ball.txt", "ball.txt")
+        self.refused(2, "standard input", "-")
+        self.refused(2, "cannot read none.txt", "none.txt")
+        self.refused(2, "65535", "ball.txt", "--port", 70000)
+        self.refused(2, "-r and -s", "ball.txt", "-r", 8, "-s", 1)
+
+    def test_busy_port(self):
+        self.write("ball.txt", cli.BALL)
+        with socket.create_server(("127.0.0.1", 0)) as other:
+            port = other.getsockname()[1]
+            self.refused(2, f"port {port} is in use", "ball.txt", "--port", port)
+
+
+@needs_browser
+class Page(ViewTest):
+    def look(self, size, *steps):
+        result = subprocess.run(["node", os.path.join(HERE, "look_at_view.mjs"), self.running.url, size, *steps],
+                                env={**os.environ, "CSGMESH_VIEW": VIEW}, capture_output=True, text=True, timeout=300,
+                                check=False)
+        if result.returncode:
+            raise AssertionError(result.stderr)
+        seen = json.loads(result.stdout)
+        self.assertEqual(seen["errors"], [])
+        return seen["looks"]
+
+    def test_desktop(self):
+        self.write("plate.scad", PLATE)
+        self.start("plate.scad")
+        broken = f"write={self.path('plate.scad')}=cube(10); sphere("
+        first, cut, measured, wider, failed = self.look(
+            "1280x800", "wait=done", "look", "section=x", "look", "from=top", "measure=0.33,0.5:0.36,0.45", "look",
+            "set=width=60", "wait=done", "look", broken, "wait=failed", "look")
+        self.assertEqual(first["title"], "plate.scad - csgmesh view")
+        self.assertIn("30 x 20 x 10", first["figures"])
+        self.assertIn("ECHO: 30", first["echo"])
+        self.assertEqual(first["kinds"], ["solid", "highlight", "background"])
+        self.assertGreater(first["drawn"], 0.05)
+        self.assertGreater(first["red"], 0.001, "what is highlighted")
+        self.assertEqual((first["cut"], first["status"], first["stale"]), (0, "", False))
+        self.assertGreater(cut["cut"], 0.005)
+        self.assertRegex(measured["length"], r"^\d")
+        self.assertIn("60 x 20 x 10", wider["figures"])
+        self.assertIn("E0108", failed["findings"])
+        self.assertTrue(failed["stale"])
+        self.assertIn("model before it", failed["status"])
+
+    def test_phone_and_keys(self):
+        self.write("ball.txt", cli.BALL)
+        self.start("ball.txt")
+        first, nearer = self.look("390x800", "wait=done", "look", "key=+", "key=+", "key=+", "look")
+        self.assertEqual(first["wide"], 390, "nothing is wider than the phone")
+        self.assertGreater(nearer["drawn"], 1.3 * first["drawn"])
+
+
+if __name__ == "__main__":
+    cli.main()

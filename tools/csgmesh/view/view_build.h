@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ * Scene to what the page shows, on a thread of its own: the scene is read, meshed coarsely where
+ * the last mesh took long, then as the options say. What is asked for later ends what is under way.
+ */
+#ifndef CLI_VIEW_BUILD_H
+#define CLI_VIEW_BUILD_H
+
+#include "core/cli.h"
+#include "view/view_store.h"
+#include "view/view_watch.h"
+
+typedef struct view_defines {
+    char **items; /* "radius=50" */
+    size_t count;
+} view_defines;
+
+typedef struct view_builder {
+    const cli_app *app; /* its options; what the page sets comes after its -D */
+    view_store *store;
+    pthread_t thread;
+    pthread_mutex_t lock; /* of all below */
+    pthread_cond_t asked;
+    uint64_t wanted, begun; /* numbers of requests */
+    bool is_ending;
+    view_defines defines;
+    char **files; /* that the scene was read from */
+    size_t file_count;
+    double read_s;  /* of the wall clock: when reading began */
+    bool has_files; /* since they were taken last */
+    bool has_failed;
+} view_builder;
+
+/* false: out of memory, or the system has no more threads. */
+bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *store);
+/* Ends what is under way. */
+void view_builder_end(view_builder *builder);
+
+/* A file has changed: once more, with the same values. */
+void view_builder_ask(view_builder *builder);
+/* The page sets values: lines NAME=EXPR. false: out of memory. */
+bool view_builder_set(view_builder *builder, const char *lines, size_t length);
+
+/* Hands the files to the watch where the list is new. Whether the scene could not be made. */
+bool view_builder_watch(view_builder *builder, view_watch *watch);
+
+#endif

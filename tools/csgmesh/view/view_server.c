@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: MIT
+ * GNU libmicrohttpd, a thread for each connection; see view_server.h.
+ */
+#include "view/view_server.h"
+
+#ifndef CLI_HAS_MICROHTTPD
+
+const char *view_server_feature(void)
+{
+    return "without libmicrohttpd (csgmesh view)";
+}
+
+view_server *view_server_start(cli_app *app, uint16_t port, view_store *store,
+                               view_builder *builder, char *url, size_t size)
+{
+    (void)port, (void)store, (void)builder, (void)url, (void)size;
+    cli_console_say(&app->console, CSGM_ERROR, "csgmesh render draws pictures",
+                    "this build cannot show scenes (made without libmicrohttpd)");
+    return NULL;
+}
+
+void view_server_stop(view_server *server)
+{
+    (void)server;
+}
+
+#else
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <microhttpd.h>
+#include <netinet/in.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+static const unsigned char page[] = {
+#include <view_page.inc> /* made by diff/report/embed.py of page/ */
+};
+
+static const double WAIT_S = 20; /* then the page asks again */
+enum { TOKEN_BYTES = 16, LARGEST_BODY = 1 << 16, MOST_CONNECTIONS = 64, IDLE_S = 60 };
+
+struct view_server {
+    struct MHD_Daemon *daemon;
+    view_store *store;
+    view_builder *builder;
+    char token[2 * TOKEN_BYTES + 1];
+    char hosts[2][32]; /* that requests may name */
+};
+
+/* What has come of a request. */
+typedef struct body {
+    char *text;
+    size_t length;
+    bool is_too_long;
+} body;
+
+const char *view_server_feature(void)
+{
+    return "with libmicrohttpd " CLI_HAS_MICROHTTPD " (csgmesh view)";
+}
+
+/* ---- answers ---------------------------------------------------------------------------------- */
+
+/* Takes what bytes point to, from malloc. The page runs its own script and style, and loads nothing
+ * from anywhere else. */
+static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status, const char *type,
+                              char *bytes, size_t length)
+{
+    struct MHD_Response *response =
+        MHD_create_response_from_buffer(length, bytes, MHD_RESPMEM_MUST_FREE);
+    if (!response) {
+        free(bytes);
+        return MHD_NO;
+    }
+    MHD_add_response_header(response, "Content-Type", type);
+    MHD_add_response_header(response, "Cache-Control", "no-store");
+    MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
+    MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
+    MHD_add_response_header(response, "Content-Security-Policy",
+                            "default-src 'none'; script-src 'unsafe-inline'; style-src "
+                            "'unsafe-inline'; img-src data:; connect-src 'self'; "
+                            "frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+    enum MHD_Result result = MHD_queue_response(connection, status, response);
+    MHD_destroy_response(response);
+    return result;
+}
+
+static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, const char *text)
+{
+    char *copy = strdup(text);
+    return copy ? answer(connection, status, "text/plain; charset=utf-8", copy, strlen(copy))
+                : MHD_NO;
+}
+
+static enum MHD_Result send_page(struct MHD_Connection *connection)
+{
+    char *copy = malloc(sizeof page);
+    if (!copy)
+        return MHD_NO;
+    memcpy(copy, page, sizeof page);
+    return answer(connection, MHD_HTTP_OK, "text/html; charset=utf-8", copy, sizeof page);
+}
+
+static uint64_t number_of(struct MHD_Connection *connection, const char *key)
+{
+    const char *text = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, key);
+    return text ? strtoull(text, NULL, 10) : 0;
+}
+
+static enum MHD_Result send_state(const view_server *s, struct MHD_Connection *connection)
+{
+    char *state = view_store_wait(s->store, number_of(connection, "after"), WAIT_S);
+    return state ? answer(connection, MHD_HTTP_OK, "application/json", state, strlen(state))
+                 : say(connection, MHD_HTTP_NO_CONTENT, "");
+}
+
+static enum MHD_Result send_model(const view_server *s, struct MHD_Connection *connection)
+{
+    size_t length;
+    char *model = view_store_copy_model(s->store, number_of(connection, "number"), &length);
+    return model ? answer(connection, MHD_HTTP_OK, "application/octet-stream", model, length)
+                 : say(connection, MHD_HTTP_NOT_FOUND, "There is a later model.\n");
+}
+
+/* ---- questions -------------------------------------------------------------------------------- */
+
+/* The rest of the address behind the token; NULL: it has another one. */
+static const char *path_of(const view_server *s, const char *url)
+{
+    size_t length = strlen(s->token);
+    return url[0] == '/' && !strncmp(url + 1, s->token, length) && url[1 + length] == '/'
+               ? url + 1 + length
+               : NULL;
+}
+
+static bool names_us(const view_server *s, struct MHD_Connection *connection)
+{
+    const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
+    return host && (!strcmp(host, s->hosts[0]) || !strcmp(host, s->hosts[1]));
+}
+
+static enum MHD_Result set_values(const view_server *s, struct MHD_Connection *connection,
+                                  const body *b)
+{
+    if (b->is_too_long)
+        return say(connection, MHD_HTTP_CONTENT_TOO_LARGE, "These are too many values.\n");
+    return view_builder_set(s->builder, b->text ? b->text : "", b->length)
+               ? say(connection, MHD_HTTP_NO_CONTENT, "")
+               : say(connection, MHD_HTTP_INTERNAL_SERVER_ERROR, "Out of memory.\n");
+}
+
+static enum MHD_Result reply(const view_server *s, struct MHD_Connection *connection,
+                             const char *url, const char *method, const body *b)
+{
+    const char *path = path_of(s, url);
+    bool is_get = !strcmp(method, "GET");
+    if (!names_us(s, connection))
+        return say(connection, MHD_HTTP_FORBIDDEN,
+                   "This is no address of csgmesh view: use the one that it printed.\n");
+    if (!path)
+        return say(connection, MHD_HTTP_NOT_FOUND,
+                   "Open the address that csgmesh view printed; it changes with each start.\n");
+    if (is_get && !strcmp(path, "/"))
+        return send_page(connection);
+    if (is_get && !strcmp(path, "/state"))
+        return send_state(s, connection);
+    if (is_get && !strcmp(path, "/model"))
+        return send_model(s, connection);
+    if (!strcmp(method, "POST") && !strcmp(path, "/set"))
+        return set_values(s, connection, b);
+    return say(connection, MHD_HTTP_NOT_FOUND, "There is nothing here.\n");
+}
+
+/* More than there is room for is read and dropped: so the answer is heard. */
+static bool take_body(body *b, const char *bytes, size_t length)
+{
+    b->is_too_long = b->is_too_long || b->length + length > LARGEST_BODY;
+    if (b->is_too_long)
+        return true;
+    char *text = realloc(b->text, b->length + length + 1);
+    if (!text)
+        return false;
+    memcpy(text + b->length, bytes, length);
+    b->text = text;
+    b->length += length;
+    return true;
+}
+
+/* Called when the headers are there, for each piece of a body, and at its end. */
+static enum MHD_Result take_request(void *user, struct MHD_Connection *connection, const char *url,
+                                    const char *method, const char *version, const char *bytes,
+                                    size_t *length, void **request)
+{
+    (void)version;
+    body *b = *request;
+    if (!b) {
+        *request = b = calloc(1, sizeof *b);
+        return b ? MHD_YES : MHD_NO;
+    }
+    if (*length) {
+        bool done = take_body(b, bytes, *length);
+        *length = 0;
+        return done ? MHD_YES : MHD_NO;
+    }
+    return reply(user, connection, url, method, b);
+}
+
+static void end_request(void *user, struct MHD_Connection *connection, void **request,
+                        enum MHD_RequestTerminationCode why)
+{
+    (void)user, (void)connection, (void)why;
+    body *b = *request;
+    if (b)
+        free(b->text);
+    free(b);
+    *request = NULL;
+}
+
+/* ---- starting --------------------------------------------------------------------------------- */
+
+static bool make_token(char token[2 * TOKEN_BYTES + 1])
+{
+    unsigned char bytes[TOKEN_BYTES];
+    int fd = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    bool done = fd >= 0 && read(fd, bytes, sizeof bytes) == (ssize_t)sizeof bytes;
+    if (fd >= 0)
+        close(fd);
+    for (size_t i = 0; done && i < sizeof bytes; i++)
+        snprintf(token + 2 * i, 3, "%02x", bytes[i]);
+    return done;
+}
+
+/* A socket of our own, so that the reason is known where there is none. -1 with errno. */
+static int listen_on(uint16_t port, uint16_t *got)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons(port)};
+    socklen_t size = sizeof address;
+    int again = 1, fd = socket(AF_INET, SOCK_STREAM, 0);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (fd < 0)
+        return -1;
+    fcntl(fd, F_SETFD, FD_CLOEXEC);
+    setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
+    if (bind(fd, (struct sockaddr *)&address, sizeof address) == 0 &&
+        listen(fd, MOST_CONNECTIONS) == 0 &&
+        getsockname(fd, (struct sockaddr *)&address, &size) == 0) {
+        *got = ntohs(address.sin_port);
+        return fd;
+    }
+    int reason = errno;
+    close(fd);
+    errno = reason;
+    return -1;
+}
+
+static view_server *refuse(cli_app *app, view_server *server, int fd, const char *reason)
+{
+    if (fd >= 0)
+        close(fd);
+    free(server);
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot show the scene: %s", reason);
+    return NULL;
+}
+
+view_server *view_server_start(cli_app *app, uint16_t port, view_store *store,
+                               view_builder *builder, char *url, size_t size)
+{
+    uint16_t got = 0;
+    int fd = listen_on(port, &got);
+    if (fd < 0 && errno == EADDRINUSE) {
+        cli_console_say(&app->console, CSGM_ERROR,
+                        "another --port, or none: then a free one is taken", "port %u is in use",
+                        (unsigned)port);
+        return NULL;
+    }
+    if (fd < 0)
+        return refuse(app, NULL, fd, strerror(errno));
+    view_server *s = calloc(1, sizeof *s);
+    if (!s)
+        return refuse(app, s, fd, "out of memory");
+    s->store = store;
+    s->builder = builder;
+    if (!make_token(s->token))
+        return refuse(app, s, fd, "the system has no random numbers (/dev/urandom)");
+    snprintf(s->hosts[0], sizeof s->hosts[0], "127.0.0.1:%u", (unsigned)got);
+    snprintf(s->hosts[1], sizeof s->hosts[1], "localhost:%u", (unsigned)got);
+    snprintf(url, size, "http://%s/%s/", s->hosts[0], s->token);
+    s->daemon = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD, 0,
+                                 NULL, NULL, take_request, s, MHD_OPTION_LISTEN_SOCKET, fd,
+                                 MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL,
+                                 MHD_OPTION_CONNECTION_LIMIT, (unsigned)MOST_CONNECTIONS,
+                                 MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_S, MHD_OPTION_END);
+    return s->daemon ? s : refuse(app, s, fd, "the server did not start");
+}
+
+void view_server_stop(view_server *server)
+{
+    if (!server)
+        return;
+    MHD_stop_daemon(server->daemon);
+    free(server);
+}
+
+#endif
