@@ -47,7 +47,7 @@ class Run(unittest.TestCase):
         self.assertEqual(len(lines), 3, lines)
         self.assertIn("building csgmesh", lines[0])
         self.assertIn("csgmesh 9.8.7 (scalar)", lines[1])
-        self.assertIn("tools/run render FILE -o picture.png", lines[2])
+        self.assertIn("tools/run view FILE", lines[2])
         later = self.run_it("help")
         self.assertEqual((later.returncode, later.stdout, later.stderr), (0, "asked for help\n", ""))
 
