@@ -195,9 +195,8 @@ class Server(ViewTest):
         for method in ("PUT", "DELETE", "POST"):
             self.assertEqual(running.ask(method, path + "state")[0], 404, method)
         self.assertEqual(running.ask("GET", path + "../../../etc/passwd")[0], 404)
-        with socket.create_connection(("127.0.0.1", port), timeout=60) as nonsense:
+        with socket.create_connection(("127.0.0.1", port)) as nonsense:
             nonsense.sendall(b"\x00\xff nonsense\r\n\r\n")
-            nonsense.recv(100)
         self.assertEqual(running.get("")[0], 200)
 
     def test_long_work_is_given_up(self):

@@ -344,7 +344,7 @@ static void run_job(job *j)
     release(j);
 }
 
-static void *run(void *user)
+static void *follow_requests(void *user)
 {
     view_builder *b = user;
     for (;;) {
@@ -379,7 +379,7 @@ bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *s
     builder->file_count = builder->has_files = builder->files && builder->files[0];
     return builder->has_files && pthread_mutex_init(&builder->lock, NULL) == 0 &&
            pthread_cond_init(&builder->asked, NULL) == 0 &&
-           pthread_create(&builder->thread, NULL, run, builder) == 0;
+           pthread_create(&builder->thread, NULL, follow_requests, builder) == 0;
 }
 
 /* With the lock. */
