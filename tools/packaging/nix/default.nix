@@ -35,6 +35,7 @@ pkgs.stdenv.mkDerivation {
     libmicrohttpd
     libpng
     libzip
+    meshoptimizer
     nlohmann_json
     qhull
     zlib
