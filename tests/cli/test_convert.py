@@ -130,6 +130,7 @@ class Converting(cli.CliTest):
         self.assertEqual(result.returncode, 1)
         self.assertIn("standard input is a mesh", result.stderr)
 
+    @unittest.skipUnless(cli.has_library("OpenMesh"), "this build has no OpenMesh")
     def test_limits(self):
         self.mesh("parts.txt", "-o", "fine.ply", "-r", "36")
         for option, message in ((["--timeout", "1e-9"], "more than 1e-09 seconds"), (["--max-memory", "300K"], "memory")):
