@@ -28,7 +28,7 @@ def test_write_has_the_bytes_of_the_command_line(folder, format_name):
     assert made.triangles > 100 and made.stats.cells != (0, 0, 0)
     # through a mesh in memory
     csgmesh_program("s.txt", "-o", f"a.{format_name}", "-r", 24, "--normals", "vertex", cwd=folder)
-    csgmesh.mesh(COLOURED, resolution=24).write(f"c.{format_name}")
+    csgmesh.mesh(COLOURED, resolution=24).write(f"c.{format_name}", metadata={"source": "s.txt"})
     assert (folder / f"c.{format_name}").read_bytes() == (folder / f"a.{format_name}").read_bytes()
 
 
@@ -66,7 +66,7 @@ def test_write_options(folder):
     csgmesh.mesh(BALL, resolution=16).write("b.stl", ascii=True)
     assert (folder / "b.stl").read_bytes() == (folder / "a.stl").read_bytes()
     csgmesh_program("s.txt", "-o", "a.glb", "--up", "z", "--unit", "cm", "-r", 16, cwd=folder)
-    csgmesh.write(BALL, "b.glb", y_up=False, unit="cm", resolution=16)
+    csgmesh.write(BALL, "b.glb", y_up=False, unit="cm", resolution=16, metadata={"source": "s.txt"})
     assert (folder / "b.glb").read_bytes() == (folder / "a.glb").read_bytes()
     mesh = csgmesh.mesh(BALL, resolution=16)
     mesh.write("c.bin", format="ply", comment="made here")

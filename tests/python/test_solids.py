@@ -34,7 +34,7 @@ def test_the_mesh_is_that_of_the_printed_scene(folder):
     solid = (sphere(10) | cube(8)).fillet(2) - cylinder(h=40, r=3)
     (folder / "s.txt").write_text(str(solid))
     csgmesh_program("s.txt", "-o", "a.glb", "-r", 30, cwd=folder)
-    solid.write("b.glb", resolution=30)
+    solid.write("b.glb", resolution=30, metadata={"source": "s.txt"})
     assert (folder / "a.glb").read_bytes() == (folder / "b.glb").read_bytes()
     assert np.array_equal(solid.mesh(resolution=30).vertices, csgmesh.mesh(str(solid), resolution=30).vertices)
     assert solid.render(width=20, height=16).shape == (16, 20, 4)

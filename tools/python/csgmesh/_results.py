@@ -6,7 +6,7 @@ import math
 import os
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
@@ -242,9 +242,10 @@ def _format_for(path: Path, format: Optional[str]) -> bytes:
 class Scene:
     """A scene that is read: the exact field, and what meshes and pictures are made of."""
 
-    __slots__ = ("_core", "_info", "diagnostics", "__weakref__")
+    __slots__ = ("_core", "_info", "_source", "diagnostics", "__weakref__")
     _core: Any
     _info: Any
+    _source: Optional[str]  # the name of its file, without folders
     diagnostics: list[Diagnostic]  #: what was found while it was read
 
     def __init__(self) -> None:
@@ -253,7 +254,7 @@ class Scene:
     @classmethod
     def _of(cls, core: Any, diagnostics: list[Diagnostic]) -> Scene:
         self = cls.__new__(cls)
-        self._core, self._info, self.diagnostics = core, core.info(), diagnostics
+        self._core, self._info, self._source, self.diagnostics = core, core.info(), None, diagnostics
         return self
 
     @property
@@ -346,7 +347,9 @@ class Scene:
 def load(path: Path, **options: Unpack[SceneOptions]) -> Scene:
     """Reads a scene from a file."""
     call = Call("load()", options, "scene")
-    return Scene._of(*call.settle(_core.load(call.run, existing(path), call.of["scene"])))
+    scene = Scene._of(*call.settle(_core.load(call.run, existing(path), call.of["scene"])))
+    scene._source = os.path.basename(os.fsdecode(path))
+    return scene
 
 
 def parse(text: str, name: str = "text", **options: Unpack[SceneOptions]) -> Scene:
@@ -416,6 +419,8 @@ def write(source: Union[Source, Mesh], path: Path, format: Optional[str] = None,
     _check_names("write()", options, "scene", "mesh", "write")
     how, others = split(options, "mesh", "write")
     scene = scene_of(source, others)
+    if scene._source and isinstance(how.get("metadata", {}), Mapping):  # as the command line has it
+        how["metadata"] = {"source": scene._source, **how.get("metadata", {})}
     call = Call("write()", {"normals": "crease", **how}, "mesh", "write")
     (vertices, triangles, stats), _ = call.settle(
         _core.build_file(call.run, scene._core, name, format_name, call.of["mesh"], call.of["write"]))
