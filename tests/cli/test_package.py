@@ -114,9 +114,11 @@ class Package(cli.CliTest):
         names = [line.split()[-1].split("@")[0] for line in lines if " A " not in line]
         self.assertGreater(len(names), 30)
         self.assertEqual([name for name in names if not name.startswith("csgm_")], [])
-        with open(glob.glob(self.path("**/csgmesh.h"), recursive=True)[0],
-                  encoding="utf-8") as header:
-            text = header.read()
+        folder = os.path.dirname(glob.glob(self.path("**/csgmesh.h"), recursive=True)[0])
+        text = ""
+        for name in sorted(os.listdir(folder)):
+            with open(os.path.join(folder, name), encoding="utf-8") as header:
+                text += header.read()
         self.assertEqual([name for name in names if f"{name}(" not in text], [])
         declared = set(cli.re.findall(r"CSGM_API [^;]*?\b(csgm_\w+)\(", text))
         self.assertEqual(declared - set(names), set(), "declared and not exported")

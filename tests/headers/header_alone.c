@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The public header, alone and first: compiled as C99, C17 and C++17 with warnings as errors.
+ * The public headers, alone and first: compiled as C99, C17 and C++17 with warnings as errors.
  */
 #include <csgmesh/csgmesh.h>
+#include <csgmesh/editing.h>
+#include <csgmesh/reshaping.h>
 
 int header_alone(void);
 

@@ -4,8 +4,11 @@
  */
 #include "core/mesh_files.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static bool begins(const char *text, size_t length, const char *with)
 {
@@ -33,19 +36,29 @@ bool cli_text_is_mesh(const char *text, size_t length)
     return memchr(text, 0, STL_HEAD) && length == STL_HEAD + STL_TRIANGLE * triangles;
 }
 
+/* What a pipe or a device gives it gives once: only files are looked into. */
+static size_t read_head(const char *path, char *bytes, size_t size)
+{
+    struct stat status;
+    size_t length = 0;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd >= 0 && fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
+        for (ssize_t got = 1; got > 0 && length<size; length += got> 0 ? (size_t)got : 0)
+            got = read(fd, bytes + length, size - length);
+    if (fd >= 0)
+        close(fd);
+    return length;
+}
+
 bool cli_path_is_mesh(const char *path)
 {
     enum { HEAD = 1 << 16 };
-    static char bytes[HEAD];
+    static _Thread_local char bytes[HEAD];
     if (strcmp(path, "-") == 0 || csgm_drawing_format_from_path(path) != CSGM_DRAWING_NONE)
         return false;
     if (csgm_format_from_path(path) != CSGM_FORMAT_AUTO)
         return true;
-    FILE *file = fopen(path, "rbe");
-    size_t length = file ? fread(bytes, 1, HEAD, file) : 0;
-    if (file)
-        fclose(file);
-    return cli_text_is_mesh(bytes, length);
+    return cli_text_is_mesh(bytes, read_head(path, bytes, HEAD));
 }
 
 int cli_refuse_mesh(cli_app *app, const char *path)
