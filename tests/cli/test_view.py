@@ -96,9 +96,20 @@ class ViewTest(cli.CliTest):
         self.assertRegex(self.running.url, r"^http://127\.0\.0\.1:\d+/[0-9a-f]{32}/$")
         return self.running
 
+    def until(self, width):
+        """The first state whose solid is so wide: a file that is half written may be shown before."""
+        while True:
+            state = self.running.wait("done")
+            bounds = self.bounds(state)
+            if bounds and abs(bounds[0][1] - width) < 1e-3:
+                return state
+
     def bounds(self, state):
-        header, data = self.running.model(state["scene"]["model"])
+        """None: the model is empty, or there is a later one."""
+        header, data = self.running.model(state["scene"]["model"]) or ({"layers": [{"vertices": 0}]}, b"")
         layer = header["layers"][0]
+        if not layer["vertices"]:
+            return None
         places = struct.unpack_from(f"<{3 * layer['vertices']}f", data, layer["positions"])
         return [(min(places[k::3]) + layer["origin"][k], max(places[k::3]) + layer["origin"][k]) for k in range(3)]
 
@@ -133,12 +144,12 @@ class Server(ViewTest):
         self.write("size.scad", "size = 10;\n")
         self.write("main.scad", "include <size.scad>\ncube(size);\n")
         running = self.start("main.scad")
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 10, places=5)
+        self.until(10)
         self.write("size.scad", "size = 12;\n")
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 12, places=5)
+        self.until(12)
         self.write("new", "include <size.scad>\ncube(size + 1);\n")
         os.replace(self.path("new"), self.path("main.scad"))
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 13, places=5)
+        self.until(13)
         self.write("main.scad", "cube(;\n")
         state = running.wait("failed")
         self.assertEqual((state["findings"][0]["line"], state["findings"][0]["severity"]), (1, "error"))
@@ -147,7 +158,7 @@ class Server(ViewTest):
         finding = running.wait("failed")["findings"][0]
         self.assertEqual((finding["file"], finding["severity"]), ("main.scad", "error"))
         self.write("main.scad", "cube(5);\n")
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 5, places=5)
+        self.until(5)
         self.assertEqual(running.end(signal.SIGTERM)[0], 0)
 
     def test_what_was_missing_comes(self):
@@ -155,21 +166,20 @@ class Server(ViewTest):
         running = self.start("main.txt")
         running.wait("failed")
         self.write("later.txt", "size = 4;\n")
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 4, places=5)
+        self.until(4)
 
     def test_values(self):
         """Those of the page win over -D; a wrong one is a finding, and the next one is taken."""
         self.write("plate.scad", PLATE)
         running = self.start("plate.scad", "-D", "width=40")
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 40, places=4)
+        self.until(40)
         self.assertEqual(running.set('width=50\nlabel="a\\nb"'), 204)
-        state = running.wait("done")
-        self.assertAlmostEqual(self.bounds(state)[0][1], 50, places=4)
+        state = self.until(50)
         self.assertEqual([row.get("value") for row in state["parameters"]], [50, "a\nb"])
         self.assertEqual(running.set("width"), 204)
         self.assertIn("NAME=EXPR", running.wait("failed")["findings"][0]["message"])
         self.assertEqual(running.set(""), 204)
-        self.assertAlmostEqual(self.bounds(running.wait("done"))[0][1], 40, places=4)
+        self.until(40)
         self.assertEqual(running.set("a=" + "1" * 100000), 413)
 
     def test_mesh(self):
