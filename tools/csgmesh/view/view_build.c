@@ -284,7 +284,8 @@ static bool take_defines(job *j)
     if (!items)
         return false;
     bool done = true;
-    memcpy(items, given->items, given->count * sizeof *items);
+    for (size_t i = 0; i < given->count; i++)
+        items[i] = (char *)given->items[i];
     for (size_t i = 0; i < set->count; i++) {
         items[given->count + i] = strdup(set->items[i]);
         done = done && items[given->count + i];
