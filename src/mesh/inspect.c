@@ -15,6 +15,7 @@
 
 #include "base/geometry.h"
 #include "base/mesh_codes.h"
+#include "base/sets.h"
 #include "mesh/weld.h"
 
 enum { INSERTION_SORT_MOST = 24 };
@@ -27,7 +28,7 @@ typedef struct inspection {
     uint64_t edge_count;    /* undirected */
     uint32_t *bucket_begin; /* vertex_count + 1: half-edges by smaller vertex */
     uint64_t *half_edges;   /* larger vertex << 32 | starting corner */
-    uint32_t *parent;       /* union-find over corners */
+    uint32_t *parent;       /* sets of corners (base/sets.h) */
     uint8_t *fans;          /* per vertex: 0, 1 or 2 = several */
 } inspection;
 
@@ -53,27 +54,6 @@ static void half_edge_ends(const inspection *in, uint32_t corner, uint32_t *from
     const uint32_t *v = triangle_at(in, corner / 3);
     *from = v[corner % 3];
     *to = v[corner % 3 == 2 ? 0 : corner % 3 + 1];
-}
-
-/* ---- union-find: the smallest corner stands for its set ------------------------------ */
-
-static uint32_t find(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = find(parent, a);
-    b = find(parent, b);
-    if (a < b)
-        parent[b] = a;
-    else
-        parent[a] = b;
 }
 
 /* ---- edges --------------------------------------------------------------------------- */
@@ -161,8 +141,8 @@ static void close_edge(inspection *in, uint32_t smaller, const uint64_t *keys, s
     for (size_t i = 0; i < uses; i++) {
         uint32_t half_edge = (uint32_t)keys[i];
         forward += corner_at(in, half_edge, smaller) == half_edge;
-        unite(in->parent, corner_at(in, first, smaller), corner_at(in, half_edge, smaller));
-        unite(in->parent, corner_at(in, first, larger), corner_at(in, half_edge, larger));
+        csg_sets_join(in->parent, corner_at(in, first, smaller), corner_at(in, half_edge, smaller));
+        csg_sets_join(in->parent, corner_at(in, first, larger), corner_at(in, half_edge, larger));
     }
     in->edge_count++;
     in->check->boundary_edges += uses == 1;
@@ -172,8 +152,7 @@ static void close_edge(inspection *in, uint32_t smaller, const uint64_t *keys, s
 
 static void walk_edges(inspection *in)
 {
-    for (uint64_t c = 0; c < in->corner_count; c++)
-        in->parent[c] = (uint32_t)c;
+    csg_sets_init(in->parent, in->corner_count);
     for (uint32_t v = 0; v < in->mesh->vertex_count; v++) {
         uint64_t *keys = in->half_edges + in->bucket_begin[v];
         size_t count = in->bucket_begin[v + 1] - in->bucket_begin[v];
@@ -211,8 +190,8 @@ static void count_components(inspection *in)
 {
     for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
         uint32_t corner = (uint32_t)(3 * t);
-        unite(in->parent, corner, corner + 1);
-        unite(in->parent, corner, corner + 2);
+        csg_sets_join(in->parent, corner, corner + 1);
+        csg_sets_join(in->parent, corner, corner + 2);
     }
     for (uint64_t c = 0; c < in->corner_count; c += 3)
         in->check->components += in->parent[c] == c && is_sound(in, triangle_at(in, c / 3));

@@ -7,6 +7,7 @@
  */
 #include <stdlib.h>
 
+#include "base/sets.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/skeleton.h"
 #include "solid/operations.h"
@@ -27,24 +28,15 @@ typedef struct roof {
     double size;
 } roof;
 
-static uint32_t first_of(uint32_t *same, uint32_t node)
-{
-    while (same[node] != node)
-        node = same[node] = same[same[node]];
-    return node;
-}
-
 /* Arcs without length go: their ends are one. */
 static void join_ends(roof *r)
 {
     const csg_skeleton *s = &r->skeleton;
-    for (uint32_t i = 0; i < s->node_count; i++)
-        r->same[i] = i;
+    csg_sets_init(r->same, s->node_count);
     for (size_t i = 0; i < s->arc_count; i++) {
         const csg_skeleton_node *a = &s->nodes[s->arcs[i].from], *b = &s->nodes[s->arcs[i].to];
-        uint32_t p = first_of(r->same, s->arcs[i].from), q = first_of(r->same, s->arcs[i].to);
         if (hypot(b->at.x - a->at.x, b->at.y - a->at.y) < 1e-10 * r->size)
-            r->same[p < q ? q : p] = p < q ? p : q;
+            csg_sets_join(r->same, s->arcs[i].from, s->arcs[i].to);
     }
 }
 
@@ -58,7 +50,7 @@ static int by_edge(const void *a, const void *b)
 
 static void add_step(roof *r, uint32_t edge, uint32_t from, uint32_t to)
 {
-    step s = {edge, first_of(r->same, from), first_of(r->same, to)};
+    step s = {edge, csg_set_root(r->same, from), csg_set_root(r->same, to)};
     if (s.from != s.to)
         r->steps[r->step_count++] = s;
 }
@@ -116,7 +108,7 @@ static bool is_folded(const roof *r, size_t first_triangle)
 
 static csgm_status add_face(roof *r, uint32_t edge, uint32_t next)
 {
-    uint32_t start = first_of(r->same, edge), at = start;
+    uint32_t start = csg_set_root(r->same, edge), at = start;
     size_t count = 0, first = r->triangles.count;
     do {
         const step *s = count < r->step_count ? step_from(r, edge, at) : NULL;

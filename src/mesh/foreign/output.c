@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#include "base/sets.h"
+
 static const double CREASE_COSINE = 0.766; /* 40 degrees */
 
 void csg_foreign_output_init(csg_foreign_output *output, csgm_context *context,
@@ -91,29 +93,6 @@ static csg_vec3 unit(csg_vec3 v)
     return length > 0 ? csg_vec3_scale(v, 1 / length) : csg_vec3_make(0, 0, 1);
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void join_sets(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    uint32_t i = root_of(parent, a), j = root_of(parent, b);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
-static uint32_t next_of(uint32_t half)
-{
-    return half - half % 3 + (half % 3 + 1) % 3;
-}
-
 static double angle_between(csg_vec3 a, csg_vec3 b)
 {
     return atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
@@ -126,7 +105,7 @@ static void sum_normals(const csg_halfedge_mesh *mesh, shading *s)
         csg_vec3 p = at(mesh, c[half % 3]);
         double angle = angle_between(csg_vec3_sub(at(mesh, c[(half + 1) % 3]), p),
                                      csg_vec3_sub(at(mesh, c[(half + 2) % 3]), p));
-        csg_vec3 *sum = &s->sums[root_of(s->cluster, half)];
+        csg_vec3 *sum = &s->sums[csg_set_root(s->cluster, half)];
         *sum = csg_vec3_add(*sum, csg_vec3_scale(s->faces[half / 3], angle));
     }
 }
@@ -147,15 +126,14 @@ static bool shade(csg_arena *arena, const csg_halfedge_mesh *mesh, shading *s)
         s->faces[t] = unit(csg_vec3_cross(csg_vec3_sub(at(mesh, mesh->corners[t][1]), a),
                                           csg_vec3_sub(at(mesh, mesh->corners[t][2]), a)));
     }
-    for (uint32_t i = 0; i < halves; i++)
-        s->cluster[i] = i;
+    csg_sets_init(s->cluster, halves);
     for (size_t i = 0; i < edges.count; i++) {
         const uint32_t *pair = edges.halves + edges.edges[i].first;
         if (edges.edges[i].count != 2 ||
             csg_vec3_dot(s->faces[pair[0] / 3], s->faces[pair[1] / 3]) < CREASE_COSINE)
             continue;
-        join_sets(s->cluster, pair[0], next_of(pair[1]));
-        join_sets(s->cluster, next_of(pair[0]), pair[1]);
+        csg_sets_join(s->cluster, pair[0], csg_corner_next(pair[1]));
+        csg_sets_join(s->cluster, csg_corner_next(pair[0]), pair[1]);
     }
     sum_normals(mesh, s);
     return true;
@@ -176,24 +154,6 @@ static void place(const csg_foreign_piece *piece, uint32_t vertex, float out[3])
     out[0] = (float)p.x, out[1] = (float)p.y, out[2] = (float)p.z;
 }
 
-/* Corners by their vertices: first[v] and next[corner]. */
-static bool list_corners(csg_arena *arena, const csg_halfedge_mesh *mesh, uint32_t **first,
-                         uint32_t **next)
-{
-    size_t halves = 3 * mesh->triangle_count;
-    *first = csg_arena_alloc(arena, mesh->vertex_count * sizeof **first);
-    *next = csg_arena_alloc(arena, halves * sizeof **next);
-    if (!*first || !*next)
-        return false;
-    memset(*first, 0xff, mesh->vertex_count * sizeof **first);
-    for (uint32_t half = (uint32_t)halves; half-- > 0;) {
-        uint32_t *head = &(*first)[mesh->corners[half / 3][half % 3]];
-        (*next)[half] = *head;
-        *head = half;
-    }
-    return true;
-}
-
 /* What tells the vertices of one place apart. */
 typedef struct kind {
     csg_corner_look look;
@@ -207,15 +167,16 @@ static kind kind_of(const csg_foreign_output *output, const csg_foreign_piece *p
     if (has_looks(output))
         out.look = csg_foreign_look(piece, corner / 3, (int)(corner % 3));
     if (output->source.normals)
-        out.cluster = root_of(s->cluster, corner);
+        out.cluster = csg_set_root(s->cluster, corner);
     return out;
 }
 
 /* The vertices of one place, one after the other; number: of each corner. */
 static bool add_place(csg_foreign_output *output, const csg_foreign_piece *piece, shading *s,
-                      uint32_t vertex, const uint32_t *first, const uint32_t *next, kind *kinds,
+                      uint32_t vertex, const csg_vertex_corners *corners, kind *kinds,
                       uint32_t *number)
 {
+    const uint32_t *first = corners->first, *next = corners->next;
     float position[3];
     place(piece, vertex, position);
     for (uint32_t c = first[vertex]; c != UINT32_MAX; c = next[c]) {
@@ -248,14 +209,14 @@ bool csg_foreign_output_add(csg_foreign_output *output, const csg_foreign_piece 
     const csg_halfedge_mesh *mesh = &piece->mesh;
     csg_arena *arena = piece->arena;
     shading s = {NULL};
-    uint32_t *first, *next,
-        *number = csg_arena_alloc(arena, 3 * mesh->triangle_count * sizeof *number);
+    csg_vertex_corners corners;
+    uint32_t *number = csg_arena_alloc(arena, 3 * mesh->triangle_count * sizeof *number);
     kind *kinds = csg_arena_alloc(arena, 3 * mesh->triangle_count * sizeof *kinds);
-    if (!number || !kinds || !list_corners(arena, mesh, &first, &next) ||
+    if (!number || !kinds || !csg_list_corners(arena, mesh, &corners) ||
         (output->source.normals && !shade(arena, mesh, &s)))
         return false;
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        if (!add_place(output, piece, &s, v, first, next, kinds, number))
+        if (!add_place(output, piece, &s, v, &corners, kinds, number))
             return false;
     for (size_t t = 0; t < mesh->triangle_count; t++)
         if (!add_triangle(output, number + 3 * t))
@@ -275,11 +236,7 @@ bool csg_foreign_output_copy(csg_foreign_output *output, csg_arena *scratch,
         uint32_t corners[3];
         for (size_t k = 0; k < 3; k++) {
             uint32_t v = source->indices[3 * t + k];
-            csg_corner_look look = {{0}, {0}};
-            if (source->colors)
-                memcpy(look.color, source->colors + 4 * (size_t)v, sizeof look.color);
-            if (source->materials)
-                memcpy(look.material, source->materials + 2 * (size_t)v, sizeof look.material);
+            csg_corner_look look = csg_vertex_look(source, v);
             if (number[v] == UINT32_MAX) {
                 number[v] = (uint32_t)output->vertex_count;
                 if (!add_vertex(output, source->positions + 3 * (size_t)v,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/places.h"
+#include "base/sets.h"
 
 #define NONE UINT32_MAX
 
@@ -163,29 +164,6 @@ static bool find_partners(csg_arena *arena, const csg_triangles *triangles,
 
 /* ---- a vertex for each fan --------------------------------------------------------------------- */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void join_sets(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    uint32_t i = root_of(parent, a), j = root_of(parent, b);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
-static uint32_t next_of(uint32_t half)
-{
-    return half - half % 3 + (half % 3 + 1) % 3;
-}
-
 /* Corners -> vertices; a place that has several of them is fixed. */
 static bool split_fans(csg_foreign_piece *piece, const csg_chain *chain,
                        const uint32_t *place_vertex, const uint32_t *partner)
@@ -200,20 +178,19 @@ static bool split_fans(csg_foreign_piece *piece, const csg_chain *chain,
     piece->mesh.corners = csg_arena_alloc(arena, triangles->count * sizeof *piece->mesh.corners);
     if (!parent || !number || !fans || !point || !piece->mesh.corners)
         return false;
-    for (uint32_t i = 0; i < halves; i++)
-        parent[i] = i;
+    csg_sets_init(parent, halves);
     for (uint32_t i = 0; i < halves; i++)
         if (partner[i] != NONE) {
-            join_sets(parent, i, next_of(partner[i]));
-            join_sets(parent, next_of(i), partner[i]);
+            csg_sets_join(parent, i, csg_corner_next(partner[i]));
+            csg_sets_join(parent, csg_corner_next(i), partner[i]);
         }
     for (uint32_t i = 0; i < halves; i++) { /* a root is the first corner of its fan */
-        if (root_of(parent, i) == i) {
+        if (csg_set_root(parent, i) == i) {
             point[vertices] = triangles->corners[i / 3][i % 3];
             fans[point[vertices]]++;
             number[i] = (uint32_t)vertices++;
         }
-        piece->mesh.corners[i / 3][i % 3] = number[root_of(parent, i)];
+        piece->mesh.corners[i / 3][i % 3] = number[csg_set_root(parent, i)];
     }
     uint8_t *fixed = csg_arena_alloc(arena, vertices);
     piece->points = csg_arena_alloc(arena, vertices * sizeof *piece->points);
@@ -297,7 +274,7 @@ static bool find_origins(csg_foreign_piece *piece, csg_memory *memory, const csg
 
 /* ---- looks and seams --------------------------------------------------------------------------- */
 
-static csg_corner_look look_of(const csgm_mesh_view *source, uint32_t vertex)
+csg_corner_look csg_vertex_look(const csgm_mesh_view *source, uint32_t vertex)
 {
     csg_corner_look look = {{0}, {0}};
     if (source->colors)
@@ -318,7 +295,7 @@ static void look_at_corners(csg_foreign_piece *piece, const csg_chain *chain, co
             for (int j = 0; from != NONE && j < 3; j++)
                 if (at->place[3 * (size_t)from + (size_t)j] == place)
                     vertex = indices[3 * (size_t)from + (size_t)j];
-            piece->looks[3 * t + (size_t)k] = look_of(&piece->source, vertex);
+            piece->looks[3 * t + (size_t)k] = csg_vertex_look(&piece->source, vertex);
         }
 }
 
@@ -327,33 +304,39 @@ static bool are_alike(const csg_foreign_piece *piece, uint32_t a, uint32_t b)
     return memcmp(&piece->looks[a], &piece->looks[b], sizeof *piece->looks) == 0;
 }
 
+bool csg_list_corners(csg_arena *arena, const csg_halfedge_mesh *mesh, csg_vertex_corners *out)
+{
+    size_t halves = 3 * mesh->triangle_count;
+    out->first = csg_arena_alloc(arena, mesh->vertex_count * sizeof *out->first);
+    out->next = csg_arena_alloc(arena, halves * sizeof *out->next);
+    if (!out->first || !out->next)
+        return false;
+    memset(out->first, 0xff, mesh->vertex_count * sizeof *out->first);
+    for (uint32_t half = (uint32_t)halves; half-- > 0;) {
+        uint32_t *head = &out->first[mesh->corners[half / 3][half % 3]];
+        out->next[half] = *head;
+        *head = half;
+    }
+    return true;
+}
+
 static bool find_seams(csg_foreign_piece *piece, const uint32_t *partner)
 {
     size_t count = piece->mesh.triangle_count;
     uint8_t *seams = csg_arena_calloc(piece->arena, 3 * count, 1);
     piece->group = csg_arena_alloc(piece->arena, count * sizeof *piece->group);
-    piece->first_corner =
-        csg_arena_alloc(piece->arena, piece->mesh.vertex_count * sizeof(uint32_t));
-    piece->next_corner = csg_arena_alloc(piece->arena, 3 * count * sizeof(uint32_t));
-    if (!seams || !piece->group || !piece->first_corner || !piece->next_corner)
+    if (!seams || !piece->group || !csg_list_corners(piece->arena, &piece->mesh, &piece->corners))
         return false;
-    for (uint32_t t = 0; t < count; t++)
-        piece->group[t] = t;
+    csg_sets_init(piece->group, count);
     for (uint32_t half = 0; half < 3 * count; half++) {
         uint32_t other = partner[half];
-        seams[half] = other != NONE && (!are_alike(piece, half, next_of(other)) ||
-                                        !are_alike(piece, next_of(half), other));
+        seams[half] = other != NONE && (!are_alike(piece, half, csg_corner_next(other)) ||
+                                        !are_alike(piece, csg_corner_next(half), other));
         if (other != NONE && !seams[half])
-            join_sets(piece->group, half / 3, other / 3);
-    }
-    memset(piece->first_corner, 0xff, piece->mesh.vertex_count * sizeof(uint32_t));
-    for (uint32_t half = (uint32_t)(3 * count); half-- > 0;) {
-        uint32_t *first = &piece->first_corner[piece->mesh.corners[half / 3][half % 3]];
-        piece->next_corner[half] = *first;
-        *first = half;
+            csg_sets_join(piece->group, half / 3, other / 3);
     }
     for (uint32_t t = 0; t < count; t++)
-        piece->group[t] = root_of(piece->group, t);
+        piece->group[t] = csg_set_root(piece->group, t);
     piece->mesh.seams = seams;
     return true;
 }
@@ -366,7 +349,7 @@ static bool spread_colors(csg_foreign_piece *piece)
         return false;
     for (size_t i = 0; i < piece->mesh.vertex_count; i++)
         for (size_t k = 0; k < 3; k++)
-            colors[3 * i + k] = (float)piece->looks[piece->first_corner[i]].color[k] / 255.0f;
+            colors[3 * i + k] = (float)piece->looks[piece->corners.first[i]].color[k] / 255.0f;
     piece->mesh.colors = colors;
     return true;
 }
@@ -395,8 +378,8 @@ csg_corner_look csg_foreign_look(const csg_foreign_piece *piece, size_t triangle
 {
     uint32_t from = piece->mesh.triangle_from[triangle];
     uint32_t vertex = piece->mesh.vertex_from[piece->mesh.corners[triangle][k]];
-    uint32_t first = piece->first_corner[vertex];
-    for (uint32_t c = first; c != NONE; c = piece->next_corner[c])
+    uint32_t first = piece->corners.first[vertex];
+    for (uint32_t c = first; c != NONE; c = piece->corners.next[c])
         if (piece->group[c / 3] == piece->group[from])
             return piece->looks[c];
     return piece->looks[first];

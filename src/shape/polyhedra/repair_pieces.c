@@ -4,17 +4,10 @@
  */
 #include "shape/polyhedra/repair.h"
 
+#include "base/sets.h"
+
 /* ---- pieces -----------------------------------------------------------------------------------
  */
-
-static uint32_t find_root(uint32_t *parents, uint32_t i)
-{
-    while (parents[i] != i) {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
-    }
-    return i;
-}
 
 /* pieces: per triangle, numbered in the order of their first triangles. */
 static bool find_pieces(csg_arena *scratch, const csg_triangle_edges *edges, csg_chain *chain)
@@ -24,21 +17,15 @@ static bool find_pieces(csg_arena *scratch, const csg_triangle_edges *edges, csg
     chain->pieces = csg_arena_alloc(scratch, count * sizeof *chain->pieces);
     if (!parents || !chain->pieces)
         return false;
-    for (uint32_t t = 0; t < count; t++)
-        parents[t] = t;
+    csg_sets_init(parents, count);
     for (size_t i = 0; i < edges->count; i++) {
         const uint32_t *halves = edges->halves + edges->edges[i].first;
-        uint32_t first = find_root(parents, halves[0] / 3);
-        for (uint32_t k = 1; k < edges->edges[i].count; k++) {
-            uint32_t other = find_root(parents, halves[k] / 3);
-            uint32_t low = first < other ? first : other;
-            parents[first] = parents[other] = low;
-            first = low;
-        }
+        for (uint32_t k = 1; k < edges->edges[i].count; k++)
+            csg_sets_join(parents, halves[0] / 3, halves[k] / 3);
     }
     chain->piece_count = 0;
     for (uint32_t t = 0; t < count; t++) {
-        uint32_t root = find_root(parents, t);
+        uint32_t root = csg_set_root(parents, t);
         chain->pieces[t] = root == t ? (uint32_t)chain->piece_count++ : chain->pieces[root];
     }
     return true;
