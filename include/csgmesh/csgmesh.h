@@ -741,6 +741,8 @@ typedef enum csgm_uv {
     CSGM_UV_CYLINDER /* around the Z axis through the middle; caps from above and below */
 } csgm_uv;
 
+enum { CSGM_DETAILS_MOST = 8 }; /* levels of detail beside the first one */
+
 /* A coarser mesh of the same solid, for where it is seen from afar. */
 typedef struct csgm_level {
     csgm_mesh_view mesh;
@@ -777,7 +779,7 @@ typedef struct csgm_write_options {
     csgm_uv uv;   /* GLB and glTF; default NONE */
     const csgm_level *levels; /* level_count of them, each coarser than the one before: further
                                  levels of detail in GLB and glTF (MSFT_lod) */
-    size_t level_count;       /* default 0, at most 8 */
+    size_t level_count;       /* default 0, at most CSGM_DETAILS_MOST */
 } csgm_write_options;
 
 CSGM_API csgm_write_options csgm_write_options_default(void);

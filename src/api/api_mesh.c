@@ -16,6 +16,7 @@
 #include "mesh/mesh.h"
 #include "mesh/pipeline/adaptive.h"
 #include "mesh/pipeline/parts.h"
+#include "mesh/view.h"
 #include "scene/reference.h"
 #include "scene/tree/parts.h"
 
@@ -162,11 +163,8 @@ csgm_status csgm_mesh_cluster(csgm_context *context, const csgm_mesh_view *mesh,
                               uint32_t *cluster_count, double *cell_size)
 {
     if (!context || !csg_view_is_sound(mesh) || (mesh->vertex_count && !cluster_of) ||
-        !cluster_count || !cell_size)
+        !cluster_count || !cell_size || !csg_view_is_in_range(mesh))
         return CSGM_ERR_ARGUMENT;
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
-        if (mesh->indices[i] >= mesh->vertex_count)
-            return CSGM_ERR_ARGUMENT;
     return csg_mesh_cluster(context, mesh, frame, most_triangles, cluster_of, cluster_count,
                             cell_size);
 }

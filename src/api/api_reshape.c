@@ -10,6 +10,7 @@
 #include "csgmesh/reshaping.h"
 #include "diff/diff.h"
 #include "mesh/foreign/foreign.h"
+#include "mesh/view.h"
 
 csgm_reshape_options csgm_reshape_options_default(void)
 {
@@ -33,18 +34,6 @@ static bool is_sound(const csgm_reshape_options *o)
            o->simplify_share >= 0 && o->simplify_share < 1;
 }
 
-static bool can_be_reshaped(const csgm_mesh_view *mesh)
-{
-    const double *origin = &mesh->origin.x;
-    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++)
-        if (!isfinite(mesh->positions[i]))
-            return false;
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
-        if (mesh->indices[i] >= mesh->vertex_count)
-            return false;
-    return isfinite(origin[0]) && isfinite(origin[1]) && isfinite(origin[2]);
-}
-
 typedef struct task {
     csgm_context *context;
     const csgm_reshape_options *options;
@@ -52,19 +41,6 @@ typedef struct task {
     csgm_mesh *mended; /* and smoothed: what the rest is measured against */
     csgm_mesh *first;  /* mended alone, where it was smoothed */
 } task;
-
-static csgm_box bounds_of(const csgm_mesh_view *mesh)
-{
-    csgm_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (uint64_t i = 0; i < mesh->vertex_count; i++) {
-        const float *p = mesh->positions + 3 * i;
-        box.min = (csgm_vec3){fmin(box.min.x, (double)p[0]), fmin(box.min.y, (double)p[1]),
-                              fmin(box.min.z, (double)p[2])};
-        box.max = (csgm_vec3){fmax(box.max.x, (double)p[0]), fmax(box.max.y, (double)p[1]),
-                              fmax(box.max.z, (double)p[2])};
-    }
-    return box;
-}
 
 /* Is the largest distance within the tolerance? That is proven either way; `lower` and `upper` are
  * what was known by then. */
@@ -139,7 +115,7 @@ static csgm_status change(task *t, csgm_mesh **out, csgm_reshape_stats *stats)
     csgm_mesh_view view = csg_mesh_view(t->mended);
     double allowed = o->simplify_error, lower = 0, upper = INFINITY;
     if (!(allowed > 0) && o->improve)
-        allowed = csgm_quality_tolerance(CSGM_QUALITY_NORMAL, bounds_of(&view));
+        allowed = csgm_quality_tolerance(CSGM_QUALITY_NORMAL, csg_view_bounds(&view));
     bool is_bounded = o->simplify_error > 0 || (o->improve && !(share_of(t) > 0));
     double within = 0.8 * allowed; /* OpenMesh looks at vertices, and at one side of it */
     csgm_status status = CSGM_OK;
@@ -200,7 +176,8 @@ csgm_status csgm_mesh_reshape(csgm_context *context, const csgm_mesh_view *mesh,
         return CSGM_ERR_ARGUMENT;
     *out = NULL;
     if (!context || !csg_view_is_sound(mesh) || !csg_options_adopt(&own, sizeof own, options) ||
-        !is_sound(&own) || !csg_struct_is_known(stats, sizeof *stats) || !can_be_reshaped(mesh))
+        !is_sound(&own) || !csg_struct_is_known(stats, sizeof *stats) ||
+        !csg_view_is_finite(mesh) || !csg_view_is_in_range(mesh))
         return CSGM_ERR_ARGUMENT;
     bool asks = own.simplify_error > 0 || own.simplify_share > 0 || own.triangles || own.improve ||
                 own.smooth;

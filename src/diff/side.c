@@ -12,6 +12,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 #include "mesh/inspect.h"
+#include "mesh/view.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
 
@@ -61,12 +62,10 @@ static csgm_status refuse(csgm_context *context, const char *what)
 
 static csgm_status check_view(csgm_context *context, const csgm_mesh_view *view)
 {
-    for (uint64_t i = 0; i < 3 * view->vertex_count; i++)
-        if (!isfinite(view->positions[i]))
-            return refuse(context, "a coordinate is not a finite number");
-    for (uint64_t i = 0; i < 3 * view->triangle_count; i++)
-        if (view->indices[i] >= view->vertex_count)
-            return refuse(context, "an index of a triangle is out of range");
+    if (!csg_all_finite(view->positions, 3 * view->vertex_count))
+        return refuse(context, "a coordinate is not a finite number");
+    if (!csg_view_is_in_range(view))
+        return refuse(context, "an index of a triangle is out of range");
     if (view->triangle_count > UINT32_MAX / 3) {
         csg_diag_plain(&context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, NULL,
                        "a mesh of %llu triangles is too large to be compared",

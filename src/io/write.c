@@ -19,6 +19,7 @@
 #include "io/metadata.h"
 #include "io/parts.h"
 #include "io/rounding.h"
+#include "mesh/view.h"
 #include "mesh/weld.h"
 
 csgm_write_options csg_write_options_default(void)
@@ -74,8 +75,7 @@ static csgm_status check_metadata(csgm_context *context, const csgm_write_option
 static csgm_status check_levels(csgm_context *context, const csgm_write_options *o,
                                 const char *file)
 {
-    enum { LEVELS_MOST = 8 };
-    if (o->level_count > LEVELS_MOST)
+    if (o->level_count > CSGM_DETAILS_MOST)
         return bad_option(context, file, "there are more than 8 further levels of detail");
     if (o->level_count && !o->levels)
         return CSGM_ERR_ARGUMENT;
@@ -113,35 +113,17 @@ static csgm_status check_options(csgm_context *context, const csgm_write_options
     return check_levels(context, o, file);
 }
 
-/* Not finite = all bits of the exponent set. Integers, since the compiler may not reorder a sum of
- * floats into vectors. */
-static bool all_finite(const float *values, uint64_t count)
-{
-    const uint32_t exponent = 0x7F800000;
-    uint32_t bad = 0;
-    for (uint64_t i = 0; i < count; i++) {
-        uint32_t bits;
-        memcpy(&bits, values + i, sizeof bits);
-        bad |= (bits & exponent) == exponent;
-    }
-    return !bad;
-}
-
 static csgm_status check_mesh(csgm_context *context, const csgm_mesh_view *mesh, const char *file)
 {
     const char *what = NULL;
-    uint32_t largest = 0;
     if (mesh->vertex_count > UINT32_MAX || (mesh->vertex_count && !mesh->positions) ||
         (mesh->triangle_count && !mesh->indices) || mesh->triangle_count > UINT64_MAX / 256)
         return CSGM_ERR_ARGUMENT;
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
-        largest = mesh->indices[i] > largest ? mesh->indices[i] : largest;
-    if (mesh->triangle_count && largest >= mesh->vertex_count)
+    if (!csg_view_is_in_range(mesh))
         what = "a triangle of the mesh names a vertex that does not exist";
-    else if (!isfinite(mesh->origin.x + mesh->origin.y + mesh->origin.z) ||
-             !all_finite(mesh->positions, 3 * mesh->vertex_count))
+    else if (!csg_view_is_finite(mesh))
         what = "a coordinate of the mesh is infinite or not a number";
-    else if (mesh->normals && !all_finite(mesh->normals, 3 * mesh->vertex_count))
+    else if (mesh->normals && !csg_all_finite(mesh->normals, 3 * mesh->vertex_count))
         what = "a normal of the mesh is infinite or not a number";
     uint16_t most = 0;
     for (uint64_t i = 0; mesh->materials && i < 2 * mesh->vertex_count; i++)

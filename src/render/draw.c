@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/trace.h"
+#include "mesh/view.h"
 
 enum { VERTICES_PER_ITEM = 1 << 14 };
 
@@ -284,18 +285,6 @@ static csgm_status draw_all(csg_draw *draw, csgm_render_stats *stats)
     return status;
 }
 
-static csg_box bounds_of(const csgm_mesh_view *mesh)
-{
-    csg_box box = csg_box_empty();
-    const csg_draw draw = {.mesh = mesh};
-    for (uint64_t v = 0; v < mesh->vertex_count; v++) {
-        csg_vec3 p = csg_draw_position(&draw, (uint32_t)v);
-        if (isfinite(p.x + p.y + p.z))
-            box = csg_box_hull(box, (csg_box){p, p});
-    }
-    return box;
-}
-
 csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                             const csgm_render_options *options, csgm_image **out,
                             csgm_render_stats *stats)
@@ -305,7 +294,7 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     csgm_render_options own = *options;
     own.slice_axis = -1; /* of scenes */
     *stats = (csgm_render_stats){0};
-    csgm_status status = csg_picture_begin(&picture, context, &own, bounds_of(mesh));
+    csgm_status status = csg_picture_begin(&picture, context, &own, csg_view_bounds(mesh));
     if (status == CSGM_OK) {
         const csg_view *view = &picture.view;
         csg_draw draw = {.picture = &picture,

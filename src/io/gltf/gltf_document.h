@@ -20,8 +20,8 @@ enum {
     CSG_GLTF_INDICES = 34963
 };
 
-enum { CSG_GLTF_LEVELS_MOST = 9 }; /* of detail, the first one too */
-enum { CSG_GLTF_NONE = -1 };       /* of what refers to a table's row */
+enum { CSG_GLTF_LEVELS_MOST = CSGM_DETAILS_MOST + 1 }; /* of detail, the first one too */
+enum { CSG_GLTF_NONE = -1 };                           /* of what refers to a table's row */
 
 typedef struct csg_gltf_view {
     uint64_t offset, bytes;

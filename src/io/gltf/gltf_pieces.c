@@ -201,10 +201,11 @@ static bool find_all(finder *f, fresh *out, uint32_t *least, size_t *shape_of)
     for (size_t i = 0; i < source->show_count; i++) {
         const csg_gltf_show *show = &source->shows[i];
         const csg_gltf_shape *shape = &source->shapes[show->shape];
-        if (out->show_count + PIECES_MOST + 1 > out->room &&
-            !make_room(&source->arena, out, PIECES_MOST + 1))
+        bool repeats = find(f, shape, least);
+        size_t more = repeats ? f->count : 1;
+        if (out->show_count + more > out->room && !make_room(&source->arena, out, more))
             return false;
-        if (find(f, shape, least)) {
+        if (repeats) {
             add_pieces(out, shape, show, f, shape_of);
             continue;
         }

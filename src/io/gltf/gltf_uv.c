@@ -166,10 +166,10 @@ static uint32_t *merged(projector *p)
     bool failed;
     if (!to)
         return NULL;
-    csg_weld_map(p->source->arena.memory, mesh, CSG_WELD_RUNS, p->first, &failed);
-    if (!mesh->split)
-        for (uint64_t i = 0; i < mesh->vertex_count; i++)
-            p->first[i] = (uint32_t)i;
+    if (mesh->split)
+        csg_weld_map(p->source->arena.memory, mesh, CSG_WELD_RUNS, p->first, &failed);
+    for (uint64_t i = 0; !mesh->split && i < mesh->vertex_count; i++)
+        p->first[i] = (uint32_t)i;
     /* first[v]: the vertex that v is one with; then, in the order of copies, the copy */
     uint32_t *copy_at = csg_arena_alloc(&p->source->arena, mesh->vertex_count * sizeof *copy_at);
     for (uint64_t i = 0; copy_at && i < mesh->vertex_count; i++)

@@ -35,6 +35,19 @@ static csgm_status begin_query(query *q, csgm_workspace *workspace, const char *
     return CSGM_OK;
 }
 
+/* The same, with what the name at the byte means. */
+static csgm_status begin_query_at(query *q, csgm_workspace *workspace, const char *path,
+                                  uint32_t offset, csgm_name_fn *each, void *user,
+                                  csg_edit_target *target)
+{
+    uint32_t from, to;
+    csgm_status status = begin_query(q, workspace, path, each, user);
+    *target = (csg_edit_target){NULL, NONE, NONE};
+    if (status == CSGM_OK && q->file)
+        *target = csg_edit_resolve_at(workspace, q->file, offset, &from, &to);
+    return status;
+}
+
 static csgm_status end_query(query *q)
 {
     csg_arena_reset(&q->arena);
@@ -88,14 +101,11 @@ csgm_status csgm_workspace_find(csgm_workspace *workspace, const char *path, uin
                                 csgm_name_fn *each, void *user)
 {
     query q;
-    csgm_status status = begin_query(&q, workspace, path, each, user);
+    csgm_name name;
+    csg_edit_target target;
+    csgm_status status = begin_query_at(&q, workspace, path, offset, each, user, &target);
     if (status != CSGM_OK)
         return status;
-    uint32_t from, to;
-    csgm_name name;
-    csg_edit_target target = {NULL, NONE, NONE};
-    if (q.file)
-        target = csg_edit_resolve_at(workspace, q.file, offset, &from, &to);
     if (csg_edit_target_exists(target))
         answer(&q, target, &name);
     return end_query(&q);
@@ -146,14 +156,11 @@ csgm_status csgm_workspace_uses(csgm_workspace *workspace, const char *path, uin
                                 csgm_name_fn *each, void *user)
 {
     query q;
-    csgm_status status = begin_query(&q, workspace, path, each, user);
+    csgm_name what;
+    csg_edit_target target;
+    csgm_status status = begin_query_at(&q, workspace, path, offset, each, user, &target);
     if (status != CSGM_OK)
         return status;
-    uint32_t from, to;
-    csgm_name what;
-    csg_edit_target target = {NULL, NONE, NONE};
-    if (q.file)
-        target = csg_edit_resolve_at(workspace, q.file, offset, &from, &to);
     if (csg_edit_target_exists(target) && !csg_edit_describe(&q.arena, target, &what))
         workspace->no_memory = true;
     if (csg_edit_target_exists(target) && !workspace->no_memory) {
