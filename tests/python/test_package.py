@@ -77,7 +77,7 @@ def test_the_page_holds_the_mesh_and_needs_nothing():
     assert np.allclose(low + steps / 65535 * (high - low), mesh.vertices, atol=1e-4)
     assert np.array_equal(np.frombuffer(base64.b64decode(model["indices"]), "<u4").reshape(-1, 3), mesh.triangles)
     assert np.array_equal(np.frombuffer(base64.b64decode(model["colors"]), np.uint8).reshape(-1, 3), mesh.colors[:, :3])
-    assert (ROOT / "tools" / "csgmesh" / "diff" / "report" / "view.js").read_text() in page
+    assert (ROOT / "tools" / "csgmesh" / "page" / "view.js").read_text() in page
 
 
 def test_in_a_notebook():

@@ -58,7 +58,7 @@ bool batch_write_small(const char *path, const char *text, size_t length)
     return end_file(file, cli_write_fully(csgm_file_descriptor(file), text, length), false);
 }
 
-char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
+char *batch_read_small(cli_arena *arena, const char *path, size_t *length)
 {
     enum { LARGEST = 16 << 20 };
     struct stat status;
@@ -68,7 +68,7 @@ char *batch_read_small(batch_arena *arena, const char *path, size_t *length)
     char *text = NULL;
     *length = 0;
     if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && status.st_size <= LARGEST)
-        text = batch_alloc(arena, (size_t)status.st_size + 1);
+        text = cli_arena_alloc(arena, (size_t)status.st_size + 1);
     while (text && *length < (size_t)status.st_size) {
         ssize_t got = read(fd, text + *length, (size_t)status.st_size - *length);
         if (got < 0 && errno == EINTR)

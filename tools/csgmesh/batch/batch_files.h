@@ -4,15 +4,15 @@
 #ifndef CLI_BATCH_FILES_H
 #define CLI_BATCH_FILES_H
 
-#include "batch/batch_arena.h"
 #include "batch/batch_hash.h"
+#include "core/arena.h"
 
 /* All folders of the path but the last piece; with the last one too if `whole`. */
 bool batch_make_folders(const char *path, bool whole);
 /* Appears complete or not at all. */
 bool batch_write_small(const char *path, const char *text, size_t length);
 /* The whole of a file of at most 16 MiB, terminated, in the arena; NULL with errno. */
-char *batch_read_small(batch_arena *arena, const char *path, size_t *length);
+char *batch_read_small(cli_arena *arena, const char *path, size_t *length);
 /* Copies, and takes the target's name only if the bytes have this digest (else EBADMSG). With
  * `if_changed` a target with these bytes is left alone. */
 bool batch_copy(const char *from, const char *to, const batch_digest *digest, bool if_changed,

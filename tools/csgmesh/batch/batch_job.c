@@ -55,20 +55,16 @@ static bool is_long_work(maker *m)
     mesh.cell_size = options->cell_size * EIGHTH;
     if (options->given[CLI_OPTION_bounds])
         mesh.bounds = options->bounds;
-    cli_console kept = m->app.console;
-    FILE *nowhere = fopen("/dev/null", "we");
-    if (!nowhere)
+    cli_silence silence;
+    if (!cli_silence_begin(&silence, &m->app.console))
         return false;
-    m->app.console.out = nowhere;
     double begin_s = cli_now_s();
     if (csgm_field_compile(m->app.context, m->work.scene, &field) == CSGM_OK)
         csgm_mesh_build(m->app.context, field, &mesh, &probe, NULL);
     double seconds = (cli_now_s() - begin_s) * EIGHTH * EIGHTH;
     csgm_mesh_destroy(probe);
     csgm_field_destroy(field);
-    cli_console_flush(&m->app.console);
-    m->app.console = kept;
-    fclose(nowhere);
+    cli_silence_end(&silence, &m->app.console);
     return seconds > LARGE_S;
 }
 
@@ -76,11 +72,16 @@ static bool is_long_work(maker *m)
 
 static int add_output(maker *m, const char *path, const char *format, const char *part)
 {
-    batch_arena *arena = &m->result->arena;
-    batch_output output = {
-        batch_strdup(arena, path), format, part ? batch_strdup(arena, part) : NULL, {{0}}, 0, 0, 0};
-    batch_output *place =
-        batch_push(arena, (void **)&m->result->outputs, &m->result->output_count, sizeof output);
+    cli_arena *arena = &m->result->arena;
+    batch_output output = {cli_arena_strdup(arena, path),
+                           format,
+                           part ? cli_arena_strdup(arena, part) : NULL,
+                           {{0}},
+                           0,
+                           0,
+                           0};
+    batch_output *place = cli_arena_push(arena, (void **)&m->result->outputs,
+                                         &m->result->output_count, sizeof output);
     if (!place || arena->failed)
         return fail_memory(m);
     *place = output;
@@ -295,10 +296,10 @@ static FILE *open_console(maker *m, char **text, size_t *length)
 /* As after -o: what is made of a scene may depend on the formats. */
 static void set_outputs(maker *m)
 {
-    batch_arena *arena = &m->result->arena;
+    cli_arena *arena = &m->result->arena;
     cli_list names = {0};
     for (size_t i = 0; i < m->job->formats.count; i++)
-        batch_add(arena, &names, batch_printf(arena, "mesh.%s", m->job->formats.items[i]));
+        cli_list_add(arena, &names, cli_arena_printf(arena, "mesh.%s", m->job->formats.items[i]));
     m->app.options.outputs = names;
 }
 

@@ -25,7 +25,7 @@ __attribute__((format(printf, 3, 4))) static int refuse(const reader *r, const c
     return CLI_INPUT_AT_FAULT;
 }
 
-static int take_text(const reader *r, const batch_value *value, const char **out)
+static int take_text(const reader *r, const cli_value *value, const char **out)
 {
     if (value->kind != CSGM_JSON_STRING || !*value->text)
         return refuse(r, NULL, "\"%s\" wants a text in quotes", value->key);
@@ -34,54 +34,56 @@ static int take_text(const reader *r, const batch_value *value, const char **out
 }
 
 /* "glb" or ["glb", "stl"]. */
-static int take_list(const reader *r, const batch_value *value, cli_list *out)
+static int take_list(const reader *r, const cli_value *value, cli_list *out)
 {
     *out = (cli_list){0};
     bool is_list = value->kind == CSGM_JSON_ARRAY;
-    for (const batch_value *v = is_list ? value->first : value; v; v = is_list ? v->next : NULL) {
+    for (const cli_value *v = is_list ? value->first : value; v; v = is_list ? v->next : NULL) {
         if (v->kind != CSGM_JSON_STRING || !*v->text)
             return refuse(r, NULL, "\"%s\" wants a text in quotes, or a list of them", value->key);
-        batch_add(&r->plan->arena, out, v->text);
+        cli_list_add(&r->plan->arena, out, v->text);
     }
     return out->count ? CLI_DONE : refuse(r, NULL, "\"%s\" is empty", value->key);
 }
 
-static int take_defines(const reader *r, const batch_value *value)
+static int take_defines(const reader *r, const cli_value *value)
 {
-    batch_arena *arena = &r->plan->arena;
+    cli_arena *arena = &r->plan->arena;
     if (value->kind != CSGM_JSON_OBJECT)
         return refuse(r, NULL, "\"defines\" wants an object, as {\"radius\": 5}");
-    for (const batch_value *v = value->first; v; v = v->next) {
+    for (const cli_value *v = value->first; v; v = v->next) {
         const char *text = batch_expression(arena, v);
         if (!text || !*v->key || strchr(v->key, '='))
             return refuse(r, "a number, true, false, a text, or a list of these",
                           "\"defines\": \"%.60s\" has no value that a scene could take", v->key);
-        batch_add(arena, &r->entry->settings.defines, batch_printf(arena, "%s=%s", v->key, text));
+        cli_list_add(arena, &r->entry->settings.defines,
+                     cli_arena_printf(arena, "%s=%s", v->key, text));
     }
     return CLI_DONE;
 }
 
-static int take_metadata(const reader *r, const batch_value *value)
+static int take_metadata(const reader *r, const cli_value *value)
 {
-    batch_arena *arena = &r->plan->arena;
+    cli_arena *arena = &r->plan->arena;
     if (value->kind != CSGM_JSON_OBJECT || !value->first)
         return refuse(r, NULL, "\"meta\" wants an object, as {\"title\": \"Mug\"}");
-    for (const batch_value *v = value->first; v; v = v->next) {
+    for (const cli_value *v = value->first; v; v = v->next) {
         bool text = v->kind == CSGM_JSON_STRING || v->kind == CSGM_JSON_NUMBER;
         if (!text || !*v->text || !*v->key || strchr(v->key, '='))
             return refuse(r, "a text or a number", "\"meta\": \"%.60s\" has no value", v->key);
-        batch_add(arena, &r->entry->settings.meta, batch_printf(arena, "%s=%s", v->key, v->text));
+        cli_list_add(arena, &r->entry->settings.meta,
+                     cli_arena_printf(arena, "%s=%s", v->key, v->text));
     }
     return CLI_DONE;
 }
 
-static int take_includes(const reader *r, const batch_value *value)
+static int take_includes(const reader *r, const cli_value *value)
 {
     cli_list folders;
     int status = take_list(r, value, &folders);
     for (size_t i = 0; status == CLI_DONE && i < folders.count; i++)
-        batch_add(&r->plan->arena, &r->entry->settings.include_dirs,
-                  batch_join(&r->plan->arena, r->entry->folder, folders.items[i]));
+        cli_list_add(&r->plan->arena, &r->entry->settings.include_dirs,
+                     cli_path_join(&r->plan->arena, r->entry->folder, folders.items[i]));
     return status;
 }
 
@@ -99,7 +101,7 @@ static int refuse_unknown(const reader *r, const char *key)
     return refuse(r, near ? hint : "see share/batch.schema.json", "there is no \"%.60s\"", key);
 }
 
-static int take_option(const reader *r, const batch_value *value)
+static int take_option(const reader *r, const cli_value *value)
 {
     const char *wanted;
     cli_option_id id = batch_option_find(value->key);
@@ -111,7 +113,7 @@ static int take_option(const reader *r, const batch_value *value)
 }
 
 /* What stands at the top and in a job alike. */
-static int take_member(const reader *r, const batch_value *v)
+static int take_member(const reader *r, const cli_value *v)
 {
     batch_entry *entry = r->entry;
     if (strcmp(v->key, "formats") == 0)
@@ -130,13 +132,13 @@ static int take_member(const reader *r, const batch_value *v)
         int status = take_text(r, v, &entry->parameter_file);
         if (status == CLI_DONE)
             entry->parameter_file =
-                batch_join(&r->plan->arena, entry->folder, entry->parameter_file);
+                cli_path_join(&r->plan->arena, entry->folder, entry->parameter_file);
         return status;
     }
     return take_option(r, v);
 }
 
-static int read_members(reader *r, const batch_value *job)
+static int read_members(reader *r, const cli_value *job)
 {
     batch_entry *entry = r->entry;
     int status = CLI_DONE;
@@ -144,18 +146,18 @@ static int read_members(reader *r, const batch_value *job)
         entry->scene = job->text;
     else if (job->kind != CSGM_JSON_OBJECT)
         return refuse(r, "as \"mug.txt\" or {\"scene\": \"mug.txt\"}", "this is no job");
-    for (const batch_value *v = job->first; v && status == CLI_DONE; v = v->next)
+    for (const cli_value *v = job->first; v && status == CLI_DONE; v = v->next)
         status = strcmp(v->key, "scene") == 0 ? take_text(r, v, &entry->scene)
                  : strcmp(v->key, "out") == 0 ? take_list(r, v, &entry->outputs)
                                               : take_member(r, v);
     if (status == CLI_DONE && (!entry->scene || !*entry->scene))
         status = refuse(r, "add \"scene\": \"mug.txt\"", "the job names no scene");
-    if (status == CLI_DONE && entry->outputs.count && batch_json_member(job, "name"))
+    if (status == CLI_DONE && entry->outputs.count && cli_value_member(job, "name"))
         status = refuse(r, NULL, "\"out\" and \"name\" both name the outputs: give one");
     return status;
 }
 
-static int read_job(batch_plan *plan, const char *place, const batch_value *job,
+static int read_job(batch_plan *plan, const char *place, const cli_value *job,
                     const batch_entry *defaults, batch_entries *entries)
 {
     batch_entry entry = *defaults;
@@ -167,18 +169,18 @@ static int read_job(batch_plan *plan, const char *place, const batch_value *job,
     entry.settings = defaults->settings;
     batch_settings_overlay(&plan->arena, &entry.settings, &own);
     batch_entry *place_of =
-        batch_push(&plan->arena, (void **)&entries->items, &entries->count, sizeof entry);
+        cli_arena_push(&plan->arena, (void **)&entries->items, &entries->count, sizeof entry);
     if (place_of)
         *place_of = entry;
     return status;
 }
 
 /* What stands beside "jobs". */
-static int read_defaults(reader *r, const batch_value *root, const batch_value **jobs,
+static int read_defaults(reader *r, const cli_value *root, const cli_value **jobs,
                          const char **directory)
 {
     int status = CLI_DONE;
-    for (const batch_value *v = root->first; v && status == CLI_DONE; v = v->next) {
+    for (const cli_value *v = root->first; v && status == CLI_DONE; v = v->next) {
         if (strcmp(v->key, "jobs") == 0)
             *jobs = v;
         else if (strcmp(v->key, "directory") == 0)
@@ -187,20 +189,20 @@ static int read_defaults(reader *r, const batch_value *root, const batch_value *
             status = take_member(r, v);
     }
     if (status == CLI_DONE && *directory)
-        *directory = batch_join(&r->plan->arena, r->entry->folder, *directory);
+        *directory = cli_path_join(&r->plan->arena, r->entry->folder, *directory);
     return status;
 }
 
 int batch_manifest_read(batch_plan *plan, const char *path, batch_entries *entries)
 {
-    batch_arena *arena = &plan->arena;
-    batch_value *root;
-    batch_entry defaults = {.folder = batch_folder_of(arena, path)};
+    cli_arena *arena = &plan->arena;
+    cli_value *root;
+    batch_entry defaults = {.folder = cli_path_folder(arena, path)};
     reader r = {plan, path, &defaults};
-    int status = batch_json_load(plan->app, arena, path, &root);
+    int status = cli_value_load(plan->app, arena, path, &root);
     if (status != CLI_DONE)
         return status;
-    const batch_value *jobs = root->kind == CSGM_JSON_ARRAY ? root : NULL;
+    const cli_value *jobs = root->kind == CSGM_JSON_ARRAY ? root : NULL;
     if (root->kind == CSGM_JSON_OBJECT)
         status = read_defaults(&r, root, &jobs, &entries->directory);
     if (status != CLI_DONE)
@@ -209,8 +211,8 @@ int batch_manifest_read(batch_plan *plan, const char *path, batch_entries *entri
         return refuse(&r, "as {\"jobs\": [\"mug.txt\", {\"scene\": \"knob.txt\"}]}",
                       "the manifest lists no jobs");
     size_t index = 0;
-    for (const batch_value *v = jobs->first; v && status == CLI_DONE; v = v->next)
-        status = read_job(plan, batch_printf(arena, "%s: jobs[%zu]", path, index++), v, &defaults,
-                          entries);
+    for (const cli_value *v = jobs->first; v && status == CLI_DONE; v = v->next)
+        status = read_job(plan, cli_arena_printf(arena, "%s: jobs[%zu]", path, index++), v,
+                          &defaults, entries);
     return status;
 }

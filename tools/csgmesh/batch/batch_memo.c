@@ -18,13 +18,13 @@ void batch_memo_init(batch_memo *memo)
 {
     *memo = (batch_memo){.slots = NULL};
     pthread_mutex_init(&memo->mutex, NULL);
-    memo->slots = batch_alloc(&memo->arena, SLOTS * sizeof(batch_memo_entry *));
+    memo->slots = cli_arena_alloc(&memo->arena, SLOTS * sizeof(batch_memo_entry *));
 }
 
 void batch_memo_release(batch_memo *memo)
 {
     pthread_mutex_destroy(&memo->mutex);
-    batch_arena_reset(&memo->arena);
+    cli_arena_reset(&memo->arena);
 }
 
 static size_t slot_of(const char *path)
@@ -57,10 +57,10 @@ bool batch_memo_digest(batch_memo *memo, const char *path, batch_digest *out)
     if (!batch_hash_path(path, out))
         return false;
     pthread_mutex_lock(&memo->mutex);
-    batch_memo_entry *entry = batch_alloc(&memo->arena, sizeof *entry);
+    batch_memo_entry *entry = cli_arena_alloc(&memo->arena, sizeof *entry);
     if (entry) {
         batch_memo_entry **slot = &memo->slots[slot_of(path)];
-        *entry = (batch_memo_entry){*slot, batch_strdup(&memo->arena, path), *out};
+        *entry = (batch_memo_entry){*slot, cli_arena_strdup(&memo->arena, path), *out};
         if (*entry->path) /* else there was no memory */
             *slot = entry;
     }

@@ -7,12 +7,12 @@
 
 #include <pthread.h>
 
-#include "batch/batch_arena.h"
 #include "batch/batch_hash.h"
+#include "core/arena.h"
 
 typedef struct batch_memo {
     pthread_mutex_t mutex;
-    batch_arena arena;
+    cli_arena arena;
     struct batch_memo_entry **slots;
 } batch_memo;
 

@@ -35,12 +35,12 @@ bool batch_name_has_part(const char *pattern)
     return has_word(pattern, PART);
 }
 
-const char *batch_name_problem(batch_arena *arena, const char *pattern)
+const char *batch_name_problem(cli_arena *arena, const char *pattern)
 {
     size_t length;
     for (const char *c = pattern; (c = strchr(c, '{')); c++)
         if (placeholder(c, &length) == WORDS)
-            return batch_printf(arena, "there is no '%.*s'", (int)strcspn(c, "}") + 1, c);
+            return cli_arena_printf(arena, "there is no '%.*s'", (int)strcspn(c, "}") + 1, c);
     if (!has_word(pattern, EXT))
         return "without {ext} all formats have one name";
     return NULL;
@@ -51,24 +51,24 @@ static bool is_control(char c)
     return (unsigned char)c < 0x20 || c == 0x7F;
 }
 
-static const char *clean(batch_arena *arena, const char *value, bool keeps_slashes)
+static const char *clean(cli_arena *arena, const char *value, bool keeps_slashes)
 {
-    char *copy = (char *)batch_strdup(arena, value);
+    char *copy = (char *)cli_arena_strdup(arena, value);
     for (char *c = copy; *c; c++)
         if (is_control(*c) || (*c == '/' && !keeps_slashes))
             *c = '_';
     return copy;
 }
 
-static const char *stem(batch_arena *arena, const char *path)
+static const char *stem(cli_arena *arena, const char *path)
 {
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
-    return batch_strndup(arena, name, dot && dot != name ? (size_t)(dot - name) : strlen(name));
+    return cli_arena_strndup(arena, name, dot && dot != name ? (size_t)(dot - name) : strlen(name));
 }
 
-static const char *value_of(batch_arena *arena, int word, const batch_name_parts *parts)
+static const char *value_of(cli_arena *arena, int word, const batch_name_parts *parts)
 {
     const char *values[WORDS] = {[SCENE] = word == SCENE ? stem(arena, parts->scene) : NULL,
                                  [FOLDER] = parts->folder,
@@ -78,13 +78,12 @@ static const char *value_of(batch_arena *arena, int word, const batch_name_parts
     return values[word] ? clean(arena, values[word], word == FOLDER) : "";
 }
 
-const char *batch_name_expand(batch_arena *arena, const char *pattern,
-                              const batch_name_parts *parts)
+const char *batch_name_expand(cli_arena *arena, const char *pattern, const batch_name_parts *parts)
 {
     const char *name = "";
     while (*pattern) {
         size_t plain = strcspn(pattern, "{"), length;
-        name = batch_printf(arena, "%s%.*s", name, (int)plain, pattern);
+        name = cli_arena_printf(arena, "%s%.*s", name, (int)plain, pattern);
         pattern += plain;
         if (!*pattern)
             break;
@@ -96,7 +95,7 @@ const char *batch_name_expand(batch_arena *arena, const char *pattern,
             end--;
         if (!*value && *pattern == '/' && (!end || name[end - 1] == '/'))
             pattern++;
-        name = batch_printf(arena, "%.*s%s", (int)end, name, value);
+        name = cli_arena_printf(arena, "%.*s%s", (int)end, name, value);
     }
     return name;
 }

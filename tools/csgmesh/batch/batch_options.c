@@ -92,9 +92,9 @@ static const row *row_of(cli_option_id id)
 
 /* ---- values of a manifest ------------------------------------------------------------- */
 
-static const char *quoted(batch_arena *arena, const char *text)
+static const char *quoted(cli_arena *arena, const char *text)
 {
-    char *out = batch_alloc(arena, 2 * strlen(text) + 3);
+    char *out = cli_arena_alloc(arena, 2 * strlen(text) + 3);
     size_t length = 0;
     if (!out)
         return "";
@@ -113,7 +113,7 @@ static const char *quoted(batch_arena *arena, const char *text)
     return out;
 }
 
-const char *batch_expression(batch_arena *arena, const batch_value *value)
+const char *batch_expression(cli_arena *arena, const cli_value *value)
 {
     if (value->kind == CSGM_JSON_OBJECT)
         return NULL;
@@ -122,36 +122,36 @@ const char *batch_expression(batch_arena *arena, const batch_value *value)
     if (value->kind != CSGM_JSON_ARRAY)
         return strcmp(value->text, "null") == 0 ? "undef" : value->text;
     const char *list = "[";
-    for (const batch_value *v = value->first; v; v = v->next) {
+    for (const cli_value *v = value->first; v; v = v->next) {
         const char *element = batch_expression(arena, v);
         if (!element)
             return NULL;
-        list = batch_printf(arena, "%s%s%s", list, element, v->next ? ", " : "");
+        list = cli_arena_printf(arena, "%s%s%s", list, element, v->next ? ", " : "");
     }
-    return batch_printf(arena, "%s]", list);
+    return cli_arena_printf(arena, "%s]", list);
 }
 
 /* [1, 2, 3] -> "1,2,3"; NULL: it holds more than numbers and strings. */
-static const char *joined(batch_arena *arena, const batch_value *array)
+static const char *joined(cli_arena *arena, const cli_value *array)
 {
     const char *list = "";
-    for (const batch_value *v = array->first; v; v = v->next) {
+    for (const cli_value *v = array->first; v; v = v->next) {
         if (v->kind != CSGM_JSON_NUMBER && v->kind != CSGM_JSON_STRING)
             return NULL;
-        list = batch_printf(arena, "%s%s%s", list, v->text, v->next ? "," : "");
+        list = cli_arena_printf(arena, "%s%s%s", list, v->text, v->next ? "," : "");
     }
     return list;
 }
 
-bool batch_option_set(batch_arena *arena, batch_settings *settings, cli_option_id id,
-                      const batch_value *value, const char **wanted)
+bool batch_option_set(cli_arena *arena, batch_settings *settings, cli_option_id id,
+                      const cli_value *value, const char **wanted)
 {
     const row *option = row_of(id);
     const char **slot = &settings->arguments[id];
     if (strcmp(option->kind, "FLAG") == 0) {
         bool truth = value->kind == CSGM_JSON_WORD && strcmp(value->text, "true") == 0;
         *wanted = "true or false";
-        *slot = truth ? batch_printf(arena, "--%s", option->name) : "";
+        *slot = truth ? cli_arena_printf(arena, "--%s", option->name) : "";
         return truth || (value->kind == CSGM_JSON_WORD && strcmp(value->text, "false") == 0);
     }
     const char *text = value->kind == CSGM_JSON_ARRAY ? joined(arena, value)
@@ -160,13 +160,13 @@ bool batch_option_set(batch_arena *arena, batch_settings *settings, cli_option_i
                            : NULL;
     *wanted = "a number or a string, or a list of them";
     if (text)
-        *slot = batch_printf(arena, "--%s=%s", option->name, text);
+        *slot = cli_arena_printf(arena, "--%s=%s", option->name, text);
     return text != NULL;
 }
 
 /* ---- the command line ----------------------------------------------------------------- */
 
-void batch_options_given(batch_arena *arena, const cli_options *options, batch_settings *out)
+void batch_options_given(cli_arena *arena, const cli_options *options, batch_settings *out)
 {
     for (size_t i = 0; i < ROWS; i++) {
         const row *option = &rows[i];
@@ -174,10 +174,10 @@ void batch_options_given(batch_arena *arena, const cli_options *options, batch_s
         if (!is_of_job(option) || !options->given[option->id])
             continue;
         if (!option->name)
-            out->arguments[option->id] = batch_printf(arena, "-%c%s", option->letter, value);
+            out->arguments[option->id] = cli_arena_printf(arena, "-%c%s", option->letter, value);
         else
-            out->arguments[option->id] =
-                batch_printf(arena, "--%s%s%s", option->name, value ? "=" : "", value ? value : "");
+            out->arguments[option->id] = cli_arena_printf(arena, "--%s%s%s", option->name,
+                                                          value ? "=" : "", value ? value : "");
     }
     out->defines = options->defines;
     out->include_dirs = options->include_dirs;
@@ -201,7 +201,7 @@ static size_t name_length(const char *define)
 }
 
 /* A later definition of the same name replaces the earlier one; so does a later KEY=VALUE. */
-static void add_define(batch_arena *arena, cli_list *defines, const char *define)
+static void add_define(cli_arena *arena, cli_list *defines, const char *define)
 {
     size_t length = name_length(define);
     for (size_t i = 0; i < defines->count; i++)
@@ -210,11 +210,10 @@ static void add_define(batch_arena *arena, cli_list *defines, const char *define
             defines->items[i] = define;
             return;
         }
-    batch_add(arena, defines, define);
+    cli_list_add(arena, defines, define);
 }
 
-void batch_settings_overlay(batch_arena *arena, batch_settings *settings,
-                            const batch_settings *over)
+void batch_settings_overlay(cli_arena *arena, batch_settings *settings, const batch_settings *over)
 {
     bool fineness = false;
     cli_list defines = settings->defines, include_dirs = settings->include_dirs;
@@ -237,26 +236,27 @@ void batch_settings_overlay(batch_arena *arena, batch_settings *settings,
     for (size_t i = 0; i < over->meta.count; i++)
         add_define(arena, &settings->meta, over->meta.items[i]);
     for (size_t i = 0; i < over->include_dirs.count; i++) /* searched first */
-        batch_add(arena, &settings->include_dirs, over->include_dirs.items[i]);
+        cli_list_add(arena, &settings->include_dirs, over->include_dirs.items[i]);
     for (size_t i = 0; i < include_dirs.count; i++)
-        batch_add(arena, &settings->include_dirs, include_dirs.items[i]);
+        cli_list_add(arena, &settings->include_dirs, include_dirs.items[i]);
 }
 
-cli_list batch_settings_arguments(batch_arena *arena, const batch_settings *settings)
+cli_list batch_settings_arguments(cli_arena *arena, const batch_settings *settings)
 {
     cli_list list = {0};
     for (size_t i = 0; i < ROWS; i++) {
         const char *argument = settings->arguments[rows[i].id];
         if (argument && *argument)
-            batch_add(arena, &list, argument);
+            cli_list_add(arena, &list, argument);
     }
     for (size_t i = 0; i < settings->defines.count; i++)
-        batch_add(arena, &list, batch_printf(arena, "--define=%s", settings->defines.items[i]));
+        cli_list_add(arena, &list,
+                     cli_arena_printf(arena, "--define=%s", settings->defines.items[i]));
     for (size_t i = 0; i < settings->include_dirs.count; i++)
-        batch_add(arena, &list,
-                  batch_printf(arena, "--include=%s", settings->include_dirs.items[i]));
+        cli_list_add(arena, &list,
+                     cli_arena_printf(arena, "--include=%s", settings->include_dirs.items[i]));
     for (size_t i = 0; i < settings->meta.count; i++)
-        batch_add(arena, &list, batch_printf(arena, "--meta=%s", settings->meta.items[i]));
+        cli_list_add(arena, &list, cli_arena_printf(arena, "--meta=%s", settings->meta.items[i]));
     return list;
 }
 

@@ -54,12 +54,12 @@ static int check_format(batch_plan *plan, const char *place, const char *name, b
 }
 
 /* "glb,stl" */
-static cli_list split_formats(batch_arena *arena, const char *text)
+static cli_list split_formats(cli_arena *arena, const char *text)
 {
     cli_list list = {0};
     for (;; text++) {
         size_t length = strcspn(text, ",");
-        batch_add(arena, &list, batch_strndup(arena, text, length));
+        cli_list_add(arena, &list, cli_arena_strndup(arena, text, length));
         text += length;
         if (!*text)
             return list;
@@ -74,15 +74,15 @@ static int add_output(batch_plan *plan, batch_job *job, const char *name, const 
     if (!batch_name_stays_below(name))
         return refuse(plan, job->place, "outputs are named by paths below the directory of -d",
                       "'%.200s' is no name for an output", name);
-    batch_add(&plan->arena, &job->formats, cli_drawings_or_mesh_name(format));
-    batch_add(&plan->arena, &job->names, name);
-    batch_add(&plan->arena, &job->outputs, batch_join(&plan->arena, plan->directory, name));
+    cli_list_add(&plan->arena, &job->formats, cli_drawings_or_mesh_name(format));
+    cli_list_add(&plan->arena, &job->names, name);
+    cli_list_add(&plan->arena, &job->outputs, cli_path_join(&plan->arena, plan->directory, name));
     return CLI_DONE;
 }
 
 static int name_outputs(batch_plan *plan, batch_job *job, const batch_entry *entry)
 {
-    batch_arena *arena = &plan->arena;
+    cli_arena *arena = &plan->arena;
     cli_list formats = entry->formats;
     int status = CLI_DONE;
     for (size_t i = 0; i < entry->outputs.count && status == CLI_DONE; i++) {
@@ -106,7 +106,7 @@ static int name_outputs(batch_plan *plan, batch_job *job, const batch_entry *ent
         return refuse(plan, job->place, "placeholders: {scene} {set} {part} {folder} {ext}",
                       "the pattern '%.200s': %s", job->pattern, problem);
     if (!formats.count)
-        batch_add(arena, &formats, "glb");
+        cli_list_add(arena, &formats, "glb");
     for (size_t i = 0; i < formats.count && status == CLI_DONE; i++) {
         batch_name_parts parts = {job->scene, job->folder, job->set, NULL, formats.items[i]};
         status =
@@ -133,12 +133,12 @@ static int parse_options(batch_plan *plan, batch_job *job)
 static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene,
                    const batch_set *set, const char *parameter_file)
 {
-    batch_arena *arena = &plan->arena;
-    batch_job *job = batch_push(arena, (void **)&plan->jobs, &plan->count, sizeof *job);
+    cli_arena *arena = &plan->arena;
+    batch_job *job = cli_arena_push(arena, (void **)&plan->jobs, &plan->count, sizeof *job);
     if (!job)
         return refuse(plan, "", NULL, "out of memory");
     size_t folder_length = strlen(entry->folder);
-    const char *folder = batch_folder_of(arena, scene);
+    const char *folder = cli_path_folder(arena, scene);
     if (folder_length && strncmp(folder, entry->folder, folder_length) == 0)
         folder += folder_length + (folder[folder_length] == '/');
     *job = (batch_job){.place = entry->place,
@@ -154,21 +154,22 @@ static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene
         job->set = set->name;
         job->set_digest = set->digest;
         job->parameter_file = parameter_file;
-        job->title = batch_printf(arena, "%s (%s)", scene, set->name);
-        batch_add(arena, &job->arguments,
-                  batch_printf(arena, "--parameter-file=%s", parameter_file));
-        batch_add(arena, &job->arguments, batch_printf(arena, "--parameter-set=%s", set->name));
+        job->title = cli_arena_printf(arena, "%s (%s)", scene, set->name);
+        cli_list_add(arena, &job->arguments,
+                     cli_arena_printf(arena, "--parameter-file=%s", parameter_file));
+        cli_list_add(arena, &job->arguments,
+                     cli_arena_printf(arena, "--parameter-set=%s", set->name));
     }
     int status = parse_options(plan, job);
     return status == CLI_DONE ? name_outputs(plan, job, entry) : status;
 }
 
 /* mug.json beside mug.txt, as OpenSCAD has it. */
-static const char *file_beside(batch_arena *arena, const char *scene)
+static const char *file_beside(cli_arena *arena, const char *scene)
 {
     const char *slash = strrchr(scene, '/'), *dot = strrchr(scene, '.');
     int length = dot && (!slash || dot > slash + 1) ? (int)(dot - scene) : (int)strlen(scene);
-    return batch_printf(arena, "%.*s.json", length, scene);
+    return cli_arena_printf(arena, "%.*s.json", length, scene);
 }
 
 static bool asks_for_all(const cli_list *patterns)
@@ -218,7 +219,7 @@ static int add_scenes(batch_plan *plan, const batch_entry *entry)
 {
     glob_t found;
     struct stat file;
-    const char *pattern = batch_join(&plan->arena, entry->folder, entry->scene);
+    const char *pattern = cli_path_join(&plan->arena, entry->folder, entry->scene);
     if (!strpbrk(pattern, "*?[") || stat(pattern, &file) == 0)
         return add_scene(plan, entry, pattern);
     if (glob(pattern, GLOB_NOSORT, NULL, &found) != 0)
@@ -226,7 +227,7 @@ static int add_scenes(batch_plan *plan, const batch_entry *entry)
     qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, by_bytes);
     int status = CLI_DONE;
     for (size_t i = 0; status == CLI_DONE && i < found.gl_pathc; i++)
-        status = add_scene(plan, entry, batch_strdup(&plan->arena, found.gl_pathv[i]));
+        status = add_scene(plan, entry, cli_arena_strdup(&plan->arena, found.gl_pathv[i]));
     globfree(&found);
     return status;
 }
@@ -252,7 +253,7 @@ static int read_operands(batch_plan *plan, batch_entries *entries)
             continue;
         }
         batch_entry *entry =
-            batch_push(&plan->arena, (void **)&entries->items, &entries->count, sizeof *entry);
+            cli_arena_push(&plan->arena, (void **)&entries->items, &entries->count, sizeof *entry);
         if (entry)
             *entry = (batch_entry){.place = path, .folder = "", .scene = path};
     }
@@ -275,7 +276,7 @@ static void apply_given(batch_plan *plan, batch_entry *entry)
         entry->parameter_file = options->parameter_file;
     if (options->parameter_set) {
         entry->sets = (cli_list){0};
-        batch_add(&plan->arena, &entry->sets, options->parameter_set);
+        cli_list_add(&plan->arena, &entry->sets, options->parameter_set);
     }
 }
 
@@ -296,7 +297,7 @@ static int check_collisions(batch_plan *plan)
     size_t count = 0, at = 0;
     for (size_t i = 0; i < plan->count; i++)
         count += plan->jobs[i].outputs.count;
-    claim *claims = batch_alloc(&plan->arena, (count + 1) * sizeof *claims);
+    claim *claims = cli_arena_alloc(&plan->arena, (count + 1) * sizeof *claims);
     if (!claims)
         return refuse(plan, "", NULL, "out of memory");
     for (size_t i = 0; i < plan->count; i++)
@@ -364,5 +365,5 @@ void batch_plan_release(batch_plan *plan)
 {
     for (size_t i = 0; i < plan->count; i++)
         cli_options_release(&plan->jobs[i].options);
-    batch_arena_reset(&plan->arena);
+    cli_arena_reset(&plan->arena);
 }

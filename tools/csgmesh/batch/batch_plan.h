@@ -29,7 +29,7 @@ typedef struct batch_job {
 
 typedef struct batch_plan {
     cli_app *app;
-    batch_arena arena;
+    cli_arena arena;
     const char *directory;
     batch_job *jobs;
     size_t count;

@@ -33,15 +33,14 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
     for (size_t i = 0; i < job->formats.count; i++)
         batch_hash_text(&hasher, job->formats.items[i]);
     batch_hash_text(&hasher, job->by_part ? "parts" : "whole");
-    const char *slash = strrchr(job->scene, '/'); /* files name their source */
-    batch_hash_text(&hasher, slash ? slash + 1 : job->scene);
+    batch_hash_text(&hasher, cli_file_name(job->scene)); /* files name their source */
     return batch_hash_end(&hasher);
 }
 
 /* ---- names of files ------------------------------------------------------------------- */
 
 /* The folders in which a job's scene looks for files, in their order; NULL past the end. */
-static const char *search_folder(batch_arena *arena, const batch_job *job, size_t index)
+static const char *search_folder(cli_arena *arena, const batch_job *job, size_t index)
 {
     const cli_list *given = &job->settings.include_dirs;
     csgm_scene_options options = csgm_scene_options_default();
@@ -49,7 +48,7 @@ static const char *search_folder(batch_arena *arena, const batch_job *job, size_
     options.include_dir_count = given->count;
     char folder[4096];
     size_t length = csgm_scene_folder(&options, index, folder, sizeof folder);
-    return length > 0 && length < sizeof folder ? batch_strndup(arena, folder, length) : NULL;
+    return length > 0 && length < sizeof folder ? cli_arena_strndup(arena, folder, length) : NULL;
 }
 
 /* "lib/a.txt" of "parts/lib/a.txt" in "parts"; NULL: it is not below the folder. */
@@ -63,20 +62,20 @@ static const char *below(const char *path, const char *folder)
     return strncmp(path, folder, length) == 0 && path[length] == '/' ? path + length + 1 : NULL;
 }
 
-static const char *name_of(batch_arena *arena, const batch_job *job, const char *path)
+static const char *name_of(cli_arena *arena, const batch_job *job, const char *path)
 {
     const char *folder, *rest;
     if (strcmp(path, job->scene) == 0)
         return "=";
     for (size_t i = 0; (folder = search_folder(arena, job, i)); i++)
         if ((rest = below(path, folder)))
-            return batch_printf(arena, "I%zu/%s", i, rest);
-    rest = below(path, batch_folder_of(arena, job->scene));
-    return batch_printf(arena, "%c/%s", rest ? 'S' : 'A', rest ? rest : path);
+            return cli_arena_printf(arena, "I%zu/%s", i, rest);
+    rest = below(path, cli_path_folder(arena, job->scene));
+    return cli_arena_printf(arena, "%c/%s", rest ? 'S' : 'A', rest ? rest : path);
 }
 
 /* NULL: a name of no file here. */
-static const char *path_of(batch_arena *arena, const batch_job *job, const char *name)
+static const char *path_of(cli_arena *arena, const batch_job *job, const char *name)
 {
     if (strcmp(name, "=") == 0)
         return job->scene;
@@ -86,12 +85,12 @@ static const char *path_of(batch_arena *arena, const batch_job *job, const char 
     if (name[0] == 'A')
         return slash + 1;
     if (name[0] == 'S')
-        return batch_join(arena, batch_folder_of(arena, job->scene), slash + 1);
+        return cli_path_join(arena, cli_path_folder(arena, job->scene), slash + 1);
     const char *folder = search_folder(arena, job, strtoul(name + 1, NULL, 10));
-    return folder ? batch_join(arena, folder, slash + 1) : NULL;
+    return folder ? cli_path_join(arena, folder, slash + 1) : NULL;
 }
 
-const char *batch_output_path(batch_arena *arena, const batch_job *job, const char *directory,
+const char *batch_output_path(cli_arena *arena, const batch_job *job, const char *directory,
                               const char *format, const char *part)
 {
     if (!part)
@@ -99,7 +98,7 @@ const char *batch_output_path(batch_arena *arena, const batch_job *job, const ch
             if (strcmp(job->formats.items[i], format) == 0)
                 return job->outputs.items[i];
     batch_name_parts parts = {job->scene, job->folder, job->set, part, format};
-    return batch_join(arena, directory, batch_name_expand(arena, job->pattern, &parts));
+    return cli_path_join(arena, directory, batch_name_expand(arena, job->pattern, &parts));
 }
 
 /* ---- text ----------------------------------------------------------------------------- */
@@ -113,9 +112,9 @@ static void put_escaped(FILE *out, const char *text)
             fputc(*text, out);
 }
 
-static const char *unescaped(batch_arena *arena, const char *text)
+static const char *unescaped(cli_arena *arena, const char *text)
 {
-    char *copy = (char *)batch_strdup(arena, text), *to = copy;
+    char *copy = (char *)cli_arena_strdup(arena, text), *to = copy;
     for (const char *from = copy; *from; from++) {
         char code[3] = {from[0] == '%' && from[1] ? from[1] : '\0', '\0', '\0'};
         code[1] = code[0] ? from[2] : '\0';
@@ -131,7 +130,7 @@ static const char *unescaped(batch_arena *arena, const char *text)
     return copy;
 }
 
-static void put_record(FILE *out, batch_arena *arena, const batch_job *job, const batch_record *r)
+static void put_record(FILE *out, cli_arena *arena, const batch_job *job, const batch_record *r)
 {
     char digest[BATCH_DIGEST_TEXT];
     batch_digest_print(&r->key, digest);
@@ -160,33 +159,33 @@ static void put_record(FILE *out, batch_arena *arena, const batch_job *job, cons
     fputs("end\n", out);
 }
 
-const char *batch_record_print(batch_arena *arena, const batch_job *job, const batch_record *record)
+const char *batch_record_print(cli_arena *arena, const batch_job *job, const batch_record *record)
 {
     cli_text record_text;
     if (cli_text_open(&record_text))
         put_record(record_text.out, arena, job, record);
     char *text = cli_text_close(&record_text);
-    const char *copy = text ? batch_strndup(arena, text, record_text.length) : NULL;
+    const char *copy = text ? cli_arena_strndup(arena, text, record_text.length) : NULL;
     arena->failed = arena->failed || !text;
     free(text);
     return copy;
 }
 
-static bool parse_input(batch_arena *arena, const batch_job *job, const char *rest,
-                        batch_record *out)
+static bool parse_input(cli_arena *arena, const batch_job *job, const char *rest, batch_record *out)
 {
     batch_input input;
     if (strlen(rest) < BATCH_DIGEST_TEXT || !batch_digest_read(rest, &input.digest))
         return false;
     input.path = path_of(arena, job, unescaped(arena, rest + BATCH_DIGEST_TEXT));
-    batch_input *place = batch_push(arena, (void **)&out->inputs, &out->input_count, sizeof input);
+    batch_input *place =
+        cli_arena_push(arena, (void **)&out->inputs, &out->input_count, sizeof input);
     if (!place || !input.path)
         return false;
     *place = input;
     return true;
 }
 
-static bool parse_output(batch_arena *arena, const batch_job *job, const char *directory,
+static bool parse_output(cli_arena *arena, const batch_job *job, const char *directory,
                          const char *rest, batch_record *out)
 {
     batch_output output = {0};
@@ -203,13 +202,13 @@ static bool parse_output(batch_arena *arena, const batch_job *job, const char *d
     output.part = rest[used] == ' ' ? unescaped(arena, rest + used + 1) : NULL;
     output.path = batch_output_path(arena, job, directory, output.format, output.part);
     batch_output *place =
-        batch_push(arena, (void **)&out->outputs, &out->output_count, sizeof output);
+        cli_arena_push(arena, (void **)&out->outputs, &out->output_count, sizeof output);
     if (place)
         *place = output;
     return place != NULL;
 }
 
-static bool parse_line(batch_arena *arena, const batch_job *job, const char *directory,
+static bool parse_line(cli_arena *arena, const batch_job *job, const char *directory,
                        const char *line, batch_record *out)
 {
     if (strncmp(line, "key ", 4) == 0)
@@ -222,11 +221,11 @@ static bool parse_line(batch_arena *arena, const batch_job *job, const char *dir
     if (strncmp(line, "no ", 3) == 0)
         path = path_of(arena, job, unescaped(arena, line + 3));
     if (path)
-        batch_add(arena, &out->absent, path);
+        cli_list_add(arena, &out->absent, path);
     return path != NULL;
 }
 
-bool batch_record_parse(batch_arena *arena, const batch_job *job, const char *directory,
+bool batch_record_parse(cli_arena *arena, const batch_job *job, const char *directory,
                         const char *text, batch_record *out)
 {
     static const char head[] = "csgmesh batch 1\n";
@@ -235,7 +234,7 @@ bool batch_record_parse(batch_arena *arena, const batch_job *job, const char *di
         return false;
     for (text += sizeof head - 1; *text;) {
         size_t length = strcspn(text, "\n");
-        const char *line = batch_strndup(arena, text, length);
+        const char *line = cli_arena_strndup(arena, text, length);
         if (strcmp(line, "end") == 0)
             return out->input_count > 0 && !arena->failed;
         if (!text[length] || !parse_line(arena, job, directory, line, out))
@@ -253,18 +252,18 @@ static bool is_there(const char *path)
     return stat(path, &status) == 0;
 }
 
-static void note_absent(batch_arena *arena, batch_record *record, const char *path)
+static void note_absent(cli_arena *arena, batch_record *record, const char *path)
 {
     for (size_t i = 0; i < record->absent.count; i++)
         if (strcmp(record->absent.items[i], path) == 0)
             return;
     if (!is_there(path))
-        batch_add(arena, &record->absent, path);
+        cli_list_add(arena, &record->absent, path);
 }
 
 /* A file found in a folder of -I was not beside any file that may have asked for it, nor in the
  * folders before. */
-static void take_absent(batch_arena *arena, const batch_job *job, batch_record *record,
+static void take_absent(cli_arena *arena, const batch_job *job, batch_record *record,
                         const char *path)
 {
     const char *folder, *rest = NULL;
@@ -274,10 +273,10 @@ static void take_absent(batch_arena *arena, const batch_job *job, batch_record *
     if (!rest)
         return;
     for (size_t i = 0; i < found; i++)
-        note_absent(arena, record, batch_join(arena, search_folder(arena, job, i), rest));
+        note_absent(arena, record, cli_path_join(arena, search_folder(arena, job, i), rest));
     for (size_t i = 0; i < record->input_count; i++)
         note_absent(arena, record,
-                    batch_join(arena, batch_folder_of(arena, record->inputs[i].path), rest));
+                    cli_path_join(arena, cli_path_folder(arena, record->inputs[i].path), rest));
 }
 
 static bool is_later(const struct timespec *a, int64_t seconds, int64_t nanoseconds)
@@ -295,19 +294,19 @@ static bool changed_since(const char *path, const int64_t since[2])
                                         !is_later(&status.st_mtim, now.tv_sec, now.tv_nsec));
 }
 
-bool batch_record_take_inputs(batch_arena *arena, batch_memo *memo, const batch_job *job,
+bool batch_record_take_inputs(cli_arena *arena, batch_memo *memo, const batch_job *job,
                               const csgm_scene *scene, const int64_t since[2], batch_record *record)
 {
     const char *path;
     bool sound = true;
     for (size_t i = 0; (path = csgm_scene_dependency(scene, i)); i++) {
-        batch_input input = {.path = batch_strdup(arena, path)};
+        batch_input input = {.path = cli_arena_strdup(arena, path)};
         if (job->parameter_file && strcmp(path, job->parameter_file) == 0)
             continue; /* the set's own text is part of the key */
         sound = sound && !changed_since(path, since);
         sound = batch_memo_digest(memo, path, &input.digest) && sound;
         batch_input *place =
-            batch_push(arena, (void **)&record->inputs, &record->input_count, sizeof input);
+            cli_arena_push(arena, (void **)&record->inputs, &record->input_count, sizeof input);
         if (place)
             *place = input;
     }

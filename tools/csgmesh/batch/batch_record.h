@@ -35,14 +35,13 @@ typedef struct batch_record {
 /* Program, options and parameters: all that the outputs come from but the files. */
 batch_digest batch_record_key(const batch_job *job, const batch_digest *program);
 
-const char *batch_record_print(batch_arena *arena, const batch_job *job,
-                               const batch_record *record);
+const char *batch_record_print(cli_arena *arena, const batch_job *job, const batch_record *record);
 /* false: it is none, or not whole. */
-bool batch_record_parse(batch_arena *arena, const batch_job *job, const char *directory,
+bool batch_record_parse(cli_arena *arena, const batch_job *job, const char *directory,
                         const char *text, batch_record *out);
 /* Digests of the dependencies of a scene and what must stay absent. false: one of them cannot be
  * read, or changed after `since_s` (seconds and nanoseconds of the clock). */
-bool batch_record_take_inputs(batch_arena *arena, batch_memo *memo, const batch_job *job,
+bool batch_record_take_inputs(cli_arena *arena, batch_memo *memo, const batch_job *job,
                               const csgm_scene *scene, const int64_t since[2],
                               batch_record *record);
 /* Are the files what they were? */
@@ -50,7 +49,7 @@ bool batch_record_inputs_hold(batch_memo *memo, const batch_record *record);
 /* Size and time of an output that is there. */
 bool batch_output_look(batch_output *output);
 /* Where the output of a part in a format goes. */
-const char *batch_output_path(batch_arena *arena, const batch_job *job, const char *directory,
+const char *batch_output_path(cli_arena *arena, const batch_job *job, const char *directory,
                               const char *format, const char *part);
 
 #endif

@@ -211,28 +211,28 @@ static batch_digest hash_program(void)
 /* In all folders of outputs, if nobody else is at work there. */
 static void sweep(batch_run *run)
 {
-    batch_arena arena = {0};
+    cli_arena arena = {0};
     const char *latest = "";
     csgm_files_sweep(run->state);
     for (size_t i = 0; i < run->plan->count; i++)
         for (size_t j = 0; j < run->plan->jobs[i].outputs.count; j++) {
-            const char *folder = batch_folder_of(&arena, run->plan->jobs[i].outputs.items[j]);
+            const char *folder = cli_path_folder(&arena, run->plan->jobs[i].outputs.items[j]);
             if (strcmp(folder, latest) != 0)
                 csgm_files_sweep(*folder ? folder : ".");
             latest = folder;
         }
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
 }
 
 static int open_state(batch_run *run)
 {
-    batch_arena *arena = &run->plan->arena;
+    cli_arena *arena = &run->plan->arena;
     const char *directory = run->plan->directory, *cache = run->app->options.cache;
-    run->state = batch_join(arena, directory, ".csgmesh-cache");
+    run->state = cli_path_join(arena, directory, ".csgmesh-cache");
     if (!batch_make_folders(directory, true) || access(directory, W_OK | X_OK) != 0)
         return refuse(run, directory);
     if (!batch_make_folders(run->state, true) ||
-        !batch_locks_open(&run->locks, batch_join(arena, run->state, "lock")))
+        !batch_locks_open(&run->locks, cli_path_join(arena, run->state, "lock")))
         return refuse(run, run->state);
     if (cache && (!batch_make_folders(cache, true) || access(cache, W_OK | X_OK) != 0))
         return refuse(run, cache);
@@ -244,12 +244,12 @@ static int open_state(batch_run *run)
 
 static bool allocate(batch_run *run)
 {
-    batch_arena *arena = &run->plan->arena;
+    cli_arena *arena = &run->plan->arena;
     size_t count = run->plan->count;
-    run->results = batch_alloc(arena, (count + 1) * sizeof *run->results);
-    run->queue = batch_alloc(arena, (count + 1) * sizeof *run->queue);
-    run->large = batch_alloc(arena, (count + 1) * sizeof *run->large);
-    run->locked = batch_alloc(arena, (count + 1) * sizeof *run->locked);
+    run->results = cli_arena_alloc(arena, (count + 1) * sizeof *run->results);
+    run->queue = cli_arena_alloc(arena, (count + 1) * sizeof *run->queue);
+    run->large = cli_arena_alloc(arena, (count + 1) * sizeof *run->large);
+    run->locked = cli_arena_alloc(arena, (count + 1) * sizeof *run->locked);
     return !arena->failed;
 }
 

@@ -25,7 +25,7 @@ typedef struct batch_result {
     uint64_t triangles;    /* of BATCH_MADE */
     batch_output *outputs; /* with their digests, sizes */
     size_t output_count;
-    batch_arena arena; /* of the outputs */
+    cli_arena arena; /* of the outputs */
 } batch_result;
 
 typedef struct batch_run {

@@ -7,16 +7,16 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "batch/batch_json.h"
+#include "core/json_tree.h"
 
 /* The tree's depth is bounded by its reader. */
-static void hash_value(batch_hasher *hasher, const batch_value *value)
+static void hash_value(batch_hasher *hasher, const cli_value *value)
 {
     char kind[2] = {(char)('a' + (int)value->kind), '\0'};
     batch_hash_text(hasher, kind);
     batch_hash_text(hasher, value->key ? value->key : "");
     batch_hash_text(hasher, value->text ? value->text : "");
-    for (const batch_value *v = value->first; v; v = v->next)
+    for (const cli_value *v = value->first; v; v = v->next)
         hash_value(hasher, v);
     batch_hash_text(hasher, "end");
 }
@@ -29,32 +29,32 @@ static const batch_sets *find_file(const batch_sets_cache *cache, const char *pa
     return NULL;
 }
 
-int batch_sets_load(cli_app *app, batch_arena *arena, batch_sets_cache *cache, const char *path,
+int batch_sets_load(cli_app *app, cli_arena *arena, batch_sets_cache *cache, const char *path,
                     batch_sets *out)
 {
     const batch_sets *known = find_file(cache, path);
-    batch_value *root = NULL;
+    cli_value *root = NULL;
     *out = known ? *known : (batch_sets){.path = path};
-    int status = known ? CLI_DONE : batch_json_load(app, arena, path, &root);
+    int status = known ? CLI_DONE : cli_value_load(app, arena, path, &root);
     if (known || status != CLI_DONE)
         return status;
-    const batch_value *sets = batch_json_member(root, "parameterSets");
+    const cli_value *sets = cli_value_member(root, "parameterSets");
     if (!sets || sets->kind != CSGM_JSON_OBJECT) {
         cli_console_say(&app->console, CSGM_ERROR,
                         "it is written {\"parameterSets\": {\"small\": {\"radius\": \"5\"}}}",
                         "%s: the file holds no parameter sets", path);
         return CLI_INPUT_AT_FAULT;
     }
-    for (const batch_value *v = sets->first; v; v = v->next) {
+    for (const cli_value *v = sets->first; v; v = v->next) {
         batch_hasher hasher;
-        batch_set *set = batch_push(arena, (void **)&out->items, &out->count, sizeof *set);
+        batch_set *set = cli_arena_push(arena, (void **)&out->items, &out->count, sizeof *set);
         if (!set)
             break;
         batch_hash_begin(&hasher);
         hash_value(&hasher, v);
         *set = (batch_set){.name = v->key, .digest = batch_hash_end(&hasher)};
     }
-    batch_sets *place = batch_push(arena, (void **)&cache->files, &cache->count, sizeof *place);
+    batch_sets *place = cli_arena_push(arena, (void **)&cache->files, &cache->count, sizeof *place);
     if (place)
         *place = *out;
     return CLI_DONE;
@@ -86,17 +86,18 @@ static int refuse(cli_app *app, const batch_sets *sets, const char *place, const
     return CLI_INPUT_AT_FAULT;
 }
 
-int batch_sets_choose(cli_app *app, batch_arena *arena, const batch_sets *sets, const char *place,
+int batch_sets_choose(cli_app *app, cli_arena *arena, const batch_sets *sets, const char *place,
                       const cli_list *patterns, batch_set **chosen, size_t *count)
 {
-    bool *marks = batch_alloc(arena, sets->count + 1);
+    bool *marks = cli_arena_alloc(arena, sets->count + 1);
     *chosen = NULL;
     *count = 0;
     for (size_t i = 0; marks && i < patterns->count; i++)
         if (!choose(sets, patterns->items[i], marks))
             return refuse(app, sets, place, patterns->items[i]);
     for (size_t i = 0; marks && i < sets->count; i++) {
-        batch_set *copy = marks[i] ? batch_push(arena, (void **)chosen, count, sizeof *copy) : NULL;
+        batch_set *copy =
+            marks[i] ? cli_arena_push(arena, (void **)chosen, count, sizeof *copy) : NULL;
         if (copy)
             *copy = sets->items[i];
     }

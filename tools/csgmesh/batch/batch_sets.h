@@ -5,8 +5,8 @@
 #ifndef CLI_BATCH_SETS_H
 #define CLI_BATCH_SETS_H
 
-#include "batch/batch_arena.h"
 #include "batch/batch_hash.h"
+#include "core/arena.h"
 #include "core/cli.h"
 
 typedef struct batch_set {
@@ -26,11 +26,11 @@ typedef struct batch_sets_cache { /* files are read once */
 } batch_sets_cache;
 
 /* CLI_DONE, or an exit status after a report. */
-int batch_sets_load(cli_app *app, batch_arena *arena, batch_sets_cache *cache, const char *path,
+int batch_sets_load(cli_app *app, cli_arena *arena, batch_sets_cache *cache, const char *path,
                     batch_sets *out);
 /* A name, or a pattern with * and ?. The names chosen, in the file's order; none is an error, told
  * with its place. */
-int batch_sets_choose(cli_app *app, batch_arena *arena, const batch_sets *sets, const char *place,
+int batch_sets_choose(cli_app *app, cli_arena *arena, const batch_sets *sets, const char *place,
                       const cli_list *patterns, batch_set **chosen, size_t *count);
 
 #endif

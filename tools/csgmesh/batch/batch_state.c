@@ -27,12 +27,12 @@ batch_digest batch_job_id(const batch_job *job)
     return batch_hash_end(&hasher);
 }
 
-static const char *record_path(batch_arena *arena, const batch_run *run, const batch_job *job)
+static const char *record_path(cli_arena *arena, const batch_run *run, const batch_job *job)
 {
     char name[BATCH_DIGEST_TEXT];
     batch_digest id = batch_job_id(job);
     batch_digest_print(&id, name);
-    return batch_join(arena, run->state, name);
+    return cli_path_join(arena, run->state, name);
 }
 
 /* ---- beside the outputs --------------------------------------------------------------- */
@@ -49,13 +49,13 @@ static bool output_holds(const batch_output *noted)
            batch_digest_equal(&now.digest, &noted->digest);
 }
 
-static bool depfile_is_there(batch_arena *arena, const batch_output *output)
+static bool depfile_is_there(cli_arena *arena, const batch_output *output)
 {
     struct stat status;
-    return stat(batch_printf(arena, "%s.d", output->path), &status) == 0;
+    return stat(cli_arena_printf(arena, "%s.d", output->path), &status) == 0;
 }
 
-static bool outputs_hold(const batch_run *run, batch_arena *arena, const batch_record *record)
+static bool outputs_hold(const batch_run *run, cli_arena *arena, const batch_record *record)
 {
     for (size_t i = 0; i < record->output_count; i++)
         if (!output_holds(&record->outputs[i]) ||
@@ -67,13 +67,13 @@ static bool outputs_hold(const batch_run *run, batch_arena *arena, const batch_r
 static void take_outputs(batch_result *result, const batch_record *record)
 {
     for (size_t i = 0; i < record->output_count; i++) {
-        batch_output *place = batch_push(&result->arena, (void **)&result->outputs,
-                                         &result->output_count, sizeof *place);
+        batch_output *place = cli_arena_push(&result->arena, (void **)&result->outputs,
+                                             &result->output_count, sizeof *place);
         if (!place)
             return;
         *place = record->outputs[i];
-        place->path = batch_strdup(&result->arena, place->path);
-        place->part = place->part ? batch_strdup(&result->arena, place->part) : NULL;
+        place->path = cli_arena_strdup(&result->arena, place->path);
+        place->part = place->part ? cli_arena_strdup(&result->arena, place->part) : NULL;
     }
 }
 
@@ -91,7 +91,7 @@ static bool is_endangered(const batch_run *run, const batch_record *record)
 
 bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result)
 {
-    batch_arena arena = {0};
+    cli_arena arena = {0};
     batch_record record;
     size_t length;
     batch_digest key = batch_record_key(job, &run->program);
@@ -106,21 +106,21 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
         take_outputs(result, &record);
         result->outcome = BATCH_UP_TO_DATE;
     }
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
     return current;
 }
 
 /* ---- the cache ------------------------------------------------------------------------ */
 
-static const char *object_path(batch_arena *arena, const char *cache, const batch_digest *digest)
+static const char *object_path(cli_arena *arena, const char *cache, const batch_digest *digest)
 {
     char name[BATCH_DIGEST_TEXT];
     batch_digest_print(digest, name);
-    return batch_printf(arena, "%s/objects/%.2s/%s", cache, name, name);
+    return cli_arena_printf(arena, "%s/objects/%.2s/%s", cache, name, name);
 }
 
 /* The folder of all records with this key and this text of the scene; NULL: it cannot be read. */
-static const char *records_folder(batch_arena *arena, batch_run *run, const batch_job *job,
+static const char *records_folder(cli_arena *arena, batch_run *run, const batch_job *job,
                                   const batch_digest *key)
 {
     batch_digest scene, both;
@@ -133,11 +133,11 @@ static const char *records_folder(batch_arena *arena, batch_run *run, const batc
     batch_hash_add(&hasher, scene.bytes, sizeof scene.bytes);
     both = batch_hash_end(&hasher);
     batch_digest_print(&both, name);
-    return batch_printf(arena, "%s/%.2s/%s", run->app->options.cache, name, name);
+    return cli_arena_printf(arena, "%s/%.2s/%s", run->app->options.cache, name, name);
 }
 
 /* Outputs that are not there in the cache, or broken, leave the job to be made. */
-static bool install(batch_run *run, batch_arena *arena, const batch_job *job, batch_record *record)
+static bool install(batch_run *run, cli_arena *arena, const batch_job *job, batch_record *record)
 {
     const cli_options *options = &run->app->options;
     for (size_t i = 0; i < record->output_count; i++) {
@@ -151,7 +151,7 @@ static bool install(batch_run *run, batch_arena *arena, const batch_job *job, ba
     return !options->depfiles || batch_write_depfiles(run->app, record, job);
 }
 
-static void write_state(batch_run *run, batch_arena *arena, const batch_job *job,
+static void write_state(batch_run *run, cli_arena *arena, const batch_job *job,
                         const batch_record *record)
 {
     const char *text = batch_record_print(arena, job, record);
@@ -159,7 +159,7 @@ static void write_state(batch_run *run, batch_arena *arena, const batch_job *job
         batch_write_small(record_path(arena, run, job), text, strlen(text));
 }
 
-static bool try_record(batch_run *run, batch_arena *arena, const batch_job *job, const char *path,
+static bool try_record(batch_run *run, cli_arena *arena, const batch_job *job, const char *path,
                        const batch_digest *key, batch_record *record)
 {
     size_t length;
@@ -172,7 +172,7 @@ static bool try_record(batch_run *run, batch_arena *arena, const batch_job *job,
 
 bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result)
 {
-    batch_arena arena = {0};
+    cli_arena arena = {0};
     batch_record record;
     batch_digest key = batch_record_key(job, &run->program);
     const char *folder =
@@ -183,9 +183,9 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     const struct dirent *entry;
     bool found = false;
     while (directory && !found && (entry = readdir(directory)))
-        found =
-            entry->d_name[0] != '.' &&
-            try_record(run, &arena, job, batch_join(&arena, folder, entry->d_name), &key, &record);
+        found = entry->d_name[0] != '.' &&
+                try_record(run, &arena, job, cli_path_join(&arena, folder, entry->d_name), &key,
+                           &record);
     if (directory)
         closedir(directory);
     if (found) {
@@ -193,11 +193,11 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
         result->outcome = BATCH_CACHED;
         write_state(run, &arena, job, &record);
     }
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
     return found;
 }
 
-static bool store_objects(batch_run *run, batch_arena *arena, const batch_record *record)
+static bool store_objects(batch_run *run, cli_arena *arena, const batch_record *record)
 {
     for (size_t i = 0; i < record->output_count; i++) {
         const batch_output *output = &record->outputs[i];
@@ -210,7 +210,7 @@ static bool store_objects(batch_run *run, batch_arena *arena, const batch_record
 }
 
 /* The record's name is made of its inputs: the same in every process that finds the same. */
-static void store(batch_run *run, batch_arena *arena, const batch_job *job,
+static void store(batch_run *run, cli_arena *arena, const batch_job *job,
                   const batch_record *record)
 {
     char name[BATCH_DIGEST_TEXT];
@@ -226,38 +226,38 @@ static void store(batch_run *run, batch_arena *arena, const batch_job *job,
     batch_hash_text(&hasher, text);
     batch_digest digest = batch_hash_end(&hasher);
     batch_digest_print(&digest, name);
-    const char *path = batch_join(arena, folder, name);
+    const char *path = cli_path_join(arena, folder, name);
     if (batch_make_folders(path, false))
         batch_write_small(path, text, strlen(text));
 }
 
 void batch_note(batch_run *run, const batch_job *job, batch_record *record)
 {
-    batch_arena arena = {0};
+    cli_arena arena = {0};
     write_state(run, &arena, job, record);
     if (run->app->options.cache)
         store(run, &arena, job, record);
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
 }
 
 /* ---- rules for Make and Ninja --------------------------------------------------------- */
 
 bool batch_write_depfiles(cli_app *app, const batch_record *record, const batch_job *job)
 {
-    batch_arena arena = {0};
+    cli_arena arena = {0};
     cli_list dependencies = {0};
     bool good = true;
     for (size_t i = 0; i < record->input_count; i++)
-        batch_add(&arena, &dependencies, record->inputs[i].path);
+        cli_list_add(&arena, &dependencies, record->inputs[i].path);
     if (job->parameter_file)
-        batch_add(&arena, &dependencies, job->parameter_file);
+        cli_list_add(&arena, &dependencies, job->parameter_file);
     for (size_t i = 0; i < record->output_count && good; i++) {
         const char *path = record->outputs[i].path;
         cli_list targets = {&path, 1};
-        good = cli_depfile_put(app, batch_printf(&arena, "%s.d", path), &targets, &dependencies) ==
-               CLI_DONE;
+        good = cli_depfile_put(app, cli_arena_printf(&arena, "%s.d", path), &targets,
+                               &dependencies) == CLI_DONE;
     }
     good = good && !arena.failed;
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
     return good;
 }

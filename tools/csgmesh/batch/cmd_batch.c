@@ -48,7 +48,7 @@ static int run_plan(cli_app *app, batch_plan *plan)
         status = batch_report_end(&state);
     for (size_t i = 0; state.results && i < plan->count; i++) {
         free(state.results[i].messages);
-        batch_arena_reset(&state.results[i].arena);
+        cli_arena_reset(&state.results[i].arena);
     }
     return status;
 }

@@ -28,8 +28,7 @@ static void release(targets *t)
 
 static char *target_of(const cli_options *o, const char *operand)
 {
-    const char *slash = strrchr(operand, '/');
-    const char *name = slash ? slash + 1 : operand;
+    const char *name = cli_file_name(operand);
     const char *dot = strrchr(name, '.');
     int stem = dot && dot != name ? (int)(dot - name) : (int)strlen(name);
     size_t size = strlen(o->directory) + (size_t)stem + strlen(o->format) + 3;
@@ -39,29 +38,85 @@ static char *target_of(const cli_options *o, const char *operand)
     return path;
 }
 
-static bool is_same_file(const char *a, const char *b)
+/* A file that is read or written, and which operand it belongs to. */
+typedef struct place {
+    const char *path;
+    dev_t device;
+    ino_t inode;
+    size_t operand;
+} place;
+
+static int by_path(const void *a, const void *b)
 {
-    struct stat left, right;
-    return stat(a, &left) == 0 && stat(b, &right) == 0 && S_ISREG(left.st_mode) &&
-           left.st_dev == right.st_dev && left.st_ino == right.st_ino;
+    const place *x = a, *y = b;
+    int order = strcmp(x->path, y->path);
+    return order ? order : (x->operand > y->operand) - (x->operand < y->operand);
 }
 
-/* No two files to one place, and nothing over what is read. */
-static int check_targets(cli_app *app, const targets *t)
+static int by_file(const void *a, const void *b)
+{
+    const place *x = a, *y = b;
+    if (x->device != y->device)
+        return x->device < y->device ? -1 : 1;
+    return (x->inode > y->inode) - (x->inode < y->inode);
+}
+
+/* False: it is no file, or not there. */
+static bool identify(const char *path, size_t operand, place *out)
+{
+    struct stat info;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode))
+        return false;
+    *out = (place){path, info.st_dev, info.st_ino, operand};
+    return true;
+}
+
+/* No two files to one place. */
+static int check_clashes(cli_app *app, const targets *t, place *places)
+{
+    const char **operands = app->options.operands.items;
+    for (size_t i = 0; i < t->count; i++)
+        places[i] = (place){.path = t->paths[i], .operand = i};
+    qsort(places, t->count, sizeof *places, by_path);
+    for (size_t i = 1; i < t->count; i++)
+        if (strcmp(places[i - 1].path, places[i].path) == 0)
+            return cli_usage_error(
+                app, "convert one of them by itself, with -o", "%s and %s would both become %s",
+                operands[places[i - 1].operand], operands[places[i].operand], places[i].path);
+    return CLI_DONE;
+}
+
+/* Nothing over what is read. */
+static int check_inputs(cli_app *app, const targets *t, place *places)
 {
     const cli_list *operands = &app->options.operands;
-    for (size_t i = 0; i < t->count; i++)
-        for (size_t j = 0; j < t->count; j++) {
-            if (j < i && strcmp(t->paths[i], t->paths[j]) == 0)
-                return cli_usage_error(app, "convert one of them by itself, with -o",
-                                       "%s and %s would both become %s", operands->items[j],
-                                       operands->items[i], t->paths[i]);
-            if (is_same_file(t->paths[i], operands->items[j]))
-                return cli_usage_error(app, "give another folder",
-                                       "%s would overwrite %s, which this run reads", t->paths[i],
-                                       operands->items[j]);
-        }
+    size_t count = 0;
+    for (size_t i = 0; i < operands->count; i++)
+        count += identify(operands->items[i], i, &places[count]);
+    qsort(places, count, sizeof *places, by_file);
+    for (size_t i = 0; i < t->count; i++) {
+        place target;
+        const place *read = identify(t->paths[i], i, &target)
+                                ? bsearch(&target, places, count, sizeof target, by_file)
+                                : NULL;
+        if (read)
+            return cli_usage_error(app, "give another folder",
+                                   "%s would overwrite %s, which this run reads", t->paths[i],
+                                   read->path);
+    }
     return CLI_DONE;
+}
+
+static int check_targets(cli_app *app, const targets *t)
+{
+    place *places = calloc(t->count, sizeof *places);
+    if (!places)
+        return cli_usage_error(app, NULL, "out of memory");
+    int status = check_clashes(app, t, places);
+    if (status == CLI_DONE)
+        status = check_inputs(app, t, places);
+    free(places);
+    return status;
 }
 
 static int make_targets(cli_app *app, targets *t)

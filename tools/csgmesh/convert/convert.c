@@ -127,8 +127,7 @@ static int write(cli_app *app, const conversion *c)
     const cli_options *o = &app->options;
     int status = cli_exit_status(csgm_files_hold(app->context));
     for (size_t i = 0; i < o->outputs.count; i++)
-        cli_convert_warn_of_losses(app, &c->view, CSGM_UNIT_NONE, o->outputs.items[i],
-                                   cli_outputs_format(o, i));
+        cli_convert_warn_of_losses(app, &c->view, o->outputs.items[i], cli_outputs_format(o, i));
     if (status == CLI_DONE) {
         csgm_write_options options = cli_outputs_options(app, c->path);
         status = cli_outputs_write_view(app, &c->view, &options);

@@ -55,10 +55,9 @@ static bool has_alpha(const csgm_mesh_view *mesh)
     return false;
 }
 
-void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh_view *mesh, csgm_unit unit,
-                                const char *path, csgm_format format)
+void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh_view *mesh, const char *path,
+                                csgm_format format)
 {
-    static const char *const units[] = {"", "", "centimetres", "metres", "inches"};
     uint32_t traits = csgm_format_traits(format);
     list lost = {.length = 0};
     if (mesh->part_count && !(traits & CSGM_KEEPS_NAMES))
@@ -69,8 +68,6 @@ void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh_view *mesh, csgm_u
         add(&lost, "how transparent colours are");
     if (mesh->materials && !(traits & CSGM_KEEPS_MATERIALS))
         add(&lost, "metallic and roughness");
-    if (unit > CSGM_UNIT_MM && !(traits & CSGM_HEEDS_UNIT))
-        add(&lost, "that lengths are in %s", units[unit]);
     csgm_severity severity = app->options.warnings == 1 ? CSGM_ERROR : CSGM_WARNING;
     if (lost.count)
         cli_console_say(&app->console, severity, NULL, "%s: %s has no place for %s",

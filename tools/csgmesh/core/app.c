@@ -23,6 +23,17 @@ double cli_now_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+const char *cli_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+size_t cli_name_length(const char *text)
+{
+    return strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$0123456789");
+}
+
 int cli_exit_status(csgm_status status)
 {
     switch (status) {
@@ -100,9 +111,7 @@ int cli_app_open(cli_app *app)
 /* "radius=50" -> {"radius", "50"}; the name is a copy. */
 static bool split_define(cli_app *app, const char *text, csgm_define *define)
 {
-    static const char letters[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$0123456789";
-    size_t length = strspn(text, letters);
+    size_t length = cli_name_length(text);
     if (length == 0 || text[length] != '=' || (*text >= '0' && *text <= '9')) {
         cli_usage_error(app, "as -D radius=50 or -D 'label=\"top\"'",
                         "-D wants NAME=EXPR, not '%s'", text);

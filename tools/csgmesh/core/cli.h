@@ -52,6 +52,10 @@ int cli_exit_status(csgm_status status);
 /* Flushes standard output; reports a failed write of results. */
 int cli_finish_stdout(cli_app *app, int status);
 double cli_now_s(void);
+/* A path without its folders. */
+const char *cli_file_name(const char *path);
+/* How many bytes from here on are letters of the scene language's names, or digits in them. */
+size_t cli_name_length(const char *text);
 
 /* "csgmesh: error: ..." with a pointer to the help; returns CLI_TROUBLE. hint may be NULL. */
 __attribute__((format(printf, 3, 4))) int cli_usage_error(cli_app *app, const char *hint,

@@ -159,6 +159,23 @@ static void count_lenient(cli_console *console, uint16_t code)
     console->lenient++;
 }
 
+bool cli_silence_begin(cli_silence *silence, cli_console *console)
+{
+    *silence = (cli_silence){.nowhere = fopen("/dev/null", "we"), .kept = *console};
+    if (silence->nowhere)
+        console->out = silence->nowhere;
+    return silence->nowhere != NULL;
+}
+
+void cli_silence_end(cli_silence *silence, cli_console *console)
+{
+    if (!silence->nowhere)
+        return;
+    cli_console_flush(console);
+    *console = silence->kept;
+    fclose(silence->nowhere);
+}
+
 void cli_console_summary(cli_console *console)
 {
     char kinds[16 * CLI_KINDS_MOST] = "";

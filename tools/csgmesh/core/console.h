@@ -57,6 +57,16 @@ __attribute__((format(printf, 4, 5))) void cli_console_say(cli_console *console,
                                                            csgm_severity severity, const char *hint,
                                                            const char *format, ...);
 
+/* Until it ends, what the console is told goes nowhere and is not counted: for work whose findings
+ * other work will say, or has said. */
+typedef struct cli_silence {
+    FILE *nowhere;
+    cli_console kept;
+} cli_silence;
+/* false: there is no place for it (/dev/null), and it does not begin. */
+bool cli_silence_begin(cli_silence *silence, cli_console *console);
+void cli_silence_end(cli_silence *silence, cli_console *console);
+
 /* --summary: what was found, in one line. */
 void cli_console_summary(cli_console *console);
 

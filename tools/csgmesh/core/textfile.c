@@ -4,8 +4,10 @@
 #include "core/textfile.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 bool cli_write_fully(int fd, const char *bytes, size_t count)
@@ -74,6 +76,43 @@ int cli_text_write(cli_app *app, cli_text *text, const char *path)
         cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
     free(bytes);
     return status;
+}
+
+/* Why a file cannot be read as a whole, written to `text` where it is no fixed words; NULL: it can,
+ * as far as is known. */
+static const char *unreadable(int fd, size_t largest, struct stat *info, char text[64])
+{
+    if (fd < 0 || fstat(fd, info) != 0)
+        return strerror(errno);
+    if (!S_ISREG(info->st_mode))
+        return S_ISDIR(info->st_mode) ? "this is a directory" : "this is not a regular file";
+    snprintf(text, 64, "it is larger than %zu MiB", largest >> 20);
+    return (size_t)info->st_size > largest ? text : NULL;
+}
+
+char *cli_read_file(cli_app *app, const char *path, size_t largest, size_t *length)
+{
+    struct stat info;
+    char words[64];
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const char *reason = unreadable(fd, largest, &info, words);
+    char *text = reason ? NULL : malloc((size_t)info.st_size + 1);
+    if (!reason && !text)
+        reason = "out of memory";
+    ssize_t got = 1;
+    for (*length = 0; !reason && *length < (size_t)info.st_size && got != 0;) {
+        got = read(fd, text + *length, (size_t)info.st_size - *length);
+        if (got < 0 && errno != EINTR)
+            reason = strerror(errno);
+        *length += got > 0 ? (size_t)got : 0;
+    }
+    if (fd >= 0)
+        close(fd);
+    if (!reason)
+        return text;
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read %s: %s", path, reason);
+    free(text);
+    return NULL;
 }
 
 char *cli_read_stdin(cli_app *app, size_t *length)

@@ -28,6 +28,8 @@ int cli_text_write(cli_app *app, cli_text *text, const char *path);
 int cli_write_text(cli_app *app, const char *path, const char *text, size_t length);
 /* All of it, past interruptions; false with errno. */
 bool cli_write_fully(int fd, const char *bytes, size_t count);
+/* All of a regular file, NULL on failure (reported). The caller frees it. */
+char *cli_read_file(cli_app *app, const char *path, size_t largest, size_t *length);
 /* All of standard input, NULL on failure (reported). The caller frees it. */
 char *cli_read_stdin(cli_app *app, size_t *length);
 

@@ -174,7 +174,7 @@ int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_form
 
 void cli_work_release(cli_work *work)
 {
-    for (size_t i = 0; i < CLI_LEVELS_MOST; i++)
+    for (size_t i = 0; i < CSGM_DETAILS_MOST; i++)
         csgm_mesh_destroy(work->level_meshes[i]);
     csgm_mesh_destroy(work->mesh);
     csgm_field_destroy(work->field);

@@ -6,16 +6,14 @@
 
 #include "core/cli.h"
 
-enum { CLI_LEVELS_MOST = 8 }; /* of --lod, without the first */
-
 typedef struct cli_work {
     csgm_scene *scene;
     csgm_field *field;
     csgm_mesh *mesh;
     csgm_scene_info info;
     csgm_mesh_stats stats;
-    csgm_mesh *level_meshes[CLI_LEVELS_MOST]; /* of --lod */
-    csgm_level levels[CLI_LEVELS_MOST];
+    csgm_mesh *level_meshes[CSGM_DETAILS_MOST]; /* of --lod */
+    csgm_level levels[CSGM_DETAILS_MOST];
     size_t level_count;
     bool is_leveled; /* they are made */
     double compile_s;

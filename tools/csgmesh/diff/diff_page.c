@@ -12,7 +12,7 @@
 #include "diff/diff_report.h"
 
 static const unsigned char page[] = {
-#include <report_page.inc> /* made by report/embed.py */
+#include <report_page.inc> /* made by ../page/embed.py */
 };
 
 static const char *const verdicts[] = {"same", "different", "only in A", "only in B", "failed"};

@@ -3,57 +3,19 @@
  * is laid out already is not written again; `-` goes from standard input to standard output. The
  * worst exit status of all texts is that of the command.
  */
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/cli.h"
 #include "core/textfile.h"
 #include "csgmesh/editing.h"
 
-static int refuse(cli_app *app, const char *path, const char *reason)
-{
-    cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read %s: %s", path, reason);
-    return CLI_TROUBLE;
-}
-
-/* All of a file, for the caller to free; NULL after a message. */
-static char *read_file(cli_app *app, const char *path, size_t *length)
+/* All of a text, for the caller to free; NULL after a message. */
+static char *read_text(cli_app *app, const char *path, size_t *length)
 {
     enum { LARGEST = 64 << 20 }; /* as that of a scene */
-    if (strcmp(path, "-") == 0)
-        return cli_read_stdin(app, length);
-    struct stat info;
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    const char *reason = NULL;
-    char *text = NULL;
-    *length = 0;
-    if (file < 0 || fstat(file, &info) != 0)
-        reason = strerror(errno);
-    else if (!S_ISREG(info.st_mode))
-        reason = S_ISDIR(info.st_mode) ? "this is a directory" : "this is not a regular file";
-    else if (info.st_size > LARGEST)
-        reason = "the text is larger than 64 MiB";
-    else if (!(text = malloc((size_t)info.st_size + 1)))
-        reason = "out of memory";
-    while (!reason && *length < (size_t)info.st_size) {
-        ssize_t got = read(file, text + *length, (size_t)info.st_size - *length);
-        if (got == 0)
-            break;
-        if (got < 0 && errno != EINTR)
-            reason = strerror(errno);
-        *length += got > 0 ? (size_t)got : 0;
-    }
-    if (file >= 0)
-        close(file);
-    if (!reason)
-        return text;
-    refuse(app, path, reason);
-    free(text);
-    return NULL;
+    return strcmp(path, "-") == 0 ? cli_read_stdin(app, length)
+                                  : cli_read_file(app, path, LARGEST, length);
 }
 
 /* Where the text in its new layout goes. */
@@ -81,7 +43,7 @@ static void take(void *user, const char *text, size_t length)
 static int format(cli_app *app, const char *path)
 {
     target to = {.app = app, .path = path, .status = CLI_DONE};
-    char *text = read_file(app, path, &to.length);
+    char *text = read_text(app, path, &to.length);
     to.text = text;
     if (!text)
         return CLI_TROUBLE;

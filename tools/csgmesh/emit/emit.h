@@ -50,11 +50,11 @@ int emit_meson(const emit_rules *rules);
 int emit_cmake(const emit_rules *rules);
 
 /* 'text' for a POSIX shell, bare where that is safe. */
-const char *emit_shell_quoted(batch_arena *arena, const char *text);
+const char *emit_shell_quoted(cli_arena *arena, const char *text);
 /* The word as text, with paths as they were given. */
-const char *emit_word_text(batch_arena *arena, const emit_rule *rule, const emit_word *word,
+const char *emit_word_text(cli_arena *arena, const emit_rule *rule, const emit_word *word,
                            const char *directory);
 /* The command in a shell's quotes, its words with spaces between. */
-const char *emit_command(batch_arena *arena, const emit_rules *rules, const emit_rule *rule);
+const char *emit_command(cli_arena *arena, const emit_rules *rules, const emit_rule *rule);
 
 #endif

@@ -71,7 +71,7 @@ static void put_rule(const emit_rules *rules, const emit_rule *rule)
     fputs("\nadd_custom_command(\n  OUTPUT", stdout);
     put_outputs(rule);
     fputs("\n  COMMAND \"${CMAKE_COMMAND}\" -E make_directory ", stdout);
-    put_path("BINARY", "", batch_folder_of(&rules->plan->arena, rule->outputs.items[0]));
+    put_path("BINARY", "", cli_path_folder(&rules->plan->arena, rule->outputs.items[0]));
     fputs("\n  COMMAND \"${CSGMESH}\" -j 1", stdout);
     for (size_t i = 0; i < rule->word_count; i++) {
         putchar(' ');

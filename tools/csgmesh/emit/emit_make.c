@@ -29,7 +29,7 @@ static void put_command(const char *text)
 }
 
 /* A batch leaves outputs that are up to date alone; Make goes by times only. */
-static void put_touch(batch_arena *arena, const emit_rule *rule)
+static void put_touch(cli_arena *arena, const emit_rule *rule)
 {
     fputs("\t@touch", stdout);
     for (size_t i = 0; i < rule->outputs.count; i++) {
@@ -41,8 +41,8 @@ static void put_touch(batch_arena *arena, const emit_rule *rule)
 
 static void put_rule(const emit_rules *rules, const emit_rule *rule)
 {
-    batch_arena *arena = &rules->plan->arena;
-    const char *folder = batch_folder_of(arena, rule->outputs.items[0]);
+    cli_arena *arena = &rules->plan->arena;
+    const char *folder = cli_path_folder(arena, rule->outputs.items[0]);
     putchar('\n');
     for (size_t i = 0; i < rule->outputs.count; i++) {
         put_name(rule->outputs.items[i]);

@@ -55,7 +55,7 @@ static void put_rule(const emit_rules *rules, const emit_rule *rule)
         put_string(rule->names.items[i]);
     }
     fputs("],\n  depfile: ", stdout);
-    put_string(batch_printf(&rules->plan->arena, "%s.d", rule->names.items[0]));
+    put_string(cli_arena_printf(&rules->plan->arena, "%s.d", rule->names.items[0]));
     fputs(",\n  command: [csgmesh, '-j', '1'", stdout);
     for (size_t i = 0; i < rule->word_count; i++) {
         fputs(", ", stdout);

@@ -28,7 +28,7 @@ static void put_value(const char *text)
 
 static void put_rule(const emit_rules *rules, const emit_rule *rule)
 {
-    batch_arena *arena = &rules->plan->arena;
+    cli_arena *arena = &rules->plan->arena;
     fputs("\nbuild", stdout);
     for (size_t i = 0; i < rule->outputs.count; i++) {
         putchar(' ');

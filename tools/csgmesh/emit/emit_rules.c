@@ -10,7 +10,7 @@
 static void add_word(batch_plan *plan, emit_rule *rule, emit_word word)
 {
     emit_word *place =
-        batch_push(&plan->arena, (void **)&rule->words, &rule->word_count, sizeof word);
+        cli_arena_push(&plan->arena, (void **)&rule->words, &rule->word_count, sizeof word);
     if (place)
         *place = word;
 }
@@ -63,18 +63,18 @@ static void add_mesh_words(batch_plan *plan, emit_rule *rule)
 /* What is known of the name now stands in the pattern. */
 static void add_batch_words(batch_plan *plan, emit_rule *rule)
 {
-    batch_arena *arena = &plan->arena;
+    cli_arena *arena = &plan->arena;
     const batch_job *job = rule->job;
     batch_name_parts known = {job->scene, job->folder, job->set, "{part}", "{ext}"};
     const char *formats = "--format=";
     for (size_t i = 0; i < job->formats.count; i++)
-        formats = batch_printf(arena, "%s%s%s", formats, i ? "," : "", job->formats.items[i]);
+        formats = cli_arena_printf(arena, "%s%s%s", formats, i ? "," : "", job->formats.items[i]);
     add_text(plan, rule, "batch");
     add_word(plan, rule, (emit_word){.kind = EMIT_INPUT});
     add_text(plan, rule, "-d");
     add_word(plan, rule, (emit_word){.kind = EMIT_DIRECTORY});
     add_text(plan, rule,
-             batch_printf(arena, "--name=%s", batch_name_expand(arena, job->pattern, &known)));
+             cli_arena_printf(arena, "--name=%s", batch_name_expand(arena, job->pattern, &known)));
     add_text(plan, rule, formats);
     add_arguments(plan, rule);
     add_roots(plan, rule);
@@ -84,11 +84,11 @@ static void add_batch_words(batch_plan *plan, emit_rule *rule)
 
 static void add_output(batch_plan *plan, emit_rule *rule, const char *format, const char *part)
 {
-    batch_arena *arena = &plan->arena;
+    cli_arena *arena = &plan->arena;
     const char *path = batch_output_path(arena, rule->job, plan->directory, format, part);
     size_t skipped = strcmp(plan->directory, ".") == 0 ? 0 : strlen(plan->directory) + 1;
-    batch_add(arena, &rule->outputs, path);
-    batch_add(arena, &rule->names, strlen(path) > skipped ? path + skipped : path);
+    cli_list_add(arena, &rule->outputs, path);
+    cli_list_add(arena, &rule->names, strlen(path) > skipped ? path + skipped : path);
 }
 
 /* The scene is evaluated to see its parts. */
@@ -106,7 +106,7 @@ static int find_parts(batch_plan *plan, emit_rule *rule)
     for (size_t i = 0; status == CSGM_OK && csgm_field_part(field, i, &name); i++)
         for (size_t j = 0; j < job->formats.count; j++)
             add_output(plan, rule, job->formats.items[j],
-                       name ? batch_strdup(&plan->arena, name) : NULL);
+                       name ? cli_arena_strdup(&plan->arena, name) : NULL);
     csgm_field_destroy(field);
     csgm_scene_destroy(scene);
     return cli_exit_status(status);
@@ -122,7 +122,7 @@ static int make_rule(batch_plan *plan, const batch_job *job, emit_rule *rule)
     }
     if (status != CLI_DONE || !rule->outputs.count)
         return status;
-    rule->depfile = batch_printf(&plan->arena, "%s.d", rule->outputs.items[0]);
+    rule->depfile = cli_arena_printf(&plan->arena, "%s.d", rule->outputs.items[0]);
     if (job->by_part)
         add_batch_words(plan, rule);
     else
@@ -147,7 +147,7 @@ int emit_plan(batch_plan *plan)
     static int (*const writers[])(const emit_rules *) = {NULL, emit_ninja, emit_make, emit_meson,
                                                          emit_cmake};
     emit_rules rules = {.plan = plan};
-    rules.items = batch_alloc(&plan->arena, (plan->count + 1) * sizeof *rules.items);
+    rules.items = cli_arena_alloc(&plan->arena, (plan->count + 1) * sizeof *rules.items);
     int status = CLI_DONE;
     for (size_t i = 0; rules.items && i < plan->count && status == CLI_DONE; i++) {
         emit_rule *rule = &rules.items[rules.count++];
@@ -166,7 +166,7 @@ int emit_plan(batch_plan *plan)
 
 /* ---- words ---------------------------------------------------------------------------- */
 
-const char *emit_shell_quoted(batch_arena *arena, const char *text)
+const char *emit_shell_quoted(cli_arena *arena, const char *text)
 {
     static const char bare[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                "_-./=,:+@%";
@@ -175,15 +175,15 @@ const char *emit_shell_quoted(batch_arena *arena, const char *text)
     const char *quoted = "'";
     for (;;) {
         size_t length = strcspn(text, "'");
-        quoted = batch_printf(arena, "%s%.*s%s", quoted, (int)length, text,
-                              text[length] ? "'\\''" : "'");
+        quoted = cli_arena_printf(arena, "%s%.*s%s", quoted, (int)length, text,
+                                  text[length] ? "'\\''" : "'");
         if (!text[length])
             return quoted;
         text += length + 1;
     }
 }
 
-const char *emit_word_text(batch_arena *arena, const emit_rule *rule, const emit_word *word,
+const char *emit_word_text(cli_arena *arena, const emit_rule *rule, const emit_word *word,
                            const char *directory)
 {
     switch (word->kind) {
@@ -198,17 +198,18 @@ const char *emit_word_text(batch_arena *arena, const emit_rule *rule, const emit
     case EMIT_DEPFILE:
         return rule->depfile;
     case EMIT_SOURCE:
-        return batch_printf(arena, "%s%s", word->prefix, word->path);
+        return cli_arena_printf(arena, "%s%s", word->prefix, word->path);
     }
     return "";
 }
 
-const char *emit_command(batch_arena *arena, const emit_rules *rules, const emit_rule *rule)
+const char *emit_command(cli_arena *arena, const emit_rules *rules, const emit_rule *rule)
 {
     const char *command = "";
     for (size_t i = 0; i < rule->word_count; i++)
-        command = batch_printf(arena, "%s%s%s", command, i ? " " : "",
-                               emit_shell_quoted(arena, emit_word_text(arena, rule, &rule->words[i],
-                                                                       rules->plan->directory)));
+        command =
+            cli_arena_printf(arena, "%s%s%s", command, i ? " " : "",
+                             emit_shell_quoted(arena, emit_word_text(arena, rule, &rule->words[i],
+                                                                     rules->plan->directory)));
     return command;
 }

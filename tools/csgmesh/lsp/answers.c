@@ -9,12 +9,12 @@
 
 /* ---- beginning and end ------------------------------------------------------------------------- */
 
-static bool offers_utf8(const batch_value *params)
+static bool offers_utf8(const cli_value *params)
 {
-    const batch_value *general =
-        batch_json_member(batch_json_member(params, "capabilities"), "general");
-    const batch_value *encodings = batch_json_member(general, "positionEncodings");
-    for (const batch_value *e = encodings ? encodings->first : NULL; e; e = e->next)
+    const cli_value *general =
+        cli_value_member(cli_value_member(params, "capabilities"), "general");
+    const cli_value *encodings = cli_value_member(general, "positionEncodings");
+    for (const cli_value *e = encodings ? encodings->first : NULL; e; e = e->next)
         if (e->text && strcmp(e->text, "utf-8") == 0)
             return true;
     return false;
@@ -152,18 +152,22 @@ static int hover(lsp_call *call)
     return 0;
 }
 
+/* Of a file, as the editor spells it where it has it open; for the caller to free. */
+static char *uri_of(const lsp_server *server, const char *path)
+{
+    for (const lsp_document *d = server->documents; d; d = d->next)
+        if (strcmp(d->path, path) == 0)
+            return strdup(d->uri);
+    return lsp_uri_of(path);
+}
+
 /* Text of a file while a question about another one is answered: the library lends it. */
 static void put_location(listing *list, const csgm_name *name)
 {
     lsp_call *call = list->call;
     size_t length = 0;
-    char *uri = lsp_uri_of(name->path);
+    char *uri = uri_of(call->server, name->path);
     const char *text = csgm_workspace_text(call->server->workspace, name->path, &length);
-    for (lsp_document *d = call->server->documents; d && uri; d = d->next)
-        if (strcmp(d->path, name->path) == 0) { /* as the editor spells it */
-            free(uri);
-            uri = strdup(d->uri);
-        }
     if (uri && text) {
         cli_json_open(call->json, NULL, '{');
         cli_json_string(call->json, "uri", uri);
@@ -195,8 +199,8 @@ static int definition(lsp_call *call)
 
 static int references(lsp_call *call)
 {
-    const batch_value *context = batch_json_member(call->params, "context");
-    const batch_value *declared = batch_json_member(context, "includeDeclaration");
+    const cli_value *context = cli_value_member(call->params, "context");
+    const cli_value *declared = cli_value_member(context, "includeDeclaration");
     listing list = {.call = call};
     list.is_declared = !declared || !declared->text || strcmp(declared->text, "false") != 0;
     cli_json_open(call->json, "result", '[');
@@ -237,9 +241,7 @@ static bool is_name(const char *text)
     static const char *const words[] = {"true", "false", "undef", "module",  "function",
                                         "if",   "else",  "for",   "let",     "assert",
                                         "echo", "each",  "use",   "include", NULL};
-    size_t length = text ? strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
-                                        "0123456789$")
-                         : 0;
+    size_t length = text ? cli_name_length(text) : 0;
     const char *dollar = length ? strchr(text + 1, '$') : NULL;
     bool ok = length > 0 && !text[length] && !dollar && !(*text >= '0' && *text <= '9');
     for (size_t i = 0; ok && words[i]; i++)
@@ -267,17 +269,15 @@ static bool may_rename(lsp_call *call)
 
 static int prepare_rename(lsp_call *call)
 {
-    static const char letters[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789$";
     if (!may_rename(call)) {
         cli_json_verbatim(call->json, "result", "null");
         return 0;
     }
     uint32_t begin = call->offset;
-    while (begin > 0 && strchr(letters, call->text[begin - 1]))
+    while (begin > 0 && cli_name_length(call->text + begin - 1) > 0)
         begin--;
     lsp_put_range(call, "result", call->text, call->length, begin,
-                  begin + (uint32_t)strspn(call->text + begin, letters));
+                  begin + (uint32_t)cli_name_length(call->text + begin));
     return 0;
 }
 
@@ -286,10 +286,10 @@ static bool take_edit(void *user, const csgm_name *name)
     listing *list = user;
     lsp_call *call = list->call;
     size_t length = 0;
-    if (!name->path)
+    if (!name->path || strcmp(name->path, list->path) != 0)
         return true;
     const char *text = csgm_workspace_text(call->server->workspace, name->path, &length);
-    if (!text || strcmp(name->path, list->path) != 0)
+    if (!text)
         return true;
     cli_json_open(call->json, NULL, '{');
     lsp_put_range(call, "range", text, length, name->begin, name->end);
@@ -300,7 +300,7 @@ static bool take_edit(void *user, const csgm_name *name)
 
 /* The files that have a use, each once. */
 typedef struct file_list {
-    batch_arena *arena;
+    cli_arena *arena;
     cli_list paths;
 } file_list;
 
@@ -310,7 +310,7 @@ static bool take_file(void *user, const csgm_name *name)
     for (size_t i = 0; i < files->paths.count; i++)
         if (strcmp(files->paths.items[i], name->path) == 0)
             return true;
-    batch_add(files->arena, &files->paths, batch_strdup(files->arena, name->path));
+    cli_list_add(files->arena, &files->paths, cli_arena_strdup(files->arena, name->path));
     return true;
 }
 
@@ -330,13 +330,8 @@ static int rename_name(lsp_call *call)
     cli_json_open(call->json, "result", '{');
     cli_json_open(call->json, "changes", '{');
     for (size_t i = 0; i < files.paths.count; i++) {
-        char *uri = lsp_uri_of(files.paths.items[i]);
+        char *uri = uri_of(server, files.paths.items[i]);
         list.path = files.paths.items[i];
-        for (lsp_document *d = server->documents; d && uri; d = d->next)
-            if (strcmp(d->path, list.path) == 0) {
-                free(uri);
-                uri = strdup(d->uri);
-            }
         if (uri) {
             cli_json_open(call->json, uri, '[');
             csgm_workspace_uses(server->workspace, call->path, call->offset, take_edit, &list);
@@ -542,9 +537,9 @@ static int colors(lsp_call *call)
     return 0;
 }
 
-static unsigned byte_of(const batch_value *color, const char *key)
+static unsigned byte_of(const cli_value *color, const char *key)
 {
-    const batch_value *value = batch_json_member(color, key);
+    const cli_value *value = cli_value_member(color, key);
     double share = value && value->text ? strtod(value->text, NULL) : 1;
     return share > 0 ? share < 1 ? (unsigned)lround(255 * share) : 255 : 0;
 }
@@ -552,7 +547,7 @@ static unsigned byte_of(const batch_value *color, const char *key)
 static int present_color(lsp_call *call)
 {
     char text[16];
-    const batch_value *color = batch_json_member(call->params, "color");
+    const cli_value *color = cli_value_member(call->params, "color");
     unsigned alpha = byte_of(color, "alpha");
     int length = snprintf(text, sizeof text, "\"#%02x%02x%02x", byte_of(color, "red"),
                           byte_of(color, "green"), byte_of(color, "blue"));
@@ -570,7 +565,7 @@ static int present_color(lsp_call *call)
 /* At the first line: the view of this file. */
 static int lenses(lsp_call *call)
 {
-    const char *uri = lsp_text(batch_json_member(call->params, "textDocument"), "uri");
+    const char *uri = lsp_text(cli_value_member(call->params, "textDocument"), "uri");
     cli_json_open(call->json, "result", '[');
     if (call->text && uri) {
         cli_json_open(call->json, NULL, '{');

@@ -17,7 +17,7 @@ static void take_problem(void *user, const csgm_diag *diag)
         snprintf(server->problem, sizeof server->problem, "%.380s", diag->message);
 }
 
-static void put_id(cli_json *json, const batch_value *id)
+static void put_id(cli_json *json, const cli_value *id)
 {
     if (id && id->kind == CSGM_JSON_STRING)
         cli_json_string(json, "id", id->text);
@@ -25,7 +25,7 @@ static void put_id(cli_json *json, const batch_value *id)
         cli_json_verbatim(json, "id", id && id->kind == CSGM_JSON_NUMBER ? id->text : "null");
 }
 
-static void send_error(const batch_value *id, int code, const char *words)
+static void send_error(const cli_value *id, int code, const char *words)
 {
     cli_text text;
     cli_json json;
@@ -43,8 +43,8 @@ static void send_error(const batch_value *id, int code, const char *words)
 static void find_place(lsp_call *call)
 {
     lsp_server *server = call->server;
-    const batch_value *place = batch_json_member(call->params, "position");
-    const char *uri = lsp_text(batch_json_member(call->params, "textDocument"), "uri");
+    const cli_value *place = cli_value_member(call->params, "position");
+    const char *uri = lsp_text(cli_value_member(call->params, "textDocument"), "uri");
     const lsp_document *document = uri ? lsp_document_find(server, uri) : NULL;
     if (document) {
         call->path = document->path;
@@ -52,19 +52,19 @@ static void find_place(lsp_call *call)
         call->length = document->length;
     } else if (uri) { /* a copy: the file may change at any time */
         char *path = lsp_path_of(uri);
-        call->path = path ? batch_strdup(call->arena, path) : NULL;
+        call->path = path ? cli_arena_strdup(call->arena, path) : NULL;
         free(path);
         const char *text =
             call->path ? csgm_workspace_text(server->workspace, call->path, &call->length) : NULL;
-        call->text = text ? batch_strndup(call->arena, text, call->length) : NULL;
+        call->text = text ? cli_arena_strndup(call->arena, text, call->length) : NULL;
     }
     if (call->text && place)
         call->offset =
             lsp_offset_of(call->text, call->length, lsp_read_place(place), server->is_utf8);
 }
 
-static void answer(lsp_server *server, batch_arena *arena, lsp_answer *handler,
-                   const batch_value *id, const batch_value *params)
+static void answer(lsp_server *server, cli_arena *arena, lsp_answer *handler, const cli_value *id,
+                   const cli_value *params)
 {
     cli_text text;
     cli_json json;
@@ -84,7 +84,7 @@ static void answer(lsp_server *server, batch_arena *arena, lsp_answer *handler,
                problem ? server->problem : "out of memory");
 }
 
-static void notify(lsp_server *server, const char *method, const batch_value *params)
+static void notify(lsp_server *server, const char *method, const cli_value *params)
 {
     static const char document[] = "textDocument/did";
     if (strcmp(method, "exit") == 0)
@@ -93,12 +93,12 @@ static void notify(lsp_server *server, const char *method, const batch_value *pa
         lsp_document_event(server, method, params);
 }
 
-static void take_value(lsp_server *server, batch_arena *arena, const batch_value *message)
+static void take_value(lsp_server *server, cli_arena *arena, const cli_value *message)
 {
-    const batch_value *id = batch_json_member(message, "id");
-    const batch_value *params = batch_json_member(message, "params");
+    const cli_value *id = cli_value_member(message, "id");
+    const cli_value *params = cli_value_member(message, "params");
     const char *method = lsp_text(message, "method");
-    bool is_answer = batch_json_member(message, "result") || batch_json_member(message, "error");
+    bool is_answer = cli_value_member(message, "result") || cli_value_member(message, "error");
     if (message && message->kind == CSGM_JSON_OBJECT && !method && is_answer)
         return; /* we ask nothing */
     if (!message || message->kind != CSGM_JSON_OBJECT || !method) {
@@ -124,11 +124,11 @@ static void take_value(lsp_server *server, batch_arena *arena, const batch_value
 
 static void take_message(lsp_server *server, const char *text, size_t length)
 {
-    batch_arena arena = {NULL, false};
-    batch_value *message = NULL;
+    cli_arena arena = {NULL, false};
+    cli_value *message = NULL;
     bool too_deep = false;
     csgm_status status =
-        batch_json_parse(server->context, &arena, text, length, "message", &message, &too_deep);
+        cli_value_parse(server->context, &arena, text, length, "message", &message, &too_deep);
     if (status != CSGM_OK || arena.failed || too_deep)
         send_error(NULL, status == CSGM_OK && arena.failed ? LSP_INTERNAL_ERROR : LSP_PARSE_ERROR,
                    too_deep           ? "more brackets are nested than any message has"
@@ -137,7 +137,7 @@ static void take_message(lsp_server *server, const char *text, size_t length)
                                       : "not JSON");
     else
         take_value(server, &arena, message);
-    batch_arena_reset(&arena);
+    cli_arena_reset(&arena);
 }
 
 static void serve(lsp_server *server)
@@ -208,10 +208,7 @@ int cli_cmd_lsp(cli_app *app)
     while (server.documents) {
         lsp_document *document = server.documents;
         server.documents = document->next;
-        free(document->uri);
-        free(document->path);
-        free(document->text);
-        free(document);
+        lsp_document_free(document);
     }
     csgm_workspace_destroy(server.workspace);
     csgm_context_destroy(server.context);

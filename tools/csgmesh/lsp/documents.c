@@ -102,19 +102,19 @@ lsp_place lsp_place_of(const char *text, size_t length, uint32_t offset, bool is
 
 /* ---- members of messages --------------------------------------------------------------------- */
 
-const char *lsp_text(const batch_value *object, const char *key)
+const char *lsp_text(const cli_value *object, const char *key)
 {
-    const batch_value *value = batch_json_member(object, key);
+    const cli_value *value = cli_value_member(object, key);
     return value && value->kind == CSGM_JSON_STRING ? value->text : NULL;
 }
 
-int64_t lsp_number(const batch_value *object, const char *key, int64_t otherwise)
+int64_t lsp_number(const cli_value *object, const char *key, int64_t otherwise)
 {
-    const batch_value *value = batch_json_member(object, key);
+    const cli_value *value = cli_value_member(object, key);
     return value && value->kind == CSGM_JSON_NUMBER ? strtoll(value->text, NULL, 10) : otherwise;
 }
 
-lsp_place lsp_read_place(const batch_value *place)
+lsp_place lsp_read_place(const cli_value *place)
 {
     int64_t line = lsp_number(place, "line", 0), character = lsp_number(place, "character", 0);
     return (lsp_place){line < 0           ? 0
@@ -145,6 +145,14 @@ void lsp_put_range(lsp_call *call, const char *key, const char *text, size_t len
 
 /* ---- documents ------------------------------------------------------------------------------- */
 
+void lsp_document_free(lsp_document *document)
+{
+    free(document->uri);
+    free(document->path);
+    free(document->text);
+    free(document);
+}
+
 lsp_document *lsp_document_find(lsp_server *server, const char *uri)
 {
     lsp_document *document = server->documents;
@@ -170,7 +178,7 @@ static bool replace(lsp_document *document, uint32_t begin, uint32_t end, const 
     return true;
 }
 
-static void open_document(lsp_server *server, const batch_value *item)
+static void open_document(lsp_server *server, const cli_value *item)
 {
     const char *uri = lsp_text(item, "uri"), *text = lsp_text(item, "text");
     if (!uri || !text)
@@ -191,25 +199,25 @@ static void open_document(lsp_server *server, const batch_value *item)
     document->version = lsp_number(item, "version", 0);
 }
 
-static void change_document(lsp_server *server, lsp_document *document, const batch_value *params)
+static void change_document(lsp_server *server, lsp_document *document, const cli_value *params)
 {
-    const batch_value *changes = batch_json_member(params, "contentChanges");
-    for (const batch_value *c = changes ? changes->first : NULL; c; c = c->next) {
-        const batch_value *range = batch_json_member(c, "range");
+    const cli_value *changes = cli_value_member(params, "contentChanges");
+    for (const cli_value *c = changes ? changes->first : NULL; c; c = c->next) {
+        const cli_value *range = cli_value_member(c, "range");
         const char *text = lsp_text(c, "text");
         uint32_t begin = 0, end = (uint32_t)document->length;
         if (range && range->kind == CSGM_JSON_OBJECT) {
             begin =
                 lsp_offset_of(document->text, document->length,
-                              lsp_read_place(batch_json_member(range, "start")), server->is_utf8);
+                              lsp_read_place(cli_value_member(range, "start")), server->is_utf8);
             end = lsp_offset_of(document->text, document->length,
-                                lsp_read_place(batch_json_member(range, "end")), server->is_utf8);
+                                lsp_read_place(cli_value_member(range, "end")), server->is_utf8);
         }
         if (text)
             replace(document, begin, end < begin ? begin : end, text);
     }
     document->version =
-        lsp_number(batch_json_member(params, "textDocument"), "version", document->version);
+        lsp_number(cli_value_member(params, "textDocument"), "version", document->version);
 }
 
 static void close_document(lsp_server *server, lsp_document *document)
@@ -220,15 +228,12 @@ static void close_document(lsp_server *server, lsp_document *document)
     *link = document->next;
     csgm_workspace_close(server->workspace, document->path);
     lsp_checker_forget(&server->checker, document->uri);
-    free(document->uri);
-    free(document->path);
-    free(document->text);
-    free(document);
+    lsp_document_free(document);
 }
 
-void lsp_document_event(lsp_server *server, const char *method, const batch_value *params)
+void lsp_document_event(lsp_server *server, const char *method, const cli_value *params)
 {
-    const batch_value *item = batch_json_member(params, "textDocument");
+    const cli_value *item = cli_value_member(params, "textDocument");
     const char *uri = lsp_text(item, "uri");
     if (!uri)
         return;

@@ -27,14 +27,6 @@ typedef struct report {
     bool has_notes;
 } report;
 
-static void free_document(lsp_document *document)
-{
-    free(document->uri);
-    free(document->path);
-    free(document->text);
-    free(document);
-}
-
 static lsp_document *copy_document(const lsp_document *from)
 {
     lsp_document *copy = calloc(1, sizeof *copy);
@@ -49,7 +41,7 @@ static lsp_document *copy_document(const lsp_document *from)
         memcpy(copy->text, from->text, from->length + 1);
         return copy;
     }
-    free_document(copy);
+    lsp_document_free(copy);
     return NULL;
 }
 
@@ -256,7 +248,7 @@ static void *run_checker(void *user)
         check_document(checker, document);
         pthread_mutex_lock(&checker->mutex);
         checker->running = NULL;
-        free_document(document);
+        lsp_document_free(document);
     }
     pthread_mutex_unlock(&checker->mutex);
     return NULL;
@@ -278,7 +270,7 @@ static void drop_document(lsp_checker *checker, const char *uri)
         lsp_document *document = *link;
         if (strcmp(document->uri, uri) == 0) {
             *link = document->next;
-            free_document(document);
+            lsp_document_free(document);
         } else {
             link = &document->next;
         }
@@ -330,7 +322,7 @@ void lsp_checker_stop(lsp_checker *checker)
     while (checker->waiting) {
         lsp_document *document = checker->waiting;
         checker->waiting = document->next;
-        free_document(document);
+        lsp_document_free(document);
     }
     pthread_cond_destroy(&checker->changed);
     pthread_mutex_destroy(&checker->mutex);

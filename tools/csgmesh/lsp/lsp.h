@@ -7,9 +7,9 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "batch/batch_json.h"
 #include "core/cli.h"
 #include "core/json.h"
+#include "core/json_tree.h"
 #include "core/textfile.h"
 #include "csgmesh/editing.h"
 
@@ -39,6 +39,7 @@ typedef struct lsp_document {
     struct lsp_document *next;
 } lsp_document;
 
+void lsp_document_free(lsp_document *document);
 /* The path of a file: URI, for the caller to free; of another URI the URI itself. NULL: no memory.
  */
 char *lsp_path_of(const char *uri);
@@ -92,8 +93,8 @@ typedef struct lsp_server {
 /* A request that is being answered. */
 typedef struct lsp_call {
     lsp_server *server;
-    batch_arena *arena;
-    const batch_value *params;
+    cli_arena *arena;
+    const cli_value *params;
     const char *path; /* of params.textDocument, or NULL */
     const char *text; /* of that file, or NULL */
     size_t length;
@@ -122,12 +123,12 @@ bool lsp_complete_path(lsp_call *call);
 
 lsp_document *lsp_document_find(lsp_server *server, const char *uri);
 /* textDocument/didOpen, didChange, didClose, didSave. */
-void lsp_document_event(lsp_server *server, const char *method, const batch_value *params);
+void lsp_document_event(lsp_server *server, const char *method, const cli_value *params);
 
 /* Text of a string member, or NULL; a number, or `otherwise`. */
-const char *lsp_text(const batch_value *object, const char *key);
-int64_t lsp_number(const batch_value *object, const char *key, int64_t otherwise);
-lsp_place lsp_read_place(const batch_value *place);
+const char *lsp_text(const cli_value *object, const char *key);
+int64_t lsp_number(const cli_value *object, const char *key, int64_t otherwise);
+lsp_place lsp_read_place(const cli_value *place);
 void lsp_put_place(cli_json *json, const char *key, lsp_place place);
 void lsp_put_range(lsp_call *call, const char *key, const char *text, size_t length, uint32_t begin,
                    uint32_t end);

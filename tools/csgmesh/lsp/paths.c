@@ -52,7 +52,7 @@ static uint32_t put_folder(lsp_call *call, const char *base, const char *inner, 
                            uint32_t most)
 {
     uint32_t count = 0;
-    const char *path = batch_join(call->arena, base, inner);
+    const char *path = cli_path_join(call->arena, base, inner);
     DIR *folder = *path ? opendir(path) : opendir(".");
     for (struct dirent *entry; folder && count < most && (entry = readdir(folder));) {
         bool is_folder = entry->d_type == DT_DIR;
@@ -74,12 +74,12 @@ bool lsp_complete_path(lsp_call *call)
         return false;
     char folder[4096];
     const char *written =
-        batch_strndup(call->arena, from, (size_t)(call->text + call->offset - from));
+        cli_arena_strndup(call->arena, from, (size_t)(call->text + call->offset - from));
     const char *slash = strrchr(written, '/');
-    const char *inner = batch_folder_of(call->arena, written);
+    const char *inner = cli_path_folder(call->arena, written);
     const char *name = slash ? slash + 1 : written;
     uint32_t count =
-        put_folder(call, batch_folder_of(call->arena, call->path), inner, name, MOST_PATHS);
+        put_folder(call, cli_path_folder(call->arena, call->path), inner, name, MOST_PATHS);
     const csgm_scene_options *options = &call->server->settings.options;
     size_t length;
     for (size_t i = 0;

@@ -146,9 +146,9 @@ int cli_outputs_check_contents(cli_app *app)
                                    given->items[i]);
     }
     if (app->options.given[CLI_OPTION_lod] &&
-        (app->options.lod < 2 || app->options.lod > CLI_LEVELS_MOST + 1))
+        (app->options.lod < 2 || app->options.lod > CSGM_DETAILS_MOST + 1))
         return cli_usage_error(app, NULL, "--lod wants 2 to %d levels, the first one too",
-                               CLI_LEVELS_MOST + 1);
+                               CSGM_DETAILS_MOST + 1);
     if (app->options.draco && app->options.compress == MESHOPT)
         return cli_usage_error(app, NULL, "--draco and --compress meshopt exclude each other");
     if (app->options.uv && cli_outputs_draco(&app->options))
@@ -199,9 +199,8 @@ csgm_normals cli_outputs_normals(const cli_options *options)
 static void describe(cli_app *app, const char *scene_path, csgm_write_options *write)
 {
     const cli_list *given = &app->options.meta;
-    const char *slash = scene_path ? strrchr(scene_path, '/') : NULL;
     if (scene_path && strcmp(scene_path, "-") != 0) {
-        snprintf(app->source, sizeof app->source, "source=%s", slash ? slash + 1 : scene_path);
+        snprintf(app->source, sizeof app->source, "source=%s", cli_file_name(scene_path));
         app->metadata[write->metadata_count++] = app->source;
     }
     for (size_t i = 0; i < given->count && i < CLI_META_MOST; i++)

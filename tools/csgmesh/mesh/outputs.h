@@ -13,9 +13,9 @@ csgm_format cli_outputs_format(const cli_options *options, size_t index);
 int cli_outputs_check(cli_app *app, const char *scene_path);
 /* --meta, --lod, --uv and --compress. CLI_DONE or CLI_TROUBLE, reported. */
 int cli_outputs_check_contents(cli_app *app);
-/* What --normals asks for, given the formats. */
 /* --compress draco or --draco. */
 bool cli_outputs_draco(const cli_options *options);
+/* What --normals asks for, given the formats. */
 csgm_normals cli_outputs_normals(const cli_options *options);
 /* scene_path: the file names it as its source; NULL = it names none. The app keeps the texts. */
 csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path);

@@ -10,7 +10,7 @@
 /* The file's name without folder and extension. */
 static void put_title(cli_json *json, const char *path)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = cli_file_name(path);
     const char *dot = strrchr(name, '.');
     char title[256];
     snprintf(title, sizeof title, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name),

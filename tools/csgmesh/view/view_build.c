@@ -42,25 +42,6 @@ typedef struct job {
 
 /* ---- what is said ----------------------------------------------------------------------------- */
 
-/* What the library says meanwhile is said again by what comes later. */
-static FILE *mute(job *j, cli_console *kept)
-{
-    FILE *nowhere = fopen("/dev/null", "we");
-    *kept = j->app.console;
-    if (nowhere)
-        j->app.console.out = nowhere;
-    return nowhere;
-}
-
-static void unmute(job *j, FILE *nowhere, const cli_console *kept)
-{
-    if (!nowhere)
-        return;
-    cli_console_flush(&j->app.console);
-    j->app.console = *kept;
-    fclose(nowhere);
-}
-
 /* The lines as elements of an array. */
 static void put_findings(FILE *out, job *j)
 {
@@ -73,12 +54,6 @@ static void put_findings(FILE *out, job *j)
         else if (i + 1 < j->said.length)
             fputc(',', out);
     fputc(']', out);
-}
-
-static const char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash && slash[1] ? slash + 1 : path;
 }
 
 static void put_mesh(cli_json *json, const job *j)
@@ -100,7 +75,7 @@ static void show(job *j, const char *phase)
     cli_json json = cli_json_make(text.out, false);
     json.first = true;
     fputs("\"scene\":{", text.out);
-    cli_json_string(&json, "name", name_of(j->app.options.operands.items[0]));
+    cli_json_string(&json, "name", cli_file_name(j->app.options.operands.items[0]));
     cli_json_string(&json, "phase", phase);
     cli_json_count(&json, "model", j->model);
     cli_json_number(&json, "seconds", cli_now_s() - j->begin_s);
@@ -156,8 +131,8 @@ static void hand_over_files(job *j, bool failed)
 static void read_parameters(job *j)
 {
     csgm_params *params = NULL;
-    cli_console kept;
-    FILE *nowhere = mute(j, &kept);
+    cli_silence silence;
+    cli_silence_begin(&silence, &j->app.console);
     if (cli_app_load_params(&j->app, j->app.options.operands.items[0], &params) == CSGM_OK) {
         cli_text text;
         if (cli_text_open(&text)) {
@@ -168,7 +143,7 @@ static void read_parameters(job *j)
         j->parameters = cli_text_close(&text);
     }
     csgm_params_destroy(params);
-    unmute(j, nowhere, &kept);
+    cli_silence_end(&silence, &j->app.console);
 }
 
 /* ---- meshes ----------------------------------------------------------------------------------- */
@@ -190,8 +165,8 @@ static void show_model(job *j)
 static void make_coarse(job *j)
 {
     cli_options own = j->app.options, *o = &j->app.options;
-    cli_console kept;
-    FILE *nowhere = mute(j, &kept);
+    cli_silence silence;
+    cli_silence_begin(&silence, &j->app.console);
     o->resolution = COARSE_CELLS;
     o->cell_size = o->tolerance = 0;
     o->simplify = (cli_amount){.value = 0};
@@ -200,7 +175,7 @@ static void make_coarse(job *j)
     o->features = CSGM_FEATURES_SMOOTH;
     bool made = cli_work_mesh(&j->app, &j->work) == CLI_DONE;
     j->app.options = own;
-    unmute(j, nowhere, &kept);
+    cli_silence_end(&silence, &j->app.console);
     if (made && !atomic_load(&is_outdated)) {
         show_model(j);
         show(j, "coarse");
@@ -221,11 +196,11 @@ static void make_marks(job *j)
     for (int i = 0; i < CSGM_MARK_COUNT; i++) {
         const csgm_scene *marked = csgm_scene_get_marked(j->work.scene, (csgm_mark)i);
         cli_options own = j->app.options;
-        cli_console kept;
+        cli_silence silence;
         cli_work work = {.normals = j->work.normals};
         if (!marked)
             continue;
-        FILE *nowhere = mute(j, &kept);
+        cli_silence_begin(&silence, &j->app.console);
         work.info = csgm_scene_get_info(marked);
         if (!is_finite(work.info.bounds) && !own.given[CLI_OPTION_bounds]) {
             j->app.options.bounds = j->work.info.bounds;
@@ -236,7 +211,7 @@ static void make_marks(job *j)
         csgm_field_destroy(work.field);
         j->marks[i] = work.mesh;
         j->app.options = own;
-        unmute(j, nowhere, &kept);
+        cli_silence_end(&silence, &j->app.console);
     }
 }
 

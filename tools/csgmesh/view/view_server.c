@@ -37,11 +37,13 @@ void view_server_stop(view_server *server)
 #include <unistd.h>
 
 static const unsigned char page[] = {
-#include <view_page.inc> /* made by diff/report/embed.py of page/ */
+#include <view_page.inc> /* made by ../page/embed.py of page/ */
 };
 
 static const double WAIT_S = 20; /* then the page asks again */
 enum { TOKEN_BYTES = 16, LARGEST_BODY = 1 << 16, MOST_CONNECTIONS = 64, IDLE_S = 60 };
+static const size_t STACK_BYTES = (size_t)256
+                                  << 10; /* of a connection's thread, which copies only */
 
 struct view_server {
     struct MHD_Daemon *daemon;
@@ -293,7 +295,8 @@ view_server *view_server_start(cli_app *app, uint16_t port, view_store *store,
                                  NULL, NULL, take_request, s, MHD_OPTION_LISTEN_SOCKET, fd,
                                  MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL,
                                  MHD_OPTION_CONNECTION_LIMIT, (unsigned)MOST_CONNECTIONS,
-                                 MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_S, MHD_OPTION_END);
+                                 MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_S,
+                                 MHD_OPTION_THREAD_STACK_SIZE, STACK_BYTES, MHD_OPTION_END);
     return s->daemon ? s : refuse(app, s, fd, "the server did not start");
 }
 

@@ -41,23 +41,9 @@ class SolidView extends View {
   }
 
   build() {
-    const gl = this.gl, program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, SOLID_VERTEX], [gl.FRAGMENT_SHADER, SOLID_FRAGMENT]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-      gl.attachShader(program, shader);
-    }
-    ["position", "normal", "color"].forEach((name, i) => gl.bindAttribLocation(program, i, name));
-    gl.linkProgram(program);
-    gl.useProgram(program);
-    gl.enable(gl.DEPTH_TEST);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    this.places = {};
-    for (const name of ["matrix", "eye", "right", "up", "section", "tint", "paint", "pull"])
-      this.places[name] = gl.getUniformLocation(program, name);
-    return program;
+    this.gl.blendFunc(this.gl.SRC_ALPHA, this.gl.ONE_MINUS_SRC_ALPHA);
+    return this.link(SOLID_VERTEX, SOLID_FRAGMENT, ["position", "normal", "color"],
+      ["matrix", "eye", "right", "up", "section", "tint", "paint", "pull"]);
   }
 
   // ---- models
@@ -175,20 +161,8 @@ class SolidView extends View {
   }
 
   draw() {
-    const gl = this.gl, canvas = this.canvas;
-    if (!gl || !this.layers || !this.camera) return;
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
-    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const background = getComputedStyle(canvas.parentElement).backgroundColor.match(/[\d.]+/g).map((v) => v / 255);
-    gl.viewport(0, 0, width, height);
-    gl.disable(gl.SCISSOR_TEST);
-    gl.clearColor(background[0], background[1], background[2], 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const frame = this.matrix(width / height);
-    gl.uniformMatrix4fv(this.places.matrix, true, frame.rows.flat());
-    for (const name of ["eye", "right", "up"]) gl.uniform3fv(this.places[name], frame[name]);
+    if (!this.gl || !this.layers || !this.camera) return;
+    const { frame } = this.begin();
     this.frame = frame;
     for (const layer of this.layers) if (layer.kind === "solid") this.drawLayer(layer);
     for (const layer of this.layers) if (layer.kind !== "solid") this.drawLayer(layer);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Memory of one batch; see batch_arena.h. Chunks of growing texts and lists; what a list leaves
+ * Memory of one batch; see arena.h. Chunks of growing texts and lists; what a list leaves
  * behind when it grows stays until the end.
  */
-#include "batch/batch_arena.h"
+#include "core/arena.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,15 +10,15 @@
 
 enum { CHUNK_BYTES = 1 << 12, ALIGNMENT = 16 };
 
-typedef struct batch_chunk {
-    struct batch_chunk *next;
+typedef struct cli_chunk {
+    struct cli_chunk *next;
     size_t used, size;
     _Alignas(ALIGNMENT) char bytes[];
-} batch_chunk;
+} cli_chunk;
 
-void *batch_alloc(batch_arena *arena, size_t size)
+void *cli_arena_alloc(cli_arena *arena, size_t size)
 {
-    batch_chunk *chunk = arena->chunks;
+    cli_chunk *chunk = arena->chunks;
     size = (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     if (!chunk || chunk->size - chunk->used < size) {
         size_t room = size > CHUNK_BYTES ? size : CHUNK_BYTES;
@@ -36,28 +36,28 @@ void *batch_alloc(batch_arena *arena, size_t size)
     return place;
 }
 
-const char *batch_strndup(batch_arena *arena, const char *text, size_t length)
+const char *cli_arena_strndup(cli_arena *arena, const char *text, size_t length)
 {
-    char *copy = batch_alloc(arena, length + 1);
+    char *copy = cli_arena_alloc(arena, length + 1);
     if (!copy)
         return "";
     memcpy(copy, text, length);
     return copy;
 }
 
-const char *batch_strdup(batch_arena *arena, const char *text)
+const char *cli_arena_strdup(cli_arena *arena, const char *text)
 {
-    return batch_strndup(arena, text, strlen(text));
+    return cli_arena_strndup(arena, text, strlen(text));
 }
 
-const char *batch_printf(batch_arena *arena, const char *format, ...)
+const char *cli_arena_printf(cli_arena *arena, const char *format, ...)
 {
     va_list arguments, again;
     va_start(arguments, format);
     va_copy(again, arguments);
     int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    char *text = length >= 0 ? batch_alloc(arena, (size_t)length + 1) : NULL;
+    char *text = length >= 0 ? cli_arena_alloc(arena, (size_t)length + 1) : NULL;
     if (text)
         vsnprintf(text, (size_t)length + 1, format, again);
     va_end(again);
@@ -65,11 +65,11 @@ const char *batch_printf(batch_arena *arena, const char *format, ...)
 }
 
 /* Room doubles at powers of two, so the count alone says when. */
-void *batch_push(batch_arena *arena, void **items, size_t *count, size_t size)
+void *cli_arena_push(cli_arena *arena, void **items, size_t *count, size_t size)
 {
     size_t n = *count;
     if ((n & (n - 1)) == 0) {
-        void *larger = batch_alloc(arena, (n ? 2 * n : 1) * size);
+        void *larger = cli_arena_alloc(arena, (n ? 2 * n : 1) * size);
         if (!larger)
             return NULL;
         if (n)
@@ -80,34 +80,34 @@ void *batch_push(batch_arena *arena, void **items, size_t *count, size_t size)
     return (char *)*items + n * size;
 }
 
-void batch_add(batch_arena *arena, cli_list *list, const char *text)
+void cli_list_add(cli_arena *arena, cli_list *list, const char *text)
 {
-    const char **place = batch_push(arena, (void **)&list->items, &list->count, sizeof text);
+    const char **place = cli_arena_push(arena, (void **)&list->items, &list->count, sizeof text);
     if (place)
         *place = text;
 }
 
-void batch_arena_reset(batch_arena *arena)
+void cli_arena_reset(cli_arena *arena)
 {
     while (arena->chunks) {
-        batch_chunk *next = arena->chunks->next;
+        cli_chunk *next = arena->chunks->next;
         free(arena->chunks);
         arena->chunks = next;
     }
 }
 
-const char *batch_join(batch_arena *arena, const char *folder, const char *name)
+const char *cli_path_join(cli_arena *arena, const char *folder, const char *name)
 {
     size_t length = strlen(folder);
     if (!length || strcmp(folder, ".") == 0 || name[0] == '/')
         return name;
-    return batch_printf(arena, "%s%s%s", folder, folder[length - 1] == '/' ? "" : "/", name);
+    return cli_arena_printf(arena, "%s%s%s", folder, folder[length - 1] == '/' ? "" : "/", name);
 }
 
-const char *batch_folder_of(batch_arena *arena, const char *path)
+const char *cli_path_folder(cli_arena *arena, const char *path)
 {
     const char *slash = strrchr(path, '/');
     if (!slash)
         return "";
-    return slash == path ? "/" : batch_strndup(arena, path, (size_t)(slash - path));
+    return slash == path ? "/" : cli_arena_strndup(arena, path, (size_t)(slash - path));
 }

@@ -54,22 +54,26 @@ class View {
   }
 
   build() {
+    this.gl.enable(this.gl.SCISSOR_TEST);
+    return this.link(VERTEX, FRAGMENT, ["position", "heat", "color"],
+      ["matrix", "scale", "corner", "stops", "plain", "eye", "right", "up", "paint"]);
+  }
+
+  // A program of two shaders, in use from here on; the places of its uniforms are this.places.
+  link(vertex, fragment, attributes, uniforms) {
     const gl = this.gl, program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
       if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
       gl.attachShader(program, shader);
     }
-    ["position", "heat", "color"].forEach((name, i) => gl.bindAttribLocation(program, i, name));
+    attributes.forEach((name, i) => gl.bindAttribLocation(program, i, name));
     gl.linkProgram(program);
     gl.useProgram(program);
     gl.enable(gl.DEPTH_TEST);
-    gl.enable(gl.SCISSOR_TEST);
-    this.places = {};
-    for (const name of ["matrix", "scale", "corner", "stops", "plain", "eye", "right", "up", "paint"])
-      this.places[name] = gl.getUniformLocation(program, name);
+    this.places = Object.fromEntries(uniforms.map((name) => [name, gl.getUniformLocation(program, name)]));
     return program;
   }
 
@@ -257,9 +261,9 @@ class View {
     return { rows, eye, right, up };
   }
 
-  draw() {
-    const gl = this.gl, canvas = this.canvas;
-    if (!gl || !this.models) return;
+  // Clears the canvas in its size on the screen and sets the camera; gives the size and the camera's frame.
+  begin() {
+    const gl = this.gl, canvas = this.canvas, places = this.places;
     const ratio = Math.min(2, devicePixelRatio || 1);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
@@ -269,12 +273,19 @@ class View {
     gl.scissor(0, 0, width, height);
     gl.clearColor(background[0], background[1], background[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const frame = this.matrix(width / height), places = this.places;
+    const frame = this.matrix(width / height);
     gl.uniformMatrix4fv(places.matrix, true, frame.rows.flat());
+    for (const name of ["eye", "right", "up"]) gl.uniform3fv(places[name], frame[name]);
+    return { width, height, frame };
+  }
+
+  draw() {
+    const gl = this.gl;
+    if (!gl || !this.models) return;
+    const { width, height, frame } = this.begin(), places = this.places;
     gl.uniform3fv(places.scale, this.size);
     gl.uniform3fv(places.corner, this.size.map((v) => -v / 2));
     gl.uniform3fv(places.stops, this.stops);
-    for (const name of ["eye", "right", "up"]) gl.uniform3fv(places[name], frame[name]);
     const cut = Math.round(this.split * width);
     if (this.mode === "split") {
       gl.scissor(0, 0, cut, height);
