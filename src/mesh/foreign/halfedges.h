@@ -51,7 +51,8 @@ typedef enum csg_halfedge_result {
                              should be */
 } csg_halfedge_result;
 
-/* Bytes that a triangle takes beside the arrays, at most: measured, with a reserve. */
+/* Bytes that a triangle takes beside the arrays, at most. Of a mesh of 304 732 triangles the whole
+ * process took 610 to 730 a triangle more than to copy it, arrays of the mending among them. */
 enum { CSG_HALFEDGE_BYTES = 640 };
 
 bool csg_halfedges_available(void);
