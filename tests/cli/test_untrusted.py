@@ -148,7 +148,7 @@ PROBE = r"""
 static void try_all(void)
 {
     static int tried;
-    char *none[] = {"true", NULL}, byte = 0;
+    char *none[] = {"true", NULL}, ring[256] = {0}; /* more than the kernel writes there */
     if (tried++)
         return;
     TELL("internet", socket(AF_INET, SOCK_STREAM, 0));
@@ -156,7 +156,7 @@ static void try_all(void)
     TELL("local", socket(AF_UNIX, SOCK_STREAM, 0));
     TELL("netlink", socket(AF_NETLINK, SOCK_RAW, 0));
     TELL("pair", socketpair(AF_UNIX, SOCK_STREAM, 0, (int[2]){0}));
-    TELL("ring", syscall(425, 1, &byte));
+    TELL("ring", syscall(425, 1, ring));
     TELL("exec", execve("/no/such/program", none, NULL));
     TELL("execat", syscall(SYS_execveat, AT_FDCWD, "/no/such/program", none, NULL, 0));
     TELL("signal", kill(getppid(), 0));
