@@ -52,11 +52,18 @@ typedef enum csgm_name_kind {
     CSGM_NAME_KEYWORD
 } csgm_name_kind;
 
+/* Bytes of a text. */
+typedef struct csgm_text_range {
+    uint32_t begin, end;
+} csgm_text_range;
+
 /* Something that has a name. Strings are valid during the callback. */
 typedef struct csgm_name {
     csgm_name_kind kind;
     const char *name;
-    const char *signature;     /* "module wheel(r, width = 3)" */
+    const char *signature;             /* "module wheel(r, width = 3)" */
+    const csgm_text_range *parameters; /* where they stand in the signature */
+    uint32_t parameter_count;
     const char *documentation; /* the comments at its definition, or the manual's words; or NULL */
     const char *path;          /* of the file that defines it; NULL = the language */
     uint32_t begin, end;       /* of the name in that file */

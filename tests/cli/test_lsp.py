@@ -96,6 +96,14 @@ class Findings(Lsp):
             self.assertEqual(client.wait_for_findings(uri)[0]["range"]["start"]["character"], column, encodings)
 
 
+    def test_a_text_with_a_nul(self):
+        client = self.start()
+        uri = client.open(self.path("a.txt"), 'x = 1;\0\ncub(1);\n')
+        self.assertEqual(sorted((f["code"], f["range"]["start"]["line"]) for f in client.wait_for_findings(uri))[0], ("E0102", 0))
+        client.change(uri, "", {"start": {"line": 0, "character": 6}, "end": {"line": 0, "character": 7}})
+        self.assertEqual([(f["code"], f["range"]["start"]["line"]) for f in client.wait_for_findings(uri)], [("E0201", 1)])
+
+
 class Names(Lsp):
     def test_hover(self):
         client, uri = self.open_main()
@@ -132,6 +140,20 @@ class Names(Lsp):
         found = client.ask("textDocument/references", at(uri, MAIN, "wheel(r"))
         self.assertEqual({f["uri"] for f in found}, {uri, self.uri("wheel.txt")})
         self.assertEqual(len(client.ask("textDocument/documentHighlight", at(uri, MAIN, "count = 4"))), 2)
+
+    def test_files_that_changed_meanwhile(self):
+        """What is not open is read again before its places are told, whichever file is asked about."""
+        client = self.start()
+        self.write("part.txt", "include <sizes.txt>\nmodule part() cube(radius);\n")
+        text = "use <part.txt>\npart();\n"
+        uri = client.open(self.path("a.txt"), text)
+        client.ask("textDocument/definition", at(uri, text, "part();"))
+        sizes = client.open(self.path("sizes.txt"), SIZES)
+        question = {**at(sizes, SIZES, "radius"), "newName": "size"}
+        self.assertEqual(client.ask("textDocument/rename", question)["changes"][self.uri("part.txt")][0]["range"]["start"]["line"], 1)
+        self.write("part.txt", "include <sizes.txt>\n\n\nmodule part() cube(radius);\n")
+        self.assertEqual(client.ask("textDocument/rename", question)["changes"][self.uri("part.txt")][0]["range"]["start"],
+                         {"line": 3, "character": 19})
 
     def test_rename(self):
         client, uri = self.open_main()
@@ -190,6 +212,27 @@ class Names(Lsp):
         shown = client.ask("textDocument/signatureHelp", at(uri, text, "width = 3", 8))
         self.assertEqual(shown["activeParameter"], 1)
         self.assertIsNone(client.ask("textDocument/signatureHelp", at(uri, text, "count = 4")))
+
+    def test_parameters_whose_defaults_are_texts(self):
+        """Commas and brackets in them separate nothing; places count as the editor counts."""
+        text = 'module m(a = ",)", b = "\u00e9\u00e9", c = [1, "("]) cube(1);\nm(1'
+        for encodings in (["utf-16"], ["utf-8"]):
+            client = self.start(encodings=encodings)
+            uri = client.open(self.path("a.txt"), text)
+            shown = client.ask("textDocument/signatureHelp", at(uri, text, "m(1", 3))["signatures"][0]
+            label = shown["label"].encode("utf-8" if encodings == ["utf-8"] else "utf-16-le")
+            size = 1 if encodings == ["utf-8"] else 2
+            parts = [label[size * p["label"][0]:size * p["label"][1]].decode("utf-8" if size == 1 else "utf-16-le") for p in shown["parameters"]]
+            self.assertEqual(parts, ['a = ",)"', 'b = "\u00e9\u00e9"', 'c = [1, "("]'])
+
+    def test_long_defaults_are_cut_between_characters(self):
+        client = self.start()
+        for ahead in range(4):
+            text = f'x = "{ahead * "a"}{30 * chr(0xe9)}{30 * chr(0x1F600)}";\ny = x;\n'
+            uri = client.open(self.path("a.txt"), text)
+            value = client.ask("textDocument/hover", at(uri, text, "x;"))["contents"]["value"]
+            self.assertIn(chr(0xe9) + "...\n", value)
+            self.assertNotIn("\ufffd", value)
 
     def test_symbols_and_folds(self):
         client, uri = self.open_main()

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "lang/parse/ast.h"
+
 typedef struct module_row {
     const char *name, *doc;
 } module_row;
@@ -82,25 +84,69 @@ const char *csg_language_row(uint32_t row, csgm_name_kind *kind)
     return row < KEYWORDS ? keywords[row] : NULL;
 }
 
+bool csg_signature_add(csg_arena *arena, csgm_name *name, size_t begin, size_t end)
+{
+    void *items = (void *)name->parameters;
+    csgm_text_range *place = csg_arena_push(arena, &items, &name->parameter_count, sizeof *place);
+    if (!place)
+        return false;
+    *place = (csgm_text_range){(uint32_t)begin, (uint32_t)end};
+    name->parameters = items;
+    return true;
+}
+
 static bool describe_module(csg_arena *arena, const module_row *module, csgm_name *out)
 {
-    const char *signature = "", *words = module->doc;
+    const char *words = module->doc;
+    const char *signature = csg_arena_printf(arena, "module %s(", module->name);
     for (size_t i = 0; i < PARAMETERS && signature && words; i++) {
         if (strcmp(parameters[i].module, module->name) != 0)
             continue;
         const char *otherwise = parameters[i].otherwise, *unit = parameters[i].unit;
-        const char *range = parameters[i].range;
+        const char *range = parameters[i].range, *comma = out->parameter_count ? ", " : "";
         bool has_default = *otherwise || parameters[i].named;
-        signature = csg_arena_printf(arena, "%s%s%s%s%s", signature, *signature ? ", " : "",
-                                     parameters[i].name, has_default ? " = " : "", otherwise);
+        size_t begin = strlen(signature) + strlen(comma);
+        signature = csg_arena_printf(arena, "%s%s%s%s%s", signature, comma, parameters[i].name,
+                                     has_default ? " = " : "", otherwise);
+        if (!signature || !csg_signature_add(arena, out, begin, strlen(signature)))
+            return false;
         words = csg_arena_printf(arena, "%s\n- `%s`: %s%s%s%s%s%s", words, parameters[i].name,
                                  parameters[i].doc, *unit || *range ? " (" : "", unit,
                                  *unit && *range ? ", " : "", range, *unit || *range ? ")" : "");
     }
-    out->signature =
-        signature ? csg_arena_printf(arena, "module %s(%s)", module->name, signature) : NULL;
+    out->signature = signature ? csg_arena_printf(arena, "%s)", signature) : NULL;
     out->documentation = words;
     return out->signature && words;
+}
+
+/* The index-th of "a, b = 1, [[key, value], ...]" and its length; NULL: there are not so many. */
+static const char *nth_of_list(const char *list, uint32_t index, size_t *length)
+{
+    for (;; index--) {
+        int depth = 0;
+        list += strspn(list, " ");
+        for (*length = 0; list[*length] && (list[*length] != ',' || depth > 0); ++*length) {
+            depth += list[*length] == '[' || list[*length] == '(';
+            depth -= list[*length] == ']' || list[*length] == ')';
+        }
+        if (index == 0 || !list[*length])
+            break;
+        list += *length + 1;
+    }
+    return index == 0 && *length ? list : NULL;
+}
+
+static bool describe_function(csg_arena *arena, const char *name, const char *list, csgm_name *out)
+{
+    size_t length, ahead = strlen("function (") + strlen(name);
+    bool ok = true;
+    const char *item;
+    for (uint32_t i = 0; ok && (item = nth_of_list(list, i, &length)); i++) {
+        size_t begin = ahead + (size_t)(item - list);
+        ok = csg_signature_add(arena, out, begin, begin + length);
+    }
+    out->signature = csg_arena_printf(arena, "function %s(%s)", name, list);
+    return ok && out->signature;
 }
 
 bool csg_language_describe(csg_arena *arena, uint32_t row, csgm_name *out)
@@ -109,36 +155,13 @@ bool csg_language_describe(csg_arena *arena, uint32_t row, csgm_name *out)
         return describe_module(arena, &modules[row], out);
     row -= MODULES;
     if (row < FUNCTIONS) {
-        out->signature = csg_arena_printf(arena, "function %s(%s)", functions[row].name,
-                                          functions[row].parameters);
         out->documentation = functions[row].doc;
-        return out->signature != NULL;
+        return describe_function(arena, functions[row].name, functions[row].parameters, out);
     }
     row -= FUNCTIONS;
     out->signature = row < VARIABLES ? variables[row].name : keywords[row - VARIABLES];
     out->documentation = row < VARIABLES ? variables[row].doc : NULL;
     return true;
-}
-
-/* The index-th of "a, b = 1, [[key, value], ...]". */
-static const char *nth_of_list(csg_arena *arena, const char *list, uint32_t index)
-{
-    int depth = 0;
-    for (const char *c = list; *c && index > 0; c++) {
-        depth += *c == '[' || *c == '(';
-        depth -= *c == ']' || *c == ')';
-        if (*c == ',' && depth == 0 && --index == 0)
-            list = c + 1;
-    }
-    if (index > 0)
-        return NULL;
-    list += strspn(list, " ");
-    size_t length = 0;
-    for (depth = 0; list[length] && (list[length] != ',' || depth > 0); length++) {
-        depth += list[length] == '[' || list[length] == '(';
-        depth -= list[length] == ']' || list[length] == ')';
-    }
-    return length ? csg_arena_strndup(arena, list, length) : NULL;
 }
 
 const char *csg_language_parameter(csg_arena *arena, uint32_t row, uint32_t index,
@@ -147,7 +170,10 @@ const char *csg_language_parameter(csg_arena *arena, uint32_t row, uint32_t inde
     *documentation = NULL;
     if (row >= MODULES) {
         row -= MODULES;
-        return row < FUNCTIONS ? nth_of_list(arena, functions[row].parameters, index) : NULL;
+        size_t length;
+        const char *item =
+            row < FUNCTIONS ? nth_of_list(functions[row].parameters, index, &length) : NULL;
+        return item ? csg_arena_strndup(arena, item, length) : NULL;
     }
     for (size_t i = 0; i < PARAMETERS; i++)
         if (strcmp(parameters[i].module, modules[row].name) == 0 && index-- == 0) {

@@ -166,7 +166,7 @@ csgm_status csgm_workspace_uses(csgm_workspace *workspace, const char *path, uin
     if (csg_edit_target_exists(target) && !workspace->no_memory) {
         bool goes_on = !target.file || each(user, &what);
         for (size_t i = 0; goes_on && i < workspace->count; i++)
-            if (workspace->files[i]->text)
+            if (csg_workspace_refresh(workspace, workspace->files[i]) && workspace->files[i]->text)
                 goes_on = tell_uses_in(&q, workspace->files[i], target, &what);
     }
     return end_query(&q);

@@ -161,6 +161,15 @@ csg_edit_target csg_edit_resolve_at(csgm_workspace *workspace, csg_edit_file *fi
 
 /* ---- words ---------------------------------------------------------------------------------- */
 
+/* The bytes without those of a last character that may have been cut in two. */
+static size_t whole_characters(const char *text, size_t length)
+{
+    size_t more = 0;
+    while (more < 3 && more + 1 < length && ((unsigned char)text[length - 1 - more] & 0xC0) == 0x80)
+        more++;
+    return length && (unsigned char)text[length - 1 - more] >= 0xC0 ? length - 1 - more : length;
+}
+
 /* A piece of the text on one line, not longer than anyone wants to read. */
 static const char *excerpt(csg_arena *arena, const csg_edit_file *file, uint32_t begin,
                            uint32_t end)
@@ -180,8 +189,8 @@ static const char *excerpt(csg_arena *arena, const csg_edit_file *file, uint32_t
             line[length++] = ' ';
     }
     bool is_cut = length == MOST;
-    while (is_cut && length > 0 && ((unsigned char)line[length - 1] & 0xC0) == 0x80)
-        length--; /* not within a character */
+    if (is_cut)
+        length = whole_characters(line, length);
     memcpy(line + length, is_cut ? "..." : "", is_cut ? 4 : 1);
     return csg_arena_strndup(arena, line, strlen(line));
 }
@@ -192,7 +201,7 @@ static const char *clean_comment(csg_arena *arena, const csg_edit_file *file, ui
 {
     enum { MOST = 8000 };
     if (end - begin > MOST)
-        end = begin + MOST;
+        end = begin + (uint32_t)whole_characters(file->text + begin, MOST);
     char *out = csg_arena_alloc(arena, end - begin + 1);
     size_t length = 0;
     for (uint32_t i = begin; out && i < end;) {
@@ -218,34 +227,38 @@ static const char *clean_comment(csg_arena *arena, const csg_edit_file *file, ui
     return out;
 }
 
-static const char *list_parameters(csg_arena *arena, csg_edit_target target)
+/* The signature as far as "module wheel(", with its parameters; NULL: no memory. */
+static const char *add_parameters(csg_arena *arena, csg_edit_target target, const char *signature,
+                                  csgm_name *out)
 {
     const csg_edit_names *names = &target.file->names;
-    const char *list = "";
-    for (uint32_t i = target.name + 1; list && i < names->name_count; i++) {
+    for (uint32_t i = target.name + 1; signature && i < names->name_count; i++) {
         const csg_edit_name *p = &names->names[i];
         if (p->owner != target.name)
             continue;
         const char *value = p->value ? excerpt(arena, target.file, p->value, p->end) : "";
-        list =
-            value ? csg_arena_printf(arena, "%s%s%.*s%s%s", list, *list ? ", " : "", (int)p->length,
+        const char *comma = out->parameter_count ? ", " : "";
+        size_t begin = strlen(signature) + strlen(comma);
+        signature =
+            value ? csg_arena_printf(arena, "%s%s%.*s%s%s", signature, comma, (int)p->length,
                                      target.file->text + p->offset, *value ? " = " : "", value)
                   : NULL;
+        if (signature && !csg_signature_add(arena, out, begin, strlen(signature)))
+            return NULL;
     }
-    return list;
+    return signature;
 }
 
-static const char *sign(csg_arena *arena, csg_edit_target target)
+static const char *sign(csg_arena *arena, csg_edit_target target, csgm_name *out)
 {
     const csg_edit_file *file = target.file;
     const csg_edit_name *name = &file->names.names[target.name];
     const char *text = file->text + name->offset;
     if (name->kind == CSGM_NAME_MODULE || name->kind == CSGM_NAME_FUNCTION) {
-        const char *list = list_parameters(arena, target);
-        return list ? csg_arena_printf(arena, "%s %.*s(%s)",
-                                       name->kind == CSGM_NAME_MODULE ? "module" : "function",
-                                       (int)name->length, text, list)
-                    : NULL;
+        const char *word = name->kind == CSGM_NAME_MODULE ? "module" : "function";
+        const char *signature = csg_arena_printf(arena, "%s %.*s(", word, (int)name->length, text);
+        signature = add_parameters(arena, target, signature, out);
+        return signature ? csg_arena_printf(arena, "%s)", signature) : NULL;
     }
     const char *value = name->value ? excerpt(arena, file, name->value, name->end) : "";
     return value ? csg_arena_printf(arena, "%.*s%s%s", (int)name->length, text, *value ? " = " : "",
@@ -263,7 +276,7 @@ bool csg_edit_describe(csg_arena *arena, csg_edit_target target, csgm_name *out)
     const csg_edit_name *name = &target.file->names.names[target.name];
     out->kind = (csgm_name_kind)name->kind;
     out->name = csg_arena_strndup(arena, target.file->text + name->offset, name->length);
-    out->signature = sign(arena, target);
+    out->signature = sign(arena, target, out);
     out->path = target.file->path;
     out->begin = name->offset;
     out->end = name->offset + name->length;

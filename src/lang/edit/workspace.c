@@ -162,16 +162,22 @@ static csg_edit_file *find_file(csgm_workspace *workspace, const char *path)
     return file;
 }
 
-csg_edit_file *csg_workspace_file(csgm_workspace *workspace, const char *path)
+bool csg_workspace_refresh(csgm_workspace *workspace, csg_edit_file *file)
 {
-    csg_edit_file *file = find_file(workspace, path);
-    bool ok = file != NULL;
-    if (ok && !file->is_open && file->looked != workspace->query) {
+    bool ok = true;
+    if (!file->is_open && file->looked != workspace->query) {
         file->looked = workspace->query;
         ok = look_at_disk(workspace, file);
     }
     workspace->no_memory = workspace->no_memory || !ok;
-    return ok ? file : NULL;
+    return ok;
+}
+
+csg_edit_file *csg_workspace_file(csgm_workspace *workspace, const char *path)
+{
+    csg_edit_file *file = find_file(workspace, path);
+    workspace->no_memory = workspace->no_memory || !file;
+    return file && csg_workspace_refresh(workspace, file) ? file : NULL;
 }
 
 csg_edit_file *csg_workspace_follow(csgm_workspace *workspace, csg_edit_file *from, uint32_t link)

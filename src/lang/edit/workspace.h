@@ -36,6 +36,8 @@ struct csgm_workspace {
 void csg_workspace_begin(csgm_workspace *workspace);
 /* The file with its text and names as they are now; NULL: no memory. */
 csg_edit_file *csg_workspace_file(csgm_workspace *workspace, const char *path);
+/* The same of a file that is known already. False: no memory. */
+bool csg_workspace_refresh(csgm_workspace *workspace, csg_edit_file *file);
 /* What a file includes or uses. */
 csg_edit_file *csg_workspace_follow(csgm_workspace *workspace, csg_edit_file *from, uint32_t link);
 

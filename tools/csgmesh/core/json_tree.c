@@ -40,6 +40,7 @@ static bool take_event(void *user, csgm_json_kind kind, const char *text, size_t
     b->latest[b->depth] = &value->next;
     if (kind != CSGM_JSON_OBJECT && kind != CSGM_JSON_ARRAY) {
         value->text = cli_arena_strndup(b->arena, text, length);
+        value->length = b->arena->failed ? 0 : length;
         return true;
     }
     b->too_deep = b->depth == DEEPEST;

@@ -10,7 +10,8 @@
 typedef struct cli_value {
     csgm_json_kind kind; /* OBJECT, ARRAY, STRING, NUMBER or WORD */
     const char *key;     /* of a member of an object, else NULL */
-    const char *text;    /* of STRING, NUMBER and WORD */
+    const char *text;    /* of STRING, NUMBER and WORD; strings may hold NULs */
+    size_t length;       /* of the text */
     struct cli_value *first, *next;
 } cli_value;
 

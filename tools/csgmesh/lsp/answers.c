@@ -393,29 +393,25 @@ static int completion(lsp_call *call)
     return 0;
 }
 
-/* The parameters in a signature, as places in it. */
-static void put_parameters(cli_json *json, const char *signature)
+static uint32_t column_in(const lsp_call *call, const char *line, uint32_t offset)
 {
-    const char *open = strchr(signature, '('), *end = strrchr(signature, ')');
-    int depth = 0;
-    cli_json_open(json, "parameters", '[');
-    for (const char *c = open ? open + 1 : NULL, *from = c; c && end && c <= end && end > open + 1;
-         c++) {
-        bool ends = c == end || (*c == ',' && depth == 0);
-        depth += *c == '(' || *c == '[';
-        depth -= *c == ')' || *c == ']';
-        if (!ends)
-            continue;
-        from += strspn(from, " ");
-        cli_json_open(json, NULL, '{');
-        cli_json_open(json, "label", '[');
-        cli_json_integer(json, NULL, from - signature);
-        cli_json_integer(json, NULL, c - signature);
-        cli_json_end(json, ']');
-        cli_json_end(json, '}');
-        from = c + 1;
+    return lsp_place_of(line, strlen(line), offset, call->server->is_utf8).character;
+}
+
+/* As places in the label. */
+static void put_parameters(lsp_call *call, const csgm_name *name)
+{
+    cli_json_open(call->json, "parameters", '[');
+    for (uint32_t i = 0; i < name->parameter_count; i++) {
+        csgm_text_range range = name->parameters[i];
+        cli_json_open(call->json, NULL, '{');
+        cli_json_open(call->json, "label", '[');
+        cli_json_count(call->json, NULL, column_in(call, name->signature, range.begin));
+        cli_json_count(call->json, NULL, column_in(call, name->signature, range.end));
+        cli_json_end(call->json, ']');
+        cli_json_end(call->json, '}');
     }
-    cli_json_end(json, ']');
+    cli_json_end(call->json, ']');
 }
 
 static bool take_signature(void *user, const csgm_name *name)
@@ -428,7 +424,7 @@ static bool take_signature(void *user, const csgm_name *name)
     cli_json_string(json, "label", name->signature);
     if (name->documentation)
         put_markdown(json, "documentation", name);
-    put_parameters(json, name->signature);
+    put_parameters(list->call, name);
     cli_json_end(json, '}');
     cli_json_end(json, ']');
     list->found = true;

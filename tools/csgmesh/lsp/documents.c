@@ -161,15 +161,15 @@ lsp_document *lsp_document_find(lsp_server *server, const char *uri)
     return document;
 }
 
-static bool replace(lsp_document *document, uint32_t begin, uint32_t end, const char *text)
+static bool replace(lsp_document *document, uint32_t begin, uint32_t end, const cli_value *text)
 {
-    size_t added = strlen(text), rest = document->length - end;
+    size_t added = text->length, rest = document->length - end;
     size_t length = begin + added + rest;
     char *fresh = length <= LARGEST_TEXT ? malloc(length + 1) : NULL;
     if (!fresh)
         return false;
     memcpy(fresh, document->text, begin);
-    memcpy(fresh + begin, text, added);
+    memcpy(fresh + begin, text->text, added);
     memcpy(fresh + begin + added, document->text + end, rest);
     fresh[length] = '\0';
     free(document->text);
@@ -180,8 +180,9 @@ static bool replace(lsp_document *document, uint32_t begin, uint32_t end, const 
 
 static void open_document(lsp_server *server, const cli_value *item)
 {
-    const char *uri = lsp_text(item, "uri"), *text = lsp_text(item, "text");
-    if (!uri || !text)
+    const char *uri = lsp_text(item, "uri");
+    const cli_value *text = cli_value_member(item, "text");
+    if (!uri || !text || text->kind != CSGM_JSON_STRING)
         return;
     lsp_document *document = lsp_document_find(server, uri);
     if (!document && (document = calloc(1, sizeof *document))) {
@@ -204,7 +205,7 @@ static void change_document(lsp_server *server, lsp_document *document, const cl
     const cli_value *changes = cli_value_member(params, "contentChanges");
     for (const cli_value *c = changes ? changes->first : NULL; c; c = c->next) {
         const cli_value *range = cli_value_member(c, "range");
-        const char *text = lsp_text(c, "text");
+        const cli_value *text = cli_value_member(c, "text");
         uint32_t begin = 0, end = (uint32_t)document->length;
         if (range && range->kind == CSGM_JSON_OBJECT) {
             begin =
@@ -213,7 +214,7 @@ static void change_document(lsp_server *server, lsp_document *document, const cl
             end = lsp_offset_of(document->text, document->length,
                                 lsp_read_place(cli_value_member(range, "end")), server->is_utf8);
         }
-        if (text)
+        if (text && text->kind == CSGM_JSON_STRING)
             replace(document, begin, end < begin ? begin : end, text);
     }
     document->version =
