@@ -118,9 +118,9 @@ bool csg_meshopt_available(void);
  * no triangle uses it. The number of those used. */
 uint32_t csg_meshopt_order(uint32_t *indices, uint64_t index_count, uint64_t vertex_count,
                            uint32_t *to);
-/* Bytes that csg_meshopt_encode may need. Strides of attributes are multiples of four up to 256. */
-uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride,
-                           uint64_t vertex_count);
+/* Bytes that csg_meshopt_encode may need. Strides of attributes are multiples of four up to 256;
+ * indices are below `beyond`. */
+uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride, uint64_t beyond);
 /* The bytes written; 0: there was not room enough. */
 uint64_t csg_meshopt_encode(csg_meshopt_mode mode, const void *data, uint64_t count,
                             uint64_t stride, uint8_t *out, uint64_t room);

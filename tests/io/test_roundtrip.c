@@ -190,8 +190,60 @@ static void every_shape_in_every_format(void **state)
     io_folder_remove(folder);
 }
 
+/* The sphere, where one triangle has a copy of its first corner with a normal of its own. */
+static csgm_mesh *make_split(csgm_context *context, const csgm_mesh *from, uint64_t corner)
+{
+    csgm_mesh *mesh = NULL;
+    uint32_t vertex = from->indices[corner];
+    assert_int_equal(
+        csg_mesh_create(context, from->vertex_count + 1, from->triangle_count, true, false, &mesh),
+        CSGM_OK);
+    for (uint64_t i = 0; i < mesh->vertex_count; i++) {
+        uint64_t old = i > vertex ? i - 1 : i;
+        memcpy(mesh->positions + 3 * i, from->positions + 3 * old, 12);
+        memcpy(mesh->normals + 3 * i, from->normals + 3 * old, 12);
+    }
+    mesh->normals[3 * (uint64_t)vertex + 3] *= -1;
+    for (uint64_t i = 0; i < 3 * from->triangle_count; i++)
+        mesh->indices[i] = from->indices[i] + (from->indices[i] > vertex || i == corner);
+    mesh->split = true;
+    return mesh;
+}
+
+/* A place far behind among the indices takes more bytes than the number of a vertex. */
+static void compressed_merges_have_room(void **state)
+{
+    (void)state;
+    char folder[128], path[256];
+    if (!csg_meshopt_available())
+        skip();
+    io_context io;
+    io_context_init(&io, 64 << 20);
+    io_folder_make(folder, sizeof folder);
+    snprintf(path, sizeof path, "%s/a.gltf", folder);
+    csgm_write_options options = csg_write_options_default();
+    options.meshopt = true;
+    csgm_mesh *sphere = io_sphere_make(&io.context, 63, 63);
+    for (uint64_t corner = 300; corner < 3 * sphere->triangle_count; corner += 3000) {
+        csgm_mesh *mesh = make_split(&io.context, sphere, corner);
+        csgm_mesh_view view = csg_mesh_view(mesh);
+        assert_int_equal(csg_io_write(&io.context, &view, path, CSGM_FORMAT_AUTO, &options),
+                         CSGM_OK);
+        size_t size;
+        char *text = (char *)io_file_load(path, &size);
+        assert_non_null(strstr(text, "EXT_mesh_manifold"));
+        assert_null(strstr(text, "\"byteLength\":0,"));
+        free(text);
+        csg_mesh_destroy(mesh);
+    }
+    csg_mesh_destroy(sphere);
+    io_folder_remove(folder);
+    io_context_check(&io);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_shape_in_every_format)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_shape_in_every_format),
+                                       cmocka_unit_test(compressed_merges_have_room)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
  * triangles and vertices in an order that caches and codecs like. A view for each array of each
  * shape.
  */
+#include <assert.h>
 #include <math.h>
 
 #include "io/color.h"
@@ -39,6 +40,7 @@ typedef struct packing {
     const char *filter; /* NULL = none */
     const void *data;
     uint64_t count, stride; /* of the data */
+    uint64_t beyond;        /* INDICES and TRIANGLES: all values are below it */
     uint32_t file_stride;   /* of the view: indices may be shorter there */
     uint32_t target;
 } packing;
@@ -53,12 +55,13 @@ static const char *word_of(csg_meshopt_mode mode)
 /* A view and its piece of the buffer. NONE: out of memory. */
 static int pack(meshopt *m, const packing *p)
 {
-    uint64_t room = csg_meshopt_bound(p->mode, p->count, p->stride, m->used);
+    uint64_t room = csg_meshopt_bound(p->mode, p->count, p->stride, p->beyond);
     csg_gltf_piece piece = {.owned = csg_memory_alloc(m->memory, room), .owned_bytes = room};
     if (!piece.owned)
         return CSG_GLTF_NONE;
     piece.bytes = piece.owned;
     piece.size_bytes = csg_meshopt_encode(p->mode, p->data, p->count, p->stride, piece.owned, room);
+    assert(piece.size_bytes > 0); /* the bound is one */
     csg_gltf_view view = {.offset = m->document->unpacked_bytes,
                           .bytes = p->count * p->file_stride,
                           .stride = p->mode == CSG_MESHOPT_ATTRIBUTES ? p->file_stride : 0,
@@ -210,10 +213,14 @@ static int pack_normals(meshopt *m)
 static int pack_indices(meshopt *m, csg_meshopt_mode mode, const uint32_t *values, uint64_t count,
                         uint32_t bytes, uint32_t target)
 {
+    uint64_t beyond = 0;
+    for (uint64_t i = 0; i < count; i++)
+        beyond = values[i] >= beyond ? (uint64_t)values[i] + 1 : beyond;
     packing p = {.mode = mode,
                  .data = values,
                  .count = count,
                  .stride = 4,
+                 .beyond = beyond,
                  .file_stride = bytes,
                  .target = target};
     int view = pack(m, &p);

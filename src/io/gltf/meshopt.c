@@ -32,13 +32,12 @@ uint32_t csg_meshopt_order(uint32_t *indices, uint64_t index_count, uint64_t ver
     return (uint32_t)used;
 }
 
-uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride,
-                           uint64_t vertex_count)
+uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride, uint64_t beyond)
 {
     if (mode == CSG_MESHOPT_ATTRIBUTES)
         return meshopt_encodeVertexBufferBound(count, stride);
-    return mode == CSG_MESHOPT_TRIANGLES ? meshopt_encodeIndexBufferBound(count, vertex_count)
-                                         : meshopt_encodeIndexSequenceBound(count, vertex_count);
+    return mode == CSG_MESHOPT_TRIANGLES ? meshopt_encodeIndexBufferBound(count, beyond)
+                                         : meshopt_encodeIndexSequenceBound(count, beyond);
 }
 
 uint64_t csg_meshopt_encode(csg_meshopt_mode mode, const void *data, uint64_t count,

@@ -16,10 +16,9 @@ uint32_t csg_meshopt_order(uint32_t *indices, uint64_t index_count, uint64_t ver
     return (uint32_t)vertex_count;
 }
 
-uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride,
-                           uint64_t vertex_count)
+uint64_t csg_meshopt_bound(csg_meshopt_mode mode, uint64_t count, uint64_t stride, uint64_t beyond)
 {
-    (void)mode, (void)count, (void)stride, (void)vertex_count;
+    (void)mode, (void)count, (void)stride, (void)beyond;
     return 0;
 }
 
