@@ -251,6 +251,11 @@ typedef enum csgm_flat {
 } csgm_flat;
 
 /* How a scene's text is read: values from outside, folders of includes, and facets. */
+/* A file that was read for a scene, or one that was looked for and not found: its place beside the
+ * file that asks. Called before the call that reads the scene returns, also where it fails, on
+ * another thread than its caller's perhaps. path is valid during the callback. */
+typedef void csgm_file_fn(void *user, const char *path, bool is_there);
+
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
     const csgm_define *defines;
@@ -268,6 +273,8 @@ typedef struct csgm_scene_options {
     bool only_check;           /* the text is only looked at for mistakes, and no scene is made:
                                   *out stays NULL. Hulls, Minkowski sums and shadows that nothing
                                   else depends on are left out, with what only they would show */
+    csgm_file_fn *on_file;     /* NULL = nobody asks */
+    void *file_user;
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

@@ -210,6 +210,15 @@ static bool is_late(void *user)
            csg_context_is_cancelled(program->context);
 }
 
+static void tell_files(const csg_program *program)
+{
+    const csgm_scene_options *options = program->options;
+    for (uint32_t i = 0; options->on_file && i < program->dependency_count; i++)
+        options->on_file(options->file_user, program->dependencies[i], true);
+    for (uint32_t i = 0; options->on_file && i < program->missing_count; i++)
+        options->on_file(options->file_user, program->missing[i], false);
+}
+
 static void compile(compilation *c)
 {
     CSG_ZONE(c->context, "scene");
@@ -239,6 +248,7 @@ static void compile(compilation *c)
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
     csg_memory_end_when(&c->context->memory, NULL, NULL);
+    tell_files(&program);
     if (c->status != CSGM_OK && csg_context_is_cancelled(c->context))
         c->status = CSGM_CANCELLED;
     csg_diag_sum_up(&c->context->diags);

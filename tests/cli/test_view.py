@@ -168,6 +168,22 @@ class Server(ViewTest):
         self.write("later.txt", "size = 4;\n")
         self.until(4)
 
+    def test_what_is_wrong_or_missing_elsewhere(self):
+        """Files of other folders, from the start: what does not parse, what an assertion refuses, what is not there."""
+        os.mkdir(self.path("lib"))
+        self.write("lib/size.txt", "size = ;\n")
+        self.write("main.txt", "include <lib/size.txt>\nassert(size < 9);\ncube(size);\n")
+        running = self.start("main.txt")
+        self.assertEqual(running.wait("failed")["findings"][0]["code"], "E0108")
+        self.write("lib/size.txt", "size = 10;\n")
+        while running.wait("failed")["findings"][0]["code"] == "E0108":
+            pass
+        self.write("lib/size.txt", "include <more.txt>\nsize = more;\n")
+        while running.wait("failed")["findings"][0]["code"] != "E0122":
+            pass
+        self.write("lib/more.txt", "more = 4;\n")
+        self.until(4)
+
     def test_values(self):
         """Those of the page win over -D; a wrong one is a finding, and the next one is taken."""
         self.write("plate.scad", PLATE)

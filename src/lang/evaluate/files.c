@@ -5,19 +5,12 @@
 
 #include <string.h>
 
-#include "text/folders.h"
 #include "text/source.h"
 
 static const char *search(csg_eval *e, const char *name, csg_span asking)
 {
-    const csg_program *program = e->program;
-    const char *from = program->sources.items[asking.source].name;
-    const char *slash = strrchr(from, '/');
-    size_t folder = slash && name[0] != '/' ? (size_t)(slash - from) + 1 : 0;
-    bool no_memory = false;
-    const char *found = csg_folder_try(&e->program->arena, from, folder, name, &no_memory);
-    if (!found && !no_memory && name[0] != '/')
-        found = csg_folders_search(&e->program->arena, program->options, name, &no_memory);
+    bool in_library, no_memory;
+    const char *found = csg_program_find(e->program, asking.source, name, &in_library, &no_memory);
     if (no_memory)
         csg_eval_no_memory(e);
     return found;

@@ -33,17 +33,11 @@ static const char *find_file(csg_parser *parser, csg_span path, csg_diag_code co
         csg_parser_no_memory(parser);
         return NULL;
     }
-    const char *asking = parser->program->sources.items[parser->source].name;
-    const char *slash = strrchr(asking, '/');
-    size_t folder = slash && name[0] != '/' ? (size_t)(slash - asking) + 1 : 0;
-    csg_arena *arena = &parser->program->arena;
-    bool no_memory = false;
-    const char *found = csg_folder_try(arena, asking, folder, name, &no_memory);
-    *library = parser->program->sources.items[parser->source].library;
-    if (!found && name[0] != '/') {
-        found = csg_folders_search(arena, parser->options, name, &no_memory);
-        *library = found ? library_of(parser, name) : NULL;
-    }
+    bool in_library, no_memory;
+    const char *found =
+        csg_program_find(parser->program, parser->source, name, &in_library, &no_memory);
+    *library = found && in_library ? library_of(parser, name)
+                                   : parser->program->sources.items[parser->source].library;
     if (no_memory)
         csg_parser_no_memory(parser);
     if (!found && !parser->stop) {

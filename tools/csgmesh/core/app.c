@@ -221,6 +221,8 @@ csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out)
         status = CSGM_ERR_ARGUMENT;
     options.flat = app->flat;
     options.only_check = app->only_checks;
+    options.on_file = app->on_file;
+    options.file_user = app->file_user;
     *out = (cli_scene_settings){options, defines};
     return status;
 }

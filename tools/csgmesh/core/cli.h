@@ -26,6 +26,8 @@ typedef struct cli_app {
     char source[280];
     /* Whether to stop, asked on any thread; NULL: nobody asks. */
     bool (*cancelled)(void *console);
+    csgm_file_fn *on_file; /* of scenes; NULL: nobody asks */
+    void *file_user;
     bool only_checks;       /* scenes are looked at for mistakes and not made */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */

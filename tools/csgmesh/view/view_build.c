@@ -31,10 +31,11 @@ typedef struct job {
     view_builder *builder;
     cli_app app;
     cli_work work;
-    view_defines defines; /* -D's and the page's; those strings are the job's */
-    size_t own_defines;   /* the first of the page's */
+    view_texts defines; /* -D's and the page's; those strings are the job's */
+    size_t own_defines; /* the first of the page's */
     cli_text said;
     char *parameters; /* JSON; NULL: not known */
+    view_texts files; /* that were read, or missed */
     csgm_mesh *marks[CSGM_MARK_COUNT];
     uint64_t model; /* number of the one to show */
     double begin_s, read_s;
@@ -97,35 +98,47 @@ static void free_texts(char **texts, size_t count)
     free(texts);
 }
 
-/* What the scene was read from; where it could not be read, what is known stays. */
+static void release_texts(view_texts *texts)
+{
+    free_texts(texts->items, texts->count);
+    *texts = (view_texts){.count = 0};
+}
+
+/* For csgm_scene_options.on_file: one that is missing is waited for, too. */
+static void take_file(void *user, const char *path, bool is_there)
+{
+    (void)is_there;
+    view_texts *files = user;
+    char **items = realloc(files->items, (files->count + 1) * sizeof *items);
+    char *copy = items ? strdup(path) : NULL;
+    files->items = items ? items : files->items;
+    if (copy)
+        files->items[files->count++] = copy;
+}
+
+/* Where nothing was read, what is known stays. */
 static void hand_over_files(job *j, bool failed)
 {
     view_builder *b = j->builder;
-    const csgm_scene *scene = j->work.scene;
-    size_t count = 0;
-    while (scene && csgm_scene_dependency(scene, count))
-        count++;
-    char **files = calloc(count + 1, sizeof *files);
-    for (size_t i = 0; files && i < count; i++)
-        files[i] = strdup(csgm_scene_dependency(scene, i));
-    for (size_t i = 0; files && i < count; i++)
-        if (!files[i]) { /* out of memory */
-            free_texts(files, count);
-            files = NULL;
-        }
     pthread_mutex_lock(&b->lock);
     b->has_failed = failed;
-    if (files && count) {
-        free_texts(b->files, b->file_count);
-        b->files = files;
-        b->file_count = count;
+    if (j->files.count) {
+        release_texts(&b->files);
+        b->files = j->files;
         b->read_s = j->read_s;
         b->has_files = true;
-        files = NULL;
+        j->files = (view_texts){.count = 0};
     }
     pthread_mutex_unlock(&b->lock);
-    if (files)
-        free_texts(files, count);
+}
+
+static int load(job *j, const char *path)
+{
+    j->app.on_file = take_file;
+    j->app.file_user = &j->files;
+    int status = cli_work_load(&j->app, &j->work, path);
+    j->app.on_file = NULL;
+    return status;
 }
 
 static void read_parameters(job *j)
@@ -241,7 +254,7 @@ static int make_all(job *j)
     if (status == CLI_DONE && format != CSGM_FORMAT_AUTO)
         status = cli_exit_status(csgm_mesh_read(j->app.context, path, format, &j->work.mesh));
     else if (status == CLI_DONE)
-        status = cli_work_load(&j->app, &j->work, path);
+        status = load(j, path);
     hand_over_files(j, status != CLI_DONE);
     if (status == CLI_DONE && j->work.scene && !atomic_load(&is_outdated))
         status = make_meshes(j);
@@ -254,7 +267,7 @@ static int make_all(job *j)
 static bool take_defines(job *j)
 {
     const cli_list *given = &j->builder->app->options.defines;
-    const view_defines *set = &j->builder->defines;
+    const view_texts *set = &j->builder->defines;
     char **items = calloc(given->count + set->count + 1, sizeof *items);
     if (!items)
         return false;
@@ -265,7 +278,7 @@ static bool take_defines(job *j)
         items[given->count + i] = strdup(set->items[i]);
         done = done && items[given->count + i];
     }
-    j->defines = (view_defines){items, given->count + set->count};
+    j->defines = (view_texts){items, given->count + set->count};
     j->own_defines = given->count;
     j->app.options.defines = (cli_list){(const char **)items, j->defines.count};
     return done;
@@ -287,6 +300,7 @@ static void release(job *j)
     cli_console_flush(&j->app.console);
     free(cli_text_close(&j->said));
     free(j->parameters);
+    release_texts(&j->files);
     for (size_t i = j->own_defines; i < j->defines.count; i++)
         free(j->defines.items[i]);
     free(j->defines.items);
@@ -349,10 +363,8 @@ bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *s
 {
     *builder = (view_builder){.app = app, .store = store, .wanted = 1};
     builder->read_s = wall_clock_s();
-    builder->files = calloc(1, sizeof *builder->files);
-    if (builder->files)
-        builder->files[0] = strdup(app->options.operands.items[0]);
-    builder->file_count = builder->has_files = builder->files && builder->files[0];
+    take_file(&builder->files, app->options.operands.items[0], true);
+    builder->has_files = builder->files.count == 1;
     return builder->has_files && pthread_mutex_init(&builder->lock, NULL) == 0 &&
            pthread_cond_init(&builder->asked, NULL) == 0 &&
            pthread_create(&builder->thread, NULL, follow_requests, builder) == 0;
@@ -373,8 +385,8 @@ void view_builder_end(view_builder *builder)
     ask(builder);
     pthread_mutex_unlock(&builder->lock);
     pthread_join(builder->thread, NULL);
-    free_texts(builder->files, builder->file_count);
-    free_texts(builder->defines.items, builder->defines.count);
+    release_texts(&builder->files);
+    release_texts(&builder->defines);
     pthread_cond_destroy(&builder->asked);
     pthread_mutex_destroy(&builder->lock);
 }
@@ -407,8 +419,8 @@ bool view_builder_set(view_builder *builder, const char *lines, size_t length)
         return false;
     }
     pthread_mutex_lock(&builder->lock);
-    free_texts(builder->defines.items, builder->defines.count);
-    builder->defines = (view_defines){items, count};
+    release_texts(&builder->defines);
+    builder->defines = (view_texts){items, count};
     ask(builder);
     pthread_mutex_unlock(&builder->lock);
     return true;
@@ -418,7 +430,7 @@ bool view_builder_watch(view_builder *builder, view_watch *watch)
 {
     pthread_mutex_lock(&builder->lock);
     if (builder->has_files)
-        view_watch_set(watch, (const char *const *)builder->files, builder->file_count,
+        view_watch_set(watch, (const char *const *)builder->files.items, builder->files.count,
                        builder->read_s);
     builder->has_files = false;
     bool failed = builder->has_failed;

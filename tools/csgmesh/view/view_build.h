@@ -9,10 +9,10 @@
 #include "view/view_store.h"
 #include "view/view_watch.h"
 
-typedef struct view_defines {
-    char **items; /* "radius=50" */
+typedef struct view_texts {
+    char **items;
     size_t count;
-} view_defines;
+} view_texts;
 
 typedef struct view_builder {
     const cli_app *app; /* its options; what the page sets comes after its -D */
@@ -22,11 +22,10 @@ typedef struct view_builder {
     pthread_cond_t asked;
     uint64_t wanted, begun; /* numbers of requests */
     bool is_ending;
-    view_defines defines;
-    char **files; /* that the scene was read from */
-    size_t file_count;
-    double read_s;  /* of the wall clock: when reading began */
-    bool has_files; /* since they were taken last */
+    view_texts defines; /* "radius=50" */
+    view_texts files;   /* that the scene was read from, or that it lacks */
+    double read_s;      /* of the wall clock: when reading began */
+    bool has_files;     /* since they were taken last */
     bool has_failed;
 } view_builder;
 
