@@ -113,6 +113,11 @@ CSGM_API size_t csgm_diag_format(const csgm_diag *diag, char *buffer, size_t siz
  * terminated by a NUL. */
 typedef void csgm_text_fn(void *user, const char *text, size_t length);
 
+/* Receives the path of each file that a scene or a mesh is looked for in, and whether it can be
+ * read: those of the search for an include that were not there, too, so that who follows a scene's
+ * files sees one come. A path may come more than once. Called on the calling thread only. */
+typedef void csgm_file_fn(void *user, const char *path, bool is_there);
+
 /* ---- context: allocator, workers, limits ------------------------------------------ */
 
 /* What all calls share: the allocator, the worker threads, the limits, and where findings go. Make
@@ -174,6 +179,7 @@ typedef struct csgm_context_options {
      * ended. Gets `user`; NULL (the default) = nobody asks to stop. A call's own csgm_monitor is
      * asked too. */
     bool (*cancelled)(void *user);
+    csgm_file_fn *on_file; /* gets `user`; NULL (the default) = nobody follows files */
 } csgm_context_options;
 
 CSGM_API csgm_context_options csgm_context_options_default(void);
@@ -251,11 +257,6 @@ typedef enum csgm_flat {
 } csgm_flat;
 
 /* How a scene's text is read: values from outside, folders of includes, and facets. */
-/* A file that was read for a scene, or one that was looked for and not found: its place beside the
- * file that asks. Called before the call that reads the scene returns, also where it fails, on
- * another thread than its caller's perhaps. path is valid during the callback. */
-typedef void csgm_file_fn(void *user, const char *path, bool is_there);
-
 typedef struct csgm_scene_options {
     uint32_t struct_size; /* set by csgm_scene_options_default; do not touch */
     const csgm_define *defines;
@@ -273,8 +274,6 @@ typedef struct csgm_scene_options {
     bool only_check;           /* the text is only looked at for mistakes, and no scene is made:
                                   *out stays NULL. Hulls, Minkowski sums and shadows that nothing
                                   else depends on are left out, with what only they would show */
-    csgm_file_fn *on_file;     /* NULL = nobody asks */
-    void *file_user;
 } csgm_scene_options;
 
 CSGM_API csgm_scene_options csgm_scene_options_default(void);

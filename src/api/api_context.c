@@ -101,6 +101,8 @@ static void fill_context(csgm_context *context, const csgm_context_options *opti
     context->on_echo = options->on_echo;
     context->cancelled = options->cancelled;
     context->cancel_user = options->user;
+    context->on_file = options->on_file;
+    context->file_user = options->user;
     context->user = options->user;
 }
 

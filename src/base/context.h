@@ -4,6 +4,8 @@
 #ifndef CSG_BASE_CONTEXT_H
 #define CSG_BASE_CONTEXT_H
 
+#include <errno.h>
+
 #include "base/diagnostics.h"
 #include "base/memory.h"
 
@@ -18,6 +20,8 @@ struct csgm_context {
     csgm_text_fn *on_echo;         /* NULL = dropped */
     bool (*cancelled)(void *user); /* NULL = nobody asks to stop */
     void *cancel_user;
+    csgm_file_fn *on_file; /* NULL = nobody follows files */
+    void *file_user;
     void *user;
     csgm_isa isa;           /* never AUTO */
     csg_pool *pool;         /* threads = 1: still a pool, of the caller alone */
@@ -30,6 +34,16 @@ struct csgm_context {
 static inline bool csg_context_is_cancelled(const csgm_context *context)
 {
     return context->cancelled && context->cancelled(context->cancel_user);
+}
+
+/* A file was looked for; errno stays what it is. */
+static inline void csg_context_tell_file(const csgm_context *context, const char *path,
+                                         bool is_there)
+{
+    int error = errno;
+    if (context->on_file)
+        context->on_file(context->file_user, path, is_there);
+    errno = error;
 }
 
 /* Reports CSG_DIAG_OUT_OF_MEMORY and returns CSGM_ERR_MEMORY; where memory was refused since it was

@@ -107,6 +107,8 @@ csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint
 {
     bytes b = {.context = context};
     int own = fd < 0 ? open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY) : fd;
+    if (fd < 0)
+        csg_context_tell_file(context, path, own >= 0);
     if (own < 0)
         return unreadable(context, path, errno);
     int error = read_all(own, &b);

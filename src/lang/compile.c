@@ -31,6 +31,8 @@ typedef struct relay { /* callbacks from the worker to the caller */
     const csgm_diag *diag; /* one finding, or one echo too long for the mailbox: it waits */
     const char *text;
     size_t text_length;
+    const char *path; /* or a file that was looked for */
+    bool is_there;
     bool done; /* the worker has ended */
 } relay;
 
@@ -46,7 +48,8 @@ typedef struct compilation {
     relay relay;
     csgm_diag_fn *on_diag; /* the caller's */
     csgm_text_fn *on_echo;
-    void *diag_user, *echo_user;
+    csgm_file_fn *on_file;
+    void *diag_user, *echo_user, *file_user;
 } compilation;
 
 /* ---- compiling
@@ -210,15 +213,6 @@ static bool is_late(void *user)
            csg_context_is_cancelled(program->context);
 }
 
-static void tell_files(const csg_program *program)
-{
-    const csgm_scene_options *options = program->options;
-    for (uint32_t i = 0; options->on_file && i < program->dependency_count; i++)
-        options->on_file(options->file_user, program->dependencies[i], true);
-    for (uint32_t i = 0; options->on_file && i < program->missing_count; i++)
-        options->on_file(options->file_user, program->missing[i], false);
-}
-
 static void compile(compilation *c)
 {
     CSG_ZONE(c->context, "scene");
@@ -248,7 +242,6 @@ static void compile(compilation *c)
         (*c->out)->evaluate_s = csg_clock_now_s() - parsed_s;
     }
     csg_memory_end_when(&c->context->memory, NULL, NULL);
-    tell_files(&program);
     if (c->status != CSGM_OK && csg_context_is_cancelled(c->context))
         c->status = CSGM_CANCELLED;
     csg_diag_sum_up(&c->context->diags);
@@ -258,10 +251,15 @@ static void compile(compilation *c)
 /* ---- the worker
  * ------------------------------------------------------------------------------------------ */
 
+static bool has_errand(const relay *r)
+{
+    return r->diag || r->text || r->path;
+}
+
 static void hand_over(relay *r)
 {
     pthread_cond_broadcast(&r->changed);
-    while (r->diag || r->text)
+    while (has_errand(r))
         pthread_cond_wait(&r->changed, &r->mutex);
 }
 
@@ -299,6 +297,16 @@ static void relay_echo(void *user, const char *text, size_t length)
         c->relay.text_length = length;
         hand_over(&c->relay);
     }
+    pthread_mutex_unlock(&c->relay.mutex);
+}
+
+static void relay_file(void *user, const char *path, bool is_there)
+{
+    compilation *c = user;
+    pthread_mutex_lock(&c->relay.mutex);
+    c->relay.path = path;
+    c->relay.is_there = is_there;
+    hand_over(&c->relay);
     pthread_mutex_unlock(&c->relay.mutex);
 }
 
@@ -344,6 +352,22 @@ static bool wait_a_little(relay *r)
     return pthread_cond_timedwait(&r->changed, &r->mutex, &until) == ETIMEDOUT;
 }
 
+/* Mutex held. */
+static void run_errand(compilation *c)
+{
+    relay *r = &c->relay;
+    if (r->diag)
+        c->on_diag(c->diag_user, r->diag);
+    else if (r->text)
+        c->on_echo(c->echo_user, r->text, r->text_length);
+    else
+        c->on_file(c->file_user, r->path, r->is_there);
+    r->diag = NULL;
+    r->text = NULL;
+    r->path = NULL;
+    pthread_cond_broadcast(&r->changed);
+}
+
 /* On the caller's thread: delivers what the worker hands over, in order, until it ends. Echoes
  * gather for a while: waking for each one would cost more than evaluating it. */
 static void serve(compilation *c)
@@ -351,19 +375,13 @@ static void serve(compilation *c)
     relay *r = &c->relay;
     bool late = false;
     pthread_mutex_lock(&r->mutex);
-    while (!r->done || r->diag || r->text || r->mail_length) {
-        bool due = late || r->mail_length > MAILBOX / 2 || r->diag || r->text || r->done;
+    while (!r->done || has_errand(r) || r->mail_length) {
+        bool due = late || r->mail_length > MAILBOX / 2 || has_errand(r) || r->done;
         late = false;
         if (r->mail_length && due) {
             deliver_mail(c);
-        } else if (r->diag || r->text) {
-            if (r->diag)
-                c->on_diag(c->diag_user, r->diag);
-            else
-                c->on_echo(c->echo_user, r->text, r->text_length);
-            r->diag = NULL;
-            r->text = NULL;
-            pthread_cond_broadcast(&r->changed);
+        } else if (has_errand(r)) {
+            run_errand(c);
         } else {
             late = wait_a_little(r);
         }
@@ -405,6 +423,8 @@ static void compile_on_thread(compilation *c)
     }
     context->on_echo = c->on_echo ? relay_echo : NULL;
     context->user = c;
+    context->on_file = c->on_file ? relay_file : NULL;
+    context->file_user = c;
     bool started = start_worker(c, &thread);
     if (started) {
         serve(c);
@@ -414,6 +434,8 @@ static void compile_on_thread(compilation *c)
     diags->user = c->diag_user;
     context->on_echo = c->on_echo;
     context->user = c->echo_user;
+    context->on_file = c->on_file;
+    context->file_user = c->file_user;
     pthread_cond_destroy(&c->relay.changed);
     pthread_mutex_destroy(&c->relay.mutex);
     if (!started) {
@@ -431,6 +453,8 @@ static csgm_status compile_with(compilation *c)
     c->diag_user = context->diags.user;
     c->on_echo = context->on_echo;
     c->echo_user = context->user;
+    c->on_file = context->on_file;
+    c->file_user = context->file_user;
     compile_on_thread(c);
     return c->status;
 }

@@ -49,26 +49,30 @@ size_t csg_folder_name(const csgm_scene_options *options, size_t index, char *bu
     return index == 0 ? (size_t)snprintf(buffer, size, "%s", for_all) : 0;
 }
 
-const char *csg_folder_try(csg_arena *arena, const char *folder, size_t length, const char *name,
-                           bool *no_memory)
+const char *csg_folder_try(csg_folder_search *search, const char *folder, size_t length,
+                           const char *name)
 {
     const char *slash = length && folder[length - 1] != '/' ? "/" : "";
-    const char *path = csg_arena_printf(arena, "%.*s%s%s", (int)length, folder, slash, name);
+    const char *path =
+        csg_arena_printf(search->arena, "%.*s%s%s", (int)length, folder, slash, name);
     if (!path)
-        *no_memory = true;
-    return path && csg_source_exists(path) ? path : NULL;
+        search->no_memory = true;
+    bool is_there = path && csg_source_exists(path);
+    if (path)
+        csg_context_tell_file(search->context, path, is_there);
+    return is_there ? path : NULL;
 }
 
-const char *csg_folders_search(csg_arena *arena, const csgm_scene_options *options,
-                               const char *name, bool *no_memory)
+const char *csg_folders_search(csg_folder_search *search, const csgm_scene_options *options,
+                               const char *name)
 {
     char folder[4096];
     const char *found = NULL;
     size_t length = 0;
-    for (size_t i = 0;
-         !found && !*no_memory && (length = csg_folder_name(options, i, folder, sizeof folder)) > 0;
+    for (size_t i = 0; !found && !search->no_memory &&
+                       (length = csg_folder_name(options, i, folder, sizeof folder)) > 0;
          i++)
         if (length < sizeof folder)
-            found = csg_folder_try(arena, folder, length, name, no_memory);
+            found = csg_folder_try(search, folder, length, name);
     return found;
 }

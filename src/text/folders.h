@@ -5,7 +5,7 @@
 #ifndef CSG_TEXT_FOLDERS_H
 #define CSG_TEXT_FOLDERS_H
 
-#include "base/memory.h"
+#include "base/context.h"
 
 /* Where to look, for messages. */
 #define CSG_FOLDERS_IN_WORDS                                                                       \
@@ -17,12 +17,19 @@
  * not exist. */
 size_t csg_folder_name(const csgm_scene_options *options, size_t index, char *buffer, size_t size);
 
-/* The path of `name` in a folder (up to length; 0: as it stands) if it can be read, in the arena.
- * NULL: it cannot, or *no_memory is set. */
-const char *csg_folder_try(csg_arena *arena, const char *folder, size_t length, const char *name,
-                           bool *no_memory);
+/* Where a file is looked for. */
+typedef struct csg_folder_search {
+    const csgm_context *context; /* is told of each file */
+    csg_arena *arena;            /* of the paths */
+    bool no_memory;
+} csg_folder_search;
+
+/* The path of `name` in a folder (up to length; 0: as it stands) if it can be read. NULL: it
+ * cannot, or no_memory is set. */
+const char *csg_folder_try(csg_folder_search *search, const char *folder, size_t length,
+                           const char *name);
 /* The first that can be read in the folders above. */
-const char *csg_folders_search(csg_arena *arena, const csgm_scene_options *options,
-                               const char *name, bool *no_memory);
+const char *csg_folders_search(csg_folder_search *search, const csgm_scene_options *options,
+                               const char *name);
 
 #endif

@@ -355,6 +355,7 @@ csgm_status csg_source_read(csg_sources *sources, const csg_source_request *requ
     /* A scene must not make the program wait for a pipe that nobody writes to. */
     int wait = request->from.source < sources->count ? O_NONBLOCK : 0;
     int file = open(request->path, O_RDONLY | O_CLOEXEC | wait);
+    csg_context_tell_file(sources->context, request->path, file >= 0);
     if (file < 0) {
         report_file(sources, CSG_DIAG_UNREADABLE_SOURCE, request->from, request->path, NULL,
                     strerror(errno));

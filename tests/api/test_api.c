@@ -7,8 +7,10 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -495,6 +497,61 @@ static void test_memory_limit(void **state)
     end(&r);
 }
 
+/* ---- files that are looked for ------------------------------------------------------------ */
+
+typedef struct looked {
+    char found[256], missing[512]; /* paths, each behind a blank */
+} looked;
+
+static void note_file(void *user, const char *path, bool is_there)
+{
+    looked *l = user;
+    char *list = is_there ? l->found : l->missing;
+    size_t size = is_there ? sizeof l->found : sizeof l->missing, length = strlen(list);
+    snprintf(list + length, size - length, " %s", path);
+}
+
+/* What is there and what is not, of a scene that is refused as well. */
+static void test_files_are_told(void **state)
+{
+    char folder[] = "/tmp/csgmesh-files-XXXXXX", scene_path[64], part_path[64];
+    static const char part[] = "size = 3;\n";
+    const char *dirs[] = {"/no/such/folder"};
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(scene_path, sizeof scene_path, "%s/scene.txt", folder);
+    snprintf(part_path, sizeof part_path, "%s/part.txt", folder);
+    FILE *file = fopen(scene_path, "w");
+    assert_non_null(file);
+    fputs("include <part.txt>\ninclude <none.txt>\ncube(size);\n", file);
+    fclose(file);
+    file = fopen(part_path, "w");
+    assert_non_null(file);
+    fputs(part, file);
+    fclose(file);
+
+    looked l = {.found = ""};
+    csgm_context *context;
+    csgm_scene *scene;
+    csgm_context_options options = csgm_context_options_default();
+    csgm_scene_options scene_options = csgm_scene_options_default();
+    options.on_file = note_file;
+    options.user = &l;
+    scene_options.include_dirs = dirs;
+    scene_options.include_dir_count = 1;
+    assert_int_equal(csgm_context_create(&options, &context), CSGM_OK);
+    assert_int_not_equal(csgm_scene_load(context, scene_path, &scene_options, &scene), CSGM_OK);
+    assert_non_null(strstr(l.found, scene_path));
+    assert_non_null(strstr(l.found, part_path));
+    assert_null(strstr(l.found, "none.txt"));
+    assert_non_null(strstr(l.missing, "/none.txt"));
+    assert_non_null(strstr(l.missing, "/no/such/folder/none.txt"));
+    csgm_context_destroy(context);
+    remove(scene_path);
+    remove(part_path);
+    rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -513,6 +570,7 @@ int main(void)
         cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_any_allocation_may_fail),
         cmocka_unit_test(test_memory_limit),
+        cmocka_unit_test(test_files_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -184,6 +184,13 @@ class Server(ViewTest):
         self.write("lib/more.txt", "more = 4;\n")
         self.until(4)
 
+    def test_what_was_missing_and_only_warned_of_comes(self):
+        self.write("main.scad", "include <later.scad>\ncube(4);\n")
+        self.start("main.scad")
+        self.until(4)
+        self.write("later.scad", "translate([6, 0, 0]) cube(4);\n")
+        self.until(10)
+
     def test_values(self):
         """Those of the page win over -D; a wrong one is a finding, and the next one is taken."""
         self.write("plate.scad", PLATE)

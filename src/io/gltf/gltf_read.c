@@ -5,6 +5,7 @@
  */
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -121,7 +122,7 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
  * open when CSGM_OK. */
 static csgm_status open_beside(const gltf *g, const char *uri, int *fd)
 {
-    char folder[4096];
+    char folder[4096], path[2 * sizeof folder];
     const char *slash = strrchr(g->input->path, '/');
     size_t length = slash ? (size_t)(slash - g->input->path) + 1 : 0;
     if (length >= sizeof folder)
@@ -129,6 +130,8 @@ static csgm_status open_beside(const gltf *g, const char *uri, int *fd)
     memcpy(folder, g->input->path, length);
     folder[length] = '\0';
     *fd = strstr(uri, "://") ? -1 : csg_open_beneath(folder, uri);
+    if (snprintf(path, sizeof path, "%s%s", folder, uri) < (int)sizeof path)
+        csg_context_tell_file(g->input->context, path, *fd >= 0);
     if (*fd >= 0)
         return CSGM_OK;
     if (strstr(uri, "://") || uri[0] == '/' || errno == EXDEV || errno == ELOOP)

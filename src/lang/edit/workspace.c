@@ -187,19 +187,19 @@ csg_edit_file *csg_workspace_follow(csgm_workspace *workspace, csg_edit_file *fr
     const csg_edit_link *asked = &from->names.links[link];
     csg_arena arena;
     csg_edit_file *file = NULL;
-    bool no_memory = false;
+    csg_folder_search search = {.context = workspace->context, .arena = &arena};
     csg_arena_init(&arena, &workspace->context->memory);
     const char *name = csg_arena_strndup(&arena, from->text + asked->offset, asked->length);
     const char *slash = strrchr(from->path, '/'), *found = NULL;
     size_t folder = slash && name && name[0] != '/' ? (size_t)(slash - from->path) + 1 : 0;
     if (name)
-        found = csg_folder_try(&arena, from->path, folder, name, &no_memory);
+        found = csg_folder_try(&search, from->path, folder, name);
     if (name && !found && name[0] != '/')
-        found = csg_folders_search(&arena, workspace->options, name, &no_memory);
+        found = csg_folders_search(&search, workspace->options, name);
     if (found)
         file = csg_workspace_file(workspace, found);
     from->links[link] = file;
-    workspace->no_memory = workspace->no_memory || no_memory || !name;
+    workspace->no_memory = workspace->no_memory || search.no_memory || !name;
     csg_arena_reset(&arena);
     return file;
 }

@@ -133,9 +133,9 @@ typedef struct csg_program {
     csg_program_file **files; /* files[0] is the scene; the others are used */
     uint32_t file_count;
     uint32_t scope_count;
-    uint32_t slot_count;                  /* names that are used: csg_expression, csg_statement */
-    const char **dependencies, **missing; /* files that were read; places where one was not */
-    uint32_t dependency_count, missing_count;
+    uint32_t slot_count; /* names that are used: csg_expression, csg_statement */
+    const char **dependencies;
+    uint32_t dependency_count;
     double deadline_s;  /* of the monotonic clock; 0 = none */
     bool failed_io;     /* a file could not be read */
     bool is_alone;      /* only the scene's own text is read */
@@ -154,7 +154,7 @@ void csg_program_reset(csg_program *program);
  * False without memory. */
 bool csg_program_depend(csg_program *program, const char *path);
 /* The path of a file that can be read, beside the source that asks or, then *in_library, in the
- * folders of text/folders.h; in the arena. NULL: it is missed (not reported), or *no_memory. */
+ * folders of text/folders.h; in the arena. NULL: there is none (not reported), or *no_memory. */
 const char *csg_program_find(csg_program *program, uint32_t asking, const char *name,
                              bool *in_library, bool *no_memory);
 /* Is there room on the stack between `here` (the address of a local) and its end? */

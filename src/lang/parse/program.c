@@ -23,37 +23,28 @@ void csg_program_reset(csg_program *program)
     csg_arena_reset(&program->arena);
 }
 
-/* Once. False without memory. */
-static bool add_path(csg_arena *arena, const char ***paths, uint32_t *count, const char *path)
+bool csg_program_depend(csg_program *program, const char *path)
 {
-    for (uint32_t i = 0; i < *count; i++)
-        if (strcmp((*paths)[i], path) == 0)
+    for (uint32_t i = 0; i < program->dependency_count; i++)
+        if (strcmp(program->dependencies[i], path) == 0)
             return true;
-    const char **place = csg_arena_push(arena, (void **)paths, count, sizeof path);
+    const char **place = csg_arena_push(&program->arena, (void **)&program->dependencies,
+                                        &program->dependency_count, sizeof path);
     if (place)
         *place = path;
     return place != NULL;
 }
 
-bool csg_program_depend(csg_program *program, const char *path)
-{
-    return add_path(&program->arena, &program->dependencies, &program->dependency_count, path);
-}
-
 const char *csg_program_find(csg_program *program, uint32_t asking, const char *name,
                              bool *in_library, bool *no_memory)
 {
-    csg_arena *arena = &program->arena;
     const char *from = program->sources.items[asking].name, *slash = strrchr(from, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - from) + 1 : 0;
-    *no_memory = false;
-    const char *found = csg_folder_try(arena, from, folder, name, no_memory);
-    *in_library = !found && !*no_memory && name[0] != '/';
+    csg_folder_search search = {.context = program->context, .arena = &program->arena};
+    const char *found = csg_folder_try(&search, from, folder, name);
+    *in_library = !found && !search.no_memory && name[0] != '/';
     if (*in_library)
-        found = csg_folders_search(arena, program->options, name, no_memory);
-    if (found || *no_memory)
-        return found;
-    const char *beside = csg_arena_printf(arena, "%.*s%s", (int)folder, from, name);
-    *no_memory = !beside || !add_path(arena, &program->missing, &program->missing_count, beside);
-    return NULL;
+        found = csg_folders_search(&search, program->options, name);
+    *no_memory = search.no_memory;
+    return found;
 }

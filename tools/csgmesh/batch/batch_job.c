@@ -343,6 +343,9 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     m.app.options.if_changed = true;
     m.app.start_s = cli_now_s();
     m.app.trace = run->app->trace;
+    m.app.cancelled = run->app->cancelled;
+    m.app.looked = run->app->looked;
+    m.app.looked_user = run->app->looked_user;
     m.app.zone_note = job->scene;
     *is_large = false;
     FILE *out = open_console(&m, &text, &length);

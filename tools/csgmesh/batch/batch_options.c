@@ -35,7 +35,7 @@ static bool is_of_batch(cli_option_id id)
         CLI_OPTION_diagnostics, CLI_OPTION_threads,        CLI_OPTION_roots,
         CLI_OPTION_help,        CLI_OPTION_version,        CLI_OPTION_json,
         CLI_OPTION_defines,     CLI_OPTION_include_dirs,   CLI_OPTION_trace,
-        CLI_OPTION_meta,        CLI_OPTION_sandbox,
+        CLI_OPTION_meta,        CLI_OPTION_sandbox,        CLI_OPTION_watch,
     };
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)
         if (ids[i] == id)

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "batch/batch_manifest.h"
 #include "batch/batch_names.h"
@@ -130,6 +131,11 @@ static int parse_options(batch_plan *plan, batch_job *job)
     return CLI_DONE;
 }
 
+static cli_looked_kind kind_of(const char *path)
+{
+    return access(path, R_OK) == 0 ? CLI_LOOKED_FOUND : CLI_LOOKED_MISSING;
+}
+
 static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene,
                    const batch_set *set, const char *parameter_file)
 {
@@ -161,7 +167,11 @@ static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene
                      cli_arena_printf(arena, "--parameter-set=%s", set->name));
     }
     int status = parse_options(plan, job);
-    return status == CLI_DONE ? name_outputs(plan, job, entry) : status;
+    if (status == CLI_DONE)
+        status = name_outputs(plan, job, entry);
+    if (status == CLI_DONE) /* also where it is not run after a failure */
+        cli_app_looked(plan->app, scene, kind_of(scene));
+    return status;
 }
 
 /* mug.json beside mug.txt, as OpenSCAD has it. */
@@ -186,6 +196,7 @@ static int add_sets(batch_plan *plan, const batch_entry *entry, const char *scen
     const char *file = entry->parameter_file;
     if (!file)
         file = file_beside(&plan->arena, scene);
+    cli_app_looked(plan->app, file, kind_of(file));
     if (!entry->parameter_file && asks_for_all(&entry->sets) && stat(file, &status_of_file) != 0)
         return add_job(plan, entry, scene, NULL, NULL); /* a scene without sets */
     int status = batch_sets_load(plan->app, &plan->arena, &plan->sets, file, &sets);
@@ -222,6 +233,7 @@ static int add_scenes(batch_plan *plan, const batch_entry *entry)
     const char *pattern = cli_path_join(&plan->arena, entry->folder, entry->scene);
     if (!strpbrk(pattern, "*?[") || stat(pattern, &file) == 0)
         return add_scene(plan, entry, pattern);
+    cli_app_looked(plan->app, pattern, CLI_LOOKED_PATTERN);
     if (glob(pattern, GLOB_NOSORT, NULL, &found) != 0)
         return refuse(plan, entry->place, NULL, "no scene matches '%s'", pattern);
     qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, by_bytes);
@@ -249,6 +261,7 @@ static int read_operands(batch_plan *plan, batch_entries *entries)
         if (strcmp(path, "-") == 0)
             return refuse(plan, "", NULL, "a batch reads its scenes from files, not from '-'");
         if (is_manifest(path)) {
+            cli_app_looked(plan->app, path, kind_of(path));
             status = batch_manifest_read(plan, path, entries);
             continue;
         }

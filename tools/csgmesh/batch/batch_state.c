@@ -89,6 +89,15 @@ static bool is_endangered(const batch_run *run, const batch_record *record)
     return found;
 }
 
+/* Those of a job that is left alone are followed as well. */
+static void tell_inputs(const batch_run *run, const batch_record *record)
+{
+    for (size_t i = 0; i < record->input_count; i++)
+        cli_app_looked(run->app, record->inputs[i].path, CLI_LOOKED_FOUND);
+    for (size_t i = 0; i < record->absent.count; i++)
+        cli_app_looked(run->app, record->absent.items[i], CLI_LOOKED_MISSING);
+}
+
 bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result)
 {
     cli_arena arena = {0};
@@ -104,6 +113,7 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
         outputs_hold(run, &arena, &record) && !is_endangered(run, &record) && !arena.failed;
     if (current) {
         take_outputs(result, &record);
+        tell_inputs(run, &record);
         result->outcome = BATCH_UP_TO_DATE;
     }
     cli_arena_reset(&arena);
@@ -190,6 +200,7 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
         closedir(directory);
     if (found) {
         take_outputs(result, &record);
+        tell_inputs(run, &record);
         result->outcome = BATCH_CACHED;
         write_state(run, &arena, job, &record);
     }

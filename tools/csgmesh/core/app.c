@@ -86,6 +86,31 @@ csgm_context_options cli_app_context_options(const cli_app *app)
     return options;
 }
 
+/* ---- what the library tells ------------------------------------------------------------------- */
+
+static void take_finding(void *user, const csgm_diag *diag)
+{
+    cli_app *app = user;
+    cli_console_diag(&app->console, diag);
+}
+
+static void take_echo(void *user, const char *text, size_t length)
+{
+    cli_app *app = user;
+    cli_console_echo(&app->console, text, length);
+}
+
+static void take_file(void *user, const char *path, bool is_there)
+{
+    cli_app_looked(user, path, is_there ? CLI_LOOKED_FOUND : CLI_LOOKED_MISSING);
+}
+
+void cli_app_looked(const cli_app *app, const char *path, cli_looked_kind kind)
+{
+    if (app->looked)
+        app->looked(app->looked_user, path, kind);
+}
+
 int cli_app_open(cli_app *app)
 {
     if (app->options.strict && app->options.lenient)
@@ -94,9 +119,10 @@ int cli_app_open(cli_app *app)
     if (guarded != CLI_DONE)
         return guarded;
     csgm_context_options options = cli_app_context_options(app);
-    options.on_diag = cli_console_diag;
-    options.on_echo = cli_console_echo;
-    options.user = &app->console;
+    options.on_diag = take_finding;
+    options.on_echo = take_echo;
+    options.on_file = take_file;
+    options.user = app;
     options.cancelled = app->cancelled;
     options.trace = app->trace;
     csgm_status status = csgm_context_create(&options, &app->context);
@@ -221,8 +247,6 @@ csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out)
         status = CSGM_ERR_ARGUMENT;
     options.flat = app->flat;
     options.only_check = app->only_checks;
-    options.on_file = app->on_file;
-    options.file_user = app->file_user;
     *out = (cli_scene_settings){options, defines};
     return status;
 }

@@ -5,6 +5,7 @@
 #define CLI_CLI_H
 
 #include "core/console.h"
+#include "core/looked.h"
 #include "core/options.h"
 
 /* As diff(1). */
@@ -25,9 +26,11 @@ typedef struct cli_app {
     const char *metadata[CLI_META_MOST + 1];
     char source[280];
     /* Whether to stop, asked on any thread; NULL: nobody asks. */
-    bool (*cancelled)(void *console);
-    csgm_file_fn *on_file; /* of scenes; NULL: nobody asks */
-    void *file_user;
+    bool (*cancelled)(void *app);
+    /* Is told of each file that is looked for, with looked_user; NULL: nobody
+     * follows them. */
+    void (*looked)(void *user, const char *path, cli_looked_kind kind);
+    void *looked_user;
     bool only_checks;       /* scenes are looked at for mistakes and not made */
     const char *overwriter; /* option whose output is a file that is read, or another output:
                                nothing may be written any more; NULL = none */
@@ -45,6 +48,8 @@ typedef struct cli_scene_settings {
 /* Failures are reported but for CSGM_ERR_MEMORY. Release the settings in either case. */
 csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out);
 void cli_scene_settings_release(cli_scene_settings *settings);
+/* A file is looked for, for who follows it. */
+void cli_app_looked(const cli_app *app, const char *path, cli_looked_kind kind);
 /* -Werror, and there was one. */
 bool cli_app_is_refused(const cli_app *app);
 /* path "-" is standard input. Failures are reported. */

@@ -213,9 +213,8 @@ const char *cli_console_paint(const cli_console *console, const char *text, cli_
     return buffer;
 }
 
-void cli_console_diag(void *user, const csgm_diag *diag)
+void cli_console_diag(cli_console *console, const csgm_diag *diag)
 {
-    cli_console *console = user;
     if (diag->lenient)
         count_lenient(console, diag->code);
     if (is_muted(console, diag->severity))
@@ -251,9 +250,8 @@ static void print_echo_json(FILE *out, const char *text, size_t length)
     free(line);
 }
 
-void cli_console_echo(void *user, const char *text, size_t length)
+void cli_console_echo(cli_console *console, const char *text, size_t length)
 {
-    cli_console *console = user;
     if (console->quiet)
         return;
     cli_console_end_progress(console);

@@ -49,8 +49,8 @@ void cli_console_configure(cli_console *console, const cli_options *options);
 void cli_console_flush(cli_console *console);
 
 /* csgm_diag_fn and csgm_text_fn; user is a cli_console. */
-void cli_console_diag(void *user, const csgm_diag *diag);
-void cli_console_echo(void *user, const char *text, size_t length);
+void cli_console_diag(cli_console *console, const csgm_diag *diag);
+void cli_console_echo(cli_console *console, const char *text, size_t length);
 
 /* One sentence of the program itself. hint may be NULL. */
 __attribute__((format(printf, 4, 5))) void cli_console_say(cli_console *console,

@@ -22,17 +22,22 @@ static void say(const char *text)
 }
 
 /* Twice: another thread may be about to open a file whose name is known already. */
-static void on_signal(int signal_number)
+_Noreturn void cli_interrupt_end(void)
 {
-    (void)signal_number;
     static const struct timespec moment = {.tv_nsec = 5000000};
     csgm_files_abandon();
     nanosleep(&moment, NULL);
     csgm_files_abandon();
     if (atomic_load(&progress_shown))
         say("\n");
-    say("csgmesh: interrupted\n");
     _exit(CLI_TROUBLE);
+}
+
+static void on_signal(int signal_number)
+{
+    (void)signal_number;
+    say("csgmesh: interrupted\n");
+    cli_interrupt_end();
 }
 
 /* A signal that the parent made ignored stays ignored (nohup, background jobs). */

@@ -8,6 +8,8 @@
 
 /* Installs the handlers; SIGPIPE and SIGXFSZ become errors of write(). */
 void cli_interrupt_install(void);
+/* Ends the process now, without a word: nobody wants what it is making any more. On any thread. */
+_Noreturn void cli_interrupt_end(void);
 /* Tells the handler whether a bar stands on the terminal; returns what was told before. */
 bool cli_interrupt_progress_shown(bool shown);
 

@@ -8,6 +8,7 @@
 
 #include "core/cli.h"
 #include "core/interrupt.h"
+#include "core/repeat.h"
 #include "core/sandbox.h"
 #include "core/sources.h"
 #include "core/trace.h"
@@ -73,6 +74,20 @@ static int refuse_unknown(cli_app *app, const char *name)
                            "there is no command and no file '%.80s'", name);
 }
 
+static int work(cli_app *app)
+{
+    int status = CLI_DONE;
+    if (app->options.trace) /* it is written whatever the command says */
+        status = cli_sources_guard(app);
+    if (status == CLI_DONE)
+        status = cli_trace_begin(app);
+    if (status == CLI_DONE)
+        status = commands[app->options.command].run(app);
+    if (app->options.summary)
+        cli_console_summary(&app->console);
+    return cli_trace_end(app, status);
+}
+
 static int run_command(cli_app *app, cli_command command, bool is_named, int argc, char **argv)
 {
     cli_problem problem;
@@ -97,15 +112,9 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
         return cli_finish_stdout(app, CLI_DONE);
     }
     int status = cli_confine(app);
-    if (status == CLI_DONE && app->options.trace) /* it is written whatever the command says */
-        status = cli_sources_guard(app);
     if (status == CLI_DONE)
-        status = cli_trace_begin(app);
-    if (status == CLI_DONE)
-        status = commands[command].run(app);
-    if (app->options.summary)
-        cli_console_summary(&app->console);
-    return cli_trace_end(app, status);
+        status = app->options.watch ? cli_repeat(app, work) : work(app);
+    return status;
 }
 
 /* Where the command's name stands: the first argument that is neither an option nor the value of

@@ -4,7 +4,6 @@
  */
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,27 +17,6 @@
 extern char **environ;
 
 enum { MOST_PORT = 65535 };
-
-/* How long nothing is looked at where no event comes; and what an editor gets to finish a file. */
-static const double LOOK_S = 0.25, SETTLE_S = 0.02;
-
-static volatile sig_atomic_t is_stopped;
-
-static void stop(int number)
-{
-    (void)number;
-    if (is_stopped) /* asked twice */
-        _exit(CLI_TROUBLE);
-    is_stopped = 1;
-}
-
-/* Ctrl-C is how it ends, and no fault. */
-static void end_by_signals(void)
-{
-    struct sigaction action = {.sa_handler = stop};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
 
 static int check(cli_app *app)
 {
@@ -80,34 +58,15 @@ static void open_browser(const char *url)
     posix_spawn_file_actions_destroy(&actions);
 }
 
-/* Until nothing changes any more: a file that is being written is read once it is whole. */
-static void settle(view_watch *watch)
+static bool take_files(void *user, cli_watch *watch)
 {
-    enum { MOST_LOOKS = 10 };
-    for (int i = 0; i < MOST_LOOKS && !is_stopped; i++) {
-        view_watch_wait(watch, SETTLE_S);
-        if (!view_watch_look(watch))
-            return;
-    }
+    view_builder_watch(user, watch);
+    return true;
 }
 
-static void follow(view_builder *builder)
+static void ask(void *user)
 {
-    view_watch watch;
-    view_watch_begin(&watch);
-    view_builder_watch(builder, &watch);
-    bool stirred = false;
-    while (!is_stopped) {
-        stirred = view_watch_wait(&watch, LOOK_S) || stirred;
-        bool failed = view_builder_watch(builder, &watch), changed = view_watch_look(&watch);
-        /* what a scene lacks may have come, whatever its name is */
-        if (changed || (failed && stirred)) {
-            stirred = false;
-            settle(&watch);
-            view_builder_ask(builder);
-        }
-    }
-    view_watch_release(&watch);
+    view_builder_ask(user);
 }
 
 static int show(cli_app *app, view_store *store)
@@ -130,8 +89,7 @@ static int show(cli_app *app, view_store *store)
                             app->options.operands.items[0]);
         if (!app->options.no_open && !app->options.roots.count)
             open_browser(url);
-        end_by_signals();
-        follow(&builder);
+        cli_follow(&(cli_follower){&builder, take_files, ask});
     }
     view_store_end(store);
     view_server_stop(server);

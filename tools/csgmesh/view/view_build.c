@@ -21,9 +21,9 @@ enum { COARSE_CELLS = 64 /* along the longest side */ };
 /* There is one builder in the process. Asked by the library on any thread. */
 static atomic_bool is_outdated;
 
-static bool is_cancelled(void *console)
+static bool is_cancelled(void *app)
 {
-    (void)console;
+    (void)app;
     return atomic_load(&is_outdated);
 }
 
@@ -31,14 +31,14 @@ typedef struct job {
     view_builder *builder;
     cli_app app;
     cli_work work;
-    view_texts defines; /* -D's and the page's; those strings are the job's */
-    size_t own_defines; /* the first of the page's */
+    view_defines defines; /* -D's and the page's; those strings are the job's */
+    size_t own_defines;   /* the first of the page's */
     cli_text said;
     char *parameters; /* JSON; NULL: not known */
-    view_texts files; /* that were read, or missed */
     csgm_mesh *marks[CSGM_MARK_COUNT];
     uint64_t model; /* number of the one to show */
     double begin_s, read_s;
+    cli_looked looked;
 } job;
 
 /* ---- what is said ----------------------------------------------------------------------------- */
@@ -98,47 +98,26 @@ static void free_texts(char **texts, size_t count)
     free(texts);
 }
 
-static void release_texts(view_texts *texts)
+static void take_file(void *user, const char *path, cli_looked_kind kind)
 {
-    free_texts(texts->items, texts->count);
-    *texts = (view_texts){.count = 0};
+    job *j = user;
+    bool is_new;
+    cli_looked_add(&j->looked, path, kind, &is_new);
 }
 
-/* For csgm_scene_options.on_file: one that is missing is waited for, too. */
-static void take_file(void *user, const char *path, bool is_there)
-{
-    (void)is_there;
-    view_texts *files = user;
-    char **items = realloc(files->items, (files->count + 1) * sizeof *items);
-    char *copy = items ? strdup(path) : NULL;
-    files->items = items ? items : files->items;
-    if (copy)
-        files->items[files->count++] = copy;
-}
-
-/* Where nothing was read, what is known stays. */
-static void hand_over_files(job *j, bool failed)
+/* What the scene was looked for in; where that was given up before, what is known stays. */
+static void hand_over_files(job *j)
 {
     view_builder *b = j->builder;
+    if (!j->looked.count)
+        return;
     pthread_mutex_lock(&b->lock);
-    b->has_failed = failed;
-    if (j->files.count) {
-        release_texts(&b->files);
-        b->files = j->files;
-        b->read_s = j->read_s;
-        b->has_files = true;
-        j->files = (view_texts){.count = 0};
-    }
+    cli_looked_release(&b->files);
+    b->files = j->looked;
+    b->read_s = j->read_s;
+    b->has_files = true;
     pthread_mutex_unlock(&b->lock);
-}
-
-static int load(job *j, const char *path)
-{
-    j->app.on_file = take_file;
-    j->app.file_user = &j->files;
-    int status = cli_work_load(&j->app, &j->work, path);
-    j->app.on_file = NULL;
-    return status;
+    j->looked = (cli_looked){0};
 }
 
 static void read_parameters(job *j)
@@ -254,8 +233,8 @@ static int make_all(job *j)
     if (status == CLI_DONE && format != CSGM_FORMAT_AUTO)
         status = cli_exit_status(csgm_mesh_read(j->app.context, path, format, &j->work.mesh));
     else if (status == CLI_DONE)
-        status = load(j, path);
-    hand_over_files(j, status != CLI_DONE);
+        status = cli_work_load(&j->app, &j->work, path);
+    hand_over_files(j);
     if (status == CLI_DONE && j->work.scene && !atomic_load(&is_outdated))
         status = make_meshes(j);
     return status;
@@ -267,7 +246,7 @@ static int make_all(job *j)
 static bool take_defines(job *j)
 {
     const cli_list *given = &j->builder->app->options.defines;
-    const view_texts *set = &j->builder->defines;
+    const view_defines *set = &j->builder->defines;
     char **items = calloc(given->count + set->count + 1, sizeof *items);
     if (!items)
         return false;
@@ -278,17 +257,10 @@ static bool take_defines(job *j)
         items[given->count + i] = strdup(set->items[i]);
         done = done && items[given->count + i];
     }
-    j->defines = (view_texts){items, given->count + set->count};
+    j->defines = (view_defines){items, given->count + set->count};
     j->own_defines = given->count;
     j->app.options.defines = (cli_list){(const char **)items, j->defines.count};
     return done;
-}
-
-static double wall_clock_s(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static void release(job *j)
@@ -300,7 +272,7 @@ static void release(job *j)
     cli_console_flush(&j->app.console);
     free(cli_text_close(&j->said));
     free(j->parameters);
-    release_texts(&j->files);
+    cli_looked_release(&j->looked);
     for (size_t i = j->own_defines; i < j->defines.count; i++)
         free(j->defines.items[i]);
     free(j->defines.items);
@@ -308,15 +280,15 @@ static void release(job *j)
 
 static void run_job(job *j)
 {
-    /* Clocks of file systems lag behind by up to a few milliseconds. */
-    static const double LAG_S = 0.01;
     static const csgm_normals normals = CSGM_NORMALS_CREASE;
     static uint64_t last_model;
     j->begin_s = cli_now_s();
-    j->read_s = wall_clock_s() - LAG_S;
+    j->read_s = cli_watch_clock_s();
     j->model = last_model;
     j->work.normals = &normals;
     j->app.cancelled = is_cancelled;
+    j->app.looked = take_file;
+    j->app.looked_user = j;
     j->app.console = cli_console_make();
     cli_console_configure(&j->app.console, &j->app.options);
     j->app.console.json = true;
@@ -362,10 +334,10 @@ static void *follow_requests(void *user)
 bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *store)
 {
     *builder = (view_builder){.app = app, .store = store, .wanted = 1};
-    builder->read_s = wall_clock_s();
-    take_file(&builder->files, app->options.operands.items[0], true);
-    builder->has_files = builder->files.count == 1;
-    return builder->has_files && pthread_mutex_init(&builder->lock, NULL) == 0 &&
+    builder->read_s = cli_watch_clock_s();
+    return cli_looked_add(&builder->files, app->options.operands.items[0], CLI_LOOKED_FOUND,
+                          &builder->has_files) &&
+           pthread_mutex_init(&builder->lock, NULL) == 0 &&
            pthread_cond_init(&builder->asked, NULL) == 0 &&
            pthread_create(&builder->thread, NULL, follow_requests, builder) == 0;
 }
@@ -385,8 +357,8 @@ void view_builder_end(view_builder *builder)
     ask(builder);
     pthread_mutex_unlock(&builder->lock);
     pthread_join(builder->thread, NULL);
-    release_texts(&builder->files);
-    release_texts(&builder->defines);
+    cli_looked_release(&builder->files);
+    free_texts(builder->defines.items, builder->defines.count);
     pthread_cond_destroy(&builder->asked);
     pthread_mutex_destroy(&builder->lock);
 }
@@ -419,21 +391,18 @@ bool view_builder_set(view_builder *builder, const char *lines, size_t length)
         return false;
     }
     pthread_mutex_lock(&builder->lock);
-    release_texts(&builder->defines);
-    builder->defines = (view_texts){items, count};
+    free_texts(builder->defines.items, builder->defines.count);
+    builder->defines = (view_defines){items, count};
     ask(builder);
     pthread_mutex_unlock(&builder->lock);
     return true;
 }
 
-bool view_builder_watch(view_builder *builder, view_watch *watch)
+void view_builder_watch(view_builder *builder, cli_watch *watch)
 {
     pthread_mutex_lock(&builder->lock);
     if (builder->has_files)
-        view_watch_set(watch, (const char *const *)builder->files.items, builder->files.count,
-                       builder->read_s);
+        cli_watch_set(watch, &builder->files, builder->read_s);
     builder->has_files = false;
-    bool failed = builder->has_failed;
     pthread_mutex_unlock(&builder->lock);
-    return failed;
 }

@@ -6,13 +6,13 @@
 #define CLI_VIEW_BUILD_H
 
 #include "core/cli.h"
+#include "core/follow.h"
 #include "view/view_store.h"
-#include "view/view_watch.h"
 
-typedef struct view_texts {
-    char **items;
+typedef struct view_defines {
+    char **items; /* "radius=50" */
     size_t count;
-} view_texts;
+} view_defines;
 
 typedef struct view_builder {
     const cli_app *app; /* its options; what the page sets comes after its -D */
@@ -22,11 +22,10 @@ typedef struct view_builder {
     pthread_cond_t asked;
     uint64_t wanted, begun; /* numbers of requests */
     bool is_ending;
-    view_texts defines; /* "radius=50" */
-    view_texts files;   /* that the scene was read from, or that it lacks */
-    double read_s;      /* of the wall clock: when reading began */
-    bool has_files;     /* since they were taken last */
-    bool has_failed;
+    view_defines defines;
+    cli_looked files; /* that the scene was looked for in */
+    double read_s;    /* of cli_watch_clock_s(): when reading began */
+    bool has_files;   /* since they were taken last */
 } view_builder;
 
 /* false: out of memory, or the system has no more threads. */
@@ -39,7 +38,7 @@ void view_builder_ask(view_builder *builder);
 /* The page sets values: lines NAME=EXPR. false: out of memory. */
 bool view_builder_set(view_builder *builder, const char *lines, size_t length);
 
-/* Hands the files to the watch where the list is new. Whether the scene could not be made. */
-bool view_builder_watch(view_builder *builder, view_watch *watch);
+/* Hands the files to the watch where the list is new. */
+void view_builder_watch(view_builder *builder, cli_watch *watch);
 
 #endif
