@@ -169,7 +169,7 @@ class Manifests(BatchTest):
             rows = re.findall(r'OPTION\(\w+,\s*[^,]+,\s*"([^"]+)",\s*(\w+),\s*(?:"[^"]*"|NULL),\s*'
                               r"([A-Z_| ]+),", file.read())
         of_batches = {"format", "parameter-file", "parameter-set", "quiet", "progress", "color",
-                      "diagnostics", "threads", "help", "version", "json", "define", "include", "trace", "root", "sandbox"}
+                      "diagnostics", "threads", "help", "version", "json", "define", "include", "trace", "root", "sandbox", "watch"}
         wanted = {name.replace("-", "_") for name, _, commands in rows
                   if ("ANY" in commands or {"MESH", "BATCH"} <= set(commands.split(" | ")))
                   and name not in of_batches}

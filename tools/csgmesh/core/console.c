@@ -161,6 +161,7 @@ static void count_lenient(cli_console *console, uint16_t code)
 
 bool cli_silence_begin(cli_silence *silence, cli_console *console)
 {
+    cli_console_flush(console); /* what is held back was said before */
     *silence = (cli_silence){.nowhere = fopen("/dev/null", "we"), .kept = *console};
     if (silence->nowhere)
         console->out = silence->nowhere;
