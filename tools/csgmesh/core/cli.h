@@ -27,7 +27,7 @@ typedef struct cli_app {
     char source[280];
     /* Whether to stop, asked on any thread; NULL: nobody asks. */
     bool (*cancelled)(void *app);
-    /* Is told of each file that is looked for, with looked_user; NULL: nobody
+    /* Is told of each file that is looked for, with looked_user, on any thread; NULL: nobody
      * follows them. */
     void (*looked)(void *user, const char *path, cli_looked_kind kind);
     void *looked_user;
