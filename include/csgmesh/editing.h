@@ -69,6 +69,8 @@ typedef struct csgm_name {
     uint32_t begin, end;       /* of the name in that file */
     uint32_t whole_begin, whole_end; /* of the statement */
     uint32_t depth;                  /* definitions that it lies in; of a list only */
+    bool takes_children;             /* of a module: something stands behind its call */
+    bool is_value;                   /* of a completion: a value stands there, not a statement */
 } csgm_name;
 
 /* false = that is enough. */

@@ -12,7 +12,7 @@ import cli
 class Client:
     """One server. Findings are kept by URI, each with the version of the text that they are of."""
 
-    def __init__(self, *arguments, cwd=None, env=None, initialize=True, encodings=None):
+    def __init__(self, *arguments, cwd=None, env=None, initialize=True, encodings=None, snippets=False):
         self.process = subprocess.Popen([cli.PROGRAM, "lsp", *arguments], cwd=cwd, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, env=env)
         self.messages = queue.Queue()
@@ -23,7 +23,8 @@ class Client:
         self.reader.start()
         if initialize:
             general = {"positionEncodings": encodings} if encodings else {}
-            self.capabilities = self.ask("initialize", {"capabilities": {"general": general}})["capabilities"]
+            items = {"completion": {"completionItem": {"snippetSupport": snippets}}}
+            self.capabilities = self.ask("initialize", {"capabilities": {"general": general, "textDocument": items}})["capabilities"]
             self.tell("initialized", {})
 
     def _read(self):

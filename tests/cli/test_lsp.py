@@ -189,6 +189,36 @@ class Names(Lsp):
         client.change(uri, text := MAIN + "// sph")
         self.assertEqual(labels("// sph", 6), {})
 
+    def test_snippets(self):
+        """What an editor fills in: for those that say so, and where no brackets stand yet."""
+        text = ("module frame($gap, size, depth = 2) { children(); }\n/* children */ module peg(r) cylinder(h = 1, r = r);\n"
+                "function half(x) = x / 2;\nfunction none() = 1;\n")
+        client = self.start(snippets=True)
+        uri = client.open(self.path("a.txt"), text)
+
+        def snippet(written, label, at_column=None):
+            whole = text + written
+            client.change(uri, whole)
+            position = {"line": whole.count("\n"), "character": len(written) if at_column is None else at_column}
+            items = client.ask("textDocument/completion", {"textDocument": {"uri": uri}, "position": position})["items"]
+            item = {i["label"]: i for i in items}[label]
+            self.assertEqual("insertText" in item, "insertTextFormat" in item)
+            return item.get("insertText")
+        for written, label, want in (
+                ("fra", "frame", r"frame(${1:\$gap}, ${2:size}) $0"), ("pe", "peg", "peg(${1:r});"), ("cub", "cube", "cube($1);"),
+                ("trans", "translate", "translate($1) $0"), ("union() sph", "sphere", "sphere($1);"), ("chil", "children", "children();"),
+                ("mod", "module", "module ${1:name}($2) {\n  $0\n}"), ("fo", "for", "for (${1:i} = [${2:0} : ${3:10}]) $0"),
+                ("func", "function", "function ${1:name}($2) = $0;"), ("x = func", "function", "function (${1:x}) $0"),
+                ("x = [fo", "for", "for (${1:i} = [${2:0} : ${3:10}]) $0"), ("ass", "assert", "assert(${1:condition});"),
+                ("x = ass", "assert", "assert(${1:condition}) $0"), ("inc", "include", "include <$0>"),
+                ("x = hal", "half", "half(${1:x})"), ("x = no", "none", "none()"), ("x = tru", "true", None), ("x = P", "PI", None)):
+            self.assertEqual(snippet(written, label), want, written)
+        self.assertEqual(snippet("cub;", "cube", 3), "cube($1)")
+        self.assertIsNone(snippet("cub (3);", "cube", 2))
+        client = self.start()
+        uri = client.open(self.path("a.txt"), text)
+        self.assertIsNone(snippet("cub", "cube"))
+
     def test_completion_of_paths(self):
         os.makedirs(self.path("lib/whole"))
         self.write("lib/whole/inner.scad", "")

@@ -9,11 +9,12 @@
 
 typedef struct module_row {
     const char *name, *doc;
+    bool takes_children;
 } module_row;
 
 static const module_row modules[] = {
-#define CSG_MODULE(name, handler, children, doc) {#name, doc},
-#define CSG_CONTROL(name, handler, children, doc) {#name, doc},
+#define CSG_MODULE(name, handler, children, doc) {#name, doc, (children) != 0},
+#define CSG_CONTROL(name, handler, children, doc) {#name, doc, (children) != 0},
 #include "lang/modules/modules.def"
 #undef CSG_MODULE
 #undef CSG_CONTROL
@@ -98,6 +99,7 @@ bool csg_signature_add(csg_arena *arena, csgm_name *name, size_t begin, size_t e
 static bool describe_module(csg_arena *arena, const module_row *module, csgm_name *out)
 {
     const char *words = module->doc;
+    out->takes_children = module->takes_children;
     const char *signature = csg_arena_printf(arena, "module %s(", module->name);
     for (size_t i = 0; i < PARAMETERS && signature && words; i++) {
         if (strcmp(parameters[i].module, module->name) != 0)

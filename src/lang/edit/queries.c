@@ -264,13 +264,15 @@ typedef struct completion {
 
 static bool fits_site(const completion *c, csgm_name_kind kind, const char *name)
 {
-    bool is_value_word = strcmp(name, "true") == 0 || strcmp(name, "false") == 0 ||
-                         strcmp(name, "undef") == 0 || strcmp(name, "each") == 0 ||
-                         strcmp(name, "function") == 0 || strcmp(name, "if") == 0;
+    static const char *const of_values[] = {"true", "false", "undef", "each",   "function",
+                                            "if",   "for",   "let",   "assert", "echo"};
+    bool is_value_word = false;
+    for (size_t i = 0; i < sizeof of_values / sizeof *of_values; i++)
+        is_value_word = is_value_word || strcmp(name, of_values[i]) == 0;
     if (kind == CSGM_NAME_KEYWORD)
         return c->at.is_statement || is_value_word;
     return c->at.is_statement ? kind == CSGM_NAME_MODULE || kind == CSGM_NAME_VARIABLE
-                              : kind != CSGM_NAME_MODULE;
+                              : kind != CSGM_NAME_MODULE || is_value_word;
 }
 
 /* Once each. */
@@ -311,6 +313,7 @@ static bool take_known(void *user, csg_edit_target target)
         return false;
     }
     c->told[c->count++] = told;
+    name.is_value = !c->at.is_statement;
     return c->q->each(c->q->user, &name);
 }
 

@@ -266,6 +266,29 @@ static const char *sign(csg_arena *arena, csg_edit_target target, csgm_name *out
                  : NULL;
 }
 
+/* Does the module ask for its children? */
+static bool takes_children(const csg_edit_file *file, const csg_edit_name *module)
+{
+    size_t low = 0, high = file->pieces.count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (file->pieces.items[middle].offset < module->begin)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (size_t i = low; i < file->pieces.count && file->pieces.items[i].offset < module->end;
+         i++) {
+        const csg_edit_piece *piece = &file->pieces.items[i];
+        const char *text = file->text + piece->offset;
+        size_t dollar = piece->length > 0 && text[0] == '$';
+        if (piece->kind == CSG_EDIT_TOKEN && piece->length - dollar == strlen("children") &&
+            memcmp(text + dollar, "children", strlen("children")) == 0)
+            return true;
+    }
+    return false;
+}
+
 bool csg_edit_describe(csg_arena *arena, csg_edit_target target, csgm_name *out)
 {
     *out = (csgm_name){0};
@@ -282,6 +305,7 @@ bool csg_edit_describe(csg_arena *arena, csg_edit_target target, csgm_name *out)
     out->end = name->offset + name->length;
     out->whole_begin = name->begin;
     out->whole_end = name->end;
+    out->takes_children = name->kind == CSGM_NAME_MODULE && takes_children(target.file, name);
     if (name->doc_end)
         out->documentation = clean_comment(arena, target.file, name->doc, name->doc_end);
     return out->name && out->signature && (!name->doc_end || out->documentation);

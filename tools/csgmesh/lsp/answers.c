@@ -20,9 +20,19 @@ static bool offers_utf8(const cli_value *params)
     return false;
 }
 
+static bool offers_snippets(const cli_value *params)
+{
+    static const char *const way[] = {"capabilities", "textDocument", "completion",
+                                      "completionItem", "snippetSupport"};
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++)
+        params = cli_value_member(params, way[i]);
+    return params && params->text && strcmp(params->text, "true") == 0;
+}
+
 static int initialize(lsp_call *call)
 {
     lsp_server *server = call->server;
+    server->has_snippets = offers_snippets(call->params);
     server->is_utf8 = server->checker.is_utf8 = offers_utf8(call->params);
     server->is_ready = true;
     cli_json_open(call->json, "result", '{');
@@ -115,7 +125,7 @@ static int symbols(lsp_call *call)
     return 0;
 }
 
-static void put_markdown(cli_json *json, const char *key, const csgm_name *name)
+void lsp_put_markdown(cli_json *json, const char *key, const csgm_name *name)
 {
     cli_text text;
     if (!cli_text_open(&text))
@@ -136,7 +146,7 @@ static bool take_hover(void *user, const csgm_name *name)
 {
     listing *list = user;
     cli_json_open(list->call->json, "result", '{');
-    put_markdown(list->call->json, "contents", name);
+    lsp_put_markdown(list->call->json, "contents", name);
     cli_json_end(list->call->json, '}');
     list->found = true;
     return false;
@@ -344,54 +354,7 @@ static int rename_name(lsp_call *call)
     return 0;
 }
 
-/* ---- completion and calls ---------------------------------------------------------------------- */
-
-static bool take_item(void *user, const csgm_name *name)
-{
-    enum { FUNCTION = 3, VARIABLE = 6, CLASS = 7, PROPERTY = 10, KEYWORD = 14 };
-    static const int kinds[] = {[CSGM_NAME_MODULE] = CLASS,
-                                [CSGM_NAME_FUNCTION] = FUNCTION,
-                                [CSGM_NAME_VARIABLE] = VARIABLE,
-                                [CSGM_NAME_PARAMETER] = VARIABLE,
-                                [CSGM_NAME_KEYWORD] = KEYWORD};
-    listing *list = user;
-    cli_json *json = list->call->json;
-    bool is_argument = name->kind == CSGM_NAME_PARAMETER && !name->path;
-    cli_json_open(json, NULL, '{');
-    cli_json_string(json, "label", name->name);
-    cli_json_integer(json, "kind", is_argument ? PROPERTY : kinds[name->kind]);
-    if (name->signature)
-        cli_json_string(json, "detail", name->signature);
-    if (name->documentation)
-        put_markdown(json, "documentation", name);
-    if (is_argument) {
-        char *text = malloc(strlen(name->name) + 4);
-        if (text) {
-            sprintf(text, "%s = ", name->name);
-            cli_json_string(json, "insertText", text);
-            cli_json_string(json, "sortText", " ");
-        }
-        free(text);
-    }
-    cli_json_end(json, '}');
-    return true;
-}
-
-static int completion(lsp_call *call)
-{
-    enum { MOST = 400 };
-    bool is_complete = true;
-    listing list = {.call = call};
-    cli_json_open(call->json, "result", '{');
-    cli_json_open(call->json, "items", '[');
-    if (call->text && !lsp_complete_path(call))
-        csgm_workspace_complete(call->server->workspace, call->path, call->offset, MOST, take_item,
-                                &list, &is_complete);
-    cli_json_end(call->json, ']');
-    cli_json_bool(call->json, "isIncomplete", !is_complete);
-    cli_json_end(call->json, '}');
-    return 0;
-}
+/* ---- calls --------------------------------------------------------------------------------------- */
 
 static uint32_t column_in(const lsp_call *call, const char *line, uint32_t offset)
 {
@@ -423,7 +386,7 @@ static bool take_signature(void *user, const csgm_name *name)
     cli_json_open(json, NULL, '{');
     cli_json_string(json, "label", name->signature);
     if (name->documentation)
-        put_markdown(json, "documentation", name);
+        lsp_put_markdown(json, "documentation", name);
     put_parameters(list->call, name);
     cli_json_end(json, '}');
     cli_json_end(json, ']');
@@ -594,7 +557,7 @@ lsp_answer *lsp_answer_find(const char *method)
         {"textDocument/documentHighlight", highlights},
         {"textDocument/prepareRename", prepare_rename},
         {"textDocument/rename", rename_name},
-        {"textDocument/completion", completion},
+        {"textDocument/completion", lsp_complete},
         {"textDocument/signatureHelp", signature},
         {"textDocument/foldingRange", folds},
         {"textDocument/formatting", format},

@@ -87,6 +87,7 @@ typedef struct lsp_server {
     lsp_checker checker;
     lsp_document *documents;
     bool is_utf8, is_ready, is_shut_down, is_over;
+    bool has_snippets; /* the editor fills in what a completion leaves open */
     char problem[400]; /* the last finding of `context` */
 } lsp_server;
 
@@ -118,6 +119,10 @@ typedef int lsp_answer(lsp_call *call);
 /* The handler of a request; NULL: there is none. */
 lsp_answer *lsp_answer_find(const char *method);
 
+/* textDocument/completion. */
+int lsp_complete(lsp_call *call);
+/* Signature and documentation. */
+void lsp_put_markdown(cli_json *json, const char *key, const csgm_name *name);
 /* Items for the path that is written behind include < or use <; false: none is. */
 bool lsp_complete_path(lsp_call *call);
 
