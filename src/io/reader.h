@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What every reader is: bytes of a whole file in, vertices and triangles into a builder out. Bytes
- * are hostile: a count is compared with what the file can hold before anything is allocated for it.
+ * are hostile: a count is compared with what the file can hold before anything is allocated for it,
+ * and an empty file or one that ends early is refused, unless each line of the format stands alone.
  */
 #ifndef CSG_IO_READER_H
 #define CSG_IO_READER_H

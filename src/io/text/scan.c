@@ -76,13 +76,16 @@ size_t csg_scan_word(csg_text_scan *s, const char **word)
     return (size_t)(s->at - *word);
 }
 
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c + 'a' - 'A') : c;
+}
+
 bool csg_scan_is(const char *word, size_t length, const char *expected)
 {
-    for (size_t i = 0; i < length; i++) {
-        char c = word[i] >= 'A' && word[i] <= 'Z' ? (char)(word[i] + 'a' - 'A') : word[i];
-        if (!expected[i] || c != expected[i])
+    for (size_t i = 0; i < length; i++)
+        if (!expected[i] || lower(word[i]) != lower(expected[i]))
             return false;
-    }
     return expected[length] == '\0';
 }
 

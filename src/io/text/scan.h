@@ -24,7 +24,7 @@ bool csg_scan_at_line_end(csg_text_scan *scan);
 
 /* The next word on this line: its length, 0 at the line's end. */
 size_t csg_scan_word(csg_text_scan *scan, const char **word);
-/* Same letters, any case. */
+/* Same letters, in any case on either side. */
 bool csg_scan_is(const char *word, size_t length, const char *expected);
 
 /* The next word on this line as a number: false and not moved when it is none. Infinite and NaN are
