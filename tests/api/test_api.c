@@ -14,38 +14,13 @@
 
 #include <cmocka.h>
 
+#include "counting.h"
 #include "csgmesh/csgmesh.h"
 
 static const char scene_text[] = "union(blend = 0.3) {\n"
                                  "  sphere(r = 1);\n"
                                  "  translate([0.8, 0, 0]) color(\"red\") cube(0.9);\n"
                                  "}\n";
-
-/* ---- an allocator that counts, and fails on purpose ------------------------------------- */
-
-typedef struct counting {
-    int64_t bytes, blocks;  /* in use */
-    int64_t calls, fail_at; /* the call of this number returns NULL; 0 = none */
-} counting;
-
-static void *counting_alloc(void *user, size_t size_bytes)
-{
-    counting *c = user;
-    int64_t call = __atomic_add_fetch(&c->calls, 1, __ATOMIC_RELAXED);
-    if (call == c->fail_at)
-        return NULL;
-    __atomic_add_fetch(&c->bytes, (int64_t)size_bytes, __ATOMIC_RELAXED);
-    __atomic_add_fetch(&c->blocks, 1, __ATOMIC_RELAXED);
-    return malloc(size_bytes);
-}
-
-static void counting_release(void *user, void *memory, size_t size_bytes)
-{
-    counting *c = user;
-    __atomic_add_fetch(&c->bytes, -(int64_t)size_bytes, __ATOMIC_RELAXED);
-    __atomic_add_fetch(&c->blocks, -1, __ATOMIC_RELAXED);
-    free(memory);
-}
 
 typedef struct findings {
     int errors, warnings;

@@ -15,34 +15,12 @@
 
 #include <cmocka.h>
 
+#include "counting.h"
 #include "csgmesh/csgmesh.h"
 
 /* Filled as a stream, and from a mesh in memory. */
 static const char *const names[] = {"a.ply", "a.obj"};
 enum { NAMES = sizeof names / sizeof *names };
-
-/* ---- an allocator that counts, and fails on purpose ------------------------------------- */
-
-typedef struct tally {
-    int64_t blocks, calls, fail_at; /* the call of this number returns NULL; 0 = none */
-} tally;
-
-static void *tally_alloc(void *user, size_t size_bytes)
-{
-    tally *t = user;
-    if (__atomic_add_fetch(&t->calls, 1, __ATOMIC_RELAXED) == t->fail_at)
-        return NULL;
-    __atomic_add_fetch(&t->blocks, 1, __ATOMIC_RELAXED);
-    return malloc(size_bytes);
-}
-
-static void tally_release(void *user, void *memory, size_t size_bytes)
-{
-    tally *t = user;
-    (void)size_bytes;
-    __atomic_add_fetch(&t->blocks, -1, __ATOMIC_RELAXED);
-    free(memory);
-}
 
 /* ---- what is there ---------------------------------------------------------------------- */
 
@@ -63,7 +41,7 @@ typedef struct fixture {
     csgm_context *context;
     csgm_scene *scene;
     csgm_field *field;
-    tally memory;
+    counting memory;
     size_t descriptors;
 } fixture;
 
@@ -76,7 +54,7 @@ static void begin(fixture *f, uint64_t memory_bytes)
     options.threads = 2;
     options.limits.memory_bytes = memory_bytes;
     options.allocator =
-        (csgm_allocator){.alloc = tally_alloc, .release = tally_release, .user = &f->memory};
+        (csgm_allocator){.alloc = counting_alloc, .release = counting_release, .user = &f->memory};
     assert_int_equal(csgm_context_create(&options, &f->context), CSGM_OK);
     assert_int_equal(csgm_scene_parse(f->context, text, sizeof text - 1, "test", NULL, &f->scene),
                      CSGM_OK);

@@ -422,8 +422,10 @@ static csgm_status compare(const formatter *f, csg_sources *sources, const char 
     diags->on_diag = NULL; /* all has been said of the text itself */
     csgm_status status = csg_source_add(sources, name, f->out.text, f->out.length, &source);
     if (status == CSGM_OK && !csg_edit_pieces_read(sources, source, &made))
-        status = csg_context_no_memory(sources->context);
+        status = CSGM_ERR_MEMORY;
     diags->on_diag = on_diag;
+    if (status == CSGM_ERR_MEMORY)
+        status = csg_context_no_memory(sources->context);
     if (status == CSGM_OK && !same_pieces(f->text, &f->pieces, f->out.text, &made)) {
         csg_diag_plain(diags, CSG_DIAG_UNFORMATTED, name, NULL,
                        "the text is left as it is: laid out, it would be another one");

@@ -309,7 +309,7 @@ static bool take_known(void *user, csg_edit_target target)
     const char *told =
         csg_arena_printf(&c->q->arena, "%c%.*s", (char)('0' + kind), (int)length, text);
     if (c->is_cut || !told || !csg_edit_describe(&c->q->arena, target, &name)) {
-        c->q->workspace->no_memory = !c->is_cut;
+        c->q->workspace->no_memory = c->q->workspace->no_memory || !c->is_cut;
         return false;
     }
     c->told[c->count++] = told;
@@ -325,7 +325,7 @@ static bool take_parameter(completion *c, const char *text, size_t length, const
         return true;
     const char *name = csg_arena_strndup(&c->q->arena, text, length);
     if (!name || c->count >= c->most) {
-        c->q->workspace->no_memory = !name;
+        c->q->workspace->no_memory = c->q->workspace->no_memory || !name;
         return false;
     }
     csgm_name out = {.kind = CSGM_NAME_PARAMETER,

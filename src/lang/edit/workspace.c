@@ -73,8 +73,9 @@ static bool read_names(csgm_workspace *workspace, csg_edit_file *file)
     uint32_t source;
     context->diags.on_diag = NULL;
     csg_sources_init(&sources, context, &file->arena);
-    bool ok = true;
-    if (csg_source_add(&sources, file->path, file->text, file->length, &source) == CSGM_OK) {
+    csgm_status status = csg_source_add(&sources, file->path, file->text, file->length, &source);
+    bool ok = status != CSGM_ERR_MEMORY;
+    if (status == CSGM_OK) {
         bool no_memory = false;
         ok = csg_edit_pieces_read(&sources, source, &file->pieces);
         if (ok)
@@ -90,6 +91,7 @@ static bool read_names(csgm_workspace *workspace, csg_edit_file *file)
     return ok && (file->links || !file->names.link_count);
 }
 
+/* Without memory the file has no text, so that it is read again when it is asked for next. */
 static bool set_text(csgm_workspace *workspace, csg_edit_file *file, const char *text,
                      size_t length)
 {
@@ -100,7 +102,10 @@ static bool set_text(csgm_workspace *workspace, csg_edit_file *file, const char 
     memcpy(file->text, text, length);
     file->text[length] = '\0';
     file->length = length;
-    return read_names(workspace, file);
+    bool ok = read_names(workspace, file);
+    if (!ok)
+        forget_text(workspace, file);
+    return ok;
 }
 
 static bool read_disk(csgm_workspace *workspace, csg_edit_file *file, int handle, size_t size)
