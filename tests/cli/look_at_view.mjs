@@ -5,7 +5,8 @@
 //
 // Steps: wait=PHASE (done, failed: of a state later than the last one), picture=FILE, edges, section=AXIS,
 // measure=X,Y:X,Y (shares of the canvas), from=VIEW, set=NAME=VALUE (a box of numbers), key=KEY, write=FILE=TEXT
-// (so that a change comes while the page is open), look (adds what is to be seen to the list that is printed).
+// (so that a change comes while the page is open), download=FORMAT=FILE, refused=FORMAT (waits for
+// what is said then), look (adds what is to be seen to the list that is printed).
 import { createRequire } from "node:module";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -76,6 +77,17 @@ const actions = {
   key: async (page, key) => {
     await page.locator("#canvas").focus();
     await page.keyboard.press(key);
+  },
+  download: async (page, text) => {
+    const [format, file] = text.split("=");
+    await page.locator("#format").selectOption(format);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Download" }).click()]);
+    await download.saveAs(file);
+  },
+  refused: async (page, format) => {
+    await page.locator("#format").selectOption(format);
+    await page.getByRole("button", { name: "Download" }).click();
+    await page.locator("#status", { hasText: "No file" }).waitFor();
   },
   write: (page, text) => {
     const at = text.indexOf("=");

@@ -31,8 +31,7 @@ typedef struct job {
     view_builder *builder;
     cli_app app;
     cli_work work;
-    view_defines defines; /* -D's and the page's; those strings are the job's */
-    size_t own_defines;   /* the first of the page's */
+    view_values values;
     cli_text said;
     char *parameters; /* JSON; NULL: not known */
     csgm_mesh *marks[CSGM_MARK_COUNT];
@@ -67,6 +66,23 @@ static void put_mesh(cli_json *json, const job *j)
     cli_json_end(json, '}');
 }
 
+/* What the page may ask for as files. */
+static void put_formats(FILE *out)
+{
+    cli_json json = cli_json_make(out, false);
+    json.first = true;
+    cli_json_open(&json, "formats", '[');
+    for (csgm_format f = CSGM_FORMAT_AUTO; f < CSGM_FORMAT_COUNT; f++)
+        if (csgm_format_available(f, false))
+            cli_json_string(&json, NULL, csgm_format_name(f));
+    cli_json_end(&json, ']');
+    cli_json_open(&json, "drawings", '[');
+    for (csgm_drawing_format f = CSGM_DRAWING_NONE + 1; f < CSGM_DRAWING_COUNT; f++)
+        cli_json_string(&json, NULL, csgm_drawing_format_name(f));
+    cli_json_end(&json, ']');
+    fputc(',', out);
+}
+
 /* phase: "reading", "coarse", "done", "failed". */
 static void show(job *j, const char *phase)
 {
@@ -85,6 +101,7 @@ static void show(job *j, const char *phase)
     fputs("},", text.out);
     if (j->parameters)
         fprintf(text.out, "%s,", j->parameters);
+    put_formats(text.out);
     put_findings(text.out, j);
     view_store_set_state(j->builder->store, cli_text_close(&text));
 }
@@ -242,11 +259,11 @@ static int make_all(job *j)
 
 /* ---- one request ------------------------------------------------------------------------------ */
 
-/* Those of the command line, then the page's: the last one wins. With the builder's lock. */
-static bool take_defines(job *j)
+/* With the builder's lock. */
+static bool take_values(view_builder *builder, cli_options *options, view_values *out)
 {
-    const cli_list *given = &j->builder->app->options.defines;
-    const view_defines *set = &j->builder->defines;
+    const cli_list *given = &builder->app->options.defines;
+    const view_defines *set = &builder->defines;
     char **items = calloc(given->count + set->count + 1, sizeof *items);
     if (!items)
         return false;
@@ -257,10 +274,25 @@ static bool take_defines(job *j)
         items[given->count + i] = strdup(set->items[i]);
         done = done && items[given->count + i];
     }
-    j->defines = (view_defines){items, given->count + set->count};
-    j->own_defines = given->count;
-    j->app.options.defines = (cli_list){(const char **)items, j->defines.count};
+    *out = (view_values){{items, given->count + set->count}, given->count};
+    options->defines = (cli_list){(const char **)items, out->all.count};
     return done;
+}
+
+bool view_values_take(view_builder *builder, cli_options *options, view_values *out)
+{
+    *out = (view_values){.given = 0};
+    pthread_mutex_lock(&builder->lock);
+    bool done = take_values(builder, options, out);
+    pthread_mutex_unlock(&builder->lock);
+    return done;
+}
+
+void view_values_release(view_values *values)
+{
+    for (size_t i = values->given; i < values->all.count; i++)
+        free(values->all.items[i]);
+    free(values->all.items);
 }
 
 static void release(job *j)
@@ -273,9 +305,7 @@ static void release(job *j)
     free(cli_text_close(&j->said));
     free(j->parameters);
     cli_looked_release(&j->looked);
-    for (size_t i = j->own_defines; i < j->defines.count; i++)
-        free(j->defines.items[i]);
-    free(j->defines.items);
+    view_values_release(&j->values);
 }
 
 static void run_job(job *j)
@@ -320,7 +350,7 @@ static void *follow_requests(void *user)
         }
         b->begun = b->wanted;
         atomic_store(&is_outdated, false);
-        bool ready = take_defines(&j);
+        bool ready = take_values(b, &j.app.options, &j.values);
         pthread_mutex_unlock(&b->lock);
         if (ready)
             run_job(&j);

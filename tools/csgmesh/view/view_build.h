@@ -28,6 +28,17 @@ typedef struct view_builder {
     bool has_files;   /* since they were taken last */
 } view_builder;
 
+/* -D's and the page's: the last one wins. */
+typedef struct view_values {
+    view_defines all;
+    size_t given; /* the first so many are the command line's own; the others are copies */
+} view_values;
+
+/* The values as they are now, also as the options' defines. false: out of memory. Release them in
+ * either case. */
+bool view_values_take(view_builder *builder, cli_options *options, view_values *out);
+void view_values_release(view_values *values);
+
 /* false: out of memory, or the system has no more threads. */
 bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *store);
 /* Ends what is under way. */

@@ -3,6 +3,8 @@
  */
 #include "view/view_server.h"
 
+#include "view/view_file.h"
+
 #ifndef CLI_HAS_MICROHTTPD
 
 const char *view_server_feature(void)
@@ -33,6 +35,7 @@ void view_server_stop(view_server *server)
 #include <netinet/in.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -49,6 +52,7 @@ struct view_server {
     struct MHD_Daemon *daemon;
     view_store *store;
     view_builder *builder;
+    pthread_mutex_t making; /* one file at a time */
     char token[2 * TOKEN_BYTES + 1];
     char hosts[2][32]; /* that requests may name */
 };
@@ -68,9 +72,10 @@ const char *view_server_feature(void)
 /* ---- answers ---------------------------------------------------------------------------------- */
 
 /* Takes what bytes point to, from malloc. The page runs its own script and style, and loads nothing
- * from anywhere else. */
-static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status, const char *type,
-                              char *bytes, size_t length)
+ * from anywhere else. disposition: NULL, or how a file is to be kept. */
+static enum MHD_Result answer_file(struct MHD_Connection *connection, unsigned status,
+                                   const char *type, char *bytes, size_t length,
+                                   const char *disposition)
 {
     struct MHD_Response *response =
         MHD_create_response_from_buffer(length, bytes, MHD_RESPMEM_MUST_FREE);
@@ -78,6 +83,8 @@ static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status
         free(bytes);
         return MHD_NO;
     }
+    if (disposition)
+        MHD_add_response_header(response, "Content-Disposition", disposition);
     MHD_add_response_header(response, "Content-Type", type);
     MHD_add_response_header(response, "Cache-Control", "no-store");
     MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
@@ -89,6 +96,12 @@ static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status
     enum MHD_Result result = MHD_queue_response(connection, status, response);
     MHD_destroy_response(response);
     return result;
+}
+
+static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status, const char *type,
+                              char *bytes, size_t length)
+{
+    return answer_file(connection, status, type, bytes, length, NULL);
 }
 
 static enum MHD_Result say(struct MHD_Connection *connection, unsigned status, const char *text)
@@ -128,6 +141,43 @@ static enum MHD_Result send_model(const view_server *s, struct MHD_Connection *c
                  : say(connection, MHD_HTTP_NOT_FOUND, "There is a later model.\n");
 }
 
+/* "attachment" with the scene's name and another ending (RFC 6266, RFC 5987). */
+static void name_file(const cli_options *options, const char *format, char *out, size_t size)
+{
+    const char *name = cli_file_name(options->operands.items[0]), *dot = strrchr(name, '.');
+    size_t length = dot && dot != name ? (size_t)(dot - name) : strlen(name);
+    size_t at = (size_t)snprintf(out, size, "attachment; filename*=UTF-8''");
+    for (size_t i = 0; i < length && at + 16 < size; i++)
+        at += (size_t)snprintf(out + at, size - at, cli_name_length(name + i) ? "%c" : "%%%02X",
+                               (unsigned char)name[i]);
+    snprintf(out + at, size - at, ".%s", format);
+}
+
+/* A connection that is silent while the file is made is not idle. */
+static enum MHD_Result send_file(view_server *s, struct MHD_Connection *connection)
+{
+    char disposition[1024];
+    const char *asked = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "format");
+    const char *format = asked ? view_file_format(asked) : NULL;
+    if (!format)
+        return say(connection, MHD_HTTP_NOT_FOUND, "There is no such format.\n");
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
+    pthread_mutex_lock(&s->making);
+    view_file file = view_file_make(s->builder, format);
+    pthread_mutex_unlock(&s->making);
+    MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_S);
+    if (!file.bytes) {
+        enum MHD_Result result =
+            say(connection, MHD_HTTP_NOT_FOUND,
+                file.problem && *file.problem ? file.problem : "Out of memory.\n");
+        free(file.problem);
+        return result;
+    }
+    name_file(&s->builder->app->options, format, disposition, sizeof disposition);
+    return answer_file(connection, MHD_HTTP_OK, "application/octet-stream", file.bytes, file.length,
+                       disposition);
+}
+
 /* ---- questions -------------------------------------------------------------------------------- */
 
 /* The rest of the address behind the token; NULL: it has another one. */
@@ -155,8 +205,8 @@ static enum MHD_Result set_values(const view_server *s, struct MHD_Connection *c
                : say(connection, MHD_HTTP_INTERNAL_SERVER_ERROR, "Out of memory.\n");
 }
 
-static enum MHD_Result reply(const view_server *s, struct MHD_Connection *connection,
-                             const char *url, const char *method, const body *b)
+static enum MHD_Result reply(view_server *s, struct MHD_Connection *connection, const char *url,
+                             const char *method, const body *b)
 {
     const char *path = path_of(s, url);
     bool is_get = !strcmp(method, "GET");
@@ -172,6 +222,8 @@ static enum MHD_Result reply(const view_server *s, struct MHD_Connection *connec
         return send_state(s, connection);
     if (is_get && !strcmp(path, "/model"))
         return send_model(s, connection);
+    if (is_get && !strcmp(path, "/file"))
+        return send_file(s, connection);
     if (!strcmp(method, "POST") && !strcmp(path, "/set"))
         return set_values(s, connection, b);
     return say(connection, MHD_HTTP_NOT_FOUND, "There is nothing here.\n");
@@ -227,10 +279,7 @@ static void end_request(void *user, struct MHD_Connection *connection, void **re
 static bool make_token(char token[2 * TOKEN_BYTES + 1])
 {
     unsigned char bytes[TOKEN_BYTES];
-    int fd = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
-    bool done = fd >= 0 && read(fd, bytes, sizeof bytes) == (ssize_t)sizeof bytes;
-    if (fd >= 0)
-        close(fd);
+    bool done = getentropy(bytes, sizeof bytes) == 0; /* /dev is outside of --root */
     for (size_t i = 0; done && i < sizeof bytes; i++)
         snprintf(token + 2 * i, 3, "%02x", bytes[i]);
     return done;
@@ -286,8 +335,9 @@ view_server *view_server_start(cli_app *app, uint16_t port, view_store *store,
         return refuse(app, s, fd, "out of memory");
     s->store = store;
     s->builder = builder;
+    pthread_mutex_init(&s->making, NULL);
     if (!make_token(s->token))
-        return refuse(app, s, fd, "the system has no random numbers (/dev/urandom)");
+        return refuse(app, s, fd, "the system has no random numbers");
     snprintf(s->hosts[0], sizeof s->hosts[0], "127.0.0.1:%u", (unsigned)got);
     snprintf(s->hosts[1], sizeof s->hosts[1], "localhost:%u", (unsigned)got);
     snprintf(url, size, "http://%s/%s/", s->hosts[0], s->token);
@@ -305,6 +355,7 @@ void view_server_stop(view_server *server)
     if (!server)
         return;
     MHD_stop_daemon(server->daemon);
+    pthread_mutex_destroy(&server->making);
     free(server);
 }
 

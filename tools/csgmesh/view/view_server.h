@@ -6,6 +6,7 @@
  *   GET  /TOKEN/              the page
  *   GET  /TOKEN/state?after=N the state once it is later than N; 204 after a while
  *   GET  /TOKEN/model?number=N    the model of that number; 404 once there is a later one
+ *   GET  /TOKEN/file?format=stl   the scene as a file; 404 with words where it cannot be made
  *   POST /TOKEN/set           lines NAME=EXPR: the values that the page sets
  */
 #ifndef CLI_VIEW_SERVER_H

@@ -24,6 +24,14 @@ void view_store_end(view_store *store)
     pthread_mutex_unlock(&store->lock);
 }
 
+bool view_store_is_ending(view_store *store)
+{
+    pthread_mutex_lock(&store->lock);
+    bool is_ending = store->is_ending;
+    pthread_mutex_unlock(&store->lock);
+    return is_ending;
+}
+
 void view_store_release(view_store *store)
 {
     free(store->state);

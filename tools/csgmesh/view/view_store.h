@@ -24,6 +24,7 @@ typedef struct view_store {
 bool view_store_begin(view_store *store);
 /* Wakes all who wait; they get nothing any more. */
 void view_store_end(view_store *store);
+bool view_store_is_ending(view_store *store);
 /* After all threads that use it. */
 void view_store_release(view_store *store);
 

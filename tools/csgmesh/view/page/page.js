@@ -235,6 +235,44 @@ function showParameters(parameters) {
   }));
 }
 
+// ---- files
+
+let shownFormats = "", sceneName = "scene";
+
+function optionGroup(label, names) {
+  const group = make("optgroup", "", { label });
+  group.append(...names.map((name) => make("option", name.toUpperCase(), { value: name })));
+  return group;
+}
+
+function showFormats({ formats, drawings, scene }) {
+  sceneName = scene.name.replace(/(?!^)\.[^.]*$/, "");
+  byId("files").hidden = false;
+  if (literal(formats) === shownFormats) return;
+  shownFormats = literal(formats);
+  byId("format").replaceChildren(optionGroup("Meshes", formats), optionGroup("Drawings of flat scenes", drawings));
+  byId("format").value = formats.includes("glb") ? "glb" : formats[0];
+}
+
+// The same bytes as csgmesh mesh writes; what stands in their way is said.
+async function download(format) {
+  const button = byId("files").querySelector("button");
+  button.disabled = true;
+  showStatus(`${format.toUpperCase()} is being written.`);
+  try {
+    const response = await fetch(`file?format=${encodeURIComponent(format)}`);
+    if (!response.ok) throw new Error(await response.text());
+    const link = make("a", "", { href: URL.createObjectURL(await response.blob()), download: `${sceneName}.${format}` });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    showStatus("");
+  } catch (error) {
+    showStatus(`No file: ${String(error.message ?? error).trim()}`, true);
+  } finally {
+    button.disabled = false;
+  }
+}
+
 // ---- following
 
 let shownModel = 0;
@@ -268,6 +306,7 @@ async function showState(state) {
     showFindings(state.findings);
     showFigures(scene);
     if (state.parameters || !failed) showParameters(state.parameters);
+    showFormats(state);
   }
   document.body.dataset.shown = `${scene.phase} ${state.version}`;
 }
@@ -294,6 +333,10 @@ byId("reset").addEventListener("click", () => {
   chosen.clear();
   shownParameters = "";
   send();
+});
+byId("files").querySelector("form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  download(byId("format").value);
 });
 listenToTools();
 if (!view.gl) {
