@@ -53,11 +53,18 @@ make_by_cmake() {
     quietly cmake --build "$folder/made" --target install
 }
 
+# The server of csgmesh view, for this machine alone: no TLS, and so none of the libraries that Debian's wants.
+make_microhttpd() {
+    (cd "$work/libmicrohttpd" && quietly ./configure --prefix="$prefix" --disable-shared --enable-static --disable-https --disable-curl \
+        --disable-doc --disable-examples --disable-tools --disable-bauth --disable-dauth && quietly make install)
+}
+
 make_static_libraries() {
     [ ! -f "$prefix/complete" ] || return 0
-    say "making the libraries of which Debian has no static ones: harfbuzz, libzip, polyclipping"
-    fetch_sources harfbuzz libzip libpolyclipping
+    say "making the libraries of which Debian has no static ones: harfbuzz, libmicrohttpd, libzip, polyclipping"
+    fetch_sources harfbuzz libmicrohttpd libzip libpolyclipping
     make_harfbuzz
+    make_microhttpd
     make_by_cmake libpolyclipping/cpp
     make_by_cmake libzip -DENABLE_COMMONCRYPTO=OFF -DENABLE_GNUTLS=OFF -DENABLE_MBEDTLS=OFF -DENABLE_OPENSSL=OFF \
         -DENABLE_BZIP2=OFF -DENABLE_LZMA=OFF -DENABLE_ZSTD=OFF -DBUILD_TOOLS=OFF -DBUILD_REGRESS=OFF -DBUILD_EXAMPLES=OFF \
@@ -77,7 +84,7 @@ make_binary() {
     say "building csgmesh: some minutes"
     [ -f "$work/build/build.ninja" ] ||
         quietly env PKG_CONFIG_PATH="$prefix/lib/pkgconfig" meson setup "$work/build" "$root" -Dprefer_static=true \
-            -Dauto_features=enabled -Dtests=disabled -Dopenmesh=disabled -Dmicrohttpd=disabled -Dmeshoptimizer=disabled -Dc_link_args=-static -Dcpp_link_args=-static ||
+            -Dauto_features=enabled -Dtests=disabled -Dopenmesh=disabled -Dmeshoptimizer=disabled -Dc_link_args=-static -Dcpp_link_args=-static ||
         fail "meson setup failed"
     quietly ninja -C "$work/build" tools/csgmesh/csgmesh || fail "the build failed"
     strip -o "$results/csgmesh" "$work/build/tools/csgmesh/csgmesh"
