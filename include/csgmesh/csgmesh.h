@@ -933,9 +933,9 @@ typedef struct csgm_render_options {
     bool turns; /* the camera stands so far away that what it frames fits from any azimuth; default
                    false */
     uint8_t background[4]; /* sRGB and alpha; default white, opaque */
-    bool occlusion;        /* ambient occlusion, from the field; scenes only; default true */
-    bool shadows;          /* soft shadows of the key light; scenes only; default true */
-    csgm_box bounds;       /* a scene is cut there; empty (the default) = the scene's own */
+    bool occlusion;  /* ambient occlusion, from the field; of a mesh on the ground; default true */
+    bool shadows;    /* soft shadows of the key light; of a mesh on the ground; default true */
+    csgm_box bounds; /* a scene is cut there; empty (the default) = the scene's own */
 
     int slice_axis; /* -1 (the default): none; 0, 1, 2: the section x, y or z = slice_at is
                        drawn, with iso-lines of f, instead of the solid */
@@ -949,6 +949,9 @@ typedef struct csgm_render_options {
     csgm_evaluator evaluator; /* default FAST */
     bool lazy, bounds_used;   /* LAZY: lazy operators and S-bounds; default true; for comparison */
     csgm_monitor monitor;     /* stage CSGM_STAGE_RENDER */
+
+    bool ground; /* the shadow on a plane below the lowest place, where the eye is above it; needs
+                    shadows or occlusion; default true */
 } csgm_render_options;
 
 CSGM_API csgm_render_options csgm_render_options_default(void);

@@ -7,7 +7,6 @@
 
 #include "base/clock.h"
 #include "base/trace.h"
-#include "mesh/view.h"
 
 enum { VERTICES_PER_ITEM = 1 << 14 };
 
@@ -26,7 +25,7 @@ static int32_t snap(const csg_draw *draw, double pixels)
 
 csg_draw_vertex csg_draw_project(const csg_draw *draw, csg_vec3 position)
 {
-    const csg_view *view = &draw->picture->view;
+    const csg_view *view = draw->view;
     csg_vec3 at = csg_view_project(view, position);
     if (!isfinite(at.x + at.y + at.z) || at.z < draw->nearest)
         return (csg_draw_vertex){.is_visible = false};
@@ -45,7 +44,7 @@ static csg_vec3 cut(const csg_draw *draw, csg_vec3 a, csg_vec3 b, double depth_a
 /* Sutherland and Hodgman's clipping by one plane: three or four corners, or none. */
 static int clip(const csg_draw *draw, const csg_vec3 corners[3], csg_draw_vertex out[4])
 {
-    const csg_view *view = &draw->picture->view;
+    const csg_view *view = draw->view;
     double depth[3];
     int count = 0;
     for (int i = 0; i < 3; i++)
@@ -215,16 +214,6 @@ static csgm_status project(csg_draw *draw)
     return csg_picture_why_stopped(draw->picture);
 }
 
-static bool tile_item(void *user, uint32_t worker, size_t index)
-{
-    csg_draw *draw = user;
-    if (csg_picture_should_stop(draw->picture))
-        return false;
-    csg_draw_tile(draw, draw->rooms[worker], (uint32_t)(index % draw->columns),
-                  (uint32_t)(index / draw->columns));
-    return true;
-}
-
 static size_t room_samples(const csg_draw *draw)
 {
     size_t side = (size_t)CSG_DRAW_TILE * draw->samples;
@@ -266,7 +255,7 @@ static void release(csg_draw *draw, uint64_t total)
     csg_memory_release(memory, draw->vertices, draw->mesh->vertex_count * sizeof *draw->vertices);
 }
 
-static csgm_status draw_all(csg_draw *draw, csgm_render_stats *stats)
+csgm_status csg_draw_run(csg_draw *draw, csg_pool_work *item, csgm_render_stats *stats)
 {
     CSG_ZONE(draw->picture->context, "draw");
     csg_picture *picture = draw->picture;
@@ -278,36 +267,9 @@ static csgm_status draw_all(csg_draw *draw, csgm_render_stats *stats)
         status = csg_context_no_memory(picture->context);
     stats->prepare_s = csg_clock_now_s() - picture->started_s;
     if (status == CSGM_OK &&
-        !csg_pool_run(picture->context->pool, (size_t)draw->columns * draw->rows, tile_item,
+        !csg_pool_run(picture->context->pool, (size_t)draw->columns * draw->rows, item,
                       csg_picture_poll, draw))
         status = csg_picture_why_stopped(picture);
     release(draw, total);
     return status;
-}
-
-csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
-                            const csgm_render_options *options, csgm_image **out,
-                            csgm_render_stats *stats)
-{
-    CSG_ZONE(context, "render mesh");
-    csg_picture picture;
-    csgm_render_options own = *options;
-    own.slice_axis = -1; /* of scenes */
-    *stats = (csgm_render_stats){0};
-    csgm_status status = csg_picture_begin(&picture, context, &own, csg_view_bounds(mesh));
-    if (status == CSGM_OK) {
-        const csg_view *view = &picture.view;
-        csg_draw draw = {.picture = &picture,
-                         .mesh = mesh,
-                         .samples = options->samples,
-                         .nearest = view->nearest,
-                         .columns = (options->width + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE,
-                         .rows = (options->height + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE};
-        if (!view->orthographic && draw.nearest < view->least)
-            draw.nearest = view->least;
-        status = draw_all(&draw, stats);
-    }
-    stats->trace_s = csg_clock_now_s() - picture.started_s - stats->prepare_s;
-    stats->memory_peak_bytes = atomic_load(&context->memory.peak_bytes);
-    return csg_picture_end(&picture, status, out);
 }

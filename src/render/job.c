@@ -29,6 +29,7 @@ csgm_render_options csg_render_options_default(void)
         .slice_axis = -1,
         .lazy = true,
         .bounds_used = true,
+        .ground = true,
     };
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "render/draw.h"
+#include "render/ground_map.h"
 
 /* Where the tile is, in samples. */
 typedef struct area {
@@ -170,7 +171,7 @@ static float wire_at(const csg_draw *draw, const csg_vec3 corner[3], const doubl
 {
     csg_vec3 at[3];
     for (int i = 0; i < 3; i++)
-        at[i] = csg_view_project(&draw->picture->view, corner[i]);
+        at[i] = csg_view_project(draw->view, corner[i]);
     double area2 =
         fabs((at[1].x - at[0].x) * (at[2].y - at[0].y) - (at[1].y - at[0].y) * (at[2].x - at[0].x));
     double nearest = INFINITY, smallest = INFINITY;
@@ -195,7 +196,7 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
     double share[3];
     for (int i = 0; i < 3; i++)
         corner[i] = csg_draw_position(draw, index[i]);
-    csg_view_ray(&picture->view, x, y, &origin, &direction);
+    csg_view_ray(draw->view, x, y, &origin, &direction);
     shares_of(corner, origin, direction, share);
     csg_vec3 normal = normal_of(draw, index, corner, share);
     csg_surface surface = {.open = 1, .lit = 1};
@@ -221,6 +222,13 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
 }
 
 /* ---- the tile -------------------------------------------------------------------------------- */
+
+static float ground_at(const csg_draw *draw, double x, double y)
+{
+    csg_vec3 origin, direction;
+    csg_view_ray(draw->view, x, y, &origin, &direction);
+    return csg_ground_map_at(draw->ground, origin, direction);
+}
 
 /* Light of a pixel: each triangle once, at the middle of its samples there. */
 static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const area *in, uint32_t x,
@@ -254,15 +262,22 @@ static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const ar
         for (int c = 0; c < 3; c++)
             total[c] += light[c] * (float)count;
     }
-    csg_shade_pixel(draw->picture->curve, total, (float)covered, n * n,
-                    draw->picture->options->background, csg_picture_pixel(draw->picture, x, y));
+    float dark = covered < n * n ? ground_at(draw, x + 0.5, y + 0.5) : 0;
+    float cover = (float)covered + (float)(n * n - covered) * dark;
+    csg_shade_pixel(draw->picture->curve, total, cover, n * n, draw->picture->options->background,
+                    csg_picture_pixel(draw->picture, x, y));
 }
 
-void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
+static area area_of(const csg_draw *draw, uint32_t column, uint32_t row)
 {
-    const csgm_image *image = draw->picture->image;
     int64_t side = (int64_t)CSG_DRAW_TILE * draw->samples;
-    area in = {column * side, row * side, side, side};
+    return (area){column * side, row * side, side, side};
+}
+
+void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
+{
+    area in = area_of(draw, column, row);
+    int64_t side = in.width;
     for (int64_t i = 0; i < side * side; i++) {
         room->nearness[i] = -INFINITY;
         room->triangle[i] = 0;
@@ -270,6 +285,13 @@ void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, u
     size_t tile = (size_t)row * draw->columns + column;
     for (uint64_t i = draw->tile_first[tile]; i < draw->tile_first[tile + 1]; i++)
         fill_triangle(draw, room, &in, draw->tile_triangles[i]);
+}
+
+void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
+{
+    const csgm_image *image = draw->picture->image;
+    area in = area_of(draw, column, row);
+    csg_draw_fill(draw, room, column, row);
     uint32_t x0 = column * CSG_DRAW_TILE, y0 = row * CSG_DRAW_TILE;
     for (uint32_t y = y0; y < y0 + CSG_DRAW_TILE && y < image->height; y++)
         for (uint32_t x = x0; x < x0 + CSG_DRAW_TILE && x < image->width; x++)

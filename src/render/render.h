@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Pictures: of a field by sphere tracing (scene.c), of its section (slice.c), of triangles
- * (draw.c).
+ * (mesh.c).
  */
 #ifndef CSG_RENDER_RENDER_H
 #define CSG_RENDER_RENDER_H

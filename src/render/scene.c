@@ -11,6 +11,7 @@
 #include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
+#include "render/ground.h"
 #include "render/layer.h"
 #include "render/lazy_scene.h"
 
@@ -33,6 +34,7 @@ typedef struct tile_room {
 typedef struct scene_job {
     csg_picture *picture;
     csg_layer layers[CSG_LAYERS];
+    csg_ground ground;
     tile_room **rooms; /* one per worker */
     uint32_t room_count, columns, rows;
 } scene_job;
@@ -65,7 +67,7 @@ static void shade_rays(const scene_job *job, tile_room *room)
     const csg_picture *picture = job->picture;
     for (uint32_t i = 0; i < room->count; i++) {
         memset(room->light[i], 0, sizeof room->light[i]);
-        room->cover[i] = rays->t[i] < INFINITY;
+        room->cover[i] = rays->t[i] < INFINITY ? 1 : rays->ground[i];
         if (!(rays->t[i] < INFINITY))
             continue;
         csg_surface surface = {
@@ -160,9 +162,12 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
     if (layers[0].field) {
         aim(job, room, b, &layers[0].tracer, rays);
         csg_tracer_trace(&layers[0].tracer, &room->trace);
+        csg_ground_trace(&job->ground, &layers[0].tracer, &room->trace);
     }
-    for (uint32_t i = 0; i < room->count && !layers[0].field; i++)
+    for (uint32_t i = 0; i < room->count && !layers[0].field; i++) {
         rays->t[i] = INFINITY;
+        rays->ground[i] = 0;
+    }
     shade_rays(job, room);
     for (int i = CSG_LAYERS - 1; i > 0; i--) { /* the background first */
         if (!layers[i].field)
@@ -359,6 +364,9 @@ static csgm_status trace_all(scene_job *job, csgm_render_stats *stats)
     for (int i = 0; i < CSG_LAYERS && status == CSGM_OK; i++)
         if (job->layers[i].field)
             csg_tracer_find_slope(&job->layers[i].tracer, &job->rooms[0]->trace);
+    if (status == CSGM_OK && job->layers[0].field)
+        status = csg_ground_find(&job->ground, picture, &job->layers[0].tracer,
+                                 job->layers[0].bounds, &job->rooms[0]->trace);
     stats->prepare_s = csg_clock_now_s() - picture->started_s;
     job->columns = (picture->image->width + TILE - 1) / TILE;
     job->rows = (picture->image->height + TILE - 1) / TILE;

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
  * From a surface's normal and colour to light that reaches the eye, and from light to bytes. Light
- * is linear; one key light from the upper left of the camera, a sky, a little light from behind.
+ * is linear; one key light from the upper left of the camera, a little light from behind, and
+ * around all of it a studio: a sky, a floor, and soft boxes, which is what metals show.
  */
 #ifndef CSG_RENDER_SHADE_H
 #define CSG_RENDER_SHADE_H
 
 #include "render/camera.h"
 
+enum { CSG_SOFT_BOXES = 3 };
+
 /* Lights of a view, in the frame of the scene; unit vectors towards them. */
 typedef struct csg_lights {
-    float key[3], back[3], sky[3];
+    float key[3], back[3], sky[3], box[CSG_SOFT_BOXES][3];
 } csg_lights;
 
 csg_lights csg_lights_make(const csg_view *view);

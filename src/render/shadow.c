@@ -68,11 +68,12 @@ static bool may_meet(const csg_tracer *tracer, const csg_ray_cell *cell, const b
     return true;
 }
 
-/* One packed ray in a cell. */
-typedef struct lane {
-    uint16_t from; /* in the origins */
-    float t, end;
-} lane;
+/* Packed rays in a cell; array by array, since what is written in pieces and read as a whole waits.
+ */
+typedef struct lanes {
+    uint16_t from[CSG_RAYS_MOST]; /* in the origins */
+    float t[CSG_RAYS_MOST], end[CSG_RAYS_MOST];
+} lanes;
 
 /* A cell to visit with the rays that enter its parent: list[first] .. list[first + count]. */
 typedef struct visit {
@@ -82,10 +83,21 @@ typedef struct visit {
 enum { LISTS = 12 * CSG_RAYS_MOST }; /* one a level of wide cells, and the first */
 
 typedef struct shadow_room {
-    lane lanes[CSG_RAYS_MOST];
+    lanes lanes;
     visit stack[STACK_MOST];
     uint16_t list[LISTS];
 } shadow_room;
+
+/* Without the calls that fminf and fmaxf are; of numbers alone. */
+static inline float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float greater(float a, float b)
+{
+    return a > b ? a : b;
+}
 
 /* Those of the visit's rays that enter the cell and are not dark yet: lanes, and a list behind the
  * visit's own, which nobody needs who is visited later. */
@@ -95,27 +107,33 @@ static uint32_t enter(const csg_tracer *tracer, const visit *v, const csg_rays *
     const csg_ray_cell *cell = &tracer->cells->cells[v->cell];
     const uint16_t *from = room->list + v->first;
     uint16_t *to = room->list + v->first + v->count;
+    lanes *l = &room->lanes;
     uint32_t count = 0;
-    float inverse[3];
+    float inverse[3], reach[3]; /* as csg_ray_in_cube, whose rays have directions of their own */
     for (int axis = 0; axis < 3; axis++) {
         float d = tracer->light[axis];
         inverse[axis] = fabsf(d) < 1e-18f ? 1e18f : 1 / d;
+        reach[axis] = cell->half * (1 + CSG_RAY_CELL_OVERLAP) * fabsf(inverse[axis]);
     }
     for (uint32_t i = 0; i < v->count; i++) {
         uint16_t k = from[i];
-        const float o[3] = {m->channel[0][k], m->channel[1][k], m->channel[2][k]};
-        lane *l = &room->lanes[count];
-        if (rays->lit[m->ray[k]] > 0 &&
-            csg_ray_in_cube(o, inverse, cell->center, cell->half, &l->t, &l->end)) {
-            l->from = k;
-            to[count++] = k;
-        }
+        float x = (cell->center[0] - m->channel[0][k]) * inverse[0];
+        float y = (cell->center[1] - m->channel[1][k]) * inverse[1];
+        float z = (cell->center[2] - m->channel[2][k]) * inverse[2];
+        float t = greater(greater(x - reach[0], y - reach[1]), greater(z - reach[2], 0));
+        float end = lesser(lesser(x + reach[0], y + reach[1]), z + reach[2]);
+        if (!(t <= end) || !(rays->lit[m->ray[k]] > 0))
+            continue;
+        l->t[count] = t;
+        l->end[count] = end;
+        l->from[count] = to[count] = k;
+        count++;
     }
     return count;
 }
 
 static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room,
-                  csg_march *m, lane *lanes, uint32_t count)
+                  csg_march *m, lanes *l, uint32_t count)
 {
     const float *light = tracer->light, reach = tracer->cells->reach;
     float *lit = room->rays.lit;
@@ -124,10 +142,10 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         primitives += csg_op_is_leaf(tape->nodes[i].op);
     for (int step = 0; count && step < MOST_STEPS; step++) {
         for (uint32_t k = 0; k < count; k++) {
-            uint32_t o = lanes[k].from;
-            m->x[k] = m->channel[0][o] + lanes[k].t * light[0];
-            m->y[k] = m->channel[1][o] + lanes[k].t * light[1];
-            m->z[k] = m->channel[2][o] + lanes[k].t * light[2];
+            uint32_t o = l->from[k];
+            m->x[k] = m->channel[0][o] + l->t[k] * light[0];
+            m->y[k] = m->channel[1][o] + l->t[k] * light[1];
+            m->z[k] = m->channel[2][o] + l->t[k] * light[2];
         }
         for (uint32_t k = count; k % CSG_LANES; k++)
             m->x[k] = m->y[k] = m->z[k] = 0;
@@ -136,17 +154,19 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         points += count;
         uint32_t kept = 0;
         for (uint32_t k = 0; k < count; k++) {
-            uint16_t ray = m->ray[lanes[k].from];
-            float height = -m->f[k] * room->rays.inverse_slope[ray], t = lanes[k].t;
+            uint16_t from = l->from[k], ray = m->ray[from];
+            float height = -m->f[k] * room->rays.inverse_slope[ray], t = l->t[k], end = l->end[k];
             float width = LIGHT_SLOPE * t + 0.01f * reach;
-            float most = fminf(reach, tracer->depth * room->rays.inverse_slope[ray]);
+            float most = lesser(reach, tracer->depth * room->rays.inverse_slope[ray]);
             float share = height / (width < most ? width : most);
             float *here = &lit[ray];
             *here = share < *here ? (share > 0 ? share : 0) : *here;
             /* half a sphere: whole ones would miss where the ratio is least, in streaks */
-            lanes[k].t = t + (height > 0.08f * reach ? 0.5f * height : 0.04f * reach);
-            if (*here > 0 && lanes[k].t < lanes[k].end)
-                lanes[kept++] = lanes[k];
+            t += height > 0.08f * reach ? 0.5f * height : 0.04f * reach;
+            l->from[kept] = from;
+            l->t[kept] = t;
+            l->end[kept] = end;
+            kept += *here > 0 && t < end;
         }
         count = kept;
     }
@@ -175,7 +195,7 @@ static void visit_cells(const csg_tracer *tracer, csg_trace_room *room, shadow_r
             csg_tape tape = tracer->field->tape;
             tape.nodes = cell->wide_nodes;
             tape.count = cell->wide_count;
-            march(tracer, &tape, room, m, own->lanes, count);
+            march(tracer, &tape, room, m, &own->lanes, count);
             continue;
         }
         for (int o = 0; o < CSG_OCTANTS; o++)

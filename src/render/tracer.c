@@ -294,7 +294,7 @@ static float occlusion_reach(const csg_tracer *tracer, float slope)
 
 /* Along the normal the field falls as on a plane unless something is near: how much less it has
  * fallen, at a few distances up to the reach of wide tapes. */
-static void find_occlusion(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
+void csg_tracer_shade_sky(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
 {
     static const float places[OCCLUSION_SAMPLES] = {0.1f, 0.25f, 0.45f, 0.7f, 0.98f};
     static const float weights[OCCLUSION_SAMPLES] = {0.35f, 0.3f, 0.25f, 0.2f, 0.15f};
@@ -337,7 +337,7 @@ static void look_at_hits(const csg_tracer *tracer, const csg_ray_cell *cell, con
     if (tracer->occlusion) {
         const csg_ray_cell *wide = &tracer->cells->cells[cell->wide];
         csg_tape wide_tape = tape_of(tracer, wide->wide_nodes, wide->wide_count);
-        find_occlusion(tracer, &wide_tape, room);
+        csg_tracer_shade_sky(tracer, &wide_tape, room);
     }
     find_colors(tracer, tape, room);
     uint64_t looks = 1u + tracer->colors + (tracer->field->materials != NULL);

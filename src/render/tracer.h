@@ -34,6 +34,7 @@ typedef struct csg_rays {
     float inverse_slope[CSG_RAYS_MOST]; /* 1 / the field's slope */
     float open[CSG_RAYS_MOST];          /* 1 - ambient occlusion */
     float lit[CSG_RAYS_MOST];           /* share of the key light that arrives */
+    float ground[CSG_RAYS_MOST];        /* how dark the ground is there; set by csg_ground_trace */
 } csg_rays;
 
 /* Those of a batch that are in one cell, packed. */
@@ -98,6 +99,9 @@ void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room);
 
 /* shadow.c: fills `lit` of what was hit. */
 void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room);
+/* Fills `open` of the march's points, which are at its rays, by a tape that knows what is around
+ * them; march.radius: the field's slope there. */
+void csg_tracer_shade_sky(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room);
 
 /* [*begin, *end] of the ray in the cube; false: it misses. */
 static inline bool csg_ray_in_cube(const float o[3], const float inverse[3], const float center[3],

@@ -150,6 +150,8 @@ class Render(cli.CliTest):
         self.assertGreater(len(set(plain[2])), 30)
         self.assertNotEqual(self.ppm("blend.ply", *SMALL, "--wireframe"), plain)
         self.assertNotEqual(self.ppm("blend.ply", *SMALL, "--shading", "flat"), plain)
+        for name in ("blend.ply", "blend.txt"):
+            self.assertNotEqual(self.ppm(name, *SMALL, "--no-ground"), self.ppm(name, *SMALL))
         result = self.run_in("render", "blend.ply", "-o", "x.ppm", *SMALL, "--slice", "z=0")
         self.assert_status(result, 0)
         self.assertIn("--slice has no effect on a mesh", result.stderr)

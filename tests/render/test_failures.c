@@ -103,6 +103,7 @@ static void test_cancelled(void **state)
     for (int kind = 0; kind < 3; kind++) {
         csgm_render_options options = front_options(64, 4);
         options.monitor.cancelled = always;
+        options.camera.elevation_deg = 30; /* the ground, too */
         options.slice_axis = kind == 1 ? 0 : -1;
         options.evaluator = kind == 2 ? CSGM_EVALUATOR_LAZY : CSGM_EVALUATOR_FAST;
         assert_int_equal(csgm_render_scene(c.context, c.field, &options, &image, NULL),
@@ -134,6 +135,7 @@ static csgm_status draw(render_case *c, int kind, const csgm_mesh_view *mesh, co
 {
     csgm_render_options options = front_options(40, 4);
     options.occlusion = options.shadows = true;
+    options.camera.elevation_deg = 30; /* the ground, too */
     options.slice_axis = kind == 1 ? 0 : -1;
     options.evaluator = kind == 2 ? CSGM_EVALUATOR_LAZY : CSGM_EVALUATOR_FAST;
     options.bounds = kind == 4 ? (csgm_box){{0, -1, -1}, {1, 1, 1}} : options.bounds;

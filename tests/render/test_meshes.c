@@ -121,6 +121,65 @@ static void test_a_scenes_mesh(void **state)
     render_end(&c);
 }
 
+/* The ground is darkened, the solid stays as it is, and it is not there from below; a mesh throws
+ * about the shadow of its scene. */
+static void test_ground(void **state)
+{
+    enum { SIDE = 160 };
+    render_case c, three;
+    csgm_mesh *mesh;
+    render_begin(&c, 2, CSGM_ISA_AUTO,
+                 "translate([0, 0, 0.3]) cube([1.6, 1, 0.2], center = true);\n"
+                 "for (x = [-0.6, 0.6]) translate([x, 0, -0.3]) cylinder(r = 0.15, h = 0.6);");
+    csgm_mesh_options fine = csgm_mesh_options_default();
+    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(mesh);
+    csgm_render_options options = front_options(SIDE, 4);
+    options.camera.elevation_deg = 35;
+    options.occlusion = options.shadows = true;
+    options.ground = false;
+    render_mesh(&c, &view, &options);
+    csgm_image *without = c.image;
+    c.image = NULL;
+    options.ground = true;
+    render_scene(&c, &options);
+    csgm_image *traced = c.image;
+    c.image = NULL;
+    render_mesh(&c, &view, &options);
+    csgm_image_view no = csgm_image_get_view(without), with = csgm_image_get_view(c.image);
+    csgm_image_view scene = csgm_image_get_view(traced);
+    double shadow = 0, difference = 0;
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; i++) {
+        const uint8_t *p = with.pixels + 4 * i;
+        if (no.pixels[4 * i + 3] == 255)
+            assert_memory_equal(no.pixels + 4 * i, p, 4);
+        if (no.pixels[4 * i + 3] != 0)
+            continue;
+        assert_true(p[0] + p[1] + p[2] == 0);
+        shadow += p[3] / 255.0;
+        difference += fabs(p[3] / 255.0 - scene.pixels[4 * i + 3] / 255.0);
+    }
+    assert_true(shadow > 200 && shadow < 2500);
+    assert_true(difference < 0.25 * shadow);
+    render_begin(&three, 3, CSGM_ISA_SCALAR, NULL);
+    render_mesh(&three, &view, &options);
+    assert_same_image(c.image, three.image, "three threads");
+    render_end(&three);
+
+    options.camera.elevation_deg = -35;
+    csgm_image_destroy(without);
+    render_mesh(&c, &view, &options);
+    without = c.image;
+    c.image = NULL;
+    options.ground = false;
+    render_mesh(&c, &view, &options);
+    assert_same_image(without, c.image, "from below");
+    csgm_image_destroy(without);
+    csgm_image_destroy(traced);
+    csgm_mesh_destroy(mesh);
+    render_end(&c);
+}
+
 /* From inside a box one sees its walls everywhere, though most corners lie behind the eye. */
 static void test_inside(void **state)
 {
@@ -170,7 +229,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_front_hides_back), cmocka_unit_test(test_no_gaps),
         cmocka_unit_test(test_a_scenes_mesh),    cmocka_unit_test(test_inside),
-        cmocka_unit_test(test_hostile_mesh),
+        cmocka_unit_test(test_hostile_mesh),     cmocka_unit_test(test_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,6 +83,7 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
     cli_canvas_fill(&p->canvas, panel * PANEL, BAND + CAPTION, PANEL, TALL, stage);
     if (mesh->triangle_count == 0)
         return CSGM_OK;
+    options.ground = false; /* it would move with what was removed or added below */
     options.width = PANEL;
     options.height = TALL;
     options.camera.placed = true;

@@ -124,6 +124,7 @@ class PictureOptions(TypedDict, total=False):
     background: Union[str, Sequence[int]]  # "#rrggbb", "#rrggbbaa", "white", "black", "transparent"; or four numbers
     occlusion: bool
     shadows: bool
+    ground: bool
     bounds: Box
     slice: tuple[Literal["x", "y", "z"], float]
     iso_step: float

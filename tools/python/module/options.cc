@@ -346,6 +346,7 @@ const Row<csgm_render_options> render_rows[] = {
     OF(background),
     OF(occlusion),
     OF(shadows),
+    OF(ground),
     OF(bounds),
     {"slice", take_slice},
     OF(iso_step),
