@@ -952,6 +952,8 @@ typedef struct csgm_render_options {
 
     bool ground; /* the shadow on a plane below the lowest place, where the eye is above it; needs
                     shadows or occlusion; default true */
+    bool edges;  /* dark lines along outlines and creases; not of sections, nor by the evaluator
+                    LAZY; default false */
 } csgm_render_options;
 
 CSGM_API csgm_render_options csgm_render_options_default(void);

@@ -109,7 +109,8 @@ static int64_t most_of(int64_t a, int64_t b)
     return a > b ? a : b;
 }
 
-/* Tiles that the box around the triangle touches: x0, y0, x1, y1, the last ones included. */
+/* Tiles that, with their borders, the box around the triangle touches: x0, y0, x1, y1, the last
+ * ones included. */
 static bool tiles_of(const csg_draw *draw, uint64_t triangle, uint32_t tiles[4])
 {
     csg_draw_vertex corners[2][3];
@@ -123,14 +124,17 @@ static bool tiles_of(const csg_draw *draw, uint64_t triangle, uint32_t tiles[4])
             high[1] = most_of(high[1], corners[part][i].y);
         }
     int64_t size = (int64_t)CSG_DRAW_TILE * draw->samples * CSG_DRAW_SUBSTEPS;
+    int64_t border = (int64_t)draw->border * CSG_DRAW_SUBSTEPS;
     const int64_t ends[2] = {draw->columns, draw->rows};
-    for (int axis = 0; axis < 2; axis++) {
-        if (!count || high[axis] < 0 || low[axis] >= ends[axis] * size)
+    for (int axis = 0; axis < 2 && count; axis++) {
+        low[axis] -= border;
+        high[axis] += border;
+        if (high[axis] < 0 || low[axis] >= ends[axis] * size)
             return false;
         tiles[axis] = (uint32_t)(most_of(low[axis], 0) / size);
         tiles[2 + axis] = (uint32_t)least_of(high[axis] / size, ends[axis] - 1);
     }
-    return true;
+    return count > 0;
 }
 
 /* Counts the triangles of each tile, or (fill) writes them there, in their order. */
@@ -216,7 +220,7 @@ static csgm_status project(csg_draw *draw)
 
 static size_t room_samples(const csg_draw *draw)
 {
-    size_t side = (size_t)CSG_DRAW_TILE * draw->samples;
+    size_t side = (size_t)CSG_DRAW_TILE * draw->samples + 2 * (size_t)draw->border;
     return side * side;
 }
 

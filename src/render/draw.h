@@ -30,6 +30,7 @@ typedef struct csg_draw {
     const struct csg_ground_map *ground; /* of ground_map.h; NULL where none is drawn */
     double nearest;                      /* what is nearer to the eye's plane is clipped away */
     uint32_t samples;                    /* n */
+    uint32_t border;                     /* samples around a tile that are filled, too */
     csg_draw_vertex *vertices;
     uint32_t columns, rows; /* of tiles */
     uint64_t *tile_first;   /* columns * rows + 1: into tile_triangles */

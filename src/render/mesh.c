@@ -38,6 +38,7 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                          .mesh = mesh,
                          .ground = &ground,
                          .samples = options->samples,
+                         .border = options->edges,
                          .nearest = view->nearest,
                          .columns = (options->width + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE,
                          .rows = (options->height + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE};

@@ -5,6 +5,7 @@
 
 #include "render/draw.h"
 #include "render/ground_map.h"
+#include "render/outline.h"
 
 /* Where the tile is, in samples. */
 typedef struct area {
@@ -128,12 +129,17 @@ static void shares_of(const csg_vec3 corner[3], csg_vec3 origin, csg_vec3 direct
     share[0] = 1 - share[1] - share[2];
 }
 
+static csg_vec3 facet_normal(const csg_vec3 corner[3])
+{
+    return csg_vec3_normalize(
+        csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0])));
+}
+
 static csg_vec3 normal_of(const csg_draw *draw, const uint32_t index[3], const csg_vec3 corner[3],
                           const double share[3])
 {
     const float *normals = draw->mesh->normals;
-    csg_vec3 flat = csg_vec3_normalize(
-        csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0])));
+    csg_vec3 flat = facet_normal(corner);
     if (!normals || draw->picture->options->flat)
         return flat;
     csg_vec3 sum = {0, 0, 0};
@@ -221,6 +227,75 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
         light[c] *= 1 - wire;
 }
 
+/* ---- lines ------------------------------------------------------------------------------------ */
+
+/* A tile that is filled. */
+typedef struct draw_area {
+    const csg_draw *draw;
+    const csg_draw_room *room;
+    area in;
+} draw_area;
+
+/* The triangle that sample x, y of the picture sees, + 1. */
+static const uint32_t *sample_at(const draw_area *a, int64_t x, int64_t y)
+{
+    return &a->room->triangle[(y - a->in.y0) * a->in.width + x - a->in.x0];
+}
+
+/* What sample x, y of the picture sees; with the triangle's normal, or that of the surface. */
+static csg_outline_point outline_point(const draw_area *a, int64_t x, int64_t y, bool is_facet)
+{
+    const csg_draw *draw = a->draw;
+    const csg_view *view = draw->view;
+    uint32_t id = *sample_at(a, x, y);
+    csg_outline_point point = {.is_hit = id != 0};
+    if (!id)
+        return point;
+    const uint32_t *index = draw->mesh->indices + 3 * (size_t)(id - 1);
+    csg_vec3 corner[3], origin, direction, at = {0, 0, 0};
+    double share[3];
+    for (int i = 0; i < 3; i++)
+        corner[i] = csg_draw_position(draw, index[i]);
+    csg_view_ray(view, ((double)x + 0.5) / draw->samples, ((double)y + 0.5) / draw->samples,
+                 &origin, &direction);
+    shares_of(corner, origin, direction, share);
+    for (int i = 0; i < 3; i++)
+        at = csg_vec3_add(at, csg_vec3_scale(csg_vec3_sub(corner[i], view->eye), share[i]));
+    csg_vec3_to_floats(point.at, at);
+    csg_vec3_to_floats(point.normal,
+                       is_facet ? facet_normal(corner) : normal_of(draw, index, corner, share));
+    point.pixel = (float)(view->pixel * (view->orthographic ? 1 : csg_vec3_dot(at, view->forward)));
+    return point;
+}
+
+static bool is_parted(const draw_area *a, int64_t x, int64_t y, int64_t dx, int64_t dy)
+{
+    if (*sample_at(a, x, y) == *sample_at(a, x + dx, y + dy))
+        return false;
+    for (int is_facet = 1; is_facet >= (a->draw->mesh->normals ? 0 : 1); is_facet--) {
+        csg_outline_point here = outline_point(a, x, y, is_facet);
+        csg_outline_point there = outline_point(a, x + dx, y + dy, is_facet);
+        if (csg_outline_between(&here, &there, is_facet ? CSG_OUTLINE_FACETS : CSG_OUTLINE_CREASE))
+            return true;
+    }
+    return false;
+}
+
+/* Of a pixel; what parts it from its neighbour is half its own. */
+static float line_in_pixel(const draw_area *a, uint32_t pixel_x, uint32_t pixel_y)
+{
+    int64_t n = a->draw->samples, x0 = pixel_x * n, y0 = pixel_y * n;
+    int across = 0, down = 0;
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t k = -1; k < n; k++) {
+            int weight = k < 0 || k == n - 1 ? 1 : 2;
+            across += weight * is_parted(a, x0 + k, y0 + i, 1, 0);
+            down += weight * is_parted(a, x0 + i, y0 + k, 0, 1);
+        }
+    float whole = 2 * (float)n;
+    return csg_outline_cover((float)across / whole, (float)down / whole);
+}
+
 /* ---- the tile -------------------------------------------------------------------------------- */
 
 static float ground_at(const csg_draw *draw, double x, double y)
@@ -264,14 +339,18 @@ static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const ar
     }
     float dark = covered < n * n ? ground_at(draw, x + 0.5, y + 0.5) : 0;
     float cover = (float)covered + (float)(n * n - covered) * dark;
+    if (draw->picture->options->edges)
+        csg_outline_draw(line_in_pixel(&(draw_area){draw, room, *in}, x, y), (float)(n * n), total,
+                         &cover);
     csg_shade_pixel(draw->picture->curve, total, cover, n * n, draw->picture->options->background,
                     csg_picture_pixel(draw->picture, x, y));
 }
 
 static area area_of(const csg_draw *draw, uint32_t column, uint32_t row)
 {
-    int64_t side = (int64_t)CSG_DRAW_TILE * draw->samples;
-    return (area){column * side, row * side, side, side};
+    int64_t side = (int64_t)CSG_DRAW_TILE * draw->samples, border = draw->border;
+    return (area){column * side - border, row * side - border, side + 2 * border,
+                  side + 2 * border};
 }
 
 void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)

@@ -14,6 +14,7 @@
 #include "render/ground.h"
 #include "render/layer.h"
 #include "render/lazy_scene.h"
+#include "render/outline.h"
 
 enum {
     TILE = 34 - 2,     /* pixels: with a border of one on each side still a batch of rays */
@@ -126,6 +127,48 @@ static void lay_over(const scene_job *job, tile_room *room, csgm_mark kind)
     }
 }
 
+/* ---- lines ------------------------------------------------------------------------------------ */
+
+static csg_outline_point outline_point(const tile_room *room, const csg_view *view, uint32_t i)
+{
+    const csg_rays *rays = &room->trace.rays;
+    float t = rays->t[i];
+    csg_outline_point point = {.is_hit = t < INFINITY};
+    if (!point.is_hit)
+        return point;
+    point.pixel = (float)view->pixel * (view->orthographic ? 1 : t);
+    const float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]};
+    const float d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+    const float n[3] = {rays->nx[i], rays->ny[i], rays->nz[i]};
+    for (int axis = 0; axis < 3; axis++) {
+        point.at[axis] = o[axis] + t * d[axis];
+        point.normal[axis] = n[axis];
+    }
+    return point;
+}
+
+/* Whether a line runs between two rays of the batch. */
+static bool is_parted(const scene_job *job, const tile_room *room, uint32_t i, uint32_t k)
+{
+    const csg_view *view = &job->picture->view;
+    csg_outline_point a = outline_point(room, view, i), b = outline_point(room, view, k);
+    return csg_outline_between(&a, &b, CSG_OUTLINE_CREASE);
+}
+
+/* Of a pixel whose grid x grid rays begin with `first`, the outer ones on its border. */
+static float line_in_pixel(const scene_job *job, const tile_room *room, uint32_t first,
+                           uint32_t grid)
+{
+    uint32_t across = 0, down = 0;
+    for (uint32_t y = 0; y < grid; y++)
+        for (uint32_t x = 0; x + 1 < grid; x++) {
+            uint32_t row = first + y * grid + x, column = first + x * grid + y;
+            across += is_parted(job, room, row, row + 1);
+            down += is_parted(job, room, column, column + grid);
+        }
+    return csg_outline_cover((float)across / (float)grid, (float)down / (float)grid);
+}
+
 /* ---- a batch --------------------------------------------------------------------------------- */
 
 /* Rays for all pixels of a tile, or n x n for each of some of its edges. */
@@ -134,16 +177,31 @@ typedef struct batch {
     uint32_t first_edge, end_edge; /* both 0: the tile */
 } batch;
 
+/* Rays of a pixel that gets more than one, along each side: in the middles of so many parts of it.
+ * Where lines are looked for one more, from border to border, since neighbouring pixels must see
+ * all that parts their rays; a little less, so that they stay in their row of pixels. */
+static uint32_t grid_of(const scene_job *job)
+{
+    return job->picture->options->samples + job->picture->options->edges;
+}
+
+static double place_in_pixel(const scene_job *job, uint32_t i)
+{
+    const double inside = 1 - 1e-6;
+    uint32_t n = job->picture->options->samples;
+    return job->picture->options->edges ? i * (inside / n) : (i + 0.5) / n;
+}
+
 static void aim(const scene_job *job, const tile_room *room, const batch *b,
                 const csg_tracer *tracer, csg_rays *rays)
 {
     const tile *t = b->tile;
-    uint32_t n = job->picture->options->samples;
+    uint32_t n = grid_of(job);
     csg_tracer_begin(rays, b->end_edge ? t->y0 : t->outer_y0);
     for (uint32_t e = b->first_edge; e < b->end_edge; e++)
         for (uint32_t s = 0; s < n * n; s++)
-            csg_tracer_aim(tracer, rays, t->x0 + room->edges[e] % TILE + (s % n + 0.5) / n,
-                           t->y0 + room->edges[e] / TILE + (s / n + 0.5) / n);
+            csg_tracer_aim(tracer, rays, t->x0 + room->edges[e] % TILE + place_in_pixel(job, s % n),
+                           t->y0 + room->edges[e] / TILE + place_in_pixel(job, s / n));
     if (b->end_edge)
         return;
     for (uint32_t y = t->outer_y0; y < t->outer_y1; y++)
@@ -156,7 +214,7 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
     csg_rays *rays = &room->trace.rays;
     const csg_layer *layers = job->layers;
     const tile *t = b->tile;
-    uint32_t n = job->picture->options->samples;
+    uint32_t n = grid_of(job);
     room->count = b->end_edge ? (b->end_edge - b->first_edge) * n * n
                               : (t->outer_x1 - t->outer_x0) * (t->outer_y1 - t->outer_y0);
     if (layers[0].field) {
@@ -188,14 +246,15 @@ static void trace_tile(const scene_job *job, tile_room *room, const tile *t)
                         job->picture->options->background, room->pixel[i]);
 }
 
-static bool differ(const uint8_t *a, const uint8_t *b)
+static bool differ(const scene_job *job, const tile_room *room, uint32_t i, uint32_t k)
 {
+    const uint8_t *a = room->pixel[i], *b = room->pixel[k];
     int most = 0;
-    for (int i = 0; i < 4; i++) {
-        int by = a[i] > b[i] ? a[i] - b[i] : b[i] - a[i];
+    for (int c = 0; c < 4; c++) {
+        int by = a[c] > b[c] ? a[c] - b[c] : b[c] - a[c];
         most = by > most ? by : most;
     }
-    return most > EDGE_CONTRAST;
+    return most > EDGE_CONTRAST || (job->picture->options->edges && is_parted(job, room, i, k));
 }
 
 static void find_edges(const scene_job *job, tile_room *room, const tile *t)
@@ -205,28 +264,31 @@ static void find_edges(const scene_job *job, tile_room *room, const tile *t)
     for (uint32_t y = t->y0; y < t->y1; y++)
         for (uint32_t x = t->x0; x < t->x1; x++) {
             uint32_t i = (y - t->outer_y0) * width + x - t->outer_x0;
-            const uint8_t *pixel = room->pixel[i];
-            bool is_edge = (x > t->outer_x0 && differ(pixel, room->pixel[i - 1])) ||
-                           (x + 1 < t->outer_x1 && differ(pixel, room->pixel[i + 1])) ||
-                           (y > t->outer_y0 && differ(pixel, room->pixel[i - width])) ||
-                           (y + 1 < t->outer_y1 && differ(pixel, room->pixel[i + width]));
-            memcpy(csg_picture_pixel(job->picture, x, y), pixel, 4);
+            bool is_edge = (x > t->outer_x0 && differ(job, room, i, i - 1)) ||
+                           (x + 1 < t->outer_x1 && differ(job, room, i, i + 1)) ||
+                           (y > t->outer_y0 && differ(job, room, i, i - width)) ||
+                           (y + 1 < t->outer_y1 && differ(job, room, i, i + width));
+            memcpy(csg_picture_pixel(job->picture, x, y), room->pixel[i], 4);
             if (is_edge)
                 room->edges[room->edge_count++] = (uint16_t)(x - t->x0 + TILE * (y - t->y0));
         }
 }
 
 static void resolve(const scene_job *job, tile_room *room, const tile *t, uint32_t first,
-                    uint32_t end, uint32_t samples)
+                    uint32_t end)
 {
+    uint32_t grid = grid_of(job), samples = grid * grid;
     for (uint32_t e = first, ray = 0; e < end; e++) {
         float light[3] = {0, 0, 0};
-        float covered = 0;
+        float covered = 0, line = 0;
+        if (job->picture->options->edges)
+            line = line_in_pixel(job, room, ray, grid);
         for (uint32_t s = 0; s < samples; s++, ray++) {
             covered += room->cover[ray];
             for (int c = 0; c < 3; c++)
                 light[c] += room->light[ray][c];
         }
+        csg_outline_draw(line, (float)samples, light, &covered);
         uint32_t x = t->x0 + room->edges[e] % TILE, y = t->y0 + room->edges[e] / TILE;
         csg_shade_pixel(job->picture->curve, light, covered, samples,
                         job->picture->options->background, csg_picture_pixel(job->picture, x, y));
@@ -235,11 +297,11 @@ static void resolve(const scene_job *job, tile_room *room, const tile *t, uint32
 
 static void refine_edges(const scene_job *job, tile_room *room, const tile *t)
 {
-    uint32_t n = job->picture->options->samples, samples = n * n, at_once = CSG_RAYS_MOST / samples;
+    uint32_t grid = grid_of(job), at_once = CSG_RAYS_MOST / (grid * grid);
     for (uint32_t first = 0; first < room->edge_count; first += at_once) {
         uint32_t end = first + at_once < room->edge_count ? first + at_once : room->edge_count;
         trace_batch(job, room, &(batch){t, first, end});
-        resolve(job, room, t, first, end, samples);
+        resolve(job, room, t, first, end);
     }
 }
 
@@ -252,7 +314,7 @@ static bool draw_tile(void *user, uint32_t worker, size_t index)
     tile t = tile_at(job, index);
     trace_tile(job, room, &t);
     find_edges(job, room, &t);
-    if (job->picture->options->samples > 1)
+    if (job->picture->options->samples > 1 || job->picture->options->edges)
         refine_edges(job, room, &t);
     return true;
 }

@@ -151,10 +151,15 @@ class Render(cli.CliTest):
         self.assertNotEqual(self.ppm("blend.ply", *SMALL, "--wireframe"), plain)
         self.assertNotEqual(self.ppm("blend.ply", *SMALL, "--shading", "flat"), plain)
         for name in ("blend.ply", "blend.txt"):
-            self.assertNotEqual(self.ppm(name, *SMALL, "--no-ground"), self.ppm(name, *SMALL))
+            for option in ("--no-ground", "--edges"):
+                self.assertNotEqual(self.ppm(name, *SMALL, option), self.ppm(name, *SMALL))
         result = self.run_in("render", "blend.ply", "-o", "x.ppm", *SMALL, "--slice", "z=0")
         self.assert_status(result, 0)
         self.assertIn("--slice has no effect on a mesh", result.stderr)
+        for option, what in ((("--slice", "z=0"), "a section"), (("--evaluator", "lazy"), "a picture by the lazy evaluator")):
+            result = self.run_in("render", "blend.txt", "-o", "x.ppm", *SMALL, "--edges", *option)
+            self.assertIn("--edges has no effect on " + what, result.stderr)
+        self.assertEqual(self.run_in("render", "blend.txt", "-o", "x.ppm", *SMALL, "--edges").stderr, "")
 
     def test_counts(self):
         fast = self.stats("render", "blend.txt", *SMALL)

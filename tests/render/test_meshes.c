@@ -180,6 +180,63 @@ static void test_ground(void **state)
     render_end(&c);
 }
 
+/* How much of a picture's light another lacks, in whole pixels. */
+static double lines(const csgm_image *image, const csgm_image *than)
+{
+    csgm_image_view a = csgm_image_get_view(image), b = csgm_image_get_view(than);
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)a.width * a.height; i++)
+        sum += 1 - pow((double)a.pixels[4 * i + 1] / b.pixels[4 * i + 1], 2.2);
+    return sum;
+}
+
+/* Nine edges of a cube are lines of its picture, and none besides; a ball has its outline alone. As
+ * scenes and as meshes, and as long as they should be. */
+static void test_edges(void **state)
+{
+    enum { SIDE = 200 };
+    static const struct {
+        const char *text;
+        double
+            length; /* of lines, in the scene's units, as seen from the front and 30 degrees up */
+    } solids[] = {{"rotate(45) cube(2, center = true);", 14.68},
+                  {"sphere(r = 1.5);", 9.42},
+                  {"difference() { cylinder(r = 1.5, h = 1); "
+                   "cylinder(r = 0.7, h = 3, center = true); }",
+                   16.02}};
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        render_case c, three;
+        csgm_mesh *mesh;
+        csgm_image *plain[2];
+        render_begin(&c, 1, CSGM_ISA_AUTO, solids[i].text);
+        render_begin(&three, 3, CSGM_ISA_SCALAR, solids[i].text);
+        csgm_mesh_options fine = csgm_mesh_options_default();
+        fine.quality = CSGM_QUALITY_FINE;
+        assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+        csgm_mesh_view view = csgm_mesh_get_view(mesh);
+        csgm_render_options options = front_options(SIDE, 5);
+        options.camera.elevation_deg = 30;
+        memset(options.background, 255, sizeof options.background);
+        for (int of_mesh = 0; of_mesh < 2; of_mesh++) {
+            options.edges = false;
+            of_mesh ? render_mesh(&c, &view, &options) : render_scene(&c, &options);
+            plain[of_mesh] = c.image;
+            c.image = NULL;
+            options.edges = true;
+            of_mesh ? render_mesh(&c, &view, &options) : render_scene(&c, &options);
+            of_mesh ? render_mesh(&three, &view, &options) : render_scene(&three, &options);
+            assert_same_image(c.image, three.image, "three threads");
+            double found = lines(c.image, plain[of_mesh]) * 5 / SIDE;
+            /* a line's middle is one pixel of 0.85 */
+            assert_true(found > 0.85 * solids[i].length && found < 1.07 * solids[i].length);
+            csgm_image_destroy(plain[of_mesh]);
+        }
+        csgm_mesh_destroy(mesh);
+        render_end(&three);
+        render_end(&c);
+    }
+}
+
 /* From inside a box one sees its walls everywhere, though most corners lie behind the eye. */
 static void test_inside(void **state)
 {
@@ -227,9 +284,13 @@ static void test_hostile_mesh(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_front_hides_back), cmocka_unit_test(test_no_gaps),
-        cmocka_unit_test(test_a_scenes_mesh),    cmocka_unit_test(test_inside),
-        cmocka_unit_test(test_hostile_mesh),     cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_front_hides_back),
+        cmocka_unit_test(test_no_gaps),
+        cmocka_unit_test(test_a_scenes_mesh),
+        cmocka_unit_test(test_inside),
+        cmocka_unit_test(test_hostile_mesh),
+        cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

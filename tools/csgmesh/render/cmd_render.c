@@ -48,8 +48,6 @@ static void warn_without_effect(cli_app *app, bool is_mesh)
     } rows[] = {
         {CLI_OPTION_wireframe, "wireframe", true},
         {CLI_OPTION_shading, "shading", true},
-        {CLI_OPTION_no_occlusion, "no-occlusion", false},
-        {CLI_OPTION_no_shadows, "no-shadows", false},
         {CLI_OPTION_slice, "slice", false},
         {CLI_OPTION_bounds, "bounds", false},
         {CLI_OPTION_evaluator, "evaluator", false},
@@ -61,6 +59,9 @@ static void warn_without_effect(cli_app *app, bool is_mesh)
         if (app->options.given[rows[i].id] && rows[i].of_mesh != is_mesh)
             cli_console_say(&app->console, CSGM_WARNING, NULL, "--%s has no effect on a %s",
                             rows[i].name, is_mesh ? "mesh" : "scene");
+    const char *plain = app->options.slice ? "section" : "picture by the lazy evaluator";
+    if (app->options.edges && !is_mesh && (app->options.slice || app->options.evaluator))
+        cli_console_say(&app->console, CSGM_WARNING, NULL, "--edges has no effect on a %s", plain);
 }
 
 static int check(cli_app *app, csgm_image_format *format)

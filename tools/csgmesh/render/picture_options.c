@@ -184,6 +184,7 @@ int cli_picture_options(cli_app *app, csgm_render_options *out)
     out->occlusion = !options->no_occlusion;
     out->shadows = !options->no_shadows;
     out->ground = !options->no_ground;
+    out->edges = options->edges;
     out->wireframe = options->wireframe;
     out->flat = options->shading == 1;
     out->turns = options->turntable > 0;

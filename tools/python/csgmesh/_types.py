@@ -125,6 +125,7 @@ class PictureOptions(TypedDict, total=False):
     occlusion: bool
     shadows: bool
     ground: bool
+    edges: bool
     bounds: Box
     slice: tuple[Literal["x", "y", "z"], float]
     iso_step: float

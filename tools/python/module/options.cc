@@ -347,6 +347,7 @@ const Row<csgm_render_options> render_rows[] = {
     OF(occlusion),
     OF(shadows),
     OF(ground),
+    OF(edges),
     OF(bounds),
     {"slice", take_slice},
     OF(iso_step),
