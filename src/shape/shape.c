@@ -42,20 +42,21 @@ static void copy_first(float *array, size_t from, size_t count)
         array[i] = array[0];
 }
 
-void csg_shape_values(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                      const float *y, const float *z, size_t count, float *out)
+void csg_shape_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                      const csg_shape_near *near, const float *x, const float *y, const float *z,
+                      size_t count, float *out)
 {
     size_t distinct = count_distinct(x, y, z, count);
-    shape->operations->values(shape, near, x, y, z, distinct, out);
+    shape->operations->values(shape, kernel, near, x, y, z, distinct, out);
     copy_first(out, distinct, count);
 }
 
-void csg_shape_gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                         const float *y, const float *z, size_t count, float *out, float *gx,
-                         float *gy, float *gz)
+void csg_shape_gradients(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                         const csg_shape_near *near, const float *x, const float *y, const float *z,
+                         size_t count, float *out, float *gx, float *gy, float *gz)
 {
     size_t distinct = count_distinct(x, y, z, count);
-    shape->operations->gradients(shape, near, x, y, z, distinct, out, gx, gy, gz);
+    shape->operations->gradients(shape, kernel, near, x, y, z, distinct, out, gx, gy, gz);
     copy_first(out, distinct, count);
     copy_first(gx, distinct, count);
     copy_first(gy, distinct, count);

@@ -15,6 +15,7 @@
 typedef enum csg_shape_kind { CSG_SHAPE_REGION, CSG_SHAPE_POLYHEDRON } csg_shape_kind;
 
 typedef struct csg_shape csg_shape;
+struct csg_shape_kernel;
 
 /* A box in the shape's own frame, and how far from its surface distances matter there; infinite:
  * all of them. */
@@ -39,11 +40,12 @@ typedef bool csg_shape_take_normal(void *user, csg_vec3 inward);
 typedef struct csg_shape_operations {
     void (*destroy)(csg_shape *shape);
     double (*sample)(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
-    void (*values)(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                   const float *y, const float *z, size_t count, float *out);
-    void (*gradients)(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                      const float *y, const float *z, size_t count, float *out, float *gx,
-                      float *gy, float *gz);
+    void (*values)(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                   const csg_shape_near *near, const float *x, const float *y, const float *z,
+                   size_t count, float *out);
+    void (*gradients)(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                      const csg_shape_near *near, const float *x, const float *y, const float *z,
+                      size_t count, float *out, float *gx, float *gy, float *gz);
     uint32_t (*narrow)(const csg_shape *shape, const csg_shape_near *among,
                        const csg_shape_cell *cell, uint32_t *items);
     uint64_t (*hash)(const csg_shape *shape);
@@ -69,12 +71,15 @@ double csg_shape_sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
 
 /* The same for many points, in the shape's own frame. Each result depends on its point alone, not
  * on its neighbours in the batch, and is the same on every machine. near: of a cell that holds the
- * points; up to its limit nothing depends on it. NULL: the whole shape. */
-void csg_shape_values(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                      const float *y, const float *z, size_t count, float *out);
-void csg_shape_gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                         const float *y, const float *z, size_t count, float *out, float *gx,
-                         float *gy, float *gz);
+ * points; up to its limit nothing depends on it. NULL: the whole shape. kernel (shape_kernel.h):
+ * the build for the instruction set in use, on which nothing depends but time; NULL: point by
+ * point. */
+void csg_shape_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                      const csg_shape_near *near, const float *x, const float *y, const float *z,
+                      size_t count, float *out);
+void csg_shape_gradients(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                         const csg_shape_near *near, const float *x, const float *y, const float *z,
+                         size_t count, float *out, float *gx, float *gy, float *gz);
 
 /* What can matter in the cell, of what could in a larger one (NULL: of everything): how many, up to
  * CSG_SHAPE_MOST_NEAR items; 0: not known. `reach` is at least the distance between the surface and

@@ -210,17 +210,17 @@ static void test_batches(void **state)
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 1.2);
     make(&c);
     fill_points(&random, x, y, z);
-    csg_shape_values(c.shape, NULL, x, y, z, POINTS, all);
-    csg_shape_gradients(c.shape, NULL, x, y, z, POINTS, f, g[0], g[1], g[2]);
+    csg_shape_values(c.shape, NULL, NULL, x, y, z, POINTS, all);
+    csg_shape_gradients(c.shape, NULL, NULL, x, y, z, POINTS, f, g[0], g[1], g[2]);
     assert_memory_equal(all, f, sizeof f);
     for (int i = 0; i < POINTS; i++) {
         csg_vec3 gradient;
         csg_vec3 p = {(double)x[i], (double)y[i], (double)z[i]};
         float one, other[4];
-        csg_shape_values(c.shape, NULL, x + i, y + i, z + i, 1, &one);
+        csg_shape_values(c.shape, NULL, NULL, x + i, y + i, z + i, 1, &one);
         assert_memory_equal(&one, &all[i], sizeof one);
-        csg_shape_gradients(c.shape, NULL, x + i, y + i, z + i, 1, other, other + 1, other + 2,
-                            other + 3);
+        csg_shape_gradients(c.shape, NULL, NULL, x + i, y + i, z + i, 1, other, other + 1,
+                            other + 2, other + 3);
         for (int k = 0; k < 3; k++)
             assert_memory_equal(&other[k + 1], &g[k][i], sizeof one);
         assert_true((float)csg_shape_sample(c.shape, p, &gradient) == one);
@@ -264,15 +264,15 @@ static void check_cell(const solid_case *c, const near_list *list, const csg_sha
         y[i] = (float)(cell->center.y + 0.999 * at.y * cell->half.y);
         z[i] = (float)(cell->center.z + 0.999 * at.z * cell->half.z);
     }
-    csg_shape_values(c->shape, NULL, x, y, z, CELL_POINTS, all);
-    csg_shape_gradients(c->shape, NULL, x, y, z, CELL_POINTS, g[0], g[1], g[2], g[3]);
-    csg_shape_gradients(c->shape, list->near, x, y, z, CELL_POINTS, g[4], g[5], g[6], g[7]);
+    csg_shape_values(c->shape, NULL, NULL, x, y, z, CELL_POINTS, all);
+    csg_shape_gradients(c->shape, NULL, NULL, x, y, z, CELL_POINTS, g[0], g[1], g[2], g[3]);
+    csg_shape_gradients(c->shape, NULL, list->near, x, y, z, CELL_POINTS, g[4], g[5], g[6], g[7]);
     for (int i = 0; i < CELL_POINTS; i++) {
         assert_int_equal(signbit(g[4][i]), signbit(all[i]));
         assert_true(fabsf(g[4][i]) >= fabsf(all[i]));
         for (int k = 0; k < 4 && fabs((double)all[i]) < cell->reach * (1 - 1e-6); k++)
             assert_true(g[k][i] == g[4 + k][i]);
-        csg_shape_values(c->shape, list->near, x + i, y + i, z + i, 1, g[0]);
+        csg_shape_values(c->shape, NULL, list->near, x + i, y + i, z + i, 1, g[0]);
         assert_true(g[0][0] == g[4][i]);
     }
 }
@@ -374,7 +374,7 @@ static void test_far_and_not_numbers(void **state)
     }
     float x[4] = {NAN, INFINITY, 3e38f, 0}, y[4] = {0, 0, -3e38f, -INFINITY}, z[4] = {0}, f[4],
           g[12];
-    csg_shape_gradients(c.shape, NULL, x, y, z, 4, f, g, g + 4, g + 8);
+    csg_shape_gradients(c.shape, NULL, NULL, x, y, z, 4, f, g, g + 4, g + 8);
     for (int i = 0; i < 4; i++)
         assert_true(f[i] < 0);
     for (int i = 0; i < 12; i++)

@@ -217,10 +217,10 @@ static void batches_are_their_points(void **state)
         z[i] = (float)i;
     }
     x[5] = NAN, y[6] = INFINITY, x[7] = -0.0f, x[8] = 0.0f, y[7] = y[8] = 0.5f;
-    csg_shape_values(region, NULL, x, y, z, COUNT, out);
-    csg_shape_gradients(region, NULL, x, y, z, COUNT, again, g[0], g[1], g[2]);
+    csg_shape_values(region, NULL, NULL, x, y, z, COUNT, out);
+    csg_shape_gradients(region, NULL, NULL, x, y, z, COUNT, again, g[0], g[1], g[2]);
     for (int i = 0; i < COUNT; i++) {
-        csg_shape_values(region, NULL, &x[i], &y[i], &z[i], 1, &one);
+        csg_shape_values(region, NULL, NULL, &x[i], &y[i], &z[i], 1, &one);
         assert_memory_equal(&one, &out[i], sizeof one);
         assert_memory_equal(&again[i], &out[i], sizeof one);
         csg_vec3 gradient;
@@ -261,9 +261,9 @@ static void check_cell(const csg_shape_near *list, const csg_shape_cell *cell)
         y[i] = (float)(cell->center.y + v * cell->half.y * (1 - 1e-6));
         z[i] = (float)i;
     }
-    csg_shape_gradients(region, NULL, x, y, z, COUNT, whole[0], whole[1], whole[2], whole[3]);
-    csg_shape_gradients(region, list, x, y, z, COUNT, own[0], own[1], own[2], own[3]);
-    csg_shape_values(region, list, x, y, z, COUNT, values);
+    csg_shape_gradients(region, NULL, NULL, x, y, z, COUNT, whole[0], whole[1], whole[2], whole[3]);
+    csg_shape_gradients(region, NULL, list, x, y, z, COUNT, own[0], own[1], own[2], own[3]);
+    csg_shape_values(region, NULL, list, x, y, z, COUNT, values);
     assert_memory_equal(own, whole, sizeof own);
     assert_memory_equal(values, whole[0], sizeof values);
 }
@@ -389,7 +389,7 @@ static double nanoseconds_a_point(double spread)
     }
     clock_t start = clock();
     for (int r = 0; r < ROUNDS; r++)
-        csg_shape_values(region, NULL, x[r], y[r], z, BATCH, out);
+        csg_shape_values(region, NULL, NULL, x[r], y[r], z, BATCH, out);
     return (double)(clock() - start) / CLOCKS_PER_SEC * 1e9 / (ROUNDS * BATCH);
 }
 

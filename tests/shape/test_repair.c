@@ -449,7 +449,7 @@ static void check_rows(const solid_case *b, csg_random *random, uint32_t side)
         z[i] = begins ? 0.5f * (float)csg_random_below(random, 2 * side) + (i % 2 ? 1e-6f : 0)
                       : z[i - 1];
     }
-    csg_shape_values(b->shape, NULL, x, y, z, COUNT, f);
+    csg_shape_values(b->shape, NULL, NULL, x, y, z, COUNT, f);
     for (int i = 0; i < COUNT; i++) {
         csg_vec3 p = {(double)x[i], (double)y[i], (double)z[i]};
         double distance = solid_distance(t, p), w = solid_winding(t, p);

@@ -13,6 +13,10 @@
 #include "field/kernels/soft_formulas.h"
 #include "field/kernels/warp_kernel.h"
 #include "scene/primitives/every_primitive.h"
+#include "shape/shape_kernel.h"
+
+#define CSG_THIS_SHAPE_KERNEL CSG_CONCATENATE(csg_shape_kernel_, CSG_KERNEL)
+extern const csg_shape_kernel CSG_THIS_SHAPE_KERNEL;
 
 /* ---- leaves ---------------------------------------------------------------------------- */
 
@@ -108,7 +112,8 @@ static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_po
         z[i] = q.z;
     }
     size_t count = without_repeats(x, y, z, p.count);
-    csg_shape_values(csg_tape_shape(tape, node), node->near, x, y, z, count, out);
+    csg_shape_values(csg_tape_shape(tape, node), &CSG_THIS_SHAPE_KERNEL, node->near, x, y, z, count,
+                     out);
     for (size_t i = count; i < p.count; i++)
         out[i] = out[0];
     for (size_t i = 0; i < p.count; i++)
@@ -128,7 +133,8 @@ static void shape_gradients(const csg_tape *tape, const csg_tape_node *node, csg
         z[i] = q.z;
     }
     size_t count = without_repeats(x, y, z, p.count);
-    csg_shape_gradients(csg_tape_shape(tape, node), node->near, x, y, z, count, out, gx, gy, gz);
+    csg_shape_gradients(csg_tape_shape(tape, node), &CSG_THIS_SHAPE_KERNEL, node->near, x, y, z,
+                        count, out, gx, gy, gz);
     for (size_t i = count; i < p.count; i++)
         out[i] = out[0], gx[i] = gx[0], gy[i] = gy[0], gz[i] = gz[0];
     for (size_t i = 0; i < p.count; i++) {

@@ -9,6 +9,7 @@
 
 #include "shape/plane/region_sign.h"
 #include "shape/plane/region_tree.h"
+#include "shape/shape_kernel.h"
 
 typedef struct region {
     csg_shape shape;
@@ -47,38 +48,61 @@ static bool is_nowhere(const region *r, double x, double y)
 }
 
 /* Farther than the list's limit another segment may be nearer, and the side of this one wrong. */
-static csg_segment_hit nearest_to(const region *r, const csg_shape_near *near, double x, double y)
+static csg_segment_hit nearest_within(const region *r, const csg_shape_near *near,
+                                      csg_segment_hit hit, double x, double y)
 {
-    if (near) {
-        csg_segment_list list = {near->items, near->count};
-        csg_segment_hit hit = csg_segment_nearest_of(&r->tree, list, x, y);
-        if (hit.squared <= near->limit * near->limit)
-            return hit;
-    }
-    return csg_segment_nearest(&r->tree, x, y);
+    return hit.squared <= near->limit * near->limit ? hit : csg_segment_nearest(&r->tree, x, y);
 }
 
-static double value_at(const region *r, const csg_shape_near *near, double x, double y,
-                       csg_segment_hit *nearest)
+/* Several points: in lanes where there is a list that all of them search. Lanes left over repeat
+ * the last point. */
+static void find_nearest(const region *r, const csg_shape_kernel *kernel,
+                         const csg_shape_near *near, const double *x, const double *y, size_t count,
+                         csg_segment_hit *hits)
 {
-    *nearest = nearest_to(r, near, x, y);
-    csg_segment_place at = csg_segment_locate(&r->tree, nearest->segment, x, y);
-    const csg_segment_sides *sides = &r->sides[nearest->segment];
+    enum { LANES = CSG_SHAPE_LANES, FEWEST = 3 }; /* with fewer, lanes cost more than they save */
+    if (!near) {
+        for (size_t i = 0; i < count; i++)
+            hits[i] = csg_segment_nearest(&r->tree, x[i], y[i]);
+        return;
+    }
+    csg_segment_list list = {near->items, near->count};
+    for (size_t from = 0; from < count; from += LANES) {
+        size_t here = count - from < LANES ? count - from : LANES;
+        if (!kernel || here < FEWEST) {
+            for (size_t i = from; i < from + here; i++)
+                hits[i] = csg_segment_nearest_of(&r->tree, list, x[i], y[i]);
+        } else {
+            double px[LANES], py[LANES];
+            csg_segment_hit found[LANES];
+            for (size_t l = 0; l < LANES; l++) {
+                px[l] = x[from + (l < here ? l : here - 1)];
+                py[l] = y[from + (l < here ? l : here - 1)];
+            }
+            kernel->nearest_segments(&r->tree, list, px, py, found);
+            memcpy(hits + from, found, here * sizeof *hits);
+        }
+        for (size_t i = from; i < from + here; i++)
+            hits[i] = nearest_within(r, near, hits[i], x[i], y[i]);
+    }
+}
+
+static double value_at(const region *r, csg_segment_hit nearest, double x, double y)
+{
+    csg_segment_place at = csg_segment_locate(&r->tree, nearest.segment, x, y);
+    const csg_segment_sides *sides = &r->sides[nearest.segment];
     csg_side side = (csg_side)(at.along < 0           ? sides->from
                                : at.along > at.length ? sides->to
                                                       : sides->along);
-    double distance = sqrt(nearest->squared);
+    double distance = sqrt(nearest.squared);
     return is_inside(r, side, at.left, x, y) ? distance : -distance;
 }
 
 /* Along the way from the nearest point, but the segment's normal wherever that is meant: there the
  * way may be too short to have a direction. */
-static answer answer_at(const region *r, const csg_shape_near *near, double x, double y)
+static answer answer_at(const region *r, csg_segment_hit nearest, double x, double y)
 {
-    csg_segment_hit nearest;
-    if (is_nowhere(r, x, y))
-        return (answer){.value = -INFINITY};
-    answer a = {.value = value_at(r, near, x, y, &nearest)};
+    answer a = {.value = value_at(r, nearest, x, y)};
     const csg_segment_end *s = &r->tree.ends[nearest.segment];
     csg_segment_leaf *leaf = &r->tree.leaves[nearest.segment / CSG_SEGMENT_LANES];
     csg_segment_place at = csg_segment_locate(&r->tree, nearest.segment, x, y);
@@ -96,20 +120,32 @@ static answer answer_at(const region *r, const csg_shape_near *near, double x, d
 
 static double sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
 {
-    answer a = answer_at((const region *)shape, NULL, p.x, p.y);
+    const region *r = (const region *)shape;
+    answer a = {.value = -INFINITY};
+    if (!is_nowhere(r, p.x, p.y))
+        a = answer_at(r, csg_segment_nearest(&r->tree, p.x, p.y), p.x, p.y);
     *gradient = csg_vec3_make(a.gradient.x, a.gradient.y, 0);
     return a.value;
 }
 
-/* Batches come from lattices, where many points differ in z only: what was computed is kept in a
- * few places, by the bits of x and y, and found again. It is what would be computed again. */
-enum { KEPT = 256, FEW_POINTS = 32, FEW_KEPT = 16 };
+/* Batches come from lattices, where many points differ in z only: points are told apart by the bits
+ * of x and y, and one that was met is found again in a few places. Where that fails it is computed
+ * again, which gives the same. */
+enum { MOST_POINTS = 256, PLACES = 256, FEW_POINTS = 32, FEW_PLACES = 16 };
 
-typedef struct kept {
+typedef struct place {
     uint64_t key; /* bits of x and y */
-    float value;
+    uint32_t number;
     bool is_set;
-} kept;
+} place;
+
+/* Points that differ in x or y. */
+typedef struct distinct {
+    size_t count;
+    double x[MOST_POINTS], y[MOST_POINTS];
+    csg_segment_hit nearest[MOST_POINTS];
+    uint32_t of[MOST_POINTS]; /* per point of the batch: its number */
+} distinct;
 
 static uint64_t key_of(float x, float y)
 {
@@ -119,39 +155,84 @@ static uint64_t key_of(float x, float y)
     return (uint64_t)bits[1] << 32 | bits[0];
 }
 
-static void values(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                   const float *y, const float *z, size_t count, float *out)
+static void tell_apart(const float *x, const float *y, size_t count, distinct *d)
 {
-    const region *r = (const region *)shape;
-    kept places[KEPT];
-    size_t place_count = count < FEW_POINTS ? FEW_KEPT : KEPT;
+    place places[PLACES];
+    size_t place_count = count < FEW_POINTS ? FEW_PLACES : PLACES;
     for (size_t i = 0; i < place_count; i++)
         places[i].is_set = false;
+    d->count = 0;
     for (size_t i = 0; i < count; i++) {
         uint64_t key = key_of(x[i], y[i]);
-        kept *place = &places[(key * 0x9E3779B97F4A7C15u >> 48) % place_count];
-        if (!place->is_set || place->key != key) {
-            csg_segment_hit nearest;
-            double px = (double)x[i], py = (double)y[i];
-            float value =
-                is_nowhere(r, px, py) ? -INFINITY : (float)value_at(r, near, px, py, &nearest);
-            *place = (kept){key, value, true};
+        place *at = &places[(key * 0x9E3779B97F4A7C15u >> 48) % place_count];
+        if (!at->is_set || at->key != key) {
+            *at = (place){key, (uint32_t)d->count, true};
+            d->x[d->count] = (double)x[i];
+            d->y[d->count++] = (double)y[i];
         }
-        out[i] = place->value;
+        d->of[i] = at->number;
     }
 }
 
-static void gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                      const float *y, const float *z, size_t count, float *out, float *gx,
-                      float *gy, float *gz)
+/* count <= MOST_POINTS */
+static void some_values(const region *r, const csg_shape_kernel *kernel, const csg_shape_near *near,
+                        const float *x, const float *y, size_t count, float *out)
 {
+    distinct d;
+    float values[MOST_POINTS];
+    tell_apart(x, y, count, &d);
+    if (r->tree.segment_count)
+        find_nearest(r, kernel, near, d.x, d.y, d.count, d.nearest);
+    for (size_t i = 0; i < d.count; i++)
+        values[i] = is_nowhere(r, d.x[i], d.y[i])
+                        ? -INFINITY
+                        : (float)value_at(r, d.nearest[i], d.x[i], d.y[i]);
+    for (size_t i = 0; i < count; i++)
+        out[i] = values[d.of[i]];
+}
+
+static void some_gradients(const region *r, const csg_shape_kernel *kernel,
+                           const csg_shape_near *near, const float *x, const float *y, size_t count,
+                           float *out, float *gx, float *gy)
+{
+    distinct d;
+    answer answers[MOST_POINTS];
+    tell_apart(x, y, count, &d);
+    if (r->tree.segment_count)
+        find_nearest(r, kernel, near, d.x, d.y, d.count, d.nearest);
+    for (size_t i = 0; i < d.count; i++) {
+        answers[i] = (answer){.value = -INFINITY};
+        if (!is_nowhere(r, d.x[i], d.y[i]))
+            answers[i] = answer_at(r, d.nearest[i], d.x[i], d.y[i]);
+    }
     for (size_t i = 0; i < count; i++) {
-        answer a = answer_at((const region *)shape, near, (double)x[i], (double)y[i]);
+        answer a = answers[d.of[i]];
         out[i] = (float)a.value;
         gx[i] = (float)a.gradient.x;
         gy[i] = (float)a.gradient.y;
-        gz[i] = 0;
     }
+}
+
+static void values(const csg_shape *shape, const csg_shape_kernel *kernel,
+                   const csg_shape_near *near, const float *x, const float *y, const float *z,
+                   size_t count, float *out)
+{
+    const region *r = (const region *)shape;
+    for (size_t i = 0; i < count; i += MOST_POINTS)
+        some_values(r, kernel, near, x + i, y + i,
+                    count - i < MOST_POINTS ? count - i : MOST_POINTS, out + i);
+}
+
+static void gradients(const csg_shape *shape, const csg_shape_kernel *kernel,
+                      const csg_shape_near *near, const float *x, const float *y, const float *z,
+                      size_t count, float *out, float *gx, float *gy, float *gz)
+{
+    const region *r = (const region *)shape;
+    for (size_t i = 0; i < count; i += MOST_POINTS)
+        some_gradients(r, kernel, near, x + i, y + i,
+                       count - i < MOST_POINTS ? count - i : MOST_POINTS, out + i, gx + i, gy + i);
+    for (size_t i = 0; i < count; i++)
+        gz[i] = 0;
 }
 
 /* ---- the shape ---------------------------------------------------------------------------- */

@@ -54,8 +54,7 @@ static inline void box_distances(const csg_segment_node *node, double x, double 
     }
 }
 
-/* Where a search begins: a leaf that is near. */
-static uint32_t first_leaf(const csg_segment_tree *tree, double x, double y)
+uint32_t csg_segment_first_leaf(const csg_segment_tree *tree, double x, double y)
 {
     uint32_t i = cell_along(x, tree->left, tree->per_x, tree->cells_x),
              j = cell_along(y, tree->bottom, tree->per_y, tree->cells_y);
@@ -96,9 +95,24 @@ static inline void search_node(const csg_segment_tree *tree, uint32_t node, uint
     }
 }
 
+csg_segment_hit csg_segment_nearest_in_leaf(const csg_segment_tree *tree, uint32_t leaf, double x,
+                                            double y)
+{
+    csg_segment_hit best = {INFINITY, leaf * CSG_SEGMENT_LANES};
+    search_leaf(tree, leaf, x, y, &best);
+    return best;
+}
+
+void csg_segment_nearest_below(const csg_segment_tree *tree, uint32_t node, double x, double y,
+                               csg_segment_hit *best)
+{
+    enum { NO_LEAF = ~CSG_SEGMENT_LEAF };
+    search_node(tree, node, NO_LEAF, x, y, best);
+}
+
 csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, double y)
 {
-    uint32_t first = first_leaf(tree, x, y);
+    uint32_t first = csg_segment_first_leaf(tree, x, y);
     csg_segment_hit best = {INFINITY, first * CSG_SEGMENT_LANES};
     search_leaf(tree, first, x, y, &best);
     search_node(tree, (uint32_t)tree->node_count - 1, first, x, y, &best);
@@ -110,7 +124,7 @@ csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, doub
 csg_segment_hit csg_segment_nearest_of(const csg_segment_tree *tree, csg_segment_list list,
                                        double x, double y)
 {
-    uint32_t first = first_leaf(tree, x, y);
+    uint32_t first = csg_segment_first_leaf(tree, x, y);
     csg_segment_hit best = {INFINITY, first * CSG_SEGMENT_LANES};
     search_leaf(tree, first, x, y, &best);
     for (uint32_t i = 0; i < list.count; i++) {

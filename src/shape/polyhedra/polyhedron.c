@@ -247,9 +247,11 @@ static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
     return csg_triangle_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
 }
 
-static void polyhedron_values(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                              const float *y, const float *z, size_t count, float *out)
+static void polyhedron_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                              const csg_shape_near *near, const float *x, const float *y,
+                              const float *z, size_t count, float *out)
 {
+    (void)kernel; /* triangles are searched point by point */
     walker w = begin_walk(as_polyhedron(shape), near);
     for (size_t i = 0; i < count; i++) {
         csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), ignored;
@@ -262,10 +264,12 @@ static void polyhedron_values(const csg_shape *shape, const csg_shape_near *near
     }
 }
 
-static void polyhedron_gradients(const csg_shape *shape, const csg_shape_near *near, const float *x,
-                                 const float *y, const float *z, size_t count, float *out,
-                                 float *gx, float *gy, float *gz)
+static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_kernel *kernel,
+                                 const csg_shape_near *near, const float *x, const float *y,
+                                 const float *z, size_t count, float *out, float *gx, float *gy,
+                                 float *gz)
 {
+    (void)kernel;
     walker w = begin_walk(as_polyhedron(shape), near);
     for (size_t i = 0; i < count; i++) {
         csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), gradient;
