@@ -177,10 +177,12 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
 {
     size_t top = 0;
     float *work = slot(s, depth);
+    csg_warped_points warped;
+    warped.warp = 0;
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, top++));
+            CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, top++), &warped);
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_values(tape, node, s, top++, p.count, work);
@@ -347,13 +349,14 @@ static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, 
 }
 
 static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
-                       uint32_t depth, size_t index, plan wanted)
+                       uint32_t depth, size_t index, plan wanted, csg_warped_points *warped)
 {
     if (wanted.gradients)
         CSG_THIS_LEAF_KERNEL.gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
-                                       channel(s, depth, index, 1), channel(s, depth, index, 2));
+                                       channel(s, depth, index, 1), channel(s, depth, index, 2),
+                                       warped);
     else
-        CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index));
+        CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index), warped);
     if (!wanted.colors)
         return;
     csg_color color = tape->colors[(uint32_t)tape->parameters[node->parameters + CSG_LEAF_COLOR]];
@@ -446,10 +449,12 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
 {
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
+    csg_warped_points warped;
+    warped.warp = 0;
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            leaf_mixed(tape, node, p, s, depth, top++, wanted);
+            leaf_mixed(tape, node, p, s, depth, top++, wanted, &warped);
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;
             combine_round_mixed(tape, node, s, depth, top++, channels_of(wanted), p.count, work);
@@ -503,7 +508,10 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
                    size_t count, float *out, float *scratch, size_t scratch_floats)
 {
     if (tape->count == 1) { /* most blocks: straight into the result */
-        CSG_THIS_LEAF_KERNEL.values(tape, tape->nodes, (csg_points){x, y, z, padded(count)}, out);
+        csg_warped_points warped;
+        warped.warp = 0;
+        CSG_THIS_LEAF_KERNEL.values(tape, tape->nodes, (csg_points){x, y, z, padded(count)}, out,
+                                    &warped);
         return;
     }
     uint32_t depth = csg_tape_depth(tape);
@@ -610,11 +618,13 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     slots lows = {scratch, CSG_OCTANTS}, highs = {slot(lows, depth), CSG_OCTANTS};
     float *work = slot(highs, depth);
     size_t top = 0;
+    csg_warped_points warped;
+    warped.warp = 0;
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
-            CSG_THIS_LEAF_KERNEL.intervals(tape, node, p, radius, slot(lows, top),
-                                           slot(highs, top));
+            CSG_THIS_LEAF_KERNEL.intervals(tape, node, p, radius, slot(lows, top), slot(highs, top),
+                                           &warped);
             top++;
         } else if (csg_op_is_round(node->op)) {
             top -= node->arity;

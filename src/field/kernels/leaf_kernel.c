@@ -104,7 +104,8 @@ static size_t without_repeats(const float *x, const float *y, const float *z, si
 static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
 {
     const float *parameters = tape->parameters + node->parameters;
-    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    float x[CSG_BATCH], y[CSG_BATCH], z[CSG_BATCH];
+    x[0] = y[0] = z[0] = 0; /* set also where there are no points */
     for (size_t i = 0; i < p.count; i++) {
         point q = in_frame(node, parameters + CSG_LEAF_FRAME, p, i);
         x[i] = q.x;
@@ -125,7 +126,8 @@ static void shape_gradients(const csg_tape *tape, const csg_tape_node *node, csg
 {
     const float *parameters = tape->parameters + node->parameters;
     const float sigma = parameters[CSG_LEAF_SIGMA];
-    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
+    float x[CSG_BATCH], y[CSG_BATCH], z[CSG_BATCH];
+    x[0] = y[0] = z[0] = 0; /* set also where there are no points */
     for (size_t i = 0; i < p.count; i++) {
         point q = in_frame(node, parameters + CSG_LEAF_FRAME, p, i);
         x[i] = q.x;
@@ -184,14 +186,18 @@ static csg_points part_of(csg_points p, size_t from, size_t most)
     return (csg_points){p.x + from, p.y + from, p.z + from, left < most ? left : most};
 }
 
-static void warped_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+/* Points in the frame of what the leaf's warp makes of them. */
+static csg_points below_warp(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                             csg_warped_points *warped)
 {
-    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
-    memcpy(x, p.x, p.count * sizeof *x);
-    memcpy(y, p.y, p.count * sizeof *y);
-    memcpy(z, p.z, p.count * sizeof *z);
-    CSG_THIS_WARP_KERNEL.points(tape, node->warp, x, y, z, p.count);
-    own_values(tape, node, (csg_points){x, y, z, p.count}, out);
+    if (warped->warp != node->warp) {
+        memcpy(warped->x, p.x, p.count * sizeof *p.x);
+        memcpy(warped->y, p.y, p.count * sizeof *p.y);
+        memcpy(warped->z, p.z, p.count * sizeof *p.z);
+        CSG_THIS_WARP_KERNEL.points(tape, node->warp, warped->x, warped->y, warped->z, p.count);
+        warped->warp = node->warp;
+    }
+    return (csg_points){warped->x, warped->y, warped->z, p.count};
 }
 
 /* Leaves that do more than run a formula over the points: in parts, with room of their own. */
@@ -200,17 +206,17 @@ static int is_indirect(const csg_tape_node *node)
     return node->warp != 0 || node->op == CSG_OP_SHAPE;
 }
 
-static void leaf_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
+static void leaf_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out,
+                        csg_warped_points *warped)
 {
     const float raise = tape->parameters[node->parameters + CSG_LEAF_RAISE];
     if (!is_indirect(node))
         own_values(tape, node, p, out);
     for (size_t i = 0; i < p.count && is_indirect(node); i += CSG_BATCH) {
         csg_points part = part_of(p, i, CSG_BATCH);
-        if (node->warp)
-            warped_values(tape, node, part, out + i);
-        else
-            own_values(tape, node, part, out + i);
+        if (node->warp && p.count > CSG_BATCH)
+            warped->warp = 0; /* those are of another part */
+        own_values(tape, node, node->warp ? below_warp(tape, node, part, warped) : part, out + i);
     }
     if (raise != 0)
         for (size_t i = 0; i < p.count; i++)
@@ -245,24 +251,19 @@ static void own_gradients(const csg_tape *tape, const csg_tape_node *node, csg_p
 }
 
 static void warped_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p,
-                             float *out, float *gx, float *gy, float *gz)
+                             float *out, float *gx, float *gy, float *gz, csg_warped_points *warped)
 {
-    float x[CSG_BATCH] = {0}, y[CSG_BATCH] = {0}, z[CSG_BATCH] = {0};
-    memcpy(x, p.x, p.count * sizeof *x);
-    memcpy(y, p.y, p.count * sizeof *y);
-    memcpy(z, p.z, p.count * sizeof *z);
-    CSG_THIS_WARP_KERNEL.points(tape, node->warp, x, y, z, p.count);
-    own_gradients(tape, node, (csg_points){x, y, z, p.count}, out, gx, gy, gz);
+    own_gradients(tape, node, below_warp(tape, node, p, warped), out, gx, gy, gz);
     CSG_THIS_WARP_KERNEL.gradients(tape, node->warp, p.x, p.y, p.z, p.count, gx, gy, gz);
 }
 
 /* Walks for gradients go by batches: p.count <= CSG_BATCH. */
 static void leaf_gradients(const csg_tape *tape, const csg_tape_node *node, csg_points p,
-                           float *out, float *gx, float *gy, float *gz)
+                           float *out, float *gx, float *gy, float *gz, csg_warped_points *warped)
 {
     const float raise = tape->parameters[node->parameters + CSG_LEAF_RAISE];
     if (node->warp)
-        warped_gradients(tape, node, p, out, gx, gy, gz);
+        warped_gradients(tape, node, p, out, gx, gy, gz, warped);
     else
         own_gradients(tape, node, p, out, gx, gy, gz);
     if (raise != 0)
@@ -301,13 +302,14 @@ static void near_and_far(const float *c, float t, float half, float *near, float
 static void falling_interval(const csg_tape *tape, const csg_tape_node *node, csg_points p,
                              float half, float *restrict low, float *restrict high)
 {
+    csg_warped_points *none = NULL; /* such a leaf has no warp */
     const float *parameters = tape->parameters + node->parameters, *t = parameters + CSG_LEAF_FRAME;
     float near[3][CSG_OCTANTS], far[3][CSG_OCTANTS], a[CSG_OCTANTS], b[CSG_OCTANTS];
     near_and_far(p.x, t[0], half, near[0], far[0]);
     near_and_far(p.y, t[1], half, near[1], far[1]);
     near_and_far(p.z, t[2], half, near[2], far[2]);
-    leaf_values(tape, node, (csg_points){near[0], near[1], near[2], CSG_OCTANTS}, a);
-    leaf_values(tape, node, (csg_points){far[0], far[1], far[2], CSG_OCTANTS}, b);
+    leaf_values(tape, node, (csg_points){near[0], near[1], near[2], CSG_OCTANTS}, a, none);
+    leaf_values(tape, node, (csg_points){far[0], far[1], far[2], CSG_OCTANTS}, b, none);
     float slack = parameters[CSG_LEAF_SLACK];
     for (int o = 0; o < CSG_OCTANTS; o++) {
         low[o] = smaller(a[o], b[o]) - slack;
@@ -322,7 +324,8 @@ static uint32_t formula_index(const csg_tape *tape, const csg_tape_node *node)
 }
 
 static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, csg_points p,
-                          float radius, float *restrict low, float *restrict high)
+                          float radius, float *restrict low, float *restrict high,
+                          csg_warped_points *warped)
 {
     const float *parameters = tape->parameters + node->parameters;
     if (node->op == CSG_OP_FIELD && !node->warp) {
@@ -338,7 +341,7 @@ static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, csg_p
         falling_interval(tape, node, p, half, low, high);
         return;
     }
-    leaf_values(tape, node, p, low);
+    leaf_values(tape, node, p, low, warped);
     float slope = 1.0f; /* the leaf's Lipschitz constant */
     if (node->op == CSG_OP_FIELD)
         slope = larger(tape->formulas[formula_index(tape, node)].lipschitz, 1.0f);

@@ -7,14 +7,23 @@
 
 #include "field/kernels/batch.h"
 
+/* A walk's points as they are below a warp: leaves below one warp stand together, and all but the
+ * first find them here. */
+typedef struct csg_warped_points {
+    uint32_t warp; /* as csg_tape_node.warp; 0: none are here */
+    float x[CSG_BATCH], y[CSG_BATCH], z[CSG_BATCH];
+} csg_warped_points;
+
 typedef struct csg_leaf_kernel {
-    void (*values)(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out);
+    /* `warped`: of these points, or none; with p.count <= CSG_BATCH kept for other leaves. */
+    void (*values)(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out,
+                   csg_warped_points *warped);
     /* p.count <= CSG_BATCH */
     void (*gradients)(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out,
-                      float *gx, float *gy, float *gz);
+                      float *gx, float *gy, float *gz, csg_warped_points *warped);
     /* Bounds over eight cubes by centre and half diagonal. */
     void (*intervals)(const csg_tape *tape, const csg_tape_node *node, csg_points p, float radius,
-                      float *low, float *high);
+                      float *low, float *high, csg_warped_points *warped);
 } csg_leaf_kernel;
 
 #ifdef CSG_KERNEL
