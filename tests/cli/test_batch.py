@@ -404,11 +404,11 @@ class SameBytes(BatchTest):
         """One long job, which is put off and made by all threads, among many short ones."""
         self.scenes()
         names = self.many(20)
+        short = [*names[:2], *({"scene": name, "resolution": 24} for name in names[2:])]
         self.write("parts.json", json.dumps([
-            *names, {"scene": "mug.txt", "resolution": 160, "formats": ["ply", "3mf"]}]))
-        for threads in (1, 2, 5):
-            self.batch("parts.json", "-d", f"out{threads}", *[], "-j", threads)
-        self.assertEqual(self.outputs("out1"), self.outputs("out2"))
+            *short, {"scene": "mug.txt", "resolution": 160, "formats": ["ply", "3mf"]}]))
+        for threads in (1, 5):
+            self.batch("parts.json", "-d", f"out{threads}", "-j", threads)
         self.assertEqual(self.outputs("out1"), self.outputs("out5"))
         order = [line["scene"] for line in self.lines[:-1]]
         self.assertEqual(order, [*names, "mug.txt"])

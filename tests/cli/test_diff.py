@@ -40,7 +40,7 @@ class Diff(diff_support.DiffTest):
         self.mesh(BALL, "golden.ply")
         self.write("ball.txt", BALL)
         self.diff(0, "golden.ply", "ball.txt", "-r", 32)
-        report = self.report(0, "golden.ply", "ball.txt", "-r", 128, "--tol", "0.1", "--field")
+        report = self.report(0, "golden.ply", "ball.txt", "-r", 64, "--tol", "0.1", "--field")
         field = report["a_to_field_of_b"]
         self.assertEqual(field["lambda"], 1)
         # facets of an inscribed polyhedron: their middles are off, the sagitta of a cell at most
@@ -48,7 +48,7 @@ class Diff(diff_support.DiffTest):
         self.assertLess(field["distance_upper"], 0.1)
         self.assertLessEqual(field["distance_lower"], field["distance_upper"])
         self.write("knob.txt", KNOB)
-        self.assertIn(b"apart", self.diff(1, "golden.ply", "knob.txt", "-r", 128, "--tol", "0.1").stdout)
+        self.assertIn(b"apart", self.diff(1, "golden.ply", "knob.txt", "-r", 64, "--tol", "0.1").stdout)
         self.diff(0, "golden.ply", "ball.txt", "-D", "unused=1", "-r", 32)
         self.assert_refused(self.run_in("diff", "golden.ply", "golden.ply", "--field"), 2, "--field")
 
@@ -75,7 +75,7 @@ class Diff(diff_support.DiffTest):
 
     def test_two_scenes_get_one_tolerance(self):
         """The smaller of theirs, at most a quarter of --tol, at least that of --quality fine; equal cells are as asked for."""
-        small = "cube(10); translate([5, 5, 9]) sphere(2);\n"
+        small = "cube(10); translate([5, 5, 9.5]) sphere(1);\n"
         self.write("a.txt", small)
         self.write("b.txt", small + "translate([15, 5, 5]) cube([10, 3, 3], center = true);\n")
 
@@ -202,19 +202,19 @@ class Diff(diff_support.DiffTest):
             other = "b" + name[1:]
             self.mesh(BALL, name, "--ascii")
             self.mesh(KNOB, other)
-            for source in (other, "knob.txt"):
+            for source in ([other], ["knob.txt", "-r", 32]):
                 self.mesh(BALL, name, "--ascii")
-                self.diff(0, name, source, "--update")
+                self.diff(0, name, *source, "--update")
                 self.assertIn(self.read(name)[:32].split()[0], (b"solid", b"ply"))
                 self.assertEqual(self.read(name).count(b"\0"), 0, name)
-                self.diff(0, name, source, "--tol", "1e-6")
+                self.diff(0, name, *source, "--tol", "1e-6")
             self.mesh(BALL, name)
             self.mesh(KNOB, other, "--ascii")
             self.diff(0, name, other, "--update")
             self.assertIn(b"\0", self.read(name))
         if cli.has_library("Draco") and cli.has_library("tinygltf"):
             self.mesh(BALL, "a.glb", "--draco")
-            self.diff(0, "a.glb", "knob.txt", "--update")
+            self.diff(0, "a.glb", "knob.txt", "-r", 32, "--update")
             self.assertIn(b"KHR_draco_mesh_compression", self.read("a.glb"))
 
     def test_trouble(self):
