@@ -224,6 +224,20 @@ static size_t room_samples(const csg_draw *draw)
     return side * side;
 }
 
+static bool create_room(csg_draw *draw, csg_draw_room **out)
+{
+    csg_memory *memory = &draw->picture->context->memory;
+    size_t floats = room_samples(draw) * sizeof(float);
+    csg_draw_room *room = *out = csg_memory_alloc(memory, sizeof *room);
+    if (!room)
+        return false;
+    room->nearness = csg_memory_alloc(memory, floats);
+    room->triangle = csg_memory_alloc(memory, room_samples(draw) * sizeof(uint32_t));
+    room->through = draw->is_clear ? csg_memory_alloc(memory, floats) : NULL;
+    room->behind = draw->is_clear ? csg_memory_alloc(memory, floats) : NULL;
+    return room->nearness && room->triangle && (!draw->is_clear || (room->through && room->behind));
+}
+
 static bool create_rooms(csg_draw *draw)
 {
     csg_memory *memory = &draw->picture->context->memory;
@@ -233,14 +247,8 @@ static bool create_rooms(csg_draw *draw)
         return false;
     memset(draw->rooms, 0, draw->room_count * sizeof *draw->rooms);
     bool done = true;
-    for (uint32_t i = 0; i < draw->room_count && done; i++) {
-        csg_draw_room *room = draw->rooms[i] = csg_memory_alloc(memory, sizeof *room);
-        if (!room)
-            return false;
-        room->nearness = csg_memory_alloc(memory, room_samples(draw) * sizeof(float));
-        room->triangle = csg_memory_alloc(memory, room_samples(draw) * sizeof(uint32_t));
-        done = room->nearness && room->triangle;
-    }
+    for (uint32_t i = 0; i < draw->room_count && done; i++)
+        done = create_room(draw, &draw->rooms[i]);
     return done;
 }
 
@@ -248,7 +256,10 @@ static void release(csg_draw *draw, uint64_t total)
 {
     csg_memory *memory = &draw->picture->context->memory;
     for (uint32_t i = 0; draw->rooms && i < draw->room_count && draw->rooms[i]; i++) {
-        csg_memory_release(memory, draw->rooms[i]->nearness, room_samples(draw) * sizeof(float));
+        float *floats[] = {draw->rooms[i]->nearness, draw->rooms[i]->through,
+                           draw->rooms[i]->behind};
+        for (int k = 0; k < 3; k++)
+            csg_memory_release(memory, floats[k], room_samples(draw) * sizeof(float));
         csg_memory_release(memory, draw->rooms[i]->triangle, room_samples(draw) * sizeof(uint32_t));
         csg_memory_release(memory, draw->rooms[i], sizeof *draw->rooms[i]);
     }

@@ -31,6 +31,7 @@ typedef struct csg_draw {
     double nearest;                      /* what is nearer to the eye's plane is clipped away */
     uint32_t samples;                    /* n */
     uint32_t border;                     /* samples around a tile that are filled, too */
+    bool is_clear;                       /* some of the mesh's colours are seen through */
     csg_draw_vertex *vertices;
     uint32_t columns, rows; /* of tiles */
     uint64_t *tile_first;   /* columns * rows + 1: into tile_triangles */
@@ -47,10 +48,21 @@ csg_draw_vertex csg_draw_project(const csg_draw *draw, csg_vec3 position);
  * 0: nothing of it can be seen. */
 int csg_draw_corners(const csg_draw *draw, uint64_t triangle, csg_draw_vertex out[2][3]);
 
+/* What a pixel's samples add up to. */
+typedef struct csg_draw_sum {
+    float light[3];
+    float cover; /* samples, by how much of the background they hide */
+    float line;  /* as in outline.h */
+} csg_draw_sum;
+
 /* raster.c; samples: (CSG_DRAW_TILE * n)^2 of each. */
 typedef struct csg_draw_room {
     float *nearness;
     uint32_t *triangle; /* index + 1, 0 = none */
+    /* Of meshes that are seen through, else NULL: how much of what is behind is seen, and what only
+     * is looked at, since it is farther than what was drawn. */
+    float *through, *behind;
+    csg_draw_sum sums[CSG_DRAW_TILE * CSG_DRAW_TILE];
 } csg_draw_room;
 
 void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row);

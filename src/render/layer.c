@@ -159,6 +159,14 @@ static void set_view(csg_layer *layer, const csg_picture *picture)
     set_tolerance(layer);
 }
 
+static bool is_any_clear(const csgm_field *field)
+{
+    for (uint32_t i = 0; i < field->color_count; i++)
+        if (field->tape.colors[i].a < 1)
+            return true;
+    return false;
+}
+
 /* Marks are seen through: light and shadow are the solid's. */
 static csgm_status make_tracer(csg_layer *layer, csg_picture *picture, bool is_solid)
 {
@@ -172,6 +180,7 @@ static csgm_status make_tracer(csg_layer *layer, csg_picture *picture, bool is_s
         .shadows = is_solid && picture->options->shadows,
         .colors = is_solid && field->has_colors && field->color_count > 1,
     };
+    layer->tracer.is_clear = layer->tracer.colors && is_any_clear(field);
     set_view(layer, picture);
     return make_cells(layer, picture);
 }

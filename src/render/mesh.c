@@ -7,6 +7,14 @@
 #include "render/draw.h"
 #include "render/ground_map.h"
 
+static bool is_any_clear(const csgm_mesh_view *mesh)
+{
+    for (size_t i = 0; mesh->colors && i < mesh->vertex_count; i++)
+        if (mesh->colors[4 * i + 3] < 255)
+            return true;
+    return false;
+}
+
 static bool tile_item(void *user, uint32_t worker, size_t index)
 {
     csg_draw *draw = user;
@@ -39,6 +47,7 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
                          .ground = &ground,
                          .samples = options->samples,
                          .border = options->edges,
+                         .is_clear = is_any_clear(mesh),
                          .nearest = view->nearest,
                          .columns = (options->width + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE,
                          .rows = (options->height + CSG_DRAW_TILE - 1) / CSG_DRAW_TILE};

@@ -80,7 +80,8 @@ static void fill(csg_draw_room *room, const area *in, const csg_draw_vertex v[3]
                                           (double)w[1] * (double)v[1].nearness +
                                           (double)w[2] * (double)v[2].nearness) *
                                          scale);
-                if (nearness > room->nearness[sample]) {
+                if (nearness > room->nearness[sample] &&
+                    (!room->behind || nearness < room->behind[sample])) {
                     room->nearness[sample] = nearness;
                     room->triangle[sample] = id;
                 }
@@ -91,6 +92,15 @@ static void fill(csg_draw_room *room, const area *in, const csg_draw_vertex v[3]
     }
 }
 
+static bool is_clear(const csg_draw *draw, uint32_t triangle)
+{
+    const uint32_t *index = draw->mesh->indices + 3 * (size_t)triangle;
+    const uint8_t *colors = draw->mesh->colors;
+    return (colors[4 * (size_t)index[0] + 3] & colors[4 * (size_t)index[1] + 3] &
+            colors[4 * (size_t)index[2] + 3]) < 255;
+}
+
+/* Of what is seen through the inner side is not drawn: each wall is seen once, as in a scene. */
 static void fill_triangle(const csg_draw *draw, csg_draw_room *room, const area *in,
                           uint32_t triangle)
 {
@@ -100,6 +110,8 @@ static void fill_triangle(const csg_draw *draw, csg_draw_room *room, const area 
         csg_draw_vertex *c = v[part];
         int64_t turn = ((int64_t)c[1].x - c[0].x) * ((int64_t)c[2].y - c[0].y) -
                        ((int64_t)c[1].y - c[0].y) * ((int64_t)c[2].x - c[0].x);
+        if (turn > 0 && draw->is_clear && is_clear(draw, triangle))
+            continue;
         if (turn < 0) {
             csg_draw_vertex other = c[1];
             c[1] = c[2];
@@ -151,8 +163,9 @@ static csg_vec3 normal_of(const csg_draw *draw, const uint32_t index[3], const c
     return csg_vec3_norm(sum) > 0.5 && csg_vec3_dot(sum, flat) > 0 ? sum : flat;
 }
 
-static void color_of(const csg_draw *draw, const uint32_t index[3], const double share[3],
-                     csg_surface *surface)
+/* Returns how much of what is behind the surface hides. */
+static float color_of(const csg_draw *draw, const uint32_t index[3], const double share[3],
+                      csg_surface *surface)
 {
     const uint8_t *colors = draw->mesh->colors;
     const uint16_t *materials = draw->mesh->materials;
@@ -163,12 +176,16 @@ static void color_of(const csg_draw *draw, const uint32_t index[3], const double
             surface->color[c] +=
                 weights[i] * (float)colors[4 * (size_t)index[i] + (size_t)c] / 255.0f;
     }
+    float alpha = colors ? 0 : 1;
+    for (int i = 0; colors && i < 3; i++)
+        alpha += weights[i] * (float)colors[4 * (size_t)index[i] + 3] / 255.0f;
     surface->metallic = materials ? 0 : 0.0f;
     surface->roughness = materials ? 0 : 0.6f;
     for (int i = 0; materials && i < 3; i++) {
         surface->metallic += weights[i] * (float)materials[2 * (size_t)index[i]] / 10000.0f;
         surface->roughness += weights[i] * (float)materials[2 * (size_t)index[i] + 1] / 10000.0f;
     }
+    return draw->is_clear ? alpha : 1;
 }
 
 /* How much of the sample an edge's line covers; lines fade where triangles are smaller than they.
@@ -192,9 +209,9 @@ static float wire_at(const csg_draw *draw, const csg_vec3 corner[3], const doubl
     return (float)(cover * fade);
 }
 
-/* Light of a triangle through a point of the picture. */
-static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, double y,
-                           float light[3])
+/* Light of a triangle through a point of the picture; returns how much it hides. */
+static float shade_triangle(const csg_draw *draw, uint32_t triangle, double x, double y,
+                            float light[3])
 {
     const csg_picture *picture = draw->picture;
     const uint32_t *index = draw->mesh->indices + 3 * (size_t)triangle;
@@ -206,7 +223,7 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
     shares_of(corner, origin, direction, share);
     csg_vec3 normal = normal_of(draw, index, corner, share);
     csg_surface surface = {.open = 1, .lit = 1};
-    color_of(draw, index, share, &surface);
+    float alpha = color_of(draw, index, share, &surface);
     csg_vec3 flat =
         csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0]));
     if (csg_vec3_dot(flat, direction) > 0) { /* the inner side, reddish: a hole, or turned about */
@@ -225,6 +242,7 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
     float wire = picture->options->wireframe ? 0.85f * wire_at(draw, corner, share) : 0;
     for (int c = 0; c < 3; c++)
         light[c] *= 1 - wire;
+    return alpha + wire * (1 - alpha);
 }
 
 /* ---- lines ------------------------------------------------------------------------------------ */
@@ -232,14 +250,14 @@ static void shade_triangle(const csg_draw *draw, uint32_t triangle, double x, do
 /* A tile that is filled. */
 typedef struct draw_area {
     const csg_draw *draw;
-    const csg_draw_room *room;
+    csg_draw_room *room;
     area in;
 } draw_area;
 
-/* The triangle that sample x, y of the picture sees, + 1. */
-static const uint32_t *sample_at(const draw_area *a, int64_t x, int64_t y)
+/* Where sample x, y of the picture is in the room. */
+static size_t sample_of(const draw_area *a, int64_t x, int64_t y)
 {
-    return &a->room->triangle[(y - a->in.y0) * a->in.width + x - a->in.x0];
+    return (size_t)((y - a->in.y0) * a->in.width + x - a->in.x0);
 }
 
 /* What sample x, y of the picture sees; with the triangle's normal, or that of the surface. */
@@ -247,7 +265,7 @@ static csg_outline_point outline_point(const draw_area *a, int64_t x, int64_t y,
 {
     const csg_draw *draw = a->draw;
     const csg_view *view = draw->view;
-    uint32_t id = *sample_at(a, x, y);
+    uint32_t id = a->room->triangle[sample_of(a, x, y)];
     csg_outline_point point = {.is_hit = id != 0};
     if (!id)
         return point;
@@ -270,7 +288,8 @@ static csg_outline_point outline_point(const draw_area *a, int64_t x, int64_t y,
 
 static bool is_parted(const draw_area *a, int64_t x, int64_t y, int64_t dx, int64_t dy)
 {
-    if (*sample_at(a, x, y) == *sample_at(a, x + dx, y + dy))
+    const uint32_t *triangle = a->room->triangle;
+    if (triangle[sample_of(a, x, y)] == triangle[sample_of(a, x + dx, y + dy)])
         return false;
     for (int is_facet = 1; is_facet >= (a->draw->mesh->normals ? 0 : 1); is_facet--) {
         csg_outline_point here = outline_point(a, x, y, is_facet);
@@ -305,45 +324,73 @@ static float ground_at(const csg_draw *draw, double x, double y)
     return csg_ground_map_at(draw->ground, origin, direction);
 }
 
-/* Light of a pixel: each triangle once, at the middle of its samples there. */
-static void draw_pixel(const csg_draw *draw, const csg_draw_room *room, const area *in, uint32_t x,
-                       uint32_t y)
+/* A triangle in a pixel. */
+typedef struct piece {
+    uint32_t id, count, sum_x, sum_y; /* of its samples */
+    float share;                      /* of them, as much as they are seen */
+} piece;
+
+/* The triangles that the pixel's samples see. */
+static uint32_t find_pieces(const draw_area *a, uint32_t x, uint32_t y, piece out[64])
 {
-    enum { MOST = 64 };
-    uint32_t n = draw->samples, ids[MOST], known = 0, covered = 0;
-    uint32_t counts[MOST], sum_x[MOST], sum_y[MOST];
-    float total[3] = {0, 0, 0};
+    uint32_t n = a->draw->samples, known = 0;
     for (uint32_t s = 0; s < n * n; s++) {
-        size_t at = (size_t)((y * n + s / n - in->y0) * in->width + x * n + s % n - in->x0);
-        uint32_t id = room->triangle[at], k = 0;
+        size_t at = sample_of(a, (int64_t)x * n + s % n, (int64_t)y * n + s / n);
+        uint32_t id = a->room->triangle[at], k = 0;
         if (!id)
             continue;
-        covered++;
-        while (k < known && ids[k] != id)
+        while (k < known && out[k].id != id)
             k++;
-        if (k == known) {
-            ids[known++] = id;
-            counts[k] = sum_x[k] = sum_y[k] = 0;
-        }
-        counts[k]++;
-        sum_x[k] += s % n;
-        sum_y[k] += s / n;
+        if (k == known)
+            out[known++] = (piece){.id = id};
+        out[k].count++;
+        out[k].sum_x += s % n;
+        out[k].sum_y += s / n;
+        out[k].share += a->room->through ? a->room->through[at] : 1;
     }
+    return known;
+}
+
+/* What is behind the pixel's samples of a piece is seen as much less. */
+static void cover_samples(const draw_area *a, uint32_t x, uint32_t y, uint32_t id, float alpha)
+{
+    uint32_t n = a->draw->samples;
+    for (uint32_t s = 0; s < n * n; s++) {
+        size_t at = sample_of(a, (int64_t)x * n + s % n, (int64_t)y * n + s / n);
+        if (a->room->triangle[at] == id)
+            a->room->through[at] *= 1 - alpha;
+    }
+}
+
+/* Adds the light of what a pixel sees: each triangle once, at the middle of its samples there. */
+static void add_pixel(const draw_area *a, uint32_t x, uint32_t y, csg_draw_sum *sum)
+{
+    piece pieces[64];
+    uint32_t n = a->draw->samples, known = find_pieces(a, x, y, pieces);
     for (uint32_t k = 0; k < known; k++) {
+        const piece *p = &pieces[k];
         float light[3];
-        double count = counts[k];
-        shade_triangle(draw, ids[k] - 1, x + (sum_x[k] / count + 0.5) / n,
-                       y + (sum_y[k] / count + 0.5) / n, light);
+        double count = p->count;
+        float alpha = shade_triangle(a->draw, p->id - 1, x + (p->sum_x / count + 0.5) / n,
+                                     y + (p->sum_y / count + 0.5) / n, light);
         for (int c = 0; c < 3; c++)
-            total[c] += light[c] * (float)count;
+            sum->light[c] += light[c] * (alpha * p->share);
+        sum->cover += alpha * p->share;
+        if (a->room->through)
+            cover_samples(a, x, y, p->id, alpha);
     }
-    float dark = covered < n * n ? ground_at(draw, x + 0.5, y + 0.5) : 0;
-    float cover = (float)covered + (float)(n * n - covered) * dark;
-    if (draw->picture->options->edges)
-        csg_outline_draw(line_in_pixel(&(draw_area){draw, room, *in}, x, y), (float)(n * n), total,
-                         &cover);
-    csg_shade_pixel(draw->picture->curve, total, cover, n * n, draw->picture->options->background,
-                    csg_picture_pixel(draw->picture, x, y));
+}
+
+static void end_pixel(const draw_area *a, uint32_t x, uint32_t y, csg_draw_sum *sum)
+{
+    const csg_picture *picture = a->draw->picture;
+    uint32_t samples = a->draw->samples * a->draw->samples;
+    float left = (float)samples - sum->cover;
+    if (left > 0)
+        sum->cover += left * ground_at(a->draw, x + 0.5, y + 0.5);
+    csg_outline_draw(sum->line, (float)samples, sum->light, &sum->cover);
+    csg_shade_pixel(picture->curve, sum->light, sum->cover, samples, picture->options->background,
+                    csg_picture_pixel(picture, x, y));
 }
 
 static area area_of(const csg_draw *draw, uint32_t column, uint32_t row)
@@ -366,13 +413,50 @@ void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, u
         fill_triangle(draw, room, &in, draw->tile_triangles[i]);
 }
 
+/* Where something is behind what was drawn and seen through it. False: nowhere. */
+static bool look_behind(const draw_area *a)
+{
+    const float hardly = 1.0f / 512;
+    csg_draw_room *room = a->room;
+    bool is_any = false;
+    for (int64_t i = 0; i < a->in.width * a->in.height; i++) {
+        bool goes_on = room->triangle[i] && room->through[i] > hardly;
+        room->behind[i] = goes_on ? room->nearness[i] : -INFINITY;
+        is_any = is_any || goes_on;
+    }
+    return is_any;
+}
+
+static void begin_tile(const draw_area *a)
+{
+    csg_draw_room *room = a->room;
+    memset(room->sums, 0, sizeof room->sums);
+    for (int64_t i = 0; room->through && i < a->in.width * a->in.height; i++) {
+        room->through[i] = 1;
+        room->behind[i] = INFINITY;
+    }
+}
+
 void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
 {
+    enum { MOST_SURFACES = 13 }; /* one behind the other */
+    draw_area a = {draw, room, area_of(draw, column, row)};
     const csgm_image *image = draw->picture->image;
-    area in = area_of(draw, column, row);
-    csg_draw_fill(draw, room, column, row);
     uint32_t x0 = column * CSG_DRAW_TILE, y0 = row * CSG_DRAW_TILE;
-    for (uint32_t y = y0; y < y0 + CSG_DRAW_TILE && y < image->height; y++)
-        for (uint32_t x = x0; x < x0 + CSG_DRAW_TILE && x < image->width; x++)
-            draw_pixel(draw, room, &in, x, y);
+    uint32_t width = image->width - x0 < CSG_DRAW_TILE ? image->width - x0 : CSG_DRAW_TILE;
+    uint32_t height = image->height - y0 < CSG_DRAW_TILE ? image->height - y0 : CSG_DRAW_TILE;
+    begin_tile(&a);
+    for (int surface = 0; surface < MOST_SURFACES; surface++) {
+        csg_draw_fill(draw, room, column, row);
+        for (uint32_t i = 0; i < width * height; i++) {
+            csg_draw_sum *sum = &room->sums[i];
+            add_pixel(&a, x0 + i % width, y0 + i / width, sum);
+            if (surface == 0 && draw->picture->options->edges)
+                sum->line = line_in_pixel(&a, x0 + i % width, y0 + i / width);
+        }
+        if (!room->through || !look_behind(&a))
+            break;
+    }
+    for (uint32_t i = 0; i < width * height; i++)
+        end_pixel(&a, x0 + i % width, y0 + i / width, &room->sums[i]);
 }

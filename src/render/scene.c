@@ -18,13 +18,15 @@
 
 enum {
     TILE = 34 - 2,     /* pixels: with a border of one on each side still a batch of rays */
+    MOST_BEHIND = 12,  /* surfaces that are looked for behind the first one */
     EDGE_CONTRAST = 12 /* steps of a byte, above which a pixel gets more rays */
 };
 
 typedef struct tile_room {
     csg_trace_room trace;
-    csg_trace_room *over; /* for marks; NULL where there are none */
-    uint32_t count;       /* of rays in the batch */
+    csg_trace_room *over;   /* for marks; NULL where there are none */
+    csg_trace_room *behind; /* what is seen through the solid; NULL where nothing is */
+    uint32_t count;         /* of rays in the batch */
     float light[CSG_RAYS_MOST][3];
     float cover[CSG_RAYS_MOST]; /* how much of the background is hidden */
     uint8_t pixel[CSG_RAYS_MOST][4];
@@ -62,25 +64,77 @@ static tile tile_at(const scene_job *job, size_t index)
 
 /* ---- light of a batch ------------------------------------------------------------------------ */
 
+static void shade_ray(const scene_job *job, const csg_rays *rays, uint32_t i, float light[3])
+{
+    csg_surface surface = {
+        .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
+        .to_eye = {-rays->dx[i], -rays->dy[i], -rays->dz[i]},
+        .color = {rays->r[i], rays->g[i], rays->b[i]},
+        .metallic = rays->metallic[i],
+        .roughness = rays->roughness[i],
+        .open = rays->open[i],
+        .lit = rays->lit[i],
+    };
+    csg_shade(&job->picture->lights, job->picture->curve, &surface, light);
+}
+
 static void shade_rays(const scene_job *job, tile_room *room)
 {
     const csg_rays *rays = &room->trace.rays;
-    const csg_picture *picture = job->picture;
     for (uint32_t i = 0; i < room->count; i++) {
         memset(room->light[i], 0, sizeof room->light[i]);
-        room->cover[i] = rays->t[i] < INFINITY ? 1 : rays->ground[i];
+        room->cover[i] = rays->t[i] < INFINITY ? rays->alpha[i] : rays->ground[i];
         if (!(rays->t[i] < INFINITY))
             continue;
-        csg_surface surface = {
-            .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
-            .to_eye = {-rays->dx[i], -rays->dy[i], -rays->dz[i]},
-            .color = {rays->r[i], rays->g[i], rays->b[i]},
-            .metallic = rays->metallic[i],
-            .roughness = rays->roughness[i],
-            .open = rays->open[i],
-            .lit = rays->lit[i],
-        };
-        csg_shade(&picture->lights, picture->curve, &surface, room->light[i]);
+        shade_ray(job, rays, i, room->light[i]);
+        for (int c = 0; c < 3 && rays->alpha[i] < 1; c++)
+            room->light[i][c] *= rays->alpha[i];
+    }
+}
+
+/* ---- what is behind what is seen through ------------------------------------------------------ */
+
+/* Rays that have met something clear go on from there, the others end. False: all have ended. */
+static bool go_on(const scene_job *job, tile_room *room, csg_rays *rays)
+{
+    const float hardly = 1.0f / 512;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < rays->count; i++) {
+        bool goes_on = rays->t[i] < INFINITY && rays->from[i] < INFINITY && rays->alpha[i] < 1 &&
+                       1 - room->cover[i] > hardly;
+        rays->from[i] =
+            goes_on ? rays->t[i] + csg_tracer_slack(&job->layers[0].tracer, rays, i) : INFINITY;
+        rays->is_within[i] = goes_on;
+        count += goes_on;
+    }
+    return count > 0;
+}
+
+/* What they see is laid behind what there is. */
+static void lay_behind(const scene_job *job, tile_room *room, const csg_rays *rays)
+{
+    for (uint32_t i = 0; i < rays->count; i++) {
+        if (!(rays->from[i] < INFINITY))
+            continue;
+        float light[3] = {0, 0, 0}, share = 1 - room->cover[i];
+        bool is_hit = rays->t[i] < INFINITY;
+        share *= is_hit ? rays->alpha[i] : rays->ground[i];
+        if (is_hit)
+            shade_ray(job, rays, i, light);
+        for (int c = 0; c < 3; c++)
+            room->light[i][c] += share * light[c];
+        room->cover[i] += share;
+    }
+}
+
+static void look_behind(const scene_job *job, tile_room *room)
+{
+    csg_rays *rays = &room->behind->rays;
+    *rays = room->trace.rays;
+    for (int surface = 0; surface < MOST_BEHIND && go_on(job, room, rays); surface++) {
+        csg_tracer_trace(&job->layers[0].tracer, room->behind);
+        csg_ground_trace(&job->ground, &job->layers[0].tracer, room->behind);
+        lay_behind(job, room, rays);
     }
 }
 
@@ -91,17 +145,6 @@ static const float mark_looks[CSGM_MARK_COUNT][4] = {
     [CSGM_MARK_HIGHLIGHT] = {1.0f, 0.32f, 0.32f, 0.5f},
     [CSGM_MARK_BACKGROUND] = {0.65f, 0.65f, 0.65f, 0.5f}};
 
-/* By how much a mark may seem to lie behind the solid and still be the same surface: rays stop some
- * tolerances before it, and the more the flatter they meet it. */
-static float slack_at(const csg_tracer *tracer, const csg_rays *rays, uint32_t i)
-{
-    const float tolerances = 10, flattest = 0.05f;
-    float cosine =
-        fabsf(rays->dx[i] * rays->nx[i] + rays->dy[i] * rays->ny[i] + rays->dz[i] * rays->nz[i]);
-    float tolerance = tracer->near_tolerance + tracer->tolerance_slope * rays->t[i];
-    return tolerances * tolerance / fmaxf(cosine, flattest);
-}
-
 static void lay_over(const scene_job *job, tile_room *room, csgm_mark kind)
 {
     const csg_rays *rays = &room->over->rays;
@@ -110,7 +153,8 @@ static void lay_over(const scene_job *job, tile_room *room, csgm_mark kind)
     for (uint32_t i = 0; i < rays->count; i++) {
         float light[3];
         if (!(rays->t[i] < INFINITY) ||
-            rays->t[i] > room->trace.rays.t[i] + slack_at(&job->layers[1 + kind].tracer, rays, i))
+            rays->t[i] >
+                room->trace.rays.t[i] + csg_tracer_slack(&job->layers[1 + kind].tracer, rays, i))
             continue;
         csg_surface surface = {
             .normal = {rays->nx[i], rays->ny[i], rays->nz[i]},
@@ -227,6 +271,8 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
         rays->ground[i] = 0;
     }
     shade_rays(job, room);
+    if (room->behind)
+        look_behind(job, room);
     for (int i = CSG_LAYERS - 1; i > 0; i--) { /* the background first */
         if (!layers[i].field)
             continue;
@@ -339,21 +385,25 @@ static void release_trace_room(csg_memory *memory, csg_trace_room *room)
     csg_memory_release(memory, room->scratch, room->scratch_floats * sizeof *room->scratch);
 }
 
-static bool create_room(const scene_job *job, tile_room **out)
+static bool create_other_room(const scene_job *job, csg_trace_room **out)
 {
-    csg_memory *memory = &job->picture->context->memory;
-    bool has_marks = job->layers[1].field || job->layers[2].field;
-    tile_room *room = *out = csg_memory_alloc(memory, sizeof *room);
+    csg_trace_room *room = *out = csg_memory_alloc(&job->picture->context->memory, sizeof *room);
     if (!room)
         return false;
     memset(room, 0, sizeof *room);
-    if (!create_trace_room(job, &room->trace) || !has_marks)
-        return room->trace.scratch != NULL;
-    room->over = csg_memory_alloc(memory, sizeof *room->over);
-    if (!room->over)
+    return create_trace_room(job, room);
+}
+
+static bool create_room(const scene_job *job, tile_room **out)
+{
+    bool has_marks = job->layers[1].field || job->layers[2].field;
+    tile_room *room = *out = csg_memory_alloc(&job->picture->context->memory, sizeof *room);
+    if (!room)
         return false;
-    memset(room->over, 0, sizeof *room->over);
-    return create_trace_room(job, room->over);
+    memset(room, 0, sizeof *room);
+    return create_trace_room(job, &room->trace) &&
+           (!has_marks || create_other_room(job, &room->over)) &&
+           (!job->layers[0].tracer.is_clear || create_other_room(job, &room->behind));
 }
 
 static bool create_rooms(scene_job *job)
@@ -376,9 +426,12 @@ static void release_room(csg_memory *memory, tile_room *room)
     if (!room)
         return;
     release_trace_room(memory, &room->trace);
-    if (room->over)
-        release_trace_room(memory, room->over);
-    csg_memory_release(memory, room->over, sizeof *room->over);
+    csg_trace_room *others[] = {room->over, room->behind};
+    for (int i = 0; i < 2; i++) {
+        if (others[i])
+            release_trace_room(memory, others[i]);
+        csg_memory_release(memory, others[i], sizeof *others[i]);
+    }
     csg_memory_release(memory, room, sizeof *room);
 }
 
@@ -413,6 +466,8 @@ static void fill_stats(const scene_job *job, csgm_render_stats *stats)
         add_counts(stats, &job->rooms[i]->trace.counts);
         if (job->rooms[i]->over)
             add_counts(stats, &job->rooms[i]->over->counts);
+        if (job->rooms[i]->behind)
+            add_counts(stats, &job->rooms[i]->behind->counts);
     }
 }
 

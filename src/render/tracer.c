@@ -35,6 +35,8 @@ void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y
         rays->row[++rays->row_count] = (uint16_t)ray;
     rays->row[rays->row_count] = (uint16_t)rays->count;
     csg_view_ray(&tracer->view, x, y, &origin, &direction);
+    rays->from[ray] = 0;
+    rays->is_within[ray] = false;
     rays->px[ray] = (float)x;
     rays->py[ray] = (float)y;
     rays->ox[ray] = (float)origin.x;
@@ -131,8 +133,10 @@ static void enter(const csg_ray_cell *cell, const csg_pixel_rectangle *in, csg_t
         const float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]};
         const float inverse[3] = {rays->ix[i], rays->iy[i], rays->iz[i]};
         uint32_t k = m->count;
-        if (!csg_ray_in_cube(o, inverse, cell->center, cell->half, &m->begin[k], &m->end[k]))
+        if (!csg_ray_in_cube(o, inverse, cell->center, cell->half, &m->begin[k], &m->end[k]) ||
+            !(rays->from[i] <= m->end[k]))
             continue;
+        m->begin[k] = m->begin[k] > rays->from[i] ? m->begin[k] : rays->from[i];
         m->ray[k] = (uint16_t)i;
         m->t[k] = m->begin[k];
         m->radius[k] = m->step[k] = 0;
@@ -184,6 +188,18 @@ static bool advance(const csg_tracer *tracer, csg_march *m, uint32_t k, bool *hi
     return true;
 }
 
+/* The same of a ray that began within the solid: it goes on until it is out, and too far from what
+ * it has left to hit that. */
+static bool leave(const csg_tracer *tracer, csg_march *m, uint32_t k, bool *is_within)
+{
+    float radius = fabsf(m->f[k]) * tracer->inverse_lipschitz;
+    float tolerance = tracer->near_tolerance + tracer->tolerance_slope * m->t[k];
+    *is_within = m->f[k] >= 0 || (radius < 2 * tolerance && !tracer->is_loose);
+    m->t[k] += *is_within ? fmaxf(radius, tolerance) : 0;
+    m->radius[k] = m->step[k] = 0;
+    return m->t[k] < m->end[k];
+}
+
 static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room *room)
 {
     csg_march *m = &room->march;
@@ -196,8 +212,8 @@ static void march(const csg_tracer *tracer, const csg_tape *tape, csg_trace_room
         points += m->count;
         uint32_t kept = 0;
         for (uint32_t k = 0; k < m->count; k++) {
-            bool hit;
-            if (!advance(tracer, m, k, &hit)) {
+            bool hit = false, *is_within = &rays->is_within[m->ray[k]];
+            if (*is_within ? !leave(tracer, m, k, is_within) : !advance(tracer, m, k, &hit)) {
                 if (!hit)
                     continue;
                 rays->t[m->ray[k]] = m->t[k];
@@ -274,6 +290,7 @@ static void find_colors(const csg_tracer *tracer, const csg_tape *tape, csg_trac
         rays->r[i] = tracer->colors ? out[0][k] : 0.76f;
         rays->g[i] = tracer->colors ? out[1][k] : 0.76f;
         rays->b[i] = tracer->colors ? out[2][k] : 0.74f;
+        rays->alpha[i] = tracer->is_clear ? out[3][k] : 1;
     }
     if (shaded.colors)
         tracer->kernel->colors(&shaded, m->x, m->y, m->z, m->count, out, room->scratch,
@@ -356,6 +373,15 @@ static void trace_cell(const csg_tracer *tracer, uint32_t index, csg_trace_room 
     march(tracer, &tape, room);
     if (room->march.hit_count)
         look_at_hits(tracer, cell, &tape, room);
+}
+
+float csg_tracer_slack(const csg_tracer *tracer, const csg_rays *rays, uint32_t i)
+{
+    const float tolerances = 10, flattest = 0.05f;
+    float cosine =
+        fabsf(rays->dx[i] * rays->nx[i] + rays->dy[i] * rays->ny[i] + rays->dz[i] * rays->nz[i]);
+    float tolerance = tracer->near_tolerance + tracer->tolerance_slope * rays->t[i];
+    return tolerances * tolerance / fmaxf(cosine, flattest);
 }
 
 /* ---- all cells, from the front to the back --------------------------------------------------- */

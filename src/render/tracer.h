@@ -27,9 +27,12 @@ typedef struct csg_rays {
     float ox[CSG_RAYS_MOST], oy[CSG_RAYS_MOST], oz[CSG_RAYS_MOST];
     float dx[CSG_RAYS_MOST], dy[CSG_RAYS_MOST], dz[CSG_RAYS_MOST];
     float ix[CSG_RAYS_MOST], iy[CSG_RAYS_MOST], iz[CSG_RAYS_MOST]; /* 1 / d */
+    float from[CSG_RAYS_MOST];     /* t at which a ray begins; INFINITY: it is none */
+    bool is_within[CSG_RAYS_MOST]; /* it begins in the solid, and looks for the next surface */
     float t[CSG_RAYS_MOST];
     float nx[CSG_RAYS_MOST], ny[CSG_RAYS_MOST], nz[CSG_RAYS_MOST]; /* unit, outward */
     float r[CSG_RAYS_MOST], g[CSG_RAYS_MOST], b[CSG_RAYS_MOST];    /* sRGB 0..1, of the scene */
+    float alpha[CSG_RAYS_MOST];                                    /* 1: nothing behind is seen */
     float metallic[CSG_RAYS_MOST], roughness[CSG_RAYS_MOST];
     float inverse_slope[CSG_RAYS_MOST]; /* 1 / the field's slope */
     float open[CSG_RAYS_MOST];          /* 1 - ambient occlusion */
@@ -81,6 +84,7 @@ typedef struct csg_tracer {
     float steepest; /* the field's slope near its surface, where that is largest, as measured */
     bool is_loose;  /* lambda is far above that slope */
     bool occlusion, shadows, colors;
+    bool is_clear; /* some colours are seen through */
 } csg_tracer;
 
 /* Where each of the tracer's cells is in the picture; cells->count of them. */
@@ -94,8 +98,12 @@ void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y
 /* slope.c: fills depth, steepest and is_loose by looking around and into the cells. */
 void csg_tracer_find_slope(csg_tracer *tracer, csg_trace_room *room);
 
-/* room->rays, aimed: fills the rest. */
+/* room->rays, aimed (what they begin with may be set anew): fills the rest. */
 void csg_tracer_trace(const csg_tracer *tracer, csg_trace_room *room);
+
+/* By how much what a ray has hit may seem to lie behind a surface and still be the same: rays stop
+ * some tolerances before it, and the more the flatter they meet it. */
+float csg_tracer_slack(const csg_tracer *tracer, const csg_rays *rays, uint32_t ray);
 
 /* shadow.c: fills `lit` of what was hit. */
 void csg_tracer_shade_light(const csg_tracer *tracer, csg_trace_room *room);

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 static const char text[] = "union(blend = 0.3) { sphere(r = 1);\n"
-                           "  translate([0.8, 0, 0]) #color(\"red\") cube(0.9); }\n"
+                           "  translate([0.8, 0, 0]) #color(\"red\", 0.5) cube(0.9); }\n"
                            "%cube([3, 1, 1]);\n";
 
 enum { BAD_PICTURE = 430, TIMEOUT = 902 };
@@ -160,8 +160,12 @@ static void test_any_allocation_may_fail(void **state)
 {
     static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 0, 1};
     static const uint32_t indices[] = {0, 1, 2};
-    csgm_mesh_view mesh = {
-        .positions = positions, .indices = indices, .vertex_count = 3, .triangle_count = 1};
+    static const uint8_t colors[] = {9, 9, 9, 99, 9, 9, 9, 99, 9, 9, 9, 99}; /* seen through */
+    csgm_mesh_view mesh = {.positions = positions,
+                           .colors = colors,
+                           .indices = indices,
+                           .vertex_count = 3,
+                           .triangle_count = 1};
     char path[] = "/tmp/csgmesh-render-XXXXXX.png";
     int fd = mkstemps(path, 4);
     assert_true(fd >= 0);

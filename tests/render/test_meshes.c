@@ -237,6 +237,43 @@ static void test_edges(void **state)
     }
 }
 
+/* Walls that are seen through hide their alpha each, the inner sides none: before a red ball one of
+ * a half, before the background a quarter, where a cube stands before the other both. As a scene
+ * and as a mesh, with the same bytes from one thread and three. */
+static void test_clear(void **state)
+{
+    enum { SIDE = 120 };
+    static const char text[] =
+        "color([0, 0, 1, 0.5]) translate([-1, -1, 0]) cube(1.5, center = true);"
+        "color(\"red\") translate([-1, 1, 0]) sphere(r = 0.4);"
+        "color([0, 1, 0, 0.25]) translate([1, 0, 0]) cube(1.5, center = true);"
+        "color([0, 1, 0, 0.25]) translate([1, 2, 0]) cube(1, center = true);";
+    render_case c, three;
+    csgm_mesh *mesh;
+    render_begin(&c, 1, CSGM_ISA_AUTO, text);
+    render_begin(&three, 3, CSGM_ISA_SCALAR, text);
+    csgm_mesh_options fine = csgm_mesh_options_default();
+    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(mesh);
+    csgm_render_options options = front_options(SIDE, 4);
+    for (int of_mesh = 0; of_mesh < 2; of_mesh++) {
+        of_mesh ? render_mesh(&c, &view, &options) : render_scene(&c, &options);
+        of_mesh ? render_mesh(&three, &view, &options) : render_scene(&three, &options);
+        assert_same_image(c.image, three.image, "three threads");
+        const uint8_t *ball = pixel_at(&c, 30, 60), *half = pixel_at(&c, 12, 42);
+        const uint8_t *both = pixel_at(&c, 90, 60), *quarter = pixel_at(&c, 90, 40);
+        assert_int_equal(pixel_at(&c, 60, 60)[3], 0);
+        assert_int_equal(half[3], 128);
+        assert_int_equal(quarter[3], 64);
+        assert_true(abs(both[3] - (int)lround(255 * (1 - 0.75 * 0.75))) <= 1);
+        assert_int_equal(ball[3], 255);
+        assert_true(ball[0] > 120 && ball[2] > 120 && ball[1] < 80);
+    }
+    csgm_mesh_destroy(mesh);
+    render_end(&three);
+    render_end(&c);
+}
+
 /* From inside a box one sees its walls everywhere, though most corners lie behind the eye. */
 static void test_inside(void **state)
 {
@@ -291,6 +328,7 @@ int main(void)
         cmocka_unit_test(test_hostile_mesh),
         cmocka_unit_test(test_ground),
         cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_clear),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
