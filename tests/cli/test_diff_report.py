@@ -109,6 +109,24 @@ class Picture(ReportTest):
         self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "top"), 2, "--png or --html")
         self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "upon", "--png", "x.ppm"), 2, "upon")
 
+    def test_best_view(self):
+        """A change is looked at from where it is seen: from below only where that is the only way."""
+        block = ("change = 0;\ndifference() {\n  cube([60, 30, 16]);\n  translate([30, 15, 8]) cylinder(h = 20, r = 6);\n"
+                 "  if (change == 1) translate([40, 20, -1]) cube([10, 6, 6]);\n"  # from below
+                 "  if (change == 2) translate([40, 27, 6]) cube([10, 6, 6]);\n"  # at the back
+                 "  if (change == 3) translate([30, 15, 6]) cylinder(h = 4, r = 5.5);\n"  # in the deep of the hole
+                 "  if (change == 4) translate([8, -1, -1]) cube([3, 40, 30]);\n}\n")  # everywhere
+        self.mesh(block, "a.ply")
+        toward = {}
+        for change in (1, 2, 3, 4):
+            self.mesh(block, "b.ply", "-D", f"change={change}")
+            self.diff(1, "a.ply", "b.ply", "--html", "out.html")
+            toward[change] = data_of(self.read("out.html"))["pairs"][0]["models"]["toward"]
+        self.assertLess(toward[1][2], 0)
+        self.assertTrue(toward[2][1] > 0 and toward[2][2] > 0, toward[2])
+        self.assertGreater(toward[3][2], 0.8, "into the hole")
+        self.assertGreater(toward[4][2], 0)
+
     def test_same_meshes_are_drawn_too(self):
         self.plates()
         self.diff(0, "a.ply", "a.ply", "--png", "out.ppm")

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Both meshes of a comparison in one frame; see diff_drawing.h. The view is --view, or that of
- * eight from the corners which faces the largest changes: the sum over triangles of area, distance
- * and cosine.
+ * Both meshes of a comparison in one frame; see diff_drawing.h. The view is --view, or where the
+ * change is best seen from (diff_view.h).
  */
 #include "diff/diff_drawing.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+#include "diff/diff_view.h"
 #include "render/picture_options.h"
 
 csgm_vec3 diff_drawing_vertex(const csgm_mesh_view *view, uint32_t vertex)
@@ -55,39 +55,6 @@ static bool turn(diff_drawing *d, int how)
 
 /* ---- from where ------------------------------------------------------------------------------ */
 
-enum { VIEWS = 8 };
-
-/* Azimuths 35, 305, 125, 215 at an elevation of 25 degrees, then at -25. */
-static csgm_vec3 corner_view(int i)
-{
-    static const double s = 0.57357643635, c = 0.81915204429, level = 0.90630778704,
-                        height = 0.42261826174;
-    const double around[4][2] = {{s, -c}, {-c, -s}, {c, s}, {-s, c}};
-    return (csgm_vec3){level * around[i % 4][0], level * around[i % 4][1],
-                       i < 4 ? height : -height};
-}
-
-static void add_seen(const diff_drawing *d, int side, double seen[VIEWS])
-{
-    const csgm_mesh_view *view = &d->sides[side];
-    const float *distances = d->distances[side];
-    for (uint64_t t = 0; distances && t < view->triangle_count; t++) {
-        const uint32_t *index = view->indices + 3 * t;
-        double moved =
-            (double)distances[index[0]] + (double)distances[index[1]] + (double)distances[index[2]];
-        if (!(moved > 0.05 * d->most))
-            continue;
-        csgm_vec3 a = diff_drawing_vertex(view, index[0]), b = diff_drawing_vertex(view, index[1]),
-                  c = diff_drawing_vertex(view, index[2]);
-        csgm_vec3 u = {b.x - a.x, b.y - a.y, b.z - a.z}, v = {c.x - a.x, c.y - a.y, c.z - a.z};
-        csgm_vec3 n = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-        for (int i = 0; i < VIEWS; i++) {
-            csgm_vec3 to = corner_view(i);
-            seen[i] += moved * fmax(0, n.x * to.x + n.y * to.y + n.z * to.z);
-        }
-    }
-}
-
 /* What --view says. Rounded, so that the last bits of a libm are not seen, and never quite along z,
  * so that there is an up. */
 static bool chosen_view(cli_app *app, csgm_vec3 *out)
@@ -104,20 +71,13 @@ static bool chosen_view(cli_app *app, csgm_vec3 *out)
     return true;
 }
 
-/* The usual view stays unless another shows clearly more. */
-static csgm_vec3 best_view(const diff_drawing *d)
-{
-    double seen[VIEWS] = {0};
-    int best = 0;
-    add_seen(d, 0, seen);
-    add_seen(d, 1, seen);
-    for (int i = 1; i < VIEWS; i++)
-        if (seen[i] > 1.25 * seen[0] && seen[i] > 1.001 * seen[best])
-            best = i;
-    return corner_view(best);
-}
-
 /* ---- all of it ------------------------------------------------------------------------------- */
+
+static bool no_memory(cli_app *app)
+{
+    cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
+    return false;
+}
 
 bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side sides[2],
                        diff_drawing *out)
@@ -130,19 +90,18 @@ bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side side
         out->sides[i] = sides[i].view;
         out->distances[i] = csgm_diff_vertex_distances(diff, i);
     }
-    if (!turn(out, report->turn)) {
-        cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-        return false;
-    }
+    if (!turn(out, report->turn))
+        return no_memory(app);
     add_to_box(&out->box, &out->sides[0]);
     add_to_box(&out->box, &out->sides[1]);
     if (!(out->box.min.x <= out->box.max.x))
         out->box = (csgm_box){{0, 0, 0}, {1, 1, 1}};
     if (isfinite(report->hausdorff_lower) && report->hausdorff_lower > report->precision)
         out->most = report->hausdorff_lower;
-    if (!chosen_view(app, &out->toward))
-        out->toward = best_view(out);
-    return true;
+    if (chosen_view(app, &out->toward) || diff_view_find(out, &out->toward) == CSGM_OK)
+        return true;
+    diff_drawing_release(out);
+    return no_memory(app);
 }
 
 void diff_drawing_release(diff_drawing *drawing)
