@@ -29,7 +29,8 @@ class Diff(diff_support.DiffTest):
         self.assertEqual(self.report(0, "a.ply", "c.ply", "--tol", "0.1")["level"],
                          "within tolerance")
         result = self.diff(1, "a.ply", "c.ply", "--tol", "0.01")
-        self.assertEqual(len(result.stdout.splitlines()), 5)
+        lines = [line.split()[0] for line in result.stdout.decode().splitlines()]
+        self.assertEqual(lines, ["different:", "size", "volume", "material", "area", "distance"])
         self.diff(0, "a.ply", "c.ply", "--tol-rel", "1%")
         self.assertIn(b"volumes within the tolerance, at most",
                       self.diff(0, "a.ply", "c.ply", "--tol-volume", "2%").stdout)
@@ -155,8 +156,9 @@ class Diff(diff_support.DiffTest):
         self.diff(0, "a.ply", "b.ply", "--tol", 20, "--ignore-topology")
         self.write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         result = self.diff(1, "a.ply", "open.off")
-        self.assertIn(b"open: 3 boundary edges", result.stdout)
-        self.assertIn(b"not compared", result.stdout)
+        self.assertIn(b"  open      0 -> 3 boundary edges", result.stdout)
+        self.assertIn(b"not compared: B is open", result.stdout)
+        self.assertNotIn(b"non-manifold", result.stdout)
         self.write("empty.off", "OFF\n0 0 0\n")
         self.assertIn(b"empty", self.diff(1, "a.ply", "empty.off").stdout)
         self.diff(0, "empty.off", "empty.off")
@@ -176,6 +178,9 @@ class Diff(diff_support.DiffTest):
         self.assertEqual({(p.get("file_a"), p["verdict"]) for p in report["pairs"]},
                          {("a/same.ply", "same"), ("a/part.ply", "different"),
                           ("a/old.stl", "only in A"), (None, "only in B")})
+        text = self.diff(1, "a", "b", "--tol", "0.1").stdout.decode()
+        self.assertNotIn("same.ply", text)  # what is the same is a number in the last line
+        self.assertEqual(text.splitlines()[-1], "1 of 4 same")
         self.diff(1, "a", "b", "--tol", "0.1", "--update")  # old.stl stays
         self.assertEqual(self.read("a/deep/new.stl"), self.read("b/deep/new.stl"))
         os.unlink(self.path("a/old.stl"))

@@ -340,9 +340,8 @@ static int compare_pairs(cli_app *app, const csgm_diff_options *options, diff_re
         worst = result->exit_status > worst ? result->exit_status : worst;
         same += result->outcome == DIFF_SAME;
         cli_console_end_progress(&app->console);
-        if (is_shown)
-            diff_print(&app->console, result,
-                       !results->of_folders || result->outcome == DIFF_DIFFERENT);
+        if (is_shown && !(results->of_folders && result->outcome == DIFF_SAME))
+            diff_print(&app->console, result, true);
     }
     if (is_shown && results->of_folders)
         printf("%zu of %zu same\n", same, results->count);

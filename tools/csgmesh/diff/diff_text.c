@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A comparison in five lines for people: the verdict, A, B, distances, volumes.
+ * A comparison in a few lines for people: the verdict, and what is not the same.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -89,34 +89,63 @@ void diff_explain(const diff_result *result, char *text, size_t size)
                  r->tolerance);
 }
 
-static void print_figures(const char *name, const csgm_diff_figures *f)
+/* ---- what is not the same -------------------------------------------------------------------- */
+
+static bool is_other(double a, double b)
 {
-    const csgm_mesh_check *c = &f->check;
-    csgm_vec3 size = {c->bounds.max.x - c->bounds.min.x, c->bounds.max.y - c->bounds.min.y,
-                      c->bounds.max.z - c->bounds.min.z};
-    printf("  %-9s %" PRIu64 " triangles", name, f->triangles);
-    if (!f->triangles) {
-        printf(": empty\n");
-        return;
+    return fabs(a - b) > 1e-6 * fmax(fabs(a), fabs(b));
+}
+
+static void print_sizes(const csgm_diff_report *r)
+{
+    csgm_vec3 size[2];
+    bool is_known = r->figures[0].triangles && r->figures[1].triangles;
+    for (int i = 0; i < 2; i++) {
+        const csgm_box *box = &r->figures[i].check.bounds;
+        size[i] =
+            (csgm_vec3){box->max.x - box->min.x, box->max.y - box->min.y, box->max.z - box->min.z};
     }
-    printf(", %.6g x %.6g x %.6g, area %.6g, volume %.6g, %" PRIu64 " component%s", size.x, size.y,
-           size.z, c->area, c->volume, c->components, c->components == 1 ? "" : "s");
-    if (f->is_closed && c->nonmanifold_edges == 0)
-        printf(", genus %" PRId64, c->genus);
-    if (!f->is_closed)
-        printf(", open: %" PRIu64 " boundary edges", c->boundary_edges);
-    if (c->nonmanifold_edges)
-        printf(", %" PRIu64 " non-manifold edges", c->nonmanifold_edges);
-    putchar('\n');
+    double grown = fmax(fmax(fabs(size[0].x - size[1].x), fabs(size[0].y - size[1].y)),
+                        fabs(size[0].z - size[1].z));
+    double most = fmax(fmax(size[0].x, size[0].y), size[0].z);
+    if (is_known && grown > fmax(fmin(r->tolerance, most), 1e-6 * most))
+        printf("  size      %.6g x %.6g x %.6g -> %.6g x %.6g x %.6g\n", size[0].x, size[0].y,
+               size[0].z, size[1].x, size[1].y, size[1].z);
+}
+
+static void print_change(const char *name, double a, double b)
+{
+    if (is_other(a, b))
+        printf("  %-9s %.6g -> %.6g (%+.3g %%)\n", name, a, b, 100 * (b / a - 1));
+}
+
+static void print_counts(const csgm_diff_report *r)
+{
+    const csgm_diff_figures *a = &r->figures[0], *b = &r->figures[1];
+    const struct {
+        const char *name;
+        int64_t a, b;
+        bool is_known;
+    } rows[] = {
+        {"triangles", (int64_t)a->triangles, (int64_t)b->triangles, true},
+        {"parts", (int64_t)a->check.components, (int64_t)b->check.components, true},
+        {"genus", a->check.genus, b->check.genus, a->is_closed && b->is_closed},
+        {"open", (int64_t)a->check.boundary_edges, (int64_t)b->check.boundary_edges, true},
+        {"pinched", (int64_t)a->check.nonmanifold_edges, (int64_t)b->check.nonmanifold_edges, true},
+    };
+    static const char *const units[] = {"", " components", " handles", " boundary edges",
+                                        " non-manifold edges"};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].is_known && rows[i].a != rows[i].b)
+            printf("  %-9s %" PRId64 " -> %" PRId64 "%s\n", rows[i].name, rows[i].a, rows[i].b,
+                   units[i]);
 }
 
 static void print_distances(const csgm_diff_report *r)
 {
     const csgm_diff_distance *worst = &r->distance[r->distance[1].lower > r->distance[0].lower];
-    if (!isfinite(r->hausdorff_lower)) {
-        printf("  distance  none: one of them is empty\n");
+    if (!isfinite(r->hausdorff_lower) || !(r->hausdorff_upper > 0))
         return;
-    }
     printf("  distance  max %.6g to %.6g", r->hausdorff_lower, r->hausdorff_upper);
     if (worst->worst_count)
         printf(" at %.6g,%.6g,%.6g", worst->worst[0].at.x, worst->worst[0].at.y,
@@ -130,12 +159,18 @@ static void print_distances(const csgm_diff_report *r)
 
 static void print_volumes(const csgm_diff_report *r)
 {
+    const csgm_diff_figures *f = r->figures;
     if (!r->volume.is_measured) {
-        printf("  volume    not compared: a mesh is open\n");
+        if (f[0].triangles && f[1].triangles)
+            printf("  volume    not compared: %s open\n", f[0].is_closed   ? "B is"
+                                                          : f[1].is_closed ? "A is"
+                                                                           : "both are");
         return;
     }
-    printf("  volume    only in A %.6g, only in B %.6g (+- %.2g), %.4g %% of the union\n",
-           r->volume.only_a, r->volume.only_b, r->volume.accuracy, 100 * r->volume.ratio);
+    print_change("volume", f[0].check.volume, f[1].check.volume);
+    if (r->volume.only_a > 0 || r->volume.only_b > 0)
+        printf("  material  only in A %.6g, only in B %.6g (+- %.2g), %.4g %% of the union\n",
+               r->volume.only_a, r->volume.only_b, r->volume.accuracy, 100 * r->volume.ratio);
 }
 
 static void print_fields(const csgm_diff_report *r)
@@ -159,11 +194,14 @@ void diff_print(const cli_console *console, const diff_result *result, bool with
            result->a && result->b ? " " : "", result->b ? result->b : "", reason,
            result->is_updated ? "; A is now B" : "");
     const csgm_diff_report *r = &result->report;
-    if (!with_details || result->outcome > DIFF_DIFFERENT || r->level == CSGM_DIFF_SAME_BYTES)
+    if (!with_details || result->outcome > DIFF_DIFFERENT || r->level == CSGM_DIFF_SAME_BYTES ||
+        r->level == CSGM_DIFF_SAME_TRIANGLES)
         return;
-    print_figures("A", &r->figures[0]);
-    print_figures("B", &r->figures[1]);
-    print_distances(r);
+    print_sizes(r);
     print_volumes(r);
+    if (r->figures[0].triangles && r->figures[1].triangles)
+        print_change("area", r->figures[0].check.area, r->figures[1].check.area);
+    print_counts(r);
+    print_distances(r);
     print_fields(r);
 }
