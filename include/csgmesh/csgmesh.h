@@ -752,7 +752,10 @@ enum { CSGM_DETAILS_MOST = 8 }; /* levels of detail beside the first one */
 /* A coarser mesh of the same solid, for where it is seen from afar. */
 typedef struct csgm_level {
     csgm_mesh_view mesh;
-    double error; /* how far it is from the solid, in scene units; the file says it */
+    /* In scene units; the file says all three. */
+    double error;    /* within which it is of the solid: proven, or else what was asked for */
+    double measured; /* the largest distance of a sample of the solid's surface from it */
+    bool is_proven;
 } csgm_level;
 
 /* How a mesh file is written. A format ignores what it has no place for. */

@@ -80,7 +80,7 @@ static csgm_status check_levels(csgm_context *context, const csgm_write_options 
     if (o->level_count && !o->levels)
         return CSGM_ERR_ARGUMENT;
     for (size_t i = 0; i < o->level_count; i++)
-        if (!(o->levels[i].error >= 0))
+        if (!(o->levels[i].error >= 0) || !(o->levels[i].measured >= 0))
             return bad_option(context, file, "the error of a level of detail is no length");
     return check_metadata(context, o, file);
 }

@@ -183,6 +183,18 @@ class PartsTest(cli.CliTest):
         self.mesh('import("plain.amf");', "again.ply", "-r", "32")
         self.assertAlmostEqual(self.info("again.ply")["mesh"]["volume"], 1, places=2)
 
+    def test_levels_say_how_near_they_are(self):
+        """Of all parts together; error is a bound where it is proven."""
+        self.mesh('part("a") sphere(5); part("b") translate([20, 0, 0]) cylinder(h = 9, r = 3);', "a.glb", "--lod", "3", "-e", "0.1")
+        document, _ = glb_document(self.read("a.glb"))
+        ids = next(node for node in document["nodes"] if "MSFT_lod" in node.get("extensions", {}))["extensions"]["MSFT_lod"]["ids"]
+        for i, tolerance in zip(ids, (0.4, 1.6), strict=True):
+            extras = document["nodes"][i]["extras"]
+            self.assertTrue(extras["proven"])
+            self.assertGreater(extras["measured"], 0)
+            self.assertLess(extras["measured"], extras["error"] * (1 + 1e-9))
+            self.assertLess(extras["error"], tolerance * (1 + 1e-9))
+
     def test_other_formats_hold_all_parts(self):
         for name in ("a.stl", "a.ply", "a.off"):
             self.mesh(SCENE, name)

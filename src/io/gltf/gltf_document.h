@@ -58,13 +58,13 @@ typedef struct csg_gltf_mesh {
 /* Nodes are trees of two levels: a root with a matrix, and what stands in it. */
 typedef struct csg_gltf_node {
     const char *name;
-    bool more;             /* it goes on with the part of the node before it */
-    int mesh;              /* NONE = none */
-    int parent;            /* NONE: a root */
-    const double *matrix;  /* 16, by columns; NULL: by the next two */
-    double translation[3]; /* zero is not written */
-    double scale;          /* 1 is not written */
-    double error;          /* of a level of detail below the first: how far it is from the solid */
+    bool more;               /* it goes on with the part of the node before it */
+    int mesh;                /* NONE = none */
+    int parent;              /* NONE: a root */
+    const double *matrix;    /* 16, by columns; NULL: by the next two */
+    double translation[3];   /* zero is not written */
+    double scale;            /* 1 is not written */
+    const csgm_level *level; /* of detail, below the first; else NULL */
 } csg_gltf_node;
 
 typedef struct csg_gltf_document {

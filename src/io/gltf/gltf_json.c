@@ -193,8 +193,10 @@ static void put_levels(json *j, const csg_gltf_document *document, size_t index,
     put_comma(j, comma);
     if (index) {
         put_text(j, "\"extras\":{\"error\":");
-        put_number(j, node->error);
-        put_text(j, "}");
+        put_number(j, node->level->error);
+        put_text(j, ",\"measured\":");
+        put_number(j, node->level->measured);
+        put_text(j, ",\"proven\":%s}", node->level->is_proven ? "true" : "false");
         return;
     }
     put_text(j, "\"extensions\":{\"MSFT_lod\":{\"ids\":[");

@@ -93,7 +93,7 @@ static void add_level(csg_gltf_document *document, const csg_gltf_show *shows, s
         .mesh = CSG_GLTF_NONE, .parent = CSG_GLTF_NONE, .matrix = document->matrix, .scale = 1};
     uint32_t level = shows->level;
     if (level)
-        root.error = options->levels[level - 1].error;
+        root.level = &options->levels[level - 1];
     bool alone = count == 1 && !f->scales && shows->shift.x == 0 && shows->shift.y == 0 &&
                  shows->shift.z == 0;
     if (alone) {

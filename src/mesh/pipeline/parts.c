@@ -83,6 +83,20 @@ static void add_blocks(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     memcpy(sum->blocks, blocks, sizeof blocks);
 }
 
+/* A part that keeps its own triangles is where it should be. */
+static void add_distances(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
+{
+    sum->reshape_s += part->reshape_s;
+    sum->triangles_before += part->triangles_before;
+    if (!part->is_measured)
+        return;
+    sum->is_measured = true;
+    sum->distance_allowed = fmax(sum->distance_allowed, part->distance_allowed);
+    sum->max_distance_bound = fmax(sum->max_distance_bound, part->max_distance_bound);
+    sum->max_distance_measured = fmax(sum->max_distance_measured, part->max_distance_measured);
+    sum->open_places += part->open_places;
+}
+
 /* Counts add up; the lattice is the same; the tape's mean is weighted. */
 static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
 {
@@ -105,6 +119,7 @@ static void add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->gradient_evaluations += part->gradient_evaluations;
     sum->interval_evaluations += part->interval_evaluations;
     sum->primitive_evaluations += part->primitive_evaluations;
+    add_distances(sum, part);
     sum->memory_peak_bytes = part->memory_peak_bytes;
     sum->unresolved_cells += part->unresolved_cells;
     csg_mesh_add_certify(&sum->certify, &part->certify);

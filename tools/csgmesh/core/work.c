@@ -104,7 +104,7 @@ int cli_work_mesh(cli_app *app, cli_work *work)
     return cli_exit_status(status);
 }
 
-/* Within a tolerance that is proven: so its error is known of every point. */
+/* Within a tolerance that is proven where it can be: then its error is known of every point. */
 static csgm_status mesh_level(cli_app *app, cli_work *work, double tolerance, size_t index)
 {
     csgm_mesh_options options = mesh_options(app, work);
@@ -120,9 +120,9 @@ static csgm_status mesh_level(cli_app *app, cli_work *work, double tolerance, si
     if (status != CSGM_OK)
         return status;
     level->mesh = csgm_mesh_get_view(work->level_meshes[index]);
-    level->error = isfinite(stats.max_distance_bound)
-                       ? fmax(stats.max_distance_bound, stats.max_distance_measured)
-                       : fmax(tolerance, stats.max_distance_measured);
+    level->measured = stats.max_distance_measured;
+    level->is_proven = isfinite(stats.max_distance_bound);
+    level->error = fmax(level->is_proven ? stats.max_distance_bound : tolerance, level->measured);
     return CSGM_OK;
 }
 
