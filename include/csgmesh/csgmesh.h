@@ -715,7 +715,9 @@ typedef enum csgm_format_trait {
     CSGM_HEEDS_METADATA = 1 << 19,
     CSGM_HEEDS_MESHOPT = 1 << 20,
     CSGM_HEEDS_UV = 1 << 21,
-    CSGM_HEEDS_LEVELS = 1 << 22
+    CSGM_HEEDS_LEVELS = 1 << 22,
+    CSGM_KEEPS_PLAIN_LOOKS = 1 << 23 /* opacity, metallic and roughness of parts that have one of
+                                        each, in a file beside the mesh's where it has a name */
 } csgm_format_trait;
 
 /* AUTO when the extension (or name, e.g. "ply") is unknown. */

@@ -13,6 +13,14 @@ extern "C" {
 
 /* ---- meshes that others made --------------------------------------------------------- */
 
+/* What the file of a mesh that csgm_mesh_read made said of the length of one of its units. False:
+ * it said nothing. Of 3MF, AMF and glTF of other programs it is the millimetre, which they were
+ * brought to. */
+CSGM_API bool csgm_mesh_unit(const csgm_mesh *mesh, csgm_unit *unit);
+/* What the file had and the mesh has not, such as "2 textures, 1 animation"; NULL: nothing. The
+ * mesh's storage. */
+CSGM_API const char *csgm_mesh_left_out(const csgm_mesh *mesh);
+
 /* What to do with a mesh that no field stands behind. Lengths are in scene units. */
 typedef struct csgm_reshape_options {
     uint32_t struct_size; /* set by csgm_reshape_options_default; do not touch */

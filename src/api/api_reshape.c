@@ -22,6 +22,19 @@ csgm_reshape_stats csgm_reshape_stats_default(void)
     return (csgm_reshape_stats){.struct_size = sizeof(csgm_reshape_stats)};
 }
 
+bool csgm_mesh_unit(const csgm_mesh *mesh, csgm_unit *unit)
+{
+    if (!mesh || !unit || !mesh->says_unit)
+        return false;
+    *unit = mesh->unit;
+    return true;
+}
+
+const char *csgm_mesh_left_out(const csgm_mesh *mesh)
+{
+    return mesh ? mesh->left_out : NULL;
+}
+
 bool csgm_reshape_available(void)
 {
     return csg_halfedges_available();

@@ -47,8 +47,9 @@ typedef struct csg_adapter_part {
     uint32_t color_components; /* 3 or 4 */
     const uint32_t *indices;   /* index_count, a multiple of 3, each below vertex_count */
     uint64_t vertex_count, index_count;
-    bool begins;      /* a part of the mesh: the first primitive of a node */
-    const char *name; /* of that, or NULL */
+    const uint16_t *material; /* metallic and roughness times 10000, or NULL: nothing is said */
+    bool begins;              /* a part of the mesh: the first primitive of a node */
+    const char *name;         /* of that, or NULL */
 } csg_adapter_part;
 
 /* ---- Draco (draco.cc) ------------------------------------------------------------- */
@@ -152,6 +153,10 @@ typedef csgm_status csg_gltf_load_fn(void *user, const char *uri, const uint8_t 
 typedef struct csg_gltf_calls {
     csg_gltf_part_fn *part;
     csg_gltf_load_fn *load;
+    /* Before the first part: what one unit of what is handed over is, where the document says so;
+     * what the document has beside parts, in words, where that is anything. */
+    void (*unit)(void *user, csgm_unit unit);
+    void (*left_out)(void *user, const char *what);
     void *user;
     /* May so many bytes of memory be taken? */
     bool (*allows)(void *user, uint64_t bytes);

@@ -98,3 +98,21 @@ int csg_open_beneath(const char *folder, const char *name)
     errno = error;
     return file < 0 ? file : keep_file(file);
 }
+
+int csg_open_beside(const csgm_context *context, const char *path, const char *name)
+{
+    char folder[PATH_MAX], whole[2 * PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    if (length >= sizeof folder) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+    memcpy(folder, path, length);
+    folder[length] = '\0';
+    int file = csg_open_beneath(folder, name), error = errno;
+    if (snprintf(whole, sizeof whole, "%s%s", folder, name) < (int)sizeof whole)
+        csg_context_tell_file(context, whole, file >= 0);
+    errno = error;
+    return file;
+}

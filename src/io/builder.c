@@ -8,10 +8,14 @@
 
 #include "base/clock.h"
 #include "base/mesh_codes.h"
+#include "io/parts.h"
+
+static const uint16_t plain_material[2] = {CSG_MATERIAL_METALLIC, CSG_MATERIAL_ROUGHNESS};
 
 void csg_builder_init(csg_mesh_builder *b, csgm_context *context)
 {
     *b = (csg_mesh_builder){.context = context};
+    memcpy(b->material, plain_material, sizeof b->material);
     if (context->limits.timeout_s > 0)
         b->deadline_s = csg_clock_now_s() + context->limits.timeout_s;
     csg_arena_init(&b->names, &context->memory);
@@ -23,6 +27,7 @@ void csg_builder_release(csg_mesh_builder *b)
     csg_memory_release(memory, b->positions, b->position_room * 3 * sizeof(double));
     csg_memory_release(memory, b->normals, b->normal_room * 3 * sizeof(float));
     csg_memory_release(memory, b->colors, b->color_room * 4);
+    csg_memory_release(memory, b->materials, b->material_room * 2 * sizeof(uint16_t));
     csg_memory_release(memory, b->indices, b->index_room * 3 * sizeof(uint32_t));
     csg_memory_release(memory, b->parts, b->part_room * sizeof *b->parts);
     csg_arena_reset(&b->names);
@@ -55,12 +60,19 @@ static bool add_color(csg_mesh_builder *b, const uint8_t *color)
     static const uint8_t white[4] = {255, 255, 255, 255};
     if (!color && !b->colors)
         return true;
-    bool first = !b->colors;
-    if (!room(b, &b->colors, &b->color_room, b->vertex_count + 1, 4))
+    if (!csg_builder_colors(b))
         return false;
-    if (first)
-        memset(b->colors, 255, 4 * b->vertex_count);
     memcpy(b->colors + 4 * b->vertex_count, color ? color : white, 4);
+    return true;
+}
+
+static bool add_material(csg_mesh_builder *b)
+{
+    if (!b->materials && memcmp(b->material, plain_material, sizeof plain_material) == 0)
+        return true;
+    if (!csg_builder_materials(b))
+        return false;
+    memcpy(b->materials + 2 * b->vertex_count, b->material, sizeof b->material);
     return true;
 }
 
@@ -80,7 +92,7 @@ bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const flo
 {
     if (b->vertex_count >= UINT32_MAX || !has_time(b) ||
         !room(b, &b->positions, &b->position_room, b->vertex_count + 1, 3 * sizeof(double)) ||
-        !add_color(b, color)) {
+        !add_color(b, color) || !add_material(b)) {
         b->failed = true;
         return false;
     }
@@ -135,6 +147,43 @@ float *csg_builder_normals(csg_mesh_builder *b)
     return b->normals;
 }
 
+uint8_t *csg_builder_colors(csg_mesh_builder *b)
+{
+    bool first = !b->colors;
+    if (!room(b, &b->colors, &b->color_room, b->vertex_count + 1, 4))
+        return NULL;
+    if (first)
+        memset(b->colors, 255, 4 * b->vertex_count);
+    return b->colors;
+}
+
+uint16_t *csg_builder_materials(csg_mesh_builder *b)
+{
+    bool first = !b->materials;
+    if (!room(b, &b->materials, &b->material_room, b->vertex_count + 1, 2 * sizeof *b->materials))
+        return NULL;
+    for (size_t i = 0; first && i < b->vertex_count; i++)
+        memcpy(b->materials + 2 * i, plain_material, sizeof plain_material);
+    return b->materials;
+}
+
+void csg_builder_material(csg_mesh_builder *b, const uint16_t *material)
+{
+    memcpy(b->material, material ? material : plain_material, sizeof b->material);
+}
+
+void csg_builder_unit(csg_mesh_builder *b, csgm_unit unit)
+{
+    b->says_unit = true;
+    b->unit = unit;
+}
+
+void csg_builder_leave_out(csg_mesh_builder *b, const char *what)
+{
+    b->left_out = csg_arena_strndup(&b->names, what, strlen(what));
+    b->failed |= !b->left_out;
+}
+
 /* ---- the end ---------------------------------------------------------------------- */
 
 /* Zero when every position is a float already, or when the mesh is at least 1/16 as large as it is
@@ -175,6 +224,22 @@ static csgm_status add_parts(const csg_mesh_builder *b, csgm_mesh *mesh)
     return status;
 }
 
+/* What only some files have. */
+static csgm_status add_rest(const csg_mesh_builder *b, csgm_mesh *mesh)
+{
+    mesh->says_unit = b->says_unit;
+    mesh->unit = b->unit;
+    if (b->left_out) {
+        mesh->left_out = csg_arena_strndup(&mesh->names, b->left_out, strlen(b->left_out));
+        if (!mesh->left_out)
+            return csg_context_no_memory(b->context);
+    }
+    csgm_status status = b->materials ? csg_mesh_add_materials(mesh) : CSGM_OK;
+    if (!status && b->materials && b->vertex_count)
+        memcpy(mesh->materials, b->materials, b->vertex_count * 2 * sizeof *b->materials);
+    return status;
+}
+
 csgm_status csg_builder_why_failed(const csg_mesh_builder *b)
 {
     if (!b->is_late)
@@ -197,6 +262,8 @@ csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)
     if (status)
         return status;
     status = add_parts(b, mesh);
+    if (!status)
+        status = add_rest(b, mesh);
     if (status) {
         csg_mesh_destroy(mesh);
         return status;

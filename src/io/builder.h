@@ -9,12 +9,17 @@
 
 typedef struct csg_mesh_builder {
     csgm_context *context;
-    double *positions; /* 3 per vertex */
-    float *normals;    /* 3 per vertex, as long as every vertex so far came with one */
-    uint8_t *colors;   /* 4 per vertex, from the first coloured one on; white before */
-    uint32_t *indices; /* 3 per triangle */
+    double *positions;    /* 3 per vertex */
+    float *normals;       /* 3 per vertex, as long as every vertex so far came with one */
+    uint8_t *colors;      /* 4 per vertex, from the first coloured one on; white before */
+    uint32_t *indices;    /* 3 per triangle */
+    uint16_t *materials;  /* 2 per vertex, from the first on that has others than the rest */
+    uint16_t material[2]; /* of the vertices to come */
+    bool says_unit;       /* the file does: */
+    csgm_unit unit;
+    const char *left_out; /* of the file, in the arena; NULL: nothing */
     size_t vertex_count, triangle_count;
-    size_t position_room, normal_room, color_room, index_room; /* in vertices and triangles */
+    size_t position_room, normal_room, color_room, material_room, index_room; /* in elements */
     csgm_mesh_part *parts; /* names in the arena; counts not yet filled in */
     size_t part_count, part_room;
     csg_arena names;
@@ -41,6 +46,17 @@ bool csg_builder_triangle(csg_mesh_builder *builder, uint32_t a, uint32_t b, uin
 /* The triangles to come are a part of their own; name: may be NULL, copied. Parts without triangles
  * vanish, and a single one without a name is none. */
 bool csg_builder_part(csg_mesh_builder *builder, const char *name);
+/* Metallic and roughness of the vertices to come; NULL: those of vertices of which nothing is said.
+ */
+void csg_builder_material(csg_mesh_builder *builder, const uint16_t *material);
+/* What one unit is, as the file says. */
+void csg_builder_unit(csg_mesh_builder *builder, csgm_unit unit);
+/* What the file has and the mesh will not have, in words: all that there is to say. */
+void csg_builder_leave_out(csg_mesh_builder *builder, const char *what);
+/* The colours and materials of all vertices that there are, to be changed now: white and plain ones
+ * where there were none. NULL = out of memory. */
+uint8_t *csg_builder_colors(csg_mesh_builder *builder);
+uint16_t *csg_builder_materials(csg_mesh_builder *builder);
 /* An array for a normal of every vertex that there is, to be filled now; NULL = out of memory. */
 float *csg_builder_normals(csg_mesh_builder *builder);
 

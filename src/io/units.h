@@ -42,4 +42,36 @@ static inline bool csg_unit_from_word(const char *word, csgm_unit *unit)
     return false;
 }
 
+/* As 3MF and AMF call them. */
+static inline const char *csg_unit_name(csgm_unit unit)
+{
+    static const char *const names[] = {"millimeter", "millimeter", "centimeter", "meter", "inch"};
+    return names[unit];
+}
+
+/* In millimetres, by such a name; 1 where it is none. */
+static inline double csg_unit_mm(const char *name)
+{
+    static const struct {
+        const char *name;
+        double mm;
+    } others[] = {{"micron", 0.001}, {"foot", 304.8}, {"feet", 304.8}};
+    for (int i = CSGM_UNIT_MM; name && i <= CSGM_UNIT_IN; i++)
+        if (strcmp(name, csg_unit_name((csgm_unit)i)) == 0)
+            return csg_unit_metres((csgm_unit)i) * 1000;
+    for (int i = 0; name && i < 3; i++)
+        if (strcmp(name, others[i].name) == 0)
+            return others[i].mm;
+    return 1;
+}
+
+/* The unit of that many millimetres, as csg_unit_mm gives them. */
+static inline csgm_unit csg_unit_of_mm(double mm)
+{
+    for (int i = CSGM_UNIT_CM; i <= CSGM_UNIT_IN; i++)
+        if (csg_unit_metres((csgm_unit)i) * 1000 == mm)
+            return (csgm_unit)i;
+    return CSGM_UNIT_MM;
+}
+
 #endif

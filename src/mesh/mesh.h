@@ -17,9 +17,12 @@ struct csgm_mesh {
     uint16_t *materials; /* 2 * vertex_count or NULL */
     csgm_mesh_part *parts;
     size_t part_count, part_room;
-    csg_arena names;  /* of parts */
+    csg_arena names;  /* of parts, and left_out */
     bool split;       /* csgm_mesh_view.split */
     bool equal_cells; /* csgm_mesh_view.equal_cells */
+    bool says_unit;   /* its file did: */
+    csgm_unit unit;
+    const char *left_out; /* what its file had and the mesh has not; NULL: nothing */
 };
 
 /* A channel in 0..1 as a vertex's colour has it. */

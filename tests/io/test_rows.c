@@ -131,9 +131,9 @@ static void round_more(csgm_mesh *mesh, sample *s)
 static const change changes[] = {
     {CSGM_KEEPS_NORMALS, "normals", turn_normals},
     {CSGM_KEEPS_COLORS, "colours", paint},
-    {CSGM_KEEPS_ALPHA, "opacity", make_translucent},
+    {CSGM_KEEPS_ALPHA | CSGM_KEEPS_PLAIN_LOOKS, "opacity", make_translucent},
     {CSGM_KEEPS_NAMES, "names", call_otherwise},
-    {CSGM_KEEPS_MATERIALS, "materials", polish},
+    {CSGM_KEEPS_MATERIALS | CSGM_KEEPS_PLAIN_LOOKS, "materials", polish},
     {CSGM_KEEPS_DOUBLES, "doubles", move_a_little},
     {CSGM_HEEDS_ASCII, "ascii", ask_for_text},
     {CSGM_HEEDS_UP, "up", leave_z_up},
@@ -172,6 +172,8 @@ static uint8_t *write_sample(const char *folder, csgm_format format, const chang
     csg_mesh_destroy(mesh);
     io_context_check(&io);
     uint8_t *bytes = status == CSGM_OK ? io_file_load(path, size) : NULL;
+    remove(path);
+    snprintf(path, sizeof path, "%s/a.mtl", folder); /* of OBJ */
     remove(path);
     return bytes;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * AMF -> mesh: plain XML, or a ZIP archive whose first file it is. Each object is a part, with its
  * name; where there are constellations, each instance of an object is one, in its place. A vertex
- * has its own colour or its object's. Units are not looked at: a length stays the number that it
- * is. Curved edges are straight, materials, textures and what else there is are passed over;
- * constellations of constellations are refused.
+ * has its own colour or its object's. Lengths become millimetres; those of csgmesh's own files
+ * stay the numbers that they are. Curved edges are straight, materials, textures and what else
+ * there is are passed over; constellations of constellations are refused.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +11,7 @@
 #include "io/adapter.h"
 #include "io/color.h"
 #include "io/reader.h"
+#include "io/units.h"
 
 enum { MOST_TEXT = 256, MOST_PLACED = 1 << 20, MOST_TRIANGLES_PLACED = 1 << 26 };
 
@@ -66,7 +67,11 @@ typedef struct amf_file {
     uint32_t depth;
     char text[MOST_TEXT]; /* of the innermost */
     size_t length;
-    bool is_name;      /* the metadata is the object's name */
+    bool is_name;     /* the metadata is the object's name */
+    bool is_producer; /* it is who made the file */
+    bool ours;        /* csgmesh did */
+    double unit_mm;
+    bool has_pictures; /* textures, of which nothing is read */
     double color[4];   /* being read */
     bool color_is_bad; /* a formula, as AMF allows */
     uint32_t seen;     /* bits of the coordinates or corners that are there */
@@ -131,12 +136,18 @@ static bool read_id(const char *const *attributes, const char *name, uint32_t *i
     return false;
 }
 
-static bool has_type_name(const char *const *attributes)
+static const char *find(const char *const *attributes, const char *name)
 {
     for (; *attributes; attributes += 2)
-        if (strcmp(local(attributes[0]), "type") == 0)
-            return strcmp(attributes[1], "name") == 0;
-    return false;
+        if (strcmp(local(attributes[0]), name) == 0)
+            return attributes[1];
+    return NULL;
+}
+
+static bool has_type(const char *const *attributes, const char *type)
+{
+    const char *found = find(attributes, "type");
+    return found && strcmp(found, type) == 0;
 }
 
 /* ---- elements ------------------------------------------------------------------------------ */
@@ -211,7 +222,7 @@ static bool belongs(const amf_file *f, amf_element element)
     if (element == COLOR)
         return parent(f, 1) == VERTEX || parent(f, 1) == OBJECT;
     if (element == METADATA)
-        return parent(f, 1) == OBJECT;
+        return parent(f, 1) == OBJECT || parent(f, 1) == AMF;
     return element != OTHER && parent(f, 1) == parents[element];
 }
 
@@ -222,6 +233,7 @@ static csgm_status on_start(void *user, const char *name, const char *const *att
     if (f->depth == DEEPEST)
         return broken(f, "its elements are nested too deeply");
     f->path[++f->depth] = OTHER;
+    f->has_pictures |= f->depth == 2 && strcmp(local(name), "texture") == 0;
     f->length = 0;
     if (f->depth == 1 && element != AMF)
         return broken(f, "it does not begin with <amf>");
@@ -229,6 +241,9 @@ static csgm_status on_start(void *user, const char *name, const char *const *att
         return CSGM_OK;
     f->path[f->depth] = element;
     switch (element) {
+    case AMF:
+        f->unit_mm = csg_unit_mm(find(attributes, "unit"));
+        return CSGM_OK;
     case OBJECT:
         return begin_object(f, attributes);
     case INSTANCE:
@@ -243,7 +258,8 @@ static csgm_status on_start(void *user, const char *name, const char *const *att
         f->color_is_bad = false;
         return CSGM_OK;
     case METADATA:
-        f->is_name = has_type_name(attributes);
+        f->is_name = parent(f, 1) == OBJECT && has_type(attributes, "name");
+        f->is_producer = parent(f, 1) == AMF && has_type(attributes, "producer");
         return CSGM_OK;
     default:
         return CSGM_OK;
@@ -325,8 +341,10 @@ static void end_color(amf_file *f)
     f->any_colored = true;
 }
 
-static csgm_status end_name(amf_file *f)
+static csgm_status end_metadata(amf_file *f)
 {
+    static const char US[] = "csgmesh ";
+    f->ours |= f->is_producer && f->length >= strlen(US) && memcmp(f->text, US, strlen(US)) == 0;
     if (!f->is_name || !f->length)
         return CSGM_OK;
     last_object(f)->name = csg_arena_strndup(&f->names, f->text, f->length);
@@ -348,7 +366,7 @@ static csgm_status on_end(void *user, const char *full_name)
     else if (element == OTHER && outer == COLOR)
         end_channel(f, name);
     else if (element == METADATA)
-        status = end_name(f);
+        status = end_metadata(f);
     else if (element == COLOR)
         end_color(f);
     else if (element == VERTEX && f->seen != 7)
@@ -405,6 +423,8 @@ static csgm_status add_object(amf_file *f, const amf_object *object, const amf_i
         static const uint8_t white[4] = {255, 255, 255, 255};
         double at[3] = {vertex->at[0], vertex->at[1], vertex->at[2]};
         place(instance, at);
+        for (int k = 0; k < 3 && !f->ours; k++)
+            at[k] *= f->unit_mm;
         if (!isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
             return broken(f, "a vertex is moved beyond all numbers");
         csg_builder_vertex(f->builder, at, NULL,
@@ -427,6 +447,9 @@ static csgm_status add_all(amf_file *f)
 {
     csgm_status status = CSGM_OK;
     uint64_t placed = 0;
+    csg_builder_unit(f->builder, f->ours ? csg_unit_of_mm(f->unit_mm) : CSGM_UNIT_MM);
+    if (f->has_pictures)
+        csg_builder_leave_out(f->builder, "textures");
     if (f->instance_count > MOST_PLACED)
         return csg_read_unsupported(f->input, "more than %d instances", MOST_PLACED);
     if (f->instance_count && f->object_count)
@@ -475,7 +498,7 @@ static csgm_status parse_file(amf_file *f)
 csgm_status csg_amf_read(csg_input *input, csg_mesh_builder *builder)
 {
     csg_memory *memory = &input->context->memory;
-    amf_file f = {.input = input, .builder = builder};
+    amf_file f = {.input = input, .builder = builder, .unit_mm = 1};
     csg_arena_init(&f.names, memory);
     csgm_status status = parse_file(&f);
     if (!status)

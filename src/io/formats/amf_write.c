@@ -5,6 +5,7 @@
  */
 #include "io/metadata.h"
 #include "io/parts.h"
+#include "io/units.h"
 #include "io/writers.h"
 
 enum { LINE_MOST = 512 };
@@ -63,9 +64,10 @@ static void put_escaped(csg_sink *sink, const char *text)
     }
 }
 
+/* It has no centimetres: they are written as ten millimetres. */
 static const char *unit_name(csgm_unit unit)
 {
-    return unit == CSGM_UNIT_M ? "meter" : unit == CSGM_UNIT_IN ? "inch" : "millimeter";
+    return csg_unit_name(unit == CSGM_UNIT_CM ? CSGM_UNIT_MM : unit);
 }
 
 /* The file's own, by the keys that they have; where the scene came from is nothing a printer asks.

@@ -338,7 +338,10 @@ void emit(const document &doc, csg_adapter_part &part, const origin &at, int mat
 {
     std::vector<float> colors;
     size_t index = static_cast<size_t>(material);
-    if (material >= 0 && index < doc.told.materials.size() && doc.told.materials[index].is_told) {
+    bool is_there = material >= 0 && index < doc.told.materials.size();
+    if (is_there && doc.told.materials[index].has_material)
+        part.material = doc.told.materials[index].material;
+    if (is_there && doc.told.materials[index].is_told) {
         const float *factor = doc.told.materials[index].rgba;
         uint32_t components = part.colors ? part.color_components : 0;
         colors.resize(4 * part.vertex_count);
@@ -548,6 +551,11 @@ void read(const char *text, size_t size, span bin, const csg_gltf_calls *calls)
     check_version(root);
     check_extensions(root);
     std::string small = cut_down(doc.told, root).dump();
+    if (doc.told.says_unit)
+        calls->unit(calls->user, doc.told.unit);
+    std::string rest = left_out(root, doc.told.ours);
+    if (!rest.empty())
+        calls->left_out(calls->user, rest.c_str());
     resolve_buffers(doc, root, bin);
     root = nullptr; /* base64 buffers are large */
     std::string error, warning;

@@ -3,6 +3,9 @@
  */
 #include "io/gltf/gltf_cut.hh"
 
+#include <algorithm>
+
+#include "io/parts.h"
 #include "io/units.h"
 
 namespace csg_gltf
@@ -147,8 +150,25 @@ static void note_asset(facts &out, const json &root)
     if (!ours)
         out.enlarge = 1 / csg_unit_metres(CSGM_UNIT_MM);
     else if (extras && csg_unit_from_word(text_of(member(*extras, "unit")).c_str(), &unit))
-        out.scale = csg_unit_metres(unit);
+        out.scale = csg_unit_metres(out.unit = unit);
+    else
+        out.says_unit = false;
     out.z_up = ours && extras && text_of(member(*extras, "up")) == "z";
+}
+
+/* A picture of them has its own values, of which factors say nothing. */
+static void note_finish(base_color &out, const json *pbr)
+{
+    if (!pbr || member(*pbr, "metallicRoughnessTexture"))
+        return;
+    static const char *const names[] = {"metallicFactor", "roughnessFactor"};
+    for (size_t k = 0; k < 2; k++) {
+        const json *factor = member(*pbr, names[k]);
+        double value = factor && factor->is_number() ? factor->get<double>() : 1;
+        value = std::clamp(value, 0.0, 1.0); /* a NaN is no JSON */
+        out.material[k] = static_cast<uint16_t>(value * CSG_MATERIAL_ONE + 0.5);
+    }
+    out.has_material = true;
 }
 
 /* White is what other programs say where nothing has a colour. */
@@ -158,7 +178,7 @@ static void note_materials(facts &out, const json &root)
     if (!materials || !materials->is_array())
         return;
     for (const json &material : *materials) {
-        base_color color = {{1, 1, 1, 1}, false};
+        base_color color = {{1, 1, 1, 1}, false, {0, 0}, false};
         const json *extras = member(material, "extras");
         const json *uncolored = extras ? member(*extras, "uncolored") : nullptr;
         const json *pbr = member(material, "pbrMetallicRoughness");
@@ -169,6 +189,7 @@ static void note_materials(facts &out, const json &root)
             color.is_told = out.ours || color.rgba[0] != 1 || color.rgba[1] != 1 ||
                             color.rgba[2] != 1 || color.rgba[3] != 1;
         }
+        note_finish(color, pbr);
         out.materials.push_back(color);
     }
 }

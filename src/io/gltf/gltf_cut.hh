@@ -38,7 +38,9 @@ struct compressed {
 /* What a material says of colour: linear. */
 struct base_color {
     float rgba[4];
-    bool is_told; /* else it is how glTF shows what has no colour */
+    bool is_told;         /* else it is how glTF shows what has no colour */
+    uint16_t material[2]; /* metallic and roughness, as csg_adapter_part has them */
+    bool has_material;
 };
 
 /* A view compressed by meshoptimizer: where its bytes are. */
@@ -56,6 +58,8 @@ struct facts {
     double enlarge = 1; /* what the coordinates are multiplied by at the end */
     bool ours = false;
     bool z_up = false; /* the scene was not turned */
+    csgm_unit unit = CSGM_UNIT_MM;
+    bool says_unit = true;
 };
 
 /* bytes_of_element: of tinygltf's largest struct. Throws trouble, as all of these. */
@@ -64,6 +68,10 @@ void check_version(const json &root);
 /* Materials and textures do not change triangles; anything else that is required may. */
 void check_extensions(const json &root);
 json cut_down(facts &out, const json &root);
+
+/* gltf_left_out.cc: what the document has and meshes have not, in words; "" where that is nothing.
+ */
+std::string left_out(const json &root, bool ours);
 
 const json *member(const json &object, const char *name);
 int64_t integer(const json *value, int64_t otherwise);

@@ -102,6 +102,7 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
     csgm_status status = CSGM_OK;
     if (part->begins)
         csg_builder_part(g->builder, part->name && *part->name ? part->name : NULL);
+    csg_builder_material(g->builder, part->material);
     if (first + part->vertex_count > UINT32_MAX)
         return csg_read_unsupported(g->input, "more than 4294967295 vertices in all");
     for (uint64_t i = 0; i < part->vertex_count && !status && !g->builder->failed; i++)
@@ -122,16 +123,7 @@ static csgm_status add_part(void *user, const csg_adapter_part *part, const doub
  * open when CSGM_OK. */
 static csgm_status open_beside(const gltf *g, const char *uri, int *fd)
 {
-    char folder[4096], path[2 * sizeof folder];
-    const char *slash = strrchr(g->input->path, '/');
-    size_t length = slash ? (size_t)(slash - g->input->path) + 1 : 0;
-    if (length >= sizeof folder)
-        return csg_read_broken(g->input, 0, "its folder has too long a name");
-    memcpy(folder, g->input->path, length);
-    folder[length] = '\0';
-    *fd = strstr(uri, "://") ? -1 : csg_open_beneath(folder, uri);
-    if (snprintf(path, sizeof path, "%s%s", folder, uri) < (int)sizeof path)
-        csg_context_tell_file(g->input->context, path, *fd >= 0);
+    *fd = strstr(uri, "://") ? -1 : csg_open_beside(g->input->context, g->input->path, uri);
     if (*fd >= 0)
         return CSGM_OK;
     if (strstr(uri, "://") || uri[0] == '/' || errno == EXDEV || errno == ELOOP)
@@ -176,6 +168,16 @@ static void release_files(gltf *g)
         csg_memory_release(memory, file->bytes, file->size_bytes);
         csg_memory_release(memory, file, sizeof *file);
     }
+}
+
+static void note_unit(void *user, csgm_unit unit)
+{
+    csg_builder_unit(((gltf *)user)->builder, unit);
+}
+
+static void note_left_out(void *user, const char *what)
+{
+    csg_builder_leave_out(((gltf *)user)->builder, what);
 }
 
 static bool allows(void *user, uint64_t bytes)
@@ -239,6 +241,8 @@ csgm_status csg_gltf_read(csg_input *input, csg_mesh_builder *builder)
     }
     csg_gltf_calls calls = {.part = add_part,
                             .load = load,
+                            .unit = note_unit,
+                            .left_out = note_left_out,
                             .allows = allows,
                             .user = &g,
                             .most_bytes = csg_memory_left(&input->context->memory)};

@@ -46,7 +46,10 @@ typedef struct csg_3mf {
     size_t file_count, file_room, vertex_count, vertex_room, triangle_count, triangle_room,
         object_count, object_room, component_count, component_room, item_count, item_room,
         group_count, group_room, color_count, color_room;
-    bool colored; /* some vertex is */
+    bool colored;      /* some vertex is */
+    double unit_mm;    /* of the root model */
+    bool ours;         /* it says that csgmesh made it */
+    bool has_pictures; /* textures, of which nothing is read */
 } csg_3mf;
 
 /* Reads the package. Reports what fails. Release it in any case. */

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "io/adapter.h"
+#include "io/units.h"
 
 /* A namespace that the file's root element may name by its prefix. */
 typedef struct prefix {
@@ -25,6 +26,9 @@ typedef struct parser {
     const char *target; /* of the relationships: the root model */
     prefix *prefixes;   /* declared before the file's first element */
     bool has_begun;
+    char application[8]; /* the first letters of the metadata of this name */
+    size_t application_length;
+    bool is_application; /* which is open */
 } parser;
 
 #define CORE "http://schemas.microsoft.com/3dmanufacturing/core/"
@@ -404,6 +408,8 @@ static csgm_status check_required(parser *p, const char *prefixes)
 static csgm_status begin_file(parser *p, const char *const *attributes)
 {
     p->has_begun = true;
+    if (p->file == 0)
+        p->m->unit_mm = csg_unit_mm(find(attributes, "unit"));
     return check_required(p, find(attributes, "requiredextensions"));
 }
 
@@ -413,6 +419,12 @@ static csgm_status on_start(void *user, const char *element, const char *const *
     csgm_status status = p->has_begun ? CSGM_OK : begin_file(p, attributes);
     if (status)
         return status;
+    if (is(element, CORE, "metadata") && p->file == 0) {
+        const char *name = find(attributes, "name");
+        p->is_application = name && strcmp(name, "Application") == 0;
+        p->application_length = 0;
+    }
+    p->m->has_pictures |= is(element, MATERIAL, "texture2dgroup");
     if (is(element, MATERIAL, "colorgroup"))
         return add_group(user, attributes);
     if (is(element, MATERIAL, "color"))
@@ -420,8 +432,23 @@ static csgm_status on_start(void *user, const char *element, const char *const *
     return start_core(user, element, attributes);
 }
 
+static csgm_status on_text(void *user, const char *text, size_t length)
+{
+    parser *p = user;
+    for (size_t i = 0; p->is_application && i < length; i++)
+        if (p->application_length < sizeof p->application)
+            p->application[p->application_length++] = text[i];
+    return CSGM_OK;
+}
+
 static csgm_status on_end(void *user, const char *element)
 {
+    parser *p = user;
+    if (is(element, CORE, "metadata") && p->is_application) {
+        p->m->ours = p->application_length == sizeof p->application &&
+                     memcmp(p->application, "csgmesh ", sizeof p->application) == 0;
+        p->is_application = false;
+    }
     return is(element, CORE, "object") ? end_object(user) : CSGM_OK;
 }
 
@@ -462,7 +489,7 @@ static csgm_status read_files(parser *p, csg_package *package)
     csg_3mf *m = p->m;
     csg_adapter_error error = {.text = ""};
     csg_xml_calls relationships = {NULL, on_relationship, on_nothing, p, NULL};
-    csg_xml_calls model = {on_namespace, on_start, on_end, p, NULL};
+    csg_xml_calls model = {on_namespace, on_start, on_end, p, on_text};
     csgm_status status =
         report(m->input, csg_package_parse(package, "_rels/.rels", &relationships, &error), &error);
     uint32_t root;
@@ -484,7 +511,7 @@ static csgm_status read_files(parser *p, csg_package *package)
 
 csgm_status csg_3mf_load(csg_3mf *model, csg_input *input)
 {
-    *model = (csg_3mf){.input = input};
+    *model = (csg_3mf){.input = input, .unit_mm = 1};
     csg_arena_init(&model->names, &input->context->memory);
     csg_adapter_error error = {.text = ""};
     csg_package *package = NULL;

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * 3MF -> mesh: the items to build, each object's mesh put in its place, components within
- * components with a stack of their own. Each item is a part with its object's name. Units are not
- * looked at: a length stays the number that it is. A vertex has one colour, that of the first
- * triangle with one.
+ * components with a stack of their own. Each item is a part with its object's name. Lengths become
+ * millimetres; those of csgmesh's own files stay the numbers that they are. A vertex has one
+ * colour, that of the first triangle with one.
  */
 #include <math.h>
 #include <stdlib.h>
 
 #include "io/threemf/threemf.h"
+#include "io/units.h"
 
 enum {
     MOST_DEPTH = 32,      /* of components in components */
@@ -27,6 +28,7 @@ typedef struct reading {
     placed *stack;
     size_t stack_count, stack_room;
     uint64_t placed_count;
+    double enlarge; /* what coordinates are multiplied by */
 } reading;
 
 static int compare(uint32_t file_a, uint32_t id_a, uint32_t file_b, uint32_t id_b)
@@ -131,8 +133,8 @@ static csgm_status add_mesh(reading *r, const placed *place)
         double at[3];
         for (int k = 0; k < 3; k++) {
             const double *row = place->transform + 4 * k;
-            at[k] = row[0] * vertex->at[0] + row[1] * vertex->at[1] + row[2] * vertex->at[2] +
-                    row[3] + 0.0;
+            at[k] = r->enlarge * (row[0] * vertex->at[0] + row[1] * vertex->at[1] +
+                                  row[2] * vertex->at[2] + row[3] + 0.0);
             if (!isfinite(at[k]))
                 return csg_read_broken(m->input, 0, "a vertex is moved beyond all numbers");
         }
@@ -161,12 +163,22 @@ static csgm_status unfold(reading *r)
     return status;
 }
 
+static void note_unit(reading *r)
+{
+    const csg_3mf *m = r->m;
+    r->enlarge = m->ours ? 1 : m->unit_mm;
+    csg_builder_unit(r->builder, m->ours ? csg_unit_of_mm(m->unit_mm) : CSGM_UNIT_MM);
+    if (m->has_pictures)
+        csg_builder_leave_out(r->builder, "textures");
+}
+
 csgm_status csg_3mf_read(csg_input *input, csg_mesh_builder *builder)
 {
     csg_3mf model;
     reading r = {.m = &model, .builder = builder};
     csg_memory *memory = &input->context->memory;
     csgm_status status = csg_3mf_load(&model, input);
+    note_unit(&r);
     if (!status)
         status = sort_objects(&r);
     for (size_t i = 0; i < model.item_count && !status; i++) {

@@ -11,6 +11,7 @@
 #include "io/metadata.h"
 #include "io/reader.h"
 #include "io/threemf/zip_write.h"
+#include "io/units.h"
 #include "io/writers.h"
 
 enum { PIECE = 2048 }; /* lines; the longest has less than 128 bytes */
@@ -247,22 +248,6 @@ static void put_escaped(model *m, const char *text)
     }
 }
 
-static const char *unit_name(csgm_unit unit)
-{
-    switch (unit) {
-    case CSGM_UNIT_CM:
-        return "centimeter";
-    case CSGM_UNIT_M:
-        return "meter";
-    case CSGM_UNIT_IN:
-        return "inch";
-    case CSGM_UNIT_NONE:
-    case CSGM_UNIT_MM:
-        break;
-    }
-    return "millimeter";
-}
-
 /* What has no colour is light gray. */
 static void put_looks(model *m)
 {
@@ -336,7 +321,7 @@ static void put_model(model *m, const csgm_write_options *options)
 {
     uint64_t count = m->mesh->triangle_count ? csg_part_count(m->mesh) : 0;
     put_xml(m, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");
-    put_xml(m, unit_name(options->unit));
+    put_xml(m, csg_unit_name(options->unit));
     put_xml(m, "\" xml:lang=\"en-US\" "
                "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
                "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"

@@ -127,9 +127,12 @@ static int write(cli_app *app, const conversion *c)
     const cli_options *o = &app->options;
     int status = cli_exit_status(csgm_files_hold(app->context));
     for (size_t i = 0; i < o->outputs.count; i++)
-        cli_convert_warn_of_losses(app, &c->view, o->outputs.items[i], cli_outputs_format(o, i));
+        cli_convert_warn_of_losses(app, c->read, &c->view, o->outputs.items[i],
+                                   cli_outputs_format(o, i));
     if (status == CLI_DONE) {
         csgm_write_options options = cli_outputs_options(app, c->path);
+        if (!o->given[CLI_OPTION_unit])
+            csgm_mesh_unit(c->read, &options.unit);
         status = cli_outputs_write_view(app, &c->view, &options);
     }
     bool refused = cli_app_is_refused(app);

@@ -18,7 +18,7 @@ int cli_convert_operand(cli_app *app, const char *path);
 int cli_convert_run(cli_app *app);
 
 /* Warns of what the format cannot hold of the mesh. */
-void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh_view *mesh, const char *path,
-                                csgm_format format);
+void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh *read, const csgm_mesh_view *mesh,
+                                const char *path, csgm_format format);
 
 #endif
