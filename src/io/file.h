@@ -28,6 +28,14 @@ csgm_status csg_file_commit(csg_atomic_file *file);
 /* Closes and removes the temporary. */
 void csg_file_abandon(csg_atomic_file *file);
 
+/* A file that is named by another one, stands beside it and gets its name together with it. */
+typedef struct csg_companion {
+    csg_atomic_file file;
+    csg_arena names;     /* has the path */
+    bool is_there;       /* file holds something */
+    const int *nameless; /* instead: a file that is open and has no name */
+} csg_companion;
+
 /* From now on files of this context that are complete wait for their names; pipes and devices do
  * not. */
 void csg_files_hold(csgm_context *context);

@@ -32,7 +32,10 @@ csgm_status csg_io_read(csgm_context *context, const char *path, csgm_format for
                         csgm_mesh **out);
 csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm_format format,
                            csgm_mesh **out);
-/* path: for diagnostics and for the folder of files that a glTF names. */
+/* companion: as csg_input has it. */
+csgm_status csg_io_read_both(csgm_context *context, int fd, const int *companion, const char *name,
+                             csgm_format format, csgm_mesh **out);
+/* path: for diagnostics and for the folder of files that a glTF or OBJ names. */
 csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *bytes, size_t size_bytes,
                                const char *path, csgm_format format, csgm_mesh **out);
 

@@ -122,39 +122,53 @@ csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint
 
 /* ---- the door --------------------------------------------------------------------- */
 
-csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_t size_bytes,
-                               const char *path, csgm_format format, csgm_mesh **out)
+static csgm_status read_input(csg_input *input, csgm_format format, csgm_mesh **out)
 {
+    csgm_context *context = input->context;
     if (format == CSGM_FORMAT_AUTO)
-        format = csg_format_from_path(path);
-    const csg_format_row *row = format == CSGM_FORMAT_AUTO ? csg_format_recognise(data, size_bytes)
-                                                           : csg_format_find(format);
+        format = csg_format_from_path(input->path);
+    const csg_format_row *row = format == CSGM_FORMAT_AUTO
+                                    ? csg_format_recognise(input->bytes, input->size_bytes)
+                                    : csg_format_find(format);
     if (!row)
-        return csg_format_unknown(context, path);
-    csgm_status status = csg_format_check(context, path, row, true);
+        return csg_format_unknown(context, input->path);
+    csgm_status status = csg_format_check(context, input->path, row, true);
     if (status)
         return status;
-    csg_input input = {context, path, data, size_bytes};
     csg_mesh_builder builder;
     csg_builder_init(&builder, context);
-    status = row->read(&input, &builder);
+    status = row->read(input, &builder);
     if (!status && builder.too_far)
-        status = csg_read_broken(&input, 0, "a coordinate is beyond the range of floats");
+        status = csg_read_broken(input, 0, "a coordinate is beyond the range of floats");
     if (!status)
         status = csg_builder_finish(&builder, out);
     csg_builder_release(&builder);
     return status;
 }
 
+csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_t size_bytes,
+                               const char *path, csgm_format format, csgm_mesh **out)
+{
+    csg_input input = {context, path, data, size_bytes, NULL};
+    return read_input(&input, format, out);
+}
+
 csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm_format format,
                            csgm_mesh **out)
+{
+    return csg_io_read_both(context, fd, NULL, name, format, out);
+}
+
+csgm_status csg_io_read_both(csgm_context *context, int fd, const int *companion, const char *name,
+                             csgm_format format, csgm_mesh **out)
 {
     uint8_t *data;
     size_t size;
     csgm_status status = csg_input_load(context, name, fd, &data, &size);
     if (status)
         return status;
-    status = csg_io_read_memory(context, data, size, name, format, out);
+    csg_input input = {context, name, data, size, companion};
+    status = read_input(&input, format, out);
     csg_memory_release(&context->memory, data, size);
     return status;
 }

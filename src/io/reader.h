@@ -15,6 +15,8 @@ typedef struct csg_input {
     const char *path; /* for diagnostics, and for the folder of files named inside */
     const uint8_t *bytes;
     size_t size_bytes;
+    const int *companion; /* NULL: files that it names are looked for beside it; else the one, open,
+                             that csg_companion.nameless was when it was written */
 } csg_input;
 
 /* CSGM_OK, or an error already reported; out of memory may be left to the builder. */

@@ -18,6 +18,9 @@ enum {
 typedef struct csg_sink {
     csgm_context *context;
     const char *name; /* for diagnostics; borrowed */
+    /* What may be made beside the file, whose path `name` is then; NULL: nothing can stand there.
+     * Set after opening. */
+    struct csg_companion *companion;
     int fd;
     int error; /* errno of the first failure, 0 = none */
     uint8_t *buffer;

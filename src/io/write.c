@@ -174,14 +174,22 @@ static csgm_status prepare(csgm_context *context, const csgm_mesh_view *mesh, co
 
 /* ---- writing ---------------------------------------------------------------------- */
 
-static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, int fd, const char *name,
+/* Where bytes go. */
+typedef struct target {
+    int fd;
+    const char *name;
+    csg_companion *companion; /* csg_sink.companion */
+} target;
+
+static csgm_status fill(csgm_context *context, const csgm_mesh_view *mesh, const target *to,
                         const csg_format_row *row, const csgm_write_options *options)
 {
     CSG_ZONE(context, "write");
     csg_sink sink;
-    csgm_status status = csg_sink_open(&sink, context, fd, name);
+    csgm_status status = csg_sink_open(&sink, context, to->fd, to->name);
     if (status)
         return status;
+    sink.companion = to->companion;
     status = row->write(&sink, mesh, options);
     if (!status)
         return csg_sink_close(&sink);
@@ -200,37 +208,35 @@ static double distance_of(const csgm_mesh_view *mesh)
     return csg_vec3_norm(mesh->origin) / (double)size;
 }
 
-static csgm_status fill_rounded(csgm_context *context, const csgm_mesh_view *mesh, int fd,
-                                const char *name, const csg_format_row *row,
-                                const csgm_write_options *options)
+static csgm_status fill_rounded(csgm_context *context, const csgm_mesh_view *mesh, const target *to,
+                                const csg_format_row *row, const csgm_write_options *options)
 {
     csg_rounding rounding = {.kind = CSG_ROUND_FLOAT};
     csg_rounded rounded;
     if (row->traits & CSGM_KEEPS_DOUBLES)
         rounding.kind = CSG_ROUND_DOUBLE;
     if (!csg_format_rounds(row, distance_of(mesh)))
-        return fill(context, mesh, fd, name, row, options);
-    csgm_status status = csg_round_mesh(context, mesh, &rounding, name, row->title, &rounded);
+        return fill(context, mesh, to, row, options);
+    csgm_status status = csg_round_mesh(context, mesh, &rounding, to->name, row->title, &rounded);
     if (status)
         return status;
-    status = fill(context, &rounded.mesh, fd, name, row, options);
+    status = fill(context, &rounded.mesh, to, row, options);
     csg_rounded_release(context, &rounded);
     return status;
 }
 
 /* Formats that keep creases have a vertex for each sheet there, for the others they are joined. */
-static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, int fd,
-                               const char *name, const csg_format_row *row,
-                               const csgm_write_options *options)
+static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, const target *to,
+                               const csg_format_row *row, const csgm_write_options *options)
 {
     if (!mesh->split || row->traits & CSGM_KEEPS_CREASES)
-        return fill_rounded(context, mesh, fd, name, row, options);
+        return fill_rounded(context, mesh, to, row, options);
     csgm_mesh *joined;
     csgm_status status = csg_weld_runs(context, mesh, &joined);
     if (status)
         return status;
     csgm_mesh_view view = csg_mesh_view(joined);
-    status = fill_rounded(context, &view, fd, name, row, options);
+    status = fill_rounded(context, &view, to, row, options);
     csg_mesh_destroy(joined);
     return status;
 }
@@ -242,17 +248,37 @@ static csgm_status heed_warnings(const csgm_context *context, uint32_t errors)
                                                                                 : CSGM_OK;
 }
 
-csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
-                            const char *name, csgm_format format, const csgm_write_options *options)
+/* companion: NULL, or with a nameless file. */
+static csgm_status write_fd(csgm_context *context, const csgm_mesh_view *mesh, const target *to,
+                            csgm_format format, const csgm_write_options *options)
 {
     csgm_write_options defaults = csg_write_options_default();
     const csg_format_row *row;
     options = options ? options : &defaults;
     uint32_t errors = context->diags.errors;
-    csgm_status status = prepare(context, mesh, name, format, options, &row);
+    csgm_status status = prepare(context, mesh, to->name, format, options, &row);
     if (!status)
-        status = fill_joined(context, mesh, fd, name, row, options);
+        status = fill_joined(context, mesh, to, row, options);
     return status ? status : heed_warnings(context, errors);
+}
+
+csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, int fd,
+                            const char *name, csgm_format format, const csgm_write_options *options)
+{
+    return write_fd(context, mesh, &(target){fd, name, NULL}, format, options);
+}
+
+/* Both get their names, or none; the status of the whole. */
+static csgm_status commit_both(csg_atomic_file *file, csg_companion *companion, csgm_status status)
+{
+    if (companion->is_there && status)
+        csg_file_abandon(&companion->file);
+    else if (companion->is_there)
+        status = csg_file_commit(&companion->file);
+    if (!status)
+        return csg_file_commit(file);
+    csg_file_abandon(file);
+    return status;
 }
 
 csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, const char *path,
@@ -271,19 +297,19 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
         return status;
     file.sync = options->sync;
     file.only_if_changed = options->only_if_changed;
-    status = fill_joined(context, mesh, file.fd, path, row, options);
+    csg_companion companion = {.is_there = false};
+    csg_arena_init(&companion.names, &context->memory);
+    const target to = {file.fd, path, file.target ? &companion : NULL};
+    status = fill_joined(context, mesh, &to, row, options);
     if (!status)
         status = heed_warnings(context, errors);
-    if (!status)
-        return csg_file_commit(&file);
-    csg_file_abandon(&file);
+    status = commit_both(&file, &companion, status);
+    csg_arena_reset(&companion.names);
     return status;
 }
 
-csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, csgm_format format,
-                           const csgm_write_options *options, csgm_mesh **out)
+static FILE *open_nameless(csgm_context *context, const char *name)
 {
-    const char *name = "a temporary file";
     FILE *file = tmpfile();
 #ifdef __linux__
     if (!file) { /* as below --root */
@@ -291,17 +317,35 @@ csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, cs
         file = fd < 0 ? NULL : fdopen(fd, "w+b");
     }
 #endif
-    if (!file) {
+    if (file)
+        fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
+    else
         csg_diag_plain(&context->diags, CSG_DIAG_CANNOT_WRITE, name, NULL, "cannot write: %s",
                        strerror(errno));
-        return CSGM_ERR_IO;
-    }
-    fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
-    csgm_status status = csg_io_write_fd(context, mesh, fileno(file), name, format, options);
+    return file;
+}
+
+csgm_status csg_io_as_file(csgm_context *context, const csgm_mesh_view *mesh, csgm_format format,
+                           const csgm_write_options *options, csgm_mesh **out)
+{
+    const char *name = "a temporary file";
+    FILE *file = open_nameless(context, name);
+    FILE *beside = file ? open_nameless(context, name) : NULL;
+    csgm_status status = beside ? CSGM_OK : CSGM_ERR_IO;
     if (!status) {
+        int fd = fileno(file), fd_beside = fileno(beside);
+        csg_companion companion = {.nameless = &fd_beside};
+        csg_arena_init(&companion.names, &context->memory);
+        status = write_fd(context, mesh, &(target){fd, name, &companion}, format, options);
+        csg_arena_reset(&companion.names);
         rewind(file);
-        status = csg_io_read_fd(context, fileno(file), name, format, out);
+        rewind(beside);
+        if (!status)
+            status = csg_io_read_both(context, fd, &fd_beside, name, format, out);
     }
-    fclose(file);
+    if (file)
+        fclose(file);
+    if (beside)
+        fclose(beside);
     return status;
 }

@@ -38,6 +38,17 @@ class ConvertTest(cli.CliTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         return result
 
+    def document(self, name):
+        data = self.read(name)
+        return json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])
+
+    def glb(self, document, of):
+        """The file with another document."""
+        text = json.dumps(document).encode()
+        text += b" " * (-len(text) % 4)
+        rest = of[20 + struct.unpack("<I", of[12:16])[0]:]
+        return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
+
     def info(self, name):
         return json.loads(self.mesh("info", "--json", name).stdout)["mesh"]
 
@@ -56,11 +67,76 @@ class Converting(ConvertTest):
                 self.assertEqual(after["triangles"], before["triangles"])
                 self.assertEqual("the names of 2 parts (body, lid)" in message, name not in names, message)
                 self.assertEqual("colours" in message and "transparent" not in message, name not in colours, message)
-                self.assertEqual("how transparent colours are" in message, name == "obj", message)
+                self.assertNotIn("how transparent colours are", message)
                 ignored = ["--ignore", "normals"] + ([] if name in names else ["--ignore", "names"]) + \
-                    ([] if name in colours - {"obj"} else ["--ignore", "colors"])
+                    ([] if name in colours else ["--ignore", "colors"])
                 tolerance = ["--tol", "0.01"] if name == "drc" else []
                 self.mesh("diff", "parts.glb", target, "-q", *ignored, *tolerance)
+
+    def test_materials_of_obj(self):
+        """Looks of parts stand in a file beside it, and come back; a part of several colours has them at its vertices."""
+        self.write("a.txt", PARTS + """part("pin") color("gold") material(1, 0.25) translate([0, 0, 20]) cube(3);
+part("knob") translate([40, 0, 0]) union(blend = 2) { color("lime") sphere(5); color("blue") translate([5, 0, 0]) sphere(4); }
+""")
+        self.mesh("a.txt", "-o", "a.glb", "-r", "24")
+        self.assertEqual(self.mesh("a.glb", "-o", "a.obj").stderr, "")
+        self.assertIn(b"mtllib a.mtl\n", self.read("a.obj"))
+        names = [line.split()[1] for line in self.read("a.mtl").decode().splitlines() if line.startswith("newmtl")]
+        self.assertEqual(names, ["red", "rgb0080FF-alpha50.2", "gold-metal100-rough25", "painted"])
+        self.mesh("diff", "a.glb", "a.obj", "-q", "--ignore", "normals")
+        self.mesh("a.obj", "-o", "back.glb")
+        self.assertEqual([m.get("pbrMetallicRoughness") for m in self.document("back.glb")["materials"]],
+                         [m.get("pbrMetallicRoughness") for m in self.document("a.glb")["materials"]])
+
+    def test_materials_of_obj_that_are_lost(self):
+        self.write("a.txt", 'part("a") union(blend = 2) { color([1, 0, 0, 0.5]) cube(8); color("blue") sphere(3); }')
+        self.mesh("a.txt", "-o", "a.glb", "-r", "24")
+        self.assertIn("how transparent colours are", self.mesh("a.glb", "-o", "a.obj").stderr)
+        self.assertFalse(os.path.exists(self.path("a.mtl"))) # it would say nothing
+
+    def test_obj_of_others(self):
+        """Their files of materials: missing, with pictures, broken, elsewhere."""
+        obj = "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl skin\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+        self.write("a b.mtl", "junk\nnewmtl skin\nKd 1 0.5 0\nPm 0.75\nTr 0.2\nmap_Kd wood.png\nKd spectral x\nnewmtl\n")
+        os.mkdir(self.path("folder"))
+        for name, left, colours in (("a b.mtl", "textures", True), ("missing.mtl", "materials (their file is not there)", False),
+                                    ("../a b.mtl", "materials (their file is not there)", False),
+                                    ("folder", "materials (their file is not there)", False)):
+            self.write("a.obj", obj.format(name))
+            message = self.mesh("a.obj", "-o", "a.glb").stderr
+            self.assertEqual(message, f"csgmesh: warning: a.glb: lost, since it is not read: {left}\n")
+            self.assertEqual(self.info("a.glb")["colors"], colours)
+        self.write("a.obj", obj.format("a b.mtl"))
+        self.mesh("a.obj", "-o", "a.glb")
+        self.assertEqual(self.document("a.glb")["materials"][0]["pbrMetallicRoughness"],
+                         {"baseColorFactor": [1, 0.215861, 0, 0.8], "metallicFactor": 0.75, "roughnessFactor": 0.6})
+
+    def test_units(self):
+        """Ours keep their numbers and their unit; those of others become millimetres."""
+        self.write("a.txt", "cube(2);")
+        formats = [name for name in ("glb", "gltf", "3mf", "amf") if name in cli.formats_read()]
+        for name in formats:
+            self.mesh("a.txt", "-o", "a." + name, "--unit", "in")
+            for other in formats:
+                self.assertEqual(self.mesh("a." + name, "-o", "b." + other).stderr, "")
+                self.mesh("b." + other, "-o", "c.glb")
+                self.assertEqual(self.document("c.glb")["asset"]["extras"]["unit"], "in", (name, other))
+                self.assertEqual(self.info("c.glb")["bounds"], [[0, 0, 0], [2, 2, 2]])
+            self.assertIn("STL has no place for the unit (inch)", self.mesh("a." + name, "-o", "a.stl").stderr)
+        self.write("b.amf", self.read("a.amf").replace(b"csgmesh", b"another"))
+        self.assertAlmostEqual(self.info("b.amf")["bounds"][1][0], 50.8, places=5)
+        self.mesh("b.amf", "-o", "c.glb")
+        self.assertEqual(self.document("c.glb")["asset"]["extras"]["unit"], "mm")
+
+    def test_what_is_not_read_is_said(self):
+        document = self.document("parts.glb")
+        document["asset"] = {"version": "2.0", "copyright": "somebody"}
+        document.update(textures=[{}, {}], animations=[{}], skins=[{"joints": [0]}], cameras=[{}])
+        self.write("foreign.glb", self.glb(document, self.read("parts.glb")))
+        message = self.mesh("foreign.glb", "-o", "a.stl").stderr
+        self.assertEqual(message, "csgmesh: warning: a.stl: STL has no place for the names of 2 parts (body, lid), colours"
+                         "; not read: 2 textures, 1 animation, 1 skin, 1 camera, metadata\n")
+        self.assertEqual(cli.run("foreign.glb", "-o", "b.glb", "-Werror", cwd=self.folder).returncode, 1)
 
     def test_werror_keeps_what_would_be_lost(self):
         result = cli.run("convert", "parts.glb", "-o", "a.stl", "-Werror", cwd=self.folder)

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * Wavefront OBJ -> mesh: v (with r g b behind), vn, and f in the forms v, v/t, v//n, v/t/n with
- * negative numbers counting back; polygons become fans; groups, materials and texture coordinates
- * are skipped. The vertices of the file stay the vertices of the mesh: where the corners of one
- * vertex have different normals (a crease), the mesh is read without normals rather than cut apart.
- * Does not read free-form curves and surfaces.
+ * negative numbers counting back; polygons become fans; texture coordinates are skipped. Materials
+ * come from files beside it (mtl.h), and are multiplied by the colours of v lines. The vertices of
+ * the file stay the vertices of the mesh: a vertex has the material of its first face, and where
+ * the corners of one vertex have different normals (a crease), the mesh is read without normals
+ * rather than cut apart. Does not read free-form curves and surfaces.
  */
 #include <math.h>
 
 #include "io/color.h"
+#include "io/formats/mtl.h"
 #include "io/text/scan.h"
 
 typedef struct obj {
@@ -19,6 +21,11 @@ typedef struct obj {
     uint32_t *normal_of; /* per vertex: vn + 1 of its first corner, 0 = none yet */
     size_t normal_of_room, normal_of_count;
     bool crease; /* a vertex has two normals, or a corner has none */
+    csg_mtl_library library;
+    int64_t material;      /* of the faces to come; -1: none */
+    uint32_t *material_of; /* per vertex: material + 1 of its first face, 0 = none yet */
+    size_t material_of_room, material_of_count;
+    bool has_coordinates, has_lines; /* of textures; lines and points */
 } obj;
 
 static csgm_status broken(const obj *o, const char *what)
@@ -118,6 +125,25 @@ static void note_normal(obj *o, uint32_t vertex, int64_t written)
                            3 * sizeof(float)) != 0;
 }
 
+/* False: out of memory. */
+static bool note_material(obj *o, uint32_t vertex)
+{
+    if (o->material < 0)
+        return true;
+    void *array = o->material_of;
+    if (!reserve(o, &array, &o->material_of_room, (size_t)vertex + 1, sizeof(uint32_t)))
+        return false;
+    o->material_of = array;
+    if (o->material_of_room > o->material_of_count) {
+        memset(o->material_of + o->material_of_count, 0,
+               (o->material_of_room - o->material_of_count) * sizeof(uint32_t));
+        o->material_of_count = o->material_of_room;
+    }
+    if (!o->material_of[vertex])
+        o->material_of[vertex] = (uint32_t)o->material + 1;
+    return true;
+}
+
 /* One word "v", "v/t", "v//n" or "v/t/n". */
 static const char *read_corner(obj *o, const char *word, size_t length, uint32_t *vertex)
 {
@@ -154,6 +180,8 @@ static csgm_status read_face(obj *o)
         const char *wrong = read_corner(o, word, length, &vertex);
         if (wrong)
             return broken(o, wrong);
+        if (!note_material(o, vertex))
+            return CSGM_OK;
         if (corners >= 2 && !csg_builder_triangle(o->builder, fan[0], fan[1], vertex))
             return CSGM_OK;
         fan[corners != 0] = vertex;
@@ -164,36 +192,47 @@ static csgm_status read_face(obj *o)
 /* Statements that say nothing about triangles. */
 static bool is_skipped(const char *word, size_t length)
 {
-    static const char *const known[] = {
-        "vt",  "vp",    "s",      "l",      "p",        "mg",       "usemtl",     "mtllib",
-        "lod", "bevel", "maplib", "usemap", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+    static const char *const known[] = {"vt",       "vp",       "s",          "l",        "p",
+                                        "mg",       "lod",      "bevel",      "maplib",   "usemap",
+                                        "c_interp", "d_interp", "shadow_obj", "trace_obj"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (csg_scan_is(word, length, known[i]))
             return true;
     return false;
 }
 
-/* "o name" or "g names": the rest of the line, without the blanks at its ends. */
+/* The rest of the line as a name: in the library's arena; NULL: out of memory, reported. */
+static const char *read_name(obj *o)
+{
+    size_t length;
+    const char *begin = csg_scan_rest(&o->scan, &length);
+    const char *name = csg_arena_strndup(&o->library.names, begin, length);
+    if (!name)
+        csg_context_no_memory(o->input->context);
+    return name;
+}
+
+/* "o name" or "g names". */
 static csgm_status read_part(obj *o)
 {
-    csg_scan_blanks(&o->scan);
-    const char *begin = o->scan.at, *end = begin;
-    while (end < o->scan.end && *end != '\n' && *end != '\r')
-        end++;
-    while (end > begin && (end[-1] == ' ' || end[-1] == '\t'))
-        end--;
-    char *name = NULL;
-    csg_memory *memory = &o->input->context->memory;
-    size_t length = (size_t)(end - begin);
-    if (length) {
-        name = csg_memory_alloc(memory, length + 1);
-        if (!name)
-            return csg_context_no_memory(o->input->context);
-        memcpy(name, begin, length);
-        name[length] = 0;
-    }
-    csg_builder_part(o->builder, name);
-    csg_memory_release(memory, name, length + 1);
+    const char *name = read_name(o);
+    if (!name)
+        return CSGM_ERR_MEMORY;
+    csg_builder_part(o->builder, *name ? name : NULL);
+    return CSGM_OK;
+}
+
+static csgm_status read_library(obj *o)
+{
+    const char *name = read_name(o);
+    return !name ? CSGM_ERR_MEMORY : *name ? csg_mtl_read(o->input, name, &o->library) : CSGM_OK;
+}
+
+static csgm_status read_use(obj *o)
+{
+    size_t length;
+    const char *name = csg_scan_rest(&o->scan, &length);
+    o->material = csg_mtl_find(&o->library, name, length);
     return CSGM_OK;
 }
 
@@ -209,6 +248,12 @@ static csgm_status read_line(obj *o)
         return read_face(o);
     if (length == 1 && (*word == 'o' || *word == 'g'))
         return read_part(o);
+    if (csg_scan_is(word, length, "usemtl"))
+        return read_use(o);
+    if (csg_scan_is(word, length, "mtllib"))
+        return read_library(o);
+    o->has_coordinates |= csg_scan_is(word, length, "vt");
+    o->has_lines |= length == 1 && (*word == 'l' || *word == 'p');
     if (is_skipped(word, length))
         return CSGM_OK;
     if (csg_scan_is(word, length, "cstype") || csg_scan_is(word, length, "curv") ||
@@ -235,11 +280,64 @@ static void set_normals(obj *o)
     }
 }
 
+/* Which of these the materials of some vertices say: a colour, metallic and roughness. */
+static void look_at_materials(const obj *o, bool *has_color, bool *has_finish)
+{
+    *has_color = *has_finish = false;
+    for (size_t i = 0; i < o->material_of_count && i < o->builder->vertex_count; i++) {
+        if (!o->material_of[i])
+            continue;
+        *has_color |= o->library.materials[o->material_of[i] - 1].has_color;
+        *has_finish |= o->library.materials[o->material_of[i] - 1].has_finish;
+    }
+}
+
+static void set_looks(obj *o)
+{
+    bool has_color, has_finish;
+    look_at_materials(o, &has_color, &has_finish);
+    uint8_t *colors = has_color ? csg_builder_colors(o->builder) : NULL;
+    uint16_t *finishes = has_finish ? csg_builder_materials(o->builder) : NULL;
+    for (size_t i = 0; i < o->material_of_count && i < o->builder->vertex_count; i++) {
+        if (!o->material_of[i])
+            continue;
+        const csg_mtl_material *material = &o->library.materials[o->material_of[i] - 1];
+        for (size_t k = 0; colors && k < 4; k++)
+            colors[4 * i + k] = (uint8_t)((colors[4 * i + k] * material->color[k] + 127) / 255);
+        if (finishes)
+            memcpy(finishes + 2 * i, material->finish, sizeof material->finish);
+    }
+}
+
+static void tell_what_is_left_out(const obj *o)
+{
+    const char *const facts[] = {o->library.is_missing ? "materials (their file is not there)"
+                                                       : NULL,
+                                 o->library.has_pictures ? "textures" : NULL,
+                                 o->has_coordinates ? "texture coordinates" : NULL,
+                                 o->has_lines ? "points and lines" : NULL};
+    char text[128] = "", *at = text;
+    for (size_t i = 0; i < sizeof facts / sizeof *facts; i++)
+        if (facts[i])
+            at = stpcpy(stpcpy(at, at == text ? "" : ", "), facts[i]);
+    if (*text)
+        csg_builder_leave_out(o->builder, text);
+}
+
+static void release(obj *o)
+{
+    csg_memory *memory = &o->input->context->memory;
+    csg_memory_release(memory, o->normals, o->normal_room * 3 * sizeof(float));
+    csg_memory_release(memory, o->normal_of, o->normal_of_room * sizeof(uint32_t));
+    csg_memory_release(memory, o->material_of, o->material_of_room * sizeof(uint32_t));
+    csg_mtl_library_release(&o->library);
+}
+
 csgm_status csg_obj_read(csg_input *input, csg_mesh_builder *builder)
 {
-    csg_memory *memory = &input->context->memory;
-    obj o = {.input = input, .builder = builder, .scan = csg_scan_start(input)};
+    obj o = {.input = input, .builder = builder, .scan = csg_scan_start(input), .material = -1};
     csgm_status status = CSGM_OK;
+    csg_mtl_library_init(&o.library, input->context);
     for (;;) {
         csg_scan_space(&o.scan);
         if (o.scan.at == o.scan.end || status || builder->failed)
@@ -248,9 +346,11 @@ csgm_status csg_obj_read(csg_input *input, csg_mesh_builder *builder)
         if (!status)
             csg_scan_skip_line(&o.scan);
     }
-    if (!status)
+    if (!status && !builder->failed) {
         set_normals(&o);
-    csg_memory_release(memory, o.normals, o.normal_room * 3 * sizeof(float));
-    csg_memory_release(memory, o.normal_of, o.normal_of_room * sizeof(uint32_t));
+        set_looks(&o);
+        tell_what_is_left_out(&o);
+    }
+    release(&o);
     return status;
 }

@@ -76,6 +76,18 @@ size_t csg_scan_word(csg_text_scan *s, const char **word)
     return (size_t)(s->at - *word);
 }
 
+const char *csg_scan_rest(csg_text_scan *s, size_t *length)
+{
+    csg_scan_blanks(s);
+    const char *begin = s->at, *end;
+    while (s->at < s->end && *s->at != '\n')
+        s->at++;
+    for (end = s->at; end > begin && is_blank(end[-1]);)
+        end--;
+    *length = (size_t)(end - begin);
+    return begin;
+}
+
 static char lower(char c)
 {
     return c >= 'A' && c <= 'Z' ? (char)(c + 'a' - 'A') : c;

@@ -24,6 +24,8 @@ bool csg_scan_at_line_end(csg_text_scan *scan);
 
 /* The next word on this line: its length, 0 at the line's end. */
 size_t csg_scan_word(csg_text_scan *scan, const char **word);
+/* The rest of the line without the blanks at its ends, '#' and all; the scan stands behind it. */
+const char *csg_scan_rest(csg_text_scan *scan, size_t *length);
 /* Same letters, in any case on either side. */
 bool csg_scan_is(const char *word, size_t length, const char *expected);
 
