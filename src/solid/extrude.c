@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Figures pulled straight up or turned about an axis. Straight extrusions and full turns keep exact
- * distances; a twist is a warp. With scale the solid is a frustum or a polyhedron, and so it is
- * where facets are asked for.
+ * distances; a twist is a warp, with scale or without. With scale alone the solid is a frustum or a
+ * polyhedron, and so it is where facets are asked for, or the scale is nearly 0.
  */
 #include <math.h>
 
@@ -92,6 +92,23 @@ static uint32_t helix_slices(csg_solid_job *job, const csg_facet_rule *rule, csg
     return (uint32_t)fmin(fmax(fmin(by_angle, by_length), lowest), most);
 }
 
+/* A twisted figure between z = 0 and the height. */
+static csg_node_id twisted(csg_solid_job *job, csg_node_id flat, const csg_warp *warp,
+                           double height)
+{
+    if (flat == CSG_NODE_NONE)
+        return flat;
+    flat = csg_solid_done(job, csg_build_warp(job->builder, warp, flat, job->where));
+    return extrude(job, flat, 0, height);
+}
+
+/* Where a taper's field would be a small part of the distance, exact distances serve better. */
+static bool is_mild(const double scale[2])
+{
+    const double least = 0.2, most = 10;
+    return fmin(scale[0], scale[1]) >= least && fmax(scale[0], scale[1]) <= most;
+}
+
 csg_node_id csg_solid_extrude(csg_solid_job *job, const csg_facet_rule *rule, csg_node_id flat,
                               const csg_extrusion *s)
 {
@@ -100,6 +117,12 @@ csg_node_id csg_solid_extrude(csg_solid_job *job, const csg_facet_rule *rule, cs
     bool scaled = s->scale[0] != 1 || s->scale[1] != 1;
     if (scaled && !facets && is_cone(job, flat, s, &radius))
         return cone(job, s, radius);
+    if (scaled && s->twist != 0 && !facets && is_mild(s->scale)) {
+        const csg_warp taper = {
+            .kind = CSG_WARP_TAPER,
+            .parameters = {-s->twist / s->height, 0, s->height, s->scale[0], s->scale[1]}};
+        return twisted(job, united(job, flat), &taper, s->height);
+    }
     if (scaled || (facets && s->twist != 0)) {
         csg_sweep sweep = {.height = s->height,
                            .twist = s->twist,
@@ -113,12 +136,9 @@ csg_node_id csg_solid_extrude(csg_solid_job *job, const csg_facet_rule *rule, cs
     flat = united(job, flat);
     if (s->twist == 0)
         return extrude(job, flat, 0, s->height);
-    if (flat == CSG_NODE_NONE)
-        return flat;
-    const csg_warp warp = {.kind = CSG_WARP_TWIST,
-                           .parameters = {-s->twist / s->height, 0, s->height}};
-    flat = csg_solid_done(job, csg_build_warp(job->builder, &warp, flat, job->where));
-    return extrude(job, flat, 0, s->height);
+    const csg_warp twist = {.kind = CSG_WARP_TWIST,
+                            .parameters = {-s->twist / s->height, 0, s->height}};
+    return twisted(job, flat, &twist, s->height);
 }
 
 /* ---- around ---------------------------------------------------------------------------------- */

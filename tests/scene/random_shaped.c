@@ -101,6 +101,18 @@ static csg_warp random_twist(csg_random *random)
         {uniform(random, -120, 120), uniform(random, -0.8, -0.2), uniform(random, 0, 1)}};
 }
 
+static csg_warp random_taper(csg_random *random)
+{
+    return (csg_warp){CSG_WARP_TAPER,
+                      {uniform(random, -120, 120), uniform(random, -0.8, -0.2),
+                       uniform(random, 0, 1), uniform(random, 0.3, 2), uniform(random, 0.3, 2)}};
+}
+
+static csg_warp random_twist_or_taper(csg_random *random)
+{
+    return chance(random, 0.5) ? random_twist(random) : random_taper(random);
+}
+
 static csg_node_id solid(csg_scene_builder *builder, csg_random *random)
 {
     csg_primitive_kind kind = test_random_solid_kind(random);
@@ -180,10 +192,10 @@ csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
     case 2:
         return warped(builder, (csg_warp){CSG_WARP_REVOLVE, {0}}, flat(builder, random, true));
     case 3:
-        node = warped(builder, random_twist(random), flat(builder, random, false));
+        node = warped(builder, random_twist_or_taper(random), flat(builder, random, false));
         return extrusion(builder, random, node);
     case 4:
-        return warped(builder, random_twist(random), solid(builder, random));
+        return warped(builder, random_twist_or_taper(random), solid(builder, random));
     case 5:
         return warped(builder, (csg_warp){CSG_WARP_BEND, {uniform(random, 2.6, 4)}},
                       solid(builder, random));

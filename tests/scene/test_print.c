@@ -106,6 +106,13 @@ static void test_plates_and_warps(void **state)
                "      cube(size = [6, 8, 2], center = true);\n"
                "    circle(r = 6.25);\n"
                "  }\n");
+    const csg_warp taper = {CSG_WARP_TAPER, {3, -1, 1, 0.5, 2}};
+    check_text(csg_build_warp(&builder, &taper, primitive(CSG_NODE_BOX, 3, 4, 1, 0), NOWHERE),
+               "intersection(mixed = true) {\n"
+               "  warp(\"taper\", [3, -1, 1, 0.5, 2])\n"
+               "    cube(size = [6, 8, 2], center = true);\n"
+               "  circle(r = 12.5);\n"
+               "}\n");
     csg_node_id grown =
         csg_build_offset(&builder, 2, primitive(CSG_NODE_SPHERE, 1, 0, 0, 0), NOWHERE);
     check_text(csg_build_offset(&builder, -2, grown, NOWHERE), "sphere(r = 1);\n");

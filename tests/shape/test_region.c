@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "shape/plane/region.h"
+#include "shape/shape_kernel.h"
 
 static csg_memory memory;
 static csg_outline outline;
@@ -266,6 +267,14 @@ static void check_cell(const csg_shape_near *list, const csg_shape_cell *cell)
     csg_shape_values(region, NULL, list, x, y, z, COUNT, values);
     assert_memory_equal(own, whole, sizeof own);
     assert_memory_equal(values, whole[0], sizeof values);
+    for (size_t count = 1; count <= COUNT; count += 1 + csg_random_below(&dice, 15)) {
+        csg_shape_gradients(region, &csg_shape_kernel_scalar, list, x, y, z, count, own[0], own[1],
+                            own[2], own[3]);
+        csg_shape_values(region, &csg_shape_kernel_scalar, list, x, y, z, count, values);
+        for (int k = 0; k < 4; k++)
+            assert_memory_equal(own[k], whole[k], count * sizeof *own[k]);
+        assert_memory_equal(values, whole[0], count * sizeof *values);
+    }
 }
 
 /* Smaller and smaller cells around a place: on the outline, beside it, or anywhere. */

@@ -6,6 +6,8 @@
  *   slice    constant
  *   twist    rows x and y turn by rate rho, and their part along z, rate times a coordinate of the
  *            image, changes by rate times how far the image moves
+ *   taper    as a twist of what was divided: on the way the rows of the quotient change by
+ *            |s'| / s^2, their part along z by what the quotient moves and by |s'|^2 / s^2 of it
  *   bend     the row along the circle is radius / s times a unit vector around the line, whose
  *            derivative is 1 / s^2 in size; the row across turns by asin(rho / s)
  */
@@ -88,6 +90,50 @@ static bool pass_twist(const float *own, const double q[3], double rho, passage 
     p->kink[1] = -turning * x;
     p->change[0] = p->change[1] = turns ? fabs(rate) * rho * length_of(1, steep) : 0;
     p->norm = steep;
+    p->image[0] = x;
+    p->image[1] = y;
+    p->image[2] = q[2];
+    return true;
+}
+
+static bool pass_taper(const float *own, const double q[3], double rho, passage *p)
+{
+    double low = (double)own[CSG_TAPER_LOW], high = (double)own[CSG_TAPER_HIGH];
+    double rate = (double)own[CSG_TAPER_RATE];
+    const double grow[2] = {(double)own[CSG_TAPER_X], (double)own[CSG_TAPER_Y]};
+    double z = fmin(fmax(q[2], low), high), from = fmin(fmax(q[2] - rho, low), high) - low,
+           to = fmin(fmax(q[2] + rho, low), high) - low;
+    double scale[2], least = INFINITY, steepest = fmax(fabs(grow[0]), fabs(grow[1]));
+    for (int k = 0; k < 2; k++) {
+        scale[k] = 1 + grow[k] * (z - low);
+        least = fmin(least, fmin(1 + grow[k] * from, 1 + grow[k] * to));
+    }
+    double r = (length_of(q[0], q[1]) + rho) / least; /* of the quotients, at most */
+    if (!(r <= (double)own[CSG_TAPER_REACH]))
+        return false;
+    double angle = -rate * z;
+    double c = (double)wave((float)angle, 1), s = (double)wave((float)angle, 0);
+    double u = q[0] / scale[0], w = q[1] / scale[1], x = c * u - s * w, y = s * u + c * w;
+    bool turns = q[2] + rho > low && q[2] - rho < high;
+    double turning = turns ? -rate : 0, less_u = turns ? u * grow[0] / scale[0] : 0,
+           less_w = turns ? w * grow[1] / scale[1] : 0;
+    const double rows[3][3] = {
+        {c / scale[0], -s / scale[1], -turning * y - (c * less_u - s * less_w)},
+        {s / scale[0], c / scale[1], turning * x - (s * less_u + c * less_w)},
+        {0, 0, 1}};
+    memcpy(p->row, rows, sizeof rows);
+    p->is_kinked = turns && (q[2] - rho < low || q[2] + rho > high);
+    p->kink[0] = -rows[0][2];
+    p->kink[1] = -rows[1][2];
+    double shrinking = steepest / least /* |s'| / s at most */, turn = fabs(rate);
+    double along_z = turns ? r * (turn + shrinking) : 0; /* how far the image moves per length */
+    double moved = 1 / least + along_z;
+    if (turns) {
+        double across = (turn + shrinking) / least;
+        double along = turn * moved + shrinking * (moved + r * (shrinking + turn));
+        p->change[0] = p->change[1] = rho * length_of(across, along);
+    }
+    p->norm = csg_shear_norm(1 / least, along_z);
     p->image[0] = x;
     p->image[1] = y;
     p->image[2] = q[2];

@@ -45,7 +45,7 @@ static csg_warp_kind warp_kind(csg_module_call *call, uint32_t index)
                 break;
     if (kind == CSG_WARP_COUNT)
         csg_argument_error(call, index, CSG_DIAG_BAD_TYPE,
-                           "kind must be \"revolve\", \"slice\", \"twist\" or \"bend\"");
+                           "kind must be \"revolve\", \"slice\", \"twist\", \"taper\" or \"bend\"");
     return kind;
 }
 

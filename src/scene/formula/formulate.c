@@ -52,6 +52,27 @@ static point_terms twist_terms(csg_terms *t, const double *v, const csg_term *p)
                           p[2]}};
 }
 
+/* 1 at low, `end` at high. */
+static csg_term taper_scale_terms(csg_terms *t, const double *v, csg_term z, double end)
+{
+    double grow = (end - 1) / (v[CSG_TAPER_HIGH] - v[CSG_TAPER_LOW]);
+    return csg_term_add_number(t, csg_term_mul_number(t, z, grow), 1 - grow * v[CSG_TAPER_LOW]);
+}
+
+static point_terms taper_terms(csg_terms *t, const double *v, const csg_term *p)
+{
+    csg_term z = csg_term_clamp(t, p[2], v[CSG_TAPER_LOW], v[CSG_TAPER_HIGH]);
+    const csg_term divided[3] = {csg_term_div(t, p[0], taper_scale_terms(t, v, z, v[CSG_TAPER_X])),
+                                 csg_term_div(t, p[1], taper_scale_terms(t, v, z, v[CSG_TAPER_Y])),
+                                 p[2]};
+    double twist[CSG_WARP_PARAMETERS] = {0};
+    twist[CSG_TWIST_RATE] = v[CSG_TAPER_RATE];
+    twist[CSG_TWIST_LOW] = v[CSG_TAPER_LOW];
+    twist[CSG_TWIST_HIGH] = v[CSG_TAPER_HIGH];
+    twist[CSG_TWIST_REACH] = v[CSG_TAPER_REACH];
+    return twist_terms(t, twist, divided);
+}
+
 /* Behind the ends the angle runs back to 0: |phi| is cut by most (180 - |phi|) / (180 - most). */
 static point_terms bend_terms(csg_terms *t, const double *v, const csg_term *p)
 {
@@ -85,6 +106,8 @@ static point_terms warped(csg_terms *t, const csg_warp *warp, const csg_term *p)
         return slice_terms(t, warp->parameters, p);
     case CSG_WARP_TWIST:
         return twist_terms(t, warp->parameters, p);
+    case CSG_WARP_TAPER:
+        return taper_terms(t, warp->parameters, p);
     case CSG_WARP_BEND:
         return bend_terms(t, warp->parameters, p);
     case CSG_WARP_COUNT:

@@ -40,6 +40,14 @@ static bool twist_settle(csg_warp *warp, csg_box child, const char **why)
     return isfinite(reach);
 }
 
+static bool taper_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    double reach = csg_box_is_empty(child) ? 0 : 1.25 * farthest_from_axis(child);
+    *why = "what is tapered must end somewhere";
+    warp->parameters[CSG_TAPER_REACH] = reach;
+    return isfinite(reach);
+}
+
 static bool bend_settle(csg_warp *warp, csg_box child, const char **why)
 {
     double *v = warp->parameters, radius = v[CSG_BEND_RADIUS];
@@ -73,6 +81,14 @@ static bool twist_check(const double *v, csg_refusal *refusal)
 {
     return v[CSG_TWIST_LOW] <= v[CSG_TWIST_HIGH] ||
            csg_refuse(refusal, "the twist ends below its beginning");
+}
+
+static bool taper_check(const double *v, csg_refusal *refusal)
+{
+    if (!(v[CSG_TAPER_LOW] < v[CSG_TAPER_HIGH]))
+        return csg_refuse(refusal, "the taper ends at or below its beginning");
+    return csg_check_positive(refusal, v[CSG_TAPER_X], "the scale along x") &&
+           csg_check_positive(refusal, v[CSG_TAPER_Y], "the scale along y");
 }
 
 static bool bend_check(const double *v, csg_refusal *refusal)
@@ -114,6 +130,34 @@ static csg_warped twist_at(const double *v, csg_vec3 p)
     return out;
 }
 
+static csg_warped taper_at(const double *v, csg_vec3 p)
+{
+    double low = v[CSG_TAPER_LOW], high = v[CSG_TAPER_HIGH], reach = v[CSG_TAPER_REACH];
+    double rate = v[CSG_TAPER_RATE] * (PI / 180), z = fmin(fmax(p.z, low), high);
+    double grow_x = (v[CSG_TAPER_X] - 1) / (high - low),
+           grow_y = (v[CSG_TAPER_Y] - 1) / (high - low);
+    double scale_x = 1 + grow_x * (z - low), scale_y = 1 + grow_y * (z - low);
+    double u = p.x / scale_x, w = p.y / scale_y, rho = hypot(u, w);
+    double inward = rho > reach ? reach / rho : 1;
+    double angle = -rate * z, c = inward * cos(angle), s = inward * sin(angle);
+    double x = c * u - s * w, y = s * u + c * w;
+    bool between = p.z > low && p.z < high;
+    double turning = between ? -rate : 0;
+    double less_u = between ? u * grow_x / scale_x : 0, less_w = between ? w * grow_y / scale_y : 0;
+    csg_warped out = {vec3(x, y, p.z),
+                      {vec3(c / scale_x, s / scale_x, 0), vec3(-s / scale_y, c / scale_y, 0),
+                       vec3(-turning * y - (c * less_u - s * less_w),
+                            turning * x - (s * less_u + c * less_w), 1)}};
+    if (rho <= reach || rho == 0)
+        return out;
+    csg_vec3 away = vec3(x / reach, y / reach, 0);
+    for (int i = 0; i < 3; i++) { /* beyond the reach only the part around the axis is left */
+        csg_vec3 *column = &out.column[i];
+        *column = csg_vec3_sub(*column, csg_vec3_scale(away, csg_vec3_dot(away, *column)));
+    }
+    return out;
+}
+
 static csg_warped bend_at(const double *v, csg_vec3 p)
 {
     double radius = v[CSG_BEND_RADIUS], nearest = v[CSG_BEND_NEAREST], most = v[CSG_BEND_ANGLE];
@@ -135,7 +179,9 @@ static csg_warped bend_at(const double *v, csg_vec3 p)
 /* ---- the Lipschitz constant -------------------------------------------------------------------
  * Twist: around the axis, a point's image moves by rho rate for a step along z; the largest
  * singular value of [[1, k], [0, 1]] is (k + sqrt(k^2 + 4)) / 2. Bend: steps around the line grow
- * by radius / s; near the line a step outwards moves the image by radius phi / nearest as well. */
+ * by radius / s; near the line a step outwards moves the image by radius phi / nearest as well.
+ * Taper: a step across moves the image by m = 1 / s at most; one along z by k: rho rate around the
+ * axis, and rho |s'| / s, which is towards it where both scales are one. */
 
 static double revolve_scale(const double *v)
 {
@@ -151,6 +197,16 @@ static double twist_scale(const double *v)
 {
     double k = fabs(v[CSG_TWIST_RATE]) * (PI / 180) * v[CSG_TWIST_REACH];
     return 2 / (k + sqrt(k * k + 4));
+}
+
+static double taper_scale(const double *v)
+{
+    double length = v[CSG_TAPER_HIGH] - v[CSG_TAPER_LOW], x = v[CSG_TAPER_X], y = v[CSG_TAPER_Y];
+    double around = fabs(v[CSG_TAPER_RATE]) * (PI / 180) * v[CSG_TAPER_REACH];
+    double inward =
+        v[CSG_TAPER_REACH] * fmax(fabs(x - 1) / fmin(1, x), fabs(y - 1) / fmin(1, y)) / length;
+    double k = x == y ? hypot(around, inward) : around + inward, m = 1 / fmin(1, fmin(x, y));
+    return 1 / csg_shear_norm(m, k);
 }
 
 static double bend_scale(const double *v)
@@ -184,6 +240,21 @@ static csg_box slice_box(const double *v, csg_box child, bool all_round)
 static csg_box twist_box(const double *v, csg_box child, bool all_round)
 {
     return ring_box(farthest_from_axis(child), child.min.z, child.max.z);
+}
+
+static csg_box taper_box(const double *v, csg_box child, bool all_round)
+{
+    double r = farthest_from_axis(child);
+    /* what lies beyond the reach is held there, wherever it is */
+    bool is_held = r >= v[CSG_TAPER_REACH] && r > 0;
+    csg_box box = ring_box(is_held ? INFINITY : r, child.min.z, child.max.z);
+    if (is_held || csg_box_is_empty(box))
+        return box;
+    box.max.x = r * fmax(1, v[CSG_TAPER_X]);
+    box.max.y = r * fmax(1, v[CSG_TAPER_Y]);
+    box.min.x = -box.max.x;
+    box.min.y = -box.max.y;
+    return box;
 }
 
 static csg_box bend_box(const double *v, csg_box child, bool all_round)

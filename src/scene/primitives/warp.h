@@ -8,13 +8,14 @@
 #ifndef CSG_SCENE_WARP_H
 #define CSG_SCENE_WARP_H
 
+#include <math.h>
 #include <stdint.h>
 
 #include "base/geometry.h"
 #include "scene/primitives/sizes.h"
 
 enum {
-    CSG_WARP_PARAMETERS = 5,
+    CSG_WARP_PARAMETERS = 6,
     CSG_MOST_WARPS = 8 /* one below the other */
 };
 
@@ -30,6 +31,14 @@ bool csg_warp_check(const csg_warp *warp, csg_refusal *refusal);
 /* Fills in what depends on the box of the child's solid. False: the warp cannot be done: the box is
  * infinite or reaches where the map tears; *why says so in one sentence. */
 bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why);
+
+/* The larger singular value of [[m, k], [0, 1]], m > 0: no matrix [[A, w], [0, 1]] with |A| <= m and
+ * |w| <= k has a larger one. */
+static inline double csg_shear_norm(double m, double k)
+{
+    double sum = m * m + k * k + 1;
+    return sqrt((sum + sqrt(fmax(sum * sum - 4 * m * m, 0))) / 2);
+}
 
 typedef struct csg_warped {
     csg_vec3 at;        /* w(p) */

@@ -151,11 +151,11 @@ static csg_node_id append_warp(csg_scene_builder *builder, const csg_warp *warp,
     return csg_build_append(builder, node, &child, 1);
 }
 
-/* Beyond its reach a twist holds the field; a wall around it makes it fall again. Inside the solid
- * the wall is farther away than the surface. */
-static csg_node_id wall(csg_scene_builder *builder, const csg_warp *warp, csg_span where)
+/* Beyond its reach a twist or a taper holds the field; a wall around it makes it fall again. Inside
+ * the solid the wall is farther away than the surface. */
+static csg_node_id wall(csg_scene_builder *builder, double radius, csg_span where)
 {
-    return csg_build_primitive(builder, CSG_NODE_CIRCLE, &warp->parameters[CSG_TWIST_REACH], where);
+    return csg_build_primitive(builder, CSG_NODE_CIRCLE, &radius, where);
 }
 
 /* The half-space on the side of +z from the line z = radius, turned about it by `angle`. */
@@ -199,9 +199,13 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
 static csg_node_id room_of(csg_scene_builder *builder, const csg_warp *warp, csg_box child,
                            csg_span where)
 {
+    const double *v = warp->parameters;
     switch ((csg_warp_kind)warp->kind) {
     case CSG_WARP_TWIST:
-        return wall(builder, warp, where);
+        return wall(builder, v[CSG_TWIST_REACH], where);
+    case CSG_WARP_TAPER:
+        return wall(builder, v[CSG_TAPER_REACH] * fmax(1, fmax(v[CSG_TAPER_X], v[CSG_TAPER_Y])),
+                    where);
     case CSG_WARP_BEND:
         return bend_room(builder, warp, child, where);
     case CSG_WARP_REVOLVE: /* these are not cut */

@@ -97,9 +97,11 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
     case CSG_NODE_WARP:
         if (scene->warps[node->payload].kind == CSG_WARP_BEND)
             return "bent solids";
-        return scene->warps[node->payload].kind == CSG_WARP_TWIST && !(child->flags & CSG_FLAG_FLAT)
-                   ? "twisted solids"
-                   : NULL;
+        if (child->flags & CSG_FLAG_FLAT)
+            return NULL;
+        if (scene->warps[node->payload].kind == CSG_WARP_TAPER)
+            return "tapered solids";
+        return scene->warps[node->payload].kind == CSG_WARP_TWIST ? "twisted solids" : NULL;
     case CSG_NODE_OFFSET:
         if (node->flags & CSG_FLAG_FLAT)
             return NULL;
@@ -365,12 +367,30 @@ static void put_twist(const csg_printer *out, const double *v)
     csg_put(out, slices);
 }
 
+/* The same, ever larger or smaller: turned first, and then scaled. */
+static void put_taper(const csg_printer *out, const double *v)
+{
+    double height = v[CSG_TAPER_HIGH] - v[CSG_TAPER_LOW], turn = v[CSG_TAPER_RATE] * height;
+    char slices[48];
+    put_shift(out, 0, 0, v[CSG_TAPER_LOW]);
+    csg_put_argument(out, "linear_extrude(", "height", height);
+    csg_put_argument(out, ", ", "twist", -turn);
+    csg_put(out, ", scale = ");
+    csg_put_list(out, &v[CSG_TAPER_X], 2);
+    snprintf(slices, sizeof slices, ", slices = %.0f)", fmin(ceil(fabs(turn) / 3) + 1, 1e4));
+    csg_put(out, slices);
+    csg_put_argument(out, " rotate(", "a", v[CSG_TAPER_RATE] * v[CSG_TAPER_LOW]);
+    csg_put(out, ")\n");
+}
+
 static void put_warp(const csg_printer *out, const csg_warp *warp)
 {
     if (warp->kind == CSG_WARP_REVOLVE)
         csg_put(out, "rotate_extrude(" FACETS ")\n");
     else if (warp->kind == CSG_WARP_SLICE)
         csg_put(out, "projection(cut = true)\n");
+    else if (warp->kind == CSG_WARP_TAPER)
+        put_taper(out, warp->parameters);
     else
         put_twist(out, warp->parameters);
 }

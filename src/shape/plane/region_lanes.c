@@ -59,6 +59,25 @@ static void search_node(const csg_segment_tree *tree, uint32_t node, search *s)
     }
 }
 
+static bool has_nodes(csg_segment_list list)
+{
+    for (uint32_t i = 0; i < list.count; i++)
+        if (!(list.items[i] & CSG_SEGMENT_LEAF))
+            return true;
+    return false;
+}
+
+/* The nearest in each point's first leaf. */
+static void search_first_leaves(const csg_segment_tree *tree, search *s)
+{
+    for (int l = 0; l < LANES; l++) {
+        csg_segment_hit hit =
+            csg_segment_nearest_in_leaf(tree, (uint32_t)s->first[l], s->x[l], s->y[l]);
+        s->squared[l] = hit.squared;
+        s->segment[l] = hit.segment;
+    }
+}
+
 static void nearest_segments(const csg_segment_tree *tree, csg_segment_list list, const double *x,
                              const double *y, csg_segment_hit *hits)
 {
@@ -71,6 +90,9 @@ static void nearest_segments(const csg_segment_tree *tree, csg_segment_list list
     memcpy(&s.first, first, sizeof s.first);
     s.squared = s.first * 0 + INFINITY;
     s.segment = s.first * CSG_SEGMENT_LANES;
+    bool is_first_known = has_nodes(list); /* below these a bound saves most of the search */
+    if (is_first_known)
+        search_first_leaves(tree, &s);
     for (uint32_t i = 0; i < list.count; i++) {
         uint32_t item = list.items[i], number = item & ~CSG_SEGMENT_LEAF;
         if (item & CSG_SEGMENT_LEAF)
@@ -80,7 +102,7 @@ static void nearest_segments(const csg_segment_tree *tree, csg_segment_list list
     }
     for (int l = 0; l < LANES; l++) {
         hits[l] = (csg_segment_hit){s.squared[l], (uint32_t)s.segment[l]};
-        if (s.is_first_seen[l])
+        if (is_first_known || s.is_first_seen[l])
             continue;
         csg_segment_hit own = csg_segment_nearest_in_leaf(tree, (uint32_t)first[l], x[l], y[l]);
         if (own.squared <= hits[l].squared)
