@@ -195,6 +195,25 @@ class PartsTest(cli.CliTest):
             self.assertLess(extras["measured"], extras["error"] * (1 + 1e-9))
             self.assertLess(extras["error"], tolerance * (1 + 1e-9))
 
+    def test_what_repeats_is_one_mesh(self):
+        """Also where cells lie otherwise in each, so that faces are cut otherwise into triangles; not where something else differs."""
+        cubes = "for (i = [0 : 19]) translate([10 * i, 0, 0]) cube(5);"
+        for text, meshes, nodes, wanted in ((cubes, 1, 20, 2500), ("for (i = [0 : 9]) translate([i, 3 * i, 0]) cube(2);", 1, 10, 80),
+                                            ("for (i = [0 : 3]) translate([10 * i, 0, 0]) color([i / 3, 0, 0]) cube(5);", 1, 1, 500),
+                                            ("for (i = [0 : 3]) translate([10 * i, 0, 0]) rotate(90 * i) cube([5, 4, 3], center = true);", 2, 4, 240)):
+            self.write("scene.txt", text)
+            self.assertEqual(cli.run("scene.txt", "-o", "a.glb", "-o", "a.ply", cwd=self.folder).returncode, 0)
+            document, _ = glb_document(self.read("a.glb"))
+            self.assertEqual(len(document["meshes"]), meshes, text)
+            self.assertEqual(sum("mesh" in node for node in document["nodes"]), nodes, text)
+            if not cli.has_library("tinygltf"):
+                continue
+            a, b = (json.loads(cli.run("info", "--json", name, cwd=self.folder).stdout)["mesh"] for name in ("a.glb", "a.ply"))
+            for key in ("triangles", "bounds", "components", "manifold"):
+                self.assertEqual(a[key], b[key], (text, key))
+            self.assertAlmostEqual(a["volume"], wanted, delta=1e-3)
+            self.assertAlmostEqual(b["volume"], wanted, delta=1e-3)
+
     def test_other_formats_hold_all_parts(self):
         for name in ("a.stl", "a.ply", "a.off"):
             self.mesh(SCENE, name)

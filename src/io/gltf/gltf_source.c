@@ -141,7 +141,8 @@ csgm_status csg_gltf_source_make(csgm_context *context, const csgm_mesh_view *me
     csgm_status status = csg_gltf_take_levels(context, mesh, options, out);
     if (status)
         return status;
-    if ((!mesh->equal_cells && !csg_gltf_find_pieces(out)) ||
+    bool may_repeat = !mesh->equal_cells;
+    if ((may_repeat && (!csg_gltf_lay_out_components(out) || !csg_gltf_find_pieces(out))) ||
         (options->uv != CSGM_UV_NONE && !csg_gltf_project(out, options->uv)))
         return csg_context_no_memory(context);
     for (size_t i = 0; i < out->shape_count; i++)

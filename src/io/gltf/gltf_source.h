@@ -18,6 +18,9 @@ void csg_gltf_source_release(csg_gltf_source *source); /* all zero: no-op */
  * part of each. CSGM_ERR_ARGUMENT (reported): they do not have the same arrays. */
 csgm_status csg_gltf_take_levels(csgm_context *context, const csgm_mesh_view *mesh,
                                  const csgm_write_options *options, csg_gltf_source *out);
+/* gltf_components.c: components that are the same, moved, stand behind one another in the same
+ * order. False: out of memory, not reported. */
+bool csg_gltf_lay_out_components(csg_gltf_source *source);
 /* gltf_pieces.c: shapes of which pieces repeat become a shape for each piece. False: out of memory,
  * not reported. */
 bool csg_gltf_find_pieces(csg_gltf_source *source);
