@@ -322,11 +322,15 @@ csgm_status csg_diff_measure_samples(csg_diff_pair *pair, int from, uint64_t cou
 
 /* ---- the worst places ----------------------------------------------------------------------- */
 
+/* What has moved far is one change as far around, but no more than a quarter of the whole: so a
+ * place stands for its surroundings. */
 static bool is_apart(const csg_diff_pair *pair, const csgm_diff_distance *out, csg_vec3 at,
-                     double apart)
+                     double diagonal)
 {
     for (uint32_t i = 0; i < out->worst_count; i++) {
         csg_vec3 away = csg_vec3_sub(at, csg_triangle_frame_enter(&pair->frame, out->worst[i].at));
+        double moved = out->worst[i].distance * pair->frame.scale;
+        double apart = fmax(0.05 * diagonal, fmin(moved, 0.25 * diagonal));
         if (csg_vec3_dot(away, away) < apart * apart)
             return false;
     }
@@ -342,13 +346,14 @@ static csg_vec3 foot_of(const csg_tree *tree, uint32_t place, csg_vec3 p)
 void csg_diff_find_worst(const csg_diff_pair *pair, int from, csgm_diff_distance *out)
 {
     const csg_diff_side *side = &pair->sides[from];
-    double apart = 0.05 * csg_vec3_norm(csg_box_size(pair->box)) * pair->frame.scale;
+    double diagonal = csg_vec3_norm(csg_box_size(pair->box)) * pair->frame.scale;
     while (out->worst_count < CSGM_DIFF_WORST_MOST) {
         size_t best = SIZE_MAX;
         double least = pair->precision;
         for (size_t i = 0; i < side->point_count; i++) {
             uint32_t point = side->points[i];
-            if (side->distance[point] > least && is_apart(pair, out, pair->points[point], apart)) {
+            if (side->distance[point] > least &&
+                is_apart(pair, out, pair->points[point], diagonal)) {
                 least = side->distance[point];
                 best = point;
             }

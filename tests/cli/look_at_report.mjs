@@ -70,13 +70,13 @@ async function useHands(page, seen) {
   await page.keyboard.press("ArrowLeft");
   seen.keyed = await cameraOf(page);
   seen.modes = {};
-  for (const key of ["1", "2", "3", "4"]) {
+  for (const key of ["1", "2", "3", "4", "5"]) {
     await page.keyboard.press(key);
     seen.modes[await page.evaluate(() => window.report.view.mode)] = await page.evaluate(lookAtCanvas);
   }
   await page.locator("#slider").fill("80");
   seen.split = await page.evaluate(() => [window.report.view.mode, window.report.view.split]);
-  await page.keyboard.press("4");
+  await page.keyboard.press("5");
   await page.locator("#fit").click();
   seen.fitted = await landed(page);
   await useFingers(page, seen);
@@ -89,6 +89,11 @@ async function visit(page, seen) {
   seen.pairs = await page.locator("#pairs button").allInnerTexts();
   seen.canvas = await page.evaluate(lookAtCanvas);
   seen.worst = await page.locator("#worst button").count();
+  seen.folded = await page.evaluate(() => { const box = document.querySelector("#pairs details");
+    return box && [box.querySelectorAll("button").length, box.open]; });
+  seen.order = await page.evaluate(() => Object.fromEntries(["changes", "view", "worst"].map((id) =>
+    [id, document.getElementById(id).getBoundingClientRect().top])));
+  seen.panes = await page.evaluate(() => window.report.view.gl ? window.report.view.panes().map((pane) => [pane.side ?? "", pane.y]) : []);
   seen.overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
   if (picture) await page.screenshot({ path: picture });
   if (!seen.canvas) return;

@@ -235,6 +235,8 @@ class Page(ReportTest):
         seen = look(self.path("out.html"), self.path("page.png"))
         self.assertEqual((seen["errors"], seen["requests"]), ([], []))
         self.assertEqual(seen["title"], "different: b.ply")
+        self.assertEqual(seen["panes"], [["a", 0], ["b", 0]])
+        self.assertLess(seen["order"]["changes"], seen["order"]["view"], "what changed comes first")
         for word in ("DIFFERENT", "apart, more than 0.01", "What changed", "3 through holes became 2",
                      "Worst places", "Volume +"):
             self.assertIn(word, seen["text"])
@@ -249,10 +251,10 @@ class Page(ReportTest):
         self.assertNotEqual(start["azimuth"], dragged["azimuth"])
         self.assertLess(zoomed["distance"], dragged["distance"])
         self.assertNotEqual(keyed["azimuth"], zoomed["azimuth"])
-        self.assertEqual(set(seen["modes"]), {"a", "b", "split", "heat"})
+        self.assertEqual(set(seen["modes"]), {"a", "b", "split", "heat", "side"})
         for mode, canvas in seen["modes"].items():
             self.assertGreater(canvas["drawn"], 0.05, mode)
-            self.assertEqual(canvas["red"] > 30, mode == "heat", mode)
+            self.assertEqual(canvas["red"] > 30, mode in ("heat", "side"), mode)
         self.assertEqual(seen["split"], ["split", 0.8])
         self.assertAlmostEqual(seen["fitted"]["distance"], start["distance"], places=6)
         self.check_fingers(seen["touch"])
@@ -261,7 +263,7 @@ class Page(ReportTest):
         self.assertNotEqual(seen["flown"]["target"], start["target"])
         shown, x, width = seen["ring"]
         self.assertEqual(shown, "visible")
-        self.assertAlmostEqual(x, width / 2, delta=2)
+        self.assertAlmostEqual(x % (width / 2), width / 4, delta=2)  # in the middle of its pane
 
     def check_fingers(self, seen):
         before, turned, pinched, moved = (seen[name] for name in ("before", "turned", "pinched", "moved"))
@@ -284,6 +286,12 @@ class Page(ReportTest):
         self.assertIn("SAME", seen["text"])
         self.assertEqual(seen["worst"], 0)
         self.assertGreater(seen["canvas"]["drawn"], 0.05)
+        self.diff(1, "a.ply", "b.ply", "--html", "other.html")
+        seen = look(self.path("other.html"), self.path("page.png"), "390x844", "dark")
+        self.assertEqual((seen["errors"], seen["overflow"]), ([], False))
+        self.assertEqual([side for side, _ in seen["panes"]], ["a", "b"])
+        self.assertGreater(seen["panes"][1][1], 100, "one above the other")
+        self.assertLess(seen["order"]["changes"], seen["order"]["view"])
 
 
 def read_png_size(data):
@@ -354,6 +362,7 @@ class Job(ReportTest):
         self.assertEqual(seen["word"], "DIFFERENT")
         self.assertEqual(seen["title"], "2 of 3 same")
         self.assertTrue(seen["pairs"][0].startswith("plate.ply"), "what differs comes first")
+        self.assertEqual(seen["folded"], [2, False])
         self.assertIn("3 through holes became 2", seen["text"])
         self.assertGreater(seen["canvas"]["red"], 30)
         if os.environ.get("CSGMESH_KEEP"):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The models of one comparison on a canvas (WebGL 2): A, B, A beside B at a line, or the heat map; a camera
+// The models of one comparison on a canvas (WebGL 2): A, B, side by side, A beside B at a line, or the heat map; a camera
 // that turns, moves, zooms and flies. Triangles are shaded by their own normals, so every facet shows.
 const VERTEX = `#version 300 es
 in vec3 position; in float heat; in vec3 color;
@@ -25,8 +25,10 @@ void main() {
   if (dot(normal, toEye) < 0.0) normal = -normal;
   vec3 light = normalize(toEye - 0.55 * right + 0.8 * up);
   float lit = 0.42 + 0.62 * max(dot(normal, light), 0.0);
-  if (paint == 2) lit = 0.35 + 0.65 * lit;
-  vec3 base = paint == 0 ? plain : paint == 1 ? own : ramp(hot);
+  int kind = paint & 3;
+  if (kind == 2) lit = 0.35 + 0.65 * lit;
+  vec3 base = kind == 0 ? plain : kind == 1 ? own : ramp(hot);
+  if (paint > 3) base = mix(base, ramp(hot), smoothstep(0.03, 0.07, hot));
   if (!gl_FrontFacing) base = mix(base, vec3(0.75, 0.2, 0.45), 0.6);
   pixel = vec4(base * lit, 1.0);
 }`;
@@ -48,7 +50,7 @@ class View {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!this.gl) return;
     this.program = this.build();
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    new ResizeObserver(() => (this.untouched && this.models ? this.fit(false) : this.draw())).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     this.listen();
   }
@@ -154,14 +156,29 @@ class View {
       azimuth: Math.atan2(this.toward[1], this.toward[0]), elevation: Math.asin(this.toward[2]),
     };
     this.place = null;
+    this.untouched = true;
     if (flies) return this.fly(camera);
     this.camera = camera;
     this.draw();
   }
 
+  // What the canvas is divided into, in CSS pixels: two panes along its longer side where both models stand side by side.
+  panes() {
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (this.mode !== "side") return [{ x: 0, y: 0, width, height }];
+    return width >= height
+      ? [{ side: "a", x: 0, y: 0, width: width / 2, height }, { side: "b", x: width / 2, y: 0, width: width / 2, height }]
+      : [{ side: "a", x: 0, y: 0, width, height: height / 2 }, { side: "b", x: 0, y: height / 2, width, height: height / 2 }];
+  }
+
+  aspect() {
+    const pane = this.panes()[0];
+    return pane.width / Math.max(1, pane.height) || 1;
+  }
+
   fitDistance() {
     const { right, up } = this.axes(Math.atan2(this.toward[1], this.toward[0]), Math.asin(this.toward[2]));
-    const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight) || 1;
+    const aspect = this.aspect();
     let distance = 0;
     for (let i = 0; i < 8; i++) {
       const corner = this.size.map((v, k) => (i >> k & 1 ? v : -v) / 2);
@@ -180,6 +197,7 @@ class View {
 
   turn(dx, dy) {
     const limit = Math.PI / 2 - 0.01;
+    this.untouched = false;
     this.camera.azimuth -= dx * 0.008;
     this.camera.elevation = Math.min(limit, Math.max(-limit, this.camera.elevation + dy * 0.008));
     this.draw();
@@ -187,13 +205,15 @@ class View {
 
   zoom(factor) {
     const distance = this.camera.distance * factor;
+    this.untouched = false;
     this.camera.distance = Math.min(40 * this.radius, Math.max(0.004 * this.radius, distance));
     this.draw();
   }
 
   move(dx, dy) {
     const { right, up } = this.axes(this.camera.azimuth, this.camera.elevation);
-    const step = (2 * this.camera.distance * Math.tan(HALF_ANGLE)) / this.canvas.clientHeight;
+    const step = (2 * this.camera.distance * Math.tan(HALF_ANGLE)) / this.panes()[0].height;
+    this.untouched = false;
     this.camera.target = add(add(this.camera.target, right, -dx * step), up, dy * step);
     this.draw();
   }
@@ -222,6 +242,7 @@ class View {
   flyTo(place) {
     const at = add(place.at, this.middle, -1), out = this.outward(place.side, at);
     this.place = place;
+    this.untouched = false;
     this.fly({
       target: at, distance: Math.min(this.fitDistance(), Math.max(7 * place.distance, 1.1 * this.radius)),
       azimuth: Math.atan2(out[1], out[0]), elevation: Math.min(1.2, Math.max(-1.2, Math.asin(out[2]))),
@@ -273,7 +294,7 @@ class View {
     gl.scissor(0, 0, width, height);
     gl.clearColor(background[0], background[1], background[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const frame = this.matrix(width / height);
+    const frame = this.matrix(this.aspect());
     gl.uniformMatrix4fv(places.matrix, true, frame.rows.flat());
     for (const name of ["eye", "right", "up"]) gl.uniform3fv(places[name], frame[name]);
     return { width, height, frame };
@@ -282,12 +303,20 @@ class View {
   draw() {
     const gl = this.gl;
     if (!gl || !this.models) return;
-    const { width, height, frame } = this.begin(), places = this.places;
+    const { width, height, frame } = this.begin(), places = this.places, ratio = width / this.canvas.clientWidth;
     gl.uniform3fv(places.scale, this.size);
     gl.uniform3fv(places.corner, this.size.map((v) => -v / 2));
     gl.uniform3fv(places.stops, this.stops);
     const cut = Math.round(this.split * width);
-    if (this.mode === "split") {
+    if (this.mode === "side") {
+      for (const pane of this.panes()) {
+        const low = this.canvas.clientHeight - pane.y - pane.height;
+        const box = [pane.x, low, pane.width, pane.height].map((v) => Math.round(v * ratio));
+        gl.viewport(...box);
+        gl.scissor(...box);
+        this.drawModel(pane.side, (this.models[pane.side].painted ? 1 : 0) + (this.heats ? 4 : 0));
+      }
+    } else if (this.mode === "split") {
       gl.scissor(0, 0, cut, height);
       this.drawModel("a");
       gl.scissor(cut, 0, width - cut, height);
@@ -298,7 +327,7 @@ class View {
     } else {
       this.drawModel(this.mode);
     }
-    this.changed(this.project.bind(this, frame.rows));
+    this.changed((point) => this.project(frame.rows, point, this.place?.side));
   }
 
   drawModel(side, paint, triangles) {
@@ -309,12 +338,13 @@ class View {
     gl.drawElements(gl.TRIANGLES, 3 * (triangles ?? model.triangles), gl.UNSIGNED_INT, 0);
   }
 
-  // A point of the scene in CSS pixels of the canvas; null behind the camera.
-  project(rows, point) {
+  // A point of the scene in CSS pixels of the canvas, in the pane of its side; null behind the camera.
+  project(rows, point, side) {
+    const panes = this.panes(), pane = panes.find((one) => one.side === side) ?? panes[0];
     const p = [...add(point, this.middle, -1), 1];
     const [x, y, , w] = rows.map((row) => row.reduce((sum, v, i) => sum + v * p[i], 0));
     if (!(w > 0)) return null;
-    return [((x / w + 1) / 2) * this.canvas.clientWidth, ((1 - y / w) / 2) * this.canvas.clientHeight];
+    return [pane.x + ((x / w + 1) / 2) * pane.width, pane.y + ((1 - y / w) / 2) * pane.height];
   }
 
   // ---- hands

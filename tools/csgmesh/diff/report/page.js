@@ -91,11 +91,12 @@ function figureRows(report) {
 
 function distanceTable(report) {
   const there = report.a_to_b ?? {}, back = report.b_to_a ?? {};
+  const far = (v) => v < report.precision ? "0" : show(v, 4); // less is rounding
   const most = (d) => d.max_lower === undefined ? "–"
     : d.max_upper - d.max_lower > 1e-3 * d.max_upper ? `${show(d.max_lower, 4)} to ${show(d.max_upper, 4)}` : show(d.max_upper, 5);
   const rows = [{ cells: ["Largest, proven", most(there), most(back)] }];
   for (const [key, name] of Object.entries({ mean: "Mean", rms: "RMS", p95: "95 % below", p99: "99 % below" }))
-    rows.push({ cells: [name, show(there[key], 4), show(back[key], 4)] });
+    rows.push({ cells: [name, far(there[key]), far(back[key])] });
   return table(["", "A to B", "B to A"], rows);
 }
 
@@ -129,8 +130,10 @@ function placesOf(pair) {
   const all = [...of("a_to_b", "a"), ...of("b_to_a", "b")].sort((p, q) => q.distance - p.distance);
   const most = pair.models?.most ?? 0, kept = [];
   const span = pair.models ? norm(pair.models.box.slice(3).map((v, i) => v - pair.models.box[i])) : 0;
+  // one place of a change, whose surroundings are as wide as it is far
+  const apartFrom = (other) => Math.max(0.05 * span, Math.min(other.distance, 0.25 * span));
   for (const place of all)
-    if (place.distance > 0.02 * most && most > 0 && kept.every((other) => norm(add(place.at, other.at, -1)) > 0.04 * span))
+    if (place.distance > 0.02 * most && most > 0 && kept.every((other) => norm(add(place.at, other.at, -1)) > apartFrom(other)))
       kept.push(place);
   return kept.slice(0, 8);
 }
@@ -197,16 +200,26 @@ function mark(view, project) {
   set("link", { x1: at[0], y1: at[1], x2: nearest[0], y2: nearest[1] });
 }
 
+// What stands on the canvas, where its panes are: beside each other, or on a narrow screen one above the other.
+function placeParts(view) {
+  const box = find("view"), isStacked = view.mode === "side" && view.panes()[1].y > 0;
+  box.classList.toggle("side", view.mode === "side");
+  box.classList.toggle("stacked", isStacked);
+  find("cut").style.left = isStacked ? "" : `calc(${view.mode === "side" ? 50 : 100 * view.split}% - 1px)`;
+}
+
 function setMode(view, mode) {
   view.mode = mode;
   const radio = document.querySelector(`#modes input[value="${mode}"]`);
   radio.checked = true;
-  find("cut").hidden = mode !== "split";
-  find("cut").style.left = `calc(${100 * view.split}% - 1px)`;
-  find("left").hidden = !(mode === "a" || mode === "split");
-  find("right").hidden = !(mode === "b" || mode === "split");
-  find("legend").hidden = mode !== "heat" || !(view.models && view.heats);
-  view.draw();
+  const both = mode === "split" || mode === "side";
+  find("cut").hidden = !both;
+  find("left").hidden = !(mode === "a" || both);
+  find("right").hidden = !(mode === "b" || both);
+  find("legend").hidden = !(mode === "heat" || mode === "side") || !(view.models && view.heats);
+  if (view.models && view.untouched) view.fit(false);
+  else view.draw();
+  placeParts(view);
 }
 
 function listen(view) {
@@ -222,7 +235,7 @@ function listen(view) {
   });
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    const mode = { 1: "a", 2: "b", 3: "split", 4: "heat" }[event.key];
+    const mode = { 1: "a", 2: "b", 3: "split", 4: "heat", 5: "side" }[event.key];
     if (mode) setMode(view, mode);
     const free = !event.target.closest("button, input, a");
     if (event.key !== " " || !free) return;
@@ -257,25 +270,34 @@ function showPair(pair, view) {
     find("marks").style.visibility = "hidden";
   }
   find("modes").lastElementChild.hidden = !view.heats;
-  setMode(view, view.heats ? "heat" : "b");
+  const areTwo = pair.models?.a.triangles && pair.models.b.triangles && pair.verdict !== "same";
+  setMode(view, areTwo ? "side" : view.heats ? "heat" : "b");
   for (const id of ["left", "right", "cut"]) if (gone) find(id).hidden = true;
 }
 
+// What differs first; what is the same folded away, unless there is nothing else.
 function listPairs(view) {
-  const list = find("pairs"), rank = { different: 0, failed: 0, same: 1 };
-  const order = [...data.pairs].sort((p, q) => rank[kindOf(p)] - rank[kindOf(q)]);
-  list.hidden = order.length < 2;
-  document.querySelector("main").classList.toggle("many", order.length > 1);
-  for (const pair of order) {
+  const list = find("pairs"), folded = make("details");
+  const isSame = (pair) => kindOf(pair) === "same", others = data.pairs.filter((pair) => !isSame(pair));
+  const same = data.pairs.filter(isSame);
+  list.hidden = data.pairs.length < 2;
+  document.querySelector("main").classList.toggle("many", data.pairs.length > 1);
+  const buttonOf = (pair) => {
     const button = make("button", { type: "button", className: kindOf(pair) }, nameOf(pair),
-      make("small", {}, pair.verdict === "same" ? "same" : `${pair.verdict}: ${pair.why}`));
+      make("small", {}, isSame(pair) ? "same" : `${pair.verdict}: ${pair.why}`));
     button.addEventListener("click", () => {
-      for (const other of list.children) other.setAttribute("aria-current", String(other === button));
+      for (const other of list.querySelectorAll("button")) other.setAttribute("aria-current", String(other === button));
       showPair(pair, view);
     });
-    list.append(button);
+    return button;
+  };
+  list.append(...others.map(buttonOf));
+  if (same.length) {
+    folded.open = !others.length;
+    folded.append(make("summary", {}, `${same.length} same`), ...same.map(buttonOf));
+    list.append(folded);
   }
-  list.firstElementChild?.click();
+  list.querySelector("button")?.click();
 }
 
 function start() {
@@ -285,6 +307,7 @@ function start() {
   const same = data.pairs.filter((pair) => pair.verdict === "same").length;
   find("foot").textContent = `csgmesh ${data.csgmesh}` + (data.folders ? `: ${same} of ${data.pairs.length} same` : "");
   listen(view);
+  new ResizeObserver(() => placeParts(view)).observe(find("view"));
   listPairs(view);
 }
 start();
