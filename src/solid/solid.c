@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "scene/tree/figures.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
 
@@ -135,9 +136,10 @@ csg_node_id csg_solid_region(csg_solid_job *job, csg_outline *clean)
 {
     csg_shape *shape = NULL;
     size_t loops = clean->loop_count;
-    csgm_status status = loops && csg_solid_check_time(job)
-                             ? csg_region_create(job->memory, clean, &shape)
-                             : CSGM_OK;
+    csgm_status status =
+        loops && csg_solid_check_time(job)
+            ? csg_figures_region(&job->builder->figures, job->memory, clean, &shape)
+            : CSGM_OK;
     csg_outline_release(clean);
     if (job->stop)
         return CSG_NODE_NONE;

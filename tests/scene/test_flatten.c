@@ -13,6 +13,7 @@
 #include "scene/outlines/flatten.h"
 #include "scene/outlines/unite.h"
 #include "scene/primitives/kinds.h"
+#include "scene/tree/figures.h"
 #include "scene/warp_kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
@@ -337,6 +338,119 @@ static void traces_close_at_random(void **state)
     }
 }
 
+/* ---- what was made before -------------------------------------------------------------------- */
+
+/* Figures that differ in one thing each, but for the first two. */
+enum { ALIKE = 9 };
+
+static csg_node_id one_of(int which)
+{
+    csg_node_id hole = moved(which == 2 ? 0.4 : 0.5, 0, circle(which == 3 ? 0.6 : 0.5));
+    csg_node_id grown = csg_build_offset(&builder, which == 4 ? 0.2 : 0.1,
+                                         rectangle(2, 1, which == 5 ? 0.25 : 0), NOWHERE);
+    csg_node_id shape = which == 6 ? rectangle(1, 1, 0) : triangle_with_hole();
+    csg_node_id node =
+        operate(which == 7 ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE, 0, grown, hole, CSG_NODE_NONE);
+    node = operate(CSG_NODE_UNION, 0, node, moved(3, 1, shape), CSG_NODE_NONE);
+    return which == 8 ? node : turned(10, moved(which, 2, node));
+}
+
+static void flatten_in_new_builder(int which, double tolerance, csg_outline *out)
+{
+    csg_scene_builder kept = builder;
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    assert_int_equal(csg_flatten(&builder, one_of(which), tolerance, out), CSGM_OK);
+    csg_build_abandon(&builder);
+    builder = kept;
+}
+
+static void check_same(const csg_outline *a, const csg_outline *b)
+{
+    assert_int_equal(a->point_count, b->point_count);
+    assert_int_equal(a->loop_count, b->loop_count);
+    assert_memory_equal(a->points, b->points, a->point_count * sizeof *a->points);
+    assert_memory_equal(a->ends, b->ends, a->loop_count * sizeof *a->ends);
+}
+
+/* Whatever was made before, an outline is what it is in a scene of its own, to the bit. */
+static void outlines_that_were_made_before(void **state)
+{
+    if (!has_polygons())
+        skip();
+    for (int round = 0; round < 3; round++)
+        for (int which = 0; which < ALIKE; which++) {
+            csg_outline fresh;
+            double tolerance = round == 1 ? 1e-2 : 1e-3;
+            flatten_in_new_builder(which, tolerance, &fresh);
+            assert_int_equal(csg_flatten(&builder, one_of(which), tolerance, &outline), CSGM_OK);
+            check_same(&fresh, &outline);
+            csg_outline_release(&fresh);
+            csg_outline_release(&outline);
+        }
+}
+
+static csg_shape *region_of(double x, bool is_split)
+{
+    const csg_vec2 points[6] = {{0, 0}, {x, 0}, {0, 1}, {5, 5}, {6, 5}, {5, 6}};
+    csg_outline loops;
+    csg_shape *region = NULL;
+    csg_outline_init(&loops, &context.memory);
+    for (int i = 0; i < 6; i++) {
+        assert_true(csg_outline_add(&loops, points[i]));
+        if ((is_split && i == 2) || i == 5)
+            assert_true(csg_outline_close(&loops));
+    }
+    assert_int_equal(csg_figures_region(&builder.figures, &context.memory, &loops, &region),
+                     CSGM_OK);
+    csg_outline_release(&loops);
+    assert_non_null(region);
+    return region;
+}
+
+static void regions_that_were_made_before(void **state)
+{
+    csg_shape *a = region_of(1, true), *b = region_of(1, true), *c = region_of(2, true),
+              *d = region_of(1, false);
+    assert_ptr_equal(a, b);
+    assert_ptr_not_equal(a, c);
+    assert_ptr_not_equal(a, d);
+    csg_shape_release(a);
+    csg_shape_release(c);
+    csg_shape_release(d);
+    csg_build_abandon(&builder);
+    assert_int_equal(csg_region_outline(b)->loop_count, 2); /* it outlives the builder */
+    csg_shape_release(b);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+}
+
+static void every_allocation_of_keeping_may_fail(void **state)
+{
+    failing f = {LONG_MAX, 0};
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
+    if (!has_polygons())
+        skip();
+    csg_build_abandon(&builder);
+    csg_memory_init(&context.memory, &allocator, 0);
+    long n = 0;
+    for (bool failed = true; failed; n++) {
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+        csg_node_id node = one_of(0), other = one_of(0);
+        f.left = n;
+        csgm_status status = csg_flatten(&builder, node, 1e-3, &outline);
+        csg_outline_release(&outline);
+        csgm_status again = csg_flatten(&builder, other, 1e-3, &outline);
+        failed = f.left < 0;
+        f.left = LONG_MAX;
+        assert_int_equal(status || again ? CSGM_ERR_MEMORY : CSGM_OK,
+                         failed ? CSGM_ERR_MEMORY : CSGM_OK);
+        csg_outline_release(&outline);
+        csg_build_abandon(&builder);
+        assert_int_equal(f.live, 0);
+    }
+    assert_true(n > 20);
+    assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+}
+
 /* ---- trouble ------------------------------------------------------------------------------ */
 
 static void solids_are_refused(void **state)
@@ -430,6 +544,9 @@ int main(void)
         TEST(blends_are_traced),
         TEST(slices_are_traced),
         TEST(traces_close_at_random),
+        TEST(outlines_that_were_made_before),
+        TEST(regions_that_were_made_before),
+        TEST(every_allocation_of_keeping_may_fail),
         TEST(solids_are_refused),
         TEST(depth_is_no_matter),
         TEST(every_allocation_may_fail),

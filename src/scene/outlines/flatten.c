@@ -6,6 +6,7 @@
 
 #include "scene/outlines/trace.h"
 #include "scene/primitives/kinds.h"
+#include "scene/tree/figures.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
 
@@ -249,14 +250,92 @@ static csgm_status make(flattener *f, step s)
     return status;
 }
 
-static csgm_status flatten_tree(flattener *f, csg_node_id root, double tolerance)
+/* What is traced is beyond words. */
+static bool add_to_key(const flattener *f, const csg_node *node, csg_figure_key *key)
 {
-    if (!plan(f, root, tolerance))
-        return CSGM_ERR_MEMORY;
+    const csgm_scene *scene = f->builder->scene;
+    bool ok = csg_figure_key_word(key, node->kind) && csg_figure_key_word(key, node->child_count);
+    if (node->kind == CSG_NODE_TRANSFORM) {
+        const csg_affine *map = &scene->transforms[node->payload];
+        return ok && csg_figure_key_numbers(key, map->m[0], 2) &&
+               csg_figure_key_numbers(key, map->m[1], 2) && csg_figure_key_numbers(key, map->t, 2);
+    }
+    if (node->kind == CSG_NODE_CIRCLE || node->kind == CSG_NODE_RECTANGLE ||
+        node->kind == CSG_NODE_OFFSET)
+        return ok && csg_figure_key_numbers(key, csg_scene_parameters(scene, node),
+                                            csg_node_parameter_count(node));
+    if (node->kind == CSG_NODE_SHAPE && scene->shapes[node->payload]->kind == CSG_SHAPE_REGION)
+        return ok && csg_figure_key_shape(key, scene->shapes[node->payload]);
+    key->is_known = key->is_known && (node->kind == CSG_NODE_EMPTY || is_made_of_children(node));
+    return ok;
+}
+
+/* Does its outline depend on the tolerance? */
+static bool is_curved(const flattener *f, const csg_node *node)
+{
+    return node->kind == CSG_NODE_CIRCLE || node->kind == CSG_NODE_OFFSET ||
+           (node->kind == CSG_NODE_RECTANGLE &&
+            csg_scene_parameters(f->builder->scene, node)[2] > 0);
+}
+
+/* Of the steps from `first` on. */
+static bool make_key(const flattener *f, size_t first, csg_figure_key *key)
+{
+    double tolerance = 0;
+    for (size_t i = first; i < f->step_count; i++)
+        if (is_curved(f, node_at(f, f->steps[i].node)))
+            tolerance = f->steps[first].tolerance;
+    bool ok = csg_figure_key_numbers(key, &tolerance, 1);
+    for (size_t i = first; i < f->step_count && key->is_known && ok; i++)
+        ok = add_to_key(f, node_at(f, f->steps[i].node), key);
+    return ok;
+}
+
+/* The steps from `first` up to, not with, `end`, the last one first. */
+static csgm_status make_steps(flattener *f, size_t first, size_t end)
+{
     csgm_status status = CSGM_OK;
-    for (size_t i = f->step_count; i-- > 0 && !status;)
+    for (size_t i = end; i-- > first && !status;)
         status = csg_memory_has_ended(f->memory) ? CSGM_ERR_MEMORY : make(f, f->steps[i]);
     return status;
+}
+
+/* What was made before, as if the steps had been made. */
+static csgm_status take_known(flattener *f, const csg_outline *known)
+{
+    void *done = f->done;
+    if (!csg_memory_reserve(f->memory, &done, &f->done_capacity, f->done_count + 1,
+                            sizeof *f->done))
+        return CSGM_ERR_MEMORY;
+    f->done = done;
+    csg_outline_init(&f->done[f->done_count], f->memory);
+    return csg_outline_append(&f->done[f->done_count++], known) ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+/* The outline is the only one on the stack. Transforms around a figure are no part of what is
+ * looked for: the same figure in many places and sizes is made once. */
+static csgm_status flatten_tree(flattener *f, csg_node_id root, double tolerance)
+{
+    size_t lead = 0;
+    csg_figure_key key;
+    csg_figure_key_init(&key, f->memory);
+    if (!plan(f, root, tolerance))
+        return CSGM_ERR_MEMORY;
+    while (node_at(f, f->steps[lead].node)->kind == CSG_NODE_TRANSFORM ||
+           node_at(f, f->steps[lead].node)->kind == CSG_NODE_COLOR)
+        lead++;
+    key.is_known = f->step_count - lead > 1; /* a leaf costs no more than finding it */
+    csgm_status status = make_key(f, lead, &key) ? CSGM_OK : CSGM_ERR_MEMORY;
+    const csg_outline *known =
+        status == CSGM_OK ? csg_figures_find(f->builder->figures, &key) : NULL;
+    if (known)
+        status = take_known(f, known);
+    else if (status == CSGM_OK)
+        status = make_steps(f, lead, f->step_count);
+    if (status == CSGM_OK && !known && !csg_figures_keep(&f->builder->figures, &key, &f->done[0]))
+        status = CSGM_ERR_MEMORY;
+    csg_figure_key_release(&key);
+    return status == CSGM_OK ? make_steps(f, 0, lead) : status;
 }
 
 csgm_status csg_flatten(csg_scene_builder *builder, csg_node_id flat, double tolerance,

@@ -9,6 +9,7 @@
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/kinds.h"
 #include "scene/tree/build_private.h"
+#include "scene/tree/figures.h"
 #include "shape/plane/region.h"
 
 /* Points that pass through the polygon library for one figure: about a second. A long chain of
@@ -112,7 +113,7 @@ static bool make_region(uniting *u, csg_node_id *id)
     csg_span where = u->builder->scene->nodes[*id].where;
     csgm_status status = csg_flatten(u->builder, *id, 1, &outline); /* no curve needs a tolerance */
     if (status == CSGM_OK && outline.loop_count)
-        status = csg_region_create(u->memory, &outline, &shape);
+        status = csg_figures_region(&u->builder->figures, u->memory, &outline, &shape);
     csg_outline_release(&outline);
     if (shape)
         *id = csg_build_shape(u->builder, shape, where);

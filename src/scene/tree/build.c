@@ -11,6 +11,7 @@
 #include "scene/primitives/primitive.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
+#include "scene/tree/figures.h"
 
 #include <float.h>
 #include <string.h>
@@ -61,7 +62,9 @@ void csg_build_abandon(csg_scene_builder *builder)
     csg_memory_release(memory, scene->part_names,
                        builder->part_capacity * sizeof *scene->part_names);
     csg_memory_release(memory, scene, sizeof *scene);
+    csg_figures_destroy(builder->figures);
     builder->scene = NULL;
+    builder->figures = NULL;
     builder->shape_capacity = builder->warp_capacity = builder->rule_capacity = 0;
     builder->node_capacity = builder->child_capacity = builder->parameter_capacity = 0;
     builder->transform_capacity = builder->look_capacity = builder->part_capacity = 0;

@@ -19,8 +19,9 @@ typedef struct csg_scene_builder {
     size_t part_capacity, node_capacity, child_capacity, parameter_capacity, transform_capacity,
         look_capacity, formula_capacity, step_capacity, shape_capacity, warp_capacity,
         rule_capacity;
-    csgm_status status; /* first failure, sticky */
-    char problem[160];  /* one sentence about it, "" for memory */
+    struct csg_figures *figures; /* flat ones that were made before (figures.h); or NULL */
+    csgm_status status;          /* first failure, sticky */
+    char problem[160];           /* one sentence about it, "" for memory */
 } csg_scene_builder;
 
 csgm_status csg_build_begin(csg_scene_builder *builder, csgm_context *context);
