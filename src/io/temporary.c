@@ -105,6 +105,7 @@ static bool is_hidden_name(const char *name)
     long process;
     unsigned long long start;
     int end = 0;
+    /* NOLINTNEXTLINE(cert-err34-c): a number that does not fit is that of no process */
     return sscanf(name, ".csgmesh-%8x-%ld-%llx-%u.tmp%n", &host, &process, &start, &number, &end) ==
                4 &&
            end > 0 && !name[end] && host == host_number();

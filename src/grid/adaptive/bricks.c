@@ -65,8 +65,9 @@ uint32_t csg_bricks_find(const csg_bricks *b, uint32_t level, const uint32_t at[
 {
     size_t slot;
     uint32_t found = csg_table_first(&b->index, hash_of_place(level, at), &slot);
-    while (found != CSG_TABLE_NONE && (b->items[found].level != level ||
-                                       memcmp(b->items[found].at, at, sizeof b->items[found].at)))
+    while (found != CSG_TABLE_NONE &&
+           (b->items[found].level != level ||
+            memcmp(b->items[found].at, at, sizeof b->items[found].at) != 0))
         found = csg_table_next(&b->index, &slot);
     return found;
 }

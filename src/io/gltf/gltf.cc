@@ -56,6 +56,7 @@ std::string percent_decoded(const std::string &uri)
     for (size_t i = 0; i < uri.size(); i++) {
         unsigned byte;
         if (uri[i] == '%' && i + 2 < uri.size() &&
+            /* NOLINTNEXTLINE(cert-err34-c): two digits always fit */
             std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
             out += static_cast<char>(byte);
             i += 2;

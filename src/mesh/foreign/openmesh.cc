@@ -79,6 +79,7 @@ triple corners_of(const mesh_type &mesh, face f)
 double nearest_in(const triple &t, const point &p, double weights[3])
 {
     point ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
+    /* NOLINTNEXTLINE(misc-redundant-expression): a | b is their inner product */
     double d1 = ab | ap, d2 = ac | ap, aa = ab | ab, cc = ac | ac, x = ab | ac;
     double det = aa * cc - x * x;
     double v = det > 0 ? (cc * d1 - x * d2) / det : -1;

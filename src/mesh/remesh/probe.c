@@ -103,7 +103,7 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
         return;
     const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,
                                cell[2] / CSG_BLOCK_EDGE};
-    if (!room->has_last || memcmp(room->last, place, sizeof place)) {
+    if (!room->has_last || memcmp(room->last, place, sizeof place) != 0) {
         memcpy(room->last, place, sizeof place);
         room->found = csg_block_index_find(m->index, m->blocks, place);
         room->has_last = true;

@@ -305,7 +305,7 @@ static bool is_flat(const csg_remesh *r, uint32_t vertex, uint32_t neighbour)
         csg_vec3 n = csg_triangle_cross(at, r->at[v], r->at[w]);
         double height = csg_vec3_dot(n, off), most = ROUNDING * r->tree.noise;
         if (!(height * height <= most * most * csg_vec3_dot(n, n)) ||
-            (r->looks && memcmp(&r->looks[v], &r->looks[vertex], sizeof r->looks[v])))
+            (r->looks && memcmp(&r->looks[v], &r->looks[vertex], sizeof r->looks[v]) != 0))
             return false;
         c = csg_corner_swing(m, c);
     } while (c != first);

@@ -290,7 +290,7 @@ static bool has_one_look(const csg_decimation *d, uint32_t kept)
     for (uint32_t i = 0; looks && i < room->count; i++)
         for (int k = 1; k < 3; k++)
             if (room->vertex[i][k] != kept &&
-                memcmp(&looks[room->vertex[i][k]], &room->look, sizeof room->look))
+                memcmp(&looks[room->vertex[i][k]], &room->look, sizeof room->look) != 0)
                 return false;
     return looks != NULL;
 }

@@ -194,6 +194,7 @@ static bool parse_output(cli_arena *arena, const batch_job *job, const char *dir
     if (strlen(rest) < BATCH_DIGEST_TEXT || !batch_digest_read(rest, &output.digest))
         return false;
     rest += BATCH_DIGEST_TEXT;
+    /* NOLINTNEXTLINE(cert-err34-c): what does not fit is made again */
     if (sscanf(rest, "%" SCNu64 " %" SCNd64 " %" SCNd64 " %15s%n", &output.bytes, &output.changed_s,
                &output.changed_ns, format, &used) != 4 ||
         !cli_drawings_or_mesh_name(format))

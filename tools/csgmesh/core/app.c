@@ -218,6 +218,7 @@ static bool read_level(cli_app *app, uint32_t *out)
     const char *text = app->options.openscad_version;
     if (!text)
         return true;
+    /* NOLINTNEXTLINE(cert-err34-c): four and two digits always fit */
     int read = sscanf(text, "%4u.%2u.%2u%c", &year, &month, &day, &after);
     if ((read != 2 && read != 3) || year < 2000 || month < 1 || month > 12 || day > 31) {
         cli_usage_error(app, "as --openscad-version 2021.01",
