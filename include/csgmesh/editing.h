@@ -44,6 +44,7 @@ CSGM_API void csgm_workspace_close(csgm_workspace *workspace, const char *path);
 CSGM_API const char *csgm_workspace_text(csgm_workspace *workspace, const char *path,
                                          size_t *text_length);
 
+/* What a name stands for. */
 typedef enum csgm_name_kind {
     CSGM_NAME_MODULE,
     CSGM_NAME_FUNCTION,

@@ -34,7 +34,7 @@ void csg_field_count(const csgm_scene *scene, csgm_field *field);
 void csg_field_eval(const csgm_field *field, const float *x, const float *y, const float *z,
                     float *out, size_t count);
 
-/* Stable text, one node a line. */
+/* Stable text, one node per line. */
 csgm_status csg_field_print_tape(const csgm_field *field, csgm_text_fn *sink, void *user);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The tape as text, one node a line, in evaluation order.
+ * The tape as text, one node per line, in evaluation order.
  */
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,8 +4,9 @@
  *
  *     evaluations [--views N] [--size N] SCENE...
  *
- * One line a scene and method, separated by tabs: scene, method, nodes in the tree, rays, hits,
- * evaluations of the field, of nodes, pixels that differ from the plain field's picture, seconds of
+ * One line for each scene and method, separated by tabs: scene, method, nodes in the tree, rays,
+ * hits, evaluations of the field, of nodes, pixels that differ from the plain field's picture,
+ * seconds of
  * processor. The tracer is the basic one: start outside, step |f| / lambda until f >= -tolerance or
  * the ray has left the ball around the scene. tools/evaluations makes the table of it.
  */

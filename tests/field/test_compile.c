@@ -253,7 +253,7 @@ static void collect(void *user, const char *piece, size_t length)
     t->data[t->length] = '\0';
 }
 
-/* One line a node, and the same text each time. */
+/* One line per node, and the same text each time. */
 static void test_print(void **state)
 {
     test_subject s;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One call a line, operands indented in braces, numbers as short as still read back exactly.
+ * One call per line, operands indented in braces, numbers as short as still read back exactly.
  */
 #include "scene/tree/print.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What a format has no place for, in one warning a file. Normals are not counted: readers make them
- * of the triangles.
+ * What a format has no place for, in one warning per file. Normals are not counted: readers make
+ * them of the triangles.
  */
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The report of `csgmesh diff --json` as a Markdown table: one row a file that is not the same."""
+"""The report of `csgmesh diff --json` as a Markdown table: one row per file that is not the same."""
 import json
 import os
 import sys
