@@ -674,6 +674,7 @@ CSGM_API double csgm_mesh_max_abs_field(const csgm_scene *scene, const csgm_mesh
 
 /* ---- files ------------------------------------------------------------------------- */
 
+/* The kinds of mesh files. */
 typedef enum csgm_format {
     CSGM_FORMAT_AUTO, /* by the extension */
     CSGM_FORMAT_OBJ,
@@ -730,7 +731,8 @@ CSGM_API uint32_t csgm_format_traits(csgm_format format);
 /* Whether this build writes (or reads) the format: it may be written only, or a library may be
  * missing. */
 CSGM_API bool csgm_format_available(csgm_format format, bool for_reading);
-/* For --version, a line a library: what it is for, and its version or that this build lacks it. */
+/* For --version, a line for each library: what it is for, and its version or that this build lacks
+ * it. */
 CSGM_API const char *csgm_build_features(void);
 
 /* The length of one scene unit, as a file says it. */
@@ -1008,8 +1010,21 @@ typedef bool csgm_json_fn(void *user, csgm_json_kind kind, const char *text, siz
 CSGM_API csgm_status csgm_json_read(csgm_context *context, const char *text, size_t text_length,
                                     const char *name, csgm_json_fn *event, void *user);
 
+/* ---- looking inside the mesher ---------------------------------------------------------- */
+
+/* From begin to end a context keeps what the meshes built in it are made from. end hands it over as
+ * a mesh in scene coordinates for any viewer, with up to three parts: "octree", the cubes it ended
+ * in, and "blocks", of 8^3 equal cells or the single cells that follow the shape, both as frames,
+ * from blue to yellow by how much of the scene counts in them; "features" of equal cells, cubes
+ * where creases and corners have a vertex (green), are folded (orange), given up (red), or are kept
+ * without (grey). It has no triangles where nothing had cells: such as of polyhedra that went into
+ * the mesh as they are. CSGM_ERR_ARGUMENT: begun twice, or ended without a beginning. */
+CSGM_API csgm_status csgm_survey_begin(csgm_context *context);
+CSGM_API csgm_status csgm_survey_end(csgm_context *context, csgm_mesh **out);
+
 /* ---- looking inside (stable text, for tests and for people) -------------------------- */
 
+/* What csgm_scene_dump shows. */
 typedef enum csgm_dump {
     CSGM_DUMP_SCENE,
     CSGM_DUMP_TAPE,

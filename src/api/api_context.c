@@ -15,6 +15,7 @@
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "io/file.h"
+#include "mesh/pipeline/survey.h"
 
 /* More workers than this never helped, and each costs a stack. */
 enum { THREADS_MOST = 1024 };
@@ -165,6 +166,7 @@ void csgm_context_destroy(csgm_context *context)
     csg_files_release(context, false);
     csg_pool_destroy(context->pool);
     csg_trace_leave(context->trace);
+    csg_survey_destroy(context->survey);
     release_context(context, context->memory.allocator);
 }
 

@@ -11,6 +11,7 @@
 
 typedef struct csg_pool csg_pool;
 typedef struct csg_trace_lanes csg_trace_lanes;
+typedef struct csg_survey csg_survey;
 typedef struct csg_held_file csg_held_file;
 
 struct csgm_context {
@@ -28,6 +29,7 @@ struct csgm_context {
     bool holds_files;       /* files get their names all at once (io/file.h) */
     csg_held_file *held;    /* those that wait for that, the last first */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
+    csg_survey *survey;     /* NULL = nor what meshes are made from (mesh/pipeline/survey.h) */
 };
 
 /* Has the caller said that this context's calls shall stop? On any thread. */

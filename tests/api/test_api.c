@@ -42,7 +42,7 @@ typedef struct run {
     csgm_context *context;
     csgm_scene *scene;
     csgm_field *field;
-    csgm_mesh *mesh;
+    csgm_mesh *mesh, *cells;
     csgm_mesh_check check;
 } run;
 
@@ -56,7 +56,11 @@ static csgm_status go(run *r, const csgm_context_options *options, const char *t
     if (status == CSGM_OK)
         status = csgm_field_compile(r->context, r->scene, &r->field);
     if (status == CSGM_OK)
+        status = csgm_survey_begin(r->context);
+    if (status == CSGM_OK)
         status = csgm_mesh_build(r->context, r->field, mesh_options, &r->mesh, NULL);
+    if (status == CSGM_OK)
+        status = csgm_survey_end(r->context, &r->cells);
     if (status == CSGM_OK) {
         csgm_mesh_view view = csgm_mesh_get_view(r->mesh);
         status = csgm_mesh_inspect(r->context, &view, &r->check);
@@ -70,6 +74,7 @@ static csgm_status go(run *r, const csgm_context_options *options, const char *t
 static void end(run *r)
 {
     csgm_mesh_destroy(r->mesh);
+    csgm_mesh_destroy(r->cells);
     csgm_field_destroy(r->field);
     csgm_scene_destroy(r->scene);
     csgm_context_destroy(r->context);
@@ -100,6 +105,26 @@ static void test_the_whole_way(void **state)
     assert_int_equal(info.operator_count, 1);
     assert_true(info.has_colors);
     end(&r);
+}
+
+static void test_survey(void **state)
+{
+    static const char *const names[] = {"octree", "blocks", "features"};
+    csgm_mesh_options options = coarse();
+    csgm_mesh *cells = NULL;
+    run r;
+    assert_int_equal(csgm_survey_begin(NULL), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_survey_end(NULL, &cells), CSGM_ERR_ARGUMENT);
+    assert_int_equal(go(&r, NULL, scene_text, &options), CSGM_OK);
+    csgm_mesh_view view = csgm_mesh_get_view(r.cells);
+    assert_int_equal(view.part_count, 3);
+    for (int i = 0; i < 3; i++)
+        assert_string_equal(view.parts[i].name, names[i]);
+    assert_true(view.triangle_count % 12 == 0 && view.triangle_count > 1000);
+    assert_int_equal(csgm_survey_end(r.context, &cells), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_survey_begin(r.context), CSGM_OK);
+    assert_int_equal(csgm_survey_begin(r.context), CSGM_ERR_ARGUMENT);
+    end(&r); /* and what was begun */
 }
 
 static void test_field_agrees_with_the_reference(void **state)
@@ -531,6 +556,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_whole_way),
+        cmocka_unit_test(test_survey),
         cmocka_unit_test(test_field_agrees_with_the_reference),
         cmocka_unit_test(test_destroy_of_nothing),
         cmocka_unit_test(test_options_not_made_by_default),

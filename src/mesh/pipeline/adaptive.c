@@ -14,6 +14,7 @@
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
 #include "mesh/pipeline/certify.h"
+#include "mesh/pipeline/survey.h"
 #include "mesh/pipeline/workers.h"
 
 /* Cells along the longest side that refinement begins with, at least; how much of the tolerance
@@ -300,6 +301,8 @@ static csgm_status make_mesh(adaptive *a)
     }
     if (status == CSGM_OK && a->extraction.mesh->triangle_count)
         status = csg_mesh_reshape(a->goal, &a->extraction.mesh, &a->workers.marching, &a->watch);
+    if (status == CSGM_OK && !(a->goal->cell_size > 0) && a->input.context->survey)
+        csg_survey_bricks(a->input.context->survey, a->input.field->center, &a->bricks);
     if (status == CSGM_OK && !(a->goal->cell_size > 0))
         status = csg_mesh_look_for_lost(&a->input, &a->bricks, cells_error(a->goal),
                                         a->goal->error > a->goal->asked, &a->watch);

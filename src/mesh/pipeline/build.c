@@ -10,6 +10,7 @@
 #include "base/trace.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/output.h"
+#include "mesh/pipeline/survey.h"
 
 typedef struct build {
     csg_mesh_input input;
@@ -119,6 +120,15 @@ static csgm_status sample_and_count(build *b)
     return status;
 }
 
+static void survey_stages(const build *b)
+{
+    csg_survey *survey = b->input.context->survey;
+    if (!survey || !b->slabs.octree)
+        return;
+    csg_survey_octree(survey, &b->input, b->slabs.octree);
+    csg_survey_features(survey, &b->input, &b->creases.store);
+}
+
 static csgm_status reshape_mesh(build *b)
 {
     csg_mesh_output *out = &b->output;
@@ -135,7 +145,10 @@ static csgm_status build_mesh(build *b, csgm_context *context, const csgm_mesh_o
     CSG_ZONE(context, "build");
     csg_mesh_output *out = &b->output;
     connect_stages(b, context, options);
+    const size_t surveyed = context->survey ? context->survey->count : 0;
     csgm_status status = sample_and_count(b);
+    if (status == CSGM_OK)
+        survey_stages(b);
     if (status == CSGM_OK)
         status = csg_mesh_begin_output(out, b->slabs.vertex_count, b->slabs.triangle_count);
     if (status == CSGM_OK && out->counts.vertex_count)
@@ -146,6 +159,8 @@ static csgm_status build_mesh(build *b, csgm_context *context, const csgm_mesh_o
         status = csg_mesh_look_for_missed(&b->input, b->slabs.octree, &b->watch, &b->doubts);
         if (status == CSGM_OK)
             warn_of_result(b);
+    } else if (context->survey) {
+        context->survey->count = surveyed;
     }
     if (status == CSGM_OK && stats)
         fill_stats(b, stats);

@@ -8,6 +8,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 #include "mesh/features/emit.h"
+#include "mesh/pipeline/survey.h"
 
 /* ---- one block ---------------------------------------------------------------------------------
  */
@@ -190,6 +191,8 @@ csgm_status csg_mesh_make_slabs(csg_mesh_output *o, csg_mesh_slabs *slabs)
         if (status != CSGM_OK)
             break;
         o->blocks = slabs->at_hand;
+        if (o->watch->context->survey)
+            csg_survey_blocks(o->watch->context->survey, o->input, o->blocks);
         if (!csg_pool_run(o->watch->context->pool, csg_mesh_item_count(&o->blocks), make_item,
                           poll_progress, o))
             return csg_mesh_why_stopped(o->watch);

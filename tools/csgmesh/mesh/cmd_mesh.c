@@ -260,6 +260,31 @@ static int draw_scene(cli_app *app, const cli_work *work)
     return status;
 }
 
+/* --cells: what the mesh was made from. A mesh that failed has none. */
+static int write_cells(cli_app *app, int status)
+{
+    const char *path = app->options.cells;
+    csgm_mesh *cells;
+    csgm_status made = csgm_survey_end(app->context, &cells);
+    if (status != CLI_DONE || made != CSGM_OK) {
+        csgm_mesh_destroy(cells);
+        return status != CLI_DONE ? status : cli_exit_status(made);
+    }
+    csgm_mesh_view view = csgm_mesh_get_view(cells);
+    csgm_write_options given = cli_outputs_options(app, app->options.operands.items[0]);
+    csgm_write_options options = csgm_write_options_default();
+    options.unit = given.unit;
+    options.y_up = given.y_up;
+    if (view.triangle_count)
+        status =
+            cli_exit_status(csgm_mesh_write(app->context, &view, path, CSGM_FORMAT_AUTO, &options));
+    else
+        cli_console_say(&app->console, CSGM_WARNING, NULL,
+                        "--cells: the mesh is not made from cells, so %s was not written", path);
+    csgm_mesh_destroy(cells);
+    return status;
+}
+
 static int mesh_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
@@ -271,13 +296,22 @@ static int mesh_scene(cli_app *app, const char *path)
     if (status == CLI_DONE)
         status = draw_scene(app, &work);
     bool is_meshed = status == CLI_DONE && app->flat != CSGM_FLAT_DRAWING;
-    if (is_meshed && goes_straight_to_file(&app->options)) {
+    if (status == CLI_DONE && !is_meshed && app->options.cells)
+        cli_console_say(&app->console, CSGM_WARNING, NULL,
+                        "--cells has no effect: the scene is drawn and not meshed");
+    if (is_meshed && app->options.cells)
+        status = cli_exit_status(csgm_survey_begin(app->context));
+    if (status != CLI_DONE) {
+        is_meshed = false;
+    } else if (is_meshed && goes_straight_to_file(&app->options)) {
         status = mesh_to_file(app, &work, &report);
     } else if (is_meshed) {
         status = cli_work_mesh(app, &work);
         if (status == CLI_DONE)
             status = write_all(app, &work, &report);
     }
+    if (is_meshed && app->options.cells)
+        status = write_cells(app, status);
     cli_work_release(&work);
     return status;
 }

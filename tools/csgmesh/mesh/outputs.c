@@ -159,6 +159,15 @@ int cli_outputs_check_contents(cli_app *app)
     return CLI_DONE;
 }
 
+static int check_cells(cli_app *app, const char *path)
+{
+    char known[200];
+    if (csgm_format_available(csgm_format_from_path(path), false))
+        return cli_outputs_check_place(app, path);
+    cli_formats_of_this_build(known, sizeof known);
+    return cli_usage_error(app, known, "--cells: '%s' names no format of meshes", path);
+}
+
 int cli_outputs_check(cli_app *app, const char *scene_path)
 {
     const cli_options *options = &app->options;
@@ -169,7 +178,7 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
         cli_formats_of_this_build(known, sizeof known);
         return cli_usage_error(app, known, "unknown format '%s'", options->format);
     }
-    if (!options->outputs.count && !options->stats)
+    if (!options->outputs.count && !options->stats && !options->cells)
         return refuse_no_output(app, scene_path);
     if (cli_outputs_check_contents(app) != CLI_DONE)
         return CLI_TROUBLE;
@@ -178,6 +187,8 @@ int cli_outputs_check(cli_app *app, const char *scene_path)
         if (status == CLI_DONE)
             status = check_format(app, i);
     }
+    if (status == CLI_DONE && options->cells)
+        status = check_cells(app, options->cells);
     if (status == CLI_DONE)
         warn_without_effect(app);
     return status;
