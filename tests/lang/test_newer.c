@@ -166,6 +166,22 @@ static void the_level_can_be_set(void **state)
     check("assert(version_num() > 20230000);", "");
 }
 
+static void ranges_that_begin_above_their_end(void **state)
+{
+    csgm_scene_options old = {.struct_size = sizeof old, .openscad_version = 20250200};
+    static const char scene[] = "n = 0; echo([for (i = [0 : n - 1]) i], [3 : 1][0]);\n"
+                                "for (i = [1 : -1]) echo(i); echo([for (i = [0 : n]) i]);";
+    (void)state;
+    check(scene, "[], 3\n[0]\n");
+    assert_int_equal(b.code_count, 3); /* of those that say so themselves, and an empty scene's */
+    assert_true(b.codes[0] == -211 && b.codes[1] == -211 && b.codes[2] != -211);
+    assert_int_equal(bench_compile_bytes(&b, scene, strlen(scene), &old), CSGM_OK);
+    assert_string_equal(b.echo, "[-1, 0], 1\n-1\n0\n1\n[0]\n");
+    old.openscad_version = 20250300;
+    assert_int_equal(bench_compile_bytes(&b, scene, strlen(scene), &old), CSGM_OK);
+    assert_string_equal(b.echo, "[], 3\n[0]\n");
+}
+
 /* What a used file assigns to a special variable holds in it, but undef only where there is none.
  */
 static void files_say_that_there_is_a_variable(void **state)
@@ -211,6 +227,7 @@ int main(void)
         cmocka_unit_test(drawings_are_measured),
         cmocka_unit_test(letters_are_measured),
         cmocka_unit_test(the_level_can_be_set),
+        cmocka_unit_test(ranges_that_begin_above_their_end),
         cmocka_unit_test(files_say_that_there_is_a_variable),
         cmocka_unit_test(every_allocation_may_fail),
     };

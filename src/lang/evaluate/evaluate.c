@@ -77,8 +77,7 @@ static void push_file_dynamics(csg_eval *e, const csg_frame *home, const csg_fra
 {
     if (!home || !home->has_dynamics)
         return;
-    const csgm_scene_options *options = e->program->options;
-    bool hides_all = options && options->openscad_version && options->openscad_version <= 20210100;
+    bool hides_all = csg_eval_level(e) <= 20210100;
     while (caller && caller->parent)
         caller = caller->parent;
     for (uint32_t i = 0; caller != home && i < home->count && !e->stop; i++) {
@@ -226,6 +225,38 @@ csg_value csg_eval_string(csg_eval *e, const char *text, size_t length)
     return csg_value_object(made, CSG_VALUE_STRING);
 }
 
+uint32_t csg_eval_level(const csg_eval *e)
+{
+    enum { NEWEST = 20260101 };
+    const csgm_scene_options *options = e->program->options;
+    return options && options->openscad_version ? options->openscad_version : NEWEST;
+}
+
+static bool is_literal(const csg_expression *x)
+{
+    return x->kind == CSG_EXPRESSION_NUMBER ||
+           (x->kind == CSG_EXPRESSION_UNARY && x->as.pair.left->kind == CSG_EXPRESSION_NUMBER);
+}
+
+/* [3 : 1] counts from 1 to 3 in OpenSCAD 2021.01, which calls that deprecated; newer ones have no
+ * elements there, so that [0 : len(list) - 1] is right for empty lists, too. */
+static void turn_backward_range(csg_eval *e, const csg_expression *x, csg_value *begin,
+                                csg_value *end)
+{
+    enum { EMPTY_SINCE = 20250300 };
+    const char *hint = "a range that counts down is [a : -1 : b]";
+    if (csg_eval_level(e) < EMPTY_SINCE) {
+        csg_value swap = *begin;
+        *begin = *end;
+        *end = swap;
+        csg_eval_report(e, CSG_DIAG_BAD_RANGE, x->where, hint,
+                        "the range begins above its end; it is taken the other way round");
+    } else if (is_literal(x->as.range.begin) && is_literal(x->as.range.end)) {
+        csg_eval_report(e, CSG_DIAG_BAD_RANGE, x->where, hint,
+                        "the range begins above its end: it has no elements");
+    }
+}
+
 static csg_value evaluate_range(csg_eval *e, const csg_expression *x, csg_frame *frame)
 {
     csg_value begin = csg_evaluate(e, x->as.range.begin, frame);
@@ -235,13 +266,8 @@ static csg_value evaluate_range(csg_eval *e, const csg_expression *x, csg_frame 
     bool numbers = begin.kind == CSG_VALUE_NUMBER && step.kind == CSG_VALUE_NUMBER &&
                    end.kind == CSG_VALUE_NUMBER;
     csg_value made = csg_value_undef();
-    if (numbers && !x->as.range.step && begin.as.number > end.as.number) {
-        csg_value swap = begin;
-        csg_eval_report(e, CSG_DIAG_BAD_RANGE, x->where, "a range that counts down is [a : -1 : b]",
-                        "the range begins above its end; it is taken the other way round");
-        begin = end;
-        end = swap;
-    }
+    if (numbers && !x->as.range.step && begin.as.number > end.as.number)
+        turn_backward_range(e, x, &begin, &end);
     if (numbers)
         made = csg_range_create(&e->heap, begin.as.number, step.as.number, end.as.number);
     if (numbers && made.kind == CSG_VALUE_UNDEF)

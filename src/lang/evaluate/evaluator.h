@@ -135,6 +135,9 @@ csg_node_id csg_eval_run(csg_eval *e);
 void csg_eval_report(csg_eval *e, csg_diag_code code, csg_span where, const char *hint,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Is it only a warning there, so that what was left out is to be said (text/source.h)? */
+/* OpenSCAD's language that holds, as version_num() has it: 20210100 is 2021.01. The default is the
+ * newest of which nothing is missing but what is experimental there. */
+uint32_t csg_eval_level(const csg_eval *e);
 bool csg_eval_is_lenient(const csg_eval *e, csg_diag_code code, csg_span where);
 /* What a finding about an argument ends in: ", this is ignored" there where it is only a warning.
  */

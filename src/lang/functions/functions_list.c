@@ -117,18 +117,10 @@ ASKS_KIND(is_function, CSG_VALUE_FUNCTION)
 ASKS_KIND(is_blend, CSG_VALUE_BLEND)
 ASKS_KIND(is_object, CSG_VALUE_RECORD)
 
-/* Files ask for the level of the language, not of this program: as version_num(), 20210100 is
- * 2021.01. The default is the newest of which nothing is missing but what is experimental there. */
-static uint32_t level_of(const csg_eval *e)
-{
-    enum { NEWEST = 20260101 };
-    const csgm_scene_options *options = e->program->options;
-    return options && options->openscad_version ? options->openscad_version : NEWEST;
-}
-
+/* Files ask for the level of the language, not of this program. */
 csg_value csg_function_version(const csg_function_call *call)
 {
-    uint32_t all = level_of(call->e);
+    uint32_t all = csg_eval_level(call->e);
     const double level[] = {all / 10000, all / 100 % 100, all % 100};
     csg_vector *made = csg_vector_create(&call->e->heap, 3);
     if (!made) {
@@ -144,7 +136,7 @@ csg_value csg_function_version_num(const csg_function_call *call)
 {
     double asked[3] = {0};
     if (call->count == 0)
-        return csg_value_number(level_of(call->e));
+        return csg_value_number(csg_eval_level(call->e));
     if (!csg_value_numbers(call->arguments[0], 3, asked) &&
         !csg_value_numbers(call->arguments[0], 2, asked))
         return csg_bad_argument(call, 0, "a version such as [2021, 1, 0]");
