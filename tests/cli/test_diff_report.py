@@ -4,6 +4,7 @@
 The page is opened in headless Chromium (tools/view has the driver); without it those tests are skipped.
 With --thorough: every page, also on a phone, in the dark, and with a hostile name.
 """
+import base64
 import json
 import os
 import shutil
@@ -77,12 +78,13 @@ class Picture(ReportTest):
         colors = lambda panel: [tuple(panel[i:i + 3]) for i in range(0, len(panel), 3)]
         bluish = sum(b > r + 30 for r, _, b in colors(before))
         orange = sum(r > b + 30 for r, _, b in colors(after))
-        dark_red = sum(r > 80 and r > 3 * g and r > 3 * b for r, g, b in colors(heat))
+        red = lambda panel: sum(r > 80 and r > 2 * g and r > 2 * b for r, g, b in colors(panel))
+        dark_red = red(heat)
         self.assertGreater(bluish, 10000)
         self.assertGreater(orange, 10000)
         self.assertGreater(dark_red, 40)
         self.assertLess(dark_red, 8000, "a hole alone has changed")
-        self.assertEqual(sum(r > 80 and r > 3 * g and r > 3 * b for r, g, b in colors(before)), 0)
+        self.assertEqual(red(before), 0)
 
     def test_same_bytes(self):
         self.plates()
@@ -101,13 +103,29 @@ class Picture(ReportTest):
         self.assertAlmostEqual(shapes["front"], 10, delta=2)
         self.assertAlmostEqual(shapes["top"], 2, delta=0.2)
         self.assertEqual(shapes["0,90"], shapes["top"])
-        self.assertNotEqual(self.pixels("--view", "front"), self.pixels("--view", "180,0"))
+        self.assertTrue(self.pixels("--view", "30,30") != self.pixels("--view", "210,30"))
         self.diff(1, "a.ply", "b.ply", "--view", "top", "--html", "out.html")
         toward = data_of(self.read("out.html"))["pairs"][0]["models"]["toward"]
         self.assertAlmostEqual(toward[2], 1, places=9)
         self.assertLess(toward[1], 0)
         self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "top"), 2, "--png or --html")
         self.assert_refused(self.run_in("diff", "a.ply", "b.ply", "--view", "upon", "--png", "x.ppm"), 2, "upon")
+
+    def test_large_triangles(self):
+        """A hole that is closed in a plate of few triangles has no vertex where the change is, and is seen all the same."""
+        self.write("a.txt", PLATE)
+        self.write("b.txt", PLATE.replace("holes = 3", "holes = 2"))
+        for name in ("a", "b"):
+            self.assert_status(self.run_in(name + ".txt", "-o", name + ".ply", "-q"), 0)
+        heat = self.panel(self.pixels("--html", "out.html"), 2)
+        red = sum(heat[i] > 120 and heat[i] > 2 * heat[i + 1] for i in range(0, len(heat), 3))
+        self.assertGreater(red, 150)
+        pair = data_of(self.read("out.html"))["pairs"][0]
+        self.assertLess(pair["report"]["b"]["triangles"], 1000)
+        self.assertLess(pair["models"]["b"]["triangles"], 22000)
+        hottest = max(int.from_bytes(raw[i:i + 2], "little") for raw in [base64.b64decode(pair["models"]["b"]["heat"])]
+                      for i in range(0, len(raw), 2))
+        self.assertGreater(hottest, 0.8 * 65535)
 
     def test_best_view(self):
         """A change is looked at from where it is seen: from below only where that is the only way."""
@@ -196,7 +214,7 @@ class Page(ReportTest):
         pair = data_of(page)["pairs"][0]
         self.assertEqual(pair["verdict"], "different")
         for side in "ab":
-            self.assertEqual(pair["models"][side]["triangles"], pair["report"][side]["triangles"])
+            self.assertGreaterEqual(pair["models"][side]["triangles"], pair["report"][side]["triangles"])
             self.assertEqual(pair["models"][side]["cell"], 0)
         result = self.diff(1, "a.ply", "b.ply", "--html", "-")
         self.assertTrue(result.stdout.startswith(b"<!doctype html>"))

@@ -53,6 +53,44 @@ static bool turn(diff_drawing *d, int how)
     return true;
 }
 
+/* ---- large triangles ------------------------------------------------------------------------- */
+
+/* Distances are known at vertices: both surfaces are measured once more, at more of them. */
+static csgm_status measure_finely(diff_drawing *d)
+{
+    csgm_diff_options options = csgm_diff_options_default();
+    options.tolerance = INFINITY;
+    options.samples = 1;
+    options.ignored = CSGM_DIFF_IGNORE_ORDER | CSGM_DIFF_IGNORE_NORMALS | CSGM_DIFF_IGNORE_COLORS |
+                      CSGM_DIFF_IGNORE_NAMES | CSGM_DIFF_IGNORE_TOPOLOGY;
+    csgm_status status =
+        csgm_diff_meshes(d->context, &d->fine[0].view, &d->fine[1].view, &options, &d->fine_diff);
+    if (status != CSGM_OK)
+        return status;
+    for (int i = 0; i < 2; i++) {
+        d->sides[i] = d->fine[i].view;
+        d->distances[i] = csgm_diff_vertex_distances(d->fine_diff, i);
+    }
+    return CSGM_OK;
+}
+
+static csgm_status refine(diff_drawing *d)
+{
+    const double edges_across = 48; /* the whole */
+    const uint64_t most_new = 20000;
+    csgm_vec3 size = {d->box.max.x - d->box.min.x, d->box.max.y - d->box.min.y,
+                      d->box.max.z - d->box.min.z};
+    double longest = sqrt(size.x * size.x + size.y * size.y + size.z * size.z) / edges_across;
+    bool is_drawn = d->most > 0 && d->distances[0] && d->distances[1];
+    if (!is_drawn || !(diff_fine_has_longer_edge(&d->sides[0], longest) ||
+                       diff_fine_has_longer_edge(&d->sides[1], longest)))
+        return CSGM_OK;
+    for (int i = 0; i < 2; i++)
+        if (!diff_fine_make(&d->sides[i], longest, most_new, &d->fine[i]))
+            return CSGM_ERR_MEMORY;
+    return measure_finely(d);
+}
+
 /* ---- from where ------------------------------------------------------------------------------ */
 
 /* What --view says. Rounded, so that the last bits of a libm are not seen, and never quite along z,
@@ -98,14 +136,21 @@ bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side side
         out->box = (csgm_box){{0, 0, 0}, {1, 1, 1}};
     if (isfinite(report->hausdorff_lower) && report->hausdorff_lower > report->precision)
         out->most = report->hausdorff_lower;
-    if (chosen_view(app, &out->toward) || diff_view_find(out, &out->toward) == CSGM_OK)
+    csgm_status status = refine(out);
+    if (status == CSGM_OK && !chosen_view(app, &out->toward))
+        status = diff_view_find(out, &out->toward);
+    if (status == CSGM_OK)
         return true;
     diff_drawing_release(out);
-    return no_memory(app);
+    return status == CSGM_ERR_MEMORY && no_memory(app);
 }
 
 void diff_drawing_release(diff_drawing *drawing)
 {
+    csgm_diff_destroy(drawing->fine_diff);
+    drawing->fine_diff = NULL;
+    for (int i = 0; i < 2; i++)
+        diff_fine_release(&drawing->fine[i]);
     free(drawing->turned);
     drawing->turned = NULL;
 }

@@ -5,6 +5,7 @@
 #ifndef CLI_DIFF_DRAWING_H
 #define CLI_DIFF_DRAWING_H
 
+#include "diff/diff_fine.h"
 #include "diff/diff_result.h"
 #include "diff/diff_side.h"
 
@@ -15,7 +16,9 @@ typedef struct diff_drawing {
     double most;               /* the distance that is dark red; 0: nothing differs */
     csgm_vec3 toward;          /* unit vector from the middle toward the eye */
     csgm_context *context;
-    float *turned; /* own memory of sides[1].positions, or NULL */
+    float *turned;        /* own memory of sides[1].positions, or NULL */
+    diff_fine fine[2];    /* and of sides, where their triangles are large for a picture */
+    csgm_diff *fine_diff; /* whose distances those of fine sides are, or NULL */
 } diff_drawing;
 
 /* False: out of memory (reported). The diff and the sides must outlive it. */

@@ -84,7 +84,7 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
     if (mesh->triangle_count == 0)
         return CSGM_OK;
     options.ground = false; /* it would move with what was removed or added below */
-    options.edges = true;
+    options.edges = options.flat = true;
     options.width = PANEL;
     options.height = TALL;
     options.camera.placed = true;
