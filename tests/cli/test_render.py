@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """csgmesh render: pictures as files, of scenes and of meshes, and what is refused."""
+import base64
+import json
 import os
 import struct
 import zlib
@@ -160,6 +162,25 @@ class Render(cli.CliTest):
             result = self.run_in("render", "blend.txt", "-o", "x.ppm", *SMALL, "--edges", *option)
             self.assertIn("--edges has no effect on " + what, result.stderr)
         self.assertEqual(self.run_in("render", "blend.txt", "-o", "x.ppm", *SMALL, "--edges").stderr, "")
+
+    def test_alpha_of_foreign_gltf(self):
+        """Without alphaMode glTF's alpha says nothing; with BLEND one sees through."""
+        points = struct.pack("<9f", -1, 0, -1, 1, 0, -1, 0, 0, 1)
+        root = {"asset": {"version": "2.0", "generator": "another"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, 0, -1], "max": [1, 0, 1]}],
+                "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(points).decode()}],
+                "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 0.25], "metallicFactor": 0}}]}
+        darkest = {}
+        for mode in (None, "BLEND"):
+            if mode:
+                root["materials"][0]["alphaMode"] = mode
+            self.write("t.gltf", json.dumps(root))
+            pixels = self.ppm("t.gltf", *SMALL, "--view", "top", "--no-ground")[2]
+            darkest[mode] = min(pixels[i + 1] for i in range(0, len(pixels), 3))
+        self.assertLess(darkest[None], 60)
+        self.assertGreater(darkest["BLEND"], 150)
 
     def test_counts(self):
         fast = self.stats("render", "blend.txt", *SMALL)

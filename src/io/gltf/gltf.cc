@@ -342,14 +342,18 @@ void emit(const document &doc, csg_adapter_part &part, const origin &at, int mat
     bool is_there = material >= 0 && index < doc.told.materials.size();
     if (is_there && doc.told.materials[index].has_material)
         part.material = doc.told.materials[index].material;
-    if (is_there && doc.told.materials[index].is_told) {
-        const float *factor = doc.told.materials[index].rgba;
-        uint32_t components = part.colors ? part.color_components : 0;
+    bool is_opaque = is_there ? doc.told.materials[index].is_opaque : !doc.told.ours;
+    uint32_t components = part.colors ? part.color_components : 0;
+    if ((is_there && doc.told.materials[index].is_told) || (is_opaque && components == 4)) {
+        static const float white[4] = {1, 1, 1, 1};
+        const float *factor = is_there ? doc.told.materials[index].rgba : white;
         colors.resize(4 * part.vertex_count);
         for (size_t i = 0; i < part.vertex_count; i++)
             for (size_t k = 0; k < 4; k++)
                 colors[4 * i + k] =
-                    factor[k] * (k < components ? part.colors[components * i + k] : 1);
+                    k == 3 && is_opaque
+                        ? 1
+                        : factor[k] * (k < components ? part.colors[components * i + k] : 1);
         part.colors = colors.data();
         part.color_components = 4;
     }

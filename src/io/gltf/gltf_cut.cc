@@ -178,7 +178,7 @@ static void note_materials(facts &out, const json &root)
     if (!materials || !materials->is_array())
         return;
     for (const json &material : *materials) {
-        base_color color = {{1, 1, 1, 1}, false, {0, 0}, false};
+        base_color color = {{1, 1, 1, 1}, false, {0, 0}, false, false};
         const json *extras = member(material, "extras");
         const json *uncolored = extras ? member(*extras, "uncolored") : nullptr;
         const json *pbr = member(material, "pbrMetallicRoughness");
@@ -189,6 +189,8 @@ static void note_materials(facts &out, const json &root)
             color.is_told = out.ours || color.rgba[0] != 1 || color.rgba[1] != 1 ||
                             color.rgba[2] != 1 || color.rgba[3] != 1;
         }
+        std::string mode = text_of(member(material, "alphaMode"));
+        color.is_opaque = !out.ours && mode != "BLEND" && mode != "MASK"; /* older ones of ours */
         note_finish(color, pbr);
         out.materials.push_back(color);
     }

@@ -41,6 +41,7 @@ struct base_color {
     bool is_told;         /* else it is how glTF shows what has no colour */
     uint16_t material[2]; /* metallic and roughness, as csg_adapter_part has them */
     bool has_material;
+    bool is_opaque; /* what it says of alpha is not meant */
 };
 
 /* A view compressed by meshoptimizer: where its bytes are. */
