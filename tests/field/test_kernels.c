@@ -14,6 +14,7 @@
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
+#include "scene/random_blend.h"
 
 enum frame_kind {
     OFFSET,

@@ -12,6 +12,7 @@
 #include "field/prune_support.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
+#include "scene/random_blend.h"
 
 /* Ways down from random cubes around places up to `spread` from the middle, in a subject that is
  * begun and has this root; adds what was seen to the totals. */

@@ -7,7 +7,6 @@
 
 #include "field/kernels/roots.h"
 #include "field_support.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 
 /* Two planes whose values along x have these slopes and meet in a kink; the root lies before it. */

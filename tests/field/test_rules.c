@@ -14,6 +14,7 @@
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 #include "scene/primitives/kinds.h"
+#include "scene/random_blend.h"
 
 static const csg_blend_kind kinds[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) CSG_BLEND_##NAME,

@@ -8,6 +8,7 @@
 #include "fuzz/fuzz.h"
 #include "lang/evaluate/evaluator.h"
 #include "lang/parse/parser.h"
+#include "text/lexer.h"
 
 enum { STACK_BYTES = 4 << 20 }; /* of this thread's own, for the parser */
 

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 
 static void note_finding(void *user, const csgm_diag *diag)
@@ -215,4 +216,9 @@ csg_node_id posed_anyhow(mesh_case *c, csg_node_id node, csg_random *random)
     node = turned(c, node, csg_random_uniform(random, 0, 360), test_direction(random));
     return moved(c, node, csg_random_uniform(random, -0.5, 0.5),
                  csg_random_uniform(random, -0.5, 0.5), csg_random_uniform(random, -0.5, 0.5));
+}
+
+csg_blend round_blend(double width)
+{
+    return (csg_blend){CSG_BLEND_ROUND, width};
 }

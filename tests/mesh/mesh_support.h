@@ -9,7 +9,7 @@
 #include "field/kernels/dispatch.h"
 #include "mesh/inspect.h"
 #include "mesh/pipeline/parts.h"
-#include "scene/operators/blend_kinds.h"
+#include "scene/operators/blend.h"
 #include "scene/random_scene.h"
 #include "scene/scene_support.h"
 
@@ -61,7 +61,8 @@ csg_node_id turned(mesh_case *c, csg_node_id node, double angle_deg, csg_vec3 ax
 csg_node_id posed_anyhow(mesh_case *c, csg_node_id node, csg_random *random);
 csg_node_id joined(mesh_case *c, csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b);
 
-#define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})
-#define ROUND(w) ((csg_blend){CSG_BLEND_ROUND, (w)})
+#define SHARP CSG_SHARP
+#define ROUND(w) round_blend(w)
+csg_blend round_blend(double width);
 
 #endif

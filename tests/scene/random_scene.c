@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "random_blend.h"
 #include "random_rule.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
@@ -86,7 +87,8 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 
 bool test_random_rules = false;
 
-csg_rule test_random_rule(csg_random *random, csg_blend_kind kind)
+/* A rule of this kind with random parameters, not settled. */
+static csg_rule random_rule(csg_random *random, csg_blend_kind kind)
 {
     csg_rule rule = csg_rule_standard(kind);
     double *v = rule.parameters;
@@ -120,7 +122,7 @@ static csg_blend any_rule(csg_scene_builder *builder, csg_random *random)
     csg_blend_kind kind = CSG_BLEND_PROFILE;
     while (kind == CSG_BLEND_PROFILE || kind == CSG_BLEND_FIELD_SHARP)
         kind = CSG_BLEND_EXTERIOR + csg_random_below(random, CSG_BLEND_END - CSG_BLEND_EXTERIOR);
-    csg_rule rule = test_random_rule(random, kind);
+    csg_rule rule = random_rule(random, kind);
     return csg_build_rule(builder, &rule);
 }
 

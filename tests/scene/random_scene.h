@@ -7,7 +7,6 @@
 #define TEST_RANDOM_SCENE_H
 
 #include "base/random.h"
-#include "scene/operators/rule.h"
 #include "scene/tree/build.h"
 
 /* A scene of about that many primitives (>= 1); CSG_NODE_NONE when the builder failed. */
@@ -32,9 +31,6 @@ extern bool test_random_curves;
  */
 extern bool test_random_fillets;
 
-/* A rule of this kind with random parameters, not settled. */
-csg_rule test_random_rule(csg_random *random, csg_blend_kind kind);
-
 /* One such solid, finite, not placed. */
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
 
@@ -49,7 +45,5 @@ void test_random_parameters(csg_random *random, csg_primitive_kind kind, double 
 /* A turn about a random axis after a scale, its three factors between low and high (equal when
  * low = high), then a shift of at most `shift` along each axis. */
 csg_affine test_random_affine(csg_random *random, double low, double high, double shift);
-
-csg_blend test_random_blend(csg_random *random, csg_blend_kind kind);
 
 #endif

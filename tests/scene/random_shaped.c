@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Solids made of figures of the plane and of warps; see random_scene.h.
  */
+#include "random_blend.h"
 #include "random_scene.h"
 #include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"

@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "random_blend.h"
 #include "random_scene.h"
 
 enum { MOST = 40, ROUNDS = 4000 };

@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 
+#include "random_blend.h"
 #include "random_scene.h"
 #include "scene/boxes/exterior.h"
 #include "scene/boxes/level_boxes.h"

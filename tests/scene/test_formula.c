@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "scene/formula/formula.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/random_formula.h"
 #include "scene/scene_support.h"
 

@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 
+#include "random_blend.h"
 #include "random_scene.h"
 #include "scene/formula/formula.h"
 #include "scene/lazy/lazy_private.h"

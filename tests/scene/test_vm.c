@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "collected_text.h"
+#include "random_blend.h"
 #include "random_scene.h"
 #include "scene/formula/formula.h"
 #include "scene/formula/formulate.h"

@@ -7,6 +7,7 @@
 
 #include "lang/evaluate/rule_value.h"
 #include "lang/evaluate/symbolic.h"
+#include "text/lexer.h"
 
 static bool equal_vectors(csg_eval *e, const csg_vector *a, const csg_vector *b, csg_span where)
 {

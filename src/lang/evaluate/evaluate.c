@@ -9,6 +9,8 @@
 #include "base/scene_codes.h"
 #include "lang/evaluate/builtins.h"
 #include "lang/evaluate/symbolic.h"
+#include "lang/parse/ast_kinds.h"
+#include "text/lexer.h"
 
 /* ---- calls
  * ------------------------------------------------------------------------------------------ */

@@ -7,6 +7,7 @@
 #include "base/mesh_codes.h"
 #include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
+#include "lang/parse/ast_kinds.h"
 
 /* ---- building lists
  * ------------------------------------------------------------------------------ */

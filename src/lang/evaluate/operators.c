@@ -9,6 +9,7 @@
 #include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
 #include "scene/formula/formula.h"
+#include "text/lexer.h"
 
 csg_value csg_eval_no_operation(csg_eval *e, const csg_expression *x, csg_value left,
                                 csg_value right)

@@ -9,6 +9,7 @@
 #include "base/mesh_codes.h"
 #include "base/scene_codes.h"
 #include "scene/formula/formula.h"
+#include "text/lexer.h"
 
 static const char hint[] =
     "a formula is made of + - * / % ^, abs min max floor sqrt pow exp ln sin "

@@ -9,7 +9,9 @@
 
 #include "lang/evaluate/rule_value.h"
 #include "lang/evaluate/value.h"
+#include "lang/parse/ast_kinds.h"
 #include "scene/operators/steps.h"
+#include "text/lexer.h"
 
 void csg_text_put(csg_text *text, const char *data, size_t length)
 {

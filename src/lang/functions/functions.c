@@ -44,6 +44,7 @@ enum {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)                 \
     _Static_assert(FUNCTION_##name >= 0, "a row of functions.def");
 #define CSG_RULE_INNER(NAME, name, space, fold, interval, demand, lipschitz, equal, doc)
+#include "lang/parse/ast_kinds.h"
 #include "scene/operators/operators.def"
 
 void csg_functions_intern(csg_symbols *symbols, bool *ok)

@@ -11,6 +11,8 @@
 
 #include "base/scene_codes.h"
 #include "lang/evaluate/evaluator.h"
+#include "lang/parse/ast_kinds.h"
+#include "text/lexer.h"
 
 typedef struct section {
     uint32_t line;

@@ -14,6 +14,7 @@
 #include "base/scene_codes.h"
 #include "lang/parameters/assignments.h"
 #include "lang/parameters/customizer.h"
+#include "lang/parse/ast_kinds.h"
 #include "lang/parse/parser.h"
 #include "text/json.h"
 

@@ -7,13 +7,7 @@
 #define CSG_LANG_AST_H
 
 #include "lang/parse/symbols.h"
-#include "text/lexer.h"
-
-typedef enum csg_expression_kind {
-#define CSG_EXPRESSION(NAME, text) CSG_EXPRESSION_##NAME,
-#include "lang/parse/ast.def"
-#undef CSG_EXPRESSION
-} csg_expression_kind;
+#include "text/source.h"
 
 typedef struct csg_expression csg_expression;
 
@@ -30,8 +24,8 @@ typedef struct csg_arguments {
 } csg_arguments;
 
 struct csg_expression {
-    uint8_t kind;      /* csg_expression_kind */
-    uint8_t operation; /* UNARY, BINARY: csg_token_kind */
+    uint8_t kind;      /* csg_expression_kind (ast_kinds.h) */
+    uint8_t operation; /* UNARY, BINARY: csg_token_kind (text/lexer.h) */
     csg_span where;    /* operators: of the operator sign; else of the first token or name */
     csg_span whole;    /* from its first to its last byte */
     uint32_t slot;     /* NAME: its own among the program's, where the evaluator keeps what it is */

@@ -10,6 +10,7 @@
 
 #include "base/scene_codes.h"
 #include "text/folders.h"
+#include "text/lexer.h"
 
 /* ---- finding -------------------------------------------------------------------------------- */
 

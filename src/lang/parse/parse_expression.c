@@ -5,6 +5,7 @@
  * As in OpenSCAD 2021, ^ binds tighter than a sign before it (-2^2 = -4) and groups to the right.
  */
 #include "base/scene_codes.h"
+#include "lang/parse/ast_kinds.h"
 #include "lang/parse/parser_private.h"
 
 static csg_expression *parse_unary(csg_parser *parser);

@@ -5,6 +5,7 @@
 #define CSG_LANG_PARSER_PRIVATE_H
 
 #include "lang/parse/ast.h"
+#include "text/lexer.h"
 
 typedef struct csg_parser {
     csg_program *program;

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/formula/formula.h"
+
 enum { DEEPEST_NESTING = 12 };
 
 typedef struct printer {

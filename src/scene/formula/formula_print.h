@@ -4,7 +4,8 @@
 #ifndef CSG_SCENE_FORMULA_PRINT_H
 #define CSG_SCENE_FORMULA_PRINT_H
 
-#include "scene/formula/formula.h"
+#include "base/context.h"
+#include "scene/formula/step.h"
 
 /* The words for x, y and z, and for the parameters that they come from. */
 typedef struct csg_formula_words {

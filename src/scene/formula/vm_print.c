@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/formula/formula.h"
 #include "scene/formula/formula_print.h"
 #include "scene/formula/formulate.h"
 #include "shape/polyhedra/polyhedron.h"
