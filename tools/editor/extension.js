@@ -29,7 +29,7 @@ async function activate(context) {
   try {
     await client.start();
   } catch (error) {
-    vscode.window.showErrorMessage(`csgmesh: cannot start '${program()} lsp': ${error.message}`);
+    vscode.window.showErrorMessage(`csgmesh: cannot start '${program()} lsp': ${error?.message ?? error ?? "is it on the PATH?"}`);
   }
 }
 
