@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What independent readers find in our files: each row of the table of docs/formats.md is measured anew, where its reader is installed.
 
-Python packages are those of this interpreter (PYTHONPATH), three.js and draco3d those of the folder CSGMESH_NODE_MODULES or tests/io/node_modules;
+Python packages are those of this interpreter (PYTHONPATH), three.js and draco3d those of the folder CSGMESH_NODE_MODULES, or what `npm ci` in tests/io puts there;
 without one of them its test is skipped, with a message. `test_readers.py --table` prints the rows as they are measured.
 """
 import importlib.util
