@@ -76,7 +76,7 @@ static csgm_status find_lowest(const csg_picture *picture, const csg_tracer *tra
         return csg_context_no_memory(context);
     csg_tracer below = *tracer;
     below.tolerance_slope = 0;
-    below.occlusion = below.shadows = below.colors = false;
+    below.occlusion = below.shadows = below.colors = below.is_clear = false;
     below.rectangles = rectangles;
     csg_trace_counts counts = room->counts;
     double seen = INFINITY, near = box.min.z + NEAR_BOUNDS * csg_vec3_norm(csg_box_size(box));
