@@ -117,22 +117,22 @@ class Quality(cli.CliTest):
 
     def test_polyhedra_go_out_as_they_are(self):
         """Balls with facets, and what comes back from a file; what crosses itself is meshed."""
-        text = "sphere(10, $fn = 100);"
+        text = "sphere(10, $fn = 60);"
         stats = self.stats(text, "--facets=exact")
-        self.assertEqual((stats["mesh"]["triangles"], stats["mesh"]["euler"]), (9996, 2))
-        self.assertEqual(stats["lattice"], {"adaptive": False, "own_triangles": 9996})
+        self.assertEqual((stats["mesh"]["triangles"], stats["mesh"]["euler"]), (3596, 2))
+        self.assertEqual(stats["lattice"], {"adaptive": False, "own_triangles": 3596})
         self.assertTrue(stats["files"][0]["manifold"])
         self.bytes(text, "--facets=exact", name="ball.stl")
         first = self.read("ball.stl")
         self.assertEqual(self.bytes('import("ball.stl");', name="again.stl"), first)
-        self.assertEqual(self.stats(text, "--facets=exact", "--triangles", "9996")["mesh"]["triangles"], 9996)
+        self.assertEqual(self.stats(text, "--facets=exact", "--triangles", "3596")["mesh"]["triangles"], 3596)
         for options in (["--triangles", "500"], ["-r", "24"], ["--simplify", "0.5"], ["--quality", "draft", "--bounds=-9,-20,-20,20,20,20"]):
             self.assertNotIn("own_triangles", self.stats(text, "--facets=exact", *options)["lattice"])
-        self.assertIn("9996 triangles of its mesh are those of polyhedra",
+        self.assertIn("3596 triangles of its mesh are those of polyhedra",
                       cli.run("info", "scene.txt", "--facets=exact", cwd=self.folder).stdout.decode())
         mixed = 'part("a") import("ball.stl"); part("b") translate([30, 0, 0]) cube(4);'
         stats = self.stats(mixed, "--quality", "draft")
-        self.assertEqual((stats["mesh"]["triangles"], stats["lattice"]["own_triangles"]), (9996 + 12, 9996))
+        self.assertEqual((stats["mesh"]["triangles"], stats["lattice"]["own_triangles"]), (3596 + 12, 3596))
         self.assertTrue(stats["lattice"]["adaptive"])
 
     def test_polyhedra_beyond_floats(self):

@@ -107,8 +107,8 @@ class Trace(cli.CliTest):
 
     def test_comparison(self):
         self.write("a.txt", SOLID)
-        self.write("b.txt", SOLID.replace("r = 0.5", "r = 0.51"))
-        zones = self.traced("diff", "a.txt", "b.txt", "-r", "24", "--samples", "1000", "--field", status=1)
+        self.write("b.txt", SOLID.replace("r = 0.5", "r = 0.6"))
+        zones = self.traced("diff", "a.txt", "b.txt", "-r", "12", "--tol", "0.05", "--samples", "1000", "--field", status=1)
         self.assert_stages(zones, "diff", "weld", "match", "trees", "distances", "from A to B", "from B to A", "volume",
                            "attributes", "field")
 
