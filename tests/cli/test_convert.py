@@ -111,6 +111,18 @@ part("knob") translate([40, 0, 0]) union(blend = 2) { color("lime") sphere(5); c
         self.assertEqual(self.document("a.glb")["materials"][0]["pbrMetallicRoughness"],
                          {"baseColorFactor": [1, 0.215861, 0, 0.8], "metallicFactor": 0.75, "roughnessFactor": 0.6})
 
+    def test_parts_that_share_vertices(self):
+        """What repeats within one of them is not moved about under the other one."""
+        places = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        lines = [f"v {x} {y} {z}" for x, y, z in places + [(x + 5, y, z) for x, y, z in reversed(places)]]
+        faces = [(1, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)]
+        moved = [tuple(9 - i for i in face) for face in faces]
+        lines += ["o a"] + ["f %d %d %d" % face for face in faces + moved] + ["o b"] + ["f %d %d %d" % (9, *face[1:]) for face in moved if face[0] == 8]
+        lines.insert(8, "v 5 -1 -1")
+        self.write("shared.obj", "\n".join(lines) + "\n")
+        self.mesh("shared.obj", "-o", "shared.glb")
+        self.mesh("diff", "shared.obj", "shared.glb", "-q", "--ignore", "normals")
+
     def test_units(self):
         """Ours keep their numbers and their unit; those of others become millimetres."""
         self.write("a.txt", "cube(2);")

@@ -400,9 +400,24 @@ static bool look_at_shape(finder *f)
     return f->saved < triangle_count(f) / WORTH_IT || !f->saved || lay_out(f);
 }
 
+/* Parts of foreign meshes may: then vertices of one cannot be moved about under the others.
+ * Stretches that do not ascend are taken for such. */
+static bool may_share_vertices(const csg_gltf_source *source)
+{
+    uint64_t end = 0;
+    for (size_t i = 0; i < source->shape_count; i++) {
+        if (source->shapes[i].first_vertex < end)
+            return true;
+        end = source->shapes[i].first_vertex + source->shapes[i].vertex_count;
+    }
+    return false;
+}
+
 bool csg_gltf_lay_out_components(csg_gltf_source *source)
 {
     bool good = true;
+    if (may_share_vertices(source))
+        return true;
     for (size_t i = 0; i < source->shape_count && good; i++) {
         finder f = {.source = source, .shape = &source->shapes[i]};
         if (f.shape->vertex_count < 2 || triangle_count(&f) > UINT32_MAX)
