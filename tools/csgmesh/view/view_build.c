@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The builder's thread; see view_build.h. Findings are what --diagnostics=json prints.
+ * The builder's thread; see view_build.h.
  */
 #include "view/view_build.h"
 
@@ -7,16 +7,11 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#include "core/textfile.h"
-#include "core/work.h"
-#include "queries/params_json.h"
-#include "view/view_model.h"
+#include "view/view_job.h"
 
 /* A mesh that takes less is not shown coarsely first. */
 static const double SHORT_S = 0.2;
-enum { COARSE_CELLS = 64 /* along the longest side */ };
 
 /* There is one builder in the process. Asked by the library on any thread. */
 static atomic_bool is_outdated;
@@ -29,81 +24,19 @@ static bool is_cancelled(void *app)
 
 typedef struct job {
     view_builder *builder;
-    cli_app app;
-    cli_work work;
+    view_job shown;
     view_values values;
-    cli_text said;
-    char *parameters; /* JSON; NULL: not known */
-    csgm_mesh *marks[CSGM_MARK_COUNT];
     uint64_t model; /* number of the one to show */
-    double begin_s, read_s;
+    double read_s;
     cli_looked looked;
 } job;
 
 /* ---- what is said ----------------------------------------------------------------------------- */
 
-/* The lines as elements of an array. */
-static void put_findings(FILE *out, job *j)
-{
-    cli_console_flush(&j->app.console);
-    fflush(j->said.out);
-    fputs("\"findings\":[", out);
-    for (size_t i = 0; i < j->said.length; i++)
-        if (j->said.text[i] != '\n')
-            fputc(j->said.text[i], out);
-        else if (i + 1 < j->said.length)
-            fputc(',', out);
-    fputc(']', out);
-}
-
-static void put_mesh(cli_json *json, const job *j)
-{
-    csgm_mesh_view view = csgm_mesh_get_view(j->work.mesh);
-    cli_json_open(json, "mesh", '{');
-    cli_json_count(json, "triangles", view.triangle_count);
-    cli_json_number(json, "tolerance", j->work.stats.tolerance);
-    cli_json_number(json, "cell", j->work.stats.cell_size);
-    cli_json_end(json, '}');
-}
-
-/* What the page may ask for as files. */
-static void put_formats(FILE *out)
-{
-    cli_json json = cli_json_make(out, false);
-    json.first = true;
-    cli_json_open(&json, "formats", '[');
-    for (csgm_format f = CSGM_FORMAT_AUTO; f < CSGM_FORMAT_COUNT; f++)
-        if (csgm_format_available(f, false))
-            cli_json_string(&json, NULL, csgm_format_name(f));
-    cli_json_end(&json, ']');
-    cli_json_open(&json, "drawings", '[');
-    for (csgm_drawing_format f = CSGM_DRAWING_NONE + 1; f < CSGM_DRAWING_COUNT; f++)
-        cli_json_string(&json, NULL, csgm_drawing_format_name(f));
-    cli_json_end(&json, ']');
-    fputc(',', out);
-}
-
-/* phase: "reading", "coarse", "done", "failed". */
+/* phase: as of view_job_state. */
 static void show(job *j, const char *phase)
 {
-    cli_text text;
-    if (!cli_text_open(&text))
-        return;
-    cli_json json = cli_json_make(text.out, false);
-    json.first = true;
-    fputs("\"scene\":{", text.out);
-    cli_json_string(&json, "name", cli_file_name(j->app.options.operands.items[0]));
-    cli_json_string(&json, "phase", phase);
-    cli_json_count(&json, "model", j->model);
-    cli_json_number(&json, "seconds", cli_now_s() - j->begin_s);
-    if (j->work.mesh)
-        put_mesh(&json, j);
-    fputs("},", text.out);
-    if (j->parameters)
-        fprintf(text.out, "%s,", j->parameters);
-    put_formats(text.out);
-    put_findings(text.out, j);
-    view_store_set_state(j->builder->store, cli_text_close(&text));
+    view_store_set_state(j->builder->store, view_job_state(&j->shown, phase, j->model));
 }
 
 /* ---- reading ---------------------------------------------------------------------------------- */
@@ -137,91 +70,23 @@ static void hand_over_files(job *j)
     j->looked = (cli_looked){0};
 }
 
-static void read_parameters(job *j)
-{
-    csgm_params *params = NULL;
-    cli_silence silence;
-    cli_silence_begin(&silence, &j->app.console);
-    if (cli_app_load_params(&j->app, j->app.options.operands.items[0], &params) == CSGM_OK) {
-        cli_text text;
-        if (cli_text_open(&text)) {
-            cli_json json = cli_json_make(text.out, false);
-            json.first = true;
-            cli_put_params(&json, params);
-        }
-        j->parameters = cli_text_close(&text);
-    }
-    csgm_params_destroy(params);
-    cli_silence_end(&silence, &j->app.console);
-}
-
 /* ---- meshes ----------------------------------------------------------------------------------- */
 
 static void show_model(job *j)
 {
-    static const char *const kinds[CSGM_MARK_COUNT] = {
-        [CSGM_MARK_HIGHLIGHT] = "highlight", [CSGM_MARK_BACKGROUND] = "background"};
-    view_layer layers[1 + CSGM_MARK_COUNT] = {{"solid", csgm_mesh_get_view(j->work.mesh)}};
-    size_t count = 1, length;
-    for (int i = 0; i < CSGM_MARK_COUNT; i++)
-        if (j->marks[i])
-            layers[count++] = (view_layer){kinds[i], csgm_mesh_get_view(j->marks[i])};
-    char *model = view_model_make(layers, count, &length);
+    size_t length;
+    char *model = view_job_model(&j->shown, &length);
     j->model = view_store_set_model(j->builder->store, model, length);
 }
 
-/* Equal cells, without creases: tens of milliseconds for nearly everything. */
 static void make_coarse(job *j)
 {
-    cli_options own = j->app.options, *o = &j->app.options;
-    cli_silence silence;
-    cli_silence_begin(&silence, &j->app.console);
-    o->resolution = COARSE_CELLS;
-    o->cell_size = o->tolerance = 0;
-    o->simplify = (cli_amount){.value = 0};
-    o->triangles = 0;
-    o->improve = false;
-    o->features = CSGM_FEATURES_SMOOTH;
-    bool made = cli_work_mesh(&j->app, &j->work) == CLI_DONE;
-    j->app.options = own;
-    cli_silence_end(&silence, &j->app.console);
+    bool made = view_job_mesh_coarsely(&j->shown);
     if (made && !atomic_load(&is_outdated)) {
         show_model(j);
         show(j, "coarse");
     }
-    csgm_mesh_destroy(j->work.mesh);
-    j->work.mesh = NULL;
-}
-
-static bool is_finite(csgm_box box)
-{
-    return isfinite(box.min.x) && isfinite(box.min.y) && isfinite(box.min.z) &&
-           isfinite(box.max.x) && isfinite(box.max.y) && isfinite(box.max.z);
-}
-
-/* What # and % mark, with the options of the solid; what is infinite ends where that does. */
-static void make_marks(job *j)
-{
-    for (int i = 0; i < CSGM_MARK_COUNT; i++) {
-        const csgm_scene *marked = csgm_scene_get_marked(j->work.scene, (csgm_mark)i);
-        cli_options own = j->app.options;
-        cli_silence silence;
-        cli_work work = {.normals = j->work.normals};
-        if (!marked)
-            continue;
-        cli_silence_begin(&silence, &j->app.console);
-        work.info = csgm_scene_get_info(marked);
-        if (!is_finite(work.info.bounds) && !own.given[CLI_OPTION_bounds]) {
-            j->app.options.bounds = j->work.info.bounds;
-            j->app.options.given[CLI_OPTION_bounds] = true;
-        }
-        if (csgm_field_compile(j->app.context, marked, &work.field) == CSGM_OK)
-            cli_work_mesh(&j->app, &work);
-        csgm_field_destroy(work.field);
-        j->marks[i] = work.mesh;
-        j->app.options = own;
-        cli_silence_end(&silence, &j->app.console);
-    }
+    view_job_drop_mesh(&j->shown);
 }
 
 /* Of the last mesh: a job's is likely to take as long. */
@@ -229,30 +94,23 @@ static double last_mesh_s = INFINITY;
 
 static int make_meshes(job *j)
 {
-    read_parameters(j);
+    view_job_read_parameters(&j->shown);
     if (last_mesh_s > SHORT_S)
         make_coarse(j);
     double begin_s = cli_now_s();
-    int status = cli_work_mesh(&j->app, &j->work);
+    int status = cli_work_mesh(&j->shown.app, &j->shown.work);
     if (status == CLI_DONE && !atomic_load(&is_outdated)) {
         last_mesh_s = cli_now_s() - begin_s;
-        make_marks(j);
+        view_job_mesh_marks(&j->shown);
     }
     return status;
 }
 
-/* A mesh is shown as it is. */
 static int make_all(job *j)
 {
-    const char *path = j->app.options.operands.items[0];
-    csgm_format format = csgm_format_from_path(path);
-    int status = cli_app_open(&j->app);
-    if (status == CLI_DONE && format != CSGM_FORMAT_AUTO)
-        status = cli_exit_status(csgm_mesh_read(j->app.context, path, format, &j->work.mesh));
-    else if (status == CLI_DONE)
-        status = cli_work_load(&j->app, &j->work, path);
+    int status = view_job_read(&j->shown);
     hand_over_files(j);
-    if (status == CLI_DONE && j->work.scene && !atomic_load(&is_outdated))
+    if (status == CLI_DONE && j->shown.work.scene && !atomic_load(&is_outdated))
         status = make_meshes(j);
     return status;
 }
@@ -297,34 +155,20 @@ void view_values_release(view_values *values)
 
 static void release(job *j)
 {
-    for (int i = 0; i < CSGM_MARK_COUNT; i++)
-        csgm_mesh_destroy(j->marks[i]);
-    cli_work_release(&j->work);
-    csgm_context_destroy(j->app.context);
-    cli_console_flush(&j->app.console);
-    free(cli_text_close(&j->said));
-    free(j->parameters);
+    view_job_release(&j->shown);
     cli_looked_release(&j->looked);
     view_values_release(&j->values);
 }
 
 static void run_job(job *j)
 {
-    static const csgm_normals normals = CSGM_NORMALS_CREASE;
     static uint64_t last_model;
-    j->begin_s = cli_now_s();
     j->read_s = cli_watch_clock_s();
     j->model = last_model;
-    j->work.normals = &normals;
-    j->app.cancelled = is_cancelled;
-    j->app.looked = take_file;
-    j->app.looked_user = j;
-    j->app.console = cli_console_make();
-    cli_console_configure(&j->app.console, &j->app.options);
-    j->app.console.json = true;
-    j->app.console.quiet = false;
-    if (cli_text_open(&j->said)) {
-        j->app.console.out = j->said.out;
+    j->shown.app.cancelled = is_cancelled;
+    j->shown.app.looked = take_file;
+    j->shown.app.looked_user = j;
+    if (view_job_begin(&j->shown)) {
         show(j, "reading");
         int status = make_all(j);
         if (status == CLI_DONE && !atomic_load(&is_outdated))
@@ -340,7 +184,8 @@ static void *follow_requests(void *user)
 {
     view_builder *b = user;
     for (;;) {
-        job j = {.builder = b, .app = {.options = b->app->options, .start_s = cli_now_s()}};
+        job j = {.builder = b,
+                 .shown = {.app = {.options = b->app->options, .start_s = cli_now_s()}}};
         pthread_mutex_lock(&b->lock);
         while (b->wanted == b->begun && !b->is_ending)
             pthread_cond_wait(&b->asked, &b->lock);
@@ -350,7 +195,7 @@ static void *follow_requests(void *user)
         }
         b->begun = b->wanted;
         atomic_store(&is_outdated, false);
-        bool ready = take_values(b, &j.app.options, &j.values);
+        bool ready = take_values(b, &j.shown.app.options, &j.values);
         pthread_mutex_unlock(&b->lock);
         if (ready)
             run_job(&j);
