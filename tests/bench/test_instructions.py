@@ -29,6 +29,13 @@ class Instructions(unittest.TestCase):
         self.assertIn("faster: renew", said)
         self.assertIn("c: 0.0 million; not in", said)
 
+    def test_start_is_apart(self):
+        """A library more makes the start dearer, and nothing else."""
+        kept = {"start": 500, "a": 1000}
+        for counts, expected in (({"start": 600, "a": 1100}, ["start"]), ({"start": 500, "a": 1060}, ["a"]), ({"start": 540, "a": 1080}, [])):
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(instructions.compare(counts, kept), expected)
+
     def test_failed(self):
         self.assertEqual(self.compare({"a": None})[0], ["a"])
 
