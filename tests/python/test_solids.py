@@ -128,8 +128,7 @@ def test_options_are_those_of_the_header():
     """Each member of an options struct is an option of the function, and a name for type checkers."""
     header = (ROOT / "include" / "csgmesh" / "csgmesh.h").read_text()
     header = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
-    renamed = {"scene": {"defines": "define", "define_count": None, "include_dirs": "include", "include_dir_count": None,
-                         "on_file": None, "file_user": None},  # a callback: of those only the monitor's have a Python form
+    renamed = {"scene": {"defines": "define", "define_count": None, "include_dirs": "include", "include_dir_count": None},
                "render": {"camera": None, "slice_axis": "slice", "slice_at": None}, "diff": {"ignored": "ignore", "scene_a": None, "scene_b": None},
                "mesh": {}, "write": {"metadata_count": None, "level_count": None}}
     more = {"render": {"view", "eye", "target", "up", "projection", "fov", "view_height", "zoom"}}
