@@ -140,7 +140,8 @@ typedef enum csgm_isa {
     CSGM_ISA_SSE2,
     CSGM_ISA_AVX2,
     CSGM_ISA_AVX512,
-    CSGM_ISA_NEON
+    CSGM_ISA_NEON,
+    CSGM_ISA_SIMD128 /* of WebAssembly */
 } csgm_isa;
 
 /* Budgets that keep a hostile or mistaken scene from exhausting the machine. Reaching one ends the
@@ -194,7 +195,7 @@ CSGM_API uint32_t csgm_context_threads(const csgm_context *context);
 /* Ends the worker threads until a call needs them again: for a context that is kept because of what
  * was made with it, and has nothing to do. */
 CSGM_API void csgm_context_rest(csgm_context *context);
-/* "avx512", "avx2", "sse2", "neon" or "scalar"; static storage. */
+/* "avx512", "avx2", "sse2", "neon", "simd128" or "scalar"; static storage. */
 CSGM_API const char *csgm_context_isa(const csgm_context *context);
 
 /* ---- trace: where the time goes ------------------------------------------------------ */

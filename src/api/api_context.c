@@ -73,7 +73,7 @@ static bool isa_from_environment(csgm_isa *isa)
     const char *name = getenv("CSGMESH_ISA");
     if (!name || !*name)
         return true;
-    for (csgm_isa i = CSGM_ISA_SCALAR; i <= CSGM_ISA_NEON; i++) {
+    for (csgm_isa i = CSGM_ISA_SCALAR; i <= CSGM_ISA_SIMD128; i++) {
         if (strcmp(name, csg_isa_name(i)) == 0) {
             *isa = i;
             return true;
@@ -112,7 +112,8 @@ static csgm_status start_context(csgm_context *context, const csgm_context_optio
     csgm_isa wanted = options->isa;
     if (wanted == CSGM_ISA_AUTO && !isa_from_environment(&wanted)) {
         csg_diag_plain(&context->diags, CSG_DIAG_BAD_ENVIRONMENT, NULL,
-                       "use auto, scalar, or on x86-64 sse2, avx2, avx512, on ARM neon",
+                       "use auto, scalar, or on x86-64 sse2, avx2, avx512, on ARM neon, in "
+                       "WebAssembly simd128",
                        "CSGMESH_ISA names no instruction set that this build has: '%.40s'",
                        getenv("CSGMESH_ISA"));
         return CSGM_ERR_ARGUMENT;
@@ -144,7 +145,7 @@ csgm_status csgm_context_create(const csgm_context_options *options, csgm_contex
         return CSGM_ERR_ARGUMENT;
     options = &own;
     csgm_allocator allocator = own.allocator;
-    if (!allocator.alloc != !allocator.release || (unsigned)options->isa > CSGM_ISA_NEON)
+    if (!allocator.alloc != !allocator.release || (unsigned)options->isa > CSGM_ISA_SIMD128)
         return CSGM_ERR_ARGUMENT;
     csgm_context *context = allocator.alloc ? allocator.alloc(allocator.user, sizeof *context)
                                             : malloc(sizeof *context);

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Options of older versions; see options.h. Each options struct begins with its size in bytes, is
- * aligned to eight of them, and grows behind its padding only, so a size that is no multiple of
- * eight is nobody's. A larger struct may ask for what this version does not know: it is refused.
+ * aligned as a pointer at least, and grows behind its padding only, so a size that is no multiple
+ * of a pointer's is nobody's. A larger struct may ask for what this version does not know: it is
+ * refused.
  */
 #include "api/options.h"
 
 #include <string.h>
 
-enum { STEP = 8 };
+enum { STEP = sizeof(void *) };
 
 bool csg_struct_is_known(const void *given, size_t own_bytes)
 {

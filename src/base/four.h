@@ -11,6 +11,8 @@
 
 #ifdef __SSE2__
 #include <emmintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 typedef float csg_four __attribute__((vector_size(16)));
@@ -39,6 +41,8 @@ static inline unsigned csg_four_bits(csg_four_mask mask)
 {
 #ifdef __SSE2__
     return (unsigned)_mm_movemask_ps((__m128)mask);
+#elif defined(__wasm_simd128__)
+    return wasm_i32x4_bitmask((v128_t)mask);
 #else
     return ((unsigned)mask[0] & 1) | ((unsigned)mask[1] & 2) | ((unsigned)mask[2] & 4) |
            ((unsigned)mask[3] & 8);

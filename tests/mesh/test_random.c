@@ -144,7 +144,7 @@ static void test_random_scenes(void **state)
             compare(&c, seed, 2, best, true);
             compare(&c, seed, 5, best, false);
         }
-        for (csgm_isa isa = CSGM_ISA_SCALAR; isa <= CSGM_ISA_NEON; isa++)
+        for (csgm_isa isa = CSGM_ISA_SCALAR; isa <= CSGM_ISA_SIMD128; isa++)
             if (csg_cpu_best_isa(isa) == isa && isa != best)
                 compare(&c, seed, 1, isa, seed % 2 == 0);
         compare_runs(&c, seed, 1 + seed % 3);

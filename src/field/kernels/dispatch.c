@@ -16,6 +16,9 @@ extern const csg_kernel csg_kernel_avx512;
 #ifdef CSG_HAVE_KERNEL_neon
 extern const csg_kernel csg_kernel_neon;
 #endif
+#ifdef CSG_HAVE_KERNEL_simd128
+extern const csg_kernel csg_kernel_simd128;
+#endif
 
 static bool cpu_has(csgm_isa isa)
 {
@@ -33,7 +36,7 @@ static bool cpu_has(csgm_isa isa)
         return false;
     }
 #else
-    return isa == CSGM_ISA_NEON;
+    return isa == CSGM_ISA_NEON || isa == CSGM_ISA_SIMD128; /* every machine of their kind */
 #endif
 }
 
@@ -59,6 +62,10 @@ static const csg_kernel *kernel_of(csgm_isa isa)
     case CSGM_ISA_NEON:
         return &csg_kernel_neon;
 #endif
+#ifdef CSG_HAVE_KERNEL_simd128
+    case CSGM_ISA_SIMD128:
+        return &csg_kernel_simd128;
+#endif
     default:
         return NULL;
     }
@@ -74,7 +81,7 @@ csgm_isa csg_cpu_best_isa(csgm_isa wanted)
     if (wanted != CSGM_ISA_AUTO && is_usable(wanted))
         return wanted;
     static const csgm_isa widest_first[] = {CSGM_ISA_AVX512, CSGM_ISA_AVX2, CSGM_ISA_SSE2,
-                                            CSGM_ISA_NEON};
+                                            CSGM_ISA_NEON, CSGM_ISA_SIMD128};
     for (size_t i = 0; i < sizeof widest_first / sizeof *widest_first; i++)
         if (is_usable(widest_first[i]))
             return widest_first[i];
