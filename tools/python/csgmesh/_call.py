@@ -69,9 +69,11 @@ def _metadata(given: Any) -> list[bytes]:
 
 def _levels(given: Any) -> list[Any]:
     try:
-        return [(mesh._core, error) for mesh, error in given]
+        # of a pair the number is taken for both, and for what was asked for
+        four = [(*level, level[1], False) if len(level) == 2 else level for level in given]
+        return [(mesh._core, error, measured, bool(proven)) for mesh, error, measured, proven in four]
     except (TypeError, ValueError, AttributeError):
-        raise TypeError(f"levels must be a list of pairs of a mesh and a number, not {given!r}") from None
+        raise TypeError(f"levels must be a list of (mesh, error) or (mesh, error, measured, proven), not {given!r}") from None
 
 
 def _include(given: Any) -> list[bytes]:

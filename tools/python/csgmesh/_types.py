@@ -93,7 +93,8 @@ class FileOptions(TypedDict, total=False):
     comment: str
     meshopt: bool
     uv: Literal["none", "box", "cylinder"]
-    levels: Sequence[tuple[Any, float]]  # coarser meshes of the same solid, and how far each is from it
+    # Coarser meshes of the same solid, and how far each is from it; or also what was measured, and whether the error is proven.
+    levels: Sequence[tuple[Any, float] | tuple[Any, float, float, bool]]
     metadata: Mapping[str, str]  # what the file says about itself: title, author, license, source, version
 
 

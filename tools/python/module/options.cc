@@ -266,16 +266,17 @@ void take_metadata(csgm_write_options &options, nb::handle value, const char *na
     options.metadata_count = keep.metadata.size();
 }
 
-/* Pairs of a coarser mesh and how far it is from the solid. */
+/* A coarser mesh each, how far it is from the solid, what was measured, whether that is proven. */
 void take_levels(csgm_write_options &options, nb::handle value, const char *name, Keep &keep)
 {
-    static const char *const wanted = "a list of pairs (mesh, error)";
-    for (nb::handle pair : nb::cast<nb::list>(value)) {
-        nb::tuple both = nb::cast<nb::tuple>(pair);
+    static const char *const wanted = "a list of (mesh, error, measured, proven)";
+    for (nb::handle item : nb::cast<nb::list>(value)) {
+        nb::tuple level = nb::cast<nb::tuple>(item);
         Mesh *mesh;
-        if (nb::len(both) != 2 || !nb::try_cast(both[0], mesh))
+        if (nb::len(level) != 4 || !nb::try_cast(level[0], mesh))
             refuse(PyExc_TypeError, name, wanted, value);
-        keep.levels.push_back({mesh->view, number_of(both[1], name)});
+        keep.levels.push_back({mesh->view, number_of(level[1], name), number_of(level[2], name),
+                               nb::cast<bool>(level[3])});
     }
     options.levels = keep.levels.data();
     options.level_count = keep.levels.size();
