@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The compiler as WebAssembly writes the bytes that the native program writes, of lattices with equal cells (docs/web.md).
+"""The compiler as WebAssembly writes the bytes that the native program writes (docs/web.md).
 
 The module is that of tools/web/build.py in build-web, which this brings up to date; where nobody has built it, or Node
 is missing, the tests are skipped.
@@ -19,8 +19,11 @@ PLACE = os.path.join(ROOT, "build-web")
 NODE = shutil.which("node")
 FORMATS = ["ply", "stl", "obj", "glb", "off"]
 
+# With cells that follow the shape, the default, and with equal ones.
 SCENES = {
-    "blend": (cli.BLEND, ["-r", "40"]),
+    "blend": (cli.BLEND, []),
+    "ball": ("sphere(10);\n", []),
+    "tight": ("sphere(10);\n", ["-e", "0.005"]),
     "cut": ("difference(blend = 0.05) { cube(2, center = true); rotate([90, 0, 0]) cylinder(h = 3, r = 0.6, center = true); }\n",
             ["-s", "0.05"]),
     "many": ("for (i = [0 : 40]) translate([cos(i * 40), sin(i * 40), i / 15]) sphere(r = 0.2 + 0.004 * i);\n", ["-r", "64"]),
