@@ -339,9 +339,8 @@ bool csg_decimation_may_hand_over(csg_decimation *d, uint32_t kept, double reach
     room->is_first_look = true;
     for (uint32_t i = 0; i < room->count + 2; i++) {
         uint32_t s = d->first_sample[room->triangle[i]];
-        for (; s != CSG_CORNER_NONE; s = d->samples[s].next)
-            if (choose_owner(d, s, kept) == CSG_CORNER_NONE)
-                return false;
+        if (s != CSG_CORNER_NONE && choose_owner(d, s, kept) == CSG_CORNER_NONE)
+            return false;
     }
     return true;
 }
