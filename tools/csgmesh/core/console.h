@@ -48,7 +48,7 @@ void cli_console_configure(cli_console *console, const cli_options *options);
 /* Writes what still waits. */
 void cli_console_flush(cli_console *console);
 
-/* csgm_diag_fn and csgm_text_fn; user is a cli_console. */
+/* What the library tells. */
 void cli_console_diag(cli_console *console, const csgm_diag *diag);
 void cli_console_echo(cli_console *console, const char *text, size_t length);
 

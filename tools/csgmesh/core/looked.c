@@ -70,6 +70,12 @@ bool cli_looked_add(cli_looked *list, const char *path, cli_looked_kind kind, bo
     return true;
 }
 
+size_t cli_looked_find(const cli_looked *list, const char *path)
+{
+    uint32_t number = list->slot_count ? list->slots[slot_of(list, path)] : 0;
+    return number ? number - 1 : list->count;
+}
+
 void cli_looked_release(cli_looked *list)
 {
     for (size_t i = 0; i < list->count; i++)

@@ -28,6 +28,8 @@ typedef struct cli_looked {
 
 /* *is_new: it was not in the list; the first word counts. false: out of memory. */
 bool cli_looked_add(cli_looked *list, const char *path, cli_looked_kind kind, bool *is_new);
+/* Where the path is in items; count: nowhere. */
+size_t cli_looked_find(const cli_looked *list, const char *path);
 void cli_looked_release(cli_looked *list);
 
 /* FNV-1a, from *hash on; 0 begins. */

@@ -126,14 +126,6 @@ void cli_watch_release(cli_watch *watch)
     *watch = (cli_watch){.events = -1};
 }
 
-static cli_watched *find(cli_watch *watch, const char *path)
-{
-    for (size_t i = 0; i < watch->count; i++)
-        if (strcmp(watch->items[i].path, path) == 0)
-            return &watch->items[i];
-    return NULL;
-}
-
 /* What is no file's: so the next look finds a change. */
 static const cli_stamp unlike_any = {.is_there = true, .size = UINT64_MAX};
 
@@ -148,9 +140,8 @@ static bool add(cli_watch *watch, const cli_looked_item *file, double since_s)
         watch->capacity = capacity;
     }
     cli_watched *new = &watch->items[watch->count];
-    *new = (cli_watched){.path = strdup(file->path),
-                         .is_pattern = file->kind == CLI_LOOKED_PATTERN,
-                         .is_kept = true};
+    *new =
+        (cli_watched){.path = strdup(file->path), .is_pattern = file->kind == CLI_LOOKED_PATTERN};
     if (!new->path)
         return false;
     watch_folder(watch, new->path); /* before it is looked at, so that nothing falls between */
@@ -168,23 +159,25 @@ static bool add(cli_watch *watch, const cli_looked_item *file, double since_s)
 
 bool cli_watch_set(cli_watch *watch, const cli_looked *files, double since_s)
 {
-    bool done = true;
-    for (size_t i = 0; i < watch->count; i++)
-        watch->items[i].is_kept = false;
-    for (size_t i = 0; i < files->count; i++) {
-        cli_watched *known = find(watch, files->items[i].path);
-        if (known)
-            known->is_kept = true;
-        else
-            done = add(watch, &files->items[i], since_s) && done;
-    }
+    bool *is_known = calloc(files->count + 1, sizeof *is_known); /* per file of the new list */
+    if (!is_known)
+        return false;
     size_t kept = 0;
-    for (size_t i = 0; i < watch->count; i++)
-        if (watch->items[i].is_kept)
+    for (size_t i = 0; i < watch->count; i++) {
+        size_t at = cli_looked_find(files, watch->items[i].path);
+        if (at < files->count) {
+            is_known[at] = true;
             watch->items[kept++] = watch->items[i];
-        else
+        } else {
             free(watch->items[i].path);
+        }
+    }
     watch->count = kept;
+    bool done = true;
+    for (size_t i = 0; i < files->count; i++)
+        if (!is_known[i])
+            done = add(watch, &files->items[i], since_s) && done;
+    free(is_known);
     return done;
 }
 

@@ -19,7 +19,6 @@ typedef struct cli_watched {
     char *path;
     bool is_pattern;
     cli_stamp stamp;
-    bool is_kept; /* while a new list is taken */
 } cli_watched;
 
 typedef struct cli_watch {
