@@ -416,11 +416,10 @@ void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, u
 /* Where something is behind what was drawn and seen through it. False: nowhere. */
 static bool look_behind(const draw_area *a)
 {
-    const float hardly = 1.0f / 512;
     csg_draw_room *room = a->room;
     bool is_any = false;
     for (int64_t i = 0; i < a->in.width * a->in.height; i++) {
-        bool goes_on = room->triangle[i] && room->through[i] > hardly;
+        bool goes_on = room->triangle[i] && room->through[i] > CSG_HARDLY_SEEN;
         room->behind[i] = goes_on ? room->nearness[i] : -INFINITY;
         is_any = is_any || goes_on;
     }
@@ -439,14 +438,13 @@ static void begin_tile(const draw_area *a)
 
 void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
 {
-    enum { MOST_SURFACES = 13 }; /* one behind the other */
     draw_area a = {draw, room, area_of(draw, column, row)};
     const csgm_image *image = draw->picture->image;
     uint32_t x0 = column * CSG_DRAW_TILE, y0 = row * CSG_DRAW_TILE;
     uint32_t width = image->width - x0 < CSG_DRAW_TILE ? image->width - x0 : CSG_DRAW_TILE;
     uint32_t height = image->height - y0 < CSG_DRAW_TILE ? image->height - y0 : CSG_DRAW_TILE;
     begin_tile(&a);
-    for (int surface = 0; surface < MOST_SURFACES; surface++) {
+    for (int surface = 0; surface < CSG_MOST_SURFACES; surface++) {
         csg_draw_fill(draw, room, column, row);
         for (uint32_t i = 0; i < width * height; i++) {
             csg_draw_sum *sum = &room->sums[i];

@@ -18,7 +18,6 @@
 
 enum {
     TILE = 34 - 2,     /* pixels: with a border of one on each side still a batch of rays */
-    MOST_BEHIND = 12,  /* surfaces that are looked for behind the first one */
     EDGE_CONTRAST = 12 /* steps of a byte, above which a pixel gets more rays */
 };
 
@@ -97,11 +96,10 @@ static void shade_rays(const scene_job *job, tile_room *room)
 /* Rays that have met something clear go on from there, the others end. False: all have ended. */
 static bool go_on(const scene_job *job, tile_room *room, csg_rays *rays)
 {
-    const float hardly = 1.0f / 512;
     uint32_t count = 0;
     for (uint32_t i = 0; i < rays->count; i++) {
         bool goes_on = rays->t[i] < INFINITY && rays->from[i] < INFINITY && rays->alpha[i] < 1 &&
-                       1 - room->cover[i] > hardly;
+                       1 - room->cover[i] > CSG_HARDLY_SEEN;
         rays->from[i] =
             goes_on ? rays->t[i] + csg_tracer_slack(&job->layers[0].tracer, rays, i) : INFINITY;
         rays->is_within[i] = goes_on;
@@ -131,7 +129,7 @@ static void look_behind(const scene_job *job, tile_room *room)
 {
     csg_rays *rays = &room->behind->rays;
     *rays = room->trace.rays;
-    for (int surface = 0; surface < MOST_BEHIND && go_on(job, room, rays); surface++) {
+    for (int surface = 1; surface < CSG_MOST_SURFACES && go_on(job, room, rays); surface++) {
         csg_tracer_trace(&job->layers[0].tracer, room->behind);
         csg_ground_trace(&job->ground, &job->layers[0].tracer, room->behind);
         lay_behind(job, room, rays);

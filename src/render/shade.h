@@ -36,6 +36,11 @@ void csg_light_curve_make(csg_light_curve *out);
 float csg_light_to_linear(const csg_light_curve *curve, float srgb);
 uint8_t csg_light_to_byte(const csg_light_curve *curve, float linear);
 
+/* What is seen through: surfaces one behind the other at most, and the share of a place that is too
+ * small to look for what is behind. */
+enum { CSG_MOST_SURFACES = 13 };
+static const float CSG_HARDLY_SEEN = 1.0f / 512;
+
 /* Linear light from the surface to the eye. */
 void csg_shade(const csg_lights *lights, const csg_light_curve *curve, const csg_surface *surface,
                float light[3]);
