@@ -196,21 +196,9 @@ bool csg_figures_keep(csg_figures **figures, const csg_figure_key *key, const cs
 
 /* ---- regions --------------------------------------------------------------------------------- */
 
-static uint64_t hash_of_outline(const csg_outline *outline)
-{
-    uint64_t hash = csg_hash_word(CSG_HASH_START, outline->loop_count);
-    const double *numbers = &outline->points->x;
-    for (size_t i = 0; i < 2 * outline->point_count; i++) {
-        uint64_t word;
-        memcpy(&word, &numbers[i], sizeof word);
-        hash = csg_hash_word(hash, word);
-    }
-    return hash;
-}
-
 static uint64_t hash_of_region(const void *regions, uint32_t number)
 {
-    return hash_of_outline(csg_region_outline(((csg_shape *const *)regions)[number]));
+    return csg_shape_hash(((csg_shape *const *)regions)[number]);
 }
 
 static bool is_same(const csg_outline *a, const csg_outline *b)
@@ -255,7 +243,7 @@ csgm_status csg_figures_region(csg_figures **figures, csg_memory *memory, const 
     csg_figures *f = begin_figures(figures, memory);
     if (!f || !clean->point_count)
         return f ? csg_region_create(f->memory, clean, out) : CSGM_ERR_MEMORY;
-    uint64_t hash = hash_of_outline(clean);
+    uint64_t hash = csg_region_hash(clean);
     size_t bytes = (TREE + 1) * bytes_of(clean);
     csg_shape *known = find_region(f, clean, hash);
     if (known) {

@@ -252,15 +252,19 @@ static uint64_t hash_coordinate(uint64_t hash, double value)
     return hash_word(hash, bits);
 }
 
-static uint64_t hash(const csg_shape *shape)
+uint64_t csg_region_hash(const csg_outline *outline)
 {
-    const csg_outline *outline = &((const region *)shape)->outline;
     uint64_t h = 0xCBF29CE484222325u;
     for (size_t i = 0; i < outline->point_count; i++)
         h = hash_coordinate(hash_coordinate(h, outline->points[i].x), outline->points[i].y);
     for (size_t loop = 0; loop < outline->loop_count; loop++)
         h = hash_word(h, outline->ends[loop]);
     return h;
+}
+
+static uint64_t hash(const csg_shape *shape)
+{
+    return csg_region_hash(&((const region *)shape)->outline);
 }
 
 static void destroy(csg_shape *shape)
