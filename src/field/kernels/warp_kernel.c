@@ -54,32 +54,28 @@ static inline warped twist_at(const float *own, point p)
                     {-turning * y, turning * x, 1.0f}};
 }
 
-/* own[CSG_TAPER_X], [CSG_TAPER_Y]: what the scales grow by per length (compile_warp.c) */
+/* A twist of what was divided, by the chain rule. own[CSG_TAPER_X], [CSG_TAPER_Y]: what the scales
+ * grow by per length (compile_warp.c). */
 static inline warped taper_at(const float *own, point p)
 {
-    float low = own[CSG_TAPER_LOW], high = own[CSG_TAPER_HIGH], reach = own[CSG_TAPER_REACH];
-    float rate = own[CSG_TAPER_RATE], grow_x = own[CSG_TAPER_X], grow_y = own[CSG_TAPER_Y];
-    float z = smaller(larger(p.z, low), high);
-    float per_x = 1.0f / (1.0f + grow_x * (z - low)), per_y = 1.0f / (1.0f + grow_y * (z - low));
-    float u = p.x * per_x, w = p.y * per_y, rho = sqrtf(u * u + w * w);
-    int is_far = rho > reach, is_between = (p.z > low) & (p.z < high);
-    float inward = is_far ? reach / rho : 1.0f;
-    float angle = -rate * z;
-    float c = inward * wave(angle, 1), s = inward * wave(angle, 0);
-    float x = c * u - s * w, y = s * u + c * w;
-    float turning = is_between ? -rate : 0;
+    const float twist[] = {[CSG_TWIST_RATE] = own[CSG_TAPER_RATE],
+                           [CSG_TWIST_LOW] = own[CSG_TAPER_LOW],
+                           [CSG_TWIST_HIGH] = own[CSG_TAPER_HIGH],
+                           [CSG_TWIST_REACH] = own[CSG_TAPER_REACH]};
+    float low = own[CSG_TAPER_LOW], high = own[CSG_TAPER_HIGH];
+    float grow_x = own[CSG_TAPER_X], grow_y = own[CSG_TAPER_Y];
+    float z = smaller(larger(p.z, low), high) - low;
+    float per_x = 1.0f / (1.0f + grow_x * z), per_y = 1.0f / (1.0f + grow_y * z);
+    float u = p.x * per_x, w = p.y * per_y;
+    int is_between = (p.z > low) & (p.z < high);
     float less_u = is_between ? u * grow_x * per_x : 0,
           less_w = is_between ? w * grow_y * per_y : 0;
-    float ux = is_far ? x / reach : 0, uy = is_far ? y / reach : 0; /* taken out of the columns */
-    point dx = {c * per_x, s * per_x, 0}, dy = {-s * per_y, c * per_y, 0};
-    point dz = {-turning * y - (c * less_u - s * less_w), turning * x - (s * less_u + c * less_w),
-                1.0f};
-    float first = ux * dx.x + uy * dx.y, second = ux * dy.x + uy * dy.y,
-          third = ux * dz.x + uy * dz.y;
-    return (warped){{x, y, p.z},
-                    {dx.x - first * ux, dx.y - first * uy, 0},
-                    {dy.x - second * ux, dy.y - second * uy, 0},
-                    {dz.x - third * ux, dz.y - third * uy, 1.0f}};
+    warped of = twist_at(twist, (point){u, w, p.z});
+    return (warped){of.at,
+                    {of.dx.x * per_x, of.dx.y * per_x, 0},
+                    {of.dy.x * per_y, of.dy.y * per_y, 0},
+                    {of.dz.x - (of.dx.x * less_u + of.dy.x * less_w),
+                     of.dz.y - (of.dx.y * less_u + of.dy.y * less_w), 1.0f}};
 }
 
 static inline warped bend_at(const float *own, point p)

@@ -130,30 +130,25 @@ static csg_warped twist_at(const double *v, csg_vec3 p)
     return out;
 }
 
+/* A twist of what was divided, by the chain rule. */
 static csg_warped taper_at(const double *v, csg_vec3 p)
 {
-    double low = v[CSG_TAPER_LOW], high = v[CSG_TAPER_HIGH], reach = v[CSG_TAPER_REACH];
-    double rate = v[CSG_TAPER_RATE] * (PI / 180), z = fmin(fmax(p.z, low), high);
-    double grow_x = (v[CSG_TAPER_X] - 1) / (high - low),
-           grow_y = (v[CSG_TAPER_Y] - 1) / (high - low);
-    double scale_x = 1 + grow_x * (z - low), scale_y = 1 + grow_y * (z - low);
-    double u = p.x / scale_x, w = p.y / scale_y, rho = hypot(u, w);
-    double inward = rho > reach ? reach / rho : 1;
-    double angle = -rate * z, c = inward * cos(angle), s = inward * sin(angle);
-    double x = c * u - s * w, y = s * u + c * w;
-    bool between = p.z > low && p.z < high;
-    double turning = between ? -rate : 0;
-    double less_u = between ? u * grow_x / scale_x : 0, less_w = between ? w * grow_y / scale_y : 0;
-    csg_warped out = {vec3(x, y, p.z),
-                      {vec3(c / scale_x, s / scale_x, 0), vec3(-s / scale_y, c / scale_y, 0),
-                       vec3(-turning * y - (c * less_u - s * less_w),
-                            turning * x - (s * less_u + c * less_w), 1)}};
-    if (rho <= reach || rho == 0)
-        return out;
-    csg_vec3 away = vec3(x / reach, y / reach, 0);
-    for (int i = 0; i < 3; i++) { /* beyond the reach only the part around the axis is left */
-        csg_vec3 *column = &out.column[i];
-        *column = csg_vec3_sub(*column, csg_vec3_scale(away, csg_vec3_dot(away, *column)));
+    const double twist[CSG_WARP_PARAMETERS] = {[CSG_TWIST_RATE] = v[CSG_TAPER_RATE],
+                                               [CSG_TWIST_LOW] = v[CSG_TAPER_LOW],
+                                               [CSG_TWIST_HIGH] = v[CSG_TAPER_HIGH],
+                                               [CSG_TWIST_REACH] = v[CSG_TAPER_REACH]};
+    double low = v[CSG_TAPER_LOW], high = v[CSG_TAPER_HIGH], z = fmin(fmax(p.z, low), high) - low;
+    double grow_x = (v[CSG_TAPER_X] - 1) / (high - low), scale_x = 1 + grow_x * z;
+    double grow_y = (v[CSG_TAPER_Y] - 1) / (high - low), scale_y = 1 + grow_y * z;
+    csg_vec3 divided = vec3(p.x / scale_x, p.y / scale_y, p.z);
+    csg_warped out = twist_at(twist, divided);
+    csg_vec3 along_x = out.column[0], along_y = out.column[1];
+    out.column[0] = csg_vec3_scale(along_x, 1 / scale_x);
+    out.column[1] = csg_vec3_scale(along_y, 1 / scale_y);
+    if (p.z > low && p.z < high) {
+        csg_vec3 inward = csg_vec3_add(csg_vec3_scale(along_x, divided.x * grow_x / scale_x),
+                                       csg_vec3_scale(along_y, divided.y * grow_y / scale_y));
+        out.column[2] = csg_vec3_sub(out.column[2], inward);
     }
     return out;
 }
