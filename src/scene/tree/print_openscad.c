@@ -352,33 +352,37 @@ static void put_plate(const csg_printer *out, const csg_node *node)
     csg_put(out, ", center = true)\n");
 }
 
+/* The end of a call: what is smooth here in as many steps as look smooth there. */
+static void put_slices(const csg_printer *out, double turn)
+{
+    char slices[48];
+    snprintf(slices, sizeof slices, ", slices = %.0f)", fmin(ceil(fabs(turn) / 3) + 1, 1e4));
+    csg_put(out, slices);
+}
+
 /* A figure turned by rate * z from low to high, and as it is there beyond; what the solid is cut
  * with ends it, so that only the turned part is said. */
 static void put_twist(const csg_printer *out, const double *v)
 {
     double height = v[CSG_TWIST_HIGH] - v[CSG_TWIST_LOW];
-    char slices[48];
     put_shift(out, 0, 0, v[CSG_TWIST_LOW]);
     csg_put_argument(out, "rotate(", "a", v[CSG_TWIST_RATE] * v[CSG_TWIST_LOW]);
     csg_put_argument(out, ") linear_extrude(", "height", height);
     csg_put_argument(out, ", ", "twist", -v[CSG_TWIST_RATE] * height);
-    snprintf(slices, sizeof slices, ", slices = %.0f)\n",
-             fmin(ceil(fabs(v[CSG_TWIST_RATE] * height) / 3) + 1, 1e4));
-    csg_put(out, slices);
+    put_slices(out, v[CSG_TWIST_RATE] * height);
+    csg_put(out, "\n");
 }
 
 /* The same, ever larger or smaller: turned first, and then scaled. */
 static void put_taper(const csg_printer *out, const double *v)
 {
     double height = v[CSG_TAPER_HIGH] - v[CSG_TAPER_LOW], turn = v[CSG_TAPER_RATE] * height;
-    char slices[48];
     put_shift(out, 0, 0, v[CSG_TAPER_LOW]);
     csg_put_argument(out, "linear_extrude(", "height", height);
     csg_put_argument(out, ", ", "twist", -turn);
     csg_put(out, ", scale = ");
     csg_put_list(out, &v[CSG_TAPER_X], 2);
-    snprintf(slices, sizeof slices, ", slices = %.0f)", fmin(ceil(fabs(turn) / 3) + 1, 1e4));
-    csg_put(out, slices);
+    put_slices(out, turn);
     csg_put_argument(out, " rotate(", "a", v[CSG_TAPER_RATE] * v[CSG_TAPER_LOW]);
     csg_put(out, ")\n");
 }
