@@ -90,16 +90,6 @@ static inline point in_frame(const csg_tape_node *node, const float *frame, csg_
                                            : affine_frame(frame, p.x[i], p.y[i], p.z[i]);
 }
 
-/* Few points are made whole vectors by repeating the first one: how many there are without these.
- * Shapes are not asked for the same again. */
-static size_t without_repeats(const float *x, const float *y, const float *z, size_t count)
-{
-    while (count > 1 && !memcmp(&x[count - 1], x, sizeof *x) &&
-           !memcmp(&y[count - 1], y, sizeof *y) && !memcmp(&z[count - 1], z, sizeof *z))
-        count--;
-    return count;
-}
-
 /* p.count <= CSG_BATCH */
 static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_points p, float *out)
 {
@@ -112,11 +102,8 @@ static void shape_values(const csg_tape *tape, const csg_tape_node *node, csg_po
         y[i] = q.y;
         z[i] = q.z;
     }
-    size_t count = without_repeats(x, y, z, p.count);
-    csg_shape_values(csg_tape_shape(tape, node), &CSG_THIS_SHAPE_KERNEL, node->near, x, y, z, count,
-                     out);
-    for (size_t i = count; i < p.count; i++)
-        out[i] = out[0];
+    csg_shape_values(csg_tape_shape(tape, node), &CSG_THIS_SHAPE_KERNEL, node->near, x, y, z,
+                     p.count, out);
     for (size_t i = 0; i < p.count; i++)
         out[i] *= parameters[CSG_LEAF_SIGMA];
 }
@@ -134,11 +121,8 @@ static void shape_gradients(const csg_tape *tape, const csg_tape_node *node, csg
         y[i] = q.y;
         z[i] = q.z;
     }
-    size_t count = without_repeats(x, y, z, p.count);
     csg_shape_gradients(csg_tape_shape(tape, node), &CSG_THIS_SHAPE_KERNEL, node->near, x, y, z,
-                        count, out, gx, gy, gz);
-    for (size_t i = count; i < p.count; i++)
-        out[i] = out[0], gx[i] = gx[0], gy[i] = gy[0], gz[i] = gz[0];
+                        p.count, out, gx, gy, gz);
     for (size_t i = 0; i < p.count; i++) {
         point g = {gx[i], gy[i], gz[i]};
         if (node->frame == CSG_FRAME_AFFINE)
