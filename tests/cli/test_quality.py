@@ -85,9 +85,12 @@ class Quality(cli.CliTest):
 
     def test_hints(self):
         """What to do where it is too much says how these cells, too, get fewer."""
-        self.write("scene.txt", "sphere(1);")
-        for options, words in ((["--max-memory", "3M"], "--quality draft, or a lower -r"), (["--timeout", "0.001"], "--quality draft, or a lower -r"),
-                               (["--bounds=-1e7,-1e7,-1e7,1e7,1e7,1e7"], "smaller --bounds, or -r")):
+        # read in milliseconds, meshed in minutes: the limit is reached while it is meshed, however busy the machine is
+        endless = "intersection() { cube(40); gyroid(cell = 2, thickness = 0.3); }"
+        for text, options, words in (("sphere(1);", ["--max-memory", "3M"], "--quality draft, or a lower -r"),
+                                     (endless, ["--timeout", "1"], "--quality draft, or a lower -r"),
+                                     ("sphere(1);", ["--bounds=-1e7,-1e7,-1e7,1e7,1e7,1e7"], "smaller --bounds, or -r")):
+            self.write("scene.txt", text)
             result = cli.run("scene.txt", "-o", "out.ply", "--quality", "fine", *options, cwd=self.folder)
             self.assert_status(result, 2)
             self.assertIn(words, result.stderr)
