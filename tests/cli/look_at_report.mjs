@@ -2,18 +2,11 @@
 // Opens a page of csgmesh diff --html from its file in headless Chromium and prints what is to be seen as JSON.
 //
 //   CSGMESH_VIEW=tools/view node tests/cli/look_at_report.mjs report.html [picture.png] [WIDTHxHEIGHT] [dark]
-import { createRequire } from "node:module";
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { withPage } from "./browser.mjs";
 
-const { chromium } = createRequire(join(resolve(process.env.CSGMESH_VIEW), "package.json"))("playwright-core");
 const [file, picture, size = "1440x950", scheme = "light"] = process.argv.slice(2);
-const [width, height] = size.split("x").map(Number);
-const FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-  "--force-color-profile=srgb"];
 
 // How many colours are in the middle of the canvas, and how many pixels are not the background.
 function lookAtCanvas() {
@@ -106,25 +99,13 @@ async function visit(page, seen) {
   if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-worst.png") });
 }
 
-async function main() {
-  const profile = mkdtempSync(join(tmpdir(), "csgmesh-report-")), seen = { errors: [], requests: [] };
-  const browser = await chromium.launchPersistentContext(profile, {
-    executablePath: process.env.CSGMESH_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: FLAGS,
-    viewport: { width, height }, colorScheme: scheme, offline: true,
-  });
-  try {
-    const page = await browser.newPage();
-    page.on("console", (message) => ["error", "warning"].includes(message.type())
-      && !/GPU stall/.test(message.text()) && seen.errors.push(message.text()));
-    page.on("pageerror", (error) => seen.errors.push(String(error)));
-    page.on("request", (request) => /^(file|data):/.test(request.url()) || seen.requests.push(request.url()));
-    await page.goto(pathToFileURL(resolve(file)).href);
-    await visit(page, seen);
-  } finally {
-    await browser.close();
-    rmSync(profile, { recursive: true, force: true });
-  }
-  process.stdout.write(JSON.stringify(seen));
-}
-
-await main();
+const seen = { errors: [], requests: [] };
+await withPage(size, async (page) => {
+  page.on("console", (message) => ["error", "warning"].includes(message.type())
+    && !/GPU stall/.test(message.text()) && seen.errors.push(message.text()));
+  page.on("pageerror", (error) => seen.errors.push(String(error)));
+  page.on("request", (request) => /^(file|data):/.test(request.url()) || seen.requests.push(request.url()));
+  await page.goto(pathToFileURL(resolve(file)).href);
+  await visit(page, seen);
+}, { colorScheme: scheme, offline: true });
+process.stdout.write(JSON.stringify(seen));

@@ -7,17 +7,10 @@
 // measure=X,Y:X,Y (shares of the canvas), from=VIEW, set=NAME=VALUE (a box of numbers), key=KEY, write=FILE=TEXT
 // (so that a change comes while the page is open), download=FORMAT=FILE, refused=FORMAT (waits for
 // what is said then), look (adds what is to be seen to the list that is printed).
-import { createRequire } from "node:module";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { writeFileSync } from "node:fs";
+import { withPage } from "./browser.mjs";
 
-const { chromium } = createRequire(join(resolve(process.env.CSGMESH_VIEW), "package.json"))("playwright-core");
 const [url, size, ...steps] = process.argv.slice(2);
-const [width, height] = size.split("x").map(Number);
-const FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-  "--force-color-profile=srgb"];
 
 // Run in the page: words, and what the canvas has.
 function lookAtPage() {
@@ -95,14 +88,8 @@ const actions = {
   },
 };
 
-const profile = mkdtempSync(join(tmpdir(), "csgmesh-view-"));
-const browser = await chromium.launchPersistentContext(profile, {
-  executablePath: process.env.CSGMESH_CHROMIUM ?? "/usr/bin/chromium", args: FLAGS, headless: true,
-  viewport: { width, height }, ignoreDefaultArgs: ["--disable-extensions"],
-});
 const seen = { looks: [], errors: [] };
-try {
-  const page = browser.pages()[0] ?? (await browser.newPage());
+await withPage(size, async (page) => {
   page.on("pageerror", (error) => seen.errors.push(String(error)));
   page.on("console", (message) => message.type() === "error" && seen.errors.push(message.text()));
   await page.goto(url);
@@ -111,8 +98,5 @@ try {
     if (name === "look") seen.looks.push(await page.evaluate(lookAtPage));
     else await actions[name](page, argument);
   }
-} finally {
-  await browser.close();
-  rmSync(profile, { recursive: true, force: true });
-}
+}, { ignoreDefaultArgs: ["--disable-extensions"] });
 console.log(JSON.stringify(seen));

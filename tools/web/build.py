@@ -12,6 +12,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
+PLACE = os.path.join(ROOT, "build-web")
 ZIGLANG = "ziglang==0.17.1"
 LACKING = 77
 
@@ -49,7 +50,7 @@ def run(command):
 
 
 def give_up(reason):
-    print("tools/web/build.py: " + reason, file=sys.stderr)
+    print(f"tools/web/{os.path.basename(sys.argv[0])}: {reason}", file=sys.stderr)
     sys.exit(LACKING)
 
 
@@ -79,6 +80,7 @@ def write_cross_file(place, zig):
 
 
 def main(place):
+    """The module's path."""
     for tool in ("meson", "ninja"):
         if not shutil.which(tool):
             give_up(f"{tool} is not there")
@@ -92,8 +94,8 @@ def main(place):
     run(["ninja", "-C", folder, "tools/csgmesh/csgmesh-web.wasm"])
     target = os.path.join(place, "csgmesh.wasm")
     shutil.copyfile(os.path.join(folder, "tools", "csgmesh", "csgmesh-web.wasm"), target)
-    print(target)
+    return target
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "build-web"))
+    print(main(sys.argv[1] if len(sys.argv) > 1 else PLACE))

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""page.py [FOLDER]: the page for browsers, FOLDER/page/index.html; without FOLDER in build-web.
+
+The module of build.py, scripts, style, fonts and scenes are in this one file, so it works from a server and from a
+folder. What comes from npm is named in page/package-lock.json. Exit status: 0; 1 where the build fails; 77 where a tool
+is missing, which is named.
+"""
+import base64
+import gzip
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+VIEW = os.path.join(ROOT, "tools", "csgmesh", "view", "page")
+sys.path.insert(0, os.path.join(ROOT, "tools", "csgmesh", "page"))
+import build  # pylint: disable=wrong-import-position
+import embed  # pylint: disable=wrong-import-position
+
+# Scenes of the menu; what else is in their folders may be included.
+GROUPS = [("Tour", "tour"), ("Parts", "parts"), ("Models", "models"), ("Papers", "papers")]
+
+
+def install(place):
+    """The packages of npm, once for each lock file."""
+    lock, done = os.path.join(HERE, "page", "package-lock.json"), os.path.join(place, "installed.json")
+    os.makedirs(place, exist_ok=True)
+    wanted = embed.read(lock)
+    if os.path.exists(done) and embed.read(done) == wanted:
+        return
+    if not shutil.which("npm"):
+        build.give_up("npm is not there")
+    for name in ("package.json", "package-lock.json"):
+        shutil.copy(os.path.join(HERE, "page", name), place)
+    run = subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", place], capture_output=True, text=True,
+                         check=False)
+    if run.returncode:
+        build.give_up("npm cannot install what the page needs: " + (run.stderr.strip().splitlines() or ["no reason given"])[-1])
+    with open(done, "w", encoding="utf-8") as file:
+        file.write(wanted)
+
+
+def bundle(place, entry, target, *options):
+    os.environ["NODE_PATH"] = os.path.join(place, "node_modules")
+    build.run([os.path.join(place, "node_modules", ".bin", "esbuild"), os.path.join(HERE, "page", entry), "--bundle", "--minify",
+               "--format=iife", "--target=es2022", "--log-level=warning", "--legal-comments=eof", f"--outfile={target}", *options])
+
+
+def packed(data):
+    """As the page unpacks it."""
+    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
+
+
+def title_of(name):
+    words = os.path.splitext(name)[0].replace("_", " ").replace("-", " ")
+    return words[0].upper() + words[1:]
+
+
+def read_scene(path):
+    """Without what its test expects of it, at the head."""
+    return re.sub(r"\A(?://!.*\n)+(?://\n)*", "", embed.read(path)) + "\n"
+
+
+def read_scenes():
+    scenes, groups = [], []
+    for label, folder in GROUPS:
+        top = os.path.join(ROOT, "scenes", folder)
+        for path, folders, names in os.walk(top):
+            folders.sort()
+            scenes += [[os.path.relpath(os.path.join(path, name), ROOT), read_scene(os.path.join(path, name))]
+                       for name in sorted(names) if name.endswith(".txt")]
+        groups.append([label, [[f"scenes/{folder}/{name}", title_of(name)] for name in sorted(os.listdir(top)) if name.endswith(".txt")]])
+    return scenes, groups
+
+
+def make(place, module, fonts):
+    """place/page/index.html. fonts: (path in the module's file system, bytes)."""
+    npm, page = os.path.join(place, "npm"), os.path.join(place, "page")
+    install(npm)
+    os.makedirs(page, exist_ok=True)
+    worker, script = os.path.join(npm, "worker.txt"), os.path.join(npm, "main.js")
+    bundle(npm, "worker.js", worker)
+    bundle(npm, "main.js", script, f"--alias:worker-source={worker}", "--loader:.txt=text")
+    scenes, groups = read_scenes()
+    data = {"scenes": scenes, "groups": groups, "fonts": [[name, packed(font)] for name, font in fonts]}
+    parts = [os.path.join(VIEW, name) for name in ("stage.html", "scene.html", "page.css")]
+    scripts = [os.path.join(ROOT, "tools", "csgmesh", "page", "view.js")] + [os.path.join(VIEW, name) for name in ("solid.js", "stage.js", "scene.js")]
+    text = embed.fill(os.path.join(HERE, "page", "page.html"), *parts, os.path.join(HERE, "page", "page.css"), *scripts, script)
+    with open(module, "rb") as file:
+        text = text.replace("{{module}}", packed(file.read()))
+    text = text.replace("{{data}}", json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/"))
+    target = os.path.join(page, "index.html")
+    with open(target, "w", encoding="utf-8") as file:
+        file.write(text)
+    return target
+
+
+def main(place):
+    module = build.main(place)
+    print(make(os.path.abspath(place), module, []))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1] if len(sys.argv) > 1 else build.PLACE)
