@@ -144,28 +144,15 @@ static bool may_be_dark(const csg_ground *ground, const csg_tracer *tracer, floa
     return first <= last;
 }
 
-/* Rays that have hit something are set aside, those that meet the ground hit that. */
-static uint32_t aim_at_ground(const csg_ground *ground, const csg_tracer *tracer, csg_rays *rays)
+/* Where a ray meets the ground, if that may be dark there; INFINITY: it does not. */
+static float meets_ground(const csg_ground *ground, const csg_tracer *tracer, const csg_rays *rays,
+                          uint32_t i)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < rays->count; i++) {
-        bool has_hit = rays->t[i] < INFINITY;
-        float t = (ground->z - rays->oz[i]) * rays->iz[i];
-        rays->ground[i] = 0;
-        rays->t[i] = INFINITY;
-        if (has_hit || !(rays->dz[i] < 0) || !(t > 0))
-            continue;
-        if (!may_be_dark(ground, tracer, rays->ox[i] + t * rays->dx[i],
-                         rays->oy[i] + t * rays->dy[i]))
-            continue;
-        rays->t[i] = t;
-        rays->nx[i] = rays->ny[i] = 0;
-        rays->nz[i] = 1;
-        rays->inverse_slope[i] = 1 / tracer->steepest;
-        rays->open[i] = rays->lit[i] = 1;
-        count++;
-    }
-    return count;
+    float t = (ground->z - rays->oz[i]) * rays->iz[i];
+    if (!(rays->dz[i] < 0) || !(t > 0) ||
+        !may_be_dark(ground, tracer, rays->ox[i] + t * rays->dx[i], rays->oy[i] + t * rays->dy[i]))
+        return INFINITY;
+    return t;
 }
 
 /* The cell of wide tape that knows what is around a point, or NO_CELL. Points outside of all are
@@ -228,24 +215,144 @@ static void find_open(const csg_ground *ground, const csg_tracer *tracer, csg_tr
     while (room->march.count);
 }
 
-void csg_ground_trace(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room)
+/* Fills `ground` of the rays that meet it: those with a t. */
+static void find_darkness(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room)
 {
     csg_rays *rays = &room->rays;
-    float t[CSG_RAYS_MOST], slope[CSG_RAYS_MOST];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < rays->count; i++) {
+        if (!(rays->t[i] < INFINITY))
+            continue;
+        rays->nx[i] = rays->ny[i] = 0;
+        rays->nz[i] = 1;
+        rays->inverse_slope[i] = 1 / tracer->steepest;
+        rays->open[i] = rays->lit[i] = 1;
+        rays->known_lit[i] = -1;
+        count++;
+    }
+    if (!count)
+        return;
+    if (tracer->shadows && tracer->light[2] > 0)
+        csg_tracer_shade_light(tracer, room);
+    if (tracer->occlusion)
+        find_open(ground, tracer, room);
+    for (uint32_t i = 0; i < rays->count; i++)
+        if (rays->t[i] < INFINITY)
+            rays->ground[i] = csg_ground_darkness(ground->options, rays->lit[i], rays->open[i]);
+}
+
+/* ---- between nodes --------------------------------------------------------------------------- */
+
+static const float UNKNOWN = -1, WANTED = -2;
+/* By no more may the corners of a square differ in which the ground is mixed: a few hundredths, of
+ * which the mixture is off by a part. */
+static const float SMOOTH = 0.1f;
+
+void csg_ground_begin(csg_ground_nodes *nodes, uint32_t x, uint32_t y)
+{
+    nodes->x = (float)x - CSG_GROUND_STEP;
+    nodes->y = (float)y - CSG_GROUND_STEP;
+    for (int i = 0; i < CSG_GROUND_NODES * CSG_GROUND_NODES; i++)
+        nodes->darkness[i] = UNKNOWN;
+}
+
+/* The square that the ray is in: its first corner, and where in it. False: in none. */
+static bool square_of(const csg_ground_nodes *nodes, const csg_rays *rays, uint32_t i,
+                      uint32_t *corner, float within[2])
+{
+    const float from[2] = {(rays->px[i] - nodes->x) / CSG_GROUND_STEP,
+                           (rays->py[i] - nodes->y) / CSG_GROUND_STEP};
+    *corner = 0;
+    for (int axis = 0; axis < 2; axis++) {
+        if (!(from[axis] >= 0 && from[axis] < CSG_GROUND_NODES - 1))
+            return false;
+        uint32_t whole = (uint32_t)from[axis];
+        *corner += whole * (axis ? CSG_GROUND_NODES : 1);
+        within[axis] = from[axis] - (float)whole;
+    }
+    return true;
+}
+
+/* Their rays are appended to the batch's, which have no t meanwhile. */
+static void trace_nodes(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room,
+                        csg_ground_nodes *nodes)
+{
+    csg_rays *rays = &room->rays;
+    uint32_t own = rays->count;
+    for (uint32_t i = 0; i < CSG_GROUND_NODES * CSG_GROUND_NODES; i++) {
+        if (nodes->darkness[i] != WANTED)
+            continue;
+        uint32_t ray = rays->count;
+        csg_tracer_direct(tracer, rays, ray,
+                          (double)nodes->x + i % CSG_GROUND_NODES * CSG_GROUND_STEP,
+                          (double)nodes->y + i / CSG_GROUND_NODES * CSG_GROUND_STEP);
+        rays->t[ray] = meets_ground(ground, tracer, rays, ray);
+        rays->ground[ray] = rays->dz[ray] < 0 ? 0 : UNKNOWN; /* where no shadow falls, or beyond */
+        rays->count++;
+    }
+    find_darkness(ground, tracer, room);
+    uint32_t ray = own;
+    for (uint32_t i = 0; i < CSG_GROUND_NODES * CSG_GROUND_NODES; i++)
+        if (nodes->darkness[i] == WANTED)
+            nodes->darkness[i] = rays->ground[ray++];
+    rays->count = own;
+}
+
+/* Of a square whose corners are known and nearly the same. */
+static bool mix_corners(const csg_ground_nodes *nodes, const csg_rays *rays, uint32_t i, float *out)
+{
+    uint32_t corner;
+    float within[2], least = INFINITY, most = -INFINITY, rows[2];
+    if (!square_of(nodes, rays, i, &corner, within))
+        return false;
+    for (uint32_t k = 0; k < 2; k++) {
+        const float *at = nodes->darkness + corner + k * CSG_GROUND_NODES;
+        least = fminf(least, fminf(at[0], at[1]));
+        most = fmaxf(most, fmaxf(at[0], at[1]));
+        rows[k] = at[0] + within[0] * (at[1] - at[0]);
+    }
+    *out = rows[0] + within[1] * (rows[1] - rows[0]);
+    return least >= 0 && most - least <= SMOOTH;
+}
+
+static void want_nodes(csg_ground_nodes *nodes, const csg_rays *rays, const float *meets)
+{
+    for (uint32_t i = 0; i < rays->count; i++) {
+        uint32_t corner;
+        float within[2];
+        if (!(meets[i] < INFINITY) || !square_of(nodes, rays, i, &corner, within))
+            continue;
+        nodes->darkness[corner] = nodes->darkness[corner + 1] = WANTED;
+        nodes->darkness[corner + CSG_GROUND_NODES] = WANTED;
+        nodes->darkness[corner + CSG_GROUND_NODES + 1] = WANTED;
+    }
+}
+
+/* Rays that have hit something are set aside, those that meet the ground hit that. */
+void csg_ground_trace(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room,
+                      csg_ground_nodes *nodes, bool is_tile)
+{
+    csg_rays *rays = &room->rays;
+    float t[CSG_RAYS_MOST], slope[CSG_RAYS_MOST], meets[CSG_RAYS_MOST];
     memset(rays->ground, 0, rays->count * sizeof *rays->ground);
     if (!ground->is_shown)
         return;
     memcpy(t, rays->t, rays->count * sizeof *t);
     memcpy(slope, rays->inverse_slope, rays->count * sizeof *slope);
-    if (aim_at_ground(ground, tracer, rays)) {
-        if (tracer->shadows && tracer->light[2] > 0)
-            csg_tracer_shade_light(tracer, room);
-        if (tracer->occlusion)
-            find_open(ground, tracer, room);
-        for (uint32_t i = 0; i < rays->count; i++)
-            if (rays->t[i] < INFINITY)
-                rays->ground[i] = csg_ground_darkness(ground->options, rays->lit[i], rays->open[i]);
+    for (uint32_t i = 0; i < rays->count; i++) {
+        meets[i] = t[i] < INFINITY ? INFINITY : meets_ground(ground, tracer, rays, i);
+        rays->t[i] = INFINITY;
     }
+    if (is_tile) {
+        want_nodes(nodes, rays, meets);
+        trace_nodes(ground, tracer, room, nodes);
+    }
+    for (uint32_t i = 0; i < rays->count; i++)
+        if (meets[i] < INFINITY && !mix_corners(nodes, rays, i, &rays->ground[i])) {
+            rays->ground[i] = 0;
+            rays->t[i] = meets[i];
+        }
+    find_darkness(ground, tracer, room);
     memcpy(rays->t, t, rays->count * sizeof *t);
     memcpy(rays->inverse_slope, slope, rays->count * sizeof *slope);
 }

@@ -22,11 +22,26 @@ typedef struct csg_ground {
     float min[3], max[3]; /* around what may cast a shadow */
 } csg_ground;
 
+/* A lattice over a tile of the picture. Where the ground is nearly the same at the corners of one
+ * of its squares, it is mixed from these within, and need not be traced. */
+enum { CSG_GROUND_STEP = 4, CSG_GROUND_NODES = 11 }; /* pixels; along each side */
+
+typedef struct csg_ground_nodes {
+    float x, y;                                          /* the first one's pixel coordinates */
+    float darkness[CSG_GROUND_NODES * CSG_GROUND_NODES]; /* below 0: not known */
+} csg_ground_nodes;
+
+/* Forgets all; the tile begins at pixel x, y, and the lattice a step before it. */
+void csg_ground_begin(csg_ground_nodes *nodes, uint32_t x, uint32_t y);
+
 /* box: around the solid, in the scene's frame. Looks for its lowest place by rays from below. */
 csgm_status csg_ground_find(csg_ground *out, const csg_picture *picture, const csg_tracer *tracer,
                             csg_box box, csg_trace_room *room);
 
-/* After csg_tracer_trace: fills `ground` of all rays of the room; 0 where something was hit. */
-void csg_ground_trace(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room);
+/* After csg_tracer_trace: fills `ground` of all rays of the room; 0 where something was hit. Of the
+ * rays through a tile's pixels (is_tile, with room for as many nodes) the nodes around those that
+ * meet the ground are traced first. */
+void csg_ground_trace(const csg_ground *ground, const csg_tracer *tracer, csg_trace_room *room,
+                      csg_ground_nodes *nodes, bool is_tile);
 
 #endif

@@ -21,17 +21,25 @@ enum {
     EDGE_CONTRAST = 12 /* steps of a byte, above which a pixel gets more rays */
 };
 
+static const float SAME_LIGHT = 0.03f; /* shares of the key light that count as the same */
+
 typedef struct tile_room {
     csg_trace_room trace;
     csg_trace_room *over;   /* for marks; NULL where there are none */
     csg_trace_room *behind; /* what is seen through the solid; NULL where nothing is */
+    csg_ground_nodes nodes; /* of the tile */
     uint32_t count;         /* of rays in the batch */
     float light[CSG_RAYS_MOST][3];
     float cover[CSG_RAYS_MOST]; /* how much of the background is hidden */
     uint8_t pixel[CSG_RAYS_MOST][4];
     uint16_t edges[TILE * TILE]; /* x + TILE * y in the tile */
+    float edge_lit[TILE * TILE]; /* the light that arrives there, or below 0 */
     uint32_t edge_count;
 } tile_room;
+
+_Static_assert((TILE + 2) * (TILE + 2) + CSG_GROUND_NODES * CSG_GROUND_NODES <= CSG_RAYS_MOST &&
+                   TILE + 2 * CSG_GROUND_STEP == (CSG_GROUND_NODES - 1) * CSG_GROUND_STEP,
+               "nodes cover a tile with its border, and their rays fit into its batch");
 
 typedef struct scene_job {
     csg_picture *picture;
@@ -129,9 +137,11 @@ static void look_behind(const scene_job *job, tile_room *room)
 {
     csg_rays *rays = &room->behind->rays;
     *rays = room->trace.rays;
+    for (uint32_t i = 0; i < rays->count; i++)
+        rays->known_lit[i] = -1;
     for (int surface = 1; surface < CSG_MOST_SURFACES && go_on(job, room, rays); surface++) {
         csg_tracer_trace(&job->layers[0].tracer, room->behind);
-        csg_ground_trace(&job->ground, &job->layers[0].tracer, room->behind);
+        csg_ground_trace(&job->ground, &job->layers[0].tracer, room->behind, &room->nodes, false);
         lay_behind(job, room, rays);
     }
 }
@@ -241,9 +251,11 @@ static void aim(const scene_job *job, const tile_room *room, const batch *b,
     uint32_t n = grid_of(job);
     csg_tracer_begin(rays, b->end_edge ? t->y0 : t->outer_y0);
     for (uint32_t e = b->first_edge; e < b->end_edge; e++)
-        for (uint32_t s = 0; s < n * n; s++)
+        for (uint32_t s = 0; s < n * n; s++) {
             csg_tracer_aim(tracer, rays, t->x0 + room->edges[e] % TILE + place_in_pixel(job, s % n),
                            t->y0 + room->edges[e] / TILE + place_in_pixel(job, s / n));
+            rays->known_lit[rays->count - 1] = room->edge_lit[e];
+        }
     if (b->end_edge)
         return;
     for (uint32_t y = t->outer_y0; y < t->outer_y1; y++)
@@ -262,7 +274,7 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
     if (layers[0].field) {
         aim(job, room, b, &layers[0].tracer, rays);
         csg_tracer_trace(&layers[0].tracer, &room->trace);
-        csg_ground_trace(&job->ground, &layers[0].tracer, &room->trace);
+        csg_ground_trace(&job->ground, &layers[0].tracer, &room->trace, &room->nodes, !b->end_edge);
     }
     for (uint32_t i = 0; i < room->count && !layers[0].field; i++) {
         rays->t[i] = INFINITY;
@@ -284,6 +296,7 @@ static void trace_batch(const scene_job *job, tile_room *room, const batch *b)
 
 static void trace_tile(const scene_job *job, tile_room *room, const tile *t)
 {
+    csg_ground_begin(&room->nodes, t->x0, t->y0);
     trace_batch(job, room, &(batch){.tile = t});
     for (uint32_t i = 0; i < room->count; i++)
         csg_shade_pixel(job->picture->curve, room->light[i], room->cover[i], 1,
@@ -301,6 +314,26 @@ static bool differ(const scene_job *job, const tile_room *room, uint32_t i, uint
     return most > EDGE_CONTRAST || (job->picture->options->edges && is_parted(job, room, i, k));
 }
 
+/* The share of the light that all around pixel x, y has which faces the light, or -1: it varies, or
+ * nothing faces it. What one more ray would see is hardly anything else: shadows are soft. */
+static float lit_around(const scene_job *job, const tile_room *room, const tile *t, uint32_t x,
+                        uint32_t y)
+{
+    const csg_rays *rays = &room->trace.rays;
+    const float *key = job->layers[0].tracer.light;
+    float least = INFINITY, most = -INFINITY;
+    for (uint32_t v = y ? y - 1 : 0; v <= y + 1 && v < t->outer_y1; v++)
+        for (uint32_t u = x ? x - 1 : 0; u <= x + 1 && u < t->outer_x1; u++) {
+            uint32_t i = (v - t->outer_y0) * (t->outer_x1 - t->outer_x0) + u - t->outer_x0;
+            if (!(rays->t[i] < INFINITY) ||
+                !(rays->nx[i] * key[0] + rays->ny[i] * key[1] + rays->nz[i] * key[2] > 0))
+                continue;
+            least = fminf(least, rays->lit[i]);
+            most = fmaxf(most, rays->lit[i]);
+        }
+    return most - least <= SAME_LIGHT ? 0.5f * (least + most) : -1;
+}
+
 static void find_edges(const scene_job *job, tile_room *room, const tile *t)
 {
     uint32_t width = t->outer_x1 - t->outer_x0;
@@ -313,8 +346,11 @@ static void find_edges(const scene_job *job, tile_room *room, const tile *t)
                            (y > t->outer_y0 && differ(job, room, i, i - width)) ||
                            (y + 1 < t->outer_y1 && differ(job, room, i, i + width));
             memcpy(csg_picture_pixel(job->picture, x, y), room->pixel[i], 4);
-            if (is_edge)
+            if (is_edge) {
+                room->edge_lit[room->edge_count] =
+                    job->layers[0].field ? lit_around(job, room, t, x, y) : -1;
                 room->edges[room->edge_count++] = (uint16_t)(x - t->x0 + TILE * (y - t->y0));
+            }
         }
 }
 

@@ -37,6 +37,9 @@ static void begin_rays(const csg_tracer *tracer, csg_trace_room *room, csg_march
         rays->lit[i] = 0;
         if (!(along(light, rays->nx[i], rays->ny[i], rays->nz[i]) > 0))
             continue;
+        rays->lit[i] = rays->known_lit[i];
+        if (rays->known_lit[i] >= 0)
+            continue;
         rays->lit[i] = 1;
         float lift = 2 * (tracer->near_tolerance + tracer->tolerance_slope * rays->t[i]) +
                      0.01f * tracer->cells->reach;

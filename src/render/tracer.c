@@ -27,16 +27,11 @@ void csg_tracer_begin(csg_rays *rays, uint32_t first_row)
     rays->row[0] = 0;
 }
 
-void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y)
+void csg_tracer_direct(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y)
 {
     csg_vec3 origin, direction;
-    uint32_t ray = rays->count++, row = (uint32_t)y - rays->first_row;
-    while (rays->row_count <= row)
-        rays->row[++rays->row_count] = (uint16_t)ray;
-    rays->row[rays->row_count] = (uint16_t)rays->count;
     csg_view_ray(&tracer->view, x, y, &origin, &direction);
-    rays->from[ray] = 0;
-    rays->is_within[ray] = false;
+    rays->known_lit[ray] = -1;
     rays->px[ray] = (float)x;
     rays->py[ray] = (float)y;
     rays->ox[ray] = (float)origin.x;
@@ -48,6 +43,17 @@ void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y
     rays->ix[ray] = inverse_of(rays->dx[ray]);
     rays->iy[ray] = inverse_of(rays->dy[ray]);
     rays->iz[ray] = inverse_of(rays->dz[ray]);
+}
+
+void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y)
+{
+    uint32_t ray = rays->count++, row = (uint32_t)y - rays->first_row;
+    while (rays->row_count <= row)
+        rays->row[++rays->row_count] = (uint16_t)ray;
+    rays->row[rays->row_count] = (uint16_t)rays->count;
+    rays->from[ray] = 0;
+    rays->is_within[ray] = false;
+    csg_tracer_direct(tracer, rays, ray, x, y);
 }
 
 /* ---- cells in the picture ------------------------------------------------------------------- */

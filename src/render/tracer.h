@@ -27,8 +27,9 @@ typedef struct csg_rays {
     float ox[CSG_RAYS_MOST], oy[CSG_RAYS_MOST], oz[CSG_RAYS_MOST];
     float dx[CSG_RAYS_MOST], dy[CSG_RAYS_MOST], dz[CSG_RAYS_MOST];
     float ix[CSG_RAYS_MOST], iy[CSG_RAYS_MOST], iz[CSG_RAYS_MOST]; /* 1 / d */
-    float from[CSG_RAYS_MOST];     /* t at which a ray begins; INFINITY: it is none */
-    bool is_within[CSG_RAYS_MOST]; /* it begins in the solid, and looks for the next surface */
+    float from[CSG_RAYS_MOST];      /* t at which a ray begins; INFINITY: it is none */
+    bool is_within[CSG_RAYS_MOST];  /* it begins in the solid, and looks for the next surface */
+    float known_lit[CSG_RAYS_MOST]; /* `lit` of what faces the light, if not below 0 */
     float t[CSG_RAYS_MOST];
     float nx[CSG_RAYS_MOST], ny[CSG_RAYS_MOST], nz[CSG_RAYS_MOST]; /* unit, outward */
     float r[CSG_RAYS_MOST], g[CSG_RAYS_MOST], b[CSG_RAYS_MOST];    /* sRGB 0..1, of the scene */
@@ -92,6 +93,8 @@ void csg_tracer_find_rectangles(const csg_tracer *tracer, csg_pixel_rectangle *o
 
 /* Forgets all rays; those that are aimed next lie in rows of pixels from first_row on. */
 void csg_tracer_begin(csg_rays *rays, uint32_t first_row);
+/* Sets the ray's origin and direction, through a place of the view; its light is not known. */
+void csg_tracer_direct(const csg_tracer *tracer, csg_rays *rays, uint32_t ray, double x, double y);
 /* Appends a ray of the view; y may not fall below an earlier one's row of pixels. */
 void csg_tracer_aim(const csg_tracer *tracer, csg_rays *rays, double x, double y);
 
