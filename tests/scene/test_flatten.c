@@ -423,21 +423,23 @@ static void regions_that_were_made_before(void **state)
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
 }
 
-/* From here on memory comes from f, all of it until f->left says otherwise. */
-static void let_fail(failing *f)
+/* Until the context ends, which is after the test. */
+static failing f;
+
+/* From here on memory comes from f, all of it until f.left says otherwise. */
+static void let_fail(void)
 {
-    *f = (failing){LONG_MAX, 0};
-    const csgm_allocator allocator = {failing_alloc, failing_release, f};
+    f = (failing){LONG_MAX, 0};
+    const csgm_allocator allocator = {failing_alloc, failing_release, &f};
     csg_build_abandon(&builder);
     csg_memory_init(&context.memory, &allocator, 0);
 }
 
 static void every_allocation_of_keeping_may_fail(void **state)
 {
-    failing f;
     if (!has_polygons())
         skip();
-    let_fail(&f);
+    let_fail();
     long n = 0;
     for (bool failed = true; failed; n++) {
         assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
@@ -489,9 +491,8 @@ static void depth_is_no_matter(void **state)
 
 static void every_allocation_may_fail(void **state)
 {
-    failing f;
     bool has = has_polygons();
-    let_fail(&f);
+    let_fail();
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
     csg_node_id node =
         operate(CSG_NODE_DIFFERENCE, 0.1, circle(2), moved(0, 1, circle(1)), CSG_NODE_NONE);
@@ -514,10 +515,9 @@ static void every_allocation_may_fail(void **state)
 
 static void every_allocation_of_uniting_may_fail(void **state)
 {
-    failing f;
     if (!has_polygons())
         skip();
-    let_fail(&f);
+    let_fail();
     long n = 0;
     for (bool failed = true; failed; n++) {
         assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
