@@ -366,9 +366,32 @@ static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count
 /* ---- balance -----------------------------------------------------------------------------------
  */
 
-/* Wants every leaf divided that touches this brick and is larger than its cells by more than one
- * level: around the cube that it is an octant of, on its own sides, there must be bricks of that
- * level, or no surface. True: there was one, whose children may still be too large. */
+/* Whether the surface crosses what a brick shares with the bricks of csg_brick_beside: a side, an
+ * edge or a corner of it. */
+static bool is_crossed_beside(const csg_brick *brick, unsigned part)
+{
+    unsigned low[3], high[3];
+    bool any_inside = false, any_outside = false;
+    for (int axis = 0; axis < 3; axis++) {
+        bool beyond = part >> axis & 1;
+        low[axis] = beyond ? E * (brick->at[axis] & 1) : 0;
+        high[axis] = beyond ? low[axis] : E;
+    }
+    for (unsigned k = low[2]; k <= high[2]; k++)
+        for (unsigned j = low[1]; j <= high[1]; j++)
+            for (unsigned i = low[0]; i <= high[0]; i++) {
+                bool inside = brick->inside[k][j] >> i & 1;
+                any_inside = any_inside || inside;
+                any_outside = any_outside || !inside;
+            }
+    return (any_inside && any_outside) || csg_brick_is_pierced(brick, low, high);
+}
+
+/* Wants every leaf divided that the surface reaches from this brick and that is larger than its
+ * cells by more than one level: around the cube that it is an octant of, on its own sides, there
+ * must be bricks of that level, or no surface. Where none crosses what both share, neither has a
+ * vertex there, and the sizes do not matter. True: there was one, whose children may still be too
+ * large. */
 static bool want_balance(csg_bricks *b, const csg_brick *brick)
 {
     bool any = false;
@@ -376,6 +399,8 @@ static bool want_balance(csg_bricks *b, const csg_brick *brick)
         return false;
     for (unsigned part = 1; part < CSG_OCTANTS; part++) {
         uint32_t at[3], level = brick->level - 1u, found;
+        if (!is_crossed_beside(brick, part))
+            continue;
         unsigned octant = 0; /* of the brick at hand, the way was down */
         csg_brick_beside(brick, part, at);
         while ((found = csg_bricks_find(b, level, at)) == CSG_BRICK_NONE &&

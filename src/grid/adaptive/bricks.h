@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A lattice whose cells have different sizes: an octree of bricks, each 2^3 cells that are sampled,
  * judged and kept together. A cell is a leaf, or divided: then a brick of the next level is in its
- * place, or nothing where the field proves it free of surface. Leaves that touch, were it in a
- * corner, differ by one level at most; the mesh is made of them.
+ * place, or nothing where the field proves it free of surface. Leaves that share an edge or a side
+ * which the surface crosses differ by one level at most; the mesh is made of them.
  *
  * Level 0 is one cube around everything; a brick of level l has cells of 2^(finest - l) cells of
  * the finest lattice, so every point has one index, and one coordinate, at all levels. Which cells
