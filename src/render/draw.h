@@ -25,9 +25,10 @@ typedef struct csg_draw_vertex {
 
 typedef struct csg_draw {
     csg_picture *picture;
-    const csg_view *view; /* the picture's, or the light's */
+    const csg_view *view; /* the picture's */
     const csgm_mesh_view *mesh;
-    const struct csg_ground_map *ground; /* of ground_map.h; NULL where none is drawn */
+    const struct csg_ground_map *ground; /* of ground_map.h */
+    const struct csg_mesh_light *light;  /* of mesh_light.h */
     double nearest;                      /* what is nearer to the eye's plane is clipped away */
     uint32_t samples;                    /* n */
     uint32_t border;                     /* samples around a tile that are filled, too */
@@ -66,8 +67,6 @@ typedef struct csg_draw_room {
 } csg_draw_room;
 
 void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row);
-/* Fills the room alone: which triangles the tile's samples see, and how near they are. */
-void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row);
 
 /* draw.c: projects, sorts, makes the rooms, and runs `item` with the draw for each tile. */
 csgm_status csg_draw_run(csg_draw *draw, csg_pool_work *item, csgm_render_stats *stats);

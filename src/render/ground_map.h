@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * The shadow that triangles throw on the ground (ground.h), as a table over the ground: a z-buffer
- * from the light tells what is before each place, and how far before it, which is how soft its
- * shadow is there (Fernando 2005), and one from below how near to the ground things are, which hide
- * the sky from it.
+ * The shadow that triangles throw on the ground (ground.h), as a table over the ground.
  */
 #ifndef CSG_RENDER_GROUND_MAP_H
 #define CSG_RENDER_GROUND_MAP_H
 
 #include "render/ground.h"
+#include "render/mesh_light.h"
 
 typedef struct csg_ground_map {
     double z, x, y, step; /* the ground's height; the table's corner; from place to place */
@@ -16,9 +14,10 @@ typedef struct csg_ground_map {
 
 enum { CSG_GROUND_SIDE = 320 };
 
-/* box: of the mesh. Without a darkness where no ground is to be seen. */
+/* box: of the mesh. */
+bool csg_ground_map_is_wanted(const csg_picture *picture, csg_box box);
 csgm_status csg_ground_map_make(csg_ground_map *out, csg_picture *picture,
-                                const csgm_mesh_view *mesh, csg_box box);
+                                const csg_mesh_light *light, csg_box box);
 void csg_ground_map_release(csg_ground_map *map, csgm_context *context);
 
 /* How dark the ground is where a ray of the view meets it. */

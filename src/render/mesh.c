@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A mesh's picture: the ground's shadow (ground_map.h), then the triangles, tile by tile (draw.h).
+ * A mesh's picture: what it leaves of the light (mesh_light.h), the ground's shadow (ground_map.h),
+ * then the triangles, tile by tile (draw.h).
  */
 #include "base/clock.h"
 #include "base/trace.h"
@@ -32,19 +33,24 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     CSG_ZONE(context, "render mesh");
     csg_picture picture;
     csg_ground_map ground = {.darkness = NULL};
+    csg_mesh_light light = {.widest = 0};
     csgm_render_options own = *options;
     own.slice_axis = -1; /* of scenes */
     *stats = (csgm_render_stats){0};
     csg_box box = csg_view_bounds(mesh);
     csgm_status status = csg_picture_begin(&picture, context, &own, box);
+    bool has_ground = status == CSGM_OK && csg_ground_map_is_wanted(&picture, box);
     if (status == CSGM_OK)
-        status = csg_ground_map_make(&ground, &picture, mesh, box);
+        status = csg_mesh_light_make(&light, &picture, mesh, box, has_ground);
+    if (status == CSGM_OK && has_ground)
+        status = csg_ground_map_make(&ground, &picture, &light, box);
     if (status == CSGM_OK) {
         const csg_view *view = &picture.view;
         csg_draw draw = {.picture = &picture,
                          .view = view,
                          .mesh = mesh,
                          .ground = &ground,
+                         .light = &light,
                          .samples = options->samples,
                          .border = options->edges,
                          .is_clear = is_any_clear(mesh),
@@ -56,6 +62,7 @@ csgm_status csg_render_mesh(csgm_context *context, const csgm_mesh_view *mesh,
         status = csg_draw_run(&draw, tile_item, stats);
     }
     csg_ground_map_release(&ground, context);
+    csg_mesh_light_release(&light, context);
     stats->trace_s = csg_clock_now_s() - picture.started_s - stats->prepare_s;
     stats->memory_peak_bytes = atomic_load(&context->memory.peak_bytes);
     return csg_picture_end(&picture, status, out);

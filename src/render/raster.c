@@ -209,9 +209,36 @@ static float wire_at(const csg_draw *draw, const csg_vec3 corner[3], const doubl
     return (float)(cover * fade);
 }
 
+/* Where the key light was looked for last in a pixel. */
+typedef struct looked {
+    bool is_any;
+    csg_vec3 at, normal;
+    float lit;
+} looked;
+
+/* The share of the key light that arrives. What is before a facet is before its plane, but those at
+ * the border of light and shadow turn away where the surface does not. In a pixel of many triangles
+ * those beside each other have the same. */
+static float lit_at(const csg_draw *draw, csg_vec3 at, csg_vec3 normal, csg_vec3 facet,
+                    looked *last)
+{
+    const double beside = 1.5; /* places of the light's map */
+    const double same = 0.95;  /* cosine */
+    csg_vec3 key = csg_vec3_from_floats(draw->picture->lights.key);
+    if (!(csg_vec3_dot(normal, key) > 0))
+        return 0;
+    if (csg_vec3_dot(facet, key) > 0)
+        normal = facet;
+    if (last->is_any && csg_vec3_dot(normal, last->normal) > same &&
+        csg_vec3_norm(csg_vec3_sub(at, last->at)) < beside * draw->light->key.place)
+        return last->lit;
+    *last = (looked){true, at, normal, csg_mesh_light_key(draw->light, at, normal)};
+    return last->lit;
+}
+
 /* Light of a triangle through a point of the picture; returns how much it hides. */
 static float shade_triangle(const csg_draw *draw, uint32_t triangle, double x, double y,
-                            float light[3])
+                            looked *last, float light[3])
 {
     const csg_picture *picture = draw->picture;
     const uint32_t *index = draw->mesh->indices + 3 * (size_t)triangle;
@@ -228,6 +255,7 @@ static float shade_triangle(const csg_draw *draw, uint32_t triangle, double x, d
         csg_vec3_cross(csg_vec3_sub(corner[1], corner[0]), csg_vec3_sub(corner[2], corner[0]));
     if (csg_vec3_dot(flat, direction) > 0) { /* the inner side, reddish: a hole, or turned about */
         normal = csg_vec3_scale(normal, -1);
+        flat = csg_vec3_scale(flat, -1);
         const float inner[3] = {0.62f, 0.18f, 0.14f};
         for (int c = 0; c < 3; c++)
             surface.color[c] = 0.35f * surface.color[c] + 0.65f * inner[c];
@@ -238,6 +266,10 @@ static float shade_triangle(const csg_draw *draw, uint32_t triangle, double x, d
         surface.normal[axis] = (float)n[axis];
         surface.to_eye[axis] = (float)-d[axis];
     }
+    csg_vec3 at = csg_vec3_make(0, 0, 0);
+    for (int i = 0; i < 3; i++)
+        at = csg_vec3_add(at, csg_vec3_scale(corner[i], share[i]));
+    surface.lit = lit_at(draw, at, normal, csg_vec3_normalize(flat), last);
     csg_shade(&picture->lights, picture->curve, &surface, light);
     float wire = picture->options->wireframe ? 0.85f * wire_at(draw, corner, share) : 0;
     for (int c = 0; c < 3; c++)
@@ -366,13 +398,14 @@ static void cover_samples(const draw_area *a, uint32_t x, uint32_t y, uint32_t i
 static void add_pixel(const draw_area *a, uint32_t x, uint32_t y, csg_draw_sum *sum)
 {
     piece pieces[64];
+    looked last = {.is_any = false};
     uint32_t n = a->draw->samples, known = find_pieces(a, x, y, pieces);
     for (uint32_t k = 0; k < known; k++) {
         const piece *p = &pieces[k];
         float light[3];
         double count = p->count;
         float alpha = shade_triangle(a->draw, p->id - 1, x + (p->sum_x / count + 0.5) / n,
-                                     y + (p->sum_y / count + 0.5) / n, light);
+                                     y + (p->sum_y / count + 0.5) / n, &last, light);
         for (int c = 0; c < 3; c++)
             sum->light[c] += light[c] * (alpha * p->share);
         sum->cover += alpha * p->share;
@@ -400,7 +433,7 @@ static area area_of(const csg_draw *draw, uint32_t column, uint32_t row)
                   side + 2 * border};
 }
 
-void csg_draw_fill(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
+static void fill_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, uint32_t row)
 {
     area in = area_of(draw, column, row);
     int64_t side = in.width;
@@ -445,7 +478,7 @@ void csg_draw_tile(const csg_draw *draw, csg_draw_room *room, uint32_t column, u
     uint32_t height = image->height - y0 < CSG_DRAW_TILE ? image->height - y0 : CSG_DRAW_TILE;
     begin_tile(&a);
     for (int surface = 0; surface < CSG_MOST_SURFACES; surface++) {
-        csg_draw_fill(draw, room, column, row);
+        fill_tile(draw, room, column, row);
         for (uint32_t i = 0; i < width * height; i++) {
             csg_draw_sum *sum = &room->sums[i];
             add_pixel(&a, x0 + i % width, y0 + i / width, sum);

@@ -180,6 +180,64 @@ static void test_ground(void **state)
     render_end(&c);
 }
 
+/* How much darker a picture is than another of the same solid, in whole pixels. */
+static double darkness(const csgm_image *image, const csgm_image *than)
+{
+    csgm_image_view a = csgm_image_get_view(image), b = csgm_image_get_view(than);
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)a.width * a.height; i++)
+        if (a.pixels[4 * i + 3] == 255)
+            sum += (b.pixels[4 * i + 1] - a.pixels[4 * i + 1]) / 255.0;
+    return sum;
+}
+
+/* What stands on a plate throws a shadow on it, as in the scene's picture; a ball throws none on
+ * itself, nor does the plate alone. */
+static void test_own_shadow(void **state)
+{
+    enum { SIDE = 160 };
+    static const struct {
+        const char *text;
+        double least, most; /* whole pixels, in the light's shadow */
+    } solids[] = {{"cube([3, 3, 0.2], center = true);"
+                   "translate([0, 0, 0.5]) cube([0.3, 0.3, 1.2], center = true);",
+                   25, 60},
+                  {"cube([3, 3, 0.2], center = true);", -1, 1},
+                  {"sphere(r = 1.5);", -1, 3}};
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        render_case c, three;
+        csgm_mesh *mesh;
+        double found[2];
+        render_begin(&c, 2, CSGM_ISA_AUTO, solids[i].text);
+        render_begin(&three, 3, CSGM_ISA_SCALAR, NULL);
+        csgm_mesh_options fine = csgm_mesh_options_default();
+        fine.quality = CSGM_QUALITY_FINE;
+        assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+        csgm_mesh_view view = csgm_mesh_get_view(mesh);
+        csgm_render_options options = front_options(SIDE, 5);
+        options.camera.elevation_deg = 35;
+        options.ground = false;
+        for (int of_mesh = 0; of_mesh < 2; of_mesh++) {
+            options.shadows = false;
+            of_mesh ? render_mesh(&c, &view, &options) : render_scene(&c, &options);
+            csgm_image *without = c.image;
+            c.image = NULL;
+            options.shadows = true;
+            of_mesh ? render_mesh(&c, &view, &options) : render_scene(&c, &options);
+            found[of_mesh] = darkness(c.image, without);
+            csgm_image_destroy(without);
+        }
+        render_mesh(&three, &view, &options);
+        assert_same_image(c.image, three.image, "three threads");
+        /* the light's width makes a shadow narrower there, and wider in the scene */
+        assert_true(found[1] >= 0.4 * found[0] - 2 && found[1] <= found[0] + 2);
+        assert_true(found[1] >= solids[i].least && found[1] <= solids[i].most);
+        csgm_mesh_destroy(mesh);
+        render_end(&three);
+        render_end(&c);
+    }
+}
+
 /* How much of a picture's light another lacks, in whole pixels. */
 static double lines(const csgm_image *image, const csgm_image *than)
 {
@@ -327,6 +385,7 @@ int main(void)
         cmocka_unit_test(test_inside),
         cmocka_unit_test(test_hostile_mesh),
         cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_own_shadow),
         cmocka_unit_test(test_edges),
         cmocka_unit_test(test_clear),
     };
