@@ -24,7 +24,7 @@ def fill(frame, *others):
             page = page.replace("{{" + os.path.basename(path) + "}}", read(path))
         else:
             texts[kind].append(read(path))
-    return page.replace("{{css}}", "\n".join(texts[".css"])).replace("{{js}}", "\n".join(texts[".js"]))
+    return page.replace("{{css}}", "\n".join(texts[".css"])).replace("{{js}}", "\n".join(texts[".js"])) + "\n"
 
 
 def main():
