@@ -5,16 +5,12 @@
  */
 #include "render/depth_map.h"
 
-#include <stdatomic.h>
-#include <string.h>
-
 enum { TRIANGLES_PER_ITEM = 1 << 13 };
 
 typedef struct draw_job {
     csg_picture *picture;
     const csgm_mesh_view *mesh;
     const csg_depth_map *maps; /* of points without the mesh's origin */
-    atomic_uint **nearest;     /* of each: the bits of floats */
     size_t map_count;
 } draw_job;
 
@@ -97,8 +93,7 @@ static share share_of(const csg_vec3 *from, const csg_vec3 *to, double area2)
     return s;
 }
 
-static void fill(const csg_depth_map *map, atomic_uint *nearest, const csg_vec3 c[3],
-                 const uint32_t range[4])
+static void fill(const csg_depth_map *map, const csg_vec3 c[3], const uint32_t range[4])
 {
     const double inside = -1e-9; /* rounding leaves no gap along an edge */
     double area2 = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
@@ -117,12 +112,12 @@ static void fill(const csg_depth_map *map, atomic_uint *nearest, const csg_vec3 
                 z += w[i] * c[i].z;
             }
             if (w[0] >= inside && w[1] >= inside && w[2] >= inside)
-                keep_nearest(&nearest[(size_t)y * map->side + x],
+                keep_nearest(&map->nearest[(size_t)y * map->side + x],
                              (float)least_of(most_of(z, least), most));
         }
 }
 
-static void draw_triangle(const csg_depth_map *map, atomic_uint *nearest, const csg_vec3 corner[3])
+static void draw_triangle(const csg_depth_map *map, const csg_vec3 corner[3])
 {
     csg_vec3 c[3];
     uint32_t range[4];
@@ -137,7 +132,7 @@ static void draw_triangle(const csg_depth_map *map, atomic_uint *nearest, const 
     for (int i = 0; i < 3; i++)
         c[i].y = csg_vec3_dot(map->y, corner[i]) + map->y0;
     if (places_between(c[0].y, c[1].y, c[2].y, map->side, &range[1], &range[3]))
-        fill(map, nearest, c, range);
+        fill(map, c, range);
 }
 
 static bool draw_item(void *user, uint32_t worker, size_t item)
@@ -157,7 +152,7 @@ static bool draw_item(void *user, uint32_t worker, size_t item)
         for (int i = 0; i < 3; i++)
             corner[i] = csg_vec3_from_floats(mesh->positions + 3 * (size_t)index[i]);
         for (size_t k = 0; k < job->map_count; k++)
-            draw_triangle(&job->maps[k], job->nearest[k], corner);
+            draw_triangle(&job->maps[k], corner);
     }
     return true;
 }
@@ -168,31 +163,20 @@ static csgm_status draw_all(draw_job *job)
     size_t items = (size_t)((count + TRIANGLES_PER_ITEM - 1) / TRIANGLES_PER_ITEM);
     for (size_t k = 0; k < job->map_count; k++)
         for (size_t i = 0; i < places_of(&job->maps[k]); i++)
-            atomic_init(&job->nearest[k][i], bits_of(INFINITY));
+            atomic_init(&job->maps[k].nearest[i], bits_of(INFINITY));
     if (csg_pool_run(job->picture->context->pool, items, draw_item, NULL, job))
         return CSGM_OK;
     return csg_picture_why_stopped(job->picture);
-}
-
-/* Bits become floats. */
-static void hand_over(csg_depth_map *map, atomic_uint *nearest)
-{
-    for (size_t i = 0; i < places_of(map); i++) {
-        unsigned bits = atomic_load_explicit(&nearest[i], memory_order_relaxed);
-        memcpy(&map->nearest[i], &bits, sizeof bits);
-    }
 }
 
 csgm_status csg_depth_maps_draw(csg_depth_map *maps, size_t count, csg_picture *picture,
                                 const csgm_mesh_view *mesh)
 {
     csg_memory *memory = &picture->context->memory;
-    atomic_uint *nearest[CSG_DEPTH_MAPS] = {NULL};
     bool has_room = true;
     for (size_t k = 0; k < count; k++) {
-        nearest[k] = csg_memory_alloc(memory, places_of(&maps[k]) * sizeof *nearest[k]);
-        maps[k].nearest = csg_memory_alloc(memory, places_of(&maps[k]) * sizeof(float));
-        has_room = has_room && nearest[k] && maps[k].nearest;
+        maps[k].nearest = csg_memory_alloc(memory, places_of(&maps[k]) * sizeof *maps[k].nearest);
+        has_room = has_room && maps[k].nearest;
     }
     csg_depth_map local[CSG_DEPTH_MAPS];
     for (size_t k = 0; k < count; k++) {
@@ -202,13 +186,6 @@ csgm_status csg_depth_maps_draw(csg_depth_map *maps, size_t count, csg_picture *
         local[k].y0 = at.y;
         local[k].away0 = at.z;
     }
-    draw_job job = {
-        .picture = picture, .mesh = mesh, .maps = local, .nearest = nearest, .map_count = count};
-    csgm_status status = has_room ? draw_all(&job) : csg_context_no_memory(picture->context);
-    for (size_t k = 0; k < count; k++) {
-        if (status == CSGM_OK)
-            hand_over(&maps[k], nearest[k]);
-        csg_memory_release(memory, nearest[k], places_of(&maps[k]) * sizeof *nearest[k]);
-    }
-    return status;
+    draw_job job = {.picture = picture, .mesh = mesh, .maps = local, .map_count = count};
+    return has_room ? draw_all(&job) : csg_context_no_memory(picture->context);
 }

@@ -6,6 +6,9 @@
 #ifndef CSG_RENDER_DEPTH_MAP_H
 #define CSG_RENDER_DEPTH_MAP_H
 
+#include <stdatomic.h>
+#include <string.h>
+
 #include "render/job.h"
 
 typedef struct csg_depth_map {
@@ -14,7 +17,8 @@ typedef struct csg_depth_map {
     csg_vec3 x, y, away;  /* a point's coordinates in places, and its distance: these by it ... */
     double x0, y0, away0; /* ... and these added; no distance in the box is below 0 */
     double farthest;      /* what is wholly beyond is left out */
-    float *nearest;       /* INFINITY: nothing is there; NULL: there is no map */
+    /* Bits of floats; INFINITY: nothing is there; NULL: there is no map. */
+    atomic_uint *nearest;
 } csg_depth_map;
 
 /* Sees all of the box; nothing is drawn yet. up: not parallel to forward. */
@@ -41,7 +45,11 @@ static inline float csg_depth_map_at(const csg_depth_map *map, float x, float y)
     float side = (float)map->side;
     if (!(x >= 0 && y >= 0 && x < side && y < side))
         return INFINITY;
-    return map->nearest[(size_t)(uint32_t)(int32_t)y * map->side + (uint32_t)(int32_t)x];
+    size_t place = (size_t)(uint32_t)(int32_t)y * map->side + (uint32_t)(int32_t)x;
+    unsigned bits = atomic_load_explicit(&map->nearest[place], memory_order_relaxed);
+    float distance;
+    memcpy(&distance, &bits, sizeof distance);
+    return distance;
 }
 
 #endif

@@ -45,8 +45,7 @@ static void place_table(csg_ground_map *map, const csg_picture *picture, csg_box
 
 bool csg_ground_map_is_wanted(const csg_picture *picture, csg_box box)
 {
-    return csg_box_is_finite(box) && !csg_box_is_empty(box) &&
-           csg_vec3_norm(csg_box_size(box)) > 0 && (double)picture->lights.key[2] >= LOWEST_LIGHT &&
+    return csg_mesh_light_is_cast(box) && (double)picture->lights.key[2] >= LOWEST_LIGHT &&
            csg_ground_is_seen(picture->options, &picture->view, box.min.z);
 }
 

@@ -29,6 +29,11 @@ static void make_looks(float look[CSG_LOOKS][2])
         }
 }
 
+bool csg_mesh_light_is_cast(csg_box box)
+{
+    return csg_box_is_finite(box) && !csg_box_is_empty(box) && csg_vec3_norm(csg_box_size(box)) > 0;
+}
+
 csgm_status csg_mesh_light_make(csg_mesh_light *out, csg_picture *picture,
                                 const csgm_mesh_view *mesh, csg_box box, bool ground)
 {
@@ -36,7 +41,7 @@ csgm_status csg_mesh_light_make(csg_mesh_light *out, csg_picture *picture,
     csg_depth_map maps[CSG_DEPTH_MAPS];
     size_t count = 0;
     *out = (csg_mesh_light){.widest = 0};
-    if (!csg_box_is_finite(box) || csg_box_is_empty(box) || !(csg_vec3_norm(csg_box_size(box)) > 0))
+    if (!csg_mesh_light_is_cast(box))
         return CSGM_OK;
     out->widest = WIDEST * csg_vec3_norm(csg_box_size(box));
     make_looks(out->look);

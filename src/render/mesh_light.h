@@ -19,7 +19,9 @@ typedef struct csg_mesh_light {
     float look[CSG_LOOKS][2]; /* places in the unit disc, from its middle outwards */
 } csg_mesh_light;
 
-/* box: of the mesh. ground: whether it will be asked for. Nothing where the box has no size. */
+/* Whether a mesh in a box hides any light. */
+bool csg_mesh_light_is_cast(csg_box box);
+/* box: of the mesh. ground: whether it will be asked for. */
 csgm_status csg_mesh_light_make(csg_mesh_light *out, csg_picture *picture,
                                 const csgm_mesh_view *mesh, csg_box box, bool ground);
 void csg_mesh_light_release(csg_mesh_light *light, csgm_context *context);

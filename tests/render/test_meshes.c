@@ -21,6 +21,17 @@ static csgm_mesh_view squares_view(void)
                             .triangle_count = 4};
 }
 
+/* Of a case's field; of equal cells where there is a resolution. */
+static csgm_mesh *mesh_of(const render_case *c, csgm_quality quality, uint32_t resolution)
+{
+    csgm_mesh *mesh;
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.quality = quality;
+    options.resolution = resolution;
+    assert_int_equal(csgm_mesh_build(c->context, c->field, &options, &mesh, NULL), CSGM_OK);
+    return mesh;
+}
+
 static void test_front_hides_back(void **state)
 {
     render_case c;
@@ -81,13 +92,10 @@ static void test_no_gaps(void **state)
 static void test_a_scenes_mesh(void **state)
 {
     render_case c;
-    csgm_mesh *mesh;
     render_begin(&c, 2, CSGM_ISA_AUTO,
                  "difference() { sphere(r = 1); translate([0.6, -0.6, 0.6]) "
                  "color(\"red\") sphere(r = 0.6); }");
-    csgm_mesh_options fine = csgm_mesh_options_default();
-    fine.resolution = 128;
-    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+    csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_NORMAL, 128);
     csgm_mesh_view view = csgm_mesh_get_view(mesh);
     csgm_render_options options = front_options(200, 2.4);
     render_scene(&c, &options);
@@ -127,12 +135,10 @@ static void test_ground(void **state)
 {
     enum { SIDE = 160 };
     render_case c, three;
-    csgm_mesh *mesh;
     render_begin(&c, 2, CSGM_ISA_AUTO,
                  "translate([0, 0, 0.3]) cube([1.6, 1, 0.2], center = true);\n"
                  "for (x = [-0.6, 0.6]) translate([x, 0, -0.3]) cylinder(r = 0.15, h = 0.6);");
-    csgm_mesh_options fine = csgm_mesh_options_default();
-    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+    csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_NORMAL, 0);
     csgm_mesh_view view = csgm_mesh_get_view(mesh);
     csgm_render_options options = front_options(SIDE, 4);
     options.camera.elevation_deg = 35;
@@ -206,13 +212,10 @@ static void test_own_shadow(void **state)
                   {"sphere(r = 1.5);", -1, 3}};
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         render_case c, three;
-        csgm_mesh *mesh;
         double found[2];
         render_begin(&c, 2, CSGM_ISA_AUTO, solids[i].text);
         render_begin(&three, 3, CSGM_ISA_SCALAR, NULL);
-        csgm_mesh_options fine = csgm_mesh_options_default();
-        fine.quality = CSGM_QUALITY_FINE;
-        assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+        csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_FINE, 0);
         csgm_mesh_view view = csgm_mesh_get_view(mesh);
         csgm_render_options options = front_options(SIDE, 5);
         options.camera.elevation_deg = 35;
@@ -264,13 +267,10 @@ static void test_edges(void **state)
                    16.02}};
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         render_case c, three;
-        csgm_mesh *mesh;
         csgm_image *plain[2];
         render_begin(&c, 1, CSGM_ISA_AUTO, solids[i].text);
         render_begin(&three, 3, CSGM_ISA_SCALAR, solids[i].text);
-        csgm_mesh_options fine = csgm_mesh_options_default();
-        fine.quality = CSGM_QUALITY_FINE;
-        assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+        csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_FINE, 0);
         csgm_mesh_view view = csgm_mesh_get_view(mesh);
         csgm_render_options options = front_options(SIDE, 5);
         options.camera.elevation_deg = 30;
@@ -307,11 +307,9 @@ static void test_clear(void **state)
         "color([0, 1, 0, 0.25]) translate([1, 0, 0]) cube(1.5, center = true);"
         "color([0, 1, 0, 0.25]) translate([1, 2, 0]) cube(1, center = true);";
     render_case c, three;
-    csgm_mesh *mesh;
     render_begin(&c, 1, CSGM_ISA_AUTO, text);
     render_begin(&three, 3, CSGM_ISA_SCALAR, text);
-    csgm_mesh_options fine = csgm_mesh_options_default();
-    assert_int_equal(csgm_mesh_build(c.context, c.field, &fine, &mesh, NULL), CSGM_OK);
+    csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_NORMAL, 0);
     csgm_mesh_view view = csgm_mesh_get_view(mesh);
     csgm_render_options options = front_options(SIDE, 4);
     for (int of_mesh = 0; of_mesh < 2; of_mesh++) {
@@ -336,11 +334,8 @@ static void test_clear(void **state)
 static void test_inside(void **state)
 {
     render_case c;
-    csgm_mesh *mesh;
     render_begin(&c, 1, CSGM_ISA_AUTO, "cube(2, center = true);");
-    csgm_mesh_options coarse = csgm_mesh_options_default();
-    coarse.resolution = 3;
-    assert_int_equal(csgm_mesh_build(c.context, c.field, &coarse, &mesh, NULL), CSGM_OK);
+    csgm_mesh *mesh = mesh_of(&c, CSGM_QUALITY_NORMAL, 3);
     csgm_mesh_view view = csgm_mesh_get_view(mesh);
     csgm_render_options options = front_options(64, 4);
     options.camera.projection = CSGM_PERSPECTIVE;
