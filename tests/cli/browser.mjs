@@ -10,11 +10,11 @@ const FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swift
   "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
   "--force-color-profile=srgb"];
 
-// work(page) in a window of size "WIDTHxHEIGHT". options: playwright's, and more flags.
-export async function withPage(size, work, { flags = [], ...options } = {}) {
+// work(page) in a window of size "WIDTHxHEIGHT". options: playwright's.
+export async function withPage(size, work, options = {}) {
   const [width, height] = size.split("x").map(Number), profile = mkdtempSync(join(tmpdir(), "csgmesh-browser-"));
   const browser = await chromium.launchPersistentContext(profile, {
-    executablePath: process.env.CSGMESH_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: [...FLAGS, ...flags],
+    executablePath: process.env.CSGMESH_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: FLAGS,
     viewport: { width, height }, ...options,
   });
   try {

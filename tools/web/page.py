@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """page.py [FOLDER]: the page for browsers, FOLDER/page/index.html; without FOLDER in build-web.
 
-The module of build.py, scripts, style, fonts and scenes are in this one file, so it works from a server and from a
+The module of build.py, scripts, style and scenes are in this one file, so it works from a server and from a
 folder. What comes from npm is named in page/package-lock.json. Exit status: 0; 1 where the build fails; 77 where a tool
 is missing, which is named.
 """
@@ -78,8 +78,8 @@ def read_scenes():
     return scenes, groups
 
 
-def make(place, module, fonts):
-    """place/page/index.html. fonts: (path in the module's file system, bytes)."""
+def make(place, module):
+    """place/page/index.html."""
     npm, page = os.path.join(place, "npm"), os.path.join(place, "page")
     install(npm)
     os.makedirs(page, exist_ok=True)
@@ -87,7 +87,7 @@ def make(place, module, fonts):
     bundle(npm, "worker.js", worker)
     bundle(npm, "main.js", script, f"--alias:worker-source={worker}", "--loader:.txt=text")
     scenes, groups = read_scenes()
-    data = {"scenes": scenes, "groups": groups, "fonts": [[name, packed(font)] for name, font in fonts]}
+    data = {"scenes": scenes, "groups": groups}
     parts = [os.path.join(VIEW, name) for name in ("stage.html", "scene.html", "page.css")]
     scripts = [os.path.join(ROOT, "tools", "csgmesh", "page", "view.js")] + [os.path.join(VIEW, name) for name in ("solid.js", "stage.js", "scene.js")]
     text = embed.fill(os.path.join(HERE, "page", "page.html"), *parts, os.path.join(HERE, "page", "page.css"), *scripts, script)
@@ -102,7 +102,7 @@ def make(place, module, fonts):
 
 def main(place):
     module = build.main(place)
-    print(make(os.path.abspath(place), module, []))
+    print(make(os.path.abspath(place), module))
 
 
 if __name__ == "__main__":

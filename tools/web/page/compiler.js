@@ -61,9 +61,9 @@ export class Compiler {
     this.next();
   }
 
-  // {bytes, said, status}: a file, made by a worker of its own.
+  // {pieces, said, status}: a file, made by a worker of its own.
   write(request) {
-    return this.alone({ write: request.arguments, files: request.files, output: request.output, number: 1 }, (data) => "bytes" in data);
+    return this.alone({ write: request.arguments, files: request.files }, (data) => data.pieces);
   }
 
   async about() {

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 // A scene in the address: #scene=PATH for one of the menu as it is, else #text= and {path, text, values} as JSON,
 // deflated, in base64 for addresses. Nothing behind the # is sent to a server.
+const MOST_BYTES = 8 << 20; // of a scene: a short address may hold much more
+
 async function through(stream, bytes) {
-  const writer = stream.writable.getWriter();
+  const writer = stream.writable.getWriter(), parts = [];
   writer.write(bytes).catch(() => {}); // what is wrong is found where it is read
   writer.close().catch(() => {});
-  return new Uint8Array(await new Response(stream.readable).arrayBuffer());
+  let count = 0;
+  for (const reader = stream.readable.getReader(); ;) {
+    const { done, value } = await reader.read();
+    if (done) return new Uint8Array(await new Blob(parts).arrayBuffer());
+    parts.push(value);
+    if ((count += value.length) > MOST_BYTES) throw new Error("it is too long");
+  }
 }
-
-const MOST_BYTES = 8 << 20;
 
 function toBase64(bytes) {
   let text = "";
@@ -37,7 +43,6 @@ export async function readLink(hash, kept) {
   let scene;
   try {
     const bytes = await through(new DecompressionStream("deflate-raw"), fromBase64(rest));
-    if (bytes.length > MOST_BYTES) throw new Error("it is too long");
     scene = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
   } catch {
     throw new Error("the scene in the address is cut off or broken");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page: text and parameters go to the compiler, what it answers to the view. view.js, solid.js, stage.js and scene.js
 // stand before this script and are shared with csgmesh view and csgmesh diff.
-/* global byId, make, host, chosen, chooseAll, definitions, showState, showStatus, view */
+/* global byId, make, host, chosen, chooseAll, definitions, save, showState, showStatus, view */
 import workerSource from "worker-source";
 import { Compiler } from "./compiler.js";
 import { Editor } from "./editor.js";
@@ -10,11 +10,11 @@ import { readLink, writeLink } from "./link.js";
 const FIRST = "scenes/parts/mug.txt", NEW = "scene.txt";
 const NEW_TEXT = "// A scene of your own: what is here is a beginning.\nsize = 20; // [5:50]\n\n"
   + "difference(blend = 2) {\n  cube(size, center = true);\n  cylinder(h = 2 * size, r = size / 4, center = true);\n}\n";
-const data = JSON.parse(byId("data").textContent); // {scenes: [path, text], groups, fonts}
+const data = JSON.parse(byId("data").textContent); // {scenes: [path, text], groups}
 const encoder = new TextEncoder();
 const kept = new Map([[NEW, NEW_TEXT], ...data.scenes]);
 
-let path = NEW, compiler = null, shown = 0;
+let path = NEW, compiler = null, shown = 0, notice = ""; // notice: what stays to be read while a scene is shown
 
 // ---- the scene as it is now
 
@@ -32,6 +32,7 @@ function take(answer, asked) {
   if (answer.broken) return showStatus(`The compiler broke off: ${answer.broken}. Change something to go on.`, true);
   const { state, model } = answer, own = state.findings.filter((finding) => finding.file === `/${path}` && finding.line);
   showState(state, model);
+  if (notice && state.scene.phase === "done") showStatus(notice, true);
   if (state.scene.phase !== "coarse") editor.showFindings(own);
   document.body.dataset.shown = `${state.scene.phase} ${++shown} ${Math.round(performance.now() - asked)}`;
 }
@@ -43,6 +44,7 @@ function remember() {
 }
 
 function changed() {
+  notice = "";
   mesh();
   remember();
 }
@@ -61,10 +63,10 @@ function open(scene) {
 
 host.setValues = changed;
 host.goTo = (finding) => editor.goTo(finding);
+// The bytes of `csgmesh mesh -o - -f FORMAT`.
 host.file = async (format) => {
-  const output = `/out/${path.split("/").pop().replace(/(?!^)\.[^.]*$/, "")}.${format}`;
-  const { bytes, said } = await compiler.write({ arguments: argumentsOf(["-o", output]), files: [...filesOf(), ["/out/.kept", new Uint8Array()]], output });
-  if (bytes) return new Blob([bytes]);
+  const { pieces, said, status } = await compiler.write({ arguments: argumentsOf(["-o", "-", "-f", format]), files: filesOf() });
+  if (status === 0) return new Blob(pieces);
   const finding = said.split("\n").filter(Boolean).map((line) => JSON.parse(line)).find((one) => one.severity === "error");
   throw new Error(finding ? [finding.message, finding.hint].filter(Boolean).join("; ") : "the compiler gave no reason");
 };
@@ -85,12 +87,6 @@ async function openFile(file) {
   if (file.size > 4 << 20) return showStatus(`${file.name} is too large for a scene.`, true);
   history.pushState(null, "", location.hash);
   open({ path: file.name, text: await file.text(), values: {} });
-}
-
-function save() {
-  const link = make("a", "", { href: URL.createObjectURL(new Blob([editor.text], { type: "text/plain" })), download: path.split("/").pop() });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
 }
 
 async function copyLink() {
@@ -118,7 +114,7 @@ function listen() {
   byId("quality").addEventListener("change", mesh);
   byId("open").addEventListener("click", () => byId("file").click());
   byId("file").addEventListener("change", ({ target }) => openFile(target.files[0]));
-  byId("save").addEventListener("click", save);
+  byId("save").addEventListener("click", () => save(new Blob([editor.text], { type: "text/plain" }), path.split("/").pop()));
   byId("link").addEventListener("click", copyLink);
   byId("about-button").addEventListener("click", showAbout);
   addEventListener("dragover", (event) => event.preventDefault());
@@ -134,7 +130,7 @@ async function openLink() {
     open((await readLink(location.hash, kept)) ?? { path: FIRST, text: kept.get(FIRST), values: {} });
   } catch (error) {
     open({ path: NEW, text: NEW_TEXT, values: {} });
-    showStatus(`No scene: ${error.message}.`, true);
+    notice = `No scene: ${error.message}.`;
   }
 }
 
@@ -151,8 +147,7 @@ async function start() {
   if (lacks) return fail(`this browser has no ${lacks}`);
   try {
     const module = await WebAssembly.compile(await inflate(byId("module").textContent));
-    const fonts = await Promise.all(data.fonts.map(async ([name, text]) => [name, new Uint8Array(await inflate(text))]));
-    compiler = new Compiler(module, workerSource, [...data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]), ...fonts]);
+    compiler = new Compiler(module, workerSource, data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]));
   } catch (error) {
     return fail(error.message);
   }

@@ -85,8 +85,7 @@ export const words = StreamLanguage.define({
     closeBrackets: { brackets: ["(", "[", "{", '"'] },
     indentOnInput: /^\s*[}\])]$/,
   },
-  indent: ({ pieces, inside }, text, context) => {
-    void pieces;
+  indent: ({ inside }, text, context) => {
     if (inside) return null;
     const line = context.lineAt(context.pos, -1), before = context.lineIndent(line.from), opened = /[{([]\s*(\/\/.*)?$/.test(line.text);
     return before + (opened ? context.unit : 0) - (/^[}\])]/.test(text) && !opened ? context.unit : 0);

@@ -5,13 +5,39 @@
 //   {module, files}          once: the compiled module, and [path, bytes] of what scenes may include. Answer: {ready}.
 //   {show, number, coarse}   arguments of `csgmesh mesh`: reads, meshes coarsely (where `coarse`) and as asked. Answers:
 //                            {number, state, model, status, took}, each time there is something; the last one has `last`.
-//   {write, number, output}  arguments of `csgmesh mesh`: the file `output`. Answer: {number, bytes, said, status}.
+//   {write}                  arguments of `csgmesh mesh` whose output is `-`. Answer: {pieces, said, status}.
 //   {about}                  Answer: {about}.
-// A show before these has its files replaced by [path, bytes] of `files`.
-import { ConsoleStdout, Directory, File, OpenFile, PreopenDirectory, WASI } from "@bjorn3/browser_wasi_shim";
+// `files` of a show or write are [path, bytes] that replace what there is.
+import { Directory, Fd, File, OpenFile, PreopenDirectory, WASI, wasi as names } from "@bjorn3/browser_wasi_shim";
 
 const decoder = new TextDecoder(), encoder = new TextEncoder();
-let calls, root, latest = 0;
+let calls, root, latest = 0, pieces = [];
+
+// Standard output, and what nobody reads.
+class Sink extends Fd {
+  constructor(keeps) {
+    super();
+    this.keeps = keeps;
+  }
+
+  fd_fdstat_get() {
+    return { ret: 0, fdstat: new names.Fdstat(names.FILETYPE_UNKNOWN, 0) };
+  }
+
+  fd_write(bytes) {
+    if (this.keeps) pieces.push(bytes.slice());
+    return { ret: 0, nwritten: bytes.byteLength };
+  }
+}
+
+// access() asks the folder that was opened for what is allowed in it, and this library says nothing.
+class Root extends PreopenDirectory {
+  fd_fdstat_get() {
+    const fdstat = new names.Fdstat(names.FILETYPE_DIRECTORY, 0);
+    fdstat.fs_rights_base = fdstat.fs_rights_inherited = ~0n;
+    return { ret: 0, fdstat };
+  }
+}
 
 // The folder that a path lies in, made where it is not there, and the file's name.
 function place(path) {
@@ -29,17 +55,10 @@ function put(path, bytes) {
   contents.set(name, new File(bytes));
 }
 
-function take(path) {
-  const { contents, name } = place(path), file = contents.get(name);
-  contents.delete(name);
-  return file?.data;
-}
-
 async function begin({ module, files }) {
-  const drop = () => ConsoleStdout.lineBuffered(() => {});
-  root = new PreopenDirectory("/", new Map());
+  root = new Root("/", new Map());
   for (const [path, bytes] of files) put(path, bytes);
-  const wasi = new WASI(["csgmesh"], [], [new OpenFile(new File([])), drop(), drop(), root], { debug: false });
+  const wasi = new WASI(["csgmesh"], [], [new OpenFile(new File([])), new Sink(true), new Sink(false), root], { debug: false });
   const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.wasiImport });
   wasi.initialize(instance);
   calls = instance.exports;
@@ -92,9 +111,10 @@ async function show({ show: list, number, coarse }) {
   tell(number, status === 0 ? "done" : "failed", status, performance.now() - middle, true);
 }
 
-function write({ write: list, number, output }) {
+function write({ write: list }) {
+  pieces = [];
   const status = calls.web_write(...giveArguments(list));
-  postMessage({ number, status, said: readText(calls.web_answer()), bytes: take(output) ?? null });
+  postMessage({ pieces, status, said: readText(calls.web_answer()) });
 }
 
 onmessage = async ({ data }) => {

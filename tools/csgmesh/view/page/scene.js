@@ -165,16 +165,20 @@ function showFormats({ formats, drawings, scene }) {
   byId("format").value = formats.includes("glb") ? "glb" : formats[0];
 }
 
+// As a file of the browser's downloads.
+function save(blob, name) {
+  const link = make("a", "", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
 // The same bytes as csgmesh mesh writes; what stands in their way is said.
 async function download(format) {
   const button = byId("files").querySelector("button");
   button.disabled = true;
   showStatus(`${format.toUpperCase()} is being written.`);
   try {
-    const blob = await host.file(format);
-    const link = make("a", "", { href: URL.createObjectURL(blob), download: `${sceneName}.${format}` });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    save(await host.file(format), `${sceneName}.${format}`);
     showStatus("");
   } catch (error) {
     showStatus(`No file: ${String(error.message ?? error).trim()}`, true);
