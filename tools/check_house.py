@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """House rules a machine can see: SPDX lines, files of at most 700 lines, functions of at most 80; a type that a header
 declares has a name of its own; static functions are named by what they do; paths that are named in pages and comments
-exist.
+exist; no function of C's mathematical library whose last bits differ between libraries is called in src/.
 
 With --format: clang-format agrees with every C file (exit 77, a skip, where version 14 is not there).
 """
@@ -82,6 +82,22 @@ def check_types(root):
             yield headers[0], 1, f"the type {name} is defined in " + ", ".join(sorted(paths))
 
 
+# These are rounded otherwise by every C library; the file has ours, which are the same everywhere.
+ROUNDED_OTHERWISE = re.compile(r"(?<![\w.>])(?:std::)?((?:a?(?:sin|cos|tan)h?|sincos|atan2|hypot|pow|cbrt|exp|exp2|exp10|expm1|log|log2|"
+                               r"log10|log1p|erf|erfc|tgamma|lgamma)[fl]?)\s*\(")
+ELEMENTARY = os.path.join("src", "base", "elementary")
+
+
+def check_mathematics(path, text):
+    """(line, fault) of each call; comments and texts may name them."""
+    if not path.startswith("src" + os.sep) or not path.endswith(CODE) or path.startswith(ELEMENTARY):
+        return
+    code = re.sub(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'",
+                  lambda match: re.sub(r"[^\n]", " ", match.group()), text, flags=re.S)
+    for match in ROUNDED_OTHERWISE.finditer(code):
+        yield code.count("\n", 0, match.start()) + 1, f"{match.group(1)}() has other bits in other C libraries: base/elementary.h"
+
+
 def check_file(root, path):
     full = os.path.join(root, path)
     if not (path.endswith(MARKED) or is_script(full)):
@@ -92,6 +108,7 @@ def check_file(root, path):
         yield 1, "no SPDX line at its head"
     if len(lines) - 1 > FILE_LINES and path not in LONG_FILES:
         yield FILE_LINES, f"{len(lines) - 1} lines; {FILE_LINES} is the most: split it by meaning"
+    yield from check_mathematics(path, "\n".join(lines))
     if path.endswith(CODE):
         for name, first, length in functions(lines):
             if length > FUNCTION_LINES and (path, name) not in LONG_FUNCTIONS:

@@ -5,24 +5,7 @@
 
 #include <string.h>
 
-/* Twice the arc sine of the half angle's sine, which is halved until the series is short. */
-double csg_arc_cosine(double cosine)
-{
-    enum { HALVINGS = 3, TERMS = 14 };
-    cosine = fmin(fmax(cosine, -1), 1);
-    double sine = sqrt((1 - cosine) / 2), rest = sqrt((1 + cosine) / 2);
-    for (int i = 0; i < HALVINGS; i++) {
-        sine /= sqrt(2 * (1 + rest));
-        rest = sqrt((1 + rest) / 2);
-    }
-    double term = sine, sum = sine;
-    for (int k = 1; k < TERMS; k++) {
-        double odd = 2 * k - 1;
-        term *= sine * sine * odd / (odd + 1);
-        sum += term / (odd + 2);
-    }
-    return 2 * (1 << HALVINGS) * sum;
-}
+#include "base/elementary.h"
 
 csg_box csg_box_empty(void)
 {
@@ -138,8 +121,8 @@ static void sin_cos_deg(double angle_deg, double *s, double *c)
         return;
     }
     double radians = turn * (3.14159265358979323846 / 180);
-    *s = sin(radians);
-    *c = cos(radians);
+    *s = csg_sin(radians);
+    *c = csg_cos(radians);
 }
 
 csg_affine csg_affine_rotate(double angle_deg, csg_vec3 axis)

@@ -64,11 +64,6 @@ static inline void csg_vec3_to_floats(float out[3], csg_vec3 a)
     out[2] = (float)a.z;
 }
 
-/* The angle, 0 to pi, that has this cosine; what is beyond -1 or 1 counts as that. Within 2e-15,
- * and the same bits with every C library, whose acos() differ in the last: for what decides a mesh.
- */
-double csg_arc_cosine(double cosine);
-
 /* ---- boxes ------------------------------------------------------------------------- */
 
 csg_box csg_box_empty(void);

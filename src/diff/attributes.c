@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "io/parts.h"
 
 static uint32_t corner_of(const csg_diff_side *side, const csg_diff_face *face, uint32_t corner)
@@ -48,7 +49,7 @@ static double angle_between(const csg_diff_pair *pair, uint32_t a, uint32_t b)
     if (csg_vec3_dot(m, m) == 0 || csg_vec3_dot(n, n) == 0)
         return 0;
     double sine = csg_vec3_norm(csg_vec3_cross(m, n));
-    return atan2(sine, csg_vec3_dot(m, n)) * 180 / acos(-1);
+    return csg_atan2(sine, csg_vec3_dot(m, n)) * 180 / csg_acos(-1);
 }
 
 void csg_diff_compare_normals(const csg_diff_pair *pair, const csg_diff_match *match,

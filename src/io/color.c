@@ -5,9 +5,11 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
+
 static double srgb_to_linear(double s)
 {
-    return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+    return s <= 0.04045 ? s / 12.92 : csg_pow((s + 0.055) / 1.055, 2.4);
 }
 
 double csg_color_linear(uint8_t srgb)
@@ -46,5 +48,6 @@ uint8_t csg_color_to_srgb(float linear)
     if (linear >= 1)
         return 255;
     double l = (double)linear;
-    return csg_color_to_byte((float)(l <= 0.0031308 ? 12.92 * l : 1.055 * pow(l, 1 / 2.4) - 0.055));
+    return csg_color_to_byte(
+        (float)(l <= 0.0031308 ? 12.92 * l : 1.055 * csg_pow(l, 1 / 2.4) - 0.055));
 }

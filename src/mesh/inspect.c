@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/geometry.h"
 #include "base/mesh_codes.h"
 #include "base/sets.h"
@@ -266,7 +267,7 @@ static void measure(inspection *in)
         }
     }
     bool flat = check->zero_area_triangles > 0 || in->sound_count == 0;
-    check->min_angle_deg = flat ? 0 : atan2(1, cotangent) * 180 / acos(-1);
+    check->min_angle_deg = flat ? 0 : csg_atan2(1, cotangent) * 180 / csg_acos(-1);
     check->max_aspect = check->zero_area_triangles ? INFINITY : aspect;
     check->bounds = box;
     if (in->sound_count)

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive.h"
 #include "scene/warp_kinds.h"
 #include "shape/plane/region.h"
@@ -52,7 +53,7 @@ static uint32_t ring_count(double radius, double tolerance)
     double sagitta = fmax(tolerance / radius, least);
     if (sagitta >= 0.25)
         return 8;
-    return 4 * (uint32_t)ceil(acos(-1) / (4 * acos(1 - sagitta)) * 2);
+    return 4 * (uint32_t)ceil(csg_acos(-1) / (4 * csg_acos(1 - sagitta)) * 2);
 }
 
 static void add_ring(clouding *c, double radius, double z, double ball)

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/operators/rule.h"
 #include "scene/outlines/unite.h"
 #include "scene/primitives/kinds.h"
@@ -63,7 +64,7 @@ static uint32_t helix_slices(csg_solid_job *job, const csg_facet_rule *rule, csg
                              const csg_extrusion *s)
 {
     enum { PARTS = 64 };
-    const double most = 1e6, least = 0.01, degree = acos(-1) / 180;
+    const double most = 1e6, least = 0.01, degree = csg_acos(-1) / 180;
     csg_outline outline;
     double twist = fabs(s->twist), r = 0, way = 0, drift = 0;
     double lowest = fmax(ceil(twist / 120), 1);
@@ -76,8 +77,8 @@ static uint32_t helix_slices(csg_solid_job *job, const csg_facet_rule *rule, csg
         return 1;
     for (size_t i = 0; i < outline.point_count; i++) {
         csg_vec2 p = outline.points[i];
-        r = fmax(r, hypot(p.x, p.y));
-        drift = fmax(drift, hypot(p.x * (s->scale[0] - 1), p.y * (s->scale[1] - 1)));
+        r = fmax(r, csg_hypot(p.x, p.y));
+        drift = fmax(drift, csg_hypot(p.x * (s->scale[0] - 1), p.y * (s->scale[1] - 1)));
     }
     csg_outline_release(&outline);
     double grows = fmax(s->scale[0], s->scale[1]) - 1;
@@ -86,7 +87,7 @@ static uint32_t helix_slices(csg_solid_job *job, const csg_facet_rule *rule, csg
         way += sqrt(s->height * s->height + across * across + r * r * grows * grows) / PARTS;
     }
     if (twist == 0)
-        return (uint32_t)fmin(ceil(hypot(drift, s->height) / fmax(rule->fs, least)), most);
+        return (uint32_t)fmin(ceil(csg_hypot(drift, s->height) / fmax(rule->fs, least)), most);
     double by_angle = ceil(twist / fmax(rule->fa, least));
     double by_length = ceil(way / fmax(rule->fs, least));
     return (uint32_t)fmin(fmax(fmin(by_angle, by_length), lowest), most);

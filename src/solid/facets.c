@@ -5,6 +5,8 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
+
 #include "solid/facets.h"
 
 uint32_t csg_fragments(const csg_facet_rule *rule, double radius)
@@ -15,7 +17,7 @@ uint32_t csg_fragments(const csg_facet_rule *rule, double radius)
     if (rule->fn > 0)
         return (uint32_t)fmin(fmax(rule->fn, 3), most);
     double by_angle = 360 / fmax(rule->fa, least);
-    double by_length = 2 * acos(-1) * fabs(radius) / fmax(rule->fs, least);
+    double by_length = 2 * csg_acos(-1) * fabs(radius) / fmax(rule->fs, least);
     return (uint32_t)fmin(ceil(fmax(fmin(by_angle, by_length), 5)), most);
 }
 

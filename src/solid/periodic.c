@@ -10,6 +10,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/formula/formula.h"
 #include "solid/operations.h"
 
@@ -93,7 +94,7 @@ csg_node_id csg_solid_periodic(csg_solid_job *job, csg_periodic_kind kind, doubl
     double mean = kind == CSG_PERIODIC_GYROID      ? 1.533
                   : kind == CSG_PERIODIC_SCHWARZ_P ? 1.341
                                                    : 1.059;
-    double most = sqrt(kind == CSG_PERIODIC_DIAMOND ? 1.5 : 3), wave = 2 * acos(-1) / cell;
+    double most = sqrt(kind == CSG_PERIODIC_DIAMOND ? 1.5 : 3), wave = 2 * csg_acos(-1) / cell;
     writer w;
     csg_formula_begin(&w.builder, job->memory);
     write_waves(&w, cell);

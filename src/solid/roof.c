@@ -8,6 +8,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/formula/formula.h"
 #include "scene/primitives/kinds.h"
 #include "solid/measure.h"
@@ -20,7 +21,7 @@ static bool is_convex(const csg_outline *outline)
     for (size_t i = 0; i < n; i++) {
         csg_vec2 a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
         double turn = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
-        double size = hypot(b.x - a.x, b.y - a.y) * hypot(c.x - b.x, c.y - b.y);
+        double size = csg_hypot(b.x - a.x, b.y - a.y) * csg_hypot(c.x - b.x, c.y - b.y);
         if (turn < -1e-12 * size)
             return false;
     }

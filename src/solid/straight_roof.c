@@ -7,6 +7,7 @@
  */
 #include <stdlib.h>
 
+#include "base/elementary.h"
 #include "base/sets.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/skeleton.h"
@@ -35,7 +36,7 @@ static void join_ends(roof *r)
     csg_sets_init(r->same, s->node_count);
     for (size_t i = 0; i < s->arc_count; i++) {
         const csg_skeleton_node *a = &s->nodes[s->arcs[i].from], *b = &s->nodes[s->arcs[i].to];
-        if (hypot(b->at.x - a->at.x, b->at.y - a->at.y) < 1e-10 * r->size)
+        if (csg_hypot(b->at.x - a->at.x, b->at.y - a->at.y) < 1e-10 * r->size)
             csg_sets_join(r->same, s->arcs[i].from, s->arcs[i].to);
     }
 }
@@ -90,7 +91,7 @@ static csg_vec3 place(const roof *r, uint32_t node)
 static bool is_in_plane(const roof *r, uint32_t edge, uint32_t next, uint32_t node)
 {
     csg_vec3 p = place(r, edge), q = place(r, next), at = place(r, node);
-    double length = hypot(q.x - p.x, q.y - p.y);
+    double length = csg_hypot(q.x - p.x, q.y - p.y);
     double far = ((q.x - p.x) * (at.y - p.y) - (q.y - p.y) * (at.x - p.x)) / length;
     return fabs(far - at.z) < 1e-6 * r->size;
 }

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "shape/plane/polygons.h"
 #include "solid/facets.h"
 #include "solid/measure.h"
@@ -48,7 +49,7 @@ static bool is_first_shorter(const csg_triangles *t, const uint32_t c[4], bool o
     const double alike = 1e-5;
     csg_vec3 first = csg_vec3_sub(t->points[c[0]], t->points[c[2]]);
     csg_vec3 second = csg_vec3_sub(t->points[c[1]], t->points[c[3]]);
-    double p = hypot(first.x, first.y), q = hypot(second.x, second.y);
+    double p = csg_hypot(first.x, first.y), q = csg_hypot(second.x, second.y);
     return fabs(p - q) <= alike * (p + q) ? otherwise : p < q;
 }
 
@@ -100,7 +101,7 @@ static bool divide_edges(csg_outline *outline, double longest)
         size_t start = csg_outline_first(outline, loop), end = outline->ends[loop];
         for (size_t i = start; i < end && ok; i++) {
             csg_vec2 a = outline->points[i], b = outline->points[i + 1 < end ? i + 1 : start];
-            uint32_t parts = (uint32_t)ceil(hypot(b.x - a.x, b.y - a.y) / longest);
+            uint32_t parts = (uint32_t)ceil(csg_hypot(b.x - a.x, b.y - a.y) / longest);
             for (uint32_t k = 0; k < parts && ok; k++)
                 ok = csg_outline_add(&fine, (csg_vec2){a.x + (b.x - a.x) * k / parts,
                                                        a.y + (b.y - a.y) * k / parts});

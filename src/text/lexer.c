@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/scene_codes.h"
 #include "base/utf8.h"
 
@@ -397,7 +398,7 @@ static double long_number(const char *text, uint32_t length)
     if (i < length && (text[i] == 'e' || text[i] == 'E'))
         scale += read_exponent(text + i, length - i);
     int half = scale / 2; /* in two steps: one alone may leave the range of doubles */
-    return value * pow(10, half) * pow(10, scale - half);
+    return value * csg_pow(10, half) * csg_pow(10, scale - half);
 }
 
 double csg_token_number(const char *text, uint32_t length)

@@ -226,19 +226,6 @@ static void test_normalize_zero(void **state)
               csg_vec3_make(0, 0, 1), 0);
 }
 
-static void test_arc_cosine(void **state)
-{
-    enum { STEPS = 20000 };
-    assert_true(csg_arc_cosine(1) == 0 && csg_arc_cosine(7) == 0);
-    assert_true(fabs(csg_arc_cosine(-1) - acos(-1)) < 2e-15);
-    assert_true(csg_arc_cosine(-7) == csg_arc_cosine(-1));
-    for (int i = 0; i <= STEPS; i++) {
-        double cosine = 2.0 * i / STEPS - 1, less = nextafter(1, 0) - 1e-12 * i;
-        assert_true(fabs(csg_arc_cosine(cosine) - acos(cosine)) <= 2e-15);
-        assert_true(fabs(csg_arc_cosine(less) - acos(less)) <= 2e-15);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -253,7 +240,6 @@ int main(void)
         cmocka_unit_test(test_singular_values_bound_lengths),
         cmocka_unit_test(test_similarity),
         cmocka_unit_test(test_normalize_zero),
-        cmocka_unit_test(test_arc_cosine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,6 +90,14 @@ class Planted(unittest.TestCase):
         self.assertIn("no SPDX", self.found("check_house.py", "src/a/a.c", short_function))
         self.assertIn("701 lines", self.found("check_house.py", "src/a/a.c", HEAD + 700 * "\n"))
 
+    def test_mathematics(self):
+        for call, fault in (("hypot(a, b)", "hypot"), ("std::atan2(a, b)", "atan2"), ("powf (a, b)", "powf"), ("1 / log10(a)", "log10"),
+                            ("csg_sin(a)", ""), ("sqrt(a)", ""), ("p->sin(a)", ""), ("0 /* sin(a) */", ""), ('word("cos(a)")', "")):
+            found = self.found("check_house.py", "src/io/a.c", HEAD + f"int f(void)\n{{\n    return {call};\n}}\n")
+            self.assertEqual(f"{fault}() has other bits" in found if fault else found != "", bool(fault), call + found)
+        self.assertEqual(self.found("check_house.py", "src/base/elementary.c", HEAD + "double x = sin(1);\n"), "")
+        self.assertEqual(self.found("check_house.py", "tools/a.c", HEAD + "double x = sin(1);\n"), "")
+
     def test_paths(self):
         page = "See src/a/b.c, `tests/none.c`, scenes/*.txt, src/NAME.c and https://x.org/src/gone.c.\n"
         self.assertEqual(self.found("check_house.py", "docs/page.md", page),

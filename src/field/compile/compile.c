@@ -4,6 +4,7 @@
  */
 #include <string.h>
 
+#include "base/elementary.h"
 #include "field/compile/compile_curve.h"
 #include "field/compile/compile_formula.h"
 #include "field/compile/compile_private.h"
@@ -131,7 +132,8 @@ static void place_shape(compiler *c, csg_leaf *l, const frame *f, const csg_node
     l->sigma = f->negate ? -f->factor : f->factor;
     l->own[0] = node->payload;
     l->own_count = 1;
-    l->magnitude = hypot(hypot(x, y), isfinite(z) ? z : 0) * f->factor + csg_vec3_norm(l->offset);
+    l->magnitude =
+        csg_hypot(csg_hypot(x, y), isfinite(z) ? z : 0) * f->factor + csg_vec3_norm(l->offset);
 }
 
 bool csg_compile_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t warp)

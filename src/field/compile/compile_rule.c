@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "field/rule_layout.h"
 #include "scene/operators/soft.h"
 #include "scene/operators/steps.h"
@@ -86,8 +87,8 @@ static void pack_scale(const csg_rule *rule, float *values, csg_blend_kind *kind
 
 static size_t pack_arc(const csg_rule *rule, bool is_union, float *values)
 {
-    values[CSG_ARC_A] = (float)tan((90 - rule->parameters[1]) * RADIANS);
-    values[CSG_ARC_B] = (float)tan(rule->parameters[0] * RADIANS);
+    values[CSG_ARC_A] = (float)csg_tan((90 - rule->parameters[1]) * RADIANS);
+    values[CSG_ARC_B] = (float)csg_tan(rule->parameters[0] * RADIANS);
     values[CSG_ARC_MONOTONE] = rule->monotone[is_union ? 0 : 1];
     const csg_spline *spline = &rule->spline;
     uint32_t stretches = spline->count ? spline->count - 1 : 0;

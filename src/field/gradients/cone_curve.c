@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/primitives/tube.h"
 
 enum { MOST = 64, DEEPEST = 14, SAMPLES = 17 };
@@ -116,7 +117,7 @@ bool csg_cone_curve(const float *own, const double q[3], double rho, double grad
         double shift = found[i].half * c.speed + rho;
         if (!(shift < length))
             return false;
-        turn[i] = asin(shift / length);
+        turn[i] = csg_asin(shift / length);
         for (int k = 0; k < 3; k++) {
             to[i][k] /= length;
             sum[k] += to[i][k];
@@ -129,8 +130,8 @@ bool csg_cone_curve(const float *own, const double q[3], double rho, double grad
         gradient[k] = sum[k] / norm;
     for (int i = 0; i < count; i++) {
         double cosine = to[i][0] * gradient[0] + to[i][1] * gradient[1] + to[i][2] * gradient[2];
-        most = fmax(most, acos(fmin(fmax(cosine, -1), 1)) + turn[i]);
+        most = fmax(most, csg_acos(fmin(fmax(cosine, -1), 1)) + turn[i]);
     }
-    *spread = most < 1.5 ? 2 * sin(most / 2) + 1e-5 : 2; /* the chord */
+    *spread = most < 1.5 ? 2 * csg_sin(most / 2) + 1e-5 : 2; /* the chord */
     return *spread < 1.4;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/elementary.h"
 #include "base/trace.h"
 #include "io/adapter.h"
 #include "io/file.h"
@@ -118,7 +119,7 @@ static csg_page begin_page(csgm_context *context, const csg_drawing *drawing, cs
     page.box.min = csg_vec3_scale(page.box.min, page.scale);
     page.box.max = csg_vec3_scale(page.box.max, page.scale);
     csg_vec3 size = csg_box_size(page.box);
-    double digits = 9 - ceil(log10(fmax(fmax(size.x, size.y), 1e-300)));
+    double digits = 9 - ceil(csg_log10(fmax(fmax(size.x, size.y), 1e-300)));
     page.decimals = (int)fmin(fmax(digits, 6), 15);
     return page;
 }

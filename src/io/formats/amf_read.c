@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/elementary.h"
 #include "io/adapter.h"
 #include "io/color.h"
 #include "io/reader.h"
@@ -399,7 +400,8 @@ static void place(const amf_instance *instance, double at[3])
 {
     const double degree = 0.017453292519943295;
     for (int axis = 0; axis < 3 && instance; axis++) {
-        double angle = fmod(instance->turn[axis], 360) * degree, c = cos(angle), s = sin(angle);
+        double angle = fmod(instance->turn[axis], 360) * degree, c = csg_cos(angle),
+               s = csg_sin(angle);
         double *u = &at[(axis + 1) % 3], *v = &at[(axis + 2) % 3], old = *u;
         if (instance->turn[axis] == 0)
             continue;

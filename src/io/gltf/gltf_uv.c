@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "io/gltf/gltf_source.h"
 #include "mesh/weld.h"
 
@@ -53,7 +54,7 @@ static double angle_of(const projector *p, uint32_t vertex)
 {
     double at[3];
     position(p, vertex, at);
-    return atan2(at[1] - p->middle[1], at[0] - p->middle[0]);
+    return csg_atan2(at[1] - p->middle[1], at[0] - p->middle[0]);
 }
 
 static int side_of_box(const double n[3])

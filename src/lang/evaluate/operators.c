@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/scene_codes.h"
 #include "lang/evaluate/symbolic.h"
 #include "scene/formula/formula.h"
@@ -38,7 +39,7 @@ static csg_value scalars(csg_eval *e, const csg_expression *x, csg_value a, csg_
     case CSG_TOKEN_PERCENT:
         return csg_value_number(fmod(a.as.number, b.as.number));
     default:
-        return csg_value_number(pow(a.as.number, b.as.number));
+        return csg_value_number(csg_pow(a.as.number, b.as.number));
     }
 }
 

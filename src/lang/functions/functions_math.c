@@ -4,6 +4,8 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
+
 #include "lang/functions/functions.h"
 
 /* ---- trigonometry -----------------------------------------------------------------------------
@@ -29,7 +31,7 @@ static double sine_of_quarter(double a)
         return 0.70710678118654752440;
     if (a == 60)
         return 0.86602540378443864676;
-    return a < 45 ? sin(a * DEGREE) : cos((90 - a) * DEGREE);
+    return a < 45 ? csg_sin(a * DEGREE) : csg_cos((90 - a) * DEGREE);
 }
 
 static double sine(double degrees)
@@ -71,17 +73,17 @@ static double rounded_angle(double radians, double (*function)(double), double v
 
 static double arc_sine(double x)
 {
-    return rounded_angle(asin(x), sine, x);
+    return rounded_angle(csg_asin(x), sine, x);
 }
 
 static double arc_cosine(double x)
 {
-    return rounded_angle(acos(x), cosine, x);
+    return rounded_angle(csg_acos(x), cosine, x);
 }
 
 static double arc_tangent(double x)
 {
-    return rounded_angle(atan(x), tangent, x);
+    return rounded_angle(csg_atan(x), tangent, x);
 }
 
 csg_value csg_function_atan2(const csg_function_call *call)
@@ -90,7 +92,7 @@ csg_value csg_function_atan2(const csg_function_call *call)
         if (call->arguments[i].kind != CSG_VALUE_NUMBER)
             return csg_bad_argument(call, i, "two numbers");
     double y = call->arguments[0].as.number, x = call->arguments[1].as.number;
-    double degrees = atan2(y, x) / DEGREE, whole = round(degrees);
+    double degrees = csg_atan2(y, x) / DEGREE, whole = round(degrees);
     bool exact = fabs(degrees - whole) < 3e-14 * fabs(whole) || y == 0;
     return csg_value_number(exact ? whole : degrees);
 }
@@ -131,7 +133,7 @@ csg_value csg_function_pow(const csg_function_call *call)
     for (uint32_t i = 0; i < 2; i++)
         if (call->arguments[i].kind != CSG_VALUE_NUMBER)
             return csg_bad_argument(call, i, "two numbers");
-    return csg_value_number(pow(call->arguments[0].as.number, call->arguments[1].as.number));
+    return csg_value_number(csg_pow(call->arguments[0].as.number, call->arguments[1].as.number));
 }
 
 csg_value csg_function_log(const csg_function_call *call)
@@ -140,8 +142,8 @@ csg_value csg_function_log(const csg_function_call *call)
         if (call->arguments[i].kind != CSG_VALUE_NUMBER)
             return csg_bad_argument(call, i, "a number");
     double x = call->arguments[call->count - 1].as.number;
-    return csg_value_number(call->count == 1 ? log10(x)
-                                             : log(x) / log(call->arguments[0].as.number));
+    return csg_value_number(call->count == 1 ? csg_log10(x)
+                                             : csg_log(x) / csg_log(call->arguments[0].as.number));
 }
 
 /* Of a list: by the order of values, what has no order does not count. */

@@ -5,6 +5,8 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
+
 #include "mesh/adaptive/sheets.h"
 
 enum { NEWTON = 3, MOST = (CSG_MOST_FACES + CSG_LANES - 1) / CSG_LANES * CSG_LANES };

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "mesh/plane.h"
 
 enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES, MOST_ASKED = CSG_MOST_APEXES * MOST };

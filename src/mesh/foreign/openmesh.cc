@@ -22,6 +22,8 @@
 #include <OpenMesh/Tools/Decimater/Observer.hh>
 #include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
 
+#include "base/elementary.h"
+
 namespace
 {
 using mesh_type = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
@@ -488,7 +490,7 @@ void reshaper::smooth(uint32_t rounds)
 double angle_at(const point &apex, const point &a, const point &b)
 {
     double c = ((a - apex) | (b - apex));
-    return std::atan2(((a - apex) % (b - apex)).norm(), c);
+    return csg_atan2(((a - apex) % (b - apex)).norm(), c);
 }
 
 /* Delaunay: the angles that see the edge sum to more than 180 degrees. The two triangles lie nearly
@@ -505,7 +507,7 @@ bool reshaper::flip_helps(edge e, double most) const
         return false;
     point n = (b - a) % (c - a), m = (a - b) % (d - b), fresh = (c - d) % (a - d),
           other = (d - c) % (b - c);
-    double cosine = std::cos(CREASE_DEG * DEGREE);
+    double cosine = csg_cos(CREASE_DEG * DEGREE);
     if ((n | m) < cosine * n.norm() * m.norm() || (fresh | n) <= 0 || (fresh | m) <= 0 ||
         (other | n) <= 0 || (other | m) <= 0)
         return false;
@@ -544,7 +546,7 @@ bool reshaper::is_worse(vertex v, const std::vector<point> &old) const
         before = std::min(before, quality(a, b, c));
         after = std::min(after, quality(t.a, t.b, t.c));
         point was = (b - a) % (c - a), is = (t.b - t.a) % (t.c - t.a);
-        if ((was | is) < std::cos(CREASE_DEG * DEGREE) * was.norm() * is.norm())
+        if ((was | is) < csg_cos(CREASE_DEG * DEGREE) * was.norm() * is.norm())
             return true;
     }
     return after < before;

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/sets.h"
 
 static const double CREASE_COSINE = 0.766; /* 40 degrees */
@@ -95,7 +96,7 @@ static csg_vec3 unit(csg_vec3 v)
 
 static double angle_between(csg_vec3 a, csg_vec3 b)
 {
-    return atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
+    return csg_atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
 }
 
 static void sum_normals(const csg_halfedge_mesh *mesh, shading *s)

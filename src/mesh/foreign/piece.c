@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/places.h"
 #include "base/sets.h"
 
@@ -102,8 +103,8 @@ static void measure_spokes(const csg_triangles *triangles, const csg_edge *edge,
             y = csg_vec3_cross(along, out);
         }
         spokes[i] =
-            (spoke){atan2(csg_vec3_dot(out, y) / csg_vec3_norm(along), csg_vec3_dot(out, x)), half,
-                    csg_half_from(triangles, half) == edge->low};
+            (spoke){csg_atan2(csg_vec3_dot(out, y) / csg_vec3_norm(along), csg_vec3_dot(out, x)),
+                    half, csg_half_from(triangles, half) == edge->low};
     }
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/geometry.h"
 
 typedef struct writer {
@@ -68,7 +69,7 @@ static double angle_at(const writer *w, uint32_t c)
     csg_vec3 at = place_of(w, c);
     csg_vec3 a = csg_vec3_sub(place_of(w, csg_corner_next(c)), at);
     csg_vec3 b = csg_vec3_sub(place_of(w, csg_corner_previous(c)), at);
-    return atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
+    return csg_atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
 }
 
 static void store(float out[3], csg_vec3 normal)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/elementary.h"
 #include "base/mesh_codes.h"
 #include "base/pool.h"
 #include "base/trace.h"
@@ -53,7 +54,7 @@ static double cells_error(const csg_mesh_goal *goal)
 /* The largest power of two that is at most this. */
 static double power_below(double size)
 {
-    return ldexp(1, (int)floor(log2(size)));
+    return ldexp(1, (int)floor(csg_log2(size)));
 }
 
 /* Cells and origin at absolute places that powers of two have, a third, a fifth and a seventh off
@@ -94,7 +95,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
     }
     a->lattice.origin = csg_vec3_make(origin[0], origin[1], origin[2]);
     a->lattice.cell_size = cell;
-    *coarse_levels = (uint32_t)lround(log2(first / cell));
+    *coarse_levels = (uint32_t)lround(csg_log2(first / cell));
     return CSGM_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/elementary.h"
 #include "base/mesh_codes.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/own.h"
@@ -75,7 +76,7 @@ static void add_blocks(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     uint64_t blocks[CSGM_LEVELS_MOST] = {0};
     for (int k = 0; k < 2; k++) {
         double own = both[k]->cell_coarsest;
-        int down = own > 0 ? (int)lround(log2(coarsest / own)) : CSGM_LEVELS_MOST;
+        int down = own > 0 ? (int)lround(csg_log2(coarsest / own)) : CSGM_LEVELS_MOST;
         for (int i = 0; i + down < CSGM_LEVELS_MOST; i++)
             blocks[i + down] += both[k]->blocks[i];
     }

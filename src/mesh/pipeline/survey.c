@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/mesh_codes.h"
 
 enum {
@@ -53,7 +54,7 @@ static void add_cube(csg_survey *s, csg_survey_kind kind, csg_vec3 center,
                      const csg_lattice *lattice, const uint32_t point[3], uint32_t cells,
                      uint32_t nodes)
 {
-    double longest = 8, share = log2(nodes < 1 ? 1 : nodes) / longest; /* 2^8 nodes are many */
+    double longest = 8, share = csg_log2(nodes < 1 ? 1 : nodes) / longest; /* 2^8 nodes are many */
     share = share < 1 ? share : 1;
     const uint8_t color[3] = {(uint8_t)(40 + 210 * share), (uint8_t)(90 + 120 * share),
                               (uint8_t)(220 - 180 * share)};

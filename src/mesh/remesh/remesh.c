@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/elementary.h"
+
 enum { BATCH = CSG_PROBE_MOST };
 
 static const double ON_SURFACE = 0.02;     /* distance of a centroid, in longest sides */

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/pool.h"
 #include "base/trace.h"
 #include "field/field.h"
@@ -129,7 +130,7 @@ static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, const csg_triangl
     double extent = 0, from[3], side = 1;
     for (int k = 0; k < 3; k++)
         extent = fmax(extent, (double)all->max[k] - (double)all->min[k]);
-    side = exp2(ceil(log2(fmax(extent, 1e-30))));
+    side = ldexp(1, (int)ceil(csg_log2(fmax(extent, 1e-30))));
     int last[3];
     for (int k = 0; k < 3; k++) {
         double shift = side * (0.29 + round / 3.0) - middle[k], begin = (double)all->min[k] - shift;

@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
+
 #define NONE UINT32_MAX
 
 /* End 2 i is where line i begins, 2 i + 1 where it ends. */
@@ -44,7 +46,8 @@ static uint32_t find_node(const chains *c, csg_vec2 p)
     for (int i = 0; i < 9; i++) {
         uint32_t node = c->table[place_of(c, x + i % 3 - 1, y + i / 3 - 1)];
         for (; node != NONE; node = c->next_node[node])
-            if (hypot(c->node_points[node].x - p.x, c->node_points[node].y - p.y) <= c->tolerance)
+            if (csg_hypot(c->node_points[node].x - p.x, c->node_points[node].y - p.y) <=
+                c->tolerance)
                 return node;
     }
     return NONE;

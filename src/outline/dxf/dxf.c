@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "outline/dxf/chain.h"
 #include "outline/dxf/dxf_entity.h"
 #include "shape/plane/polygons.h"
@@ -124,7 +125,7 @@ static void draw_entity(drawing *d, size_t index, size_t past, const place *oute
         return;
     d->report->not_found = false;
     double(*m)[3] = p.map.m;
-    double stretch = hypot(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1]));
+    double stretch = csg_hypot(csg_hypot(m[0][0], m[0][1]), csg_hypot(m[1][0], m[1][1]));
     size_t first = d->lines.count;
     bool drawn = false;
     d->status = csg_dxf_draw(&d->file, index, past, d->request, stretch, &d->lines, &drawn);
@@ -178,7 +179,7 @@ static double reach_of(const csg_polylines *lines)
         box = csg_box_hull(box, (csg_box){p, p});
     }
     csg_vec3 size = lines->point_count ? csg_box_size(box) : csg_vec3_make(0, 0, 0);
-    return 1e-5 * hypot(size.x, size.y);
+    return 1e-5 * csg_hypot(size.x, size.y);
 }
 
 static csgm_status make_outline(drawing *d, csg_memory *memory, csg_outline *out)

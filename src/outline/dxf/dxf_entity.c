@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "outline/dxf/nurbs.h"
 #include "outline/svg/svg_path.h"
 
@@ -50,7 +51,7 @@ static csgm_status draw_solid(artist *a)
 static csg_vec2 on_circle(csg_vec2 center, double radius, double degrees)
 {
     double angle = fmod(degrees, 360) * pi / 180;
-    return (csg_vec2){center.x + radius * cos(angle), center.y + radius * sin(angle)};
+    return (csg_vec2){center.x + radius * csg_cos(angle), center.y + radius * csg_sin(angle)};
 }
 
 /* Of an arc; 0: by the tolerance. */
@@ -97,11 +98,11 @@ static csgm_status draw_ellipse(artist *a)
     bool whole = fabs(sweep) < 1e-6 || fabs(sweep) > 2 * pi - 1e-6;
     if (whole || sweep < 0)
         sweep = whole ? 2 * pi : sweep + 2 * pi;
-    if (!(hypot(major.x, major.y) > 0) || ratio == 0)
+    if (!(csg_hypot(major.x, major.y) > 0) || ratio == 0)
         return CSGM_OK;
-    csg_vec2 start = {center.x + cos(from) * major.x + sin(from) * minor.x,
-                      center.y + cos(from) * major.y + sin(from) * minor.y};
-    int pieces = pieces_of(a, fmax(1, fabs(ratio)) * hypot(major.x, major.y), sweep / (2 * pi));
+    csg_vec2 start = {center.x + csg_cos(from) * major.x + csg_sin(from) * minor.x,
+                      center.y + csg_cos(from) * major.y + csg_sin(from) * minor.y};
+    int pieces = pieces_of(a, fmax(1, fabs(ratio)) * csg_hypot(major.x, major.y), sweep / (2 * pi));
     bool done = whole || csg_outline_add(a->pen, start);
     if (pieces)
         done = done && csg_svg_ellipse_in_pieces(a->pen, center, major, minor, from, sweep, pieces);
@@ -115,13 +116,13 @@ static csgm_status draw_ellipse(artist *a)
 /* From the pen's place; a bulge is the tangent of a quarter of the angle. */
 static bool draw_to(artist *a, csg_vec2 from, double bulge, csg_vec2 to)
 {
-    double dx = to.x - from.x, dy = to.y - from.y, length = hypot(dx, dy);
+    double dx = to.x - from.x, dy = to.y - from.y, length = csg_hypot(dx, dy);
     if (fabs(bulge) < 1e-9 || fabs(bulge) > 1e6 || !(length > 0))
         return csg_outline_add(a->pen, to);
-    double height = (1 - bulge * bulge) / (4 * bulge), sweep = 4 * atan(bulge) * 180 / pi;
+    double height = (1 - bulge * bulge) / (4 * bulge), sweep = 4 * csg_atan(bulge) * 180 / pi;
     csg_vec2 center = {(from.x + to.x) / 2 - dy * height, (from.y + to.y) / 2 + dx * height};
     double radius = length * (1 + bulge * bulge) / (4 * fabs(bulge));
-    double start = atan2(from.y - center.y, from.x - center.x) * 180 / pi;
+    double start = csg_atan2(from.y - center.y, from.x - center.x) * 180 / pi;
     if (!draw_arc(a, center, radius, start, sweep))
         return false;
     a->pen->points[a->pen->point_count - 1] = to; /* the same bits as the next one begins with */

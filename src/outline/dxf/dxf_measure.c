@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "outline/dxf/dxf_file.h"
 
 static const double degree = 180 / 3.14159265358979323846;
@@ -47,17 +48,19 @@ static bool measure(const csg_dxf_entity *e, const csg_dxf_request *request, dou
     double angle = csg_dxf_get(e, 50, 0);
     switch (kind & 7) {
     case ROTATED:
-        *out = fabs((p4.x - p3.x) * cos(angle / degree) + (p4.y - p3.y) * sin(angle / degree));
+        *out =
+            fabs((p4.x - p3.x) * csg_cos(angle / degree) + (p4.y - p3.y) * csg_sin(angle / degree));
         return true;
     case ALIGNED:
-        *out = hypot(p4.x - p3.x, p4.y - p3.y);
+        *out = csg_hypot(p4.x - p3.x, p4.y - p3.y);
         return true;
     case ANGULAR:
-        *out = fabs(atan2(p0.x - p5.x, p0.y - p5.y) - atan2(p4.x - p3.x, p4.y - p3.y)) * degree;
+        *out = fabs(csg_atan2(p0.x - p5.x, p0.y - p5.y) - csg_atan2(p4.x - p3.x, p4.y - p3.y)) *
+               degree;
         return true;
     case DIAMETER:
     case RADIUS:
-        *out = hypot(p5.x - p0.x, p5.y - p0.y);
+        *out = csg_hypot(p5.x - p0.x, p5.y - p0.y);
         return true;
     case ORDINATE:
         *out = kind & OF_X ? p3.x : p3.y;

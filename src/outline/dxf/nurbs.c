@@ -4,6 +4,8 @@
  */
 #include "outline/dxf/nurbs.h"
 
+#include "base/elementary.h"
+
 enum { MOST_HALVINGS = 10 };
 
 typedef struct span {
@@ -54,7 +56,7 @@ static double distance_to_chord(csg_vec2 p, csg_vec2 a, csg_vec2 b)
     double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
     double part = length > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / length : 0;
     part = fmin(fmax(part, 0), 1);
-    return hypot(p.x - a.x - part * dx, p.y - a.y - part * dy);
+    return csg_hypot(p.x - a.x - part * dx, p.y - a.y - part * dy);
 }
 
 /* The piece of a span between two parameters, after its first point. Depth is bounded. */

@@ -4,6 +4,8 @@
  */
 #include "outline/polylines.h"
 
+#include "base/elementary.h"
+
 static csg_vec2 minus(csg_vec2 a, csg_vec2 b)
 {
     return (csg_vec2){a.x - b.x, a.y - b.y};
@@ -14,7 +16,7 @@ static csg_vec2 along(csg_vec2 a, csg_vec2 direction, double by)
 }
 static csg_vec2 unit(csg_vec2 a)
 {
-    double length = hypot(a.x, a.y);
+    double length = csg_hypot(a.x, a.y);
     return length > 0 ? (csg_vec2){a.x / length, a.y / length} : (csg_vec2){1, 0};
 }
 static csg_vec2 left_of(csg_vec2 a)

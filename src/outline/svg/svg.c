@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/table.h"
 #include "outline/svg/svg_shape.h"
 #include "outline/svg/svg_value.h"
@@ -124,7 +125,8 @@ static void add_lines(drawing *d, const place *p, double tolerance)
 static void draw_shape(drawing *d, uint32_t e, const place *p)
 {
     const double(*m)[3] = p->map.m;
-    double stretch = hypot(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1])); /* at least */
+    double stretch =
+        csg_hypot(csg_hypot(m[0][0], m[0][1]), csg_hypot(m[1][0], m[1][1])); /* at least */
     double tolerance = d->request->tolerance / (stretch > 0 ? stretch : 1);
     csg_polylines_clear(&d->lines);
     d->visits += d->used_count ? USED_SHAPE_VISITS : 0;

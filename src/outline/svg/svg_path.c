@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
+
 static const double pi = 3.14159265358979323846;
 
 typedef struct path {
@@ -58,9 +60,9 @@ static bool read_flag(const char **at, bool *out)
 bool csg_svg_ellipse(csg_outline *pen, csg_vec2 center, csg_vec2 u, csg_vec2 v, double from,
                      double sweep, double tolerance)
 {
-    double radius = hypot(hypot(u.x, u.y), hypot(v.x, v.y));
+    double radius = csg_hypot(csg_hypot(u.x, u.y), csg_hypot(v.x, v.y));
     double step =
-        2 * acos(1 - fmin(fmax(tolerance / radius, 1e-7), 0.29)); /* 0.29: quarter turns */
+        2 * csg_acos(1 - fmin(fmax(tolerance / radius, 1e-7), 0.29)); /* 0.29: quarter turns */
     int pieces = (int)fmin(fmax(ceil(fabs(sweep) / step), 1), 4096);
     return csg_svg_ellipse_in_pieces(pen, center, u, v, from, sweep, pieces);
 }
@@ -69,7 +71,7 @@ bool csg_svg_ellipse_in_pieces(csg_outline *pen, csg_vec2 center, csg_vec2 u, cs
                                double from, double sweep, int pieces)
 {
     for (int i = 1; i <= pieces; i++) {
-        double t = from + sweep * i / pieces, c = cos(t), s = sin(t);
+        double t = from + sweep * i / pieces, c = csg_cos(t), s = csg_sin(t);
         if (!csg_outline_add(
                 pen, (csg_vec2){center.x + c * u.x + s * v.x, center.y + c * u.y + s * v.y}))
             return false;
@@ -104,7 +106,7 @@ static void end_subpath(path *p, bool closed)
 
 static double angle_between(double ux, double uy, double vx, double vy)
 {
-    return atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+    return csg_atan2(ux * vy - uy * vx, ux * vx + uy * vy);
 }
 
 /* SVG 1.1, F.6.5 and F.6.6. */
@@ -112,7 +114,7 @@ static void draw_arc(path *p, double rx, double ry, double turn_deg, bool large,
                      csg_vec2 to)
 {
     csg_outline *pen = pen_of(p);
-    double turn = fmod(turn_deg, 360) * pi / 180, c = cos(turn), s = sin(turn);
+    double turn = fmod(turn_deg, 360) * pi / 180, c = csg_cos(turn), s = csg_sin(turn);
     double dx = (p->now.x - to.x) / 2, dy = (p->now.y - to.y) / 2;
     rx = fabs(rx), ry = fabs(ry);
     if (rx > 0 && ry > 0 && (dx != 0 || dy != 0)) {
@@ -127,7 +129,7 @@ static void draw_arc(path *p, double rx, double ry, double turn_deg, bool large,
         csg_vec2 u = {c * rx, s * rx}, v = {-s * ry, c * ry};
         csg_vec2 center = {(p->now.x + to.x) / 2 + cx * u.x + cy * v.x,
                            (p->now.y + to.y) / 2 + cx * u.y + cy * v.y};
-        double from = atan2(y - cy, x - cx);
+        double from = csg_atan2(y - cy, x - cx);
         double angle = angle_between(x - cx, y - cy, -x - cx, -y - cy);
         if (sweep && angle < 0)
             angle += 2 * pi;

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "outline/svg/svg_path.h"
 #include "outline/svg/svg_value.h"
 
@@ -80,7 +81,7 @@ static void draw_ellipse(shape *d, uint32_t e, const csg_svg_viewport *p, double
     const csg_xml *xml = d->xml;
     csg_vec2 center = {csg_svg_attribute(xml, e, "cx", p->width, 0),
                        csg_svg_attribute(xml, e, "cy", p->height, 0)};
-    double diagonal = hypot(p->width, p->height) / 1.41421356237309504880;
+    double diagonal = csg_hypot(p->width, p->height) / 1.41421356237309504880;
     double r = csg_svg_attribute(xml, e, "r", diagonal, 0);
     double rx = csg_svg_attribute(xml, e, "rx", p->width, r);
     double ry = csg_svg_attribute(xml, e, "ry", p->height, r);

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "outline/svg/svg_path.h"
 
 static const double pi = 3.14159265358979323846;
@@ -89,9 +90,9 @@ static bool one_transform(const char *name, size_t length, const double *v, size
         *out = csg_affine_multiply(csg_affine_multiply(shift(v[1], v[2]), turn(v[0])),
                                    shift(-v[1], -v[2]));
     else if (IS("skewX") && count == 1)
-        *out = csg_svg_matrix(1, 0, tan(fmod(v[0], 180) * pi / 180), 1, 0, 0);
+        *out = csg_svg_matrix(1, 0, csg_tan(fmod(v[0], 180) * pi / 180), 1, 0, 0);
     else if (IS("skewY") && count == 1)
-        *out = csg_svg_matrix(1, tan(fmod(v[0], 180) * pi / 180), 0, 1, 0, 0);
+        *out = csg_svg_matrix(1, csg_tan(fmod(v[0], 180) * pi / 180), 0, 1, 0, 0);
     else
         return false;
     return true;

@@ -4,6 +4,7 @@
  */
 #include "scene/boxes/field_levels.h"
 
+#include "base/elementary.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 
@@ -58,12 +59,12 @@ static double union_floor(const csg_rule *rule, double k, double t)
     double widest;
     switch (rule->kind) {
     case CSG_BLEND_RICCI:
-        return t * pow(k, -1 / v[0]);
+        return t * csg_pow(k, -1 / v[0]);
     case CSG_BLEND_SOFT_SUM:
     case CSG_BLEND_SOFT_SET:
         return t / k;
     case CSG_BLEND_PERLIN:
-        return 1 - pow(1 - t, 1 / k);
+        return 1 - csg_pow(1 - t, 1 / k);
     case CSG_BLEND_SCALE_SET:
         widest = v[3] > 0 ? 2 + v[3] : 1;
         return 1 - (1 - t) / csg_scale_top(v[0] * widest, v[1] * widest, v[2] / (v[0] * v[1]));

@@ -7,6 +7,8 @@
 #include <assert.h>
 #include <string.h>
 
+#include "base/elementary.h"
+
 static const struct {
     const char *name;
     uint32_t arity;
@@ -181,7 +183,7 @@ static csg_formula_id apply_binary(csg_formula_builder *builder, csg_formula_op 
     if (op == CSG_FORMULA_POW && left) { /* c^u, c > 0 */
         if (!(constant > 0))
             return append(builder, (csg_formula_step){(uint8_t)op, a, b, 0});
-        csg_formula_id scaled = apply_constant(builder, CSG_FORMULA_MUL, b, log(constant));
+        csg_formula_id scaled = apply_constant(builder, CSG_FORMULA_MUL, b, csg_log(constant));
         return scaled == CSG_FORMULA_NONE ? scaled
                                           : csg_formula_apply(builder, CSG_FORMULA_EXP, scaled, 0);
     }

@@ -7,6 +7,8 @@
  */
 #include <float.h>
 
+#include "base/elementary.h"
+
 #include "scene/formula/formula_bound.h"
 
 #define DEGREE 0.017453292519943295
@@ -157,8 +159,8 @@ static range power(range a, range b)
 {
     if (!(a.low >= 0) || !is_known(b))
         return unknown();
-    const double corners[4] = {pow(a.low, b.low), pow(a.low, b.high), pow(a.high, b.low),
-                               pow(a.high, b.high)};
+    const double corners[4] = {csg_pow(a.low, b.low), csg_pow(a.low, b.high),
+                               csg_pow(a.high, b.low), csg_pow(a.high, b.high)};
     double low = corners[0], high = corners[0];
     for (int i = 1; i < 4; i++) {
         low = fmin(low, corners[i]);

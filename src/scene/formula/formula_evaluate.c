@@ -4,6 +4,8 @@
  */
 #include "scene/formula/formula.h"
 
+#include "base/elementary.h"
+
 #define DEGREE 0.017453292519943295
 
 double csg_formula_value(csg_formula_op op, double a, double b)
@@ -16,21 +18,21 @@ double csg_formula_value(csg_formula_op op, double a, double b)
     case CSG_FORMULA_SQRT:
         return sqrt(a);
     case CSG_FORMULA_SIN:
-        return sin(fmod(a, 360) * DEGREE);
+        return csg_sin(fmod(a, 360) * DEGREE);
     case CSG_FORMULA_COS:
-        return cos(fmod(a, 360) * DEGREE);
+        return csg_cos(fmod(a, 360) * DEGREE);
     case CSG_FORMULA_TAN:
-        return tan(fmod(a, 180) * DEGREE);
+        return csg_tan(fmod(a, 180) * DEGREE);
     case CSG_FORMULA_ASIN:
-        return asin(a) / DEGREE;
+        return csg_asin(a) / DEGREE;
     case CSG_FORMULA_ACOS:
-        return acos(a) / DEGREE;
+        return csg_acos(a) / DEGREE;
     case CSG_FORMULA_ATAN:
-        return atan(a) / DEGREE;
+        return csg_atan(a) / DEGREE;
     case CSG_FORMULA_EXP:
-        return exp(a);
+        return csg_exp(a);
     case CSG_FORMULA_LN:
-        return log(a);
+        return csg_log(a);
     case CSG_FORMULA_FLOOR:
         return floor(a);
     case CSG_FORMULA_ADD:
@@ -46,9 +48,9 @@ double csg_formula_value(csg_formula_op op, double a, double b)
     case CSG_FORMULA_MAX:
         return a > b ? a : b;
     case CSG_FORMULA_POW:
-        return pow(a, b);
+        return csg_pow(a, b);
     case CSG_FORMULA_ATAN2:
-        return atan2(a, b) / DEGREE;
+        return csg_atan2(a, b) / DEGREE;
     case CSG_FORMULA_MOD:
         return fmod(a, b);
     case CSG_FORMULA_CONSTANT: /* these have no operands */
@@ -120,8 +122,8 @@ static void partials(csg_formula_op op, double a, double b, double v, double *da
         *db = !(a > b);
         break;
     case CSG_FORMULA_POW:
-        *da = b * pow(a, b - 1);
-        *db = a > 0 ? v * log(a) : 0;
+        *da = b * csg_pow(a, b - 1);
+        *db = a > 0 ? v * csg_log(a) : 0;
         break;
     case CSG_FORMULA_ATAN2:
         *da = b / (DEGREE * square);

@@ -18,6 +18,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "base/select.h"
 #include "scene/formula/terms.h"
 
@@ -106,8 +107,8 @@ static inline csg_term arch_term(csg_terms *t, double n, csg_term x, double end)
 
 static inline csg_blended overblend_double(double n, double x)
 {
-    double angle = BLEND_PI / 6 + x / n, half = sin((BLEND_PI - angle) / 2);
-    return (csg_blended){2 * n * half * half, -sin(angle)};
+    double angle = BLEND_PI / 6 + x / n, half = csg_sin((BLEND_PI - angle) / 2);
+    return (csg_blended){2 * n * half * half, -csg_sin(angle)};
 }
 static inline blended overblend_float(float n, float chi, float x)
 {
@@ -121,7 +122,7 @@ static inline csg_term overblend_term(csg_terms *t, double n, csg_term x)
 static inline csg_blended cosine_double(double n, double x)
 {
     double half = (BLEND_PI / 6 - x / n) / 2;
-    return (csg_blended){2 * n * sin(half) * sin(half), -sin(2 * half)};
+    return (csg_blended){2 * n * csg_sin(half) * csg_sin(half), -csg_sin(2 * half)};
 }
 static inline blended cosine_float(float n, float chi, float x)
 {

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/reference.h"
 
@@ -174,7 +175,7 @@ static void look_at_face(look *l, const face *f, const uint32_t pair[2], double 
 static double extent_of(const csg_box *hull)
 {
     csg_vec3 size = csg_vec3_sub(hull->max, hull->min);
-    return hypot(hypot(size.x, size.y), isfinite(size.z) ? size.z : 0);
+    return csg_hypot(csg_hypot(size.x, size.y), isfinite(size.z) ? size.z : 0);
 }
 
 /* Where a box ends: along x at the low and at the high end, along y, along z. */
@@ -270,7 +271,7 @@ static double distance_of(csg_box a, csg_box b)
 {
     double from[3], to[3];
     find_nearest(a, b, from, to);
-    return hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+    return csg_hypot(csg_hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
 }
 
 /* Whether the blend changes anything on the way between two solids: at its ends, or by filling it.

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/elementary.h"
+
 #define DEGREE 0.017453292519943295
 
 enum { ANGLES = 4096 /* scanned for K */ };
@@ -280,7 +282,7 @@ static void scan_angles(csg_rule *rule, bool is_union)
     double most = 0, least = 1, partials[2];
     for (int i = 0; i <= ANGLES; i++) {
         double angle = 90 * DEGREE * i / ANGLES;
-        csg_rule_apply(rule, is_union, (double[]){cos(angle), sin(angle)}, 2, 0, partials);
+        csg_rule_apply(rule, is_union, (double[]){csg_cos(angle), csg_sin(angle)}, 2, 0, partials);
         most = fmax(most, fabs(partials[0]) + fabs(partials[1]));
         least = fmin(least, fmin(partials[0], partials[1]));
     }
@@ -405,7 +407,7 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
         sum += slopes[i];
     }
     for (size_t i = 0; i < count && most > 0; i++)
-        power += pow(slopes[i] / most, n);
+        power += csg_pow(slopes[i] / most, n);
     switch (rule->kind) {
     case CSG_BLEND_SOFT_SUM:
     case CSG_BLEND_PERLIN:
@@ -413,13 +415,14 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
     case CSG_BLEND_SOFT_SET:
         return sum * 4 / 3;
     case CSG_BLEND_RICCI: /* Hoelder's inequality on its partial derivatives */
-        return is_union ? most * pow(power, 1 / n) : most;
+        return is_union ? most * csg_pow(power, 1 / n) : most;
     case CSG_BLEND_ARC: /* convex and homogeneous: grad G(P) . Q <= G(Q) (operators.md 0) */
         if (is_union && count == 2 && !rule->spline.count)
             return csg_rule_apply(rule, true, slopes, 2, 0, partials);
         return most * rule->k[!is_union];
     case CSG_BLEND_ARC_SHARP: /* a point of the unit circle, divided by more than 1 (5.6) */
-        return fmin(most * rule->k[!is_union], count == 2 ? hypot(slopes[0], slopes[1]) : INFINITY);
+        return fmin(most * rule->k[!is_union],
+                    count == 2 ? csg_hypot(slopes[0], slopes[1]) : INFINITY);
     case CSG_BLEND_EXTERIOR:
     case CSG_BLEND_INTERIOR:
     case CSG_BLEND_PROFILE:

@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 
@@ -121,7 +122,7 @@ static void enclose_angles(const csg_rule *rule, bool is_union, const double *lo
                            const double *high, double out[2])
 {
     double partials[2], factors[2];
-    factor_range(&rule->spline, atan2(low[1], high[0]), atan2(high[1], low[0]), factors);
+    factor_range(&rule->spline, csg_atan2(low[1], high[0]), csg_atan2(high[1], low[0]), factors);
     out[0] = factors[0] * csg_plain_arc(rule, is_union, low, partials);
     out[1] = factors[1] * csg_plain_arc(rule, is_union, high, partials);
 }

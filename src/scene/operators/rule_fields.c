@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "base/elementary.h"
 #include "scene/operators/choice.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
@@ -29,10 +30,10 @@ static double ricci_union(double n, const double *values, size_t count, double *
     if (most <= 0)
         return 0;
     for (size_t i = 0; i < count; i++)
-        sum += pow(values[i] / most, n);
-    double value = most * pow(sum, 1 / n);
+        sum += csg_pow(values[i] / most, n);
+    double value = most * csg_pow(sum, 1 / n);
     for (size_t i = 0; i < count && n != 1; i++)
-        partials[i] = pow(values[i] / value, n - 1);
+        partials[i] = csg_pow(values[i] / value, n - 1);
     return value;
 }
 
@@ -44,10 +45,10 @@ static double ricci_intersection(double n, const double *values, size_t count, d
     if (least <= 0)
         return 0;
     for (size_t i = 0; i < count; i++)
-        sum += pow(least / values[i], n);
-    double share = pow(sum, -1 / n);
+        sum += csg_pow(least / values[i], n);
+    double share = csg_pow(sum, -1 / n);
     for (size_t i = 0; i < count; i++)
-        partials[i] = pow(share * least / values[i], n + 1);
+        partials[i] = csg_pow(share * least / values[i], n + 1);
     return least * share;
 }
 
@@ -180,7 +181,7 @@ static double arc_intersection(double a, double b, double x, double y, double pa
 
 static double tangent(double degrees)
 {
-    return degrees == 45 ? 1 : tan(degrees * DEGREE);
+    return degrees == 45 ? 1 : csg_tan(degrees * DEGREE);
 }
 
 /* Of angles theta1, theta2; without the profile. */
@@ -202,7 +203,7 @@ static double arc(const csg_rule *rule, bool is_union, const double *values, dou
     double g = csg_plain_arc(rule, is_union, values, partials), x = values[0], y = values[1], slope;
     if (!rule->spline.count || !(x > 0 && y > 0))
         return g;
-    double factor = csg_spline_at(&rule->spline, atan2(y, x), &slope);
+    double factor = csg_spline_at(&rule->spline, csg_atan2(y, x), &slope);
     double square = x * x + y * y;
     partials[0] = factor * partials[0] - slope * g * (y / square);
     partials[1] = factor * partials[1] + slope * g * (x / square);
@@ -238,7 +239,7 @@ static double bracketed_root(arc_phi *phi, double x, double y, double low, doubl
 /* r = |(x - m, y - m)|, *growth = dr / dm */
 static double radius(double m, double x, double y, double *growth)
 {
-    double r = hypot(x - m, y - m);
+    double r = csg_hypot(x - m, y - m);
     *growth = r > 0 ? (2 * m - x - y) / r : sqrt(2);
     return r;
 }
@@ -275,7 +276,7 @@ static double intersection_square(double c, double x, double y, double *slope)
 /* Partial derivatives on the circle around (m, m); `speed` = dm / dc. */
 static void on_circle(const double *values, double m, double speed, double *partials)
 {
-    double dx = fabs(values[0] - m), dy = fabs(values[1] - m), r = hypot(dx, dy);
+    double dx = fabs(values[0] - m), dy = fabs(values[1] - m), r = csg_hypot(dx, dy);
     if (!(r > 0)) { /* at the crease any mixture is a gradient */
         partials[0] = partials[1] = 0.5;
         return;

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/elementary.h"
+
 #include "scene/operators/steps.h"
 
 #define PI 3.14159265358979323846
@@ -52,11 +54,11 @@ static double rising(int n, double t, double *slope)
         return t >= 1;
     double u = t, chain = 1;
     for (int i = 1; i < n; i++) {
-        chain *= PI / 2 * cos(PI * u / 2);
-        u = sin(PI * u / 2);
+        chain *= PI / 2 * csg_cos(PI * u / 2);
+        u = csg_sin(PI * u / 2);
     }
-    *slope = PI / 4 * cos(PI / 4 * (1 + u)) * chain;
-    return sin(PI / 4 * (1 + u));
+    *slope = PI / 4 * csg_cos(PI / 4 * (1 + u)) * chain;
+    return csg_sin(PI / 4 * (1 + u));
 }
 
 /* (1 + sin(pi u / 2)) / 2, which is R_n^2, keeps its digits where R_n is small. */
@@ -73,7 +75,7 @@ static double sigmoid(double alpha, double t, double *slope)
     double x = alpha * fabs(t);
     if (x >= CSG_SIGMOID_END)
         return t > 0;
-    double e = exp(-x), small = e / (1 + e);
+    double e = csg_exp(-x), small = e / (1 + e);
     *slope = alpha * small / (1 + e);
     return t > 0 ? 1 - small : small;
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "scene/outlines/flatten.h"
 #include "shape/plane/polygons.h"
 
@@ -88,7 +89,7 @@ static csg_drawn_layer *layer_of(drawer *d, const csg_look *look)
 /* By how much the map makes lengths in the plane longer, at most. */
 static double stretch_of(const csg_affine *map)
 {
-    return hypot(hypot(map->m[0][0], map->m[0][1]), hypot(map->m[1][0], map->m[1][1]));
+    return csg_hypot(csg_hypot(map->m[0][0], map->m[0][1]), csg_hypot(map->m[1][0], map->m[1][1]));
 }
 
 static csgm_status draw_piece(drawer *d, const piece *p)

@@ -5,6 +5,7 @@
 #ifndef CSG_SCENE_CAPSULE_H
 #define CSG_SCENE_CAPSULE_H
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_CAPSULE_OWN = 5 };
@@ -22,7 +23,7 @@ static inline bool csg_capsule_check(csg_refusal *refusal, double *v)
 static inline csg_sample csg_capsule_distance(const double *v, csg_vec3 p)
 {
     double h = v[0], r1 = v[1], r2 = v[2];
-    double k = (r1 - r2) / h, a = sqrt((1 - k) * (1 + k)), rho = hypot(p.x, p.y);
+    double k = (r1 - r2) / h, a = sqrt((1 - k) * (1 + k)), rho = csg_hypot(p.x, p.y);
     double center = p.z - k * rho / a;
     if (center <= 0)
         return csg_sample_ball(p, csg_vec3_make(0, 0, 0), r1);
@@ -100,7 +101,7 @@ static inline bool csg_capsule_gradients(csg_cone_leaf *l)
 {
     const float *own = l->own;
     point g, q = {(float)l->q[0], (float)l->q[1], (float)l->q[2]};
-    double t = (l->q[2] - hypot(l->q[0], l->q[1]) * (double)own[4]) * (double)own[1];
+    double t = (l->q[2] - csg_hypot(l->q[0], l->q[1]) * (double)own[4]) * (double)own[1];
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     double z = l->q[2] - t * (double)own[0];
     double d = sqrt(l->q[0] * l->q[0] + l->q[1] * l->q[1] + z * z);

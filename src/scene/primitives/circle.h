@@ -4,6 +4,7 @@
 #ifndef CSG_SCENE_CIRCLE_H
 #define CSG_SCENE_CIRCLE_H
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_CIRCLE_OWN = 1 };
@@ -15,13 +16,13 @@ static inline bool csg_circle_check(csg_refusal *refusal, double *v)
 
 static inline csg_sample csg_circle_distance(const double *v, csg_vec3 p)
 {
-    double rho = hypot(p.x, p.y);
+    double rho = csg_hypot(p.x, p.y);
     return csg_sample_revolve(p, rho, v[0] - rho, -1, 0);
 }
 
 static inline double csg_circle_support(const double *v, csg_vec3 n)
 {
-    return n.z == 0 ? v[0] * hypot(n.x, n.y) : INFINITY;
+    return n.z == 0 ? v[0] * csg_hypot(n.x, n.y) : INFINITY;
 }
 
 static inline csg_term csg_circle_term(csg_terms *t, const double *v, const csg_term p[3])

@@ -7,6 +7,7 @@
 #ifndef CSG_SCENE_FRUSTUM_H
 #define CSG_SCENE_FRUSTUM_H
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_FRUSTUM_OWN = 8 };
@@ -23,7 +24,7 @@ static inline bool csg_frustum_check(csg_refusal *refusal, double *v)
 static inline csg_sample csg_frustum_distance(const double *v, csg_vec3 p)
 {
     double r1 = v[0], r2 = v[1], h = v[2], round = v[3];
-    double rho = hypot(p.x, p.y), length = hypot(r2 - r1, 2 * h);
+    double rho = csg_hypot(p.x, p.y), length = csg_hypot(r2 - r1, 2 * h);
     double n_rho = 2 * h / length, n_z = (r1 - r2) / length;
     double slant = n_rho * (rho - r1) + n_z * (p.z + h), cap = fabs(p.z) - h;
     if (slant <= 0 && cap <= 0) {
@@ -34,15 +35,15 @@ static inline csg_sample csg_frustum_distance(const double *v, csg_vec3 p)
     double t = ((r2 - r1) * (rho - r1) + 2 * h * (p.z + h)) / (length * length);
     double clamped = fmin(fmax(t, 0), 1);
     double d_rho = rho - (r1 + (r2 - r1) * clamped), d_z = p.z - h * (2 * clamped - 1);
-    double distance = hypot(d_rho, d_z);
+    double distance = csg_hypot(d_rho, d_z);
     if (t > 0 && t < 1 && slant > 0) { /* without the cancellation of d_rho and d_z */
         distance = slant;
         d_rho = n_rho * slant;
         d_z = n_z * slant;
     }
     double radius = p.z > 0 ? r2 : r1, over = fmax(rho - radius, 0);
-    if (cap > 0 && hypot(over, cap) < distance) {
-        distance = hypot(over, cap);
+    if (cap > 0 && csg_hypot(over, cap) < distance) {
+        distance = csg_hypot(over, cap);
         d_rho = over;
         d_z = csg_sign(p.z) * cap;
     }
@@ -53,7 +54,7 @@ static inline csg_sample csg_frustum_distance(const double *v, csg_vec3 p)
 
 static inline double csg_frustum_support(const double *v, csg_vec3 n)
 {
-    double across = hypot(n.x, n.y);
+    double across = csg_hypot(n.x, n.y);
     return fmax(v[0] * across - v[2] * n.z, v[1] * across + v[2] * n.z) + v[3] * csg_vec3_norm(n);
 }
 
@@ -72,7 +73,7 @@ static inline csg_term csg_frustum_slant_term(csg_terms *t, const double *v, csg
 
 static inline csg_term csg_frustum_term(csg_terms *t, const double *v, const csg_term p[3])
 {
-    double length = hypot(v[1] - v[0], 2 * v[2]);
+    double length = csg_hypot(v[1] - v[0], 2 * v[2]);
     csg_term rho = csg_term_norm2(t, p[0], p[1]);
     csg_term slant = csg_term_add(
         t, csg_term_mul_number(t, csg_term_sub_number(t, rho, v[0]), 2 * v[2] / length),
@@ -112,11 +113,11 @@ static inline void csg_frustum_example(csg_random *random, double *v)
 static inline void csg_frustum_pack(csg_leaf *l, const double *v, double k)
 {
     double r1 = v[0] * k, r2 = v[1] * k, h = v[2] * k;
-    double length = hypot(2 * h, r1 - r2);
+    double length = csg_hypot(2 * h, r1 - r2);
     double own[] = {r1,       (r1 + r2) / 2, h, 2 * h / length, (r1 - r2) / length, length,
                     v[3] * k, (r2 - r1) / 2};
     memcpy(l->own, own, sizeof own);
-    l->magnitude = hypot(fmax(r1, r2), h) + v[3] * k;
+    l->magnitude = csg_hypot(fmax(r1, r2), h) + v[3] * k;
 }
 
 /* Distance to a convex outline in the (rho, z) half plane: the side from (r1, -h) to (r2, h) and
@@ -156,7 +157,7 @@ static inline int csg_frustum_falls_outwards(const float *own)
 static inline bool csg_frustum_gradients(csg_cone_leaf *l)
 {
     const float *own = l->own;
-    double radius = hypot(l->q[0], l->q[1]), nx = (double)own[3], nz = (double)own[4];
+    double radius = csg_hypot(l->q[0], l->q[1]), nx = (double)own[3], nz = (double)own[4];
     double side = (radius - (double)own[0]) * nx + (l->q[2] + (double)own[2]) * nz;
     double top = l->q[2] - (double)own[2], bottom = -l->q[2] - (double)own[2];
     double most = fmax(side, fmax(top, bottom));

@@ -5,6 +5,7 @@
 #ifndef CSG_SCENE_RECTANGLE_H
 #define CSG_SCENE_RECTANGLE_H
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_RECTANGLE_OWN = 3 };
@@ -21,7 +22,7 @@ static inline csg_sample csg_rectangle_distance(const double *v, csg_vec3 p)
     double qx = fabs(p.x) - (v[0] - v[2]), qy = fabs(p.y) - (v[1] - v[2]);
     double sx = -csg_sign(p.x), sy = -csg_sign(p.y);
     if (qx > 0 && qy > 0) {
-        double corner = hypot(qx, qy);
+        double corner = csg_hypot(qx, qy);
         return (csg_sample){v[2] - corner, csg_vec3_make(sx * qx / corner, sy * qy / corner, 0)};
     }
     return (csg_sample){v[2] - fmax(qx, qy),
@@ -32,7 +33,7 @@ static inline double csg_rectangle_support(const double *v, csg_vec3 n)
 {
     if (n.z != 0)
         return INFINITY;
-    return fabs(n.x) * (v[0] - v[2]) + fabs(n.y) * (v[1] - v[2]) + v[2] * hypot(n.x, n.y);
+    return fabs(n.x) * (v[0] - v[2]) + fabs(n.y) * (v[1] - v[2]) + v[2] * csg_hypot(n.x, n.y);
 }
 
 static inline csg_term csg_rectangle_term(csg_terms *t, const double *v, const csg_term p[3])
@@ -63,7 +64,7 @@ static inline void csg_rectangle_pack(csg_leaf *l, const double *v, double k)
 {
     double own[] = {(v[0] - v[2]) * k, (v[1] - v[2]) * k, v[2] * k};
     memcpy(l->own, own, sizeof own);
-    l->magnitude = k * hypot(v[0], v[1]);
+    l->magnitude = k * csg_hypot(v[0], v[1]);
 }
 
 static inline float csg_rectangle_value(const float *own, point q, point *g)

@@ -9,6 +9,7 @@
 
 #include <float.h>
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_SUPERELLIPSOID_OWN = 6 };
@@ -17,7 +18,7 @@ enum { CSG_SUPERELLIPSOID_OWN = 6 };
 static inline double csg_gauge_slope_of_two(double a, double b, double p)
 {
     double most = fmax(a, b), s = 2 * p / (2 - p);
-    return p >= 2 ? most : most * pow(pow(a / most, s) + pow(b / most, s), 1 / s);
+    return p >= 2 ? most : most * csg_pow(csg_pow(a / most, s) + csg_pow(b / most, s), 1 / s);
 }
 
 /* Lipschitz constant of the gauge. */
@@ -47,9 +48,9 @@ static inline double csg_power_norm(double x, double y, double p, double *dx, do
     *dx = *dy = 0;
     if (!(most > 0))
         return 0;
-    double d = most * pow(pow(x / most, p) + pow(y / most, p), 1 / p);
-    *dx = pow(x / d, p - 1);
-    *dy = pow(y / d, p - 1);
+    double d = most * csg_pow(csg_pow(x / most, p) + csg_pow(y / most, p), 1 / p);
+    *dx = csg_pow(x / d, p - 1);
+    *dy = csg_pow(y / d, p - 1);
     return d;
 }
 
@@ -70,7 +71,7 @@ static inline double csg_dual_norm(double x, double y, double p)
     double most = fmax(fabs(x), fabs(y)), q = p / (p - 1);
     if (p == 1 || most == 0)
         return most;
-    return most * pow(pow(fabs(x) / most, q) + pow(fabs(y) / most, q), 1 / q);
+    return most * csg_pow(csg_pow(fabs(x) / most, q) + csg_pow(fabs(y) / most, q), 1 / q);
 }
 
 static inline double csg_superellipsoid_support(const double *v, csg_vec3 n)

@@ -6,6 +6,7 @@
 #ifndef CSG_SCENE_TORUS_H
 #define CSG_SCENE_TORUS_H
 
+#include "base/elementary.h"
 #include "scene/primitives/primitive_kit.h"
 
 enum { CSG_TORUS_OWN = 4 };
@@ -28,10 +29,10 @@ static inline csg_sample csg_torus_distance(const double *v, csg_vec3 p)
         double side = p.y < 0 ? -1 : 1;
         return csg_sample_ball(p, csg_vec3_make(big * cosine, side * big * sine, 0), small);
     }
-    double rho = hypot(p.x, p.y);
+    double rho = csg_hypot(p.x, p.y);
     if (!(rho > 0)) /* all points of the arc are nearest: the one on +x */
         return csg_sample_ball(p, csg_vec3_make(big, 0, 0), small);
-    double distance = hypot(rho - big, p.z);
+    double distance = csg_hypot(rho - big, p.z);
     if (!(distance > 0))
         return (csg_sample){small, csg_vec3_make(0, 0, 0)};
     return csg_sample_revolve(p, rho, small - distance, -(rho - big) / distance, -p.z / distance);
@@ -39,7 +40,7 @@ static inline csg_sample csg_torus_distance(const double *v, csg_vec3 p)
 
 static inline double csg_torus_support(const double *v, csg_vec3 n)
 {
-    double across = hypot(n.x, n.y);
+    double across = csg_hypot(n.x, n.y);
     csg_affine turn = csg_affine_rotate(v[2], csg_vec3_make(0, 0, 1));
     double cosine = turn.m[0][0], sine = turn.m[1][0];
     bool on_arc = v[2] >= 180 || sine * n.x - cosine * fabs(n.y) >= 0;
@@ -90,7 +91,7 @@ static inline void csg_torus_pack(csg_leaf *l, const double *v, double k)
 {
     double half = v[2] * (3.14159265358979323846 / 180);
     bool whole = v[2] >= 180;
-    double own[] = {v[0] * k, v[1] * k, whole ? -1 : cos(half), whole ? 0 : sin(half)};
+    double own[] = {v[0] * k, v[1] * k, whole ? -1 : csg_cos(half), whole ? 0 : csg_sin(half)};
     memcpy(l->own, own, sizeof own);
     l->magnitude = own[0] + own[1];
 }
@@ -122,7 +123,7 @@ static inline bool csg_torus_gradients(csg_cone_leaf *l)
 {
     const float *own = l->own;
     point g, q = {(float)l->q[0], (float)l->q[1], (float)l->q[2]};
-    double radius = hypot(l->q[0], l->q[1]) - l->rho;
+    double radius = csg_hypot(l->q[0], l->q[1]) - l->rho;
     double d = (double)own[1] - (double)csg_torus_value(own, q, &g) - l->rho;
     bool is_arc = own[2] > -1;
     /* In the gap the nearer end changes from one side of y = 0 to the other. */

@@ -5,6 +5,7 @@
 
 #include <assert.h>
 
+#include "base/elementary.h"
 #include "scene/warp_kinds.h"
 
 #define PI 3.14159265358979323846
@@ -19,7 +20,7 @@ static csg_vec3 vec3(double x, double y, double z)
 static double farthest_from_axis(csg_box box)
 {
     double x = fmax(fabs(box.min.x), fabs(box.max.x)), y = fmax(fabs(box.min.y), fabs(box.max.y));
-    return hypot(x, y);
+    return csg_hypot(x, y);
 }
 
 static bool revolve_settle(csg_warp *warp, csg_box child, const char **why)
@@ -100,7 +101,7 @@ static bool bend_check(const double *v, csg_refusal *refusal)
 
 static csg_warped revolve_at(const double *v, csg_vec3 p)
 {
-    double rho = hypot(p.x, p.y);
+    double rho = csg_hypot(p.x, p.y);
     double cosine = rho > 0 ? p.x / rho : 0, sine = rho > 0 ? p.y / rho : 0;
     return (csg_warped){vec3(rho, p.z, 0), {vec3(cosine, 0, 0), vec3(sine, 0, 0), vec3(0, 1, 0)}};
 }
@@ -113,9 +114,9 @@ static csg_warped slice_at(const double *v, csg_vec3 p)
 static csg_warped twist_at(const double *v, csg_vec3 p)
 {
     double low = v[CSG_TWIST_LOW], high = v[CSG_TWIST_HIGH], reach = v[CSG_TWIST_REACH];
-    double rate = v[CSG_TWIST_RATE] * (PI / 180), rho = hypot(p.x, p.y);
+    double rate = v[CSG_TWIST_RATE] * (PI / 180), rho = csg_hypot(p.x, p.y);
     double inward = rho > reach ? reach / rho : 1;
-    double angle = -rate * fmin(fmax(p.z, low), high), c = cos(angle), s = sin(angle);
+    double angle = -rate * fmin(fmax(p.z, low), high), c = csg_cos(angle), s = csg_sin(angle);
     double x = inward * (c * p.x - s * p.y), y = inward * (s * p.x + c * p.y);
     double turning = p.z > low && p.z < high ? -rate : 0;
     csg_warped out = {vec3(x, y, p.z),
@@ -156,7 +157,7 @@ static csg_warped taper_at(const double *v, csg_vec3 p)
 static csg_warped bend_at(const double *v, csg_vec3 p)
 {
     double radius = v[CSG_BEND_RADIUS], nearest = v[CSG_BEND_NEAREST], most = v[CSG_BEND_ANGLE];
-    double across = radius - p.z, s = hypot(p.x, across), phi = atan2(p.x, across);
+    double across = radius - p.z, s = csg_hypot(p.x, across), phi = csg_atan2(p.x, across);
     double sine = s > 0 ? p.x / s : 0, cosine = s > 0 ? across / s : 0;
     /* Behind the ends the angle runs back to 0, near the line it shrinks. */
     bool behind = fabs(phi) > most;
@@ -200,7 +201,7 @@ static double taper_scale(const double *v)
     double around = fabs(v[CSG_TAPER_RATE]) * (PI / 180) * v[CSG_TAPER_REACH];
     double inward =
         v[CSG_TAPER_REACH] * fmax(fabs(x - 1) / fmin(1, x), fabs(y - 1) / fmin(1, y)) / length;
-    double k = x == y ? hypot(around, inward) : around + inward, m = 1 / fmin(1, fmin(x, y));
+    double k = x == y ? csg_hypot(around, inward) : around + inward, m = 1 / fmin(1, fmin(x, y));
     return 1 / csg_shear_norm(m, k);
 }
 
@@ -266,7 +267,7 @@ static csg_box bend_box(const double *v, csg_box child, bool all_round)
             continue;
         for (int k = 0; k < 2; k++) {
             double s = k ? farthest : nearest;
-            csg_vec3 p = vec3(s * sin(angles[i]), 0, radius - s * cos(angles[i]));
+            csg_vec3 p = vec3(s * csg_sin(angles[i]), 0, radius - s * csg_cos(angles[i]));
             box = csg_box_hull(box, (csg_box){p, p});
         }
     }

@@ -2,6 +2,7 @@
  * Building soft objects and operators by rules: ranges of influence that follow from the operands,
  * and arcs whose angles are given by points.
  */
+#include "base/elementary.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 #include "scene/primitives/curve.h"
@@ -153,7 +154,7 @@ static bool find_ends(csg_scene_builder *builder, const probe *p, csg_rule *rule
     for (int i = 0; i < 2; i++) {
         if (!fields_at(builder, p, rule->points[i], fields))
             return false;
-        angles[i] = atan2(fields[1], fields[0]) / DEGREE;
+        angles[i] = csg_atan2(fields[1], fields[0]) / DEGREE;
     }
     rule->parameters[0] = fmin(angles[0], angles[1]);
     rule->parameters[1] = fmax(angles[0], angles[1]);
@@ -187,7 +188,7 @@ static bool find_profile(csg_scene_builder *builder, const probe *p, bool is_uni
         if (!fields_at(builder, p, rule->points[i], fields))
             return false;
         double value = csg_rule_apply(&plain, is_union, fields, 2, 0, partials);
-        rule->spline.angle[i - 2] = atan2(fields[1], fields[0]) / DEGREE;
+        rule->spline.angle[i - 2] = csg_atan2(fields[1], fields[0]) / DEGREE;
         rule->spline.factor[i - 2] = value > 0 ? 0.5 / value : INFINITY;
     }
     rule->spline.count = rule->point_count - 2;

@@ -2,6 +2,7 @@
  * Building what is neither a primitive nor an operator of the language: shapes, offsets,
  * extrusions, warps, and copies.
  */
+#include "base/elementary.h"
 #include "scene/boxes/bounds.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
@@ -163,7 +164,7 @@ static csg_node_id end_plane(csg_scene_builder *builder, double radius, double a
                              csg_span where)
 {
     /* the end lies in direction (sin angle, -cos angle) from the line */
-    double nx = side * cos(angle), nz = side * sin(angle);
+    double nx = side * csg_cos(angle), nz = side * csg_sin(angle);
     return csg_build_primitive(builder, CSG_NODE_PLANE, (double[]){nx, 0, nz, nz * radius}, where);
 }
 
@@ -186,7 +187,7 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
                            end_plane(builder, radius, -angle, -1, where)};
     if (room == CSG_NODE_NONE || ends[0] == CSG_NODE_NONE || ends[1] == CSG_NODE_NONE)
         return CSG_NODE_NONE;
-    bool narrow = cos(angle) >= 0; /* below 180 degrees the wedge is convex */
+    bool narrow = csg_cos(angle) >= 0; /* below 180 degrees the wedge is convex */
     csg_node_id wedge = csg_build_operator(builder, narrow ? CSG_NODE_INTERSECTION : CSG_NODE_UNION,
                                            sharp, ends, 2, where);
     if (wedge == CSG_NODE_NONE)

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/scene_codes.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
@@ -463,8 +464,8 @@ static csg_box room_of_children(const csgm_scene *scene, const csg_node *node, c
         return csg_box_grow(room, fabs(scene->parameters[node->payload]));
     if (node->kind != CSG_NODE_WARP)
         return room;
-    double r =
-        hypot(fmax(fabs(room.min.x), fabs(room.max.x)), fmax(fabs(room.min.y), fabs(room.max.y)));
+    double r = csg_hypot(fmax(fabs(room.min.x), fabs(room.max.x)),
+                         fmax(fabs(room.min.y), fabs(room.max.y)));
     if (scene->warps[node->payload].kind == CSG_WARP_REVOLVE)
         return (csg_box){{-r, room.min.z, -r}, {r, room.max.z, r}};
     if (scene->warps[node->payload].kind == CSG_WARP_SLICE)

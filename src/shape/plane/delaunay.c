@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 
+#include "base/elementary.h"
 #include "base/orient.h"
 
 #define NONE UINT32_MAX
@@ -90,7 +91,7 @@ static bool is_flipped(const flipper *f, uint32_t h)
     double sine[2], cosine[2];
     angle_at(c, a, b, &sine[0], &cosine[0]);
     angle_at(d, b, a, &sine[1], &cosine[1]);
-    double size = hypot(sine[0], cosine[0]) * hypot(sine[1], cosine[1]);
+    double size = csg_hypot(sine[0], cosine[0]) * csg_hypot(sine[1], cosine[1]);
     return sine[0] * cosine[1] + cosine[0] * sine[1] < -CERTAIN * size &&
            csg_orient_plane(c, a, d) > 0 && csg_orient_plane(d, b, c) > 0;
 }

@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
+
 typedef struct corner_at {
     double x, y;   /* the corner */
     double ax, ay; /* normals of the edges before and after, `by` long */
@@ -14,8 +16,8 @@ typedef struct corner_at {
 
 static bool round_off(const corner_at *c, double angle, double turn, csg_offset_sink sink)
 {
-    double steps = fmin(floor(fabs(angle) / turn), 1e7), cosine = cos(turn),
-           sine = angle < 0 ? -sin(turn) : sin(turn), x = c->ax, y = c->ay;
+    double steps = fmin(floor(fabs(angle) / turn), 1e7), cosine = csg_cos(turn),
+           sine = angle < 0 ? -csg_sin(turn) : csg_sin(turn), x = c->ax, y = c->ay;
     for (double k = 0; k < steps; k++) {
         double next_x = x * cosine - y * sine;
         y = x * sine + y * cosine;
@@ -37,7 +39,7 @@ static bool add_corner(const corner_at *c, double by, csg_corner corner, double 
         if (!sink.add(sink.user, c->x, c->y))
             return false;
     } else if (corner == CSG_CORNER_ROUND) {
-        if (!round_off(c, atan2(cross, dot), turn, sink))
+        if (!round_off(c, csg_atan2(cross, dot), turn, sink))
             return false;
     } else if (corner == CSG_CORNER_MITER && opening > 1e-12) {
         return sink.add(sink.user, c->x + (c->ax + c->bx) / opening,

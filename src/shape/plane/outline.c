@@ -9,6 +9,8 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
+
 enum { MOST_PIECES = 4096 };
 
 void csg_outline_init(csg_outline *outline, csg_memory *memory)
@@ -147,7 +149,7 @@ static csg_vec2 on_circle(csg_vec2 center, double radius, double angle_deg)
         turn += 360;
     double quarter = floor(turn / 90),
            rest = (turn - 90 * quarter) * (3.14159265358979323846 / 180);
-    double c = rest == 0 ? 1 : cos(rest), s = rest == 0 ? 0 : sin(rest);
+    double c = rest == 0 ? 1 : csg_cos(rest), s = rest == 0 ? 0 : csg_sin(rest);
     double x = quarter == 1 ? -s : quarter == 2 ? -c : quarter == 3 ? s : c;
     double y = quarter == 1 ? c : quarter == 2 ? -s : quarter == 3 ? -c : s;
     return (csg_vec2){center.x + radius * x, center.y + radius * y};
@@ -158,7 +160,7 @@ bool csg_outline_arc(csg_outline *outline, csg_vec2 center, double radius, doubl
 {
     /* sagitta radius (1 - cos(step / 2)); below 1e-7 the cosine would be 1 */
     double sagitta = fmin(fmax(tolerance / fabs(radius), 1e-7), 1);
-    double step_deg = 2 * acos(1 - sagitta) * (180 / 3.14159265358979323846);
+    double step_deg = 2 * csg_acos(1 - sagitta) * (180 / 3.14159265358979323846);
     return csg_outline_arc_in_pieces(outline, center, radius, from_deg, sweep_deg,
                                      pieces_of(fabs(sweep_deg) / fmin(step_deg, 90)));
 }
@@ -182,7 +184,7 @@ static csg_vec2 mix(csg_vec2 a, csg_vec2 b, double t)
 /* |a - 2 b + c| */
 static double bend(csg_vec2 a, csg_vec2 b, csg_vec2 c)
 {
-    return hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y);
+    return csg_hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y);
 }
 
 bool csg_outline_quadratic(csg_outline *outline, csg_vec2 from, csg_vec2 control, csg_vec2 to,

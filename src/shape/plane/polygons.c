@@ -8,6 +8,7 @@
  */
 #include "shape/plane/polygons.h"
 
+#include "base/elementary.h"
 #include "shape/plane/clipper.h"
 #include "shape/plane/crossings.h"
 #include "shape/plane/offset_loops.h"
@@ -275,14 +276,14 @@ csgm_status csg_polygons_combine(csg_polygons_op op, const csg_outline *a, const
 /* Points that the corners will have: an arc each, as far as the outline turns there. */
 static double offset_points(const csg_outline *outline, double sagitta)
 {
-    double count = 0, step = 2 * acos(1 - fmin(sagitta, 1));
+    double count = 0, step = 2 * csg_acos(1 - fmin(sagitta, 1));
     for (size_t loop = 0; loop < outline->loop_count; loop++) {
         size_t first = csg_outline_first(outline, loop), end = outline->ends[loop];
         for (size_t i = first; i < end; i++) {
             csg_vec2 a = outline->points[i > first ? i - 1 : end - 1], b = outline->points[i],
                      c = outline->points[i + 1 < end ? i + 1 : first];
             double ux = b.x - a.x, uy = b.y - a.y, vx = c.x - b.x, vy = c.y - b.y;
-            count += 2 + fabs(atan2(ux * vy - uy * vx, ux * vx + uy * vy)) / step;
+            count += 2 + fabs(csg_atan2(ux * vy - uy * vx, ux * vx + uy * vy)) / step;
         }
     }
     return count;
@@ -334,7 +335,7 @@ static csgm_status check_offset(const whole_loops *loops, double by, csg_corner 
     csgm_status status = CSGM_ERR_MEMORY;
     bool turned;
     if (whole_reserve(&raw, loops->point_count, loops->loop_count) &&
-        csg_offset_loops(&view, by, corner, 2 * acos(1 - fmin(sagitta, 1)), sink))
+        csg_offset_loops(&view, by, corner, 2 * csg_acos(1 - fmin(sagitta, 1)), sink))
         status = check_work(&raw, CSG_FILL_NONZERO, &turned);
     whole_release(&raw);
     return status;

@@ -14,6 +14,7 @@
  */
 #include "shape/plane/skeleton.h"
 
+#include "base/elementary.h"
 #include "base/random.h"
 
 enum { NONE = UINT32_MAX, MOST_TRIES = 3 };
@@ -160,7 +161,8 @@ static void end_shorter(front *f, uint32_t a)
     const corner *c = &f->corners[a];
     csg_vec2 p = position(f, &f->corners[c->previous], f->now);
     csg_vec2 q = position(f, &f->corners[c->next], f->now);
-    bool is_first = hypot(p.x - c->at.x, p.y - c->at.y) < hypot(q.x - c->at.x, q.y - c->at.y);
+    bool is_first =
+        csg_hypot(p.x - c->at.x, p.y - c->at.y) < csg_hypot(q.x - c->at.x, q.y - c->at.y);
     uint32_t from = is_first ? c->previous : a;
     add_event(f, (event){f->now, from, from, f->corners[from].next});
 }
@@ -286,7 +288,7 @@ static void end_loop(front *f, uint32_t a, uint32_t b)
     uint32_t left = f->corners[a].before, right = f->corners[a].after;
     uint32_t first = add_node(f, p);
     end_corner(f, a, first);
-    if (hypot(q.x - p.x, q.y - p.y) <= f->small) {
+    if (csg_hypot(q.x - p.x, q.y - p.y) <= f->small) {
         end_corner(f, b, first);
         return;
     }
@@ -396,7 +398,7 @@ static void begin(front *f, const csg_outline *outline, unsigned tries, double s
         for (size_t i = first; i < end; i++) {
             csg_vec2 p = near_point(outline, i, tries, size);
             csg_vec2 q = near_point(outline, i + 1 < end ? i + 1 : first, tries, size);
-            double length = hypot(q.x - p.x, q.y - p.y);
+            double length = csg_hypot(q.x - p.x, q.y - p.y);
             csg_vec2 along = {(q.x - p.x) / length, (q.y - p.y) / length};
             csg_vec2 inwards = {-along.y, along.x};
             f->lines[i] = (line){along, inwards, dot(inwards, p)};

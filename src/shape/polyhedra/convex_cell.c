@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/elementary.h"
+
 csg_cut_plane csg_cut_plane_turned(const csg_cut_plane *plane)
 {
     return (csg_cut_plane){csg_vec3_scale(plane->normal, -1), -plane->offset};
@@ -166,7 +168,7 @@ static bool cover(csg_convex_cell *cell, const csg_cut_plane *by)
     v = csg_vec3_cross(by->normal, u);
     for (size_t i = 0; i < count; i++) {
         csg_vec3 d = csg_vec3_sub(found[i].at, middle);
-        found[i].angle = atan2(csg_vec3_dot(d, v), csg_vec3_dot(d, u));
+        found[i].angle = csg_atan2(csg_vec3_dot(d, v), csg_vec3_dot(d, u));
     }
     qsort(found, count, sizeof *found, by_angle);
     csg_facet *facet = &cell->facets[cell->count];
