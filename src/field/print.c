@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "field/compile/compile_rule.h"
 #include "field/field.h"
 #include "field/rule_layout.h"
 #include "scene/warp_kinds.h"
@@ -72,7 +73,7 @@ static void print_leaf(printer *out, const csg_tape *tape, const csg_tape_node *
 
 static const char *blend_name(uint8_t blend)
 {
-    return blend == CSG_BLEND_TURNING ? "turning scale_set" : csg_blend_name((csg_blend_kind)blend);
+    return csg_blend_turns(blend) ? "turning scale_set" : csg_blend_name(blend);
 }
 
 static void print_operator(printer *out, const csg_tape *tape, const csg_tape_node *node)

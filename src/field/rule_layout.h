@@ -8,10 +8,6 @@
 #include "field/tape.h"
 #include "scene/operators/rule.h"
 
-/* A SCALE_SET that turns with the gradients' angle: the blend of such operators and their joins. A
- * tape that has one is evaluated with its gradients. */
-enum { CSG_BLEND_TURNING = CSG_BLEND_END };
-
 /* Which field function a SOFTEN node is: P of soft(), the step H_3, or 1/2 + rate v kept in [0, 1].
  */
 typedef enum csg_tape_curve {

@@ -53,7 +53,7 @@ void csg_look_take_inner(csg_look *outer, const csg_look *inner)
 
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
 {
-    return (csg_blend){(csg_blend_kind)node->blend, scene->parameters[node->payload]};
+    return (csg_blend){node->blend, scene->parameters[node->payload]};
 }
 
 uint32_t csg_node_parameter_count(const csg_node *node)
@@ -61,10 +61,15 @@ uint32_t csg_node_parameter_count(const csg_node *node)
     if (!csg_node_is_operator(node->kind))
         return csg_primitive_parameter_count(node->kind);
     bool fields = csg_blend_takes_fields(node->blend) ||
-                  (node->blend == CSG_BLEND_SHARP && (node->flags & CSG_FLAG_SOFT));
+                  (csg_blend_is_sharp(node->blend) && (node->flags & CSG_FLAG_SOFT));
     if (csg_blend_is_fillet(node->blend))
         return CSG_FILLET_PARAMETERS;
     return fields ? CSG_OPERATOR_FIELD_PARAMETERS : 1;
+}
+
+bool csg_node_is_plate(const csg_node *node)
+{
+    return node->kind == CSG_NODE_INTERSECTION && csg_blend_is_orthogonal(node->blend);
 }
 
 bool csg_node_is_fillet(const csg_node *node)

@@ -158,6 +158,8 @@ static inline const double *csg_scene_parameters(const csgm_scene *scene, const 
 }
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 
+/* Whether it is a flat node between two planes (csg_build_plate), as extrusions are. */
+bool csg_node_is_plate(const csg_node *node);
 /* Whether it is an operator that looks at its operands' gradients (operators/fillet.h). */
 bool csg_node_is_fillet(const csg_node *node);
 /* How far the operands of a fillet, a union, reach in its own frame: operand k lies within

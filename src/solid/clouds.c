@@ -295,7 +295,7 @@ csgm_status csg_piece_cloud(csg_solid_job *job, const csg_solid_piece *piece, do
     clouding c = {.piece = piece, .axes = {1, 1, 1}, .tolerance = tolerance, .ok = true};
     csgm_status status = CSGM_OK;
     csg_cloud_init(&c.local, out->memory);
-    if (csg_piece_is_extrusion(&node))
+    if (csg_node_is_plate(&node))
         status = extrusion_cloud(job, &c, &node);
     else if (node.kind == CSG_NODE_WARP && scene->warps[node.payload].kind == CSG_WARP_REVOLVE)
         status = revolve_cloud(job, &c, &node);

@@ -150,7 +150,7 @@ csgm_status csg_piece_convex_clouds(csg_solid_job *job, const csg_solid_piece *p
         csg_cloud *cloud = add_cloud(out);
         return cloud ? csg_piece_cloud(job, piece, within, cloud) : CSGM_ERR_MEMORY;
     }
-    if (csg_piece_is_extrusion(node))
+    if (csg_node_is_plate(node))
         return clouds_of_extrusion(job, piece, coarser * within / csg_map_stretch(&piece->map),
                                    out);
     if (node->kind == CSG_NODE_TORUS && csg_map_factor(&piece->map) > 0)

@@ -149,10 +149,10 @@ static csg_node_id wedge(csg_solid_job *job, double angle)
 {
     csg_scene_builder *builder = job->builder;
     csg_span where = job->where;
-    const double begin[4] = {0, -1, 0, 0};
-    const double end[4] = {-csg_sine_deg(angle), csg_cosine_deg(angle), 0, 0};
-    csg_node_id sides[2] = {csg_build_primitive(builder, CSG_NODE_PLANE, begin, where),
-                            csg_build_primitive(builder, CSG_NODE_PLANE, end, where)};
+    csg_vec3 begin = csg_vec3_make(0, -1, 0);
+    csg_vec3 end = csg_vec3_make(-csg_sine_deg(angle), csg_cosine_deg(angle), 0);
+    csg_node_id sides[2] = {csg_build_half_space(builder, begin, 0, where),
+                            csg_build_half_space(builder, end, 0, where)};
     if (sides[0] == CSG_NODE_NONE || sides[1] == CSG_NODE_NONE)
         return CSG_NODE_NONE;
     return csg_build_operator(builder, angle <= 180 ? CSG_NODE_INTERSECTION : CSG_NODE_UNION,

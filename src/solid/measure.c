@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "base/clock.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/primitive.h"
 #include "scene/warp_kinds.h"
@@ -58,8 +57,7 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
         return false;
     if (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind != CSG_WARP_REVOLVE)
         return false;
-    if (csg_node_is_operator(node->kind) && !stack->of_leaves &&
-        !(node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL) &&
+    if (csg_node_is_operator(node->kind) && !stack->of_leaves && !csg_node_is_plate(node) &&
         (!csg_blend_is_sharp(node->blend) || (!joins && !meets)))
         return false;
     for (uint32_t i = 0; i < node->child_count; i++) {

@@ -5,7 +5,6 @@
 
 #include <math.h>
 
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "shape/plane/region.h"
@@ -49,11 +48,6 @@ csg_affine csg_map_of_plane(csg_affine map)
     map.m[0][2] = map.m[1][2] = map.m[2][0] = map.m[2][1] = map.t[2] = 0;
     map.m[2][2] = size > 0 ? size : 1;
     return map;
-}
-
-bool csg_piece_is_extrusion(const csg_node *node)
-{
-    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
 }
 
 /* Half height and middle of an extrusion's slab. */
@@ -144,7 +138,7 @@ bool csg_piece_prism(csg_solid_job *job, const csg_solid_piece *piece, csg_solid
     double half, middle = 0;
     if (piece->grow > 0 || !keeps_z(&piece->map))
         return false;
-    if (csg_piece_is_extrusion(&node)) {
+    if (csg_node_is_plate(&node)) {
         csg_piece_slab(builder->scene, &node, &half, &middle);
         flat = csg_scene_children(builder->scene, &node)[0];
     } else if (node.kind == CSG_NODE_BOX && p[3] == 0) {
@@ -207,7 +201,7 @@ bool csg_piece_is_convex(const csg_solid_job *job, const csg_solid_piece *piece)
         return shape->kind == CSG_SHAPE_POLYHEDRON ? csg_polyhedron_is_convex(shape)
                                                    : is_convex_region(csg_region_outline(shape));
     }
-    if (!csg_piece_is_extrusion(node))
+    if (!csg_node_is_plate(node))
         return false;
     inner.node = csg_scene_children(scene, node)[0];
     csg_pieces_init(&figure, job->memory);

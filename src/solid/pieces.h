@@ -39,8 +39,6 @@ double csg_map_factor(const csg_affine *map);
 double csg_map_stretch(const csg_affine *map);
 /* Of a flat piece the plane part alone is a similarity or not. */
 csg_affine csg_map_of_plane(csg_affine map);
-/* An extrusion is a flat node between two planes across z: */
-bool csg_piece_is_extrusion(const csg_node *node);
 /* half its height and the middle. */
 void csg_piece_slab(const csgm_scene *scene, const csg_node *node, double *half, double *middle);
 

@@ -10,7 +10,6 @@
 
 #include "base/elementary.h"
 #include "scene/formula/formula.h"
-#include "scene/primitives/kinds.h"
 #include "solid/measure.h"
 #include "solid/operations.h"
 
@@ -56,9 +55,8 @@ csg_node_id csg_solid_roof(csg_solid_job *job, csg_node_id flat, bool straight)
         return flat;
     csg_box box = csg_build_box(job->builder, flat);
     csg_vec3 sides = csg_box_size(box);
-    const double half_space[4] = {0, 0, 1, 0};
     csg_node_id below = csg_solid_done(
-        job, csg_build_primitive(job->builder, CSG_NODE_PLANE, half_space, job->where));
+        job, csg_build_half_space(job->builder, csg_vec3_make(0, 0, 1), 0, job->where));
     csg_node_id node =
         csg_solid_done(job, csg_build_combine(job->builder, steps, 3, 0,
                                               (csg_node_id[]){flat, below}, 2, job->where));

@@ -15,7 +15,6 @@
 
 #include "api/services.h"
 #include "io/formats.h"
-#include "scene/primitives/kinds.h"
 #include "scene/tree/build.h"
 #include "shape/polyhedra/polyhedron.h"
 
@@ -61,7 +60,7 @@ static csgm_scene *ball_scene(csgm_context *context, double r)
     csg_scene_builder builder;
     csgm_scene *scene;
     assert_int_equal(csg_build_begin(&builder, context), CSGM_OK);
-    csg_node_id root = csg_build_primitive(&builder, CSG_NODE_SPHERE, &r, (csg_span){0});
+    csg_node_id root = csg_build_ball(&builder, r, (csg_span){0});
     assert_int_equal(csg_build_finish(&builder, root, NULL, 0, &scene), CSGM_OK);
     return scene;
 }

@@ -13,9 +13,9 @@
 
 #include "field/field.h"
 #include "field/kernels/dispatch.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
-#include "scene/primitives/kinds.h"
 #include "scene/tree/build.h"
 
 enum { EDGE = 128, COUNT = EDGE * EDGE * EDGE, LEAST_ROUNDS = 1, MOST_ROUNDS = 100 };
@@ -53,7 +53,7 @@ static csg_node_id soft_ball(csg_scene_builder *builder, double x)
     csg_span nowhere = {.source = UINT32_MAX};
     double radius = 0.5;
     csg_affine place = csg_affine_translate(csg_vec3_make(x, 0, 0));
-    csg_node_id ball = csg_build_primitive(builder, CSG_NODE_SPHERE, &radius, nowhere);
+    csg_node_id ball = csg_build_ball(builder, radius, nowhere);
     ball = csg_build_soft(builder, (csg_soft){CSG_FALLOFF_SEXTIC, 0}, ball, nowhere);
     return csg_build_transform(builder, &place, ball, nowhere);
 }

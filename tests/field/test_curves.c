@@ -10,7 +10,6 @@
 #include "field/compile/compile_curve.h"
 #include "field/field_support.h"
 #include "field/gradients/cone_curve.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
@@ -223,7 +222,7 @@ static void test_pieces(void **state)
     for (int how = 0; how < 4; how++) {
         test_subject s;
         test_subject_begin(&s);
-        csg_blend blend = {how == 1 ? CSG_BLEND_ROUND : CSG_BLEND_SHARP, how == 1 ? 0.2 : 0};
+        csg_blend blend = how == 1 ? csg_blend_round(0.2) : CSG_SHARP;
         csg_node_id tube = csg_build_primitive(&s.builder, CSG_NODE_QUADRATIC_TUBE, bow, NOWHERE);
         csg_node_id ball =
             csg_build_primitive(&s.builder, CSG_NODE_SPHERE, (double[]){1.5}, NOWHERE);

@@ -11,7 +11,6 @@
 #include "field/kernels/functions.h"
 #include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
-#include "scene/primitives/kinds.h"
 #include "scene/random_formula.h"
 
 /* ---- functions ------------------------------------------------------------------------------ */
@@ -194,7 +193,7 @@ static csg_node_id random_scene(test_subject *subject, csg_random *random, int t
         fail_msg("formula %d: %s", turn, builder->problem);
     csg_affine place = make_frame(random, turn / 2 % 4);
     field = csg_build_transform(builder, &place, field, NOWHERE);
-    csg_node_id ball = csg_build_primitive(builder, CSG_NODE_SPHERE, (double[]){1.5}, NOWHERE);
+    csg_node_id ball = csg_build_ball(builder, 1.5, NOWHERE);
     if (turn % 5 == 0)
         return field;
     csg_blend blend = turn % 5 == 1   ? (csg_blend){CSG_BLEND_ROUND, 0.3}

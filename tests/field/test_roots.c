@@ -7,7 +7,6 @@
 
 #include "field/kernels/roots.h"
 #include "field_support.h"
-#include "scene/primitives/kinds.h"
 
 /* Two planes whose values along x have these slopes and meet in a kink; the root lies before it. */
 static csg_node_id kinked(csg_scene_builder *builder, double slow, double steep, double at)
@@ -15,9 +14,9 @@ static csg_node_id kinked(csg_scene_builder *builder, double slow, double steep,
     csg_span nowhere = {UINT32_MAX, 0, 0};
     double rise = sqrt(1 - slow * slow), fall = sqrt(1 - steep * steep);
     /* slow falls to 0 at x = 1, just beyond the edge's end; steep rises through 0 at `at` */
-    double a[4] = {slow, rise, 0, slow}, b[4] = {-steep, fall, 0, -steep * at};
-    csg_node_id children[2] = {csg_build_primitive(builder, CSG_NODE_PLANE, a, nowhere),
-                               csg_build_primitive(builder, CSG_NODE_PLANE, b, nowhere)};
+    csg_vec3 a = csg_vec3_make(slow, rise, 0), b = csg_vec3_make(-steep, fall, 0);
+    csg_node_id children[2] = {csg_build_half_space(builder, a, slow, nowhere),
+                               csg_build_half_space(builder, b, -steep * at, nowhere)};
     return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){0}, children, 2, nowhere);
 }
 

@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 
 static void note_finding(void *user, const csgm_diag *diag)
@@ -220,5 +219,5 @@ csg_node_id posed_anyhow(mesh_case *c, csg_node_id node, csg_random *random)
 
 csg_blend round_blend(double width)
 {
-    return (csg_blend){CSG_BLEND_ROUND, width};
+    return csg_blend_round(width);
 }

@@ -14,7 +14,6 @@
 
 #include "base/random.h"
 #include "mesh/weld.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 
 static unsigned pose_count = 4;
@@ -44,8 +43,8 @@ static csg_node_id tetrahedron(mesh_case *c)
 {
     csg_node_id sides[] = {plane(c, 1, 1, 1), plane(c, -1, -1, 1), plane(c, -1, 1, -1),
                            plane(c, 1, -1, -1)};
-    return csg_build_operator(&c->builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
-                              sides, 4, csg_span_nowhere());
+    return csg_build_operator(&c->builder, CSG_NODE_INTERSECTION, CSG_SHARP, sides, 4,
+                              csg_span_nowhere());
 }
 
 static csg_node_id cylinder(mesh_case *c)
@@ -64,8 +63,8 @@ static csg_node_id drilled(mesh_case *c)
         primitive(c, CSG_NODE_BOX, (const double[]){1, 1, 0.4, 0}),
         primitive(c, CSG_NODE_FRUSTUM, (const double[]){0.5, 0.5, 1, 0}),
     };
-    return csg_build_operator(&c->builder, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_SHARP, 0},
-                              parts, 2, csg_span_nowhere());
+    return csg_build_operator(&c->builder, CSG_NODE_DIFFERENCE, CSG_SHARP, parts, 2,
+                              csg_span_nowhere());
 }
 
 /* Six teeth on a wheel: at their feet corners that bend inwards, and often lie outside the cell
@@ -78,8 +77,7 @@ static csg_node_id cog(mesh_case *c)
         csg_node_id bar = primitive(c, CSG_NODE_BOX, (const double[]){1.1, 0.13, 0.3, 0});
         parts[i + 1] = csg_build_transform(&c->builder, &turn, bar, csg_span_nowhere());
     }
-    return csg_build_operator(&c->builder, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0}, parts,
-                              4, csg_span_nowhere());
+    return csg_build_operator(&c->builder, CSG_NODE_UNION, CSG_SHARP, parts, 4, csg_span_nowhere());
 }
 
 typedef struct solid {
@@ -189,8 +187,8 @@ static csg_node_id blended(mesh_case *c)
         primitive(c, CSG_NODE_SPHERE, (const double[]){1}),
         primitive(c, CSG_NODE_TORUS, (const double[]){1.2, 0.3, 180}),
     };
-    return csg_build_operator(&c->builder, CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.3}, parts,
-                              2, csg_span_nowhere());
+    return csg_build_operator(&c->builder, CSG_NODE_UNION, csg_blend_round(0.3), parts, 2,
+                              csg_span_nowhere());
 }
 
 static void test_smooth_solids(void **state)
@@ -268,8 +266,7 @@ static uint64_t pieces_of_balls(csgm_features features)
                                        primitive(&c, CSG_NODE_SPHERE, (const double[]){0.03}),
                                        csg_span_nowhere());
     }
-    mesh_case_compile(&c, csg_build_operator(&c.builder, CSG_NODE_UNION,
-                                             (csg_blend){CSG_BLEND_SHARP, 0}, balls, BALLS,
+    mesh_case_compile(&c, csg_build_operator(&c.builder, CSG_NODE_UNION, CSG_SHARP, balls, BALLS,
                                              csg_span_nowhere()));
     csgm_mesh_options options = mesh_options(32);
     options.features = features;

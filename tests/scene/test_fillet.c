@@ -4,7 +4,6 @@
  */
 #include "golden_rows.h"
 #include "random_scene.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/operators/fillet.h"
 #include "scene/primitives/kinds.h"
 
@@ -151,9 +150,8 @@ static csg_node_id block(csg_vec3 low, csg_vec3 high)
 
 static csgm_scene *united(double r, const csg_node_id *nodes, size_t count)
 {
-    return test_seal(&builder,
-                     csg_build_operator(&builder, CSG_NODE_UNION, (csg_blend){CSG_BLEND_FILLET, r},
-                                        nodes, count, NOWHERE));
+    return test_seal(&builder, csg_build_operator(&builder, CSG_NODE_UNION, csg_blend_fillet(r),
+                                                  nodes, count, NOWHERE));
 }
 
 static csgm_scene *bracket(void)
@@ -255,7 +253,7 @@ static void test_ends_by_pairs(void **state)
 /* Nested fillets of one radius are one operator. */
 static void test_flattened(void **state)
 {
-    const csg_blend blend = {CSG_BLEND_FILLET, 2};
+    const csg_blend blend = csg_blend_fillet(2);
     csg_node_id pair[2] = {block((csg_vec3){0, 0, 0}, (csg_vec3){9, 9, 2}),
                            block((csg_vec3){0, 0, 0}, (csg_vec3){2, 9, 9})};
     csg_node_id both[2] = {csg_build_operator(&builder, CSG_NODE_UNION, blend, pair, 2, NOWHERE),

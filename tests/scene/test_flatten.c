@@ -3,7 +3,6 @@
  * around once, for polygons up to the tolerance and for what is traced up to a cell; areas;
  * trouble. Figures of straight edges that become one outline: the same figure, a true distance.
  */
-#include "scene/operators/blend_kinds.h"
 #include "scene_support.h"
 
 #include <limits.h>
@@ -66,7 +65,7 @@ static csg_node_id turned(double angle, csg_node_id child)
 static csg_node_id operate(csg_node_kind kind, double width, csg_node_id a, csg_node_id b,
                            csg_node_id c)
 {
-    csg_blend blend = {width > 0 ? CSG_BLEND_ROUND : CSG_BLEND_SHARP, width};
+    csg_blend blend = width > 0 ? csg_blend_round(width) : CSG_SHARP;
     return csg_build_operator(&builder, kind, blend, (csg_node_id[]){a, b, c},
                               c == CSG_NODE_NONE ? 2 : 3, NOWHERE);
 }
@@ -263,8 +262,8 @@ static void straight_figures_unite(void **state)
         csg_node_id operands[4] = {straight(0), straight(1), straight(2), straight(0)};
         int at = round % 4; /* also what a difference begins with */
         operands[at] = round_one;
-        node = united(csg_build_operator(&builder, kinds[round % 3],
-                                         (csg_blend){CSG_BLEND_SHARP, 0}, operands, 4, NOWHERE));
+        node =
+            united(csg_build_operator(&builder, kinds[round % 3], CSG_SHARP, operands, 4, NOWHERE));
         assert_int_equal(nodes_below(node, CSG_NODE_CIRCLE), 1);
         if (nodes_below(node, CSG_NODE_RECTANGLE) == 0)
             assert_int_equal(nodes_below(node, CSG_NODE_SHAPE), 1);
@@ -332,7 +331,7 @@ static void traces_close_at_random(void **state)
         for (int k = 0; k < 40; k++)
             nodes[k] = moved(csg_random_uniform(&dice, -3, 3), csg_random_uniform(&dice, -3, 3),
                              circle(csg_random_uniform(&dice, 0.001, 0.6)));
-        csg_blend blend = {CSG_BLEND_ROUND, 0.01};
+        csg_blend blend = csg_blend_round(0.01);
         check(csg_build_operator(&builder, CSG_NODE_UNION, blend, nodes, 40, NOWHERE), 1e-3, 0.015,
               4);
     }

@@ -4,6 +4,7 @@
  * elimination; computed with 40 digits.
  */
 #include "golden_rows.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 #include "scene/primitives/kinds.h"

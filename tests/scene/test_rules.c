@@ -5,6 +5,7 @@
  *
  * Arguments: points for each rule (default 400), a number that is added to the seeds (default 0).
  */
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene_support.h"
 

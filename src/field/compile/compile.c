@@ -179,14 +179,14 @@ static bool write_entry(compiler *c, const frame *f, uint32_t begin)
 static bool is_alike(const compiler *c, const task *above, bool is_union)
 {
     return above && csg_node_is_operator(c->scene->nodes[above->node].kind) &&
-           above->blend.kind == CSG_BLEND_SHARP && above->is_union == is_union;
+           csg_blend_is_sharp(above->blend.kind) && above->is_union == is_union;
 }
 
 /* The last node written completes a child of this operator. */
 static void mark_join(compiler *c, task *group)
 {
     csg_tape_node *node = &c->nodes[c->node_count - 1];
-    bool at_once = group->combines || group->blend.kind == CSG_BLEND_ROUND ||
+    bool at_once = group->combines || csg_blend_is_round(group->blend.kind) ||
                    csg_blend_is_fillet(group->blend.kind);
     if (group->written && !at_once) {
         node->join = group->is_union ? CSG_JOIN_UNION : CSG_JOIN_INTERSECTION;
@@ -202,10 +202,10 @@ static bool begin_blend(compiler *c, task *t)
 {
     if (csg_blend_is_fillet(t->blend.kind))
         return csg_compile_fillet(c, t);
-    float values[CSG_OPERATOR_PARAMETERS] = {t->blend.kind == CSG_BLEND_SHARP ? 1.0f
-                                                                              : (float)t->blend.n,
+    float values[CSG_OPERATOR_PARAMETERS] = {csg_blend_is_sharp(t->blend.kind) ? 1.0f
+                                                                               : (float)t->blend.n,
                                              (float)csg_blend_support(t->blend)};
-    if (t->blend.kind == CSG_BLEND_ORTHOGONAL)
+    if (csg_blend_is_orthogonal(t->blend.kind))
         values[CSG_OPERATOR_N] = (float)t->frame.raise;
     return csg_compile_push(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
 }
@@ -216,7 +216,7 @@ static uint8_t op_of(const task *t)
         return CSG_OP_COMBINE;
     if (t->softens)
         return CSG_OP_SOFTEN;
-    if (t->blend.kind == CSG_BLEND_ROUND)
+    if (csg_blend_is_round(t->blend.kind))
         return t->is_union ? CSG_OP_ROUND_UNION : CSG_OP_ROUND_INTERSECTION;
     if (csg_blend_is_fillet(t->blend.kind))
         return t->is_union ? CSG_OP_FILLET_UNION : CSG_OP_FILLET_INTERSECTION;
@@ -351,7 +351,7 @@ static bool begin_rule(compiler *c, const csg_node *node, const csg_rule *rule, 
         t->is_union = node->kind == CSG_NODE_UNION;
     size_t count =
         csg_rule_pack(rule, t->is_union, t->frame.factor, support, &t->blend.kind, values);
-    c->field->tape.turns |= t->blend.kind == (csg_blend_kind)CSG_BLEND_TURNING;
+    c->field->tape.turns |= csg_blend_turns(t->blend.kind);
     if (takes_fields)
         pack_delivery(c, t, csg_rule_works_on_complements(rule->kind, t->is_union),
                       values + CSG_RULE_DELIVER);
@@ -367,7 +367,7 @@ static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, ta
     if (rule)
         return begin_rule(c, node, rule, t);
     const task *above = outer != UINT32_MAX ? &c->tasks[outer] : NULL;
-    bool is_nested = t->blend.kind == CSG_BLEND_SHARP && is_alike(c, above, t->is_union);
+    bool is_nested = csg_blend_is_sharp(t->blend.kind) && is_alike(c, above, t->is_union);
     if (is_nested) {
         t->group = outer; /* max of max, min of min: one operator */
         return true;
@@ -432,7 +432,7 @@ static bool end_task(compiler *c)
 static void operand_frame(const compiler *c, const task *t, const csg_node *node, frame *f)
 {
     uint32_t index = t->next_child;
-    bool is_complement = csg_rule_works_on_complements((csg_blend_kind)node->blend, t->is_union) !=
+    bool is_complement = csg_rule_works_on_complements(node->blend, t->is_union) !=
                          (node->kind == CSG_NODE_DIFFERENCE && index > 0);
     f->negate = f->is_raised = false;
     f->raise = 0;

@@ -116,7 +116,7 @@ bool csg_compile_waver(csg_memory *memory, csg_tape *tape)
         bool bends = node->op == CSG_OP_COMBINE || csg_op_delivers(node->op);
         if (bends && stack[top - 1] > 0)
             stack[top - 1] = INFINITY;
-        if (node->join_blend == CSG_BLEND_TURNING && node->join)
+        if (csg_blend_turns(node->join_blend) && node->join)
             stack[top - 2] = INFINITY;
         if (node->join) {
             top--;

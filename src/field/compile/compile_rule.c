@@ -7,14 +7,20 @@
 
 #include "base/elementary.h"
 #include "field/rule_layout.h"
+#include "field/turning.h"
 #include "scene/operators/soft.h"
 #include "scene/operators/steps.h"
 
 #define RADIANS (3.14159265358979323846 / 180)
 
-bool csg_rule_works_on_complements(csg_blend_kind kind, bool is_union)
+bool csg_blend_turns(uint32_t kind)
 {
-    switch (kind) {
+    return kind == CSG_BLEND_TURNING;
+}
+
+bool csg_rule_works_on_complements(uint32_t kind, bool is_union)
+{
+    switch ((csg_blend_kind)kind) {
     case CSG_BLEND_SCALE_SET: /* made of an intersection */
         return is_union;
     case CSG_BLEND_SOFT_SUM: /* sums are made of a union */
@@ -69,7 +75,7 @@ csg_tape_curve csg_soften_pack_operand(csg_operand operand, double factor,
 }
 
 /* N_S reaches 1 at m; a hair before, so that the rounding of B cannot miss it. */
-static void pack_scale(const csg_rule *rule, float *values, csg_blend_kind *kind)
+static void pack_scale(const csg_rule *rule, float *values, uint32_t *kind)
 {
     double r1 = rule->parameters[0], r2 = rule->parameters[1];
     double kappa = rule->parameters[2] / (r1 * r2), omega = rule->parameters[3];
@@ -82,7 +88,7 @@ static void pack_scale(const csg_rule *rule, float *values, csg_blend_kind *kind
     values[CSG_SCALE_BEND] = (float)((1 - m) / ((m - 0.5) * (m - 0.5)));
     values[CSG_SCALE_OMEGA] = (float)omega;
     if (omega > 0)
-        *kind = (csg_blend_kind)CSG_BLEND_TURNING;
+        *kind = CSG_BLEND_TURNING;
 }
 
 static size_t pack_arc(const csg_rule *rule, bool is_union, float *values)
@@ -128,12 +134,12 @@ static void pack_smooth(const csg_rule *rule, double factor, float *values)
 }
 
 size_t csg_rule_pack(const csg_rule *rule, bool is_union, double factor, double support,
-                     csg_blend_kind *kind, float values[CSG_RULE_MOST_PARAMETERS])
+                     uint32_t *kind, float values[CSG_RULE_MOST_PARAMETERS])
 {
     *kind = rule->kind;
     values[CSG_OPERATOR_N] = 0;
     values[CSG_OPERATOR_SUPPORT] = (float)(support * factor);
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_EXTERIOR:
     case CSG_BLEND_INTERIOR:
         pack_smooth(rule, factor, values);

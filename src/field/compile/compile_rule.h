@@ -17,7 +17,9 @@ enum { CSG_RULE_MOST_PARAMETERS = CSG_ARC_MOST_PARAMETERS };
 _Static_assert((int)CSG_RULE_MOST_PARAMETERS >= (int)CSG_SMOOTH_PARAMETERS, "either kind fits");
 
 /* Whether the operator's joins work on 1 - F (tape.h). */
-bool csg_rule_works_on_complements(csg_blend_kind kind, bool is_union);
+/* Whether it is TURNING (turning.h). */
+bool csg_blend_turns(uint32_t kind);
+bool csg_rule_works_on_complements(uint32_t kind, bool is_union);
 
 /* How a field is delivered; scale: 1 / lambda with its sign. flip: of 1 - F. */
 void csg_deliver_pack(csg_form form, bool flip, double scale, double shift,
@@ -33,6 +35,6 @@ csg_tape_curve csg_soften_pack_operand(csg_operand operand, double factor,
 /* An operator's parameters but for those of its delivery; returns how many. *kind: as what the tape
  * knows it. support: csg_scene_support. */
 size_t csg_rule_pack(const csg_rule *rule, bool is_union, double factor, double support,
-                     csg_blend_kind *kind, float values[CSG_RULE_MOST_PARAMETERS]);
+                     uint32_t *kind, float values[CSG_RULE_MOST_PARAMETERS]);
 
 #endif

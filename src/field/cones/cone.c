@@ -10,7 +10,6 @@
 #include "field/cones/cone_along.h"
 #include "field/gradients/cone_fillet.h"
 #include "field/point.h"
-#include "scene/operators/blend_kinds.h"
 
 static double dot(const double a[3], const double b[3])
 {
@@ -80,7 +79,7 @@ static bool operator_combines(const csg_tape_node *node)
     case CSG_OP_INTERSECTION:
     case CSG_OP_ROUND_UNION:
     case CSG_OP_ROUND_INTERSECTION:
-        return node->blend < CSG_BLEND_COUNT || node->blend == CSG_BLEND_ORTHOGONAL;
+        return !csg_blend_is_rule(node->blend);
     case CSG_OP_FIELD:
     case CSG_OP_SHAPE:
     case CSG_OP_FILLET_UNION:
@@ -99,7 +98,7 @@ static bool operator_combines(const csg_tape_node *node)
 static bool is_sharp(const csg_tape_node *node)
 {
     return node->arity > 1 &&
-           (node->blend == CSG_BLEND_SHARP || node->blend == CSG_BLEND_ORTHOGONAL);
+           (csg_blend_is_sharp(node->blend) || csg_blend_is_orthogonal(node->blend));
 }
 
 /* A fillet's gradient strays from the combinations of its operands': as if theirs were so much
@@ -160,7 +159,7 @@ static double most_shares(const csg_tape *tape)
     double most = 1;
     for (uint32_t i = 0; i < tape->count; i++) {
         const csg_tape_node *node = &tape->nodes[i];
-        bool is_orthogonal = !csg_op_is_leaf(node->op) && node->blend == CSG_BLEND_ORTHOGONAL;
+        bool is_orthogonal = !csg_op_is_leaf(node->op) && csg_blend_is_orthogonal(node->blend);
         for (uint32_t k = 1; is_orthogonal && k < node->arity; k++)
             most *= 1.41421357;
     }

@@ -20,6 +20,7 @@
 #include "field/kernels/soft_formulas.h"
 #include "field/prune/prune.h"
 #include "field/rule_layout.h"
+#include "field/turning.h"
 
 enum { DEPTH = 64 };
 

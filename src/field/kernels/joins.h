@@ -123,7 +123,7 @@ static int is_smooth(uint8_t blend)
 
 static int is_of_fields(uint8_t blend)
 {
-    return csg_blend_takes_fields((csg_blend_kind)blend);
+    return csg_blend_takes_fields(blend);
 }
 
 /* a = by_a a + by_b b */

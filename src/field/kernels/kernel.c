@@ -24,6 +24,7 @@
 #include "field/kernels/smooth_kernel.h"
 #include "field/kernels/warp_kernel.h"
 #include "field/rule_layout.h"
+#include "field/turning.h"
 
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)

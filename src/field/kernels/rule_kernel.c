@@ -10,6 +10,7 @@
 
 #include "field/kernels/soft_formulas.h"
 #include "field/rule_layout.h"
+#include "field/turning.h"
 
 /* Relative rounding of a join or of a field function, and of N_S and N_A after it. */
 #define ROUNDING 0x1p-20f

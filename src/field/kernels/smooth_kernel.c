@@ -13,6 +13,7 @@
 
 #include "field/kernels/functions.h"
 #include "field/rule_layout.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/steps.h"
 
 /* ---- steps: mu and its derivative over a batch ------------------------------------------------

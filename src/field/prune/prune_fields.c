@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "field/rule_layout.h"
+#include "field/turning.h"
 
 /* Comparisons keep this far, relatively, from where the kernels' roundings may decide otherwise. */
 static const float ROOM = 1.0f + 0x1p-19f;

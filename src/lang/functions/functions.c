@@ -147,7 +147,7 @@ csg_value csg_no_such_blend(const csg_function_call *call)
 csg_value csg_function_blend(const csg_function_call *call)
 {
     int kind = CSG_BLEND_COUNT - 1;
-    while (kind > 0 && strcmp(csg_blend_name((csg_blend_kind)kind), call->name) != 0)
+    while (kind > 0 && strcmp(csg_blend_name((uint32_t)kind), call->name) != 0)
         kind--;
     if (kind == 0) /* a row here without one in operators.def must not pass for a sharp blend */
         return csg_no_such_blend(call);
@@ -159,8 +159,7 @@ csg_value csg_function_blend(const csg_function_call *call)
     if (call->syntax[0].name && !raw && !radius && call->syntax[0].name != call->e->symbol_w)
         csg_eval_report(call->e, CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[0].where, NULL,
                         "%s() takes the width w or the raw parameter n", call->name);
-    return make_blend(call, (csg_blend_kind)kind,
-                      raw ? value : csg_blend_raw((csg_blend_kind)kind, value));
+    return make_blend(call, kind, raw ? value : csg_blend_raw((uint32_t)kind, value));
 }
 
 csg_value csg_function_round(const csg_function_call *call)

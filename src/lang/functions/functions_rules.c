@@ -8,6 +8,7 @@
 
 #include "base/scene_codes.h"
 #include "lang/functions/functions.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/steps.h"
 

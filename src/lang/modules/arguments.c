@@ -8,7 +8,6 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/modules.h"
-#include "scene/operators/blend_kinds.h"
 
 static const char DEFAULT_TAKEN[] = "the default is taken";
 
@@ -145,10 +144,10 @@ csg_vec3 csg_argument_vector(csg_module_call *call, uint32_t index, csg_vec3 oth
 
 csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
 {
-    const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+    const csg_blend sharp = CSG_SHARP;
     csg_value value = call->values[index];
     if (value.kind == CSG_VALUE_BLEND)
-        return (csg_blend){(csg_blend_kind)value.blend, value.as.number};
+        return (csg_blend){value.blend, value.as.number};
     if (value.kind == CSG_VALUE_RULE)
         return csg_rule_blend(call, index);
     if (value.kind != CSG_VALUE_UNDEF && value.kind != CSG_VALUE_NUMBER) {
@@ -159,7 +158,7 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
         return sharp;
     }
     double r = csg_argument_number(call, index, 0, CSG_NOT_NEGATIVE);
-    return r > 0 ? (csg_blend){CSG_BLEND_ROUND, r} : sharp;
+    return r > 0 ? csg_blend_round(r) : sharp;
 }
 
 csg_node_id csg_module_children(csg_module_call *call)
@@ -167,6 +166,5 @@ csg_node_id csg_module_children(csg_module_call *call)
     csg_eval *e = call->e;
     size_t first = e->part_count;
     csg_run_scope(e, call->statement->children, call->frame, true);
-    return csg_join_parts(e, first, CSG_NODE_UNION, (csg_blend){CSG_BLEND_SHARP, 0},
-                          call->statement->where);
+    return csg_join_parts(e, first, CSG_NODE_UNION, CSG_SHARP, call->statement->where);
 }

@@ -5,7 +5,6 @@
 
 #include "base/scene_codes.h"
 #include "lang/modules/modules.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/operators/joints.h"
 
 typedef struct reporter {
@@ -20,7 +19,7 @@ static void warn(void *user, const csg_joint *joint)
     char axis = (char)('x' + joint->axis), hint[80];
     snprintf(hint, sizeof hint, "blend = fillet(%g) %s", blend.n,
              joint->kind == CSG_JOINT_SWELLS ? "ends flush with it" : "keeps gaps open");
-    const char *round_hint = blend.kind == CSG_BLEND_ROUND ? hint : NULL;
+    const char *round_hint = csg_blend_is_round(blend.kind) ? hint : NULL;
     switch (joint->kind) {
     case CSG_JOINT_SWELLS:
         csg_eval_report(r->e, CSG_DIAG_SWELLS, joint->node->where, round_hint,

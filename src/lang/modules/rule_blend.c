@@ -25,7 +25,7 @@ static void warn_profile(csg_module_call *call, uint32_t index, const csg_profil
 static csg_blend profile_blend(csg_module_call *call, uint32_t index)
 {
     csg_eval *e = call->e;
-    csg_blend blend = {CSG_BLEND_SHARP, 0};
+    csg_blend blend = CSG_SHARP;
     csg_profile profile;
     uint32_t count = 0;
     size_t bytes = 0;
@@ -34,7 +34,7 @@ static csg_blend profile_blend(csg_module_call *call, uint32_t index)
     if (steps && count && !call->failed)
         blend = csg_build_profile(&e->builder, steps, count, &profile);
     csg_memory_release(e->heap.memory, steps, bytes);
-    if (blend.kind == CSG_BLEND_PROFILE)
+    if (csg_blend_is_profile(blend.kind))
         warn_profile(call, index, &profile);
     return blend;
 }
@@ -48,7 +48,7 @@ csg_blend csg_rule_blend(csg_module_call *call, uint32_t index)
     if (!e->stop && e->builder.status != CSGM_OK) {
         csg_check_node(e, CSG_NODE_NONE, call->spans[index]); /* reports */
         call->failed = true;
-        blend = (csg_blend){CSG_BLEND_SHARP, 0};
+        blend = CSG_SHARP;
     }
     return blend;
 }

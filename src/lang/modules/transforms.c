@@ -6,7 +6,6 @@
 #include "base/scene_codes.h"
 #include "lang/evaluate/marks.h"
 #include "lang/modules/shapes.h"
-#include "scene/operators/blend_kinds.h"
 
 /* A figure of the plane stays in it, as in OpenSCAD: what turns out of it is told and left out. The
  * map becomes its plane part; false: nothing of the figure is left. */
@@ -242,7 +241,7 @@ csg_node_id csg_module_blend_within(csg_module_call *call)
     csg_eval *e = call->e;
     csg_eval_part part = {.is_region = true, .where = call->statement->where};
     double border = csg_argument_number(call, 0, 0, CSG_NOT_NEGATIVE);
-    part.blend = border > 0 ? (csg_blend){CSG_BLEND_ROUND, border} : CSG_SHARP;
+    part.blend = border > 0 ? csg_blend_round(border) : CSG_SHARP;
     part.node = csg_module_children(call);
     if (part.node != CSG_NODE_NONE)
         csg_push_part(e, part);

@@ -6,7 +6,6 @@
 
 #include <string.h>
 
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -27,12 +26,6 @@ static bool is_shape(const csgm_scene *scene, const csg_node *node, csg_shape_ki
     return node->kind == CSG_NODE_SHAPE && scene->shapes[node->payload]->kind == kind;
 }
 
-/* A flat child between two planes (csg_build_plate). */
-static bool is_plate(const csg_node *node)
-{
-    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
-}
-
 /* At most so many units; 0: there is something that is in no such scene. */
 static size_t most_units(const csgm_scene *scene)
 {
@@ -42,7 +35,7 @@ static size_t most_units(const csgm_scene *scene)
         bool is_way = node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
                       node->kind == CSG_NODE_SLAB || is_shape(scene, node, CSG_SHAPE_REGION) ||
                       (node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend));
-        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || is_plate(node))
+        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || csg_node_is_plate(node))
             count++;
         else if (!is_way)
             return 0;
@@ -134,7 +127,7 @@ static csgm_status take_unit(const csgm_scene *scene, const csg_node *node, cons
                              csg_own_unit *unit)
 {
     *unit = (csg_own_unit){.place = a->place, .look = a->look};
-    if (is_plate(node))
+    if (csg_node_is_plate(node))
         return extrude(scene, node, unit);
     if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON)) {
         unit->shape = scene->shapes[node->payload];
@@ -154,7 +147,7 @@ static csgm_status place_units(csg_own_units *units, const csgm_scene *scene, ab
     for (size_t i = scene->node_count; i-- > 0 && status == CSGM_OK && *all;) {
         const csg_node *node = &scene->nodes[i];
         above a = below(scene, node, room[i]);
-        bool is_unit = !a.is_taken && (is_plate(node) || !node->child_count);
+        bool is_unit = !a.is_taken && (csg_node_is_plate(node) || !node->child_count);
         if (is_unit) {
             csg_own_unit *unit = &units->items[units->count];
             status = take_unit(scene, node, &a, unit);

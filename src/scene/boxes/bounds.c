@@ -8,7 +8,6 @@
 #include "scene/boxes/exterior.h"
 #include "scene/boxes/field_levels.h"
 #include "scene/boxes/level_boxes.h"
-#include "scene/operators/blend_kinds.h"
 
 /* The root's own box is then the hull of the leaves' boxes, and no look from above makes it
  * smaller. Scenes of a million solids are mostly like that. */
@@ -16,7 +15,7 @@ static bool is_union_of_placed_leaves(const csgm_scene *scene)
 {
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
-        bool joins = node->kind == CSG_NODE_UNION && node->blend == CSG_BLEND_SHARP;
+        bool joins = node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend);
         if (csg_node_is_operator(node->kind) && !joins)
             return false;
         if (node->kind != CSG_NODE_TRANSFORM)
@@ -63,7 +62,7 @@ static void hand_down_levels(const csgm_scene *scene, const csg_node *node, uint
     double support = 0, below = parent->below, above = parent->above;
     if (csg_node_is_operator(node->kind))
         support = csg_scene_support(scene, node);
-    bool interior = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_INTERIOR;
+    bool interior = csg_node_is_operator(node->kind) && csg_blend_is_interior(node->blend);
     if (node->kind == CSG_NODE_UNION || interior)
         below += support;
     if (node->kind != CSG_NODE_UNION || interior)

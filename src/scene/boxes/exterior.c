@@ -43,7 +43,7 @@ typedef struct search {
 static bool is_whole(const csg_node *node)
 {
     return !node->child_count || node->kind == CSG_NODE_WARP || node->kind == CSG_NODE_COMBINE ||
-           (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
+           (csg_node_is_operator(node->kind) && csg_blend_is_orthogonal(node->blend));
 }
 
 static bool begin(search *s, csg_arena *scratch)
@@ -174,7 +174,7 @@ static range range_of_values(const search *s, const csg_node *node)
     } else {
         double excess = csg_scene_excess(scene, node);
         out.high += excess;
-        out.low -= node->blend == CSG_BLEND_INTERIOR ? excess : 0;
+        out.low -= csg_blend_is_interior(node->blend) ? excess : 0;
     }
     return is_union ? out : negated(out);
 }

@@ -5,6 +5,7 @@
 #include "scene/boxes/field_levels.h"
 
 #include "base/elementary.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 
@@ -57,7 +58,7 @@ static double union_floor(const csg_rule *rule, double k, double t)
 {
     const double *v = rule->parameters;
     double widest;
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_RICCI:
         return t * csg_pow(k, -1 / v[0]);
     case CSG_BLEND_SOFT_SUM:

@@ -15,7 +15,6 @@
 
 #include "scene/boxes/field_levels.h"
 #include "scene/boxes/half_spaces.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/operators/combine.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive_box.h"
@@ -112,14 +111,14 @@ static void union_levels(const csgm_scene *scene, const csg_node *node, double *
         *support = p->support + *excess;
         return;
     }
-    bool adds = node->blend != CSG_BLEND_INTERIOR && !csg_blend_is_fillet(node->blend);
+    bool adds = !csg_blend_is_interior(node->blend) && !csg_blend_is_fillet(node->blend);
     *excess = adds ? csg_scene_excess(scene, node) : 0;
     *support = adds ? csg_scene_support(scene, node) : 0;
 }
 
 static bool is_profiled(const csg_node *node)
 {
-    return node->kind == CSG_NODE_COMBINE && node->blend == CSG_BLEND_PROFILE;
+    return node->kind == CSG_NODE_COMBINE && csg_blend_is_profile(node->blend);
 }
 
 /* The operator that it is or stands for. */
@@ -162,7 +161,7 @@ static bool takes_fields(const csg_node *node)
 /* How far below an intersection's or a difference's level its operands can be. */
 static double deficit(const csgm_scene *scene, const csg_node *node)
 {
-    bool interior = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_INTERIOR;
+    bool interior = csg_node_is_operator(node->kind) && csg_blend_is_interior(node->blend);
     if (is_profiled(node))
         return fmax(-scene->formulas[node->payload].profile.value[0], 0);
     return interior ? csg_scene_excess(scene, node) : 0;
@@ -402,7 +401,7 @@ static bool is_opaque(const csg_node *node)
 {
     return node->kind == CSG_NODE_WARP ||
            (node->kind == CSG_NODE_UNION && csg_blend_is_fillet(node->blend)) ||
-           (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
+           (csg_node_is_operator(node->kind) && csg_blend_is_orthogonal(node->blend));
 }
 
 /* The first operand, or all of an intersection, cut by all half-spaces among the operands. */
@@ -573,7 +572,7 @@ static bool is_plain_union(const csgm_scene *scene)
 {
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
-        bool joins = node->kind == CSG_NODE_UNION && node->blend == CSG_BLEND_SHARP;
+        bool joins = node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend);
         if (node->child_count && !joins && node->kind != CSG_NODE_TRANSFORM &&
             node->kind != CSG_NODE_COLOR)
             return false;

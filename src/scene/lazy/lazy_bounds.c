@@ -6,6 +6,7 @@
 #include "scene/boxes/bounds.h"
 #include "scene/boxes/level_boxes.h"
 #include "scene/lazy/lazy_private.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 
 enum { MOST_PASSES = 32 };
@@ -21,7 +22,7 @@ bool csg_lazy_is_plain(const csg_node *node)
 static bool is_known_operator(const csg_node *node)
 {
     return csg_lazy_is_plain(node) ||
-           (csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_ORTHOGONAL);
+           (csg_node_is_operator(node->kind) && csg_blend_is_orthogonal(node->blend));
 }
 
 /* Nodes below which a value that is cut by its own box still gives the same solid. */

@@ -22,7 +22,52 @@ static const blend_row blends[CSG_BLEND_COUNT] = {
 #include "scene/operators/operators.def"
 };
 
-const char *csg_blend_name(csg_blend_kind kind)
+csg_blend csg_blend_round(double width)
+{
+    return (csg_blend){CSG_BLEND_ROUND, width};
+}
+
+csg_blend csg_blend_fillet(double radius)
+{
+    return (csg_blend){CSG_BLEND_FILLET, radius};
+}
+
+bool csg_blend_is_round(uint32_t kind)
+{
+    return kind == CSG_BLEND_ROUND;
+}
+
+bool csg_blend_is_profile(uint32_t kind)
+{
+    return kind == CSG_BLEND_PROFILE;
+}
+
+bool csg_blend_is_interior(uint32_t kind)
+{
+    return kind == CSG_BLEND_INTERIOR;
+}
+
+bool csg_blend_is_orthogonal(uint32_t kind)
+{
+    return kind == CSG_BLEND_ORTHOGONAL;
+}
+
+bool csg_blend_is_rule(uint32_t kind)
+{
+    return kind > CSG_BLEND_ORTHOGONAL;
+}
+
+bool csg_blend_takes_fields(uint32_t kind)
+{
+    return kind > CSG_BLEND_PROFILE;
+}
+
+bool csg_blend_is_fillet(uint32_t kind)
+{
+    return kind == CSG_BLEND_FILLET;
+}
+
+const char *csg_blend_name(uint32_t kind)
 {
     assert(kind < CSG_BLEND_END);
     if (csg_blend_is_rule(kind))
@@ -30,7 +75,7 @@ const char *csg_blend_name(csg_blend_kind kind)
     return kind == CSG_BLEND_ORTHOGONAL ? "orthogonal" : blends[kind].name;
 }
 
-double csg_blend_raw(csg_blend_kind kind, double width)
+double csg_blend_raw(uint32_t kind, double width)
 {
     assert(kind < CSG_BLEND_COUNT);
     return blends[kind].raw * width;
@@ -59,17 +104,17 @@ double csg_blend_excess(csg_blend blend, uint32_t operands)
     return two * (operands - 1); /* each step of the fold exceeds the one before by that much */
 }
 
-bool csg_blend_is_fold(csg_blend_kind kind)
+bool csg_blend_is_fold(uint32_t kind)
 {
     return csg_blend_is_rule(kind) ? csg_rule_is_fold(kind) : blends[kind].fold;
 }
 
-bool csg_blend_is_smooth(csg_blend_kind kind)
+bool csg_blend_is_smooth(uint32_t kind)
 {
     return kind < CSG_BLEND_COUNT && blends[kind].smooth;
 }
 
-bool csg_blend_is_convex(csg_blend_kind kind)
+bool csg_blend_is_convex(uint32_t kind)
 {
     return kind < CSG_BLEND_COUNT && blends[kind].convex;
 }

@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 
@@ -216,11 +215,6 @@ static double box_reach(csg_box box, csg_vec3 n)
            side(n.z, box.min.z, box.max.z);
 }
 
-static bool is_extrusion(const csg_node *node)
-{
-    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
-}
-
 /* An extrusion reaches as far as its figure and its height do together. */
 static void hand_down(search *s, size_t i)
 {
@@ -232,7 +226,7 @@ static void hand_down(search *s, size_t i)
     for (uint32_t k = 0; k < node->child_count; k++) {
         csg_node_id child = csg_scene_children(scene, node)[k];
         csg_vec3 inner = n;
-        if (is_extrusion(node))
+        if (csg_node_is_plate(node))
             inner = scene->nodes[child].flags & CSG_FLAG_FLAT ? csg_vec3_make(n.x, n.y, 0)
                                                               : csg_vec3_make(0, 0, n.z);
         s->normals[child - s->first] = inner;
@@ -242,7 +236,7 @@ static void hand_down(search *s, size_t i)
 /* Operators within all of their operands, or within the first. */
 static bool is_within(const csg_node *node)
 {
-    return node->blend <= CSG_BLEND_ORTHOGONAL;
+    return !csg_blend_is_rule(node->blend);
 }
 
 static double children_reach(const search *s, const csg_node *node)
@@ -252,7 +246,7 @@ static double children_reach(const search *s, const csg_node *node)
     double reach = s->reaches[children[0] - s->first];
     for (uint32_t k = 1; k < node->child_count && node->kind != CSG_NODE_DIFFERENCE; k++) {
         double one = s->reaches[children[k] - s->first];
-        reach = is_extrusion(node) ? reach + one : meets ? fmin(reach, one) : fmax(reach, one);
+        reach = csg_node_is_plate(node) ? reach + one : meets ? fmin(reach, one) : fmax(reach, one);
     }
     return reach;
 }
@@ -322,8 +316,8 @@ static double node_off(const search *s, size_t i, const csg_fillet_end *axis)
     }
     if (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
         return children_reach(s, node);
-    if (!csg_node_is_operator(node->kind) || !is_within(node) || is_extrusion(node))
-        return is_extrusion(node)
+    if (!csg_node_is_operator(node->kind) || !is_within(node) || csg_node_is_plate(node))
+        return csg_node_is_plate(node)
                    ? fmin(s->reaches[csg_scene_children(s->scene, node)[0] - s->first],
                           s->reaches[csg_scene_children(s->scene, node)[1] - s->first])
                    : INFINITY;

@@ -6,7 +6,6 @@
 #include <math.h>
 
 #include "base/elementary.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/reference.h"
 
 enum {
@@ -325,8 +324,8 @@ static bool is_looked_at(const csg_node *node)
 {
     return node->kind == CSG_NODE_UNION && node->child_count > 1 &&
            node->child_count <= MOST_SOLIDS && !(node->flags & CSG_FLAG_SOFT) &&
-           node->blend != CSG_BLEND_SHARP && node->blend != CSG_BLEND_ORTHOGONAL &&
-           !csg_blend_is_rule((csg_blend_kind)node->blend);
+           !csg_blend_is_sharp(node->blend) && !csg_blend_is_orthogonal(node->blend) &&
+           !csg_blend_is_rule(node->blend);
 }
 
 static void look_at_union(look *l, csg_joint_take *take, void *user)
@@ -347,7 +346,7 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
     if (joint.amount > least)
         take(user, &joint);
     joint = (csg_joint){.kind = CSG_JOINT_FILLS, .node = l->node};
-    if (l->blend.kind != CSG_BLEND_FILLET) /* it keeps them (fillet.h) */
+    if (!csg_blend_is_fillet(l->blend.kind)) /* it keeps them (fillet.h) */
         look_for_filled_gaps(l, least, &joint);
     if (joint.amount > 0)
         take(user, &joint);

@@ -3,6 +3,7 @@
  * it is monotone, the slopes of a profile's spline.
  */
 #include "scene/operators/rule.h"
+#include "scene/operators/blend_kinds.h"
 
 #include <assert.h>
 #include <math.h>
@@ -48,18 +49,18 @@ static const struct {
 #undef CSG_STEP
 };
 
-const char *csg_rule_name(csg_blend_kind kind)
+const char *csg_rule_name(uint32_t kind)
 {
     assert(csg_blend_is_rule(kind) && kind < CSG_BLEND_END);
     return rows[kind].name;
 }
 
-bool csg_rule_is_fold(csg_blend_kind kind)
+bool csg_rule_is_fold(uint32_t kind)
 {
     return rows[kind].fold;
 }
 
-uint32_t csg_rule_parameter_count(csg_blend_kind kind)
+uint32_t csg_rule_parameter_count(uint32_t kind)
 {
     uint32_t count = 0;
     for (int i = 0; i < PARAMETER_COUNT; i++)
@@ -67,7 +68,7 @@ uint32_t csg_rule_parameter_count(csg_blend_kind kind)
     return count;
 }
 
-csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index)
+csg_rule_parameter csg_rule_parameter_of(uint32_t kind, uint32_t index)
 {
     int i = 0;
     while (parameters[i].kind != kind)
@@ -75,13 +76,18 @@ csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index)
     return parameters[i + (int)index].parameter;
 }
 
-csg_rule csg_rule_standard(csg_blend_kind kind)
+csg_rule csg_rule_standard(uint32_t kind)
 {
     csg_rule rule = {.kind = kind, .step = {CSG_STEP_POLY, 3}};
     uint32_t count = csg_rule_parameter_count(kind);
     for (uint32_t i = 0; i < count; i++)
         rule.parameters[i] = csg_rule_parameter_of(kind, i).standard;
     return rule;
+}
+
+csg_rule csg_rule_of_fields(void)
+{
+    return csg_rule_standard(CSG_BLEND_FIELD_SHARP);
 }
 
 /* ---- checks -----------------------------------------------------------------------------------
@@ -189,7 +195,7 @@ const char *csg_rule_problem(const csg_rule *rule, char *text, size_t size)
     }
     if (!is_within(rule->range, 0, false, 1e15))
         return out_of_range(text, size, "range", rule->range, 0, true, 1e15);
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_EXTERIOR:
         return exterior_problem(rule, text, size);
     case CSG_BLEND_INTERIOR:
@@ -340,7 +346,7 @@ static void settle_lengths(csg_rule *rule)
 void csg_rule_settle(csg_rule *rule)
 {
     set_both(rule, true, 0);
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_EXTERIOR:
     case CSG_BLEND_INTERIOR:
         settle_lengths(rule);
@@ -408,7 +414,7 @@ double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes,
     }
     for (size_t i = 0; i < count && most > 0; i++)
         power += csg_pow(slopes[i] / most, n);
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_SOFT_SUM:
     case CSG_BLEND_PERLIN:
         return sum;

@@ -15,7 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "scene/operators/blend_kinds.h"
+#include "scene/operators/blend.h"
 #include "scene/operators/steps.h"
 
 enum {
@@ -33,7 +33,7 @@ typedef struct csg_spline {
 
 /* Filled in: kind, parameters, step, range, points or profile. csg_rule_settle finds the rest. */
 typedef struct csg_rule {
-    csg_blend_kind kind;
+    uint32_t kind;                          /* csg_blend_kind */
     double parameters[CSG_RULE_PARAMETERS]; /* in the order of operators.def */
     csg_step step;                          /* EXTERIOR, INTERIOR */
     double range;                           /* for distances; 0: by the size of the operands */
@@ -48,19 +48,21 @@ typedef struct csg_rule {
     csg_step_facts facts; /* EXTERIOR, INTERIOR */
 } csg_rule;
 
-const char *csg_rule_name(csg_blend_kind kind); /* as in the scene language */
+const char *csg_rule_name(uint32_t kind); /* as in the scene language */
 /* Binary, folded from the left; else all operands at once. */
-bool csg_rule_is_fold(csg_blend_kind kind);
+bool csg_rule_is_fold(uint32_t kind);
 /* With the standard parameters. */
-csg_rule csg_rule_standard(csg_blend_kind kind);
+csg_rule csg_rule_standard(uint32_t kind);
+/* That of soft nodes which are joined sharply. */
+csg_rule csg_rule_of_fields(void);
 
 typedef struct csg_rule_parameter {
     const char *name, *unit, *meaning;
     double standard, least, most;
     bool open; /* least itself is not allowed */
 } csg_rule_parameter;
-uint32_t csg_rule_parameter_count(csg_blend_kind kind);
-csg_rule_parameter csg_rule_parameter_of(csg_blend_kind kind, uint32_t index);
+uint32_t csg_rule_parameter_count(uint32_t kind);
+csg_rule_parameter csg_rule_parameter_of(uint32_t kind, uint32_t index);
 
 /* But for the range; before or after both are settled. */
 bool csg_rule_is_same(const csg_rule *a, const csg_rule *b);

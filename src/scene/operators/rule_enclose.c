@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/elementary.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 
@@ -142,7 +143,7 @@ void csg_rule_enclose(const csg_rule *rule, bool is_union, const double *low, co
                       size_t count, const double cosines[2], double *partials, double out[2])
 {
     bool monotone = count == 1 || rule->monotone[!is_union];
-    csg_blend_kind kind = monotone ? CSG_BLEND_END : rule->kind;
+    csg_blend_kind kind = monotone ? CSG_BLEND_END : (csg_blend_kind)rule->kind;
     switch (kind) {
     case CSG_BLEND_EXTERIOR:
         enclose_exterior(rule, low, high, out);

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/elementary.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/choice.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
@@ -316,7 +317,7 @@ double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values,
     const double *v = rule->parameters;
     if (count == 1)
         return csg_choose(values, 1, 0, partials);
-    switch (rule->kind) {
+    switch ((csg_blend_kind)rule->kind) {
     case CSG_BLEND_EXTERIOR:
     case CSG_BLEND_INTERIOR:
         return csg_rule_lengths(rule, values, partials);

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/rule_private.h"
 

@@ -5,7 +5,6 @@
  */
 #include "scene/outlines/unite.h"
 
-#include "scene/operators/blend_kinds.h"
 #include "scene/outlines/flatten.h"
 #include "scene/primitives/kinds.h"
 #include "scene/tree/build_private.h"
@@ -136,8 +135,7 @@ static bool unite_operands(uniting *u, const visit *v)
     for (uint32_t k = 0; k < node.child_count; k++)
         if (u->visits[v->first + k].leaves)
             u->group[count++] = csg_scene_children(builder->scene, &node)[k];
-    csg_node_id united = csg_build_operator(builder, kind, (csg_blend){CSG_BLEND_SHARP, 0},
-                                            u->group, count, node.where);
+    csg_node_id united = csg_build_operator(builder, kind, CSG_SHARP, u->group, count, node.where);
     if (united == CSG_NODE_NONE || !make_region(u, &united))
         return false;
     csg_node_id *children = builder->scene->children + node.first_child;

@@ -5,7 +5,6 @@
  */
 #include "scene/tree/build.h"
 #include "scene/formula/formula.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
@@ -125,7 +124,7 @@ bool csg_build_reserve_parameters(csg_scene_builder *builder, size_t more)
 static bool makes_soft(const csg_node *node, bool all_soft)
 {
     if (csg_node_is_operator(node->kind))
-        return node->blend == CSG_BLEND_SHARP ? all_soft : csg_blend_takes_fields(node->blend);
+        return csg_blend_is_sharp(node->blend) ? all_soft : csg_blend_takes_fields(node->blend);
     return node->kind == CSG_NODE_SOFT ||
            (all_soft && (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
                          node->kind == CSG_NODE_WARP));
@@ -201,6 +200,27 @@ csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_primitive_kind k
     return csg_build_append(builder, node, NULL, 0);
 }
 
+csg_node_id csg_build_ball(csg_scene_builder *builder, double r, csg_span where)
+{
+    return csg_build_primitive(builder, CSG_NODE_SPHERE, &r, where);
+}
+
+csg_node_id csg_build_block(csg_scene_builder *builder, csg_box box, csg_span where)
+{
+    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
+    csg_affine place = csg_affine_translate(csg_box_center(box));
+    csg_node_id block =
+        csg_build_primitive(builder, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0}, where);
+    return block == CSG_NODE_NONE ? block : csg_build_transform(builder, &place, block, where);
+}
+
+csg_node_id csg_build_half_space(csg_scene_builder *builder, csg_vec3 normal, double distance,
+                                 csg_span where)
+{
+    const double plane[4] = {normal.x, normal.y, normal.z, distance};
+    return csg_build_primitive(builder, CSG_NODE_PLANE, plane, where);
+}
+
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,
                               double r2, csg_span where)
 {
@@ -212,7 +232,7 @@ csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 
     csg_node_id solid;
     csg_vec3 origin = p1;
     if (length < CSG_SMALLEST_LENGTH || fabs(r1 - r2) >= length) {
-        solid = csg_build_primitive(builder, CSG_NODE_SPHERE, (double[]){fmax(r1, r2)}, where);
+        solid = csg_build_ball(builder, fmax(r1, r2), where);
         origin = r1 >= r2 ? p1 : p2;
     } else {
         solid = csg_build_primitive(builder, CSG_NODE_CAPSULE, (double[]){length, r1, r2}, where);
@@ -260,16 +280,10 @@ csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box 
 {
     if (!csg_build_is_usable(builder, node))
         return CSG_NODE_NONE;
-    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
-    csg_affine place = csg_affine_translate(csg_box_center(box));
-    csg_node_id cutter =
-        csg_build_primitive(builder, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0}, where);
+    csg_node_id cutter = csg_build_block(builder, box, where);
     if (cutter == CSG_NODE_NONE)
         return CSG_NODE_NONE;
-    cutter = csg_build_transform(builder, &place, cutter, where);
-    if (cutter == CSG_NODE_NONE)
-        return CSG_NODE_NONE;
-    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION, CSG_SHARP,
                               (csg_node_id[]){node, cutter}, 2, where);
 }
 
@@ -535,9 +549,10 @@ static csg_node_id join_operands(csg_scene_builder *builder, csg_node_kind kind,
     if (!csg_blend_is_fold(blend.kind))
         return csg_build_append_operator(builder, kind, blend, range, operands, count, where);
     csg_node_id joined = operands[0];
-    for (size_t i = 1; i < count && joined != CSG_NODE_NONE && blend.kind == CSG_BLEND_PROFILE; i++)
+    for (size_t i = 1; i < count && joined != CSG_NODE_NONE && csg_blend_is_profile(blend.kind);
+         i++)
         joined = csg_build_profiled(builder, kind, blend, joined, operands[i], where);
-    if (blend.kind == CSG_BLEND_PROFILE)
+    if (csg_blend_is_profile(blend.kind))
         return joined;
     for (size_t i = 1; i < count && joined != CSG_NODE_NONE; i++)
         joined = csg_build_append_operator(builder, kind, blend, range,

@@ -32,6 +32,12 @@ csg_node_id csg_build_empty(csg_scene_builder *builder, csg_span where);
 /* parameters as in primitives.def; checked: finite and in range. */
 csg_node_id csg_build_primitive(csg_scene_builder *builder, csg_primitive_kind kind,
                                 const double *parameters, csg_span where);
+/* Those that other code asks for, without kinds.h: a ball around the origin, a block in its place,
+ * the half-space of the points p with normal . p <= distance. */
+csg_node_id csg_build_ball(csg_scene_builder *builder, double r, csg_span where);
+csg_node_id csg_build_block(csg_scene_builder *builder, csg_box box, csg_span where);
+csg_node_id csg_build_half_space(csg_scene_builder *builder, csg_vec3 normal, double distance,
+                                 csg_span where);
 /* Sphere-swept segment between any two points with radii >= 0, not both 0; a ball where one end
  * swallows the other. */
 csg_node_id csg_build_capsule(csg_scene_builder *builder, csg_vec3 p1, csg_vec3 p2, double r1,

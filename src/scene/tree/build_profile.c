@@ -3,6 +3,7 @@
  * interval arithmetic; the operator itself is a combine node.
  */
 #include "scene/formula/terms.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
@@ -93,7 +94,7 @@ static double constant_of(const csg_profile *p)
 csg_blend csg_build_profile(csg_scene_builder *builder, const csg_formula_step *steps,
                             uint32_t count, csg_profile *out)
 {
-    const csg_blend none = {CSG_BLEND_SHARP, 0};
+    const csg_blend none = CSG_SHARP;
     const csg_box all = csg_box_all();
     if (builder->status != CSGM_OK || !csg_check_field(builder, steps, count, all, 0))
         return none;

@@ -3,6 +3,7 @@
  * and arcs whose angles are given by points.
  */
 #include "base/elementary.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 #include "scene/primitives/curve.h"
@@ -31,7 +32,7 @@ bool csg_rule_is_same(const csg_rule *a, const csg_rule *b)
 
 csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
 {
-    const csg_blend none = {CSG_BLEND_SHARP, 0};
+    const csg_blend none = CSG_SHARP;
     csgm_scene *scene = builder->scene;
     char text[160];
     if (builder->status != CSGM_OK)
@@ -268,7 +269,7 @@ static double height_of_tube(const csgm_scene *scene, csg_node_id id)
 {
     double scale, height = height_of(scene, id);
     const csg_node *node = undressed(scene, id, &scale);
-    if (node->kind != CSG_NODE_UNION || node->blend != CSG_BLEND_SHARP)
+    if (node->kind != CSG_NODE_UNION || !csg_blend_is_sharp(node->blend))
         return height;
     for (uint32_t k = 0; k < node->child_count; k++) {
         double one = scale * height_of(scene, csg_scene_children(scene, node)[k]);

@@ -165,7 +165,7 @@ static csg_node_id end_plane(csg_scene_builder *builder, double radius, double a
 {
     /* the end lies in direction (sin angle, -cos angle) from the line */
     double nx = side * csg_cos(angle), nz = side * csg_sin(angle);
-    return csg_build_primitive(builder, CSG_NODE_PLANE, (double[]){nx, 0, nz, nz * radius}, where);
+    return csg_build_half_space(builder, csg_vec3_make(nx, 0, nz), nz * radius, where);
 }
 
 /* A box around the bent bar, and the wedge in which its angles lie. */
@@ -175,13 +175,8 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
     csg_box box = csg_warp_box(warp, child, false);
     csg_vec3 size = csg_box_size(box);
     box = csg_box_grow(box, 0.25 * fmax(size.x, fmax(size.y, size.z)));
-    csg_vec3 half = csg_vec3_scale(csg_box_size(box), 0.5);
-    csg_affine place = csg_affine_translate(csg_box_center(box));
-    csg_node_id room =
-        csg_build_primitive(builder, CSG_NODE_BOX, (double[]){half.x, half.y, half.z, 0}, where);
-    if (room != CSG_NODE_NONE)
-        room = csg_build_transform(builder, &place, room, where);
-    const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+    csg_node_id room = csg_build_block(builder, box, where);
+    const csg_blend sharp = CSG_SHARP;
     double radius = warp->parameters[CSG_BEND_RADIUS], angle = warp->parameters[CSG_BEND_ANGLE];
     csg_node_id ends[2] = {end_plane(builder, radius, angle, 1, where),
                            end_plane(builder, radius, -angle, -1, where)};
@@ -261,10 +256,9 @@ csg_node_id csg_build_warp(csg_scene_builder *builder, const csg_warp *given, cs
     if (warped == CSG_NODE_NONE || !(csg_warp_traits(warp.kind) & CSG_WARP_IS_CUT))
         return warped;
     csg_node_id room = room_of(builder, &warp, box, where);
-    return room == CSG_NODE_NONE
-               ? room
-               : csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0},
-                                    (csg_node_id[]){warped, room}, 2, where);
+    return room == CSG_NODE_NONE ? room
+                                 : csg_build_operator(builder, CSG_NODE_INTERSECTION, CSG_SHARP,
+                                                      (csg_node_id[]){warped, room}, 2, where);
 }
 
 /* ---- copies and looks ---------------------------------------------------------------------------

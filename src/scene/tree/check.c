@@ -3,6 +3,7 @@
  * such that it is refused.
  */
 #include "scene/tree/check.h"
+#include "scene/operators/blend_kinds.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -176,7 +177,7 @@ bool csg_check_matrix(csg_scene_builder *builder, const csg_affine *matrix)
 bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend)
 {
     if (!csg_node_is_operator(kind) || (unsigned)blend->kind >= CSG_BLEND_END ||
-        blend->kind == CSG_BLEND_ORTHOGONAL) {
+        csg_blend_is_orthogonal(blend->kind)) {
         csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such operator");
         return false;
     }
@@ -187,14 +188,14 @@ bool csg_check_operator(csg_scene_builder *builder, csg_node_kind kind, csg_blen
             csg_check_fail(builder, CSGM_ERR_ARGUMENT, "there is no such rule");
         return builder->status == CSGM_OK;
     }
-    if (blend->kind == CSG_BLEND_SHARP || blend->n == 0) {
-        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
+    if (csg_blend_is_sharp(blend->kind) || blend->n == 0) {
+        *blend = CSG_SHARP;
         return true;
     }
     if (!check_not_negative(builder, blend->n, "the blend's width"))
         return false;
     if (blend->n < CSG_SMALLEST_LENGTH) /* below what any coordinate can show */
-        *blend = (csg_blend){CSG_BLEND_SHARP, 0};
+        *blend = CSG_SHARP;
     return true;
 }
 

@@ -156,17 +156,17 @@ static void put_operator(const csg_printer *out, const csg_node *node)
     csg_put(out, csg_node_kind_name(node->kind));
     csg_put(out, "(");
     const csg_rule *rule = csg_scene_rule(out->scene, node);
-    if (rule && rule->kind != CSG_BLEND_FIELD_SHARP) {
+    if (rule && rule->kind != csg_rule_of_fields().kind) {
         bool fields = csg_blend_takes_fields(rule->kind);
         csg_put(out, "blend = ");
         csg_rule_print(rule,
                        fields ? csg_scene_parameters(out->scene, node)[CSG_OPERATOR_RANGE] : 0,
                        out->sink, out->user);
         separator = ", ";
-    } else if (blend.kind == CSG_BLEND_ROUND) { /* round() itself is also a function of numbers */
+    } else if (csg_blend_is_round(blend.kind)) { /* round() itself is also a function of numbers */
         csg_put_argument(out, "", "blend", blend.n);
         separator = ", ";
-    } else if (!rule && blend.kind != CSG_BLEND_SHARP) {
+    } else if (!rule && !csg_blend_is_sharp(blend.kind)) {
         csg_put(out, "blend = ");
         csg_put(out, csg_blend_name(blend.kind));
         csg_put_argument(out, "(", csg_blend_is_fillet(blend.kind) ? "r" : "n", blend.n);
@@ -231,14 +231,10 @@ static bool put_combine(const csg_printer *out, const csg_node *node)
     return done;
 }
 
-static bool is_plate(const csg_node *node)
-{
-    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
-}
-
 static bool has_braces(const csg_node *node)
 {
-    return node->kind == CSG_NODE_COMBINE || (csg_node_is_operator(node->kind) && !is_plate(node));
+    return node->kind == CSG_NODE_COMBINE ||
+           (csg_node_is_operator(node->kind) && !csg_node_is_plate(node));
 }
 
 /* The line that a node begins with. */
@@ -264,11 +260,11 @@ static bool put_node(const csg_printer *out, const csg_node *node)
         csg_put_soft(out, node);
         return true;
     case CSG_NODE_COMBINE:
-        return node->blend == CSG_BLEND_PROFILE ? put_profiled(out, node) : put_combine(out, node);
+        return csg_blend_is_profile(node->blend) ? put_profiled(out, node) : put_combine(out, node);
     case CSG_NODE_UNION:
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:
-        if (is_plate(node))
+        if (csg_node_is_plate(node))
             put_plate(out, node);
         else
             put_operator(out, node);
@@ -296,7 +292,7 @@ static bool open_children(walk *w, csg_node_id id)
                             sizeof *w->open))
         return false;
     w->open = open;
-    w->open[w->open_count++] = (open_node){id, 0, is_plate(node) ? 1 : node->child_count};
+    w->open[w->open_count++] = (open_node){id, 0, csg_node_is_plate(node) ? 1 : node->child_count};
     return true;
 }
 

@@ -15,7 +15,6 @@
 
 #include "base/elementary.h"
 #include "base/scene_codes.h"
-#include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
 #include "scene/tree/print_private.h"
@@ -39,11 +38,6 @@ typedef struct openscad_text {
 } openscad_text;
 
 /* ---- what cannot be said --------------------------------------------------------------- */
-
-static bool is_plate(const csg_node *node)
-{
-    return node->kind == CSG_NODE_INTERSECTION && node->blend == CSG_BLEND_ORTHOGONAL;
-}
 
 /* A ball around each of its points makes the field's level set: a distance, moved and turned. */
 static bool grows_by_balls(const csgm_scene *scene, const csg_node *node)
@@ -92,7 +86,7 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
     switch ((csg_node_kind)node->kind) {
     case CSG_NODE_FIELD:
     case CSG_NODE_COMBINE:
-        return node->blend == CSG_BLEND_PROFILE ? "blends" : "solids by a formula";
+        return csg_blend_is_profile(node->blend) ? "blends" : "solids by a formula";
     case CSG_NODE_SOFT:
         return "soft solids";
     case CSG_NODE_WARP:
@@ -112,7 +106,7 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
     case CSG_NODE_UNION:
     case CSG_NODE_INTERSECTION:
     case CSG_NODE_DIFFERENCE:
-        return node->blend == CSG_BLEND_SHARP || is_plate(node) ? NULL : "blends";
+        return csg_blend_is_sharp(node->blend) || csg_node_is_plate(node) ? NULL : "blends";
     case CSG_NODE_EMPTY:
     case CSG_NODE_SHAPE:
     case CSG_NODE_TRANSFORM:
@@ -435,7 +429,7 @@ static void put_call(const csg_printer *out, const csg_node *node)
         put_offset(out, node);
         return;
     default:
-        if (is_plate(node)) {
+        if (csg_node_is_plate(node)) {
             put_plate(out, node);
             return;
         }
@@ -487,7 +481,7 @@ static void put_leaf(const csg_printer *out, const csg_node *node, csg_box room)
 static bool wants_solids(const csgm_scene *scene, const csg_node *node, bool is_solid)
 {
     if (node->kind != CSG_NODE_WARP)
-        return is_solid && !is_plate(node);
+        return is_solid && !csg_node_is_plate(node);
     return scene->warps[node->payload].kind == CSG_WARP_SLICE;
 }
 
@@ -512,7 +506,7 @@ static bool open_node(openscad_text *w, csg_node_id id, csg_box room, bool is_so
                             sizeof *w->open))
         return false;
     w->open = open;
-    bool braces = (csg_node_is_operator((csg_node_kind)node->kind) && !is_plate(node)) ||
+    bool braces = (csg_node_is_operator((csg_node_kind)node->kind) && !csg_node_is_plate(node)) ||
                   (node->kind == CSG_NODE_OFFSET && !(node->flags & CSG_FLAG_FLAT));
     w->open[w->open_count++] = (open_call){id, 0, room_of_children(scene, node, room),
                                            wants_solids(scene, node, is_solid), braces};
@@ -528,7 +522,7 @@ static csgm_status write_all(openscad_text *w, csg_box room)
     while (w->open_count) {
         open_call *top = &w->open[w->open_count - 1];
         const csg_node *node = &scene->nodes[top->node];
-        if (top->next_child < (is_plate(node) ? 1 : node->child_count)) {
+        if (top->next_child < (csg_node_is_plate(node) ? 1 : node->child_count)) {
             csg_node_id child = csg_scene_children(scene, node)[top->next_child++];
             if (!open_node(w, child, top->room, top->is_solid))
                 return CSGM_ERR_MEMORY;

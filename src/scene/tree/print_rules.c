@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/formula/formula_print.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
 #include "scene/tree/print_private.h"

@@ -87,7 +87,7 @@ static bool is_flattened(const csgm_scene *scene, csg_node_id inner, csg_node_id
 {
     const csg_node *a = &scene->nodes[inner], *b = &scene->nodes[outer];
     return a->kind == b->kind && (a->kind == CSG_NODE_UNION || a->kind == CSG_NODE_INTERSECTION) &&
-           a->blend == CSG_BLEND_SHARP && b->blend == CSG_BLEND_SHARP;
+           csg_blend_is_sharp(a->blend) && csg_blend_is_sharp(b->blend);
 }
 
 /* False when a node is reached twice. */
@@ -118,7 +118,7 @@ static bool has_formula(const csg_node *node)
 /* A profile stands behind the formula that is made of it. */
 static uint32_t formula_count(const csg_node *node)
 {
-    return node->kind == CSG_NODE_COMBINE && node->blend == CSG_BLEND_PROFILE ? 2 : 1;
+    return node->kind == CSG_NODE_COMBINE && csg_blend_is_profile(node->blend) ? 2 : 1;
 }
 
 static bool reserve_sealed(csgm_scene *out, const csgm_scene *from, const walk *w)
@@ -305,7 +305,7 @@ static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scrat
         out->rules[i].range = 0; /* among the parameters of each node */
     }
     if (out->rules)
-        out->rules[out->rule_count - 1] = csg_rule_standard(CSG_BLEND_FIELD_SHARP);
+        out->rules[out->rule_count - 1] = csg_rule_of_fields();
     return out->rules;
 }
 

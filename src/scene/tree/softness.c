@@ -72,7 +72,7 @@ typedef struct work {
 
 static bool passes_fields_on(const csg_node *node)
 {
-    bool sharp = csg_node_is_operator(node->kind) && node->blend == CSG_BLEND_SHARP;
+    bool sharp = csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend);
     return node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
            node->kind == CSG_NODE_WARP || (sharp && (node->flags & CSG_FLAG_SOFT));
 }
@@ -107,7 +107,7 @@ static void settle_operator(work *w, size_t i)
     double *parameters = scene->parameters + node->payload;
     if (!(node->flags & CSG_FLAG_SOFT))
         return;
-    if (node->blend == CSG_BLEND_SHARP) {
+    if (csg_blend_is_sharp(node->blend)) {
         if (all_alike(scene, node)) {
             scene->softness[i] = scene->softness[csg_scene_children(scene, node)[0]];
             return;
@@ -116,7 +116,7 @@ static void settle_operator(work *w, size_t i)
             node->flags &= (uint8_t)~CSG_FLAG_SOFT;
             return;
         }
-        node->blend = CSG_BLEND_FIELD_SHARP;
+        node->blend = (uint8_t)csg_rule_of_fields().kind;
         parameters[0] = (double)(scene->rule_count - 1);
     }
     scene->softness[i] = parameters[CSG_OPERATOR_LAMBDA] =
