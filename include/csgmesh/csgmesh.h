@@ -790,7 +790,9 @@ typedef struct csgm_write_options {
     size_t metadata_count;
     bool meshopt; /* GLB and glTF: positions quantised (KHR_mesh_quantization), all compressed by
                      EXT_meshopt_compression; default false. Not together with draco */
-    csgm_uv uv;   /* GLB and glTF; default NONE */
+    bool meshopt_khr; /* then by KHR_meshopt_compression, its successor, which takes less and which
+                         fewer programs read yet; default false */
+    csgm_uv uv;       /* GLB and glTF; default NONE */
     const csgm_level *levels; /* level_count of them, each coarser than the one before: further
                                  levels of detail in GLB and glTF (MSFT_lod) */
     size_t level_count;       /* default 0, at most CSGM_DETAILS_MOST */

@@ -111,7 +111,8 @@ typedef enum csg_meshopt_filter {
     CSG_MESHOPT_NONE,
     CSG_MESHOPT_OCTAHEDRAL,
     CSG_MESHOPT_QUATERNION,
-    CSG_MESHOPT_EXPONENTIAL
+    CSG_MESHOPT_EXPONENTIAL,
+    CSG_MESHOPT_COLOR
 } csg_meshopt_filter;
 
 bool csg_meshopt_available(void);

@@ -41,6 +41,7 @@ FORMATS = { # file, options, and what such a file has
     "glTF": ("a.gltf", (), GLTF),
     "GLB": ("a.glb", (), GLTF),
     "GLB, `--compress meshopt`": ("meshopt.glb", ("--compress", "meshopt"), GLTF),
+    "GLB, `--compress meshopt-khr`": ("khr.glb", ("--compress", "meshopt-khr"), GLTF),
     "GLB, `--compress draco`": ("draco.glb", ("--compress", "draco"), GLTF),
     "GLB, `--lod 2`": ("levels.glb", ("--lod", "2", "-e", "0.2"), set(COLUMNS)),
     "3MF": ("a.3mf", (), {"positions", "colours", "materials", "names", "unit", "metadata"}),
@@ -168,7 +169,8 @@ for title in READERS:
 PAIRS = {"STL": "trimesh assimp meshio pymeshlab bpy lib3mf three", "PLY": "trimesh assimp meshio pymeshlab bpy three",
          "OFF": "trimesh assimp meshio pymeshlab", "OFF, `--colors none --normals none`": "meshio", "OBJ": "trimesh assimp meshio pymeshlab bpy three",
          "OBJ, `--normals none`": "meshio", "glTF": "trimesh assimp bpy", "GLB": "trimesh assimp pymeshlab bpy three",
-         "GLB, `--compress meshopt`": "trimesh assimp pymeshlab bpy three", "GLB, `--compress draco`": "trimesh assimp pymeshlab bpy",
+         "GLB, `--compress meshopt`": "trimesh assimp pymeshlab bpy three", "GLB, `--compress meshopt-khr`": "three",
+         "GLB, `--compress draco`": "trimesh assimp pymeshlab bpy",
          "GLB, `--lod 2`": "trimesh assimp bpy three", "3MF": "trimesh assimp pymeshlab lib3mf", "AMF": "assimp", "Draco": "draco3d"}
 
 

@@ -19,18 +19,26 @@
 typedef struct sample {
     const char *name;
     io_shape shape;
-    bool ascii, draco, meshopt;
+    bool ascii, draco, meshopt, khr;
 } sample;
 
 static const sample samples[] = {
-    {"a.ply", IO_CUBE, false, false, false},       {"b.ply", IO_CUBE, true, false, false},
-    {"c.stl", IO_CUBE, false, false, false},       {"d.stl", IO_TETRAHEDRON, true, false, false},
-    {"e.obj", IO_CUBE, false, false, false},       {"f.off", IO_CUBE, false, false, false},
-    {"g.glb", IO_CUBE, false, false, false},       {"h.gltf", IO_TETRAHEDRON, false, false, false},
-    {"i.drc", IO_CUBE, false, true, false},        {"j.glb", IO_TETRAHEDRON, false, true, false},
-    {"k.ply", IO_TETRAHEDRON, true, false, false}, {"l.3mf", IO_PARTS, false, false, false},
-    {"m.obj", IO_PARTS, false, false, false},      {"n.amf", IO_TETRAHEDRON, false, false, false},
-    {"o.glb", IO_CUBE, false, false, true},
+    {"a.ply", IO_CUBE, false, false, false, false},
+    {"b.ply", IO_CUBE, true, false, false, false},
+    {"c.stl", IO_CUBE, false, false, false, false},
+    {"d.stl", IO_TETRAHEDRON, true, false, false, false},
+    {"e.obj", IO_CUBE, false, false, false, false},
+    {"f.off", IO_CUBE, false, false, false, false},
+    {"g.glb", IO_CUBE, false, false, false, false},
+    {"h.gltf", IO_TETRAHEDRON, false, false, false, false},
+    {"i.drc", IO_CUBE, false, true, false, false},
+    {"j.glb", IO_TETRAHEDRON, false, true, false, false},
+    {"k.ply", IO_TETRAHEDRON, true, false, false, false},
+    {"l.3mf", IO_PARTS, false, false, false, false},
+    {"m.obj", IO_PARTS, false, false, false, false},
+    {"n.amf", IO_TETRAHEDRON, false, false, false, false},
+    {"o.glb", IO_CUBE, false, false, true, false},
+    {"p.glb", IO_CUBE, false, false, true, true},
 };
 
 enum {
@@ -75,6 +83,7 @@ static uint8_t *make_sample(const sample *s, const char *folder, size_t *size)
     options.ascii = s->ascii;
     options.draco = s->draco;
     options.meshopt = s->meshopt;
+    options.meshopt_khr = s->khr;
     io_context_init(&io, 0);
     csgm_mesh *mesh = io_shape_make(&io.context, s->shape);
     csgm_mesh_view view = csg_mesh_view(mesh);

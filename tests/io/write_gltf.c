@@ -15,7 +15,7 @@ typedef struct variant {
     csgm_unit unit;
     bool meshopt;
     csgm_uv uv;
-    bool levels;
+    bool levels, khr;
 } variant;
 
 static int write_one(io_context *io, const csgm_mesh_view *view, const char *folder,
@@ -26,6 +26,7 @@ static int write_one(io_context *io, const csgm_mesh_view *view, const char *fol
     csgm_write_options options = csg_write_options_default();
     options.draco = v->draco;
     options.meshopt = v->meshopt;
+    options.meshopt_khr = v->khr;
     options.uv = v->uv;
     const csgm_level level = {.mesh = *view, .error = 0.5};
     options.levels = &level;
@@ -45,17 +46,18 @@ static int write_variants(io_context *io, const csgm_mesh_view *view, const char
                           const char *shape)
 {
     static const variant variants[] = {
-        {"plain", false, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
-        {"zup", false, true, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
-        {"mm", false, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, false},
-        {"inch-zup", false, true, CSGM_UNIT_IN, false, CSGM_UV_NONE, false},
-        {"draco", true, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false},
-        {"draco-cm", true, false, CSGM_UNIT_CM, false, CSGM_UV_NONE, false},
-        {"meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_NONE, false},
-        {"meshopt-zup", false, true, CSGM_UNIT_NONE, true, CSGM_UV_NONE, false},
-        {"box", false, false, CSGM_UNIT_MM, false, CSGM_UV_BOX, true},
-        {"cylinder-meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_CYLINDER, true},
-        {"levels-draco", true, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, true}};
+        {"plain", false, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false, false},
+        {"zup", false, true, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false, false},
+        {"mm", false, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, false, false},
+        {"inch-zup", false, true, CSGM_UNIT_IN, false, CSGM_UV_NONE, false, false},
+        {"draco", true, false, CSGM_UNIT_NONE, false, CSGM_UV_NONE, false, false},
+        {"draco-cm", true, false, CSGM_UNIT_CM, false, CSGM_UV_NONE, false, false},
+        {"meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_NONE, false, false},
+        {"meshopt-zup", false, true, CSGM_UNIT_NONE, true, CSGM_UV_NONE, false, false},
+        {"box", false, false, CSGM_UNIT_MM, false, CSGM_UV_BOX, true, false},
+        {"cylinder-meshopt", false, false, CSGM_UNIT_MM, true, CSGM_UV_CYLINDER, true, false},
+        {"khr", false, false, CSGM_UNIT_MM, true, CSGM_UV_BOX, false, true},
+        {"levels-draco", true, false, CSGM_UNIT_MM, false, CSGM_UV_NONE, true, false}};
     int failed = 0;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         if (variants[i].draco && !csg_format_available(CSGM_FORMAT_DRC, false))

@@ -207,7 +207,7 @@ static void check_packed(const packed &p, size_t view)
         good = good && (stride == 2 || stride == 4) && p.view.filter == CSG_MESHOPT_NONE;
     if (p.view.mode == CSG_MESHOPT_TRIANGLES)
         good = good && count % 3 == 0;
-    if (p.view.filter == CSG_MESHOPT_OCTAHEDRAL)
+    if (p.view.filter == CSG_MESHOPT_OCTAHEDRAL || p.view.filter == CSG_MESHOPT_COLOR)
         good = good && (stride == 4 || stride == 8);
     if (p.view.filter == CSG_MESHOPT_QUATERNION)
         good = good && stride == 8;
@@ -245,7 +245,8 @@ static void note_packed(facts &out, const json &root)
     for (size_t i = 0; views && views->is_array() && i < views->size(); i++) {
         const json *extensions = member((*views)[i], "extensions");
         const json *found = extensions ? member(*extensions, "EXT_meshopt_compression") : nullptr;
-        if (!found && extensions)
+        bool is_khr = !found && extensions;
+        if (is_khr)
             found = member(*extensions, "KHR_meshopt_compression");
         if (!found)
             continue;
@@ -255,8 +256,9 @@ static void note_packed(facts &out, const json &root)
                     {}};
         p.view.mode = static_cast<csg_meshopt_mode>(
             word_of(member(*found, "mode"), {"ATTRIBUTES", "TRIANGLES", "INDICES"}, i));
-        p.view.filter = static_cast<csg_meshopt_filter>(word_of(
-            member(*found, "filter"), {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}, i));
+        p.view.filter = static_cast<csg_meshopt_filter>(
+            word_of(member(*found, "filter"),
+                    {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", is_khr ? "COLOR" : ""}, i));
         p.view.count = static_cast<uint64_t>(integer(member(*found, "count"), -1));
         p.view.stride = static_cast<uint64_t>(integer(member(*found, "byteStride"), -1));
         check_packed(p, i);

@@ -83,6 +83,7 @@ typedef struct csg_gltf_document {
     uint64_t buffer_bytes;   /* of the file's buffer; 0 = there is none */
     uint64_t unpacked_bytes; /* of the buffer that stands for what meshoptimizer unpacks */
     bool draco, meshopt, quantized, has_uv;
+    bool khr;             /* meshopt is KHR_meshopt_compression */
     uint32_t level_count; /* of detail; the roots are one for each */
     bool failed;          /* out of memory */
 } csg_gltf_document;

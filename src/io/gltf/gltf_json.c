@@ -111,6 +111,11 @@ static void put_asset(json *j, const csg_gltf_document *document)
     put_text(j, "}},");
 }
 
+static const char *meshopt_name(const csg_gltf_document *document)
+{
+    return document->khr ? "KHR_meshopt_compression" : "EXT_meshopt_compression";
+}
+
 static void put_extensions(json *j, const csg_gltf_document *document)
 {
     bool manifold = false, comma = false;
@@ -123,7 +128,7 @@ static void put_extensions(json *j, const csg_gltf_document *document)
                 {document->level_count > 1, false, "MSFT_lod"},
                 {document->draco, true, "KHR_draco_mesh_compression"},
                 {document->quantized, true, "KHR_mesh_quantization"},
-                {document->meshopt, true, "EXT_meshopt_compression"}};
+                {document->meshopt, true, meshopt_name(document)}};
     for (int required = 0; required < 2; required++) {
         comma = false;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -387,19 +392,20 @@ static void put_accessor(json *j, const csg_gltf_document *document, const csg_g
     put_text(j, "}");
 }
 
-static void put_packed(json *j, const csg_gltf_view *view)
+static void put_packed(json *j, const csg_gltf_document *document, const csg_gltf_view *view)
 {
     put_text(j,
-             ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%llu,"
+             ",\"extensions\":{\"%s\":{\"buffer\":0,\"byteOffset\":%llu,"
              "\"byteLength\":%llu,\"byteStride\":%u,\"count\":%llu,\"mode\":\"%s\"",
-             (unsigned long long)view->packed_offset, (unsigned long long)view->packed_bytes,
-             (unsigned)view->packed_stride, (unsigned long long)view->packed_count, view->mode);
+             meshopt_name(document), (unsigned long long)view->packed_offset,
+             (unsigned long long)view->packed_bytes, (unsigned)view->packed_stride,
+             (unsigned long long)view->packed_count, view->mode);
     if (view->filter)
         put_text(j, ",\"filter\":\"%s\"", view->filter);
     put_text(j, "}}");
 }
 
-static void put_view(json *j, const csg_gltf_view *view)
+static void put_view(json *j, const csg_gltf_document *document, const csg_gltf_view *view)
 {
     put_text(j, "{\"buffer\":%d,\"byteLength\":%llu", view->mode ? 1 : 0,
              (unsigned long long)view->bytes);
@@ -410,7 +416,7 @@ static void put_view(json *j, const csg_gltf_view *view)
     if (view->target)
         put_text(j, ",\"target\":%u", (unsigned)view->target);
     if (view->mode)
-        put_packed(j, view);
+        put_packed(j, document, view);
     put_text(j, "}");
 }
 
@@ -442,7 +448,7 @@ static void put_tables(json *j, const csg_gltf_document *document)
     put_text(j, "],\"bufferViews\":[");
     for (size_t i = 0; i < document->view_count; i++) {
         put_text(j, i ? "," : "");
-        put_view(j, &document->views[i]);
+        put_view(j, document, &document->views[i]);
     }
     put_text(j, "],");
 }
@@ -467,9 +473,7 @@ void csg_gltf_json_tail(const csg_gltf_document *document, csg_gltf_text *j)
 {
     put_text(j, "}");
     if (document->meshopt)
-        put_text(j,
-                 ",{\"byteLength\":%llu,\"extensions\":{\"EXT_meshopt_compression\":{"
-                 "\"fallback\":true}}}",
-                 (unsigned long long)document->unpacked_bytes);
+        put_text(j, ",{\"byteLength\":%llu,\"extensions\":{\"%s\":{\"fallback\":true}}}",
+                 (unsigned long long)document->unpacked_bytes, meshopt_name(document));
     put_text(j, "]}");
 }

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * The shapes of a glTF compressed by meshoptimizer (EXT_meshopt_compression): positions as whole
- * numbers on one grid for all (KHR_mesh_quantization; nodes scale them back), normals in two bytes,
- * triangles and vertices in an order that caches and codecs like. A view for each array of each
- * shape.
+ * The shapes of a glTF compressed by meshoptimizer (EXT_ or KHR_meshopt_compression): positions as
+ * whole numbers on one grid for all (KHR_mesh_quantization; nodes scale them back), normals in two
+ * bytes, triangles and vertices in an order that caches and codecs like. A view for each array of
+ * each shape.
  */
 #include <assert.h>
 #include <math.h>
 
 #include "io/color.h"
 #include "io/gltf/gltf_compress.h"
+#include "io/gltf/vertex_stream.h"
 #include "io/rounding.h"
 
 typedef struct meshopt {
@@ -52,15 +53,30 @@ static const char *word_of(csg_meshopt_mode mode)
                                            : "INDICES";
 }
 
+/* Those that only KHR_meshopt_compression has take less. */
+static bool is_of_version_one(const meshopt *m, const packing *p)
+{
+    return m->document->khr && p->mode == CSG_MESHOPT_ATTRIBUTES;
+}
+
+static uint64_t packed_bytes(const meshopt *m, const packing *p, uint8_t *out, uint64_t room)
+{
+    if (is_of_version_one(m, p))
+        return csg_vertex_stream_encode(p->data, p->count, p->stride, out);
+    return csg_meshopt_encode(p->mode, p->data, p->count, p->stride, out, room);
+}
+
 /* A view and its piece of the buffer. NONE: out of memory. */
 static int pack(meshopt *m, const packing *p)
 {
-    uint64_t room = csg_meshopt_bound(p->mode, p->count, p->stride, p->beyond);
+    uint64_t room = is_of_version_one(m, p)
+                        ? csg_vertex_stream_bound(p->count, p->stride)
+                        : csg_meshopt_bound(p->mode, p->count, p->stride, p->beyond);
     csg_gltf_piece piece = {.owned = csg_memory_alloc(m->memory, room), .owned_bytes = room};
     if (!piece.owned)
         return CSG_GLTF_NONE;
     piece.bytes = piece.owned;
-    piece.size_bytes = csg_meshopt_encode(p->mode, p->data, p->count, p->stride, piece.owned, room);
+    piece.size_bytes = packed_bytes(m, p, piece.owned, room);
     assert(piece.size_bytes > 0); /* the bound is one */
     csg_gltf_view view = {.offset = m->document->unpacked_bytes,
                           .bytes = p->count * p->file_stride,
@@ -385,6 +401,7 @@ static csgm_status compress_all(meshopt *m)
 {
     csgm_status status = CSGM_OK;
     m->document->meshopt = m->document->quantized = true;
+    m->document->khr = m->document->options->meshopt_khr;
     for (size_t i = 0; i < m->source->shape_count && !status; i++) {
         m->shape = &m->source->shapes[i];
         status = compress_shape(m);

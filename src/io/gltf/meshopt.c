@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The only file that names meshoptimizer: order of triangles and vertices, and its codecs, which
- * are those of EXT_meshopt_compression.
+ * are those of EXT_meshopt_compression. What KHR_meshopt_compression has beyond them is ours
+ * (vertex_stream.h).
  */
 #include <meshoptimizer.h>
 #include <pthread.h>
@@ -8,6 +9,7 @@
 #include <string.h>
 
 #include "io/adapter.h"
+#include "io/gltf/vertex_stream.h"
 
 bool csg_meshopt_available(void)
 {
@@ -58,7 +60,9 @@ void csg_meshopt_pack_normals(int8_t *out, const float *normals, uint64_t count,
 bool csg_meshopt_decode(const csg_meshopt_view *view, void *out)
 {
     int failed = 1;
-    if (view->mode == CSG_MESHOPT_ATTRIBUTES)
+    if (view->mode == CSG_MESHOPT_ATTRIBUTES && csg_vertex_stream_is_one(view->bytes, view->size))
+        failed = !csg_vertex_stream_decode(view->bytes, view->size, view->count, view->stride, out);
+    else if (view->mode == CSG_MESHOPT_ATTRIBUTES)
         failed =
             meshopt_decodeVertexBuffer(out, view->count, view->stride, view->bytes, view->size);
     else if (view->mode == CSG_MESHOPT_TRIANGLES)
@@ -74,5 +78,7 @@ bool csg_meshopt_decode(const csg_meshopt_view *view, void *out)
         meshopt_decodeFilterQuat(out, view->count, view->stride);
     else if (view->filter == CSG_MESHOPT_EXPONENTIAL)
         meshopt_decodeFilterExp(out, view->count, view->stride);
+    else if (view->filter == CSG_MESHOPT_COLOR)
+        csg_color_filter_decode(out, view->count, view->stride);
     return true;
 }

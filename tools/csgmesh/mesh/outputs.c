@@ -89,7 +89,12 @@ int cli_outputs_check_place(cli_app *app, const char *path)
 enum { AUTO, VERTEX, CREASE, NONE };
 
 /* The values of --compress, in their order. */
-enum { UNCOMPRESSED, MESHOPT, DRACO };
+enum { UNCOMPRESSED, MESHOPT, DRACO, MESHOPT_KHR };
+
+static bool is_meshopt(const cli_options *options)
+{
+    return options->compress == MESHOPT || options->compress == MESHOPT_KHR;
+}
 
 bool cli_outputs_draco(const cli_options *options)
 {
@@ -149,7 +154,7 @@ int cli_outputs_check_contents(cli_app *app)
         (app->options.lod < 2 || app->options.lod > CSGM_DETAILS_MOST + 1))
         return cli_usage_error(app, NULL, "--lod wants 2 to %d levels, the first one too",
                                CSGM_DETAILS_MOST + 1);
-    if (app->options.draco && app->options.compress == MESHOPT)
+    if (app->options.draco && is_meshopt(&app->options))
         return cli_usage_error(app, NULL, "--draco and --compress meshopt exclude each other");
     if (app->options.uv && cli_outputs_draco(&app->options))
         return cli_usage_error(app, NULL,
@@ -227,7 +232,8 @@ csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
     csgm_write_options write = csgm_write_options_default();
     write.ascii = options->ascii;
     write.draco = cli_outputs_draco(options);
-    write.meshopt = options->compress == MESHOPT;
+    write.meshopt = is_meshopt(options);
+    write.meshopt_khr = options->compress == MESHOPT_KHR;
     write.uv = (csgm_uv)options->uv; /* its values stand in the enum's order */
     write.y_up = options->up == 0;
     write.sync = !options->no_sync;

@@ -92,6 +92,7 @@ class FileOptions(TypedDict, total=False):
     unit: Literal["none", "mm", "cm", "m", "in"]
     comment: str
     meshopt: bool
+    meshopt_khr: bool
     uv: Literal["none", "box", "cylinder"]
     # Coarser meshes of the same solid, and how far each is from it; or also what was measured, and whether the error is proven.
     levels: Sequence[tuple[Any, float] | tuple[Any, float, float, bool]]

@@ -297,6 +297,7 @@ const Row<csgm_write_options> write_rows[] = {
     OF(comment),
     {"metadata", take_metadata},
     OF(meshopt),
+    OF(meshopt_khr),
     CHOICE(csgm_write_options, "uv", uv, "none", "box", "cylinder"),
     {"levels", take_levels},
 };
