@@ -17,7 +17,7 @@
 
 static bench b;
 
-enum { SWELLS = -340, FILLS = -341, MISSES = -304 };
+enum { SWELLS = -340, FILLS = -341, CUTS = -342, MISSES = -304 };
 
 #define BRACKET "union(blend = 3) { cube([40, 20, 5]); cube([5, 20, 40]); }"
 
@@ -98,6 +98,105 @@ static void blends_of_nothing_are_told(void **state)
           0);
 }
 
+#define PLATES "union() { cube([20, 20, 5]); translate([0, 0, 5]) cube([20, 20, 5]); }"
+#define HOLE "translate([10, 10, -1]) cylinder(h = 30, r = 4);"
+
+static void cut_seams_are_told(void **state)
+{
+    check("difference(blend = 1) { " PLATES HOLE " }", CUTS);
+    assert_non_null(strstr(b.text, "cuts a groove of 0.9 along the face at z = 5"));
+    check("difference(blend = fillet(1)) { color(\"red\") " PLATES HOLE " }", CUTS);
+    check("rotate([30, 40, 50]) intersection(blend = 1) { cube(9); translate([1, 2, 1]) " PLATES
+          " }",
+          CUTS);
+    /* halves that mirror each other, and a joint of flat figures */
+    check("difference(blend = 1) { for (s = [0, 1]) mirror([0, 0, s]) linear_extrude(9, twist = "
+          "20) square(20, center = true); " HOLE " }",
+          CUTS);
+    check("linear_extrude(5) difference(blend = 1) { union() { square(10); translate([10, 0]) "
+          "square(10); } translate([10, 5]) circle(2); }",
+          CUTS);
+    /* what lies between the seam and the blend does not matter where it does nothing */
+    check("difference(blend = 1) { union(blend = 2) { difference() { " PLATES
+          " translate([18, 18, -1]) cube(20); } translate([3, 1, 9]) cube([12, 1, 5]); } " HOLE
+          " }",
+          CUTS);
+    /* of many holes the last one */
+    check("difference(blend = 1) { " PLATES " for (i = [0 : 6]) translate([2 + 2.5 * i, 15, i]) "
+          "cylinder(h = 1, r = 1); " HOLE " }",
+          CUTS);
+    check("union(blend = 1) { difference() { cube(30); translate([5, 5, 5]) cube([10, 20, 30]); "
+          "translate([15, 5, 5]) cube([10, 20, 30]); } translate([15, 15, 2]) cylinder(h = 20, r "
+          "= 3); }",
+          CUTS);
+    assert_non_null(strstr(b.text, "leaves a fin of"));
+}
+
+static void no_seam_where_there_is_none(void **state)
+{
+    check("difference() { " PLATES HOLE " }", 0);
+    check("difference(blend = 1) { union() { cube([20, 20, 6]); translate([0, 0, 5]) cube([20, 20, "
+          "5]); } " HOLE " }",
+          0);
+    /* the blend fills the seam, another solid covers it, the hole stays away from it */
+    check("difference(blend = 1) { union(blend = round(1)) { cube([20, 20, 5]); translate([1, 1, "
+          "5]) cube([18, 18, 5]); } " HOLE " }",
+          0);
+    check("difference(blend = 1) { union() { " PLATES
+          " translate([1, 1, 1]) cube([18, 18, 8]); } " HOLE " }",
+          0);
+    check("difference(blend = 1) { " PLATES " translate([10, 10, 7]) cylinder(h = 30, r = 4); }",
+          0);
+    check("difference(blend = 1) { " PLATES " translate([10, 10, 7]) sphere(2); }", CUTS);
+    check("difference(blend = 1) { " PLATES " translate([40, 10, -1]) cylinder(h = 30, r = 4); }",
+          0);
+    /* cut off, or not seen since something else is there */
+    check("intersection() { cube([20, 20, 4]); difference(blend = 1) { " PLATES HOLE " } }", 0);
+    check("union() { difference(blend = 1) { " PLATES HOLE " } translate([3, 3, 3]) cube([14, 14, "
+          "4]); }",
+          0);
+    /* balls that touch in a point have no face in common */
+    check("difference(blend = 1) { union() { sphere(5); translate([10, 0, 0]) sphere(5); } "
+          "translate([5, 0, -9]) cylinder(h = 18, r = 1); }",
+          0);
+    /* two pockets side by side */
+    check("difference(blend = 1) { cube(30); translate([5, 5, 5]) cube([10, 20, 30]); "
+          "translate([15, 5, 5]) cube([10, 20, 30]); }",
+          0);
+}
+
+/* Two random boxes on each other with a hole through both: the field is below 0 on the seam by the
+ * hole's wall, wherever it is told. */
+static void seams_are_cut_where_it_is_told(void **state)
+{
+    csg_random random = {43};
+    int told = 0;
+    for (int i = 0; i < 100; i++) {
+        double w[6], x, y, z;
+        char text[400];
+        for (int k = 0; k < 6; k++)
+            w[k] = csg_random_uniform(&random, 6, 12);
+        snprintf(text, sizeof text,
+                 "difference(blend = %.17g) { union() { cube([%.17g, %.17g, %.17g]); "
+                 "translate([0, 0, %.17g]) cube([%.17g, 7, 8]); } "
+                 "translate([3, 3, -9]) cylinder(h = 99, r = %.17g); }",
+                 w[0] / 20, w[1], w[2], w[3], w[3], w[4], w[5] / 8);
+        assert_int_equal(bench_compile(&b, text), CSGM_OK);
+        const char *at = strstr(b.text, ", at [");
+        if (!bench_has(&b, CUTS) || !at)
+            fail_msg("%s: %s", text, b.text);
+        assert_int_equal(sscanf(at, ", at [%lf, %lf, %lf]", &x, &y, &z), 3);
+        csgm_status status = CSGM_OK;
+        for (int k = -1; k <= 1; k++) {
+            csg_vec3 p = csg_vec3_make(x, y, w[3] + k * w[0] / 40);
+            double value = csg_reference_eval(b.scene, p, &status).value;
+            assert_true(k == 0 ? value < 0 : value > 0);
+        }
+        told++;
+    }
+    assert_int_equal(told, 100);
+}
+
 /* Two random boxes that share the plane z = 0: it is told by how much the field is inside there,
  * where they overlap, and nothing where they are apart by more than the blend sees. */
 static void swelling_is_as_large_as_the_field_says(void **state)
@@ -127,6 +226,17 @@ static void swelling_is_as_large_as_the_field_says(void **state)
         told++;
     }
     assert_in_range(told, 60, 200);
+}
+
+/* A hundred by a hundred cubes that touch, and as many holes: each pair is looked at once, until
+ * the work is too much. */
+static void very_many_seams_are_not_all_looked_at(void **state)
+{
+    bench_compile(&b, "difference(blend = 0.1) { for (x = [0 : 99], y = [0 : 99]) translate([x, y, "
+                      "0]) cube(1); for (x = [0 : 99]) translate([x, 50, -1]) cylinder(h = 3, r = "
+                      "0.2); }");
+    check("for (x = [0 : 50]) translate([30 * x, 0, 0]) difference(blend = 1) { " PLATES HOLE " }",
+          CUTS);
 }
 
 /* The work is bounded. */
@@ -162,6 +272,10 @@ int main(void)
         cmocka_unit_test(no_swelling_where_there_is_none),
         cmocka_unit_test(filled_gaps_are_told),
         cmocka_unit_test(blends_of_nothing_are_told),
+        cmocka_unit_test(cut_seams_are_told),
+        cmocka_unit_test(no_seam_where_there_is_none),
+        cmocka_unit_test(seams_are_cut_where_it_is_told),
+        cmocka_unit_test(very_many_seams_are_not_all_looked_at),
         cmocka_unit_test(swelling_is_as_large_as_the_field_says),
         cmocka_unit_test(very_many_blends_are_not_all_looked_at),
     };

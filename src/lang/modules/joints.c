@@ -36,6 +36,14 @@ static void warn(void *user, const csg_joint *joint)
         csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, NULL,
                         "the blend joins nothing: its solids are %.3g apart", joint->amount);
         break;
+    case CSG_JOINT_GROOVES:
+        csg_eval_report(r->e, CSG_DIAG_SEAM_CUT, joint->node->where,
+                        "let the two overlap: where they only touch, the union's field is 0",
+                        "the blend %s of %.3g along the face at %c = %.6g where two solids lie "
+                        "against each other, at [%.4g, %.4g, %.4g]",
+                        joint->is_fin ? "leaves a fin" : "cuts a groove", joint->amount, axis,
+                        joint->at, joint->place.x, joint->place.y, joint->place.z);
+        break;
     }
 }
 

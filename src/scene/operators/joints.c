@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/elementary.h"
+#include "scene/operators/seams.h"
 #include "scene/reference.h"
 
 enum {
@@ -385,15 +386,50 @@ static void walk(look *l, csg_joint_take *take, void *user)
     }
 }
 
+/* Of any operator. */
+static bool has_blends(const csgm_scene *scene)
+{
+    bool any = false;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        if (csg_node_is_operator(node->kind))
+            any = any || !csg_blend_is_sharp(csg_scene_blend(scene, node).kind);
+    }
+    return any;
+}
+
+static bool look_for_seams(look *l, csg_joint_take *take, void *user)
+{
+    const csgm_scene *scene = l->scene;
+    csg_memory *memory = &scene->context->memory;
+    uint32_t most = 0;
+    for (size_t i = 0; i < scene->node_count; i++)
+        most = scene->nodes[i].child_count > most ? scene->nodes[i].child_count : most;
+    size_t told = scene->node_count * sizeof(bool), order = 2 * most * sizeof(csg_node_id);
+    csg_seam_search search = {.scene = scene,
+                              .room = &l->room,
+                              .firsts = l->firsts,
+                              .parents = l->parents,
+                              .cost_before = l->cost_before,
+                              .most_work = MOST_WORK,
+                              .order = csg_memory_alloc(memory, order),
+                              .is_told = csg_memory_alloc(memory, told)};
+    bool begun = (search.order || !order) && search.is_told;
+    for (size_t i = 0; i < scene->node_count && begun; i++)
+        search.is_told[i] = false;
+    if (begun)
+        csg_seams_find(&search, take, user);
+    csg_memory_release(memory, search.order, order);
+    csg_memory_release(memory, search.is_told, told);
+    return begun;
+}
+
 csgm_status csg_joints_find(const csgm_scene *scene, csg_joint_take *take, void *user)
 {
     csg_memory *memory = &scene->context->memory;
     size_t count = scene->node_count, bytes = count * sizeof(csg_node_id);
     look l = {.scene = scene};
-    bool any = false;
-    for (size_t i = 0; i < count; i++)
-        any = any || is_looked_at(&scene->nodes[i]);
-    if (!any)
+    if (!has_blends(scene)) /* nothing blends */
         return CSGM_OK;
     l.firsts = csg_memory_alloc(memory, bytes);
     l.parents = csg_memory_alloc(memory, bytes);
@@ -401,6 +437,7 @@ csgm_status csg_joints_find(const csgm_scene *scene, csg_joint_take *take, void 
     bool begun = l.firsts && l.parents && l.cost_before && csg_reference_room_begin(&l.room, scene);
     if (begun) {
         walk(&l, take, user);
+        begun = look_for_seams(&l, take, user);
         csg_reference_room_end(&l.room, scene);
     }
     csg_memory_release(memory, l.firsts, bytes);
