@@ -11,26 +11,7 @@
 #ifndef CSG_SCENE_JOINTS_H
 #define CSG_SCENE_JOINTS_H
 
-#include "scene/scene.h"
-
-typedef enum csg_joint_kind {
-    CSG_JOINT_SWELLS, /* beyond a face that solids have in common, by `amount` at least */
-    CSG_JOINT_FILLS,  /* a gap, `amount` wide, between two solids */
-    CSG_JOINT_MISSES, /* solids that are `amount` apart: the blend acts nowhere */
-    CSG_JOINT_GROOVES /* along a face at which two solids meet, `amount` deep at least (seams.h) */
-} csg_joint_kind;
-
-typedef struct csg_joint {
-    csg_joint_kind kind;
-    const csg_node *node; /* the operator that blends */
-    double amount;
-    int axis; /* of the union's own frame: the face lies there, the gap around it */
-    double at;
-    csg_vec3 place; /* GROOVES: one place in it, in the scene's frame */
-    bool is_fin;    /* GROOVES: something is left there, instead of nothing */
-} csg_joint;
-
-typedef void csg_joint_take(void *user, const csg_joint *joint);
+#include "scene/operators/joint.h"
 
 /* Gives the worst joint of each kind of each blended union of a sealed scene. The work is bounded:
  * of scenes with very many blends the first are looked at. CSGM_OK or CSGM_ERR_MEMORY (not

@@ -7,7 +7,7 @@
 #ifndef CSG_SCENE_SEAMS_H
 #define CSG_SCENE_SEAMS_H
 
-#include "scene/operators/joints.h"
+#include "scene/operators/joint.h"
 #include "scene/reference.h"
 
 typedef struct csg_seam_search {
