@@ -812,6 +812,8 @@ typedef enum csgm_drawing_format {
 CSGM_API csgm_drawing_format csgm_drawing_format_from_path(const char *path);
 CSGM_API csgm_drawing_format csgm_drawing_format_from_name(const char *name);
 CSGM_API const char *csgm_drawing_format_name(csgm_drawing_format format);
+/* Whether this build draws: Clipper may be missing. */
+CSGM_API bool csgm_drawing_format_available(csgm_drawing_format format);
 /* How many layers the drawing of a scene has: one for each part's name and colour. 0: nothing
  * encloses an area, or no drawing was asked for (csgm_flat). */
 CSGM_API size_t csgm_scene_layer_count(const csgm_scene *scene);

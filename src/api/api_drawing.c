@@ -5,6 +5,7 @@
 #include "io/drawings/drawings.h"
 #include "io/formats.h"
 #include "scene/scene.h"
+#include "shape/plane/clipper.h"
 
 csgm_drawing_format csgm_drawing_format_from_path(const char *path)
 {
@@ -19,6 +20,12 @@ csgm_drawing_format csgm_drawing_format_from_name(const char *name)
 const char *csgm_drawing_format_name(csgm_drawing_format format)
 {
     return csg_drawing_format_name(format);
+}
+
+bool csgm_drawing_format_available(csgm_drawing_format format)
+{
+    return (int)format > CSGM_DRAWING_NONE && format < CSGM_DRAWING_COUNT &&
+           csg_clipper_available();
 }
 
 size_t csgm_scene_layer_count(const csgm_scene *scene)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""page.py [FOLDER]: the page for browsers, FOLDER/page/index.html; without FOLDER in build-web.
+"""page.py [FOLDER] [--bare]: the page for browsers, FOLDER/page/index.html; without FOLDER in build-web.
 
-The module of build.py, scripts, style and scenes are in this one file, so it works from a server and from a
-folder. What comes from npm is named in page/package-lock.json. Exit status: 0; 1 where the build fails; 77 where a tool
-is missing, which is named.
+The module of build.py, a font, scripts, style and scenes are in this one file, so it works from a server and from a
+folder. What comes from npm is named in page/package-lock.json. --bare: a module without optional libraries, and no font.
+Exit status: 0; 1 where the build fails; 77 where a tool is missing, which is named.
 """
 import base64
 import gzip
@@ -20,6 +20,7 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 VIEW = os.path.join(ROOT, "tools", "csgmesh", "view", "page")
 sys.path.insert(0, os.path.join(ROOT, "tools", "csgmesh", "page"))
 import build  # pylint: disable=wrong-import-position
+import libraries  # pylint: disable=wrong-import-position
 import embed  # pylint: disable=wrong-import-position
 
 # Scenes of the menu; what else is in their folders may be included.
@@ -47,7 +48,7 @@ def install(place):
 
 def bundle(place, entry, target, *options):
     os.environ["NODE_PATH"] = os.path.join(place, "node_modules")
-    build.run([os.path.join(place, "node_modules", ".bin", "esbuild"), os.path.join(HERE, "page", entry), "--bundle", "--minify",
+    libraries.run([os.path.join(place, "node_modules", ".bin", "esbuild"), os.path.join(HERE, "page", entry), "--bundle", "--minify",
                "--format=iife", "--target=es2022", "--log-level=warning", "--legal-comments=eof", f"--outfile={target}", *options])
 
 
@@ -78,7 +79,12 @@ def read_scenes():
     return scenes, groups
 
 
-def make(place, module):
+def read_bytes(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def make(place, module, bare):
     """place/page/index.html."""
     npm, page = os.path.join(place, "npm"), os.path.join(place, "page")
     install(npm)
@@ -87,12 +93,13 @@ def make(place, module):
     bundle(npm, "worker.js", worker)
     bundle(npm, "main.js", script, f"--alias:worker-source={worker}", "--loader:.txt=text")
     scenes, groups = read_scenes()
-    data = {"scenes": scenes, "groups": groups}
+    font, licences = (None, "") if bare else libraries.assets(place)
+    data = {"scenes": scenes, "groups": groups, "font": libraries.FONT_PATH}
     parts = [os.path.join(VIEW, name) for name in ("stage.html", "scene.html", "page.css")]
     scripts = [os.path.join(ROOT, "tools", "csgmesh", "page", "view.js")] + [os.path.join(VIEW, name) for name in ("solid.js", "stage.js", "scene.js")]
     text = embed.fill(os.path.join(HERE, "page", "page.html"), *parts, os.path.join(HERE, "page", "page.css"), *scripts, script)
-    with open(module, "rb") as file:
-        text = text.replace("{{module}}", packed(file.read()))
+    for name, content in (("module", read_bytes(module)), ("font", read_bytes(font) if font else b""), ("licences", licences.encode())):
+        text = text.replace("{{" + name + "}}", packed(content))
     text = text.replace("{{data}}", json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/"))
     target = os.path.join(page, "index.html")
     with open(target, "w", encoding="utf-8") as file:
@@ -100,10 +107,10 @@ def make(place, module):
     return target
 
 
-def main(place):
-    module = build.main(place)
-    print(make(os.path.abspath(place), module))
+def main(place, bare):
+    module = build.main(place, bare)
+    print(make(os.path.abspath(place), module, bare))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else build.PLACE)
+    main(*build.read_arguments(__doc__))

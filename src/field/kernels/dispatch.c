@@ -3,7 +3,12 @@
  */
 #include "field/kernels/dispatch.h"
 
+#ifdef CSG_HAVE_KERNEL_scalar
 extern const csg_kernel csg_kernel_scalar;
+#define NARROWEST csg_kernel_scalar
+#else
+#define NARROWEST csg_kernel_simd128
+#endif
 #ifdef CSG_HAVE_KERNEL_sse2
 extern const csg_kernel csg_kernel_sse2;
 #endif
@@ -44,8 +49,10 @@ static bool cpu_has(csgm_isa isa)
 static const csg_kernel *kernel_of(csgm_isa isa)
 {
     switch (isa) {
+#ifdef CSG_HAVE_KERNEL_scalar
     case CSGM_ISA_SCALAR:
         return &csg_kernel_scalar;
+#endif
 #ifdef CSG_HAVE_KERNEL_sse2
     case CSGM_ISA_SSE2:
         return &csg_kernel_sse2;
@@ -91,7 +98,7 @@ csgm_isa csg_cpu_best_isa(csgm_isa wanted)
 const csg_kernel *csg_kernel_for(csgm_isa isa)
 {
     const csg_kernel *kernel = kernel_of(isa);
-    return kernel ? kernel : &csg_kernel_scalar;
+    return kernel ? kernel : &NARROWEST;
 }
 
 const char *csg_isa_name(csgm_isa isa)

@@ -69,6 +69,11 @@ const double miter_limit = 1e6;
 
 } // namespace
 
+bool csg_clipper_available(void)
+{
+    return true;
+}
+
 csgm_status csg_clipper_combine(csg_polygons_op op, csg_fill fill, const csg_clipper_loops *a,
                                 const csg_clipper_loops *b, csg_clipper_take *take, void *user)
 {

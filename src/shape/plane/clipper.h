@@ -29,6 +29,7 @@ typedef struct csg_clipper_loops {
 /* Takes one loop of a result; false: out of memory, and no more come. */
 typedef bool csg_clipper_take(void *user, const csg_clipper_point *points, size_t count);
 
+bool csg_clipper_available(void);
 /* CSGM_ERR_MEMORY, CSGM_ERR_UNSUPPORTED: built without the library. */
 csgm_status csg_clipper_combine(csg_polygons_op op, csg_fill fill, const csg_clipper_loops *a,
                                 const csg_clipper_loops *b, csg_clipper_take *take, void *user);

@@ -3,6 +3,11 @@
  */
 #include "shape/plane/clipper.h"
 
+bool csg_clipper_available(void)
+{
+    return false;
+}
+
 csgm_status csg_clipper_combine(csg_polygons_op op, csg_fill fill, const csg_clipper_loops *a,
                                 const csg_clipper_loops *b, csg_clipper_take *take, void *user)
 {

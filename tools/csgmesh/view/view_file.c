@@ -25,7 +25,10 @@ typedef struct making {
 const char *view_file_format(const char *name)
 {
     csgm_format mesh = csgm_format_from_name(name);
-    if (mesh != CSGM_FORMAT_AUTO && !csgm_format_available(mesh, false))
+    bool is_written = mesh != CSGM_FORMAT_AUTO
+                          ? csgm_format_available(mesh, false)
+                          : csgm_drawing_format_available(csgm_drawing_format_from_name(name));
+    if (!is_written)
         return NULL;
     return cli_drawings_or_mesh_name(name);
 }

@@ -76,7 +76,8 @@ static void put_formats(FILE *out)
     cli_json_end(&json, ']');
     cli_json_open(&json, "drawings", '[');
     for (csgm_drawing_format f = CSGM_DRAWING_NONE + 1; f < CSGM_DRAWING_COUNT; f++)
-        cli_json_string(&json, NULL, csgm_drawing_format_name(f));
+        if (csgm_drawing_format_available(f))
+            cli_json_string(&json, NULL, csgm_drawing_format_name(f));
     cli_json_end(&json, ']');
     fputc(',', out);
 }

@@ -169,7 +169,7 @@ const char *EXPORT(web_answer)(void)
     return answer ? answer : "";
 }
 
-/* JSON: the version, what the build has and lacks, and the formats that it writes. */
+/* JSON: the version, what the build has and lacks. */
 const char *EXPORT(web_about)(void)
 {
     cli_text text;
@@ -179,19 +179,6 @@ const char *EXPORT(web_about)(void)
     cli_json_begin(&json, '{');
     cli_json_string(&json, "version", csgm_version());
     cli_json_string(&json, "features", csgm_build_features());
-    cli_json_open(&json, "formats", '[');
-    for (csgm_format f = CSGM_FORMAT_AUTO + 1; csgm_format_traits(f); f++)
-        if (csgm_format_available(f, false)) {
-            cli_json_open(&json, NULL, '{');
-            cli_json_string(&json, "name", csgm_format_name(f));
-            cli_json_string(&json, "title", csgm_format_title(f));
-            cli_json_end(&json, '}');
-        }
-    cli_json_end(&json, ']');
-    cli_json_open(&json, "drawings", '[');
-    for (csgm_drawing_format f = CSGM_DRAWING_NONE + 1; f < CSGM_DRAWING_COUNT; f++)
-        cli_json_string(&json, NULL, csgm_drawing_format_name(f));
-    cli_json_end(&json, ']');
     cli_json_end(&json, '}');
     return answer_with(cli_text_close(&text));
 }

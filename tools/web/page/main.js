@@ -103,6 +103,8 @@ async function copyLink() {
 async function showAbout() {
   const about = await compiler?.about();
   byId("about-text").textContent = about ? `csgmesh ${about.version}\n${about.features}` : "The compiler is not running.";
+  byId("licences-text").textContent = new TextDecoder().decode(await inflate(byId("licences").textContent));
+  byId("licences-box").hidden = !byId("licences-text").textContent;
   byId("about").showModal();
 }
 
@@ -146,8 +148,10 @@ async function start() {
   const lacks = typeof WebAssembly === "undefined" ? "WebAssembly" : typeof DecompressionStream === "undefined" ? "DecompressionStream" : "";
   if (lacks) return fail(`this browser has no ${lacks}`);
   try {
-    const module = await WebAssembly.compile(await inflate(byId("module").textContent));
-    compiler = new Compiler(module, workerSource, data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]));
+    const [module, font] = await Promise.all([inflate(byId("module").textContent).then((bytes) => WebAssembly.compile(bytes)), inflate(byId("font").textContent)]);
+    const files = data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]);
+    if (font.byteLength) files.push([data.font, new Uint8Array(font)]);
+    compiler = new Compiler(module, workerSource, files);
   } catch (error) {
     return fail(error.message);
   }

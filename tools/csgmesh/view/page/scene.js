@@ -161,7 +161,7 @@ function showFormats({ formats, drawings, scene }) {
   byId("files").hidden = false;
   if (literal(formats) === shownFormats) return;
   shownFormats = literal(formats);
-  byId("format").replaceChildren(optionGroup("Meshes", formats), optionGroup("Drawings of flat scenes", drawings));
+  byId("format").replaceChildren(optionGroup("Meshes", formats), ...(drawings.length ? [optionGroup("Drawings of flat scenes", drawings)] : []));
   byId("format").value = formats.includes("glb") ? "glb" : formats[0];
 }
 
