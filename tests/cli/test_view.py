@@ -115,6 +115,15 @@ class ViewTest(cli.CliTest):
 
 
 class Server(ViewTest):
+    def test_formats(self):
+        """What the page offers is what this build writes."""
+        self.write("plate.scad", PLATE)
+        running = self.start("plate.scad")
+        state = running.wait("done")
+        self.assertEqual(state["formats"], cli.formats_written())
+        self.assertEqual(state["drawings"], ["svg", "dxf", "pdf"] if cli.has_library("Clipper") else [])
+        self.assertEqual(running.get("file?format=svg")[0] == 404, not state["drawings"])
+
     def test_state_and_model(self):
         self.write("plate.scad", PLATE)
         running = self.start("plate.scad")

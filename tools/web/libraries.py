@@ -31,7 +31,8 @@ HARFBUZZ = ["-DHB_NO_" + what for what in (
 # library's own build would write into headers stands in config/NAME.
 LIBRARIES = {
     "zlib": {"package": "zlib", "sources": ["*.c"], "include": ["."], "without": ["gz"], "library": "z"},
-    "polyclipping": {"package": "libpolyclipping", "sources": ["cpp/clipper.cpp"], "include": ["cpp"]},
+    "polyclipping": {"package": "libpolyclipping", "sources": ["cpp/clipper.cpp"], "include": ["cpp"],
+                     "flags": ["-std=c++20", "-include", os.path.join(HERE, "config", "polyclipping", "sort.h")]},
     "qhull_r": {"package": "qhull", "sources": ["src/libqhull_r/*.c"], "include": ["src"], "without": ["rbox"], "flags": ["-Dqh_NOtrace"]},
     "expat": {"package": "expat", "sources": ["expat/lib/xml*.c"], "include": ["expat/lib"], "flags": ["-DXML_STATIC"]},
     "freetype2": {"package": "freetype", "include": ["include"], "needs": ["zlib"], "library": "freetype",

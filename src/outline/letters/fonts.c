@@ -112,7 +112,8 @@ csgm_status csg_fonts_add_file(csg_fonts *fonts, const char *path, csg_problem *
     if (status == CSGM_OK)
         status = need_finder(fonts, problem);
     if (status == CSGM_OK && !csg_font_finder_add(fonts->finder, path))
-        status = csg_problem_set(problem, CSGM_ERR_FORMAT, "the font file cannot be found by name here");
+        status =
+            csg_problem_set(problem, CSGM_ERR_FORMAT, "the font file cannot be found by name here");
     return status;
 }
 

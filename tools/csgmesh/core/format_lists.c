@@ -31,10 +31,11 @@ void cli_formats_list(char *buffer, size_t size, const char *before, uint32_t tr
 
 void cli_formats_of_this_build(char *buffer, size_t size)
 {
-    snprintf(buffer, size, "flat scenes:");
-    for (int i = CSGM_DRAWING_NONE + 1; i < CSGM_DRAWING_COUNT; i++)
-        append(buffer, size, " ", csgm_drawing_format_name((csgm_drawing_format)i));
-    append(buffer, size, "; ", "formats:");
+    *buffer = 0;
+    for (csgm_drawing_format d = CSGM_DRAWING_NONE + 1; d < CSGM_DRAWING_COUNT; d++)
+        if (csgm_drawing_format_available(d))
+            append(buffer, size, *buffer ? " " : "flat scenes: ", csgm_drawing_format_name(d));
+    append(buffer, size, *buffer ? "; " : "", "formats:");
     for (csgm_format f = next_with(CSGM_FORMAT_AUTO, 0); f < CSGM_FORMAT_COUNT; f = next_with(f, 0))
         if (csgm_format_available(f, false))
             append(buffer, size, " ", csgm_format_name(f));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What libzip's own build would write. LIBRARY_VERSION is given by libraries.py.
  */
-#include "zipconf.h"
+#include <zipconf.h>
 #define HAVE_DIRENT_H
 #define HAVE_FSEEKO
 #define HAVE_FTELLO
