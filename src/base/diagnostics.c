@@ -66,16 +66,18 @@ static bool is_about_the_result(csg_diag_code code, const csgm_diag *diag)
            code == CSG_DIAG_PART_LOST;
 }
 
-static bool is_of_library(const csg_diag_sink *sink, const csgm_diag *diag)
+/* Is it the library's own business? What was mended in a surface is not: the points are mostly
+ * those of the caller, and a sheet whose rim was closed is another solid. */
+static bool is_of_library(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
 {
-    return diag->library && !sink->library_warnings;
+    return diag->library && !sink->library_warnings && code != CSG_DIAG_MENDED;
 }
 
 /* The name of a finding's group, as far as a group keeps it. */
-static const char *group_name(const csg_diag_sink *sink, const csgm_diag *diag)
+static const char *group_name(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
 {
     enum { MOST = sizeof(csg_diag_group){0}.name - 1 };
-    const char *name = is_of_library(sink, diag) ? diag->library : diag->source_name;
+    const char *name = is_of_library(sink, code, diag) ? diag->library : diag->source_name;
     size_t length = name ? strlen(name) : 0;
     return length > MOST ? name + length - MOST : name ? name : "";
 }
@@ -83,13 +85,13 @@ static const char *group_name(const csg_diag_sink *sink, const csgm_diag *diag)
 static csg_diag_code group_code(const csg_diag_sink *sink, csg_diag_code code,
                                 const csgm_diag *diag)
 {
-    return is_of_library(sink, diag) ? (csg_diag_code)0 : code;
+    return is_of_library(sink, code, diag) ? (csg_diag_code)0 : code;
 }
 
 /* The group's index, or group_count where there is none yet. */
 static uint32_t find_group(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
 {
-    const char *name = group_name(sink, diag);
+    const char *name = group_name(sink, code, diag);
     csg_diag_code key = group_code(sink, code, diag);
     uint32_t i = 0;
     while (i < sink->group_count &&
@@ -107,7 +109,7 @@ bool csg_diag_is_shown(const csg_diag_sink *sink, csg_diag_code code, const csgm
         return sink->errors < CSG_DIAG_ERRORS_MOST;
     if (is_about_the_result(code, diag))
         return true;
-    if (is_of_library(sink, diag) || sink->warnings_shown >= CSG_DIAG_WARNINGS_MOST)
+    if (is_of_library(sink, code, diag) || sink->warnings_shown >= CSG_DIAG_WARNINGS_MOST)
         return false;
     uint32_t group = find_group(sink, code, diag);
     return group < sink->group_count ? sink->groups[group].shown < CSG_DIAG_WARNINGS_ALIKE
@@ -129,7 +131,7 @@ static void count_warning(csg_diag_sink *sink, csg_diag_code code, const csgm_di
     if (i == sink->group_count) {
         csg_diag_group *group = &sink->groups[sink->group_count++];
         *group = (csg_diag_group){.code = group_code(sink, code, diag)};
-        snprintf(group->name, sizeof group->name, "%s", group_name(sink, diag));
+        snprintf(group->name, sizeof group->name, "%s", group_name(sink, code, diag));
     }
     *(is_shown ? &sink->groups[i].shown : &sink->groups[i].more) += 1;
 }

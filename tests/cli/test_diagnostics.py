@@ -69,6 +69,17 @@ class Text(cli.CliTest):
         self.assertEqual(result.stderr.count("warning W"), 4)
         self.assertNotIn("not shown", result.stderr)
 
+    def test_what_was_mended_is_told_of_libraries_too(self):
+        """A sheet becomes a block: nobody may miss that because a library's module has made the polyhedron."""
+        os.mkdir(os.path.join(self.folder, "libraries"))
+        self.write("libraries/sheets.txt", "module sheet(points) polyhedron(points, [[0, 1, 2], [0, 2, 3], [0, 3, 1]]); a = b;\n")
+        self.write("a.txt", "use <sheets.txt>\nsheet([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]);\n")
+        result = self.run_in("check", "-I", "libraries", "a.txt")
+        self.assert_status(result, 0)
+        self.assertIn("sheets.txt:1:22: warning W0324: polyhedron(): the surface was mended: 1 hole filled", result.stderr)
+        self.assertIn("a.txt:2:1: note: in the call of module 'sheet'", result.stderr)
+        self.assertIn("1 warning inside libraries is not shown", result.stderr)
+
     def test_werror(self):
         self.write("a.txt", "sphere(r = 1, d = 2);\n")
         self.assert_status(self.run_in("check", "a.txt"), 0)
