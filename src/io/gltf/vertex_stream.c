@@ -120,7 +120,8 @@ static const uint8_t *take(reader *r, uint64_t bytes)
 static uint8_t value_in(const uint8_t *packed, uint32_t i, uint32_t bits)
 {
     uint32_t each = 8 / bits, place = bits == 1 ? i % 8 : each - 1 - i % each;
-    return (uint8_t)(packed[i / each] >> place * bits & ((1u << bits) - 1));
+    uint32_t byte = packed[i / each];
+    return (uint8_t)(byte >> place * bits & ((1u << bits) - 1));
 }
 
 static bool read_group(reader *r, uint32_t bits, uint8_t out[GROUP])
