@@ -56,8 +56,12 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     for (int i = 0; i < TRIES; i++) {
         csg_vec3 d =
             csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
+        double value = test_sample(scene, csg_vec3_add(at, d)).value;
         csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
         double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
+        if (value < found->least - 1e-4 || value > found->most + 1e-4)
+            fail_msg("a value of %g, not %g to %g, near (%g, %g, %g) within %g", value,
+                     found->least, found->most, at.x, at.y, at.z, radius);
         if (csg_vec3_norm(g) < 1e-9)
             continue;
         first = csg_vec3_norm(first) > 0 ? first : g;
@@ -103,6 +107,44 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
         check_gradients(scene, random, at, radius, &found);
     free(scratch);
     return is_known;
+}
+
+/* Where two boxes share a face, all around it: the union is zero there and nowhere less, what is
+ * left of one without the other is nowhere more. */
+static void shared_faces_are_no_surface(void **state)
+{
+    (void)state;
+    csg_random random = {.state = 83};
+    for (int i = 0; i < 40; i++) {
+        bool cuts = i % 2;
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_affine beside = csg_affine_translate(csg_vec3_make(cuts ? 0.2 : 1, 0, 0));
+        const csg_box half = {{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}};
+        csg_node_id box = csg_build_block(&c.builder, half, NOWHERE);
+        csg_node_id other = csg_build_block(&c.builder, half, NOWHERE);
+        other = csg_build_transform(&c.builder, &beside, other, NOWHERE);
+        csg_node_kind kind = cuts ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION;
+        mesh_case_compile(&c, joined(&c, kind, SHARP, box, other));
+        size_t floats = csg_kernel_scratch_floats(c.field->depth);
+        float *scratch = malloc(floats * sizeof *scratch);
+        assert_non_null(scratch);
+        double y = csg_random_uniform(&random, -0.1, 0.1),
+               z = csg_random_uniform(&random, -0.1, 0.1);
+        csg_vec3 face = cuts ? csg_vec3_make(0.3 + y, 0.4, z) : csg_vec3_make(0.5, y, z);
+        csg_vec3 at = csg_vec3_sub(
+            csg_vec3_add(face, csg_vec3_scale(test_direction(&random), 0.02)), c.field->center);
+        const csg_vec3 middle[3] = {at, at, at};
+        csg_gradients found;
+        assert_true(csg_gradients_find(csg_kernel_for(CSGM_ISA_AUTO), &c.field->tape, middle, at,
+                                       0.05, scratch, floats, &found));
+        if (cuts)
+            assert_true(found.most < 1e-5 && found.least < -0.01);
+        else
+            assert_true(found.least > -1e-5 && found.most > 0.01);
+        free(scratch);
+        mesh_case_end(&c);
+    }
 }
 
 static csg_blend any_blend(csg_random *random)
@@ -353,13 +395,10 @@ static void cones_of_rules_hold(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cones_hold),
-        cmocka_unit_test(cones_of_outlines_hold),
-        cmocka_unit_test(cones_of_polyhedra_hold),
-        cmocka_unit_test(cones_of_needles_hold),
-        cmocka_unit_test(cones_of_formulas_hold),
-        cmocka_unit_test(cones_of_warps_hold),
-        cmocka_unit_test(cones_of_combinations_hold),
+        cmocka_unit_test(shared_faces_are_no_surface), cmocka_unit_test(cones_hold),
+        cmocka_unit_test(cones_of_outlines_hold),      cmocka_unit_test(cones_of_polyhedra_hold),
+        cmocka_unit_test(cones_of_needles_hold),       cmocka_unit_test(cones_of_formulas_hold),
+        cmocka_unit_test(cones_of_warps_hold),         cmocka_unit_test(cones_of_combinations_hold),
         cmocka_unit_test(cones_of_rules_hold),
     };
     if (argc > 1)

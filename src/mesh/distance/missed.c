@@ -104,11 +104,20 @@ static bool find_surface(const walk *w, worker *s, const cube *q, csg_vec3 *out)
     return fabs(value) <= noise;
 }
 
+enum { RINGS = 4 }; /* around a place of the surface, each a quarter of that before it */
+
+/* What is not as deep has no room for a gap, or a wall. */
+static double least_depth(const walk *w)
+{
+    double last = 0.25 * w->error / (1 << 2 * (RINGS - 1));
+    return fmax(4 * (double)w->remesh->probe.noise, last);
+}
+
 /* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
  * within. A gap as narrow as the last ring would be none. */
 static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
 {
-    enum { RINGS = 4, WAYS = 6 };
+    enum { WAYS = 6 };
     double noise = 4 * (double)w->remesh->probe.noise, reach = 0.25 * w->error;
     csg_vec3 g = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
     if (value_at(w, s, &q->tape, csg_vec3_sub(p, csg_vec3_scale(g, reach))) < -noise)
@@ -215,6 +224,8 @@ static verdict settle(const walk *w, worker *s, const cube *q)
                                     s->scratch, w->scratch_floats, &gradients);
     if (known && fabs(value) > change_in(q, &gradients) + noise)
         return SETTLED;
+    if (known && (gradients.least > -least_depth(w) || gradients.most < least_depth(w)))
+        return SETTLED; /* nothing, or a face that solids share */
     bool small = q->half <= w->least, sheet = known && is_one_sheet(&gradients.balls);
     bool near = !small && !sheet && is_near_mesh(w, q);
     if (!small && !sheet && !near)

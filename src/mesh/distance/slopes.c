@@ -15,6 +15,7 @@
 typedef struct operand {
     double value, doubt; /* at the centre; rounding */
     double low, high;    /* over the triangle */
+    double least, most;  /* over the ball, but for rounding */
     csg_cone_balls balls;
     double longest; /* gradient */
     bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
@@ -202,6 +203,32 @@ static double orthogonal_value(double n, double turn, double a, double b)
     return u > 0 && v > 0 ? n + turn * sqrt(u * u + v * v) : turn * fmax(turn * a, turn * b);
 }
 
+/* What the larger one of two operands is nowhere less than in the ball: their mean with some
+ * weights, whose gradient is next to nothing where two solids share a face, so that a field of zero
+ * is seen to be no surface. turn: of the operands' values. */
+static double least_of_larger(const walker *w, const operand *a, const operand *b, double turn)
+{
+    double along = 0, square = 0, steepest = 0;
+    if (a->stretched || b->stretched || a->faces || b->faces || a->balls.has_edges ||
+        b->balls.has_edges)
+        return -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        double difference = b->balls.items[0].at[k] - a->balls.items[0].at[k];
+        along += b->balls.items[0].at[k] * difference;
+        square += difference * difference;
+    }
+    double share = square > 0 ? fmax(0, fmin(1, along / square)) : 0.5, other = 1 - share;
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++) {
+            const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
+            double mean[3];
+            for (int axis = 0; axis < 3; axis++)
+                mean[axis] = share * p->at[axis] + other * q->at[axis];
+            steepest = fmax(steepest, norm_of(mean) + share * p->spread + other * q->spread);
+        }
+    return turn * (share * a->value + other * b->value) - steepest * w->radius;
+}
+
 /* An intersection is a union of what is turned around: shares are the same, values too but for the
  * sign. */
 static bool join_operands(walker *w, const csg_tape_node *node)
@@ -222,6 +249,8 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         bool done = mix(a, b, r, true);
         a->low = orthogonal_value((double)n, turn, a->low, b->low);
         a->high = orthogonal_value((double)n, turn, a->high, b->high);
+        a->least = orthogonal_value((double)n, turn, a->least, b->least);
+        a->most = orthogonal_value((double)n, turn, a->most, b->most);
         a->stretched |= edge;
         a->faces |= edge;
         a->longest *= edge ? 1.41421357 : 1;
@@ -233,6 +262,13 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         return false;
     range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
     double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);
+    double least = turn * least_of_larger(w, a, b, turn);
+    a->least = turn * joined_value(node, n, chi, turn * a->least, turn * b->least);
+    a->most = turn * joined_value(node, n, chi, turn * a->most, turn * b->most);
+    if (turn > 0)
+        a->least = fmax(a->least, least);
+    else
+        a->most = fmin(a->most, least);
     a->doubt = fmax(a->doubt, b->doubt) + 1e-6 * fabs(a->value - b->value);
     a->value = value;
     a->low = turn * joined_value(node, n, chi, turn * a->low, turn * b->low) - a->doubt;
@@ -241,11 +277,23 @@ static bool join_operands(walker *w, const csg_tape_node *node)
 }
 
 /* Which of an operand's values. */
-typedef enum which { MIDDLE, LOW, HIGH } which;
+typedef enum which { MIDDLE, LOW, HIGH, LEAST, MOST } which;
 
 static double value_of(const operand *o, which w)
 {
-    return w == MIDDLE ? o->value : w == LOW ? o->low : o->high;
+    switch (w) {
+    case MIDDLE:
+        return o->value;
+    case LOW:
+        return o->low;
+    case HIGH:
+        return o->high;
+    case LEAST:
+        return o->least;
+    case MOST:
+        return o->most;
+    }
+    return NAN;
 }
 
 /* The value of a round union, by Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12),
@@ -280,6 +328,8 @@ static bool join_round(walker *w, const csg_tape_node *node)
     double value = round_value(of, MIDDLE, node->arity, turn, size);
     double low = round_value(of, LOW, node->arity, turn, size);
     double high = round_value(of, HIGH, node->arity, turn, size);
+    double least = round_value(of, LEAST, node->arity, turn, size);
+    double most = round_value(of, MOST, node->arity, turn, size);
     for (uint32_t i = 0; i < node->arity; i++) {
         doubt = fmax(doubt, of[i].doubt);
         for (uint32_t k = i + 1; k < node->arity; k++)
@@ -310,6 +360,8 @@ static bool join_round(walker *w, const csg_tape_node *node)
     of[0].doubt = doubt + 1e-5 * size;
     of[0].low = low - of[0].doubt;
     of[0].high = high + of[0].doubt;
+    of[0].least = least;
+    of[0].most = most;
     return done;
 }
 
@@ -445,6 +497,8 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
     find_range(w, node, low, high, leaf);
+    leaf->least = leaf->value - leaf->longest * w->radius;
+    leaf->most = leaf->value + leaf->longest * w->radius;
     return true;
 }
 
@@ -532,6 +586,8 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
     out->longest = find_longest(&w.stack[0]);
     out->low = w.stack[0].low;
     out->high = w.stack[0].high;
+    out->least = w.stack[0].least;
+    out->most = w.stack[0].most;
     out->stray = find_stray(&w.stack[0]);
     out->doubt = w.stack[0].doubt;
     return out->balls.count > 0;

@@ -8,6 +8,9 @@
  * And the field's range over a triangle in the ball: that of a leaf from its values at the corners
  * and how far its gradients stray, of convex primitives by their tangent planes, then through the
  * operators, which are monotone. A triangle that ends at a crease has a narrow one.
+ *
+ * And over the ball: where two solids share a face their union is zero there, but nowhere less, and
+ * what is cut off along a face that a solid has already is nowhere more.
  */
 #ifndef CSG_MESH_DISTANCE_SLOPES_H
 #define CSG_MESH_DISTANCE_SLOPES_H
@@ -20,11 +23,12 @@ enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 
 typedef struct csg_gradients {
     csg_cone_balls balls;
-    double value;     /* of the field, at the centre */
-    double low, high; /* over the triangle */
-    double longest;   /* of all gradients */
-    double stray;     /* no gradient is farther from one and the same vector; INFINITY: not known */
-    double doubt;     /* rounding of the field's values */
+    double value;       /* of the field, at the centre */
+    double low, high;   /* over the triangle */
+    double least, most; /* over the ball, but for rounding: nowhere less, nowhere more */
+    double longest;     /* of all gradients */
+    double stray; /* no gradient is farther from one and the same vector; INFINITY: not known */
+    double doubt; /* rounding of the field's values */
 } csg_gradients;
 
 /* Over the ball around c, and over a triangle within it. scratch: as the kernel needs it. False: no
