@@ -207,6 +207,28 @@ static void test_ball(void **state)
     }
 }
 
+/* A face that two solids share is no surface: not within their union, and not where nothing is left
+ * between them. */
+static void test_shared_faces(void **state)
+{
+    for (int cuts = 0; cuts < 2; cuts++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        csg_node_id body =
+            cuts ? moved(&c, make_box(&c, 1, 0.75, 1), 0, 0, 0.5) : make_cylinder(&c, 1, 0.5);
+        csg_node_id other = cuts ? make_box(&c, 1, 0.75, 0.5) : make_cylinder(&c, 1, 0.5);
+        other = moved(&c, other, 0, 0, 1);
+        csg_node_kind kind = cuts ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION;
+        mesh_case_compile(&c, joined(&c, kind, SHARP, body, other));
+        csgm_mesh_options options = within(0.002);
+        mesh_build_closed(&c, &options, cuts ? "half of a bar" : "two halves of a rod");
+        assert_int_equal(c.findings, 0);
+        assert_near_surface(&c, 0.002, "shared faces");
+        assert_true(fabs(c.check.volume - (cuts ? 3 : 2 * 3.14159)) < 0.03);
+        mesh_case_end(&c);
+    }
+}
+
 /* A drilled and rounded plate with two colours. */
 static csg_node_id plate(mesh_case *c)
 {
@@ -437,6 +459,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_box),
         cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_shared_faces),
         cmocka_unit_test(test_colors),
         cmocka_unit_test(test_same_for_all_threads),
         cmocka_unit_test(test_simplify),

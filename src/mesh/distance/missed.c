@@ -113,23 +113,32 @@ static double least_depth(const walk *w)
     return fmax(4 * (double)w->remesh->probe.noise, last);
 }
 
-/* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
- * within. A gap as narrow as the last ring would be none. */
-static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
+/* Whether f has that sign, 1 or -1, next to a place where it is zero. */
+static bool has_sign(const walk *w, worker *s, const cube *q, csg_vec3 p, csg_vec3 uphill,
+                     double sign)
 {
     enum { WAYS = 6 };
     double noise = 4 * (double)w->remesh->probe.noise, reach = 0.25 * w->error;
-    csg_vec3 g = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
-    if (value_at(w, s, &q->tape, csg_vec3_sub(p, csg_vec3_scale(g, reach))) < -noise)
+    if (sign * value_at(w, s, &q->tape, csg_vec3_add(p, csg_vec3_scale(uphill, sign * reach))) >
+        noise)
         return true;
     for (int ring = 0; ring < RINGS; ring++, reach /= 4)
         for (int i = 0; i < WAYS; i++) {
             double step = i % 2 ? reach : -reach;
             csg_vec3 off = {i / 2 == 0 ? step : 0, i / 2 == 1 ? step : 0, i / 2 == 2 ? step : 0};
-            if (value_at(w, s, &q->tape, csg_vec3_add(p, off)) < -noise)
+            if (sign * value_at(w, s, &q->tape, csg_vec3_add(p, off)) > noise)
                 return true;
         }
     return false;
+}
+
+/* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
+ * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
+ * would be none. */
+static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
+{
+    csg_vec3 uphill = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
+    return has_sign(w, s, q, p, uphill, -1) && has_sign(w, s, q, p, uphill, 1);
 }
 
 /* How far the field can be from its value in the middle, all over the cube. */
