@@ -103,7 +103,7 @@ async function copyLink() {
 async function showAbout() {
   const about = await compiler?.about();
   byId("about-text").textContent = about ? `csgmesh ${about.version}\n${about.features}` : "The compiler is not running.";
-  byId("licences-text").textContent = new TextDecoder().decode(await inflate(byId("licences").textContent));
+  byId("licences-text").textContent = new TextDecoder().decode(await inflate("licences"));
   byId("licences-box").hidden = !byId("licences-text").textContent;
   byId("about").showModal();
 }
@@ -138,24 +138,32 @@ async function openLink() {
 
 // ---- the module: base64 of gzip in the page
 
-const bytesOfBase64 = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-const inflate = (text) => new Response(new Blob([bytesOfBase64(text)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+function bytesOfBase64(text) {
+  const characters = atob(text), bytes = new Uint8Array(characters.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = characters.charCodeAt(i);
+  return bytes;
+}
+
+const inflated = (id, type) => new Response(new Blob([bytesOfBase64(byId(id).textContent)]).stream().pipeThrough(new DecompressionStream("gzip")), { headers: { "content-type": type } });
+const inflate = (id) => inflated(id, "application/octet-stream").arrayBuffer();
+
+// The module is compiled while it is inflated, and while a worker starts.
+async function compile() {
+  const lacks = typeof WebAssembly === "undefined" ? "WebAssembly" : typeof DecompressionStream === "undefined" ? "DecompressionStream" : "";
+  if (lacks) throw new Error(`this browser has no ${lacks}`);
+  const module = WebAssembly.compileStreaming(inflated("module", "application/wasm")), font = new Uint8Array(await inflate("font"));
+  const files = data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]);
+  if (font.length) files.push([data.font, font]);
+  compiler = new Compiler(module, workerSource, files);
+  mesh();
+  await module;
+}
 
 async function start() {
   fillMenu();
   listen();
   await openLink();
-  const lacks = typeof WebAssembly === "undefined" ? "WebAssembly" : typeof DecompressionStream === "undefined" ? "DecompressionStream" : "";
-  if (lacks) return fail(`this browser has no ${lacks}`);
-  try {
-    const [module, font] = await Promise.all([inflate(byId("module").textContent).then((bytes) => WebAssembly.compile(bytes)), inflate(byId("font").textContent)]);
-    const files = data.scenes.map(([name, text]) => [`/${name}`, encoder.encode(text)]);
-    if (font.byteLength) files.push([data.font, new Uint8Array(font)]);
-    compiler = new Compiler(module, workerSource, files);
-  } catch (error) {
-    return fail(error.message);
-  }
-  mesh();
+  compile().catch((error) => fail(error.message));
 }
 
 function fail(reason) {
