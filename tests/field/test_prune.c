@@ -69,6 +69,36 @@ static void test_outlines(void **state)
     assert_true(totals.cells > 2000 && totals.shortened > 300 && totals.in_band > 4000);
 }
 
+/* Extrusions that an offset has made larger: beside their edges the distance to the figure matters
+ * however far within the band's other side it is. Figures are what two turned squares share. */
+static void test_raised_extrusions(void **state)
+{
+    walk totals = {0};
+    csg_random random = {29};
+    for (unsigned i = 0; i < 300; i++) {
+        walk w = {0};
+        char what[48];
+        csg_node_id squares[2];
+        snprintf(what, sizeof what, "raised extrusion %u", i);
+        test_subject_begin(&w.subject);
+        csg_scene_builder *builder = &w.subject.builder;
+        for (int k = 0; k < 2; k++) {
+            csg_affine turn =
+                csg_affine_rotate(csg_random_uniform(&random, -180, 180), csg_vec3_make(0, 0, 1));
+            turn.t[0] = csg_random_uniform(&random, -0.2, 0.2);
+            squares[k] =
+                csg_build_primitive(builder, CSG_NODE_RECTANGLE, (double[]){0.2, 0.2, 0}, NOWHERE);
+            squares[k] = csg_build_transform(builder, &turn, squares[k], NOWHERE);
+        }
+        csg_node_id root =
+            csg_build_operator(builder, CSG_NODE_INTERSECTION, CSG_SHARP, squares, 2, NOWHERE);
+        root = csg_build_extrude(builder, root, -0.2, 0.2, NOWHERE);
+        root = csg_build_offset(builder, csg_random_uniform(&random, 0.1, 0.2), root, NOWHERE);
+        walk_through(&w, root, &random, 0.5, 0.3, what, &totals);
+    }
+    assert_true(totals.cells > 2000 && totals.shortened > 300 && totals.in_band > 4000);
+}
+
 /* Trees of fillets, whose values depend on gradients and may jump. */
 static void test_random_fillet_scenes(void **state)
 {
@@ -257,7 +287,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),        cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_random_fillet_scenes), cmocka_unit_test(test_threshold),
-        cmocka_unit_test(test_one_of_many),          cmocka_unit_test(test_pairs_of_fillets),
+        cmocka_unit_test(test_raised_extrusions),    cmocka_unit_test(test_one_of_many),
+        cmocka_unit_test(test_pairs_of_fillets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

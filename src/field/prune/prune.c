@@ -306,6 +306,10 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
             threshold[o] = fminf(threshold[o], edge);
         child_low[o] = demand_low[o] - (is_union || is_smooth ? chi : 0);
         child_high[o] = demand_high[o] + (is_union && !is_smooth ? 0 : chi);
+        if (op->blend == CSG_BLEND_ORTHOGONAL && is_union)
+            child_low[o] = fminf(child_low[o], edge);
+        else if (op->blend == CSG_BLEND_ORTHOGONAL)
+            child_high[o] = fmaxf(child_high[o], -edge);
     }
     for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
         uint8_t mask =
