@@ -82,11 +82,17 @@ static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_
                                 w->scratch_floats);
 }
 
+/* Values this small are zero. */
+static double noise_of(const walk *w)
+{
+    return 4 * (double)w->remesh->probe.noise;
+}
+
 /* A place of the surface in the cube or a little around it, by Newton's steps from its middle. */
 static bool find_surface(const walk *w, worker *s, const cube *q, csg_vec3 *out)
 {
     enum { STEPS = 6 };
-    double noise = 4 * (double)w->remesh->probe.noise, reach = q->half + 0.9 * q->around;
+    double noise = noise_of(w), reach = q->half + 0.9 * q->around;
     double value = q->value;
     csg_vec3 p = q->c;
     for (int step = 0; step < STEPS && fabs(value) > noise; step++) {
@@ -110,7 +116,7 @@ enum { RINGS = 4 }; /* around a place of the surface, each a quarter of that bef
 static double least_depth(const walk *w)
 {
     double last = 0.25 * w->error / (1 << 2 * (RINGS - 1));
-    return fmax(4 * (double)w->remesh->probe.noise, last);
+    return fmax(noise_of(w), last);
 }
 
 /* Whether f has that sign, 1 or -1, next to a place where it is zero. */
@@ -118,7 +124,7 @@ static bool has_sign(const walk *w, worker *s, const cube *q, csg_vec3 p, csg_ve
                      double sign)
 {
     enum { WAYS = 6 };
-    double noise = 4 * (double)w->remesh->probe.noise, reach = 0.25 * w->error;
+    double noise = noise_of(w), reach = 0.25 * w->error;
     if (sign * value_at(w, s, &q->tape, csg_vec3_add(p, csg_vec3_scale(uphill, sign * reach))) >
         noise)
         return true;
@@ -224,7 +230,7 @@ static verdict settle(const walk *w, worker *s, const cube *q)
     csg_vec3 p;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    double noise = 4 * (double)w->remesh->probe.noise;
+    double noise = noise_of(w);
     const csg_vec3 middle[3] = {q->c, q->c, q->c};
     csg_gradients gradients;
     if (fabs(value) > w->lipschitz * ball + noise)

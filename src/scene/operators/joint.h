@@ -6,6 +6,14 @@
 
 #include "scene/scene.h"
 
+enum {
+    CSG_JOINT_GRID = 5,         /* places looked at along each side of a face */
+    CSG_JOINT_LEAST_LOOKS = 100 /* an operator that could not be asked so often is not looked at */
+};
+
+/* Of the box: ends that are nearer are one. */
+#define CSG_JOINT_SAME 1e-9
+
 typedef enum csg_joint_kind {
     CSG_JOINT_SWELLS, /* beyond a face that solids have in common, by `amount` at least */
     CSG_JOINT_FILLS,  /* a gap, `amount` wide, between two solids */

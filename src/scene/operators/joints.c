@@ -10,16 +10,12 @@
 #include "scene/reference.h"
 
 enum {
-    GRID = 5,            /* places along each side of a face */
-    MOST_SOLIDS = 64,    /* of one union */
-    MOST_WORK = 2000000, /* nodes evaluated, of a scene */
-    LEAST_LOOKS = 100    /* a union that could not be asked so often is not looked at */
+    MOST_SOLIDS = 64,   /* of one union */
+    MOST_WORK = 2000000 /* nodes evaluated, of a scene */
 };
 
 /* Of the blend's width: what swells by less is not worth a word. */
 static const double LEAST_SWELLING = 0.01;
-/* Of the box: ends that are nearer are one. */
-static const double SAME = 1e-9;
 /* Of a blend's support: solids that are farther apart than so much are nowhere both near enough to
  * the surface, which comes out by less than the support itself. */
 static const double APART = 4;
@@ -76,7 +72,8 @@ static bool find_common(const look *l, uint32_t a, uint32_t b, face *f)
 /* One of the grid, `beyond` the face along its axis. */
 static csg_vec3 place_on(const face *f, int number, double beyond)
 {
-    double p[3], part[2] = {(number % GRID + 0.5) / GRID, (number / GRID + 0.5) / GRID};
+    double p[3], part[2] = {(number % CSG_JOINT_GRID + 0.5) / CSG_JOINT_GRID,
+                            (number / CSG_JOINT_GRID + 0.5) / CSG_JOINT_GRID};
     for (int k = 0, n = 0; k < 3; k++)
         p[k] = k == f->axis ? f->at + beyond : f->low[k] + part[n++] * (f->high[k] - f->low[k]);
     return csg_vec3_make(p[0], p[1], p[2]);
@@ -142,7 +139,7 @@ static bool is_seen(look *l, csg_vec3 place)
     if (!find_in_scene(l, &place) || !can_ask(l, 0, l->scene->root))
         return false;
     double value = csg_reference_below(&l->room, l->scene, 0, l->scene->root, place).value;
-    return value >= -SAME * (1 + csg_vec3_norm(place)) && !is_covered(l);
+    return value >= -CSG_JOINT_SAME * (1 + csg_vec3_norm(place)) && !is_covered(l);
 }
 
 /* ---- swelling --------------------------------------------------------------------------------- */
@@ -158,7 +155,7 @@ static bool are_faces(const look *l, uint32_t a, uint32_t b, double rounding)
 static void look_at_face(look *l, const face *f, const uint32_t pair[2], double turn,
                          double rounding, csg_joint *worst)
 {
-    for (int i = 0; i < GRID * GRID; i++) {
+    for (int i = 0; i < CSG_JOINT_GRID * CSG_JOINT_GRID; i++) {
         double value;
         if (!ask(l, place_on(f, i, 0), &value))
             return;
@@ -192,11 +189,11 @@ static void look_for_swelling(look *l, const csg_box *hull, csg_joint *worst)
         face f = {.axis = side / 2, .at = end_of(*hull, side)};
         uint32_t before = UINT32_MAX; /* neighbours in the order of their writing are enough */
         for (uint32_t k = 0; k < l->node->child_count && isfinite(f.at); k++) {
-            if (!(fabs(end_of(box_of(l, k), side) - f.at) <= SAME * extent))
+            if (!(fabs(end_of(box_of(l, k), side) - f.at) <= CSG_JOINT_SAME * extent))
                 continue;
             const uint32_t pair[2] = {before, k};
             if (before != UINT32_MAX && find_common(l, before, k, &f))
-                look_at_face(l, &f, pair, side % 2 ? 1 : -1, SAME * extent, worst);
+                look_at_face(l, &f, pair, side % 2 ? 1 : -1, CSG_JOINT_SAME * extent, worst);
             before = k;
         }
     }
@@ -225,7 +222,7 @@ static bool find_gap(const look *l, uint32_t a, uint32_t b, face *middle, double
 static bool fills(look *l, const face *f, uint32_t a, uint32_t b)
 {
     int filled = 0;
-    for (int i = 0; i < GRID * GRID; i++) {
+    for (int i = 0; i < CSG_JOINT_GRID * CSG_JOINT_GRID; i++) {
         csg_vec3 p = place_on(f, i, 0);
         double partials[2], value;
         if (!ask(l, p, &value))
@@ -233,7 +230,7 @@ static bool fills(look *l, const face *f, uint32_t a, uint32_t b)
         const double values[2] = {value_of(l, a), value_of(l, b)};
         filled += csg_reference_union(l->blend, values, 2, partials) >= 0 && is_seen(l, p);
     }
-    return 2 * filled > GRID * GRID;
+    return 2 * filled > CSG_JOINT_GRID * CSG_JOINT_GRID;
 }
 
 static void look_for_filled_gaps(look *l, double least, csg_joint *worst)
@@ -289,7 +286,7 @@ static bool acts_between(look *l, uint32_t a, uint32_t b)
             return true;
         double most = fmax(value_of(l, a), value_of(l, b));
         bool at_end = i == 0 || i == STEPS;
-        if ((value >= 0 && most < 0) || (at_end && value > most + SAME * fabs(most)))
+        if ((value >= 0 && most < 0) || (at_end && value > most + CSG_JOINT_SAME * fabs(most)))
             return true;
     }
     return false;
@@ -381,7 +378,7 @@ static void walk(look *l, csg_joint_take *take, void *user)
         l->id = (csg_node_id)i;
         l->node = &scene->nodes[i];
         l->blend = csg_scene_blend(scene, l->node);
-        if (LEAST_LOOKS * (l->cost_before[i + 1] - l->cost_before[l->first]) < MOST_WORK)
+        if (CSG_JOINT_LEAST_LOOKS * (l->cost_before[i + 1] - l->cost_before[l->first]) < MOST_WORK)
             look_at_union(l, take, user);
     }
 }
@@ -405,7 +402,7 @@ static bool look_for_seams(look *l, csg_joint_take *take, void *user)
     uint32_t most = 0;
     for (size_t i = 0; i < scene->node_count; i++)
         most = scene->nodes[i].child_count > most ? scene->nodes[i].child_count : most;
-    size_t told = scene->node_count * sizeof(bool), order = 2 * most * sizeof(csg_node_id);
+    size_t told = scene->node_count * sizeof(bool), order = 2 * most * sizeof(csg_seam_end);
     csg_seam_search search = {.scene = scene,
                               .room = &l->room,
                               .firsts = l->firsts,

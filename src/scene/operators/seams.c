@@ -9,20 +9,14 @@
 #include <stdlib.h>
 
 enum {
-    GRID = 5,            /* places along each side of where a blend may act */
     HALVINGS = 40,       /* to the place at which the other operands are so far away */
-    LEAST_LOOKS = 100,   /* an operator that could not be asked so often is not looked at */
     MOST_ANCESTORS = 64, /* between a seam and a blend */
     MOST_OTHERS = 256    /* boxes of what else a blend has */
 };
 
-/* Of the box: ends that are nearer are one. */
-static const double SAME = 1e-9;
-
 /* A seam in the frame of its union, and the way from there to one operator above it. */
 typedef struct seam {
     csg_seam_search *search;
-    csg_node_id id;    /* the union, or a difference of which two other operands meet */
     int axis;          /* normal to the face */
     csg_box face;      /* the part that both have, without thickness */
     double sign;       /* 1: both sides of the seam are inside of the operand on the way; -1 */
@@ -56,7 +50,7 @@ static bool can_ask(csg_seam_search *s, csg_node_id id)
 }
 
 /* The value of a node at p in its own frame; those of its operands are in the room then. */
-static bool ask(csg_seam_search *s, csg_node_id id, csg_vec3 p, double *value)
+static bool find_value(csg_seam_search *s, csg_node_id id, csg_vec3 p, double *value)
 {
     if (!can_ask(s, id))
         return false;
@@ -85,7 +79,7 @@ static double depth_of_others(const seam *m)
 static bool find_depth(const seam *m, csg_vec3 p, double *depth)
 {
     double value;
-    if (!ask(m->search, m->above, csg_affine_point(&m->up, p), &value))
+    if (!find_value(m->search, m->above, csg_affine_point(&m->up, p), &value))
         return false;
     *depth = depth_of_others(m);
     return true;
@@ -95,7 +89,7 @@ static bool find_depth(const seam *m, csg_vec3 p, double *depth)
  * the sign that makes the inside of the seam positive. */
 static bool find_values(const seam *m, csg_vec3 p, double *operand, double *result)
 {
-    if (!ask(m->search, m->above, csg_affine_point(&m->up, p), result))
+    if (!find_value(m->search, m->above, csg_affine_point(&m->up, p), result))
         return false;
     *operand = m->sign * m->search->room->samples[m->below].value;
     *result *= m->sign;
@@ -122,11 +116,12 @@ static bool is_seen(const seam *m, csg_vec3 place, const csg_vec3 neighbours[2])
 {
     csg_node_id root = m->search->scene->root;
     double value, beside;
-    if (!find_in_scene(m, &place) || !ask(m->search, root, place, &value) || value == 0)
+    if (!find_in_scene(m, &place) || !find_value(m->search, root, place, &value) || value == 0)
         return false;
     for (int i = 0; i < 2; i++) {
         csg_vec3 p = neighbours[i];
-        if (!find_in_scene(m, &p) || !ask(m->search, root, p, &beside) || !(beside * value < 0))
+        if (!find_in_scene(m, &p) || !find_value(m->search, root, p, &beside) ||
+            !(beside * value < 0))
             return false;
     }
     return true;
@@ -135,7 +130,7 @@ static bool is_seen(const seam *m, csg_vec3 place, const csg_vec3 neighbours[2])
 /* Whether at a place on the seam the blend leaves nothing where it leaves both sides. */
 static bool is_groove(const seam *m, csg_vec3 p)
 {
-    double operand, result, rounding = SAME * (m->support + csg_vec3_norm(p));
+    double operand, result, rounding = CSG_JOINT_SAME * (m->support + csg_vec3_norm(p));
     if (!find_values(m, p, &operand, &result) || fabs(operand) > rounding || !(result < -rounding))
         return false;
     for (double step = m->support / 64; step <= 4 * m->support; step *= 2) {
@@ -192,22 +187,23 @@ static bool try_pair(const seam *m, const csg_vec3 places[2], const double depth
 /* In a part of the face: between neighbours of a grid of which one is outside of the others. */
 static bool look_within(const seam *m, const csg_box *part, csg_joint *joint)
 {
-    csg_vec3 places[GRID * GRID];
-    double depths[GRID * GRID];
-    csg_vec3 size = csg_vec3_sub(part->max, part->min);
+    csg_vec3 places[CSG_JOINT_GRID * CSG_JOINT_GRID];
+    double depths[CSG_JOINT_GRID * CSG_JOINT_GRID];
     int u = (m->axis + 1) % 3, v = (m->axis + 2) % 3;
-    double by_u = u == 0 ? size.x : u == 1 ? size.y : size.z;
-    double by_v = v == 0 ? size.x : v == 1 ? size.y : size.z;
-    for (int i = 0; i < GRID * GRID; i++) {
-        places[i] = csg_vec3_add(part->min, along(u, by_u * (i % GRID + 0.5) / GRID));
-        places[i] = csg_vec3_add(places[i], along(v, by_v * (i / GRID + 0.5) / GRID));
+    double by_u = high_of(part, u) - low_of(part, u), by_v = high_of(part, v) - low_of(part, v);
+    for (int i = 0; i < CSG_JOINT_GRID * CSG_JOINT_GRID; i++) {
+        places[i] =
+            csg_vec3_add(part->min, along(u, by_u * (i % CSG_JOINT_GRID + 0.5) / CSG_JOINT_GRID));
+        places[i] =
+            csg_vec3_add(places[i], along(v, by_v * (i / CSG_JOINT_GRID + 0.5) / CSG_JOINT_GRID));
         if (!find_depth(m, places[i], &depths[i]))
             return false;
     }
-    for (int i = 0; i < GRID * GRID; i++)
-        for (int step = 1; step <= GRID; step += GRID - 1) {
+    for (int i = 0; i < CSG_JOINT_GRID * CSG_JOINT_GRID; i++)
+        for (int step = 1; step <= CSG_JOINT_GRID; step += CSG_JOINT_GRID - 1) {
             int k = i + step;
-            if (k >= GRID * GRID || (step == 1 && i % GRID == GRID - 1))
+            if (k >= CSG_JOINT_GRID * CSG_JOINT_GRID ||
+                (step == 1 && i % CSG_JOINT_GRID == CSG_JOINT_GRID - 1))
                 continue;
             if (try_pair(m, (csg_vec3[2]){places[i], places[k]}, (double[2]){depths[i], depths[k]},
                          joint))
@@ -330,7 +326,7 @@ static bool look_above(seam *m, csg_joint *joint)
         double turned = node->kind == CSG_NODE_DIFFERENCE && !is_first ? -1 : 1;
         uint64_t cost = s->cost_before[m->above + 1] - s->cost_before[s->firsts[m->above]];
         if (!s->is_told[m->above] && turned > 0 && rounds(s->scene, node, m->sign) &&
-            LEAST_LOOKS * cost < s->most_work) {
+            CSG_JOINT_LEAST_LOOKS * cost < s->most_work) {
             m->support = csg_blend_support(csg_scene_blend(s->scene, node));
             joint->node = node;
             if (look_at_blend(m, joint))
@@ -344,42 +340,12 @@ static bool look_above(seam *m, csg_joint *joint)
 
 /* ---- pairs of solids ---------------------------------------------------------------------------- */
 
-typedef struct ends {
-    const csgm_scene *scene;
-    int axis;
-    bool is_high;
-} ends;
-
-static double end_of(const ends *e, csg_node_id id)
+static int compare_ends(const void *a, const void *b)
 {
-    const csg_box *b = &e->scene->bounds[id];
-    return e->is_high ? high_of(b, e->axis) : low_of(b, e->axis);
-}
-
-/* Sorts nodes by an end of their boxes: heaps need neither recursion nor more room. */
-static void sift(const ends *e, csg_node_id *order, uint32_t at, uint32_t count)
-{
-    for (uint32_t child; (child = 2 * at + 1) < count; at = child) {
-        if (child + 1 < count && end_of(e, order[child + 1]) > end_of(e, order[child]))
-            child++;
-        if (!(end_of(e, order[child]) > end_of(e, order[at])))
-            return;
-        csg_node_id swapped = order[at];
-        order[at] = order[child];
-        order[child] = swapped;
-    }
-}
-
-static void sort_by_ends(const ends *e, csg_node_id *order, uint32_t count)
-{
-    for (uint32_t i = count / 2; i-- > 0;)
-        sift(e, order, i, count);
-    for (uint32_t i = count; i-- > 1;) {
-        csg_node_id last = order[i];
-        order[i] = order[0];
-        order[0] = last;
-        sift(e, order, 0, i);
-    }
+    const csg_seam_end *one = a, *other = b;
+    if (one->at != other->at)
+        return one->at < other->at ? -1 : 1;
+    return (one->id > other->id) - (one->id < other->id);
 }
 
 /* The face that one solid ends in where the other begins; false: they have none in common. */
@@ -393,7 +359,7 @@ static bool find_face(const csgm_scene *scene, int axis, csg_node_id before, csg
         high[k] = fmin(high_of(one, k), high_of(other, k));
         if (k == axis)
             low[k] = high[k] = high_of(one, k);
-        else if (!(high[k] > low[k] + (isfinite(low[k]) ? SAME * (1 + fabs(low[k])) : 0)))
+        else if (!(high[k] > low[k] + (isfinite(low[k]) ? CSG_JOINT_SAME * (1 + fabs(low[k])) : 0)))
             return false;
     }
     face->min = csg_vec3_make(low[0], low[1], low[2]);
@@ -404,7 +370,7 @@ static bool find_face(const csgm_scene *scene, int axis, csg_node_id before, csg
 static void look_at_pair(csg_seam_search *s, csg_node_id id, int axis, const csg_node_id pair[2],
                          csg_joint_take *take, void *user)
 {
-    seam m = {.search = s, .id = id, .axis = axis, .sign = 1, .below = id};
+    seam m = {.search = s, .axis = axis, .sign = 1, .below = id};
     csg_joint joint = {.kind = CSG_JOINT_GROOVES, .axis = axis};
     m.sign = s->scene->nodes[id].kind == CSG_NODE_UNION ? 1 : -1;
     m.up = m.down = csg_affine_identity();
@@ -424,21 +390,24 @@ static void look_along(csg_seam_search *s, csg_node_id id, int axis, uint32_t fi
     const csg_node *node = &s->scene->nodes[id];
     const csg_node_id *children = csg_scene_children(s->scene, node) + first;
     uint32_t count = node->child_count - first, begin = 0;
-    csg_node_id *by_high = s->order, *by_low = s->order + node->child_count;
-    const ends high = {s->scene, axis, true}, low = {s->scene, axis, false};
-    for (uint32_t k = 0; k < count; k++)
-        by_high[k] = by_low[k] = children[k];
-    sort_by_ends(&high, by_high, count);
-    sort_by_ends(&low, by_low, count);
+    csg_seam_end *by_high = s->order, *by_low = s->order + node->child_count;
     for (uint32_t k = 0; k < count; k++) {
-        double at = end_of(&high, by_high[k]), slack = SAME * (1 + fabs(at));
-        for (; begin < count && end_of(&low, by_low[begin]) < at - slack; begin++) {
+        const csg_box *b = &s->scene->bounds[children[k]];
+        by_high[k] = (csg_seam_end){high_of(b, axis), children[k]};
+        by_low[k] = (csg_seam_end){low_of(b, axis), children[k]};
+    }
+    qsort(by_high, count, sizeof *by_high, compare_ends);
+    qsort(by_low, count, sizeof *by_low, compare_ends);
+    for (uint32_t k = 0; k < count; k++) {
+        double at = by_high[k].at, slack = CSG_JOINT_SAME * (1 + fabs(at));
+        for (; begin < count && by_low[begin].at < at - slack; begin++) {
         }
-        for (uint32_t i = begin; i < count && end_of(&low, by_low[i]) <= at + slack; i++) {
+        for (uint32_t i = begin; i < count && by_low[i].at <= at + slack; i++) {
             if (++s->work >= s->most_work)
                 return;
-            if (isfinite(at) && by_low[i] != by_high[k])
-                look_at_pair(s, id, axis, (csg_node_id[2]){by_high[k], by_low[i]}, take, user);
+            if (isfinite(at) && by_low[i].id != by_high[k].id)
+                look_at_pair(s, id, axis, (csg_node_id[2]){by_high[k].id, by_low[i].id}, take,
+                             user);
         }
     }
 }

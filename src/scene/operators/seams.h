@@ -10,13 +10,19 @@
 #include "scene/operators/joint.h"
 #include "scene/reference.h"
 
+/* Where a node's box ends along an axis. */
+typedef struct csg_seam_end {
+    double at;
+    csg_node_id id;
+} csg_seam_end;
+
 typedef struct csg_seam_search {
     const csgm_scene *scene;
     csg_reference_room *room;
     const csg_node_id *firsts, *parents; /* per node: the first one below it; the one above it */
     const uint64_t *cost_before;         /* per node, and the end: what all nodes before it take */
     uint64_t work, most_work;            /* done, and what may be */
-    uint32_t *order;                     /* room for the children of one node, twice */
+    csg_seam_end *order;                 /* room for the children of one node, twice */
     bool *is_told;                       /* per node; all false at first */
 } csg_seam_search;
 
