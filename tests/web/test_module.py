@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(ROOT, "tests", "cli"))
 sys.path.insert(0, os.path.join(ROOT, "tools", "web"))
 import cli  # pylint: disable=wrong-import-position
 import libraries  # pylint: disable=wrong-import-position
+from make import make  # pylint: disable=wrong-import-position
 
 PLACE = os.path.join(ROOT, "build-web")
 NODE = shutil.which("node")
@@ -58,12 +59,7 @@ LIBRARIES = ("Clipper", "Qhull", "FreeType", "FriBidi", "expat", "libzip")
 class Module(cli.CliTest):
     @classmethod
     def setUpClass(cls):
-        done = subprocess.run([sys.executable, os.path.join(ROOT, "tools", "web", "build.py")], capture_output=True, text=True, check=False)
-        if done.returncode == 77:
-            raise unittest.SkipTest(done.stderr.strip())
-        if done.returncode:
-            raise AssertionError(done.stdout + done.stderr)
-        cls.module = done.stdout.strip()
+        cls.module = make("build.py")
         cls.font = libraries.Debian(os.path.join(PLACE, "sources")).font()[0]
 
     def run_module(self, *arguments):

@@ -15,6 +15,7 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "tests", "cli"))
 import cli  # pylint: disable=wrong-import-position
+from make import make  # pylint: disable=wrong-import-position
 
 PLACE = os.path.join(ROOT, "build-web")
 VIEW = os.path.join(ROOT, "tools", "view")
@@ -36,12 +37,7 @@ difference() { square([width, 20]); translate([10, 10]) circle(4); }
 class Page(cli.CliTest):
     @classmethod
     def setUpClass(cls):
-        done = subprocess.run([sys.executable, os.path.join(ROOT, "tools", "web", "page.py")], capture_output=True, text=True, check=False)
-        if done.returncode == 77:
-            raise unittest.SkipTest(done.stderr.strip())
-        if done.returncode:
-            raise AssertionError(done.stdout + done.stderr)
-        cls.url = pathlib.Path(done.stdout.strip()).as_uri()
+        cls.url = pathlib.Path(make("page.py")).as_uri()
 
     def visit(self, size, *steps, fragment="", errors=(), **options):
         """What was seen, its looks and focus; an error of the page fails the test unless it is awaited."""
