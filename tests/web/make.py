@@ -9,7 +9,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 
 
 def make(script):
-    """The file that tools/web/SCRIPT has made; tests are skipped where it lacks something."""
+    """The file that a script of tools/web has made; tests are skipped where it lacks something."""
     done = subprocess.run([sys.executable, os.path.join(ROOT, "tools", "web", script)], capture_output=True, text=True, check=False)
     if done.returncode == 77:
         raise unittest.SkipTest(done.stderr.strip())
