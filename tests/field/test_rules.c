@@ -71,11 +71,14 @@ static csg_rule random_rule(csg_random *random, csg_blend_kind kind, bool turnin
 {
     csg_rule rule = csg_rule_standard(kind);
     double *v = rule.parameters;
+    char text[160];
     switch ((int)kind) {
     case CSG_BLEND_EXTERIOR:
         v[0] = uniform(random, 0.05, 0.5);
-        v[1] = v[0] * uniform(random, 0.1, 1);
         rule.step = random_step(random);
+        v[1] = v[0] * uniform(random, 0.1, 1.7);
+        if (csg_rule_problem(&rule, text, sizeof text)) /* too wide for the step */
+            v[1] = v[0];
         break;
     case CSG_BLEND_INTERIOR:
         v[0] = uniform(random, 0.05, 0.5);

@@ -98,7 +98,10 @@ static csg_rule random_rule(csg_random *random, csg_blend_kind kind)
         rule.step = test_random_step(random, (test_step_ranges){12, 6, 4});
     if (kind == CSG_BLEND_EXTERIOR) {
         v[0] = uniform(random, 0.02, 0.2);
-        v[1] = v[0] * uniform(random, 0.1, 1);
+        char text[160];
+        v[1] = v[0] * uniform(random, 0.1, 1.7);
+        if (csg_rule_problem(&rule, text, sizeof text)) /* too wide for the step */
+            v[1] = v[0];
     } else if (kind == CSG_BLEND_INTERIOR) {
         v[0] = uniform(random, 0.03, 0.35);
     } else if (kind == CSG_BLEND_RICCI) {

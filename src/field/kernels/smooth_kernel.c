@@ -6,8 +6,8 @@
  * is larger (R_n is not even). With mu = 1 - mu(u) or mu(-u), as the first or the second is larger:
  *   exterior  e = mu (t - delta)^2 / (4 delta), u = (t - delta) / eps
  *   interior  e = -(the other one of the two) t, u = t / eps
- * A sigmoid never ends, so its exterior blend needs both of its values (7.2). Neither is monotone;
- * intervals are the enclosures of 7.2 and 7.3.
+ * An exterior blend with eps > delta, or of a sigmoid, which never ends, needs the steps at delta
+ * and at -delta (7.2). Neither blend is monotone; intervals are the enclosures of 7.2 and 7.3.
  */
 #include "field/kernels/smooth_kernel.h"
 
@@ -177,6 +177,11 @@ static int is_sigmoid(const float *parameters)
     return parameters[CSG_SMOOTH_STEP] == (float)CSG_STEP_SIGMOID;
 }
 
+static int is_wide(const float *parameters)
+{
+    return !is_sigmoid(parameters) && parameters[CSG_SMOOTH_EPS] > parameters[CSG_SMOOTH_DELTA];
+}
+
 /* 7.2 with g1 and g2 as printed, t >= 0: a sigmoid is even. */
 static void exterior_sigmoid(const float *parameters, gaps *g, size_t count)
 {
@@ -214,6 +219,33 @@ static void exterior(const float *parameters, gaps *g, size_t count)
     }
 }
 
+/* eps > delta: the steps at delta and at -delta overlap, and 7.2 needs both, as printed. */
+static void exterior_wide(const float *parameters, gaps *g, size_t count)
+{
+    const float delta = parameters[CSG_SMOOTH_DELTA], eps = parameters[CSG_SMOOTH_EPS];
+    float at[CSG_BATCH] = {0}, above[CSG_BATCH], above_slope[CSG_BATCH];
+    float below[CSG_BATCH], below_slope[CSG_BATCH];
+    for (size_t i = 0; i < count; i++) {
+        float u = (g->t[i] - delta) / eps;
+        at[i] = g->first[i] > 0 ? u : -u;
+    }
+    steps(parameters, at, above, above_slope, count);
+    for (size_t i = 0; i < count; i++) {
+        float u = (g->t[i] + delta) / eps;
+        at[i] = g->first[i] > 0 ? u : -u;
+    }
+    steps(parameters, at, below, below_slope, count);
+    for (size_t i = 0; i < count; i++) {
+        float t = g->t[i], past = t - delta, p = 0.5f * (t * t / delta + delta);
+        float a = g->first[i] > 0 ? 1.0f - above[i] : above[i]; /* 1 - g2 */
+        float b = g->first[i] > 0 ? 1.0f - below[i] : below[i]; /* 1 - g1 */
+        float da = -above_slope[i] / eps, db = -below_slope[i] / eps;
+        g->excess[i] = 0.5f * (a * (past * past) / (2.0f * delta) - b * (t + a * p));
+        g->slope[i] = 0.5f * (da * (past * past) / (2.0f * delta) + a * past / delta -
+                              db * (t + a * p) - b * (1.0f + da * p + a * t / delta));
+    }
+}
+
 static void interior(const float *parameters, gaps *g, size_t count)
 {
     const float eps = parameters[CSG_SMOOTH_EPS];
@@ -242,7 +274,7 @@ static void find_gaps(const csg_tape_node *node, const float *parameters, const 
         g->t[i] = far < chi ? far : chi; /* infinite operands too */
     }
     if (node->join_blend == CSG_BLEND_EXTERIOR)
-        exterior(parameters, g, count);
+        (is_wide(parameters) ? exterior_wide : exterior)(parameters, g, count);
     else
         interior(parameters, g, count);
     for (size_t i = 0; i < count; i++) {
@@ -296,7 +328,7 @@ static range exterior_range(const csg_tape_node *node, const float *parameters, 
 {
     const float delta = parameters[CSG_SMOOTH_DELTA], eps = parameters[CSG_SMOOTH_EPS];
     float p = excess_at(node, parameters, low, first), q = excess_at(node, parameters, high, first);
-    if (is_sigmoid(parameters)) { /* nothing is known but how fast it changes */
+    if (is_sigmoid(parameters) || is_wide(parameters)) { /* only how fast it changes is known */
         float reach = 0.5f * (parameters[CSG_SMOOTH_K] + 1.0f) * (high - low);
         return (range){smaller(p, q) - 0.5f * reach, larger(p, q) + 0.5f * reach};
     }
@@ -348,7 +380,7 @@ static float corner(const csg_tape_node *node, const float *parameters, float x,
 {
     float t = absolute(x - y);
     int known = node->join_blend == CSG_BLEND_EXTERIOR && parameters[CSG_SMOOTH_EVEN] != 0 &&
-                !is_sigmoid(parameters) && t < parameters[CSG_SMOOTH_DELTA];
+                !is_sigmoid(parameters) && !is_wide(parameters) && t < parameters[CSG_SMOOTH_DELTA];
     return larger(x, y) + (known ? excess_at(node, parameters, t, x >= y) : 0);
 }
 

@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "base/elementary.h"
+#include "scene/operators/rule_private.h"
 
 #define DEGREE 0.017453292519943295
 
@@ -133,11 +134,38 @@ static const char *step_problem(csg_step step, char *text, size_t size)
     return text;
 }
 
+/* Whether a union keeps all of its operands (operators.md 7.2). */
+static bool keeps_operands(const csg_rule *rule)
+{
+    static const double ROUNDING = 1e-14; /* of delta */
+    return !csg_rule_is_wide(rule) || csg_rule_scan_exterior(rule).least >= -ROUNDING;
+}
+
+/* The largest eps of which that is known, in whole thousandths of delta. */
+static double find_widest(const csg_rule *rule)
+{
+    csg_rule tried = *rule;
+    int good = 1000, bad = 4000;
+    while (bad - good > 1) {
+        int middle = (good + bad) / 2;
+        tried.parameters[1] = rule->parameters[0] * middle / 1000;
+        *(keeps_operands(&tried) ? &good : &bad) = middle;
+    }
+    return rule->parameters[0] * good / 1000;
+}
+
 static const char *exterior_problem(const csg_rule *rule, char *text, size_t size)
 {
     double delta = rule->parameters[0], eps = rule->parameters[1];
-    if (eps > delta) {
-        snprintf(text, size, "eps must be at most delta = %g, not %g", delta, eps);
+    const char *problem = step_problem(rule->step, text, size);
+    if (problem)
+        return problem;
+    if (!keeps_operands(rule)) {
+        snprintf(
+            text, size,
+            "eps must be at most %g for delta = %g and this step, not %g: the union would lose "
+            "some of its operands",
+            find_widest(rule), delta, eps);
         return text;
     }
     if (rule->step.kind == CSG_STEP_SIGMOID && rule->step.parameter * delta < 10 * eps) {
@@ -145,7 +173,7 @@ static const char *exterior_problem(const csg_rule *rule, char *text, size_t siz
                  10 * eps / delta, rule->step.parameter);
         return text;
     }
-    return step_problem(rule->step, text, size);
+    return NULL;
 }
 
 /* The profile as given: angles in degrees, between those of the rule. */
@@ -340,6 +368,12 @@ static void settle_lengths(csg_rule *rule)
     rule->facts = csg_step_find_facts(rule->step);
     double k = rule->kind == CSG_BLEND_INTERIOR ? rule->facts.interior
                                                 : 1 + v[1] / v[0] * rule->facts.exterior;
+    rule->most_excess = 0;
+    if (csg_rule_is_wide(rule)) {
+        csg_exterior_facts found = csg_rule_scan_exterior(rule);
+        rule->most_excess = found.most * SCAN_ROOM;
+        k = found.k * SCAN_ROOM;
+    }
     set_both(rule, false, rule->step.kind == CSG_STEP_SIGMOID ? k * SIGMOID_ROOM : k);
 }
 
@@ -402,7 +436,7 @@ double csg_rule_excess(const csg_rule *rule)
     if (csg_blend_takes_fields(rule->kind))
         return INFINITY;
     return rule->kind == CSG_BLEND_INTERIOR ? v[0] * fmax(rule->facts.dent[0], rule->facts.dent[1])
-                                            : v[0] / 4;
+                                            : v[0] * fmax(0.25, rule->most_excess);
 }
 
 double csg_rule_slope(const csg_rule *rule, bool is_union, const double *slopes, size_t count)

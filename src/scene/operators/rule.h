@@ -46,6 +46,7 @@ typedef struct csg_rule {
     bool monotone[2];
     double k[2];          /* for two operands, 0 where their number decides (csg_rule_slope) */
     csg_step_facts facts; /* EXTERIOR, INTERIOR */
+    double most_excess;   /* EXTERIOR with eps > delta: of delta; else 0 */
 } csg_rule;
 
 const char *csg_rule_name(uint32_t kind); /* as in the scene language */

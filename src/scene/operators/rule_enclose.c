@@ -50,9 +50,33 @@ static double monotone_part(const csg_rule *rule, double x, double y)
     return fmax(x, y) + excess;
 }
 
+/* Of the excess nothing is known but its largest value and how fast it changes. */
+static void enclose_wide(const csg_rule *rule, const double *low, const double *high, double out[2])
+{
+    double support = csg_rule_support(rule), lowest = INFINITY, highest = 0, slope;
+    double steepest = (rule->k[0] + 1) / 2, limit = rule->parameters[0] * rule->most_excess;
+    for (int right = 0; right < 2; right++) {
+        double least, most;
+        if (!lead_range(low, high, right, &least, &most))
+            continue;
+        double from = fmin(least, support), to = fmin(most, support);
+        double one = csg_rule_exterior_excess(rule, right, from, &slope);
+        double other = csg_rule_exterior_excess(rule, right, to, &slope);
+        double between = steepest * (to - from) / 2;
+        lowest = fmin(lowest, fmin(one, other) - between);
+        highest = fmax(highest, fmax(one, other) + between);
+    }
+    out[0] = fmax(low[0], low[1]) + (isfinite(lowest) ? fmax(lowest, 0) : 0);
+    out[1] = fmax(high[0], high[1]) + fmin(highest, limit);
+}
+
 static void enclose_exterior(const csg_rule *rule, const double *low, const double *high,
                              double out[2])
 {
+    if (csg_rule_is_wide(rule)) {
+        enclose_wide(rule, low, high, out);
+        return;
+    }
     double bump = 0, excess = 0, slope, delta = rule->parameters[0];
     for (int right = 0; right < 2; right++) {
         double least, most;

@@ -18,7 +18,7 @@ static double rest_of(csg_step step, bool right, double s, double *slope)
 }
 
 /* (S_abs(t) - |t|) / 2 with A = 1 - g2, B = 1 - g1: A (t - delta)^2 / (2 delta) - B (t + A p). B is
- * 0 unless the step reaches beyond delta, as a sigmoid's. */
+ * 0 unless the step reaches beyond delta, as a sigmoid's, or one with eps > delta. */
 double csg_rule_exterior_excess(const csg_rule *rule, bool right, double t, double *slope)
 {
     double delta = rule->parameters[0], eps = rule->parameters[1], da, db;
@@ -31,6 +31,40 @@ double csg_rule_exterior_excess(const csg_rule *rule, bool right, double t, doub
               b * (1 + da * p + a * t / delta)) /
              2;
     return (a * x * x / (2 * delta) - b * (t + a * p)) / 2;
+}
+
+bool csg_rule_is_wide(const csg_rule *rule)
+{
+    return rule->kind == CSG_BLEND_EXTERIOR && rule->step.kind != CSG_STEP_SIGMOID &&
+           rule->parameters[1] > rule->parameters[0];
+}
+
+static void scan_stretch(const csg_rule *rule, bool right, double from, double to,
+                         csg_exterior_facts *facts)
+{
+    enum { SAMPLES = 1024 };
+    const double within = 1e-9; /* slopes jump at the ends of some steps */
+    for (int i = 0; i <= SAMPLES; i++) {
+        double part = fmin(fmax((double)i / SAMPLES, within), 1 - within), slope;
+        double t = from + (to - from) * part;
+        double excess = csg_rule_exterior_excess(rule, right, t, &slope) / rule->parameters[0];
+        facts->least = fmin(facts->least, excess);
+        facts->most = fmax(facts->most, excess);
+        facts->k = fmax(facts->k, fabs(1 + slope) + fabs(slope));
+    }
+}
+
+csg_exterior_facts csg_rule_scan_exterior(const csg_rule *rule)
+{
+    double delta = rule->parameters[0], eps = rule->parameters[1];
+    double least_at = fmin(delta, eps - delta); /* there it is lost first */
+    csg_exterior_facts facts = {0, 0, 1};
+    for (int right = 0; right < 2; right++) {
+        scan_stretch(rule, right, 0, least_at, &facts);
+        scan_stretch(rule, right, least_at, eps - delta, &facts);
+        scan_stretch(rule, right, eps - delta, eps + delta, &facts);
+    }
+    return facts;
 }
 
 /* eps s (1 - mu(s)); the first operand is the larger where s < 0 in operators.md. */

@@ -8,6 +8,14 @@
 
 /* csg_rule_apply of EXTERIOR and INTERIOR. */
 double csg_rule_lengths(const csg_rule *rule, const double *values, double *partials);
+/* Whether it is an EXTERIOR of a local step that is wider than delta: its steps at -delta and at
+ * delta overlap, so that nothing is known of its shape but what csg_rule_scan_exterior finds. */
+bool csg_rule_is_wide(const csg_rule *rule);
+typedef struct csg_exterior_facts {
+    double least, most; /* excess, of delta */
+    double k;
+} csg_exterior_facts;
+csg_exterior_facts csg_rule_scan_exterior(const csg_rule *rule);
 /* What EXTERIOR adds to the larger operand, and INTERIOR takes from it, where they differ by t >= 0
  * and the first is the larger (right) or not; *slope: its derivative. */
 double csg_rule_exterior_excess(const csg_rule *rule, bool right, double t, double *slope);
