@@ -144,6 +144,22 @@ csg_value csg_no_such_blend(const csg_function_call *call)
     return csg_value_undef();
 }
 
+/* Only fillet() has a second parameter, which it can be asked for and does not have. */
+static void refuse_second(const csg_function_call *call)
+{
+    csg_symbol name = call->syntax[1].name;
+    const char *text = name ? csg_symbol_name(&call->e->program->symbols, name) : "";
+    bool is_g2 = strcmp(text, "g2") == 0;
+    if (is_g2 && !csg_value_is_true(call->arguments[1]))
+        return;
+    csg_eval_report(
+        call->e, is_g2 ? CSG_DIAG_BAD_BLEND : CSG_DIAG_UNKNOWN_ARGUMENT, call->syntax[1].where,
+        is_g2 ? "exterior(r / 2, r / 2, step = poly(3)) has a continuous curvature" : NULL,
+        is_g2 ? "fillet() has no g2: its profile is an arc of a circle, whose curvature "
+                "begins and ends with a step"
+              : "fillet() takes the radius r alone");
+}
+
 csg_value csg_function_blend(const csg_function_call *call)
 {
     int kind = CSG_BLEND_COUNT - 1;
@@ -151,6 +167,8 @@ csg_value csg_function_blend(const csg_function_call *call)
         kind--;
     if (kind == 0) /* a row here without one in operators.def must not pass for a sharp blend */
         return csg_no_such_blend(call);
+    if (call->count > 1)
+        refuse_second(call);
     double value = blend_number(call);
     bool raw = call->syntax[0].name == call->e->symbol_n;
     if (call->arguments[0].kind != CSG_VALUE_NUMBER)

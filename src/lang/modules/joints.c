@@ -34,7 +34,8 @@ static void warn(void *user, const csg_joint *joint)
         break;
     case CSG_JOINT_MISSES:
         csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, NULL,
-                        "the blend joins nothing: its solids are %.3g apart", joint->amount);
+                        "the blend joins nothing: its solids%s are %.3g apart",
+                        joint->node->kind == CSG_NODE_UNION ? "" : "' surfaces", joint->amount);
         break;
     case CSG_JOINT_GROOVES:
         csg_eval_report(r->e, CSG_DIAG_SEAM_CUT, joint->node->where,

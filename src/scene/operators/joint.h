@@ -17,7 +17,7 @@ enum {
 typedef enum csg_joint_kind {
     CSG_JOINT_SWELLS, /* beyond a face that solids have in common, by `amount` at least */
     CSG_JOINT_FILLS,  /* a gap, `amount` wide, between two solids */
-    CSG_JOINT_MISSES, /* solids that are `amount` apart: the blend acts nowhere */
+    CSG_JOINT_MISSES, /* surfaces that are `amount` apart: the blend acts nowhere */
     CSG_JOINT_GROOVES /* along a face at which two solids meet, `amount` deep at least (seams.h) */
 } csg_joint_kind;
 

@@ -251,14 +251,14 @@ static void look_for_filled_gaps(look *l, double least, csg_joint *worst)
 
 /* ---- one union --------------------------------------------------------------------------------- */
 
-/* The nearest places of two boxes: of one that goes on without end at 0, where the other does, too.
- */
+/* The nearest places of two boxes, finite where they have any. */
 static void find_nearest(csg_box a, csg_box b, double from[3], double to[3])
 {
     sides one = sides_of(a), other = sides_of(b);
     for (int k = 0; k < 3; k++) {
-        double middle = 0.5 * (fmax(one.low[k], other.low[k]) + fmin(one.high[k], other.high[k]));
-        middle = isfinite(middle) ? middle : 0;
+        double low = fmax(one.low[k], other.low[k]), high = fmin(one.high[k], other.high[k]);
+        double end = isfinite(low) ? low : isfinite(high) ? high : 0;
+        double middle = isfinite(low) && isfinite(high) ? 0.5 * (low + high) : end;
         from[k] = fmin(fmax(middle, one.low[k]), one.high[k]);
         to[k] = fmin(fmax(middle, other.low[k]), other.high[k]);
     }
@@ -269,6 +269,26 @@ static double distance_of(csg_box a, csg_box b)
     double from[3], to[3];
     find_nearest(a, b, from, to);
     return csg_hypot(csg_hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+}
+
+/* The sharp operator's value, of the samples in the room. */
+static double sharp_value(const look *l)
+{
+    csg_node_kind kind = l->node->kind;
+    double best = value_of(l, 0);
+    for (uint32_t k = 1; k < l->node->child_count; k++) {
+        double value = value_of(l, k);
+        best = kind == CSG_NODE_UNION ? fmax(best, value)
+                                      : fmin(best, kind == CSG_NODE_DIFFERENCE ? -value : value);
+    }
+    return best;
+}
+
+/* Whether the blend of an intersection, or of a difference, acts at a place, and that near to the
+ * surface: between two that are far from each other it acts within the solid. */
+static bool cuts_here(const look *l, double value)
+{
+    return value != sharp_value(l) && value < csg_blend_support(l->blend);
 }
 
 /* Whether the blend changes anything on the way between two solids: at its ends, or by filling it.
@@ -284,6 +304,11 @@ static bool acts_between(look *l, uint32_t a, uint32_t b)
             p[k] = from[k] + (to[k] - from[k]) * i / STEPS;
         if (!ask(l, csg_vec3_make(p[0], p[1], p[2]), &value))
             return true;
+        if (l->node->kind != CSG_NODE_UNION) {
+            if (cuts_here(l, value))
+                return true;
+            continue;
+        }
         double most = fmax(value_of(l, a), value_of(l, b));
         bool at_end = i == 0 || i == STEPS;
         if ((value >= 0 && most < 0) || (at_end && value > most + CSG_JOINT_SAME * fabs(most)))
@@ -305,6 +330,76 @@ static double find_distance(look *l, double support)
     return least;
 }
 
+/* ---- differences and intersections ------------------------------------------------------------- */
+
+/* How deep a solid's box lies within another solid, at least: no field rises faster than its
+ * distance. Below 0: nothing is known. */
+static double depth_in(look *l, uint32_t solid, uint32_t other)
+{
+    csg_box b = box_of(l, solid);
+    double value;
+    if (!csg_box_is_finite(b) || !ask(l, csg_vec3_scale(csg_vec3_add(b.min, b.max), 0.5), &value))
+        return -1;
+    return value_of(l, other) - 0.5 * csg_vec3_norm(csg_vec3_sub(b.max, b.min));
+}
+
+/* Whether the blend changes nothing along lines from the middle of one solid's box through the
+ * sides of another's: where values are much less than distances it would. */
+static bool is_idle_along(look *l, uint32_t solid, uint32_t other)
+{
+    enum { STEPS = 32 };
+    csg_box b = box_of(l, solid), outer = box_of(l, other);
+    csg_vec3 c = csg_vec3_scale(csg_vec3_add(b.min, b.max), 0.5);
+    for (int side = 0; side < 6; side++) {
+        const double middle[3] = {c.x, c.y, c.z};
+        double end = end_of(outer, side), p[3] = {c.x, c.y, c.z}, value;
+        int axis = side / 2;
+        for (int i = 0; i <= STEPS && isfinite(end); i++) {
+            p[axis] = middle[axis] + (end - middle[axis]) * i / STEPS;
+            if (!ask(l, csg_vec3_make(p[0], p[1], p[2]), &value) || cuts_here(l, value))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* How far the surfaces of two solids are apart at least: their boxes, or one deep in the other. 0:
+ * the blend may act between them. */
+static double surfaces_apart(look *l, uint32_t a, uint32_t b, double least)
+{
+    double outside = distance_of(box_of(l, a), box_of(l, b));
+    if (outside > least)
+        return acts_between(l, a, b) ? 0 : outside;
+    double within = depth_in(l, b, a), around = depth_in(l, a, b);
+    if (within > least)
+        return is_idle_along(l, b, a) ? within : 0;
+    return around > least && is_idle_along(l, a, b) ? around : 0;
+}
+
+/* The surfaces that are nearest: those of what is taken away blend with each other, too. */
+static double find_clearance(look *l, double support)
+{
+    double least = INFINITY;
+    for (uint32_t a = 0; a < l->node->child_count && least > 0; a++)
+        for (uint32_t b = a + 1; b < l->node->child_count && least > 0; b++)
+            least = fmin(least, surfaces_apart(l, a, b, APART * support));
+    return least;
+}
+
+static void look_at_cut(look *l, csg_joint_take *take, void *user)
+{
+    csg_joint joint = {.kind = CSG_JOINT_MISSES, .node = l->node};
+    double support = csg_blend_support(l->blend);
+    for (uint32_t k = 0; k < l->node->child_count; k++)
+        if (csg_box_is_empty(box_of(l, k)))
+            return;
+    if (!(support > 0) || !isfinite(support))
+        return;
+    joint.amount = find_clearance(l, support);
+    if (joint.amount > APART * support)
+        take(user, &joint);
+}
+
 /* False: nothing to be told of it. */
 static bool find_hull(const look *l, csg_box *hull)
 {
@@ -320,7 +415,7 @@ static bool find_hull(const look *l, csg_box *hull)
 
 static bool is_looked_at(const csg_node *node)
 {
-    return node->kind == CSG_NODE_UNION && node->child_count > 1 &&
+    return csg_node_is_operator(node->kind) && node->child_count > 1 &&
            node->child_count <= MOST_SOLIDS && !(node->flags & CSG_FLAG_SOFT) &&
            !csg_blend_is_sharp(node->blend) && !csg_blend_is_orthogonal(node->blend) &&
            !csg_blend_is_rule(node->blend);
@@ -379,7 +474,7 @@ static void walk(look *l, csg_joint_take *take, void *user)
         l->node = &scene->nodes[i];
         l->blend = csg_scene_blend(scene, l->node);
         if (CSG_JOINT_LEAST_LOOKS * (l->cost_before[i + 1] - l->cost_before[l->first]) < MOST_WORK)
-            look_at_union(l, take, user);
+            (l->node->kind == CSG_NODE_UNION ? look_at_union : look_at_cut)(l, take, user);
     }
 }
 
