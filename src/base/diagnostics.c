@@ -66,11 +66,12 @@ static bool is_about_the_result(csg_diag_code code, const csgm_diag *diag)
            code == CSG_DIAG_PART_LOST;
 }
 
-/* Is it the library's own business? What was mended in a surface is not: the points are mostly
- * those of the caller, and a sheet whose rim was closed is another solid. */
+/* Is it the library's own business? What was mended in a surface, or left out since it encloses
+ * nothing, is not: the points are mostly those of the caller, and the result is another solid. */
 static bool is_of_library(const csg_diag_sink *sink, csg_diag_code code, const csgm_diag *diag)
 {
-    return diag->library && !sink->library_warnings && code != CSG_DIAG_MENDED;
+    return diag->library && !sink->library_warnings && code != CSG_DIAG_MENDED &&
+           code != CSG_DIAG_NOTHING_ENCLOSED;
 }
 
 /* The name of a finding's group, as far as a group keeps it. */

@@ -166,6 +166,7 @@ csg_node_id csg_solid_of_triangles(csg_solid_job *job, csg_triangles *triangles,
 {
     csg_shape *shape = NULL;
     csg_repairs unseen = {0};
+    csg_solid_fault emptiness = triangles->count ? CSG_SOLID_NO_VOLUME : CSG_SOLID_NO_TRIANGLES;
     csgm_status status =
         csg_solid_check_time(job)
             ? csg_polyhedron_create(job->memory, triangles, repairs ? repairs : &unseen, &shape)
@@ -174,7 +175,7 @@ csg_node_id csg_solid_of_triangles(csg_solid_job *job, csg_triangles *triangles,
     if (job->stop)
         return CSG_NODE_NONE;
     if (status == CSGM_ERR_SCENE)
-        return nothing(job, CSG_SOLID_NO_VOLUME);
+        return nothing(job, emptiness);
     if (status != CSGM_OK)
         return csg_solid_failed(job, status, "make a solid of these triangles");
     return csg_solid_done(job, csg_build_shape(job->builder, shape, job->where));

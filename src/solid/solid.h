@@ -20,6 +20,7 @@ typedef enum csg_solid_fault {
     CSG_SOLID_UNBOUNDED,    /* the solid has no finite box */
     CSG_SOLID_NO_SURFACE,   /* the solid has no surface */
     CSG_SOLID_NO_AREA,      /* an outline encloses nothing */
+    CSG_SOLID_NO_TRIANGLES, /* there are none */
     CSG_SOLID_NO_VOLUME,    /* triangles enclose nothing */
     CSG_SOLID_NO_SUM,       /* the sum of `what` cannot be computed */
     CSG_SOLID_CROSSES_AXIS, /* a figure to revolve reaches from x = range[0] to range[1] */

@@ -80,6 +80,18 @@ class Text(cli.CliTest):
         self.assertIn("a.txt:2:1: note: in the call of module 'sheet'", result.stderr)
         self.assertIn("1 warning inside libraries is not shown", result.stderr)
 
+    def test_what_encloses_nothing_is_told_of_libraries_too(self):
+        """Triangles that are left out are missed; no triangles at all are a library's way to say "nothing"."""
+        os.mkdir(os.path.join(self.folder, "libraries"))
+        self.write("libraries/sheets.txt", "module sheet(points, faces) polyhedron(points, faces);\n")
+        self.write("a.txt", "use <sheets.txt>\nsheet([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]]);\nsheet([], []); cube(1);\n")
+        result = self.run_in("check", "-I", "libraries", "a.txt")
+        self.assert_status(result, 0)
+        self.assertIn("sheets.txt:1:29: warning W0338: the triangles of polyhedron() enclose nothing: it is left out", result.stderr)
+        self.assertNotIn("W0324", result.stderr)
+        self.assertNotIn("W0325", result.stderr)
+        self.assertIn("1 warning inside libraries is not shown", result.stderr)
+
     def test_werror(self):
         self.write("a.txt", "sphere(r = 1, d = 2);\n")
         self.assert_status(self.run_in("check", "a.txt"), 0)

@@ -104,9 +104,12 @@ static void tell_reason(csg_module_call *call, const csg_solid_reason *reason)
     case CSG_SOLID_NO_AREA:
         csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL, "%s() has no area", call->name);
         break;
+    case CSG_SOLID_NO_TRIANGLES:
+        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL, "%s() has no triangles", call->name);
+        break;
     case CSG_SOLID_NO_VOLUME:
-        csg_eval_report(e, CSG_DIAG_EMPTY_SHAPE, where, NULL,
-                        "%s() has no triangles that enclose anything", call->name);
+        csg_eval_report(e, CSG_DIAG_NOTHING_ENCLOSED, where, NULL,
+                        "the triangles of %s() enclose nothing: it is left out", call->name);
         break;
     case CSG_SOLID_NO_SUM:
         csg_eval_report(e, CSG_DIAG_NOT_EXACT, where, reason->hint,
@@ -167,7 +170,7 @@ csg_node_id csg_shape_solid(csg_module_call *call, csg_triangles *triangles, boo
     char text[256];
     csg_node_id node = csg_solid_of_triangles(&job, triangles, &repairs);
     node = csg_shape_made(call, &job, node);
-    if (told && node != CSG_NODE_NONE && csg_repairs_are_any(&repairs)) {
+    if (told && !job.reason_count && node != CSG_NODE_NONE && csg_repairs_are_any(&repairs)) {
         csg_repairs_describe(&repairs, text, sizeof text);
         csg_eval_report(call->e, CSG_DIAG_MENDED, call->statement->where, NULL,
                         "%s(): the surface was mended: %s", call->name, text);
