@@ -16,7 +16,7 @@
 
 #include "mesh/features/cut.h"
 
-enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS, STEPS = 6, MOST_STARTS = CSG_FEATURE_MOST_STARTS };
+enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS, STEPS = 6, MOST = CSG_FEATURE_MOST_WALKS };
 
 typedef csg_feature_polygon polygon;
 typedef csg_apex apex;
@@ -147,38 +147,41 @@ static bool look_around(const polygon *p, const apex *a, int sheet, double off,
     return found;
 }
 
-/* Asks for all sheets of all starts at once. */
-static void sample_sheets(const polygon *p, apex *apexes, double off, bool last,
+/* Asks for all sheets of all apexes at once. */
+static void sample_sheets(const csg_apex_walk *walks, int count, double off, bool last,
                           csg_feature_probe *probe)
 {
-    enum { MOST = MOST_STARTS * MOST_SHEETS };
-    float x[MOST] = {0}, y[MOST] = {0}, z[MOST] = {0}, f[MOST], gx[MOST], gy[MOST], gz[MOST];
+    float x[MOST * MOST_SHEETS] = {0}, y[MOST * MOST_SHEETS] = {0}, z[MOST * MOST_SHEETS] = {0};
+    float f[MOST * MOST_SHEETS], gx[MOST * MOST_SHEETS], gy[MOST * MOST_SHEETS],
+        gz[MOST * MOST_SHEETS];
     float *const g[3] = {gx, gy, gz};
-    apex *owner[MOST];
-    csg_plane fresh[MOST];
-    int sheet[MOST];
+    const csg_apex_walk *walk[MOST * MOST_SHEETS];
+    csg_plane fresh[MOST * MOST_SHEETS];
+    int sheet[MOST * MOST_SHEETS];
     size_t n = 0;
-    for (int k = 0; k < p->start_count; k++)
-        for (int s = 0; s < p->sheets && !apexes[k].lost; s++, n++) {
-            csg_vec3 q = sheet_point(p, &apexes[k], s, off);
+    for (int k = 0; k < count; k++)
+        for (int s = 0; s < walks[k].polygon->sheets && !walks[k].apex->lost; s++, n++) {
+            csg_vec3 q = sheet_point(walks[k].polygon, walks[k].apex, s, off);
             x[n] = (float)q.x, y[n] = (float)q.y, z[n] = (float)q.z;
-            owner[n] = &apexes[k];
+            walk[n] = &walks[k];
             sheet[n] = s;
         }
     csg_feature_probe_points(probe, x, y, z, n, f, g);
     /* beyond a cell's edge from the surface a pruned tape knows the sign alone */
     const double band = 0.9 * probe->marching->lattice->cell_size;
     for (size_t i = 0; i < n; i++) {
+        const polygon *p = walk[i]->polygon;
+        apex *a = walk[i]->apex;
         csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
-        owner[i]->lost |= f[i] != f[i];
-        bool still = fabs((double)f[i]) <= band && is_still(p, owner[i], sheet[i], plane.g);
-        fresh[i] = still ? plane : owner[i]->planes[sheet[i]];
+        a->lost |= f[i] != f[i];
+        bool still = fabs((double)f[i]) <= band && is_still(p, a, sheet[i], plane.g);
+        fresh[i] = still ? plane : a->planes[sheet[i]];
         if (!still && p->creased && f[i] == f[i])
-            still = look_around(p, owner[i], sheet[i], off, probe, &fresh[i]);
-        owner[i]->lost |= last && !still;
+            still = look_around(p, a, sheet[i], off, probe, &fresh[i]);
+        a->lost |= last && !still;
     }
     for (size_t i = 0; i < n; i++)
-        owner[i]->planes[sheet[i]] = fresh[i];
+        walk[i]->apex->planes[sheet[i]] = fresh[i];
 }
 
 /* Twice the area, seen from outside the sheet, of the triangle from x to side s of the polygon. */
@@ -224,15 +227,17 @@ void csg_apex_meet(const polygon *p, apex *a, double cell)
         a->lost || !csg_planes_meet(a->planes, p->sheets, &a->at) || !near_polygon(p, a, cell);
 }
 
-void csg_apexes_improve(const polygon *p, apex *apexes, double cell, csg_feature_probe *probe)
+void csg_apexes_improve(const csg_apex_walk *walks, int count, double cell,
+                        csg_feature_probe *probe)
 {
     static const double off[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
     for (int step = 0; step < STEPS; step++) {
-        sample_sheets(p, apexes, off[step] * cell, step >= STEPS - 2, probe);
-        for (int k = 0; k < p->start_count; k++) {
-            csg_apex_meet(p, &apexes[k], cell);
-            if (!apexes[k].lost && p->start_count > 1 && k == 0 && p->sheets == 2 && step < 2)
-                slide(p, &apexes[k], cell);
+        sample_sheets(walks, count, off[step] * cell, step >= STEPS - 2, probe);
+        for (int k = 0; k < count; k++) {
+            const csg_apex_walk *s = &walks[k];
+            csg_apex_meet(s->polygon, s->apex, cell);
+            if (s->slides && !s->apex->lost && step < 2)
+                slide(s->polygon, s->apex, cell);
         }
     }
 }
@@ -266,20 +271,23 @@ void csg_apex_place(const polygon *p, const apex *a, csg_feature *out)
     }
 }
 
-const apex *csg_apexes_choose(const polygon *p, const apex *apexes, csg_feature_probe *probe,
-                              csg_feature *out)
+void csg_apexes_ask(const csg_apex_walk *walks, int count, csg_feature_probe *probe, float *f)
 {
-    float x[MOST_STARTS], y[MOST_STARTS], z[MOST_STARTS], f[MOST_STARTS], g[3][MOST_STARTS];
-    float *const gradient[3] = {g[0], g[1], g[2]};
-    const csg_marching *m = probe->marching;
-    for (int k = 0; k < p->start_count; k++) {
-        csg_vec3 at = apexes[k].lost ? p->middle : apexes[k].at;
+    float x[MOST] = {0}, y[MOST] = {0}, z[MOST] = {0}, g[3][MOST];
+    for (int k = 0; k < count; k++) {
+        const apex *a = walks[k].apex;
+        csg_vec3 at = a->lost ? walks[k].polygon->middle : a->at;
         x[k] = (float)at.x, y[k] = (float)at.y, z[k] = (float)at.z;
     }
-    csg_feature_probe_points(probe, x, y, z, (size_t)p->start_count, f, gradient);
+    csg_feature_probe_points(probe, x, y, z, (size_t)count, f, (float *const[3]){g[0], g[1], g[2]});
+}
+
+const apex *csg_apexes_choose(const polygon *p, const apex *apexes, const float *f, int count,
+                              const csg_marching *m, csg_feature *out)
+{
     double zero = ZERO * m->lattice->cell_size + 4 * (double)m->noise;
     const apex *first = NULL;
-    for (int k = 0; k < p->start_count; k++) {
+    for (int k = 0; k < count; k++) {
         if (apexes[k].lost || !(fabs((double)f[k]) <= zero) || !sheets_differ(p, &apexes[k]))
             continue;
         first = first ? first : &apexes[k];
@@ -289,7 +297,19 @@ const apex *csg_apexes_choose(const polygon *p, const apex *apexes, csg_feature_
         if (looks_out)
             return &apexes[k];
     }
-    if (first && first != &apexes[p->start_count - 1])
+    if (first && first != &apexes[count - 1])
         csg_apex_place(p, first, out);
     return first;
+}
+
+bool csg_apex_find(const polygon *p, apex *a, csg_feature_probe *probe, csg_feature *out)
+{
+    const csg_marching *m = probe->marching;
+    double cell = m->lattice->cell_size;
+    const csg_apex_walk walk = {p, a, false};
+    float f;
+    csg_apex_meet(p, a, cell);
+    csg_apexes_improve(&walk, 1, cell, probe);
+    csg_apexes_ask(&walk, 1, probe, &f);
+    return csg_apexes_choose(p, a, &f, 1, m, out) != NULL;
 }

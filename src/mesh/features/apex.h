@@ -39,16 +39,32 @@ void csg_feature_find_middles(csg_feature_polygon *polygon);
 /* Moves an apex to where its planes meet, or loses it. */
 void csg_apex_meet(const csg_feature_polygon *polygon, csg_apex *apex, double cell);
 
-/* Moves the apexes, one for each start and with planes to begin with, to where their sheets meet.
- */
-void csg_apexes_improve(const csg_feature_polygon *polygon, csg_apex *apexes, double cell,
+/* An apex on its way, with planes to begin with. */
+typedef struct csg_apex_walk {
+    const csg_feature_polygon *polygon;
+    csg_apex *apex;
+    bool slides; /* along its crease, to where the fan looks out */
+} csg_apex_walk;
+
+enum { CSG_FEATURE_MOST_WALKS = 16 };
+
+/* Moves the apexes, at most as many as above, to where the sheets of their polygons meet. */
+void csg_apexes_improve(const csg_apex_walk *walks, int count, double cell,
                         csg_feature_probe *probe);
 
-/* The first apex that holds good: the field is 0 there, the sheets differ, and, if there is such a
- * one, the polygon's triangles (in *out, which begins as a copy of the polygon) do not fold over.
- * NULL: none. */
+/* The field at the apexes; any number for those that are lost. */
+void csg_apexes_ask(const csg_apex_walk *walks, int count, csg_feature_probe *probe, float *f);
+
+/* The first of `count` apexes that holds good: the field, f, is 0 there, the sheets differ, and, if
+ * there is such a one, the polygon's triangles (in *out, which begins as a copy of the polygon) do
+ * not fold over. NULL: none. */
 const csg_apex *csg_apexes_choose(const csg_feature_polygon *polygon, const csg_apex *apexes,
-                                  csg_feature_probe *probe, csg_feature *out);
+                                  const float *f, int count, const csg_marching *marching,
+                                  csg_feature *out);
+
+/* Both for one apex, from its planes on. */
+bool csg_apex_find(const csg_feature_polygon *polygon, csg_apex *apex, csg_feature_probe *probe,
+                   csg_feature *out);
 
 /* Writes place and normals. */
 void csg_apex_place(const csg_feature_polygon *polygon, const csg_apex *apex, csg_feature *out);

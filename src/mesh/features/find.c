@@ -317,10 +317,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
         return true;
     find_creases(m, block, room, &probe);
     size_t before = room->count;
-    for (uint32_t i = 0; i < room->loop_count; i++)
-        if (!csg_feature_solve(room, &room->loops[i], &probe, memory))
-            return false;
-    if (!csg_feature_help(room, before, &probe, memory))
+    if (!csg_feature_solve(room, &probe, memory) || !csg_feature_help(room, before, &probe, memory))
         return false;
     room->evaluations += probe.evaluations;
     return end_block(room, memory, block, before);

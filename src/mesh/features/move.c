@@ -45,16 +45,12 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
              at = csg_vec3_from_floats(f->at);
     if (csg_vec3_dot(csg_vec3_sub(at, low), csg_vec3_sub(high, at)) > 0)
         return false;
-    double cell = probe->marching->lattice->cell_size;
     csg_feature_polygon p;
     csg_apex a = {.at = csg_vec3_scale(csg_vec3_add(low, high), 0.5)};
     restore(f, &p, &a);
-    p.start_count = 1;
-    csg_apex_meet(&p, &a, cell);
-    csg_apexes_improve(&p, &a, cell, probe);
     *out = *f;
     out->flipped = 0; /* the fan itself must look out */
-    bool found = csg_apexes_choose(&p, &a, probe, out) && out->state == CSG_FEATURE_SOLVED;
+    bool found = csg_apex_find(&p, &a, probe, out) && out->state == CSG_FEATURE_SOLVED;
     out->flipped = f->flipped;
     if (f->state == CSG_FEATURE_UNSOLVED)
         out->state = f->state; /* it is a likely place, no more */
@@ -137,7 +133,6 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
         return false;
     before.tries++;
     best = before;
-    double cell = probe->marching->lattice->cell_size;
     surroundings q = look_beside(store, f);
     for (int n = 0;; n++) {
         csg_feature_polygon p;
@@ -145,12 +140,9 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
         restore(&before, &p, &a);
         if (!begin_try(&before, &q, &p, n, &a))
             break;
-        p.start_count = 1;
-        csg_apex_meet(&p, &a, cell);
-        csg_apexes_improve(&p, &a, cell, probe);
         *f = before;
         f->flipped = 0;
-        bool found = csg_apexes_choose(&p, &a, probe, f) != NULL;
+        bool found = csg_apex_find(&p, &a, probe, f);
         f->flipped = before.flipped;
         csg_feature_agree(store, f);
         if (found && csg_feature_holds(store, tables, f))

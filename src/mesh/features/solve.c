@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * From a loop of a block with creases to a feature: its sheets, and where to look for its apex.
+ * From loops of a block with creases to features: their sheets, and where to look for an apex. The
+ * first place nearly always holds good, so it is tried alone, but for many polygons at once: the
+ * field is asked in batches.
  */
 #include "mesh/features/solve.h"
 
@@ -10,10 +12,21 @@
 #include "mesh/features/help.h"
 #include "mesh/features/smooth.h"
 
-enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS };
+enum { MOST_SHEETS = CSG_FEATURE_MOST_SHEETS, AT_ONCE = CSG_FEATURE_MOST_WALKS };
 
 typedef csg_feature_polygon polygon;
 typedef csg_apex apex;
+
+/* What may become a feature. */
+typedef struct candidate {
+    const csg_found_loop *loop;
+    polygon p;
+    apex apexes[CSG_FEATURE_MOST_STARTS]; /* one for each start */
+    csg_feature feature;
+    float sharpest;                /* of its creases: 1 - cos */
+    bool good, crossed, is_looked; /* not too many sheets; it has creases; an apex is looked for */
+    bool found;                    /* it has one */
+} candidate;
 
 /* Sheets are runs of corners between creases; without creases, round a tip, each corner. A single
  * crease is none: a side may pass so near to the axis below the tip of a cone that it looks like
@@ -98,23 +111,69 @@ static void record(const csg_feature_room *room, const csg_found_loop *loop, con
     }
 }
 
-/* False where the polygon has no apex. */
-static bool solve_polygon(const csg_feature_room *room, const csg_found_loop *loop, polygon *p,
-                          csg_feature_probe *probe, csg_feature *out)
+/* Its sheets, and its apexes on their way. */
+static void begin_candidate(const csg_feature_room *room, const csg_found_loop *loop, double cell,
+                            candidate *c)
 {
-    double cell = probe->marching->lattice->cell_size;
-    apex apexes[CSG_FEATURE_MOST_STARTS];
-    memset(apexes, 0, sizeof apexes);
-    csg_feature_find_middles(p);
-    choose_starts(room, loop, p);
-    record(room, loop, p, out);
-    for (int k = 0; k < p->start_count; k++) {
-        apexes[k].at = p->start[k];
-        first_planes(room, loop, p, &apexes[k]);
-        csg_apex_meet(p, &apexes[k], cell);
+    c->loop = loop;
+    c->good = mark_sheets(room, loop, &c->p);
+    c->crossed = c->found = false;
+    c->sharpest = 0;
+    for (int s = 0; s < loop->side_count; s++)
+        if (loop->crease[s] >= 0) {
+            c->crossed = true;
+            c->sharpest = fmaxf(c->sharpest, room->segments[loop->crease[s]].jump);
+        }
+    c->is_looked = c->good && (c->crossed || loop->wide);
+    if (!c->is_looked)
+        return;
+    csg_feature_find_middles(&c->p);
+    choose_starts(room, loop, &c->p);
+    record(room, loop, &c->p, &c->feature);
+    for (int k = 0; k < c->p.start_count; k++) {
+        apex *a = &c->apexes[k];
+        memset(a, 0, sizeof *a);
+        a->at = c->p.start[k];
+        first_planes(room, loop, &c->p, a);
+        csg_apex_meet(&c->p, a, cell);
     }
-    csg_apexes_improve(p, apexes, cell, probe);
-    return csg_apexes_choose(p, apexes, probe, out);
+}
+
+/* The first starts of all. */
+static void try_first(candidate *candidates, int count, csg_feature_probe *probe)
+{
+    const csg_marching *m = probe->marching;
+    csg_apex_walk walks[AT_ONCE];
+    candidate *owner[AT_ONCE];
+    float f[AT_ONCE];
+    int n = 0;
+    for (int i = 0; i < count; i++) {
+        candidate *c = &candidates[i];
+        if (!c->is_looked)
+            continue;
+        walks[n] = (csg_apex_walk){&c->p, &c->apexes[0], c->p.start_count > 1};
+        owner[n++] = c;
+    }
+    csg_apexes_improve(walks, n, m->lattice->cell_size, probe);
+    csg_apexes_ask(walks, n, probe, f);
+    for (int i = 0; i < n; i++) {
+        candidate *c = owner[i];
+        c->found = csg_apexes_choose(&c->p, c->apexes, &f[i], 1, m, &c->feature);
+    }
+}
+
+/* The other starts of one whose first is not good. */
+static void try_others(candidate *c, csg_feature_probe *probe)
+{
+    const csg_marching *m = probe->marching;
+    csg_apex_walk walks[CSG_FEATURE_MOST_STARTS];
+    float f[CSG_FEATURE_MOST_STARTS];
+    int count = c->p.start_count;
+    for (int k = 0; k < count; k++)
+        walks[k] = (csg_apex_walk){&c->p, &c->apexes[k], false};
+    csg_apexes_improve(walks + 1, count - 1, m->lattice->cell_size, probe);
+    csg_apexes_ask(walks, count, probe, f);
+    c->found = csg_apexes_choose(&c->p, c->apexes, f, count, m, &c->feature);
 }
 
 /* An apex to be found from those of its neighbours. */
@@ -147,38 +206,61 @@ static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loo
     csg_feature_divide(out, probe->marching->tables, 0);
 }
 
-bool csg_feature_solve(csg_feature_room *room, const csg_found_loop *loop, csg_feature_probe *probe,
-                       csg_memory *memory)
+static bool end_candidate(csg_feature_room *room, const candidate *c, csg_feature_probe *probe,
+                          csg_memory *memory)
 {
-    polygon p;
+    const csg_found_loop *loop = c->loop;
+    if (!c->crossed && (!c->good || !loop->wide) && !loop->joined)
+        return true;
     if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
                             sizeof(csg_feature)))
         return false;
     csg_feature *out = &room->features[room->count];
-    bool good = mark_sheets(room, loop, &p), crossed = false;
-    float sharpest = 0;
-    for (int s = 0; s < loop->side_count; s++)
-        if (loop->crease[s] >= 0) {
-            crossed = true;
-            sharpest = fmaxf(sharpest, room->segments[loop->crease[s]].jump);
-        }
-    if (!crossed && (!good || !loop->wide) && !loop->joined)
-        return true;
-    bool found = good && (crossed || loop->wide) && solve_polygon(room, loop, &p, probe, out);
+    if (c->is_looked)
+        *out = c->feature;
     /* nobody beyond could help a tip: it is for the polygon there to reach */
-    bool solved = found && (p.creased || out->state == CSG_FEATURE_SOLVED);
+    bool solved = c->found && (c->p.creased || out->state == CSG_FEATURE_SOLVED);
     /* where all creases are blunt, one that enters the polygon and is not found where it should
      * leave it fades there: it ends, and smoothly */
-    bool fades = sharpest < CSG_FEATURE_FADING;
-    bool creased = p.creased && !fades;
-    if (good && creased && !solved)
-        leave_unsolved(room, loop, &p, out);
-    bool is_feature = solved || (good && creased);
+    bool fades = c->sharpest < CSG_FEATURE_FADING;
+    bool creased = c->p.creased && !fades;
+    if (c->good && creased && !solved)
+        leave_unsolved(room, loop, &c->p, out);
+    bool is_feature = solved || (c->good && creased);
     if (!is_feature && loop->joined)
         leave_smooth(room, loop, probe, out);
     if (is_feature || loop->joined)
         room->count++;
-    if (!is_feature && crossed && !found)
+    if (!is_feature && c->crossed && !c->found)
         *(fades ? &room->fading : &room->smooth) += 1;
+    return true;
+}
+
+static bool solve_some(csg_feature_room *room, const csg_found_loop *loops, int count,
+                       csg_feature_probe *probe, csg_memory *memory)
+{
+    candidate candidates[AT_ONCE];
+    for (int i = 0; i < count; i++)
+        begin_candidate(room, &loops[i], probe->marching->lattice->cell_size, &candidates[i]);
+    try_first(candidates, count, probe);
+    for (int i = 0; i < count; i++) {
+        candidate *c = &candidates[i];
+        bool is_settled = c->found && c->feature.state == CSG_FEATURE_SOLVED;
+        if (c->is_looked && c->p.start_count > 1 && !is_settled)
+            try_others(c, probe);
+        if (!end_candidate(room, c, probe, memory))
+            return false;
+    }
+    return true;
+}
+
+bool csg_feature_solve(csg_feature_room *room, csg_feature_probe *probe, csg_memory *memory)
+{
+    for (uint32_t i = 0; i < room->loop_count; i += AT_ONCE) {
+        uint32_t left = room->loop_count - i;
+        int count = (int)(left < AT_ONCE ? left : AT_ONCE);
+        if (!solve_some(room, &room->loops[i], count, probe, memory))
+            return false;
+    }
     return true;
 }
