@@ -41,8 +41,8 @@ static const polyhedron *as_polyhedron(const csg_shape *shape)
  */
 
 typedef struct known_point {
-    csg_vec3 at, cell; /* frame units; on the lattice */
-    double free;       /* no triangle within */
+    csg_vec3 at; /* frame units */
+    double free; /* no triangle within */
     int winding;
     bool is_set;
 } known_point;
@@ -81,15 +81,23 @@ static bool is_plain(const polyhedron *solid, uint32_t place)
     return known == PLAIN_YES;
 }
 
-static bool reaches(const known_point *from, csg_vec3 p)
+/* Whether no triangle is between them. */
+static bool is_free(const known_point *from, csg_vec3 p, double free)
 {
     csg_vec3 away = csg_vec3_sub(p, from->at);
-    return from->is_set && from->free > 0 && csg_vec3_dot(away, away) < from->free * from->free;
+    double reach = fmax(free, from->free);
+    return from->is_set && reach > 0 && csg_vec3_dot(away, away) < reach * reach;
 }
 
-static bool shares_row(const known_point *from, csg_vec3 cell)
+static bool shares_row(const known_point *from, csg_vec3 p)
 {
-    return from->is_set && from->cell.y == cell.y && from->cell.z == cell.z;
+    return from->is_set && from->at.y == p.y && from->at.z == p.z;
+}
+
+static csg_vec3 cell_of(csg_vec3 p)
+{
+    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
+                         csg_triangle_frame_round(p.z));
 }
 
 static bool box_holds(csg_box box, csg_vec3 p)
@@ -133,37 +141,45 @@ static double nearest_told(const polyhedron *solid)
     return solid->is_convex ? 0x1p-28 : 0;
 }
 
-/* p is in the box. place: of the triangle that is nearest; NO_PLACE: it is not known, nearer ones
- * may be left out of the list. */
-static int find_winding(walker *w, known_point *p, uint32_t place)
+/* p is in the box. free: no triangle within. place: of the triangle that is nearest; NO_PLACE: it
+ * is not known, nearer ones may be left out of the list. */
+static int find_winding(walker *w, csg_vec3 p, double free, uint32_t place)
 {
     int winding;
-    if (reaches(&w->last, p->at) || (w->last.is_set && reaches(p, w->last.at)))
+    if (is_free(&w->last, p, free))
         return w->last.winding;
-    if (reaches(&w->row, p->at) || (w->row.is_set && reaches(p, w->row.at)))
+    if (is_free(&w->row, p, free))
         return w->row.winding;
-    if (p->free > nearest_told(w->solid) && place != NO_PLACE &&
-        read_side(w->solid, p->at, place, &winding))
+    if (free > nearest_told(w->solid) && place != NO_PLACE &&
+        read_side(w->solid, p, place, &winding))
         return winding;
-    if (shares_row(&w->last, p->cell))
-        return w->last.winding + csg_tree_winding_step(&w->solid->tree, p->cell, w->last.cell);
-    return csg_tree_winding(&w->solid->tree, p->cell, NULL);
+    const csg_tree *tree = &w->solid->tree;
+    if (shares_row(&w->last, p))
+        return w->last.winding + csg_tree_winding_step(tree, cell_of(p), cell_of(w->last.at));
+    return csg_tree_winding(tree, cell_of(p), NULL);
 }
 
-static bool is_inside(walker *w, csg_vec3 at, double distance, uint32_t place)
+/* Member by member: a copy by vectors would wait for what was just written. */
+static void keep_point(known_point *known, csg_vec3 p, double free, int winding)
 {
-    if (!box_holds(w->solid->tree.box, at))
+    known->at.x = p.x;
+    known->at.y = p.y;
+    known->at.z = p.z;
+    known->free = free;
+    known->winding = winding;
+    known->is_set = true;
+}
+
+static bool is_inside(walker *w, csg_vec3 p, double distance, uint32_t place)
+{
+    if (!box_holds(w->solid->tree.box, p))
         return false;
-    known_point p = {.at = at,
-                     .cell = {csg_triangle_frame_round(at.x), csg_triangle_frame_round(at.y),
-                              csg_triangle_frame_round(at.z)},
-                     .free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST,
-                     .is_set = true};
-    p.winding = find_winding(w, &p, distance < w->limit ? place : NO_PLACE);
-    if (!shares_row(&w->last, p.cell))
-        w->row = p;
-    w->last = p;
-    return p.winding >= 1;
+    double free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST;
+    int winding = find_winding(w, p, free, distance < w->limit ? place : NO_PLACE);
+    if (!shares_row(&w->last, p))
+        keep_point(&w->row, p, free, winding);
+    keep_point(&w->last, p, free, winding);
+    return winding >= 1;
 }
 
 /* p is in frame units, within 2^60. */
@@ -414,8 +430,7 @@ static bool is_overlapping(const polyhedron *solid)
         csg_vec3 out = csg_vec3_scale(csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac)), 0x1p-30);
         csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
         for (int k = 0; k < 2; k++) {
-            csg_vec3 cell = {csg_triangle_frame_round(at[k].x), csg_triangle_frame_round(at[k].y),
-                             csg_triangle_frame_round(at[k].z)};
+            csg_vec3 cell = cell_of(at[k]);
             if (box_holds(solid->tree.box, cell) &&
                 csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
                 return true;
