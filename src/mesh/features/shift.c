@@ -64,33 +64,39 @@ static bool step_to_surface(csg_vec3 *at, csg_vec3 *normal, csg_vec3 sheet, doub
 }
 
 /* Moves the places to the points of the surface near them, all at once, and finds its outward
- * normals there: good are those that are of the sheet with this normal. */
+ * normals there: good are those that are of the sheet with this normal. One that lies on the
+ * surface as far as the field's rounding can tell stays there. */
 static void to_surface(csg_feature_probe *probe, csg_vec3 sheet, places *p)
 {
     enum { STEPS = 3 };
-    double cell = probe->marching->lattice->cell_size;
-    double least = 1e-4 * cell + 4 * (double)probe->marching->noise;
+    double cell = probe->marching->lattice->cell_size, noise = (double)probe->marching->noise;
+    double least = 1e-4 * cell + 4 * noise;
     float x[WAYS], y[WAYS], z[WAYS], f[WAYS], g[3][WAYS];
-    for (int step = 0; step <= STEPS; step++) {
-        int which[WAYS];
-        size_t count = 0;
-        for (int i = 0; i < WAYS; i++) {
-            if (step && !p->good[i])
-                continue;
-            x[count] = (float)p->at[i].x, y[count] = (float)p->at[i].y;
-            z[count] = (float)p->at[i].z;
-            which[count++] = i;
+    int which[WAYS], left = WAYS;
+    for (int i = 0; i < WAYS; i++)
+        which[i] = i;
+    for (int step = 0; step <= STEPS && left; step++) {
+        for (int k = 0; k < left; k++) {
+            csg_vec3 at = p->at[which[k]];
+            x[k] = (float)at.x, y[k] = (float)at.y, z[k] = (float)at.z;
         }
-        csg_feature_probe_points(probe, x, y, z, count, f, (float *const[3]){g[0], g[1], g[2]});
-        for (size_t k = 0; k < count; k++) {
+        csg_feature_probe_points(probe, x, y, z, (size_t)left, f,
+                                 (float *const[3]){g[0], g[1], g[2]});
+        int count = left;
+        left = 0;
+        for (int k = 0; k < count; k++) {
+            int i = which[k];
             csg_vec3 d = {(double)g[0][k], (double)g[1][k], (double)g[2][k]};
-            csg_vec3 *at = &p->at[which[k]], before = *at;
-            bool good = step_to_surface(at, &p->normal[which[k]], sheet, (double)f[k], d, cell);
-            if (step == STEPS) {
+            csg_vec3 *at = &p->at[i], before = *at;
+            double off = fabs((double)f[k]);
+            bool is_there = off <= 4 * noise || step == STEPS;
+            p->good[i] = step_to_surface(at, &p->normal[i], sheet, (double)f[k], d, cell);
+            if (is_there) {
                 *at = before;
-                good = good && fabs((double)f[k]) <= least;
+                p->good[i] = p->good[i] && off <= least;
+            } else if (p->good[i]) {
+                which[left++] = i;
             }
-            p->good[which[k]] = good;
         }
     }
 }
