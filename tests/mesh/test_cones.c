@@ -12,7 +12,7 @@
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"
 
-static uint32_t scene_count = 24;
+static uint32_t scene_count = 24, range_count = 0;
 
 enum { TRIES = 60 };
 
@@ -77,6 +77,31 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     }
 }
 
+/* And between two places of the ball, on a line along that axis and on any other: gradients as the
+ * reference gives them leave out what a fillet's operands turn. */
+static void check_differences(const csgm_scene *scene, csg_random *random, csg_vec3 at,
+                              double radius, const csg_gradients *found)
+{
+    csg_cone cone;
+    bool has_axis = csg_cone_find_axis(&found->balls, &cone);
+    for (int i = 0; i < TRIES; i++) {
+        csg_vec3 way = test_direction(random), d = test_direction(random);
+        if (has_axis && i % 2)
+            way = csg_vec3_make(cone.axis[0], cone.axis[1], cone.axis[2]);
+        csg_vec3 p =
+            csg_vec3_add(at, csg_vec3_scale(d, radius * csg_random_uniform(random, 0, 0.6)));
+        double length = radius * csg_random_uniform(random, 0.05, 0.39);
+        csg_vec3 q = csg_vec3_add(p, csg_vec3_scale(way, length));
+        double climb = test_sample(scene, q).value - test_sample(scene, p).value;
+        if (fabs(climb) > (found->longest + 1e-3) * length + 1e-6)
+            fail_msg("a climb of %g, not %g at most, near (%g, %g, %g) within %g", climb / length,
+                     found->longest, at.x, at.y, at.z, radius);
+        if (has_axis && i % 2 && climb < (cone.least - 1e-3) * length - 1e-6)
+            fail_msg("a climb of %g along the axis, not %g, near (%g, %g, %g) within %g",
+                     climb / length, cone.least, at.x, at.y, at.z, radius);
+    }
+}
+
 /* The range of mesh/distance/slopes.h over a triangle, tried at random points of it. Returns
  * whether there was one. */
 static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_random *random,
@@ -103,8 +128,10 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
             fail_msg("a value of %g, not %g to %g, near (%g, %g, %g) within %g", value, found.low,
                      found.high, at.x, at.y, at.z, radius);
     }
-    if (is_known)
+    if (is_known) {
         check_gradients(scene, random, at, radius, &found);
+        check_differences(scene, random, at, radius, &found);
+    }
     free(scratch);
     return is_known;
 }
@@ -215,7 +242,7 @@ static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t 
             double radius = exp(csg_random_uniform(&random, -6, -0.5));
             found += try_cone(c.scene, c.field, &random, at, radius);
             csg_random other = random; /* what cones are tried at depends on nothing else */
-            try_range(c.scene, c.field, &other, at, radius);
+            range_count += try_range(c.scene, c.field, &other, at, radius);
         }
         mesh_case_end(&c);
     }
@@ -350,6 +377,28 @@ static csg_node_id ruled(mesh_case *c, csg_random *random)
     return node;
 }
 
+/* Two solids, or half-spaces, of every kind. */
+static csg_node_id filleted(mesh_case *c, csg_random *random)
+{
+    static const csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
+                                              CSG_NODE_INTERSECTION};
+    csg_blend blend = {CSG_BLEND_FILLET, csg_random_uniform(random, 0.05, 0.6)};
+    csg_node_id pair[2];
+    for (int i = 0; i < 2; i++)
+        pair[i] = posed_anyhow(
+            c, make_any_primitive(c, (int)csg_random_uniform(random, 0, 8.99), random), random);
+    return joined(c, operators[(int)csg_random_uniform(random, 0, 2.999)], blend, pair[0], pair[1]);
+}
+
+static void cones_of_fillets_hold(void **state)
+{
+    (void)state;
+    uint32_t before = range_count;
+    try_kind("fillets", filleted, 98, 400);
+    if (range_count - before < 100 * scene_count)
+        fail_msg("fillets: only %u ranges", range_count - before);
+}
+
 static void cones_of_outlines_hold(void **state)
 {
     (void)state;
@@ -396,10 +445,10 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shared_faces_are_no_surface), cmocka_unit_test(cones_hold),
-        cmocka_unit_test(cones_of_outlines_hold),      cmocka_unit_test(cones_of_polyhedra_hold),
-        cmocka_unit_test(cones_of_needles_hold),       cmocka_unit_test(cones_of_formulas_hold),
-        cmocka_unit_test(cones_of_warps_hold),         cmocka_unit_test(cones_of_combinations_hold),
-        cmocka_unit_test(cones_of_rules_hold),
+        cmocka_unit_test(cones_of_fillets_hold),       cmocka_unit_test(cones_of_outlines_hold),
+        cmocka_unit_test(cones_of_polyhedra_hold),     cmocka_unit_test(cones_of_needles_hold),
+        cmocka_unit_test(cones_of_formulas_hold),      cmocka_unit_test(cones_of_warps_hold),
+        cmocka_unit_test(cones_of_combinations_hold),  cmocka_unit_test(cones_of_rules_hold),
     };
     if (argc > 1)
         scene_count = (uint32_t)strtoul(argv[1], NULL, 10);

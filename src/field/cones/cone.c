@@ -108,7 +108,7 @@ static bool widen_operands(const csg_tape *tape, uint32_t n, const float c[3], d
 {
     const csg_tape_node *node = &tape->nodes[n];
     double stray;
-    if (node->size != node->arity + 1 || !csg_fillet_find_stray(tape, node, c, radius, &stray))
+    if (node->size != node->arity + 1 || !csg_fillet_find_stray(tape, node, c, radius, 0, &stray))
         return false;
     for (uint32_t i = leaves->first[leaves->count - node->arity]; i < leaves->balls.count; i++)
         leaves->balls.items[i].spread += stray;

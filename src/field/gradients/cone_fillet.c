@@ -2,9 +2,11 @@
  * Turns of a fillet's operands; see cone_fillet.h.
  *
  * The gradient of F for two operands is a convex combination of theirs plus dF/dc grad c, c =
- * g_1 . g_2, which is 0 for planes. |dF/dc| <= r / (2 (1 + c)) and |grad c| <= (k_1 + k_2) sin, k the
- * largest curvature of a field. Where a primitive's gradient turns by a chord of s within rho, it
- * turns no faster than s / (rho (1 - s)) there (cone_ball.h, "turning").
+ * g_1 . g_2, which is 0 for planes. With d = 1 - c, |dF/dc| = (r^2 - x^2 / d^2) / (2 sqrt((2 - d)
+ * (2 r^2 - x^2 / d))) and |grad c| <= (k_1 + k_2) sqrt(d (2 - d)), k the largest curvature of a field:
+ * the product grows with d and falls with the difference x of the operands. Where a primitive's
+ * gradient turns by a chord of s within rho, it turns no faster than s / (rho (1 - s)) there
+ * (cone_ball.h, "turning").
  */
 #include "field/gradients/cone_fillet.h"
 
@@ -112,17 +114,20 @@ static bool find_bend(const csg_tape *tape, const csg_tape_node *leaf, const flo
     csg_cone_balls balls = {.count = 0};
     bool turns = csg_op_is_primitive(leaf->op) && !csg_op_has(leaf->op, CSG_TRAIT_CURVE);
     if (!turns || leaf->warp || !csg_cone_add_leaf(&balls, tape, leaf, c, radius) ||
-        balls.count != 1 || !(balls.items[0].spread < 1))
+        balls.count != 1)
         return false;
-    double s = balls.items[0].spread;
+    const double *g = balls.items[0].at;
+    double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (!(balls.items[0].spread < length))
+        return false;
+    double s = balls.items[0].spread / length; /* of unit vectors */
     *bend = s / (radius * (1 - s));
     return true;
 }
 
 bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, const float c[3],
-                           double radius, double *stray)
+                           double radius, double apart, double *stray)
 {
-    static const double FARTHEST = 1.65; /* before the radius fades */
     const csg_tape_node *child = node - 1 - node->planes;
     uint32_t count = node->arity - node->planes;
     double bends = 0, r = (double)tape->parameters[node->parameters + CSG_OPERATOR_N];
@@ -133,7 +138,8 @@ bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, cons
         bends += bend;
     }
     double d = (double)csg_fillet_find_turns(tape, node, c, radius).most;
+    double x = fmin(apart / r, d), part = 1 - (d > 0 ? x * x / (d * d) : 1);
     *stray =
-        bends > 0 ? r * bends / 2 * sqrt(d / (2 - d)) : 0; /* d = 2: faces look at each other */
-    return bends == 0 || (count == 2 && d < FARTHEST);
+        bends > 0 && part > 0 ? bends * r / 2 * sqrt(d / 2) * part / sqrt(1 - x * x / (2 * d)) : 0;
+    return bends == 0 || (count == 2 && d < CSG_FILLET_FADE);
 }

@@ -17,8 +17,9 @@ csg_fillet_turns csg_fillet_find_turns(const csg_tape *tape, const csg_tape_node
                                        const float c[3], double radius);
 
 /* The gradient of the fillet in the ball lies within *stray of the convex hull of its operands'
- * (and its planes'): they turn, and the blend with them. False: no bound. */
+ * (and its planes'): they turn, and the blend with them, the less the farther two operands' values
+ * are `apart`. False: no bound. */
 bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, const float c[3],
-                           double radius, double *stray);
+                           double radius, double apart, double *stray);
 
 #endif

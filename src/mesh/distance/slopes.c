@@ -8,31 +8,14 @@
 #include <string.h>
 
 #include "field/point.h"
+#include "mesh/distance/slopes_private.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/blends.h"
 
-/* What one operand can be in the ball. */
-typedef struct operand {
-    double value, doubt; /* at the centre; rounding */
-    double low, high;    /* over the triangle */
-    double least, most;  /* over the ball, but for rounding */
-    csg_cone_balls balls;
-    double longest; /* gradient */
-    bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
-                       faces' */
-    bool faces;     /* gradients between the balls may be as long as these: where faces meet */
-} operand;
-
-typedef struct walker {
-    const csg_kernel *kernel;
-    const csg_tape *tape;
-    csg_vec3 v[3], c;
-    double radius, flat; /* of the ball; of the triangle's corners around the centre */
-    float *scratch;
-    size_t scratch_floats;
-    operand stack[CSG_SLOPES_NODES];
-    uint32_t top;
-} walker;
+typedef csg_slopes_operand operand;
+typedef csg_slopes_walker walker;
+typedef csg_slopes_range range;
+typedef csg_slopes_which which;
 
 /* ---- differences and shares --------------------------------------------------------------------
  */
@@ -60,6 +43,12 @@ static double rate_of(const walker *w, const operand *a, const operand *b)
         for (uint32_t k = 0; k < b->balls.count; k++)
             most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
     return a->faces || b->faces ? 1.41421357 * most : most;
+}
+
+/* By how much it can change from the centre, within the ball. */
+double csg_slopes_reach(const walker *w, const operand *a, const operand *b)
+{
+    return w->radius * rate_of(w, a, b) + a->doubt + b->doubt;
 }
 
 /* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
@@ -92,10 +81,6 @@ static double share_at(uint8_t blend, float n, float chi, double d)
         slope = (float)fabs(d) < chi ? -1.0f : 0;
     return d > 0 ? 1 + (double)slope : -(double)slope;
 }
-
-typedef struct range {
-    double low, high;
-} range;
 
 /* It grows with the difference. Where the shape jumps, at 0, both sides are taken. */
 static range shares_of(uint8_t blend, float n, float chi, double low, double high)
@@ -162,7 +147,7 @@ static bool mix_pairs(operand *a, const operand *b, range share)
 }
 
 /* a becomes the mixture with b; the value is the caller's. */
-static bool mix(operand *a, const operand *b, range share, bool is_sharp)
+bool csg_slopes_mix(operand *a, const operand *b, range share, bool is_sharp)
 {
     static const double ANY = 0.7; /* shares that are as good as any */
     if (share.low >= 1)
@@ -237,7 +222,7 @@ static bool join_operands(walker *w, const csg_tape_node *node)
     float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     operand *a = &w->stack[w->top - 2], *b = &w->stack[w->top - 1];
     double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
-    double reach = w->radius * rate_of(w, a, b) + a->doubt + b->doubt;
+    double reach = csg_slopes_reach(w, a, b);
     double d = turn * (a->value - b->value);
     w->top--;
     if (node->join_blend == CSG_BLEND_ORTHOGONAL) {
@@ -246,7 +231,7 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         bool edge = fmin(u, v) > -2 * w->radius - a->doubt - b->doubt;
         range r = edge ? (range){0, 1} : shares_of(CSG_BLEND_SHARP, n, chi, d - reach, d + reach);
         double value = orthogonal_value((double)n, turn, a->value, b->value);
-        bool done = mix(a, b, r, true);
+        bool done = csg_slopes_mix(a, b, r, true);
         a->low = orthogonal_value((double)n, turn, a->low, b->low);
         a->high = orthogonal_value((double)n, turn, a->high, b->high);
         a->least = orthogonal_value((double)n, turn, a->least, b->least);
@@ -273,24 +258,21 @@ static bool join_operands(walker *w, const csg_tape_node *node)
     a->value = value;
     a->low = turn * joined_value(node, n, chi, turn * a->low, turn * b->low) - a->doubt;
     a->high = turn * joined_value(node, n, chi, turn * a->high, turn * b->high) + a->doubt;
-    return mix(a, b, r, node->join_blend == CSG_BLEND_SHARP);
+    return csg_slopes_mix(a, b, r, node->join_blend == CSG_BLEND_SHARP);
 }
 
-/* Which of an operand's values. */
-typedef enum which { MIDDLE, LOW, HIGH, LEAST, MOST } which;
-
-static double value_of(const operand *o, which w)
+double csg_slopes_value(const operand *o, which w)
 {
     switch (w) {
-    case MIDDLE:
+    case CSG_SLOPES_MIDDLE:
         return o->value;
-    case LOW:
+    case CSG_SLOPES_LOW:
         return o->low;
-    case HIGH:
+    case CSG_SLOPES_HIGH:
         return o->high;
-    case LEAST:
+    case CSG_SLOPES_LEAST:
         return o->least;
-    case MOST:
+    case CSG_SLOPES_MOST:
         return o->most;
     }
     return NAN;
@@ -303,11 +285,11 @@ static double round_value(const operand *of, which what, uint32_t count, double 
     enum { STEPS = 40 };
     double f = -INFINITY;
     for (uint32_t i = 0; i < count; i++)
-        f = fmax(f, turn * value_of(&of[i], what));
+        f = fmax(f, turn * csg_slopes_value(&of[i], what));
     for (int step = 0; step < STEPS; step++) {
         double squares = -w * w, slope = 0;
         for (uint32_t i = 0; i < count; i++) {
-            double u = fmax(turn * value_of(&of[i], what) - f + w, 0);
+            double u = fmax(turn * csg_slopes_value(&of[i], what) - f + w, 0);
             squares += u * u;
             slope += 2 * u;
         }
@@ -325,11 +307,11 @@ static bool join_round(walker *w, const csg_tape_node *node)
     double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, steepest = 0;
     operand *of = &w->stack[w->top - node->arity];
-    double value = round_value(of, MIDDLE, node->arity, turn, size);
-    double low = round_value(of, LOW, node->arity, turn, size);
-    double high = round_value(of, HIGH, node->arity, turn, size);
-    double least = round_value(of, LEAST, node->arity, turn, size);
-    double most = round_value(of, MOST, node->arity, turn, size);
+    double value = round_value(of, CSG_SLOPES_MIDDLE, node->arity, turn, size);
+    double low = round_value(of, CSG_SLOPES_LOW, node->arity, turn, size);
+    double high = round_value(of, CSG_SLOPES_HIGH, node->arity, turn, size);
+    double least = round_value(of, CSG_SLOPES_LEAST, node->arity, turn, size);
+    double most = round_value(of, CSG_SLOPES_MOST, node->arity, turn, size);
     for (uint32_t i = 0; i < node->arity; i++) {
         doubt = fmax(doubt, of[i].doubt);
         for (uint32_t k = i + 1; k < node->arity; k++)
@@ -347,7 +329,7 @@ static bool join_round(walker *w, const csg_tape_node *node)
         range share = {total.low / (total.low + weight.high),
                        total.high / (total.high + weight.low)};
         if (total.high > 0)
-            done = mix(&sum, &of[i], share, false);
+            done = csg_slopes_mix(&sum, &of[i], share, false);
         else
             sum = of[i];
         total = (range){total.low + weight.low, total.high + weight.high};
@@ -515,6 +497,8 @@ static bool walk(walker *w, const float *low, const float *high)
             known = push_leaf(w, node, low + at, high + at);
         else if (csg_op_is_round(node->op))
             known = join_round(w, node);
+        else if (csg_op_is_fillet(node->op))
+            known = csg_slopes_join_fillet(w, node);
         if (!known || (node->join && !join_operands(w, node)))
             return false;
     }

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT
+ * A fillet among the operators of slopes.h: bounds of two operands whose gradients turn little, or
+ * that are too far apart to blend, and of half-spaces.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "field/gradients/cone_fillet.h"
+#include "field/point.h"
+#include "mesh/distance/slopes_private.h"
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/fillet.h"
+
+typedef csg_slopes_operand operand;
+typedef csg_slopes_walker walker;
+typedef csg_slopes_range range;
+typedef csg_slopes_which which;
+
+/* Of an operator at the centre, as the kernel has it: nothing else knows its operands' gradients.
+ */
+static double value_of_node(const walker *w, const csg_tape_node *node)
+{
+    csg_tape below = *w->tape;
+    csg_tape_node nodes[CSG_SLOPES_NODES];
+    memcpy(nodes, node - (node->size - 1), node->size * sizeof *nodes);
+    nodes[node->size - 1].join = CSG_JOIN_NONE;
+    below.nodes = nodes;
+    below.count = node->size;
+    return csg_tape_value_at(w->kernel, &below, w->c, w->scratch, w->scratch_floats);
+}
+
+/* What a fillet ends at: how far inside of the nearest of its planes operands are at least. */
+static double ends_of(const walker *w, const csg_tape_node *node, const operand *planes, which what)
+{
+    double nearest = INFINITY;
+    for (uint32_t p = 0; p < node->planes; p++) {
+        const csg_tape_node *child = node - 1 - node->planes, *plane = node - node->planes + p;
+        double beyond = -INFINITY;
+        for (uint32_t k = node->planes; k < node->arity; k++, child -= child->size)
+            beyond =
+                fmax(beyond,
+                     (double)w->tape->parameters[child->join_parameters + plane->join_parameters]);
+        nearest = fmin(nearest, csg_slopes_value(&planes[p], what) + beyond);
+    }
+    return nearest;
+}
+
+/* A fillet grows with its operands and with how far they turn from each other. */
+static double fillet_value(const operand *of, which what, uint32_t count, double turn, double r,
+                           double d, double end)
+{
+    double largest = -INFINITY, second = -INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        double value = turn * csg_slopes_value(&of[i], what);
+        second = fmax(second, fmin(value, largest));
+        largest = fmax(largest, value);
+    }
+    double x = fmin(largest - second, 2 * r);
+    bool pair = count == 2 && d < CSG_FILLET_FADE;
+    double excess = pair     ? csg_fillet_of_two(r, x, d).excess
+                    : d <= 0 ? 0
+                             : csg_fillet_bound(r, x, count > 2 ? x : 2 * r, d);
+    return turn * fmax(largest, fmin(largest + excess, end));
+}
+
+/* The share of operand a of two, where turn * (a - b) = t. */
+static double fillet_share(double r, double t, double d)
+{
+    double lower = csg_fillet_of_two(r, fmin(fabs(t), 2 * r), d).lower;
+    return t > 0 ? 1 - lower : lower;
+}
+
+/* Within which difference two operands blend, for r = 1. */
+static double fillet_reach(csg_fillet_turns d)
+{
+    double least = (double)d.least, most = (double)d.most;
+    if (most < CSG_FILLET_FADE)
+        return most;
+    return least < CSG_FILLET_PAIR_REACH ? CSG_FILLET_PAIR_REACH : least * csg_fillet_fade(least);
+}
+
+/* Of operand a of two. The lower one's share falls with the difference and grows with the turn. */
+static range fillet_shares(const walker *w, const operand *of, double turn, double r,
+                           csg_fillet_turns d)
+{
+    static const double ROUNDING = 1e-5;
+    double reach = csg_slopes_reach(w, &of[0], &of[1]);
+    double t = turn * (of[0].value - of[1].value), from = t - reach, to = t + reach;
+    double blends = r * fillet_reach(d) * (1 + ROUNDING);
+    if (from >= blends || to <= -blends)
+        return (range){t > 0, t > 0};
+    if ((double)d.most >= CSG_FILLET_FADE)
+        return (range){0, 1};
+    double low = fillet_share(r, from, (double)(from > 0 ? d.most : d.least)) - ROUNDING;
+    double high = fillet_share(r, to, (double)(to > 0 ? d.least : d.most)) + ROUNDING;
+    return (range){fmax(low, 0), fmin(high, 1)};
+}
+
+/* Those that blend turn little from each other, or are planes. */
+static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32_t count)
+{
+    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    operand *of = &w->stack[w->top - node->arity];
+    double stray, apart = 0;
+    if (count == 2)
+        apart = fabs(of[0].value - of[1].value) - csg_slopes_reach(w, &of[0], &of[1]);
+    if (!csg_fillet_find_stray(w->tape, node, c, w->radius, fmax(apart, 0), &stray))
+        return false;
+    for (uint32_t k = 1; k < count; k++)
+        if (!csg_slopes_mix(&of[0], &of[k], share, count > 2))
+            return false;
+    for (uint32_t i = 0; i < of[0].balls.count; i++)
+        of[0].balls.items[i].spread += stray;
+    of[0].longest += stray;
+    for (uint32_t p = count; p < node->arity; p++)
+        if (!csg_slopes_mix(&of[0], &of[p], (range){0, 1}, true))
+            return false;
+    return true;
+}
+
+bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
+{
+    static const which ends[2][2] = {{CSG_SLOPES_LOW, CSG_SLOPES_HIGH},
+                                     {CSG_SLOPES_LEAST, CSG_SLOPES_MOST}};
+    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    double r = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = csg_op_is_union(node->op) ? 1 : -1, doubt = 0, low[2], high[2];
+    uint32_t count = node->arity - node->planes;
+    operand *of = &w->stack[w->top - node->arity];
+    if (count < 2)
+        return false;
+    csg_fillet_turns d = csg_fillet_find_turns(w->tape, node, c, w->radius);
+    range share = count == 2 ? fillet_shares(w, of, turn, r, d) : (range){0, 1};
+    bool blends = share.low < 1 && share.high > 0;
+    if (!blends)
+        d = (csg_fillet_turns){0, 0};
+    /* A union is least where its operands turn least, but for where the radius fades. */
+    bool is_known = count == 2 && (double)d.most < CSG_FILLET_FADE;
+    for (int i = 0; i < 2; i++) {
+        which from = ends[i][turn < 0], to = ends[i][turn > 0];
+        double start = ends_of(w, node, of + count, from), end = ends_of(w, node, of + count, to);
+        low[i] = fillet_value(of, from, count, turn, r, is_known ? (double)d.least : 0, start);
+        high[i] = fillet_value(of, to, count, turn, r, (double)d.most, end);
+    }
+    for (uint32_t i = 0; i < node->arity; i++)
+        doubt = fmax(doubt, of[i].doubt);
+    if (blends ? !mix_fillet(w, node, share, count) : !csg_slopes_mix(&of[0], &of[1], share, true))
+        return false;
+    w->top -= node->arity - 1;
+    of[0].value = value_of_node(w, node);
+    of[0].doubt = doubt + 1e-5 * r;
+    of[0].low = fmin(low[0], high[0]) - of[0].doubt;
+    of[0].high = fmax(low[0], high[0]) + of[0].doubt;
+    of[0].least = fmin(low[1], high[1]);
+    of[0].most = fmax(low[1], high[1]);
+    return true;
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ * What the files of slopes share; see slopes.h.
+ */
+#ifndef CSG_MESH_DISTANCE_SLOPES_PRIVATE_H
+#define CSG_MESH_DISTANCE_SLOPES_PRIVATE_H
+
+#include "mesh/distance/slopes.h"
+
+/* What one operand can be in the ball. */
+typedef struct csg_slopes_operand {
+    double value, doubt; /* at the centre; rounding */
+    double low, high;    /* over the triangle */
+    double least, most;  /* over the ball, but for rounding */
+    csg_cone_balls balls;
+    double longest; /* gradient */
+    bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
+                       faces' */
+    bool faces;     /* gradients between the balls may be as long as these: where faces meet */
+} csg_slopes_operand;
+
+typedef struct csg_slopes_walker {
+    const csg_kernel *kernel;
+    const csg_tape *tape;
+    csg_vec3 v[3], c;
+    double radius, flat; /* of the ball; of the triangle's corners around the centre */
+    float *scratch;
+    size_t scratch_floats;
+    csg_slopes_operand stack[CSG_SLOPES_NODES];
+    uint32_t top;
+} csg_slopes_walker;
+
+typedef struct csg_slopes_range {
+    double low, high;
+} csg_slopes_range;
+
+/* Which of an operand's values. */
+typedef enum csg_slopes_which {
+    CSG_SLOPES_MIDDLE,
+    CSG_SLOPES_LOW,
+    CSG_SLOPES_HIGH,
+    CSG_SLOPES_LEAST,
+    CSG_SLOPES_MOST
+} csg_slopes_which;
+
+double csg_slopes_value(const csg_slopes_operand *o, csg_slopes_which what);
+/* By how much the difference of two operands can change from the centre, within the ball. */
+double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                        const csg_slopes_operand *b);
+/* a becomes the mixture with b, in any of the shares of a; the value is the caller's. False: no
+ * bound is known. */
+bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slopes_range share,
+                    bool is_sharp);
+/* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */
+bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
+
+#endif
