@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/rule.h"
 #include "scene/tree/parts.h"
 
 static csg_node_id named(mesh_case *c, const char *name, csg_node_id node)
@@ -46,6 +48,43 @@ static void begin(mesh_case *c, uint32_t threads, double x)
     assert_int_equal(csg_field_compile_parts(c->field), CSGM_OK);
 }
 
+/* The scene is the union of its parts. */
+static void check_union(const mesh_case *c)
+{
+    csg_random random = {7};
+    for (int i = 0; i < 1000; i++) {
+        csg_vec3 p = test_point(&random, 4);
+        double most = -INFINITY;
+        for (size_t k = 0; k < c->field->part_count; k++)
+            most = fmax(most, test_sample(c->field->parts[k].scene, p).value);
+        test_near(most, test_sample(c->scene, p).value, 1e-12);
+    }
+}
+
+static csg_node_id ruled(mesh_case *c, csg_blend_kind kind, double width)
+{
+    csg_rule rule = csg_rule_standard(kind);
+    rule.parameters[0] = rule.parameters[1] = width;
+    csg_blend blend = csg_build_rule(&c->builder, &rule);
+    return joined(c, CSG_NODE_UNION, blend, make_sphere(c, 0.8),
+                  moved(c, make_sphere(c, 0.6), 0.9, 0, 0));
+}
+
+/* Parts keep the rules of their blends, the first of them too. */
+static void test_rules(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    csg_node_id inner = named(&c, "inner", ruled(&c, CSG_BLEND_INTERIOR, 0.3));
+    csg_node_id outer = named(&c, "outer", moved(&c, ruled(&c, CSG_BLEND_EXTERIOR, 0.2), 3, 0, 0));
+    mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, inner, outer));
+    assert_int_equal(csg_field_compile_parts(c.field), CSGM_OK);
+    assert_int_equal(c.field->part_count, 2);
+    check_union(&c);
+    mesh_case_end(&c);
+}
+
 static void test_units(void **state)
 {
     (void)state;
@@ -59,14 +98,7 @@ static void test_units(void **state)
     assert_string_equal(csg_parts_name(&parts, 2), "bolt");
     assert_int_equal(parts.unit_count, 4);
     assert_int_equal(parts.lost_count, 2);
-    csg_random random = {7};
-    for (int i = 0; i < 1000; i++) { /* the scene is the union of its parts */
-        csg_vec3 p = test_point(&random, 4);
-        double most = -INFINITY;
-        for (size_t k = 0; k < c.field->part_count; k++)
-            most = fmax(most, test_sample(c.field->parts[k].scene, p).value);
-        assert_true(fabs(most - test_sample(c.scene, p).value) < 1e-12);
-    }
+    check_union(&c);
     csg_parts_reset(&parts);
     mesh_case_end(&c);
 }
@@ -242,8 +274,11 @@ static void test_each_allocation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units),           cmocka_unit_test(test_parts_are_their_scenes),
-        cmocka_unit_test(test_materials),       cmocka_unit_test(test_watched),
+        cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_units),
+        cmocka_unit_test(test_parts_are_their_scenes),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_watched),
         cmocka_unit_test(test_each_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "scene/operators/rule.h"
 #include "scene/tree/build.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
@@ -209,7 +210,7 @@ static bool load(csg_scene_builder *b, const csgm_scene *from)
            LOAD(looks, look_capacity, look_count) &&
            LOAD(formulas, formula_capacity, formula_count) &&
            LOAD(steps, step_capacity, step_count) && LOAD(warps, warp_capacity, warp_count) &&
-           load_shapes(b, from);
+           LOAD(rules, rule_capacity, rule_count) && load_shapes(b, from);
 #undef LOAD
 }
 
