@@ -34,8 +34,8 @@ static void walk_through(walk *w, csg_node_id root, csg_random *random, double s
 static void test_random_scenes(void **state)
 {
     walk totals = {0};
-    csg_random random = {21};
-    for (unsigned i = 0; i < 150; i++) {
+    csg_random random = {test_first_seed + 21};
+    for (unsigned i = 0; i < 150 * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "random scene %u", i);
@@ -55,9 +55,9 @@ static void test_random_scenes(void **state)
 static void test_outlines(void **state)
 {
     walk totals = {0};
-    csg_random random = {27};
+    csg_random random = {test_first_seed + 27};
     test_random_outlines = true;
-    for (unsigned i = 0; i < 200; i++) {
+    for (unsigned i = 0; i < 200 * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "outline %u", i);
@@ -74,8 +74,8 @@ static void test_outlines(void **state)
 static void test_raised_extrusions(void **state)
 {
     walk totals = {0};
-    csg_random random = {29};
-    for (unsigned i = 0; i < 300; i++) {
+    csg_random random = {test_first_seed + 29};
+    for (unsigned i = 0; i < 300 * test_times; i++) {
         walk w = {0};
         char what[48];
         csg_node_id squares[2];
@@ -103,9 +103,9 @@ static void test_raised_extrusions(void **state)
 static void test_random_fillet_scenes(void **state)
 {
     walk totals = {0};
-    csg_random random = {23};
+    csg_random random = {test_first_seed + 23};
     test_random_fillets = true;
-    for (unsigned i = 0; i < 150; i++) {
+    for (unsigned i = 0; i < 150 * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "random fillets %u", i);
@@ -148,8 +148,8 @@ static void test_pairs_of_fillets(void **state)
 {
     static test_points points;
     static test_results pair, three;
-    csg_random random = {24};
-    for (int i = 0; i < 60; i++) {
+    csg_random random = {test_first_seed + 24};
+    for (unsigned i = 0; i < 60 * test_times; i++) {
         test_subject s[2];
         csg_node_kind how = i % 3 ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE;
         double apart = i % 3 == 2 ? 0.7 : 0;
@@ -282,8 +282,9 @@ static void test_one_of_many(void **state)
     walk_end(&w);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    test_take_search(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),        cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_random_fillet_scenes), cmocka_unit_test(test_threshold),

@@ -4,6 +4,7 @@
  */
 #include "random_scene.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "random_blend.h"
@@ -86,6 +87,18 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 }
 
 bool test_random_rules = false;
+unsigned test_times = 1;
+uint64_t test_first_seed = 0;
+
+void test_take_search(int argc, char **argv)
+{
+    static const uint64_t APART =
+        60000; /* a multiple of every period in which seeds decide about scenes */
+    if (argc > 1)
+        test_times = (unsigned)atoi(argv[1]);
+    if (argc > 2)
+        test_first_seed = APART * strtoull(argv[2], NULL, 10);
+}
 
 /* A rule of this kind with random parameters, not settled. */
 static csg_rule random_rule(csg_random *random, csg_blend_kind kind)

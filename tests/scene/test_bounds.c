@@ -326,7 +326,7 @@ static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 static void test_random_trees_are_contained(void **state)
 {
     uint64_t inside = 0;
-    for (uint64_t seed = 1000; seed < 1150; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 1000; n < 150 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box = csg_bounds_of_solid(scene);
@@ -349,7 +349,8 @@ static void test_random_trees_are_contained(void **state)
 static void test_nothing_is_beyond_the_exterior_box(void **state)
 {
     int found = 0, beyond = 0, rescued = 0;
-    for (uint64_t seed = 3001; seed < 3400; seed += 3) { /* with rules */
+    for (uint64_t n = 0, seed = test_first_seed + 3001; n < 133 * test_times;
+         n++, seed += 3) { /* with rules */
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box;
@@ -374,7 +375,7 @@ static void test_nothing_is_beyond_the_exterior_box(void **state)
  * wrong by little show here. */
 static void test_surface_is_contained(void **state)
 {
-    for (uint64_t seed = 2000; seed < 2100; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 2000; n < 100 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box = csg_box_grow(csg_bounds_of_solid(scene), 1e-12);
@@ -413,7 +414,7 @@ static void check_band(const csgm_scene *scene, csg_random *random, double delta
 
 static void test_band_is_exact(void **state)
 {
-    for (uint64_t seed = 3000; seed < 3100; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 3000; n < 100 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         check_band(scene, &random, 0);
@@ -459,8 +460,9 @@ static void test_worked_example(void **state)
     csg_scene_destroy(scene);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    test_take_search(argc, argv);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
         TEST(test_primitives),

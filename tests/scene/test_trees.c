@@ -76,7 +76,7 @@ static void test_unequal_scale(void **state)
 static void test_lipschitz(void **state)
 {
     double worst = 0;
-    for (uint64_t seed = 0; seed < 120; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < 120 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         double lambda = csg_scene_lipschitz(scene);
@@ -116,7 +116,7 @@ static bool check_gradient(const csgm_scene *scene, csg_vec3 p)
 static void test_gradients(void **state)
 {
     int checked = 0;
-    for (uint64_t seed = 0; seed < 100; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         for (int i = 0; i < 40; i++)
@@ -132,7 +132,7 @@ static void test_distance_bound(void **state)
     enum { POINTS = 250 };
     static csg_vec3 points[POINTS];
     static double values[POINTS];
-    for (uint64_t seed = 0; seed < 60; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < 60 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         for (int i = 0; i < POINTS; i++) {
@@ -181,7 +181,7 @@ static uint32_t primitive_count(const csgm_scene *scene)
 static void test_active_in_random_scenes(void **state)
 {
     uint64_t all = 0, active = 0;
-    for (uint64_t seed = 0; seed < 100; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         for (int i = 0; i < 50; i++) {
@@ -215,8 +215,9 @@ static void test_large_scene_and_no_memory(void **state)
     csg_scene_destroy(scene);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    test_take_search(argc, argv);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
         TEST(test_signs),
