@@ -87,6 +87,14 @@ csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 }
 
 bool test_random_rules = false;
+bool test_has_debulge(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->rule_count; i++)
+        if (scene->rules[i].kind == CSG_BLEND_SCALE_SET && scene->rules[i].parameters[3] > 0)
+            return true;
+    return false;
+}
+
 unsigned test_times = 1;
 uint64_t test_first_seed = 0;
 

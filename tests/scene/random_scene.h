@@ -46,6 +46,8 @@ void test_random_parameters(csg_random *random, csg_primitive_kind kind, double 
  * low = high), then a shift of at most `shift` along each axis. */
 csg_affine test_random_affine(csg_random *random, double low, double high, double shift);
 
+/* With bulge elimination, whose share in gradients is left out (scene/operators/operators.def). */
+bool test_has_debulge(const csgm_scene *scene);
 /* Longer searches with other seeds (tools/soak): the arguments TIMES and SEED of a test program.
  * Each loop goes through so many times as many scenes; seeds begin where those of another SEED end.
  */

@@ -304,14 +304,6 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
     return value;
 }
 
-static bool has_debulge(const csgm_scene *scene)
-{
-    for (size_t i = 0; i < scene->rule_count; i++)
-        if (scene->rules[i].kind == CSG_BLEND_SCALE_SET && scene->rules[i].parameters[3] > 0)
-            return true;
-    return false;
-}
-
 static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 {
     *random = (csg_random){seed};
@@ -336,7 +328,7 @@ static void test_random_trees_are_contained(void **state)
         for (int i = 0; i < 400; i++) {
             csg_vec3 p = test_point(&random, i % 4 ? 1.2 : 4);
             double value = value_of(&plain, scene->root, p);
-            if (!has_debulge(scene))
+            if (!test_has_debulge(scene))
                 test_near(value, test_sample(scene, p).value, 1e-13);
             inside += value >= 0;
         }
