@@ -153,8 +153,11 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
     if (value.kind != CSG_VALUE_UNDEF && value.kind != CSG_VALUE_NUMBER) {
         csg_argument_error(call, index, CSG_DIAG_BAD_BLEND,
                            "blend must be a radius or a blend value such as "
-                           "cosine(3), not a %s",
-                           csg_value_kind_name(value));
+                           "cosine(3), not a %s%s",
+                           csg_value_kind_name(value),
+                           value.kind == CSG_VALUE_FUNCTION
+                               ? ": for a radius of its own in each place there is blend_within()"
+                               : "");
         return sharp;
     }
     double r = csg_argument_number(call, index, 0, CSG_NOT_NEGATIVE);
