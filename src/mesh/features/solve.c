@@ -154,6 +154,8 @@ static void try_first(candidate *candidates, int count, csg_feature_probe *probe
         walks[n] = (csg_apex_walk){&c->p, &c->apexes[0], c->p.start_count > 1};
         owner[n++] = c;
     }
+    if (!n)
+        return;
     csg_apexes_improve(walks, n, m->lattice->cell_size, probe);
     csg_apexes_ask(walks, n, probe, f);
     for (int i = 0; i < n; i++) {
