@@ -5,7 +5,7 @@
 //
 //   CSGMESH_VIEW=tools/view node tests/cli/look_at_view.mjs URL WIDTHxHEIGHT STEP...
 //
-// Steps: wait=PHASE (done, failed: of a state later than the last one), picture=FILE, edges, section=AXIS,
+// Steps: wait=PHASE (done, failed: of a state later than the last one), picture=FILE, edges, no-edges, section=AXIS,
 // measure=X,Y:X,Y (shares of the canvas), from=VIEW, set=NAME=VALUE (a box of numbers), key=KEY, write=FILE=TEXT
 // (so that a change comes while the page is open), download=FORMAT=FILE, refused=FORMAT (waits for
 // what is said then), look (adds what is to be seen to the list that is printed).
@@ -96,6 +96,7 @@ const actions = {
   wait: waitFor,
   picture: (page, file) => page.screenshot({ path: file }),
   edges: (page) => page.locator("#wire").check(),
+  "no-edges": (page) => page.locator("#wire").uncheck(),
   section: (page, axis) => page.locator("#section").selectOption({ label: axis }),
   measure: async (page, places) => {
     await page.locator("#measure").check();

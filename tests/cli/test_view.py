@@ -392,6 +392,18 @@ class Page(ViewTest):
         self.assertTrue(failed["stale"])
         self.assertIn("model before it", failed["status"])
 
+    def test_edges(self):
+        """The triangles' edges, on the solid and on what a section leaves of it, and none of them once the box is unchecked."""
+        self.write("ball.txt", cli.BALL)
+        self.start("ball.txt", "-r", 16)
+        bare, edges, cut, cut_bare, after = self.look("1280x800", "wait=done", "look", "edges", "look", "section=x", "look", "no-edges", "look",
+                                                      "section=none", "look")
+        self.assertGreater(edges["dark"], bare["dark"] + 0.01)
+        self.assertGreater(edges["dark"], 3 * bare["dark"])
+        self.assertAlmostEqual(edges["drawn"], bare["drawn"], delta=0.005, msg="edges are drawn on the solid alone")
+        self.assertGreater(cut["dark"], cut_bare["dark"])
+        self.assertEqual(after["dark"], bare["dark"])
+
     def test_download(self):
         self.write("plate.scad", PLATE)
         self.start("plate.scad")

@@ -4,6 +4,7 @@
 The module is that of tools/web/build.py in build-web, which this brings up to date; where nobody has built it, or Node
 is missing, the tests are skipped.
 """
+import gzip
 import json
 import os
 import shutil
@@ -22,6 +23,7 @@ PLACE = os.path.join(ROOT, "build-web")
 NODE = shutil.which("node")
 FORMATS = ["ply", "stl", "obj", "glb", "off", "3mf", "amf"]
 DRAWINGS = ["svg", "dxf", "pdf"]
+LARGEST = 1_200_000 # bytes of the module, gzipped
 FONT = "LiberationSans-Regular.ttf" # beside the scene, as it is not in the folder that the module sees
 
 # With cells that follow the shape, the default, and with equal ones.
@@ -69,6 +71,10 @@ class Module(cli.CliTest):
     def write_files(self):
         shutil.copy(self.font, self.path(FONT))
         self.write("a.svg", SVG)
+
+    def test_size(self):
+        """What a page has to load: the bound of docs/web.md."""
+        self.assertLess(len(gzip.compress(self.read(self.module), 9, mtime=0)), LARGEST)
 
     def test_the_same_meshes(self):
         self.compare({**SCENES, **{name: (f"linear_extrude(3) {text}", options) for name, (text, options) in FLAT.items()}}, FORMATS)
