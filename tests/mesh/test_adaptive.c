@@ -47,6 +47,31 @@ static void test_boxes(void **state)
     }
 }
 
+/* A box without its upper half, whose sides coincide with those that are cut away: what is left
+ * between them is not there. Sides at places that people write, also turned, where rounding
+ * differs from point to point. */
+static void test_coincident_walls(void **state)
+{
+    csg_random random = {12};
+    for (int i = 0; i < 16; i++) {
+        mesh_case c;
+        mesh_case_begin(&c, 2);
+        double x = i ? floor(csg_random_uniform(&random, 5, 30)) / 10 : 1, y = 0.7;
+        csg_node_id box = moved(&c, make_box(&c, x, y, 1), 0, 0, 0.5);
+        csg_node_id upper = moved(&c, make_box(&c, x, y, 0.5), 0, 0, 1);
+        csg_node_id lower = joined(&c, CSG_NODE_DIFFERENCE, SHARP, box, upper);
+        bool turned_anyhow = i >= 4;
+        mesh_case_compile(&c, turned_anyhow ? posed_anyhow(&c, lower, &random) : lower);
+        csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+        mesh_build_closed(&c, &options, "coincident walls");
+        assert_true(c.mesh->triangle_count <= (turned_anyhow ? 120 : 16));
+        assert_int_equal(c.check.components, 1);
+        assert_int_equal(c.check.euler, 2);
+        assert_true(fabs(c.check.volume - 4 * x * y) < 1e-3 * c.check.volume);
+        mesh_case_end(&c);
+    }
+}
+
 /* ---- what is small -----------------------------------------------------------------------------
  */
 
@@ -307,12 +332,19 @@ static void test_random_scenes(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_boxes),           cmocka_unit_test(test_small_parts),
-        cmocka_unit_test(test_bumps_and_dents), cmocka_unit_test(test_tilted_boxes),
-        cmocka_unit_test(test_thin_sheets),     cmocka_unit_test(test_within_tolerance),
-        cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
-        cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
-        cmocka_unit_test(test_bulges),          cmocka_unit_test(test_tight_roundings),
+        cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_coincident_walls),
+        cmocka_unit_test(test_small_parts),
+        cmocka_unit_test(test_bumps_and_dents),
+        cmocka_unit_test(test_tilted_boxes),
+        cmocka_unit_test(test_thin_sheets),
+        cmocka_unit_test(test_within_tolerance),
+        cmocka_unit_test(test_slits),
+        cmocka_unit_test(test_contacts),
+        cmocka_unit_test(test_triangle_count),
+        cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_bulges),
+        cmocka_unit_test(test_tight_roundings),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

@@ -107,11 +107,13 @@ static int find_candidates(const points *p, uint64_t edges, candidate *out)
     return count;
 }
 
-/* Keeps those where the field has the other sign: the tangents may be wrong, the field is not. */
+/* Keeps those where the field has the other sign: the tangents may be wrong, the field is not. Nor
+ * is there anything where it is 0 but for rounding: that is where two coincident faces cancel. */
 static void keep_pierced(csg_sheet_probe *probe, points *p, const candidate *c, int count,
                          csg_pierced *out)
 {
     enum { MOST = CSG_BRICK_POINTS_PADDED };
+    const float nothing = 4 * (float)probe->noise;
     for (int first = 0; first < count; first += MOST) {
         int n = count - first < MOST ? count - first : MOST;
         for (int i = 0; i < MOST; i++) {
@@ -123,7 +125,7 @@ static void keep_pierced(csg_sheet_probe *probe, points *p, const candidate *c, 
         probe->evaluations += (uint64_t)n;
         for (int i = 0; i < n; i++) {
             const candidate *one = &c[first + i];
-            if ((p->f[i] >= 0) == one->inside)
+            if (fabsf(p->f[i]) <= nothing || (p->f[i] >= 0) == one->inside)
                 continue;
             out->edges |= (uint64_t)1 << one->edge;
             out->at[one->edge] = one->at[one->axis];
