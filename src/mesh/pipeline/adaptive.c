@@ -57,11 +57,9 @@ static double power_below(double size)
     return ldexp(1, (int)floor(csg_log2(size)));
 }
 
-/* Cells and origin at absolute places that powers of two have, a third and three and one sevenths
- * off them: whatever the level, faces at such places, and diagonals between them, keep a distance
- * from lattice points. So do faces at decimal places, which are what people write: a fifth would be
- * one, and where two faces coincide points on both are neither inside nor outside. An edit at one
- * end of a part moves no cell at the other. */
+/* Cells and origin at absolute places that powers of two have, a third, a fifth and a seventh off
+ * them: whatever the level, faces at such places, and diagonals between them, keep a distance from
+ * lattice points. So an edit at one end of a part moves no cell at the other. */
 static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
 {
     const csg_box bounds = a->input.bounds;
@@ -75,7 +73,7 @@ static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
     const double low[3] = {bounds.min.x, bounds.min.y, bounds.min.z};
     const double high[3] = {bounds.max.x, bounds.max.y, bounds.max.z};
     const double middle[3] = {center.x, center.y, center.z};
-    static const double share[3] = {1.0 / 3, 3.0 / 7, 1.0 / 7};
+    static const double share[3] = {1.0 / 3, 1.0 / 5, 1.0 / 7};
     double origin[3], step = CSG_BRICK_EDGE * first;
     for (int axis = 0; axis < 3; axis++) {
         double shift = share[axis] * first, margin = 0.25 * first;
