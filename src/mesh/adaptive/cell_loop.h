@@ -12,7 +12,7 @@
 typedef struct csg_placed_vertex {
     uint64_t place;
     float at[3], gradient[3];
-    bool is_crease;
+    bool is_crease, is_torn;
 } csg_placed_vertex;
 
 /* Of an apex, in a triangle: its number in the item, later in the mesh. */

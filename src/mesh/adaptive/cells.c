@@ -160,6 +160,7 @@ static bool find_crease(csg_cell_at_hand *c, const csg_polygon_side *side, int a
     csg_vec3_to_floats(found->at, face.at);
     csg_vec3_to_floats(found->gradient, face.gradient);
     found->is_crease = !face.is_smooth;
+    found->is_torn = face.is_torn;
     return face.is_there;
 }
 
@@ -185,6 +186,7 @@ static bool look_into_faces(csg_cell_at_hand *c)
             memcpy(v.at, found->at, sizeof v.at);
             memcpy(v.gradient, found->gradient, sizeof v.gradient);
             v.is_crease = !found->is_smooth;
+            v.is_torn = found->is_torn;
         } else if (!find_crease(c, side, axis, upper, &v)) {
             continue;
         }
@@ -228,6 +230,7 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
     const csg_brick *brick = c->shell->brick;
     bool creased = !has_several(brick, c->at);
     out->count = out->in_faces = 0;
+    out->is_torn = false;
     for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
         const csg_polygon_side *side = &c->polygons.side[i];
         uint32_t v =
@@ -249,6 +252,7 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
         out->vertex[out->count] = crease;
         out->faces[out->count] = csg_local_faces(side->face);
         out->is_crease[out->count] = w->vertices[crease].is_crease;
+        out->is_torn |= w->vertices[crease].is_torn;
         out->point[out->count++] = point_of(&w->vertices[crease]);
         out->in_faces++;
     }

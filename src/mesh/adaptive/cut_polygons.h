@@ -21,6 +21,12 @@ typedef struct csg_cut_polygon {
     double distance;                   /* from the surface, as it was last cut */
 } csg_cut_polygon;
 
+/* Whether sheets that should meet in it do not: of a fan. */
+static inline bool csg_cut_has_failed(const csg_cut_polygon *p)
+{
+    return p->kind == CSG_APEX_FAILED || p->polygon.is_torn;
+}
+
 int csg_cut_triangle_count(const csg_cut_polygon *piece);
 /* The corners of a triangle as vertices of the polygon, -1 for the apex, and their places. */
 void csg_cut_triangle(const csg_cut_polygon *piece, int triangle, int corner[3], csg_vec3 at[3]);

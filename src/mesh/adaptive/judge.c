@@ -13,7 +13,7 @@ enum { E = CSG_BRICK_EDGE };
 
 /* Where sheets do not meet although they should, and triangles are near the surface all the same,
  * cells of so many tolerances are small enough. */
-static const double FAILURE = 4;
+static const double FAILURE = 1;
 /* The same where a cell has several polygons. */
 static const double SEVERAL = 1;
 /* Of the tolerance: how near triangles between vertices in faces are; else a fan is made. */
@@ -93,6 +93,11 @@ static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge
         add_edge(room, b, brick, axis, low);
         room->edge[1][slot] = (uint16_t)(room->edges.count - 1);
     }
+}
+
+bool csg_judge_may_fail(const csg_judge *judge, double cell)
+{
+    return cell <= FAILURE * judge->tolerance;
 }
 
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
@@ -372,6 +377,7 @@ static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_pol
     unsigned at[3];
     csg_brick_cell_place(cell, at);
     p->count = p->in_faces = 0;
+    p->is_torn = false;
     for (unsigned i = polygons->first[polygon]; i < polygons->first[polygon + 1]; i++) {
         const csg_polygon_side *side = &polygons->side[i];
         uint8_t face = room->face[slot_of_place(side->face, at, true)];
@@ -380,7 +386,10 @@ static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_pol
         p->is_crease[p->count] = false;
         p->point[p->count++] = point_of(room, side->from, at);
         bool creased = polygons->count == 1 && side->alone;
-        if (!(side->pierced || creased) || face == CSG_NO_FACE || !room->faces[face].is_there)
+        if (!(side->pierced || creased) || face == CSG_NO_FACE)
+            continue;
+        p->is_torn |= room->faces[face].is_torn;
+        if (!room->faces[face].is_there)
             continue;
         p->faces[p->count] = csg_local_faces(side->face);
         p->is_crease[p->count] = !room->faces[face].is_smooth;
@@ -424,7 +433,8 @@ static void cut_plain(brick_work *w)
         csg_cut_polygon *piece = &room->pieces[i];
         unsigned at[3];
         csg_brick_cell_place(piece->cell, at);
-        if (!has_pierced_edge(w->brick, at) && csg_cut_without_apex(piece))
+        if (!has_pierced_edge(w->brick, at) && !piece->polygon.is_torn &&
+            csg_cut_without_apex(piece))
             tried[count++] = piece;
     }
     csg_cuts_find_distances(&w->probe, tried, count, w->least);
@@ -466,7 +476,7 @@ static void cut_fans(brick_work *w)
     }
     csg_cuts_find_distances(&w->probe, fans, count, w->least);
     for (int i = 0; i < count; i++)
-        if ((fans[i]->kind == CSG_APEX_FAILED && !w->is_small) ||
+        if ((csg_cut_has_failed(fans[i]) && !w->is_small) ||
             fans[i]->distance > w->judge->tolerance)
             w->bad |= 1u << fans[i]->cell;
 }
@@ -544,6 +554,7 @@ static uint8_t list_creases(const csg_judge_room *room, csg_judged_crease *creas
             continue;
         creases[count] = (csg_judged_crease){.slot = (uint8_t)slot};
         creases[count].is_smooth = room->faces[face].is_smooth;
+        creases[count].is_torn = room->faces[face].is_torn;
         csg_vec3_to_floats(creases[count].gradient, room->faces[face].gradient);
         csg_vec3_to_floats(creases[count++].at, room->faces[face].at);
     }
@@ -603,7 +614,7 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
                     .probe = csg_judge_probe(judge, b, brick, room, &tape),
                     .hunted = &hunted,
                     .cell = cell,
-                    .is_small = cell <= FAILURE * judge->tolerance};
+                    .is_small = csg_judge_may_fail(judge, cell)};
     w.least = w.is_small ? judge->tolerance : 0.1 * judge->tolerance;
     csg_pierce(&w.probe, b, brick, f, &room->pierced);
     brick->pierced = room->pierced.edges;

@@ -54,6 +54,8 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_
 
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 
+/* Whether a cell is so small that its sheets may fail to meet. */
+bool csg_judge_may_fail(const csg_judge *judge, double cell);
 /* The probe of a brick; *tape is filled. */
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *bricks,
                                 const csg_brick *brick, csg_judge_room *room, csg_tape *tape);

@@ -39,6 +39,7 @@ typedef struct csg_judged_crease {
     float at[3], gradient[3];
     uint8_t slot;
     bool is_smooth; /* it has a gradient */
+    bool is_torn;   /* csg_face_crease */
 } csg_judged_crease;
 
 /* The point in the middle of a fan, as long as the polygon has so many vertices in faces. */

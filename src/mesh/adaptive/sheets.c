@@ -15,6 +15,8 @@ _Static_assert(MOST_ASKED >= 2 * CSG_MOST_FACES && MOST_ASKED % LANES == 0, "all
 /* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
  * differ by 12 in all may go round a tip. */
 static const double ONE_SHEET = 0.9962, ONE_POLYGON = 0.978;
+/* A sheet whose gradient turned by 60 degrees within a cell is another one. */
+static const double ANOTHER_SHEET = 0.5;
 /* Radians: two sheets whose angle would fall below 2 degrees where they meet are one. */
 static const double LEAST_TURN = 0.035;
 /* Of a cell: how far from its sides a place is kept; how far off the sheets are looked at; what |f|
@@ -203,6 +205,7 @@ typedef struct approach {
     csg_face_crease *face;
     int axis; /* the face's own */
     sheets sheets;
+    csg_vec3 end[2]; /* the gradients that the sheets began with */
     turn first;
     csg_vec3 at, before;
     bool is_there;
@@ -212,13 +215,14 @@ typedef struct approach {
 static bool set_out(approach *a, csg_face_crease *face)
 {
     const csg_cell_box *box = &face->face;
-    face->is_there = a->is_there = false;
+    face->is_there = face->is_torn = a->is_there = false;
     a->face = face;
     a->axis = box->low[0] == box->high[0] ? 0 : box->low[1] == box->high[1] ? 1 : 2;
     a->sheets.count = 2;
     for (int k = 0; k < 2; k++) {
         csg_vec3 g = face->ends[k].gradient;
         *component(&g, a->axis) = 0;
+        a->end[k] = g;
         a->sheets.plane[k] = csg_plane_of(face->ends[k].at, 0, g);
         a->sheets.from[k] = a->sheets.toward[k] = face->ends[k].at;
     }
@@ -240,14 +244,23 @@ static bool go_on(approach *a, int step, const csg_vec3 *q, const double *f, csg
     return a->is_there || way_out(box, a->at) < box->cell;
 }
 
+/* Whether a sheet is another one near the meeting than where it began. */
+static bool has_changed_sheet(const approach *a)
+{
+    return csg_gradients_cosine(a->sheets.plane[0].g, a->end[0]) < ANOTHER_SHEET ||
+           csg_gradients_cosine(a->sheets.plane[1].g, a->end[1]) < ANOTHER_SHEET;
+}
+
 /* The place kept within the face. False: it is not in the face, or not a crease's. */
 static bool keep_in_face(approach *a)
 {
     const csg_cell_box *box = &a->face->face;
     *component(&a->at, a->axis) = box->low[a->axis];
     a->face->at = keep_within(box, a->at, MARGIN * box->cell);
-    return csg_gradients_cosine(a->sheets.plane[0].g, a->sheets.plane[1].g) <= ONE_SHEET &&
-           csg_vec3_norm(csg_vec3_sub(a->face->at, a->at)) <= MARGIN * box->cell;
+    bool crossed = csg_gradients_cosine(a->sheets.plane[0].g, a->sheets.plane[1].g) <= ONE_SHEET;
+    bool within = csg_vec3_norm(csg_vec3_sub(a->face->at, a->at)) <= MARGIN * box->cell;
+    a->face->is_torn = crossed && within && has_changed_sheet(a);
+    return crossed && within;
 }
 
 /* From between the points straight into the face, to where the sign is another one. */
@@ -475,7 +488,8 @@ static void set_out_to_meet(apex_way *a, int creases)
             sum = csg_vec3_add(sum, polygon->point[i].at);
     a->at = csg_vec3_scale(sum, 1.0 / creases);
     a->stage = MEETING;
-    a->otherwise = is_sharp(polygon) ? CSG_APEX_FAILED : CSG_APEX_SMOOTH;
+    if (is_sharp(polygon))
+        a->otherwise = CSG_APEX_FAILED;
     if (gather_sheets(polygon, creases, &a->sheets) &&
         meet(a->sheets.plane, a->sheets.count, &a->at))
         approach_meeting(a);
@@ -511,6 +525,8 @@ static void set_out_in_cell(apex_way *a, csg_apex_search *search)
         if (!polygon->is_crease[i])
             a->slope = fmax(a->slope, csg_vec3_norm(polygon->point[i].gradient));
     }
+    if (polygon->is_torn)
+        a->otherwise = CSG_APEX_FAILED;
     if (creases >= 2)
         set_out_to_meet(a, creases);
     else if (least_cosine(polygon, &mean) < ONE_POLYGON)

@@ -42,6 +42,8 @@ typedef struct csg_face_crease {
                       a place always, where its sheets meet, else where the surface is beside the
                       edge */
     bool is_there;
+    bool is_torn; /* what is there does not join the sheets that the points are on: there is a
+                     third one between them */
     bool is_smooth; /* no crease: the surface, and its gradient, half way between the points */
     csg_vec3 at, gradient;
 } csg_face_crease;
@@ -64,6 +66,7 @@ typedef struct csg_polygon {
         faces[CSG_POLYGON_MOST]; /* of a whole cell: those that a vertex is in, a bit for each */
     csg_surface_point point[CSG_POLYGON_MOST];
     bool is_crease[CSG_POLYGON_MOST];
+    bool is_torn; /* some face has one crease where there are two */
 } csg_polygon;
 
 typedef enum csg_apex_kind {
