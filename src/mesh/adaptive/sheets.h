@@ -42,8 +42,8 @@ typedef struct csg_face_crease {
                       a place always, where its sheets meet, else where the surface is beside the
                       edge */
     bool is_there;
-    bool is_torn; /* what is there does not join the sheets that the points are on: there is a
-                     third one between them */
+    bool is_torn;   /* what is there does not join the sheets that the points are on: there is a
+                       third one between them */
     bool is_smooth; /* no crease: the surface, and its gradient, half way between the points */
     csg_vec3 at, gradient;
 } csg_face_crease;

@@ -69,8 +69,10 @@ double csg_remesh_common_value(float *values, size_t count)
     return count ? (double)values[count - 1 - count / 50] : 0;
 }
 
-/* What the creases at a vertex make it. creased: the edges, by the corners that face them. */
-static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const uint8_t *creased)
+/* What the creases at a vertex make it, and how many there are. creased: the edges, by the corners
+ * that face them. */
+static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const uint8_t *creased,
+                               uint32_t *count)
 {
     uint32_t first = r->corners.corner[vertex], c = first, creases = 0;
     csg_vec3 way[2] = {{0, 0, 0}, {0, 0, 0}};
@@ -83,6 +85,7 @@ static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const uint8
         }
         c = csg_corner_swing(&r->corners, c);
     } while (c != first);
+    *count = creases;
     if (creases == 0)
         return CSG_VERTEX_SMOOTH;
     bool straight = creases == 1 || csg_vec3_dot(way[0], way[1]) < -SHARP_TURN_COS;
@@ -165,39 +168,119 @@ static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
     return true;
 }
 
-static bool find_kinds(csg_remesh *r, csg_vec3 *normals, uint8_t *creased, uint8_t *turns,
-                       float *value)
+/* Per triangle, but for `creased`, which is per corner. */
+typedef struct crease_room {
+    float *value;
+    csg_vec3 *normals;
+    uint8_t *turns, *creased;
+} crease_room;
+
+static void find_all_turns(const csg_remesh *r, const crease_room *room)
 {
-    uint32_t count = r->corners.triangle_count;
-    for (uint32_t t = 0; t < count; t++)
-        normals[t] = csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
-    find_turns(r, normals, creased, turns);
-    take_back_bent(r, creased, turns, value);
-    if (r->marching->bricks && !take_back_curved(r, normals, creased))
+    for (uint32_t t = 0; t < r->corners.triangle_count; t++)
+        room->normals[t] =
+            csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
+    find_turns(r, room->normals, room->creased, room->turns);
+}
+
+static bool find_kinds(csg_remesh *r, const crease_room *room)
+{
+    uint32_t creases;
+    find_all_turns(r, room);
+    take_back_bent(r, room->creased, room->turns, room->value);
+    if (r->marching->bricks && !take_back_curved(r, room->normals, room->creased))
         return false;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++)
-        r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE ? 0 : (uint8_t)kind_of(r, v, creased);
+        r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE
+                         ? 0
+                         : (uint8_t)kind_of(r, v, room->creased, &creases);
     return true;
 }
 
-/* False: stopped, or without memory; the watch knows. */
-static bool find_creases(csg_remesh *r)
+/* Runs `find` with room of its own. False: it did, or there is no memory; the watch knows. */
+static bool with_room(csg_remesh *r, bool (*find)(csg_remesh *r, const crease_room *room))
 {
     size_t count = r->corners.triangle_count;
-    float *value = csg_memory_alloc(r->memory, count * sizeof *value);
-    csg_vec3 *normals = csg_memory_alloc(r->memory, count * sizeof *normals);
-    uint8_t *turns = csg_memory_alloc(r->memory, count);
-    uint8_t *creased = csg_memory_alloc(r->memory, 3 * count);
-    bool done = value && normals && turns && creased;
+    crease_room room = {.value = csg_memory_alloc(r->memory, count * sizeof *room.value),
+                        .normals = csg_memory_alloc(r->memory, count * sizeof *room.normals),
+                        .turns = csg_memory_alloc(r->memory, count),
+                        .creased = csg_memory_alloc(r->memory, 3 * count)};
+    bool done = room.value && room.normals && room.turns && room.creased;
     if (!done)
         csg_mesh_stop_without_memory(r->watch);
     else
-        done = find_kinds(r, normals, creased, turns, value);
-    csg_memory_release(r->memory, value, count * sizeof *value);
-    csg_memory_release(r->memory, normals, count * sizeof *normals);
-    csg_memory_release(r->memory, turns, count);
-    csg_memory_release(r->memory, creased, 3 * count);
+        done = find(r, &room);
+    csg_memory_release(r->memory, room.value, count * sizeof *room.value);
+    csg_memory_release(r->memory, room.normals, count * sizeof *room.normals);
+    csg_memory_release(r->memory, room.turns, count);
+    csg_memory_release(r->memory, room.creased, 3 * count);
     return done;
+}
+
+/* ---- a second look -----------------------------------------------------------------------------
+ */
+
+/* Takes those edges back at which a triangle is so low that rounding may have turned it. */
+static void take_back_low(const csg_remesh *r, const crease_room *room)
+{
+    static const double LOWEST = 64; /* of the noise */
+    const csg_corners *m = &r->corners;
+    for (uint32_t t = 0; t < m->triangle_count; t++) {
+        if (!room->turns[t])
+            continue;
+        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
+                               csg_remesh_corner(r, 3 * t + 2)};
+        double height = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
+        room->turns[t] = height > LOWEST * r->tree.noise * csg_triangle_longest_side(v);
+    }
+    for (uint32_t c = 0; c < 3 * m->triangle_count; c++)
+        room->creased[c] = room->creased[c] && room->turns[c / 3] && room->turns[m->across[c] / 3];
+}
+
+bool csg_remesh_is_plane_around(const csg_remesh *r, uint32_t vertex)
+{
+    static const double ROUNDING = 4; /* of the noise */
+    const csg_corners *m = &r->corners;
+    csg_vec3 at = r->at[vertex], normal = {0, 0, 0};
+    uint32_t first = m->corner[vertex], c = first;
+    do {
+        normal = csg_vec3_add(normal, csg_triangle_cross(at, r->at[m->vertex[csg_corner_next(c)]],
+                                                         r->at[m->vertex[csg_corner_previous(c)]]));
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+    double most = ROUNDING * r->tree.noise, square = csg_vec3_dot(normal, normal);
+    do {
+        csg_vec3 off = csg_vec3_sub(r->at[m->vertex[csg_corner_next(c)]], at);
+        double height = csg_vec3_dot(normal, off);
+        if (!(height * height <= most * most * square))
+            return false;
+        c = csg_corner_swing(m, c);
+    } while (c != first);
+    return square > 0;
+}
+
+/* A corner on a straight crease is none, and nothing is where all around is plane. */
+static bool find_less(csg_remesh *r, const crease_room *room)
+{
+    find_all_turns(r, room);
+    take_back_low(r, room);
+    if (r->marching->bricks && !take_back_curved(r, room->normals, room->creased))
+        return false;
+    for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
+        uint32_t creases;
+        if (r->corners.corner[v] == CSG_CORNER_NONE || r->kind[v] == CSG_VERTEX_SMOOTH)
+            continue;
+        if (csg_remesh_is_plane_around(r, v))
+            r->kind[v] = CSG_VERTEX_SMOOTH;
+        else if (kind_of(r, v, room->creased, &creases) == CSG_VERTEX_CREASE && creases == 2)
+            r->kind[v] = CSG_VERTEX_CREASE;
+    }
+    return true;
+}
+
+bool csg_remesh_ease_kinds(csg_remesh *r)
+{
+    return with_room(r, find_less);
 }
 
 bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
@@ -261,8 +344,8 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching 
                 csg_mesh_stop_without_memory(watch);
     if (done) {
         copy_vertices(r);
-        done = find_creases(r) && (csg_triangle_tree_make(&r->tree, &r->corners, r->at) ||
-                                   csg_mesh_stop_without_memory(watch));
+        done = with_room(r, find_kinds) && (csg_triangle_tree_make(&r->tree, &r->corners, r->at) ||
+                                            csg_mesh_stop_without_memory(watch));
     }
     if (done)
         return CSGM_OK;

@@ -32,6 +32,14 @@ double csg_triangle_least_sine(const csg_vec3 v[3])
     return csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2])) * shortest / others;
 }
 
+double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count)
+{
+    double worst = 1;
+    for (uint32_t i = 0; i < count; i++)
+        worst = fmin(worst, csg_triangle_least_sine(triangles[i]));
+    return worst;
+}
+
 uint32_t csg_triangle_facing(csg_vec3 n)
 {
     static const double LEAST_COS = 0.05;

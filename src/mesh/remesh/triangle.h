@@ -22,6 +22,8 @@ double csg_triangle_longest_side(const csg_vec3 triangle[3]);
 double csg_triangle_quality(csg_vec3 a, csg_vec3 b, csg_vec3 c);
 /* Sine of the smallest angle. */
 double csg_triangle_least_sine(const csg_vec3 triangle[3]);
+/* The least of all. */
+double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count);
 
 /* The place nearest to p, as weights of the corners; returns the squared distance. */
 double csg_triangle_nearest(const csg_vec3 triangle[3], csg_vec3 p, double weights[3]);

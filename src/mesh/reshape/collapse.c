@@ -107,6 +107,7 @@ static void finish_ring(csg_decimation *d, uint32_t to, uint32_t corner)
     const csg_corners *m = &d->remesh->corners;
     room->triangle[room->count] = corner / 3;
     room->triangle[room->count + 1] = m->across[csg_corner_previous(corner)] / 3;
+    room->gone = 2;
     for (uint32_t i = 0; i < room->count; i++)
         room->vertex[i][0] = to;
 }
@@ -152,10 +153,11 @@ static double quality_of(shape s)
 }
 
 /* No triangle turns over, and none becomes a worse sliver than there is, or than is useful. */
-static bool has_shape(csg_collapse_room *room)
+static bool has_shape(const csg_decimation *d)
 {
-    static const double USEFUL = 0.004 * 0.004, TURN_COS = 0.1, SOUND = 0.02 * 0.02;
-    double worst = USEFUL, least = 1;
+    static const double TURN_COS = 0.1, SOUND = 0.02 * 0.02;
+    csg_collapse_room *room = d->room;
+    double worst = d->least_quality * d->least_quality, least = 1;
     for (uint32_t i = 0; i < room->count; i++) {
         csg_vec3 old;
         shape before = shape_of(room->before[i], &old);
@@ -243,7 +245,7 @@ static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to)
         return false;
     *at = round_place(r, *at);
     move_ring(d->room, *at);
-    return has_shape(d->room);
+    return has_shape(d);
 }
 
 /* Whether the edge may shrink to its end `to`, which comes to a place of its own. */
@@ -252,7 +254,7 @@ static bool new_place_is_good(csg_decimation *d, csg_vec3 *at, uint32_t from, ui
     const csg_remesh *r = d->remesh;
     bool one_sheet;
     move_ring(d->room, *at);
-    if (!has_shape(d->room) || !bring_to_surface(d, at, to) || !is_within(d, *at))
+    if (!has_shape(d) || !bring_to_surface(d, at, to) || !is_within(d, *at))
         return false;
     if (r->looks)
         d->room->look = look_at(d, *at, from, to);
@@ -268,7 +270,7 @@ static bool end_is_good(csg_decimation *d, uint32_t from, uint32_t to)
     move_ring(d->room, r->at[to]);
     if (r->looks)
         d->room->look = r->looks[to];
-    return has_shape(d->room) && csg_decimation_can_hand_over(d, to, r->error) &&
+    return has_shape(d) && csg_decimation_can_hand_over(d, to, r->error) &&
            !crosses(d, from, to, false, &one_sheet) && is_near(d, one_sheet);
 }
 
@@ -335,8 +337,7 @@ static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
     move_ring(room, r->at[to]);
     if (r->looks)
         room->look = r->looks[to];
-    if (!has_shape(room) || !faces_as_before(room) ||
-        !csg_decimation_can_hand_over(d, to, r->error))
+    if (!has_shape(d) || !faces_as_before(room) || !csg_decimation_can_hand_over(d, to, r->error))
         return false;
     collapse(d, corner, from, to, r->at[to]);
     return true;

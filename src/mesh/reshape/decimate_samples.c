@@ -337,7 +337,7 @@ bool csg_decimation_may_hand_over(csg_decimation *d, uint32_t kept, double reach
     csg_collapse_room *room = d->room;
     make_facets(d, reach);
     room->is_first_look = true;
-    for (uint32_t i = 0; i < room->count + 2; i++) {
+    for (uint32_t i = 0; i < room->count + room->gone; i++) {
         uint32_t s = d->first_sample[room->triangle[i]];
         if (s != CSG_CORNER_NONE && choose_owner(d, s, kept) == CSG_CORNER_NONE)
             return false;
@@ -352,7 +352,7 @@ bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach
     room->is_first_look = false;
     room->owner_count = 0;
     room->one_look = has_one_look(d, kept);
-    for (uint32_t i = 0; i < room->count + 2; i++)
+    for (uint32_t i = 0; i < room->count + room->gone; i++)
         if (!find_owners(d, room->triangle[i], kept))
             return false;
     return true;
@@ -389,7 +389,7 @@ void csg_decimation_find_seen(csg_decimation *d)
     csg_collapse_room *room = d->room;
     size_t n = 0;
     memset(room->seen, 0, room->count * sizeof *room->seen);
-    for (uint32_t i = 0; i < room->count + 2; i++)
+    for (uint32_t i = 0; i < room->count + room->gone; i++)
         for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
              s = d->samples[s].next)
             see(d, s, room->owner[n++]);
@@ -399,7 +399,7 @@ void csg_decimation_hand_over(csg_decimation *d)
 {
     csg_collapse_room *room = d->room;
     uint32_t chain = CSG_CORNER_NONE, *end = &chain;
-    for (uint32_t i = 0; i < room->count + 2; i++) {
+    for (uint32_t i = 0; i < room->count + room->gone; i++) {
         *end = d->first_sample[room->triangle[i]];
         d->first_sample[room->triangle[i]] = CSG_CORNER_NONE;
         while (*end != CSG_CORNER_NONE)

@@ -39,15 +39,17 @@ typedef struct csg_surface_sample {
     int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
 
-/* The triangles around an edge, as they would be after its collapse. */
+/* The triangles around an edge, as they would be after its collapse, or flip: a fan around
+ * after[0][0]. */
 typedef struct csg_collapse_room {
-    uint32_t triangle[CSG_RING_MOST + 2]; /* those that stay, then the two that go */
+    uint32_t triangle[CSG_RING_MOST + 2]; /* those that stay, then those that go */
     csg_vec3 before[CSG_RING_MOST][3], after[CSG_RING_MOST][3];
     csg_facets facets;              /* of after */
     csg_vec3 normal[CSG_RING_MOST]; /* of after, twice the area long */
     double longest[CSG_RING_MOST];  /* side of after, squared */
     uint32_t vertex[CSG_RING_MOST][3];
     uint32_t count;               /* that stay */
+    uint32_t gone;                /* that go: two, where an edge is flipped none */
     double most;                  /* that samples may be away, squared */
     double farthest;              /* of the samples handed over, squared */
     uint16_t seen[CSG_RING_MOST]; /* points of after near which there are samples that face its way:
@@ -79,7 +81,8 @@ typedef struct csg_decimation {
     const uint32_t *region_of; /* per vertex; NONE: of several, it stays */
     uint8_t *state;            /* per vertex: csg_vertex_state */
     uint32_t region;
-    csg_vec3 low, high; /* the cube */
+    csg_vec3 low, high;   /* the cube */
+    double least_quality; /* of triangles: no worse ones are made of better ones */
     uint64_t tried, made;
 } csg_decimation;
 
@@ -109,6 +112,10 @@ bool csg_decimation_may_hand_over(csg_decimation *d, uint32_t kept, double reach
 /* Whether all of them are, and who takes which. */
 bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach);
 void csg_decimation_hand_over(csg_decimation *d);
+/* What collapses left gets another chance: edges in flat parts are flipped where that makes better
+ * triangles, and vertices that are no corners of the mesh as it is now are none. *any: something
+ * changed, and is fresh. CSGM_OK, or why it was stopped (reported). */
+csgm_status csg_decimation_loosen(csg_decimation *d, bool *any);
 /* room->seen, from who takes which. */
 void csg_decimation_find_seen(csg_decimation *d);
 

@@ -6,17 +6,6 @@
 
 #include "mesh/reshape/improver.h"
 
-/* ---- shape ------------------------------------------------------------------------------------
- */
-
-double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count)
-{
-    double worst = 1;
-    for (uint32_t i = 0; i < count; i++)
-        worst = fmin(worst, csg_triangle_least_sine(triangles[i]));
-    return worst;
-}
-
 /* ---- the surface ------------------------------------------------------------------------------
  */
 

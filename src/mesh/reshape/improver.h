@@ -24,8 +24,6 @@ typedef struct csg_improver {
     csg_patch patch;
 } csg_improver;
 
-/* Sine of the smallest angle of all. */
-double csg_worst_sine(const csg_vec3 (*triangles)[3], uint32_t count);
 /* |f| at centroids that only a fiftieth exceeds. False: out of memory. */
 bool csg_improver_measure(csg_improver *improver);
 /* All but shape: the patch may take its place. */

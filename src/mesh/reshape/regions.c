@@ -16,6 +16,8 @@
 #include "mesh/reshape/decimate.h"
 
 enum { MOST_OF_REGION = 10000, DEEPEST = 16, ROUNDS = 3 };
+/* csg_triangle_quality of triangles that may be made. */
+static const double LEAST_QUALITY = 0.004, LEAST_QUALITY_AT_LAST = 0.0003;
 static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
 
 /* A cube and the triangles that meet it; those in it are changed there. */
@@ -264,6 +266,23 @@ static csgm_status run_last(cutting *c, uint32_t least)
     return csg_decimate_region(d, NULL, m->triangle_count, least);
 }
 
+/* Once more with all that is left, which is little: now slivers may be made on the way to fewer
+ * triangles. Places where a crease was missed, by less than the error, go like that. */
+static csgm_status run_loosened(cutting *c, uint32_t least)
+{
+    csg_decimation *d = c->d;
+    d->least_quality = LEAST_QUALITY_AT_LAST;
+    memset(d->state, CSG_VERTEX_FRESH, d->remesh->corners.vertex_count);
+    csgm_status status = CSGM_OK;
+    bool any = true;
+    for (int round = 0; round < ROUNDS && any && status == CSGM_OK; round++) {
+        status = csg_decimation_loosen(d, &any);
+        if (status == CSGM_OK && (any || round == 0))
+            status = run_last(c, least);
+    }
+    return status;
+}
+
 /* ---- beginning and ending ----------------------------------------------------------------------
  */
 
@@ -340,6 +359,7 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     /* where a number of triangles is the goal the cheapest of all have to go */
     bool in_cubes = least <= CSG_DECIMATE_ALL && r->corners.live > MOST_OF_REGION;
     memset(d->state, CSG_VERTEX_FRESH, r->corners.vertex_count);
+    d->least_quality = LEAST_QUALITY;
     csgm_status status = begin(&c, in_cubes) ? CSGM_OK : CSGM_ERR_MEMORY;
     for (int round = 0; round < ROUNDS && in_cubes && status == CSGM_OK; round++) {
         CSG_ZONE(r->context, "cubes");
@@ -350,6 +370,12 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     if (status == CSGM_OK) {
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);
+    }
+    if (status == CSGM_OK)
+        status = make_tree_again(r);
+    if (status == CSGM_OK && r->corners.live > least) {
+        CSG_ZONE(r->context, "loosening");
+        status = run_loosened(&c, least);
     }
     if (status == CSGM_OK)
         status = make_tree_again(r);
