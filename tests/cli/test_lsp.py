@@ -340,11 +340,12 @@ class Nonsense(Lsp):
         self.assertIsNone(client.ask("textDocument/hover", {"textDocument": {"uri": "file:///none.txt"}, "position": {}}))
         self.assertEqual(client.stop()[0], 0)
 
-    def test_the_end_without_a_word(self):
+    def test_the_end_of_the_input(self):
         self.assertEqual(self.start().end(), (1, ""))
-        client = self.start()
-        client.send_bytes(b"Content-Length: 100\r\n\r\n{")
-        self.assertEqual(client.end()[0], 1)
+        for data in (b"Content-Length: 100\r\n\r\n{", b"Content-Len", b"Content-Length: 70000000\r\n\r\n{", b"x" * 9000):
+            client = self.start()
+            client.send_bytes(data)
+            self.assertEqual(client.end(), (1, "csgmesh: error: the input ends within a message\n"), data[:40])
         self.assertIn("lsp takes no scene", cli.run("lsp", "a.txt").stderr)
 
     def test_a_file_that_vanishes(self):

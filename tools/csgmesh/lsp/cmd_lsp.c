@@ -157,6 +157,8 @@ static void serve(lsp_server *server)
             free(message);
         }
     }
+    if (!server->is_over && (input.length || input.skip)) /* what the editor's log shows */
+        cli_console_say(&server->app->console, CSGM_ERROR, NULL, "the input ends within a message");
     free(input.bytes);
 }
 
