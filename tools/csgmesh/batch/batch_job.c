@@ -10,6 +10,7 @@
 
 #include "batch/batch_names.h"
 #include "batch/batch_run.h"
+#include "core/options.h"
 #include "core/sources.h"
 #include "core/work.h"
 #include "mesh/certify.h"
@@ -21,6 +22,7 @@ typedef struct maker {
     const batch_job *job;
     batch_result *result;
     cli_app app;
+    cli_options options; /* the app's */
     cli_work work;
     batch_record record;
     int64_t since[2];
@@ -41,7 +43,7 @@ static const double LARGE_S = 1.0; /* more than this of one thread is worth all 
 static bool is_long_work(maker *m)
 {
     enum { EIGHTH = 8, LEAST = 64, FEW = 500, SUPPOSED = 128 }; /* where -r does not say */
-    const cli_options *options = &m->app.options;
+    const cli_options *options = m->app.options;
     csgm_mesh_options mesh = csgm_mesh_options_default();
     csgm_field *field = NULL;
     csgm_mesh *probe = NULL;
@@ -98,7 +100,7 @@ static int refuse_empty(maker *m)
 static int write_view(maker *m, const csgm_mesh_view *view, const char *path, const char *format)
 {
     csgm_write_options options = cli_outputs_options(&m->app, m->job->scene);
-    if (m->app.options.given[CLI_OPTION_lod] && !m->job->by_part) {
+    if (m->app.options->given[CLI_OPTION_lod] && !m->job->by_part) {
         int status = cli_work_mesh_levels(&m->app, &m->work, &options);
         if (status != CLI_DONE)
             return status;
@@ -232,7 +234,7 @@ static int write_all(maker *m)
     if (m->app.flat == CSGM_FLAT_DRAWING) /* drawings alone need no mesh */
         return write_whole(m, NULL);
     if (m->job->outputs.count == 1 && !m->job->by_part && is_plate &&
-        m->app.options.warnings == 0 && !m->app.options.given[CLI_OPTION_lod])
+        m->app.options->warnings == 0 && !m->app.options->given[CLI_OPTION_lod])
         return write_stream(m);
     int status = cli_work_mesh(&m->app, &m->work);
     if (status != CLI_DONE)
@@ -255,7 +257,7 @@ static int mesh_and_write(maker *m)
 static int take_record(maker *m)
 {
     batch_result *result = m->result;
-    m->app.options.outputs = (cli_list){0}; /* they are written */
+    m->app.options->outputs = (cli_list){0}; /* they are written */
     bool sound = batch_record_take_inputs(&result->arena, &m->run->memo, m->job, m->work.scene,
                                           m->since, &m->record);
     for (size_t i = 0; i < result->output_count; i++) {
@@ -270,7 +272,7 @@ static int take_record(maker *m)
     m->record.key = batch_record_key(m->job, &m->run->program);
     m->record.outputs = result->outputs;
     m->record.output_count = result->output_count;
-    if (m->run->app->options.depfiles && !batch_write_depfiles(&m->app, &m->record, m->job))
+    if (m->run->app->options->depfiles && !batch_write_depfiles(&m->app, &m->record, m->job))
         return CLI_TROUBLE;
     if (sound)
         batch_note(m->run, m->job, &m->record);
@@ -285,7 +287,7 @@ static FILE *open_console(maker *m, char **text, size_t *length)
     const cli_console *outer = &m->run->app->console;
     cli_console *console = &m->app.console;
     *console = cli_console_make();
-    cli_console_configure(console, &m->run->app->options);
+    cli_console_configure(console, m->run->app->options);
     console->out = open_memstream(text, length);
     console->color = outer->color;
     console->is_terminal = false;
@@ -300,21 +302,21 @@ static void set_outputs(maker *m)
     cli_list names = {0};
     for (size_t i = 0; i < m->job->formats.count; i++)
         cli_list_add(arena, &names, cli_arena_printf(arena, "mesh.%s", m->job->formats.items[i]));
-    m->app.options.outputs = names;
+    m->app.options->outputs = names;
 }
 
 static int make_job(maker *m, bool may_defer, bool *is_large)
 {
     set_outputs(m);
-    m->app.flat = cli_drawings_flat(&m->app.options);
+    m->app.flat = cli_drawings_flat(m->app.options);
     int status = cli_work_check(&m->app);
-    cli_list names = m->app.options.outputs;
-    m->app.options.outputs = m->job->outputs; /* what must be no source */
+    cli_list names = m->app.options->outputs;
+    m->app.options->outputs = m->job->outputs; /* what must be no source */
     if (status == CLI_DONE)
         status = cli_app_open(&m->app);
     if (status == CLI_DONE)
         status = cli_work_load(&m->app, &m->work, m->job->scene);
-    m->app.options.outputs = names;
+    m->app.options->outputs = names;
     m->result->endangers_files = m->app.overwriter && strcmp(m->app.overwriter, "-o") != 0;
     *is_large = status == CLI_DONE && may_defer && is_long_work(m);
     if (*is_large)
@@ -336,11 +338,12 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     clock_gettime(CLOCK_REALTIME_COARSE, &now); /* the clock of files */
     m.since[0] = now.tv_sec;
     m.since[1] = now.tv_nsec;
-    m.app.options = job->options;
-    m.app.options.trace = run->app->options.trace; /* what must be no source either */
-    m.app.options.junit = run->app->options.junit;
-    m.app.options.threads = threads;
-    m.app.options.if_changed = true;
+    m.options = *job->options;
+    m.app.options = &m.options;
+    m.options.trace = run->app->options->trace; /* what must be no source either */
+    m.options.junit = run->app->options->junit;
+    m.options.threads = threads;
+    m.options.if_changed = true;
     m.app.start_s = cli_now_s();
     m.app.trace = run->app->trace;
     m.app.cancelled = run->app->cancelled;

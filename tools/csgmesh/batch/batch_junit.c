@@ -7,6 +7,7 @@
 
 #include "batch/batch_report.h"
 #include "core/markup.h"
+#include "core/options.h"
 #include "core/textfile.h"
 
 static void put_case(FILE *out, const batch_job *job, const batch_result *result)
@@ -59,5 +60,5 @@ int batch_junit_write(batch_run *run)
     cli_text text;
     if (cli_text_open(&text))
         put_suite(text.out, run);
-    return cli_text_write(run->app, &text, run->app->options.junit);
+    return cli_text_write(run->app, &text, run->app->options->junit);
 }

@@ -5,6 +5,7 @@
 #ifndef CLI_BATCH_MANIFEST_H
 #define CLI_BATCH_MANIFEST_H
 
+#include "batch/batch_options.h"
 #include "batch/batch_plan.h"
 
 /* One element of "jobs", over the manifest's own members, under the command line. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/command_bits.h"
+#include "core/options.h"
 
 typedef struct row {
     const char *name, *kind;

@@ -9,6 +9,7 @@
 #include "batch/batch_hash.h"
 #include "core/arena.h"
 #include "core/json_tree.h"
+#include "core/options.h"
 
 typedef struct batch_settings {
     const char *arguments[CLI_OPTION_COUNT]; /* "--resolution=64"; "" takes an earlier one back */

@@ -15,6 +15,7 @@
 #include "batch/batch_manifest.h"
 #include "batch/batch_names.h"
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "core/sources.h"
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
@@ -122,9 +123,10 @@ static int name_outputs(batch_plan *plan, batch_job *job, const batch_entry *ent
 static int parse_options(batch_plan *plan, batch_job *job)
 {
     cli_problem problem;
+    job->options = cli_arena_alloc(&plan->arena, sizeof *job->options);
     if (plan->arena.failed)
         return refuse(plan, "", NULL, "out of memory");
-    if (!cli_options_parse(&job->options, CLI_MESH, (int)job->arguments.count,
+    if (!cli_options_parse(job->options, CLI_MESH, (int)job->arguments.count,
                            (char **)(uintptr_t)job->arguments.items, &problem))
         return refuse(plan, job->place, problem.hint[0] ? problem.hint : NULL, "%s",
                       problem.message);
@@ -141,8 +143,11 @@ static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene
 {
     cli_arena *arena = &plan->arena;
     batch_job *job = cli_arena_push(arena, (void **)&plan->jobs, &plan->count, sizeof *job);
-    if (!job)
+    batch_settings *settings = cli_arena_alloc(arena, sizeof *settings);
+    if (!job || !settings)
         return refuse(plan, "", NULL, "out of memory");
+    *settings = entry->settings;
+    batch_settings_overlay(arena, settings, plan->given);
     size_t folder_length = strlen(entry->folder);
     const char *folder = cli_path_folder(arena, scene);
     if (folder_length && strncmp(folder, entry->folder, folder_length) == 0)
@@ -151,11 +156,10 @@ static int add_job(batch_plan *plan, const batch_entry *entry, const char *scene
                        .scene = scene,
                        .folder = folder,
                        .title = scene,
-                       .settings = entry->settings,
+                       .settings = settings,
                        .pattern = entry->name ? entry->name : DEFAULT_NAME};
     job->by_part = !entry->outputs.count && batch_name_has_part(job->pattern);
-    batch_settings_overlay(arena, &job->settings, &plan->given);
-    job->arguments = batch_settings_arguments(arena, &job->settings);
+    job->arguments = batch_settings_arguments(arena, settings);
     if (set) {
         job->set = set->name;
         job->set_digest = set->digest;
@@ -214,7 +218,7 @@ static int add_scene(batch_plan *plan, const batch_entry *entry, const char *sce
 {
     if (entry->sets.count)
         return add_sets(plan, entry, scene);
-    if (entry->parameter_file && entry->parameter_file == plan->app->options.parameter_file)
+    if (entry->parameter_file && entry->parameter_file == plan->app->options->parameter_file)
         return refuse(plan, entry->place, "as -P '*'", "-P, which names sets of %s, is missing",
                       entry->parameter_file);
     return add_job(plan, entry, scene, NULL, NULL);
@@ -254,7 +258,7 @@ static bool is_manifest(const char *path)
 
 static int read_operands(batch_plan *plan, batch_entries *entries)
 {
-    const cli_list *operands = &plan->app->options.operands;
+    const cli_list *operands = &plan->app->options->operands;
     int status = CLI_DONE;
     for (size_t i = 0; i < operands->count && status == CLI_DONE; i++) {
         const char *path = operands->items[i];
@@ -276,7 +280,7 @@ static int read_operands(batch_plan *plan, batch_entries *entries)
 /* The command line is over what a manifest says. */
 static void apply_given(batch_plan *plan, batch_entry *entry)
 {
-    const cli_options *options = &plan->app->options;
+    const cli_options *options = plan->app->options;
     if (options->format) {
         entry->formats = split_formats(&plan->arena, options->format);
         entry->outputs = (cli_list){0};
@@ -344,8 +348,8 @@ static int check_reports(batch_plan *plan)
 static int choose_directory(batch_plan *plan, const batch_entries *entries)
 {
     plan->directory =
-        plan->app->options.directory ? plan->app->options.directory : entries->directory;
-    if (!plan->directory && plan->app->options.emit)
+        plan->app->options->directory ? plan->app->options->directory : entries->directory;
+    if (!plan->directory && plan->app->options->emit)
         plan->directory = ".";
     if (!plan->directory || !*plan->directory)
         return refuse(plan, "", "as csgmesh batch parts/*.txt -d out",
@@ -357,7 +361,10 @@ int batch_plan_make(cli_app *app, batch_plan *plan)
 {
     batch_entries entries = {0};
     *plan = (batch_plan){.app = app};
-    batch_options_given(&plan->arena, &app->options, &plan->given);
+    plan->given = cli_arena_alloc(&plan->arena, sizeof *plan->given);
+    if (!plan->given)
+        return refuse(plan, "", NULL, "out of memory");
+    batch_options_given(&plan->arena, app->options, plan->given);
     int status = read_operands(plan, &entries);
     if (status == CLI_DONE)
         status = choose_directory(plan, &entries);
@@ -377,6 +384,7 @@ int batch_plan_make(cli_app *app, batch_plan *plan)
 void batch_plan_release(batch_plan *plan)
 {
     for (size_t i = 0; i < plan->count; i++)
-        cli_options_release(&plan->jobs[i].options);
+        if (plan->jobs[i].options)
+            cli_options_release(plan->jobs[i].options);
     cli_arena_reset(&plan->arena);
 }

@@ -6,8 +6,9 @@
 #ifndef CLI_BATCH_PLAN_H
 #define CLI_BATCH_PLAN_H
 
-#include "batch/batch_options.h"
 #include "batch/batch_sets.h"
+
+typedef struct batch_settings batch_settings;
 
 typedef struct batch_job {
     const char *place; /* "parts.json: jobs[3]", or the scene */
@@ -17,9 +18,9 @@ typedef struct batch_job {
     batch_digest set_digest; /* of the set's own text */
     const char *title;       /* for people: the scene, and the set in brackets */
     const char *folder;      /* of the scene, for {folder} */
-    batch_settings settings;
+    batch_settings *settings;
     cli_list arguments; /* of csgmesh mesh: options, set */
-    cli_options options;
+    cli_options *options;
     const char *pattern; /* of names */
     bool by_part;        /* it has {part} */
     cli_list formats;    /* names, "glb" */
@@ -34,7 +35,7 @@ typedef struct batch_plan {
     batch_job *jobs;
     size_t count;
     /* while the plan is made */
-    batch_settings given;
+    batch_settings *given;
     batch_sets_cache sets;
 } batch_plan;
 

@@ -18,6 +18,7 @@
 #include <time.h>
 
 #include "batch/batch_names.h"
+#include "batch/batch_options.h"
 #include "core/textfile.h"
 #include "mesh/drawings.h"
 
@@ -26,7 +27,7 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
     batch_hasher hasher;
     batch_hash_begin(&hasher);
     batch_hash_add(&hasher, program->bytes, sizeof program->bytes);
-    batch_settings_hash(&job->settings, &hasher);
+    batch_settings_hash(job->settings, &hasher);
     batch_hash_text(&hasher, job->set ? "set" : "no set");
     if (job->set)
         batch_hash_add(&hasher, job->set_digest.bytes, sizeof job->set_digest.bytes);
@@ -42,7 +43,7 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
 /* The folders in which a job's scene looks for files, in their order; NULL past the end. */
 static const char *search_folder(cli_arena *arena, const batch_job *job, size_t index)
 {
-    const cli_list *given = &job->settings.include_dirs;
+    const cli_list *given = &job->settings->include_dirs;
     csgm_scene_options options = csgm_scene_options_default();
     options.include_dirs = (const char *const *)given->items;
     options.include_dir_count = given->count;

@@ -10,6 +10,7 @@
 
 #include "core/interrupt.h"
 #include "core/json.h"
+#include "core/options.h"
 
 const char *batch_outcome_name(batch_outcome outcome)
 {
@@ -194,14 +195,14 @@ int batch_report_end(batch_run *run)
     for (size_t i = 0; i < run->plan->count; i++)
         if (run->results[i].outcome == BATCH_FAILED && run->results[i].status > worst)
             worst = run->results[i].status;
-    for (size_t i = 0; app->options.json && i < run->plan->count; i++)
+    for (size_t i = 0; app->options->json && i < run->plan->count; i++)
         put_job(&run->plan->jobs[i], &run->results[i]);
-    if (app->options.json)
+    if (app->options->json)
         put_summary_json(run, seconds);
     else if (!app->console.quiet)
         put_summary(run, seconds);
     for (size_t i = 0; i < run->plan->count && !app->overwriter; i++)
         app->overwriter = run->results[i].endangers_files ? "--junit" : NULL;
-    int junit = app->options.junit && !app->overwriter ? batch_junit_write(run) : CLI_DONE;
+    int junit = app->options->junit && !app->overwriter ? batch_junit_write(run) : CLI_DONE;
     return cli_finish_stdout(app, junit > worst ? junit : worst);
 }

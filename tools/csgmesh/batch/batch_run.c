@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "batch/batch_report.h"
+#include "core/options.h"
 
 /* ---- one job -------------------------------------------------------------------------- */
 
@@ -21,7 +22,7 @@ static void finish_job(batch_run *run, size_t index)
     pthread_mutex_lock(&run->mutex);
     run->finished++;
     run->ended[run->results[index].outcome]++;
-    if (run->results[index].outcome == BATCH_FAILED && run->app->options.fail_fast)
+    if (run->results[index].outcome == BATCH_FAILED && run->app->options->fail_fast)
         run->stopped = true;
     batch_report_job(run, index);
     pthread_cond_signal(&run->changed);
@@ -227,7 +228,7 @@ static void sweep(batch_run *run)
 static int open_state(batch_run *run)
 {
     cli_arena *arena = &run->plan->arena;
-    const char *directory = run->plan->directory, *cache = run->app->options.cache;
+    const char *directory = run->plan->directory, *cache = run->app->options->cache;
     run->state = cli_path_join(arena, directory, ".csgmesh-cache");
     if (!batch_make_folders(directory, true) || access(directory, W_OK | X_OK) != 0)
         return refuse(run, directory);

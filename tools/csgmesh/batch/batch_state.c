@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 
 #include "batch/batch_run.h"
+#include "core/options.h"
 #include "core/sources.h"
 #include "mesh/depfile.h"
 
@@ -59,7 +60,7 @@ static bool outputs_hold(const batch_run *run, cli_arena *arena, const batch_rec
 {
     for (size_t i = 0; i < record->output_count; i++)
         if (!output_holds(&record->outputs[i]) ||
-            (run->app->options.depfiles && !depfile_is_there(arena, &record->outputs[i])))
+            (run->app->options->depfiles && !depfile_is_there(arena, &record->outputs[i])))
             return false;
     return record->output_count > 0;
 }
@@ -80,7 +81,7 @@ static void take_outputs(batch_result *result, const batch_record *record)
 /* A job is told of it that is made: so it is not up to date. */
 static bool is_endangered(const batch_run *run, const batch_record *record)
 {
-    const cli_options *options = &run->app->options;
+    const cli_options *options = run->app->options;
     bool found = false;
     for (size_t i = 0; i < record->input_count && !found; i++)
         found = cli_sources_is_output(options, record->inputs[i].path);
@@ -104,7 +105,7 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
     batch_record record;
     size_t length;
     batch_digest key = batch_record_key(job, &run->program);
-    const char *text = batch_hash_available() && !run->app->options.force
+    const char *text = batch_hash_available() && !run->app->options->force
                            ? batch_read_small(&arena, record_path(&arena, run, job), &length)
                            : NULL;
     bool current =
@@ -143,13 +144,13 @@ static const char *records_folder(cli_arena *arena, batch_run *run, const batch_
     batch_hash_add(&hasher, scene.bytes, sizeof scene.bytes);
     both = batch_hash_end(&hasher);
     batch_digest_print(&both, name);
-    return cli_arena_printf(arena, "%s/%.2s/%s", run->app->options.cache, name, name);
+    return cli_arena_printf(arena, "%s/%.2s/%s", run->app->options->cache, name, name);
 }
 
 /* Outputs that are not there in the cache, or broken, leave the job to be made. */
 static bool install(batch_run *run, cli_arena *arena, const batch_job *job, batch_record *record)
 {
-    const cli_options *options = &run->app->options;
+    const cli_options *options = run->app->options;
     for (size_t i = 0; i < record->output_count; i++) {
         batch_output *output = &record->outputs[i];
         const char *object = object_path(arena, options->cache, &output->digest);
@@ -186,7 +187,7 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     batch_record record;
     batch_digest key = batch_record_key(job, &run->program);
     const char *folder =
-        run->app->options.cache && batch_hash_available() && !run->app->options.force
+        run->app->options->cache && batch_hash_available() && !run->app->options->force
             ? records_folder(&arena, run, job, &key)
             : NULL;
     DIR *directory = folder ? opendir(folder) : NULL;
@@ -212,7 +213,7 @@ static bool store_objects(batch_run *run, cli_arena *arena, const batch_record *
 {
     for (size_t i = 0; i < record->output_count; i++) {
         const batch_output *output = &record->outputs[i];
-        const char *object = object_path(arena, run->app->options.cache, &output->digest);
+        const char *object = object_path(arena, run->app->options->cache, &output->digest);
         if (!batch_make_folders(object, false) ||
             !batch_copy(output->path, object, &output->digest, true, false))
             return false;
@@ -246,7 +247,7 @@ void batch_note(batch_run *run, const batch_job *job, batch_record *record)
 {
     cli_arena arena = {0};
     write_state(run, &arena, job, record);
-    if (run->app->options.cache)
+    if (run->app->options->cache)
         store(run, &arena, job, record);
     cli_arena_reset(&arena);
 }

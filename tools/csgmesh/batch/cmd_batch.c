@@ -6,13 +6,15 @@
 #include <sys/resource.h>
 
 #include "batch/batch_report.h"
+#include "core/commands.h"
+#include "core/options.h"
 #include "core/work.h"
 #include "emit/emit.h"
 #include "mesh/outputs.h"
 
 static int check_usage(cli_app *app)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     if (!options->operands.count)
         return cli_usage_error(app, "as csgmesh batch parts/*.txt -d out",
                                "no manifest and no scenes given");
@@ -62,7 +64,7 @@ int cli_cmd_batch(cli_app *app)
     if (status == CLI_DONE)
         status = batch_plan_make(app, &plan);
     if (status == CLI_DONE)
-        status = app->options.emit ? emit_plan(&plan) : run_plan(app, &plan);
+        status = app->options->emit ? emit_plan(&plan) : run_plan(app, &plan);
     batch_plan_release(&plan);
     return status;
 }

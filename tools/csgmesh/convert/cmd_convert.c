@@ -9,7 +9,9 @@
 #include <sys/stat.h>
 
 #include "convert/convert.h"
+#include "core/commands.h"
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "mesh/outputs.h"
 
@@ -74,7 +76,7 @@ static bool identify(const char *path, size_t operand, place *out)
 /* No two files to one place. */
 static int check_clashes(cli_app *app, const targets *t, place *places)
 {
-    const char **operands = app->options.operands.items;
+    const char **operands = app->options->operands.items;
     for (size_t i = 0; i < t->count; i++)
         places[i] = (place){.path = t->paths[i], .operand = i};
     qsort(places, t->count, sizeof *places, by_path);
@@ -89,7 +91,7 @@ static int check_clashes(cli_app *app, const targets *t, place *places)
 /* Nothing over what is read. */
 static int check_inputs(cli_app *app, const targets *t, place *places)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     size_t count = 0;
     for (size_t i = 0; i < operands->count; i++)
         count += identify(operands->items[i], i, &places[count]);
@@ -121,7 +123,7 @@ static int check_targets(cli_app *app, const targets *t)
 
 static int make_targets(cli_app *app, targets *t)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     t->paths = calloc(o->operands.count, sizeof *t->paths);
     for (size_t i = 0; t->paths && i < o->operands.count; i++) {
         t->paths[i] = target_of(o, o->operands.items[i]);
@@ -136,7 +138,7 @@ static int make_targets(cli_app *app, targets *t)
 
 static int check_usage(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     char known[160];
     if (!o->operands.count)
         return cli_usage_error(app, "as csgmesh convert a.glb -o a.stl", "no mesh given");
@@ -157,23 +159,23 @@ static int check_usage(cli_app *app)
 /* One after the other, those behind one that fails, too; the worst exit status. */
 static int convert_to_folder(cli_app *app, const targets *t, cli_json *json)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     int worst = CLI_DONE;
     for (size_t i = 0; i < operands->count; i++) {
         const char *path = t->paths[i];
-        app->options.outputs = (cli_list){&path, 1};
+        app->options->outputs = (cli_list){&path, 1};
         int status = cli_outputs_check(app, operands->items[i]);
         if (status == CLI_DONE)
             status = cli_convert_file(app, operands->items[i], json);
         worst = status > worst ? status : worst;
     }
-    app->options.outputs = (cli_list){NULL, 0};
+    app->options->outputs = (cli_list){NULL, 0};
     return worst;
 }
 
 static int make_folder(cli_app *app)
 {
-    const char *folder = app->options.directory;
+    const char *folder = app->options->directory;
     if (mkdir(folder, 0777) == 0 || errno == EEXIST)
         return CLI_DONE;
     cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot make %s: %s", folder, strerror(errno));
@@ -183,16 +185,16 @@ static int make_folder(cli_app *app)
 static int convert_all(cli_app *app, const targets *t, cli_json *json)
 {
     return t->paths ? convert_to_folder(app, t, json)
-                    : cli_convert_file(app, app->options.operands.items[0], json);
+                    : cli_convert_file(app, app->options->operands.items[0], json);
 }
 
 static int convert(cli_app *app, const targets *t)
 {
     cli_text text;
-    if (!app->options.stats)
+    if (!app->options->stats)
         return convert_all(app, t, NULL);
     if (!cli_text_open(&text))
-        return cli_text_write(app, &text, app->options.stats);
+        return cli_text_write(app, &text, app->options->stats);
     cli_json json = cli_json_make(text.out, true);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "csgmesh", csgm_version());
@@ -201,7 +203,7 @@ static int convert(cli_app *app, const targets *t)
     cli_json_end(&json, ']');
     cli_json_number(&json, "total_s", cli_now_s() - app->start_s);
     cli_json_end(&json, '}');
-    int written = cli_text_write(app, &text, app->options.stats);
+    int written = cli_text_write(app, &text, app->options->stats);
     return status > written ? status : written;
 }
 
@@ -209,9 +211,9 @@ int cli_convert_run(cli_app *app)
 {
     targets t = {NULL, 0};
     int status = cli_app_open(app);
-    if (status == CLI_DONE && app->options.directory)
+    if (status == CLI_DONE && app->options->directory)
         status = make_targets(app, &t);
-    if (status == CLI_DONE && app->options.directory)
+    if (status == CLI_DONE && app->options->directory)
         status = make_folder(app);
     if (status == CLI_DONE)
         status = convert(app, &t);
@@ -222,7 +224,7 @@ int cli_convert_run(cli_app *app)
 int cli_cmd_convert(cli_app *app)
 {
     int status = check_usage(app);
-    if (status == CLI_DONE && !app->options.directory)
-        status = cli_outputs_check(app, app->options.operands.items[0]);
+    if (status == CLI_DONE && !app->options->directory)
+        status = cli_outputs_check(app, app->options->operands.items[0]);
     return status == CLI_DONE ? cli_convert_run(app) : status;
 }

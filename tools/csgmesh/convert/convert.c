@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/facts.h"
+#include "core/options.h"
 #include "csgmesh/reshaping.h"
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
@@ -26,7 +27,7 @@ static bool is_reshaped(const cli_options *o)
 
 int cli_convert_check(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     if (o->given[CLI_OPTION_simplify] && o->triangles)
         return cli_usage_error(
             app, NULL, "--simplify and --triangles both say how many triangles stay: give one");
@@ -45,7 +46,7 @@ int cli_convert_check(cli_app *app)
 
 static csgm_status reshape(cli_app *app, conversion *c)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     csgm_reshape_options options = csgm_reshape_options_default();
     if (o->simplify.is_share)
         options.simplify_share = o->simplify.value;
@@ -70,14 +71,14 @@ static int load(cli_app *app, conversion *c)
     if (status != CSGM_OK)
         return cli_exit_status(status);
     c->view = csgm_mesh_get_view(c->read);
-    if (app->options.colors != 0)
+    if (app->options->colors != 0)
         c->view.colors = NULL;
     if (!c->view.triangle_count) {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "%s has no triangles: nothing was written",
                         c->path);
         return CLI_INPUT_AT_FAULT;
     }
-    return is_reshaped(&app->options) ? cli_exit_status(reshape(app, c)) : CLI_DONE;
+    return is_reshaped(app->options) ? cli_exit_status(reshape(app, c)) : CLI_DONE;
 }
 
 /* What changed, and by how much: it is not known before, and cannot be seen in the file. */
@@ -104,8 +105,8 @@ static int put_json(cli_app *app, const conversion *c, cli_json *json)
     cli_json_open(json, NULL, '{');
     cli_json_string(json, "from", c->path);
     cli_json_open(json, "to", '[');
-    for (size_t i = 0; i < app->options.outputs.count; i++)
-        cli_json_string(json, NULL, app->options.outputs.items[i]);
+    for (size_t i = 0; i < app->options->outputs.count; i++)
+        cli_json_string(json, NULL, app->options->outputs.items[i]);
     cli_json_end(json, ']');
     cli_json_count(json, "triangles_read", before.triangle_count);
     cli_facts_mesh_json(json, &c->view, &check);
@@ -124,7 +125,7 @@ static int put_json(cli_app *app, const conversion *c, cli_json *json)
 
 static int write(cli_app *app, const conversion *c)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     int status = cli_exit_status(csgm_files_hold(app->context));
     for (size_t i = 0; i < o->outputs.count; i++)
         cli_convert_warn_of_losses(app, c->read, &c->view, o->outputs.items[i],
@@ -161,7 +162,7 @@ int cli_convert_file(cli_app *app, const char *path, cli_json *json)
 static void warn_without_effect(cli_app *app)
 {
     char label[40];
-    for (size_t at = 0; cli_options_unfit(&app->options, CLI_CONVERT, &at, label, sizeof label);)
+    for (size_t at = 0; cli_options_unfit(app->options, CLI_CONVERT, &at, label, sizeof label);)
         cli_console_say(&app->console, CSGM_WARNING, NULL, "%s has no effect on a mesh", label);
 }
 

@@ -9,7 +9,7 @@
 
 /* Usage: options that say the opposite, outputs that no mesh can be. CLI_DONE or CLI_TROUBLE. */
 int cli_convert_check(cli_app *app);
-/* The outputs are app->options.outputs. json: an object for --stats; NULL: none is wanted. An exit
+/* The outputs are app->options->outputs. json: an object for --stats; NULL: none is wanted. An exit
  * status; failures are reported. */
 int cli_convert_file(cli_app *app, const char *path, cli_json *json);
 /* `csgmesh mesh` of a mesh: options of scenes have no effect. An exit status. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "core/options.h"
 #include "csgmesh/reshaping.h"
 
 typedef struct list {
@@ -129,7 +130,7 @@ void cli_convert_warn_of_losses(cli_app *app, const csgm_mesh *read, const csgm_
         add_names(&lost, mesh);
     add_looks(&lost, mesh, traits);
     add_unit(&lost, read, traits);
-    csgm_severity severity = app->options.warnings == 1 ? CSGM_ERROR : CSGM_WARNING;
+    csgm_severity severity = app->options->warnings == 1 ? CSGM_ERROR : CSGM_WARNING;
     if (lost.count)
         cli_console_say(&app->console, severity, NULL, "%s: %s has no place for %s%s%s", name,
                         csgm_format_title(format), lost.text, left_out ? "; not read: " : "",

@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "core/mesh_files.h"
+#include "core/options.h"
 #include "core/sources.h"
 #include "core/textfile.h"
 #include "core/trace.h"
@@ -79,10 +80,10 @@ static csgm_limits limits_from(const cli_options *options)
 csgm_context_options cli_app_context_options(const cli_app *app)
 {
     csgm_context_options options = csgm_context_options_default();
-    options.threads = (uint32_t)app->options.threads;
-    options.limits = limits_from(&app->options);
-    options.warnings_as_errors = app->options.warnings == 1;
-    options.library_warnings = app->options.warnings == 2;
+    options.threads = (uint32_t)app->options->threads;
+    options.limits = limits_from(app->options);
+    options.warnings_as_errors = app->options->warnings == 1;
+    options.library_warnings = app->options->warnings == 2;
     return options;
 }
 
@@ -113,7 +114,7 @@ void cli_app_looked(const cli_app *app, const char *path, cli_looked_kind kind)
 
 int cli_app_open(cli_app *app)
 {
-    if (app->options.strict && app->options.lenient)
+    if (app->options->strict && app->options->lenient)
         return cli_usage_error(app, NULL, "--strict and --lenient say the opposite: give one");
     int guarded = cli_sources_guard(app);
     if (guarded != CLI_DONE)
@@ -152,7 +153,7 @@ static bool split_define(cli_app *app, const char *text, csgm_define *define)
 
 bool cli_app_is_refused(const cli_app *app)
 {
-    return app->options.warnings == 1 && app->console.errors > 0;
+    return app->options->warnings == 1 && app->console.errors > 0;
 }
 
 /* Where the scene is and what is asked of it. */
@@ -195,8 +196,8 @@ static csgm_status load(cli_app *app, const request *wanted, const csgm_scene_op
 
 static csgm_status set_parameter_file(cli_app *app, csgm_scene_options *options)
 {
-    options->parameter_file = app->options.parameter_file;
-    options->parameter_set = app->options.parameter_set;
+    options->parameter_file = app->options->parameter_file;
+    options->parameter_set = app->options->parameter_set;
     if (!options->parameter_file == !options->parameter_set)
         return CSGM_OK;
     cli_usage_error(app, "as -p sets.json -P large", "%s is missing",
@@ -215,7 +216,7 @@ static bool read_level(cli_app *app, uint32_t *out)
 {
     unsigned year = 0, month = 0, day = 0;
     char after;
-    const char *text = app->options.openscad_version;
+    const char *text = app->options->openscad_version;
     if (!text)
         return true;
     /* NOLINTNEXTLINE(cert-err34-c): four and two digits always fit */
@@ -231,7 +232,7 @@ static bool read_level(cli_app *app, uint32_t *out)
 
 csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out)
 {
-    const cli_list *texts = &app->options.defines;
+    const cli_list *texts = &app->options->defines;
     csgm_scene_options options = csgm_scene_options_default();
     csgm_define *defines = calloc(texts->count + 1, sizeof *defines);
     csgm_status status = defines ? set_parameter_file(app, &options) : CSGM_ERR_MEMORY;
@@ -240,10 +241,10 @@ csgm_status cli_scene_settings_make(cli_app *app, cli_scene_settings *out)
             status = CSGM_ERR_ARGUMENT;
     options.defines = defines;
     options.define_count = texts->count;
-    options.include_dirs = app->options.include_dirs.items;
-    options.include_dir_count = app->options.include_dirs.count;
-    options.facets = app->options.facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
-    options.leniency = leniency_of(&app->options);
+    options.include_dirs = app->options->include_dirs.items;
+    options.include_dir_count = app->options->include_dirs.count;
+    options.facets = app->options->facets == 1 ? CSGM_FACETS_EXACT : CSGM_FACETS_ROUND;
+    options.leniency = leniency_of(app->options);
     if (status == CSGM_OK && !read_level(app, &options.openscad_version))
         status = CSGM_ERR_ARGUMENT;
     options.flat = app->flat;

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "core/options.h"
+#include "core/option_kinds.h"
 
 typedef struct cli_arena {
     struct cli_chunk *chunks;

@@ -6,7 +6,7 @@
 
 #include "core/console.h"
 #include "core/looked.h"
-#include "core/options.h"
+#include "core/option_kinds.h"
 
 /* As diff(1). */
 enum { CLI_DONE = 0, CLI_INPUT_AT_FAULT = 1, CLI_TROUBLE = 2 };
@@ -14,7 +14,7 @@ enum { CLI_DONE = 0, CLI_INPUT_AT_FAULT = 1, CLI_TROUBLE = 2 };
 enum { CLI_META_MOST = 64 };
 
 typedef struct cli_app {
-    cli_options options;
+    cli_options *options;
     cli_console console;
     csgm_context *context; /* from cli_app_open on */
     double start_s;
@@ -63,6 +63,8 @@ double cli_now_s(void);
 const char *cli_file_name(const char *path);
 /* How many bytes from here on are letters of the scene language's names, or digits in them. */
 size_t cli_name_length(const char *text);
+/* The name in `names` (NULL at the end) nearest to `text`, NULL when none is near. */
+const char *cli_nearest(const char *text, const char *const *names);
 
 /* "csgmesh: error: ..." with a pointer to the help; returns CLI_TROUBLE. hint may be NULL. */
 __attribute__((format(printf, 3, 4))) int cli_usage_error(cli_app *app, const char *hint,
@@ -71,16 +73,5 @@ __attribute__((format(printf, 3, 4))) int cli_usage_error(cli_app *app, const ch
 /* On standard output; the exit status. */
 int cli_print_version(cli_app *app);
 void cli_help(void);
-void cli_help_command(cli_command command);
-
-/* The command of this name. false: there is none, which is reported with the nearest one as a hint.
- */
-bool cli_command_find(cli_app *app, const char *name, cli_command *out);
-/* The operand of `help` and `man`, which may be left out. false: it is no command (reported). */
-bool cli_read_topic(cli_app *app, bool *is_given, cli_command *topic);
-
-#define COMMAND(NAME, name, operands, summary, examples) int cli_cmd_##name(cli_app *app);
-#include "core/commands.def"
-#undef COMMAND
 
 #endif

@@ -4,7 +4,7 @@
 #ifndef CLI_COMMAND_BITS_H
 #define CLI_COMMAND_BITS_H
 
-#include "core/options.h"
+#include "core/commands.h"
 
 enum {
 #define COMMAND(NAME, name, operands, summary, examples) NAME = 1 << CLI_##NAME,

@@ -11,6 +11,7 @@
 
 #include "core/cli.h"
 #include "core/interrupt.h"
+#include "core/options.h"
 
 static const char RESET[] = "\033[0m", BOLD[] = "\033[1m", GREEN[] = "\033[1;32m";
 static const char *const severity_colors[] = {"\033[1;36m", "\033[1;35m", "\033[1;31m"};

@@ -9,9 +9,11 @@
 #include <stdio.h>
 
 #include "core/json.h"
-#include "core/options.h"
+#include "csgmesh/csgmesh.h"
 
 enum { CLI_KINDS_MOST = 32 };
+
+typedef struct cli_options cli_options;
 
 typedef struct cli_console {
     FILE *out; /* standard error, but for one of many jobs */

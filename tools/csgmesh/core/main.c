@@ -8,6 +8,7 @@
 
 #include "core/cli.h"
 #include "core/interrupt.h"
+#include "core/options.h"
 #include "core/repeat.h"
 #include "core/sandbox.h"
 #include "core/sources.h"
@@ -77,13 +78,13 @@ static int refuse_unknown(cli_app *app, const char *name)
 static int work(cli_app *app)
 {
     int status = CLI_DONE;
-    if (app->options.trace) /* it is written whatever the command says */
+    if (app->options->trace) /* it is written whatever the command says */
         status = cli_sources_guard(app);
     if (status == CLI_DONE)
         status = cli_trace_begin(app);
     if (status == CLI_DONE)
-        status = commands[app->options.command].run(app);
-    if (app->options.summary)
+        status = commands[app->options->command].run(app);
+    if (app->options->summary)
         cli_console_summary(&app->console);
     return cli_trace_end(app, status);
 }
@@ -95,16 +96,16 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
         app->arguments = (cli_list){(const char **)argv, (size_t)argc};
         return commands[command].run(app);
     }
-    bool parsed = cli_options_parse(&app->options, command, argc, argv, &problem);
-    cli_console_configure(&app->console, &app->options);
-    if (!is_named && app->options.operands.count &&
-        looks_like_command(app->options.operands.items[0]))
-        return refuse_unknown(app, app->options.operands.items[0]);
+    bool parsed = cli_options_parse(app->options, command, argc, argv, &problem);
+    cli_console_configure(&app->console, app->options);
+    if (!is_named && app->options->operands.count &&
+        looks_like_command(app->options->operands.items[0]))
+        return refuse_unknown(app, app->options->operands.items[0]);
     if (!parsed)
         return cli_usage_error(app, problem.hint[0] ? problem.hint : NULL, "%s", problem.message);
-    if (app->options.version)
+    if (app->options->version)
         return cli_print_version(app);
-    if (app->options.help) {
+    if (app->options->help) {
         if (is_named)
             cli_help_command(command);
         else
@@ -113,7 +114,7 @@ static int run_command(cli_app *app, cli_command command, bool is_named, int arg
     }
     int status = cli_confine(app);
     if (status == CLI_DONE)
-        status = app->options.watch ? cli_repeat(app, work) : work(app);
+        status = app->options->watch ? cli_repeat(app, work) : work(app);
     return status;
 }
 
@@ -142,11 +143,12 @@ static int dispatch(cli_app *app, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    cli_app app = {.start_s = cli_now_s(), .console = cli_console_make()};
+    cli_options options = {.command = CLI_MESH};
+    cli_app app = {.options = &options, .start_s = cli_now_s(), .console = cli_console_make()};
     cli_interrupt_install();
     int status = dispatch(&app, argc, argv);
     cli_console_flush(&app.console);
     csgm_context_destroy(app.context);
-    cli_options_release(&app.options);
+    cli_options_release(&options);
     return status;
 }

@@ -19,6 +19,7 @@
 
 #include "core/follow.h"
 #include "core/interrupt.h"
+#include "core/options.h"
 
 enum { LONGEST_LINE = 1 << 16 };
 
@@ -198,7 +199,7 @@ static void ask(void *user)
 
 static int check(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     if (o->emit)
         return cli_usage_error(app, NULL, "--watch makes files, --emit makes none");
     for (size_t i = 0; i < o->operands.count; i++)
@@ -216,7 +217,7 @@ static int follow(repeater *r)
 {
     cli_follower follower = {.user = r, .take_files = take_files, .ask = ask};
     begin(r);
-    if (!r->app->options.quiet && !r->app->options.json)
+    if (!r->app->options->quiet && !r->app->options->json)
         cli_console_say(&r->app->console, CSGM_NOTE, NULL,
                         "files are written again when one that they are made of changes; Ctrl-C "
                         "ends that");

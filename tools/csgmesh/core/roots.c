@@ -13,6 +13,8 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 
+#include "core/options.h"
+
 /* Landlock as the kernel's interface has it for good; headers before Linux 5.13 do not. The numbers
  * are the same on all architectures but Alpha. */
 #ifdef __alpha__
@@ -80,7 +82,7 @@ static int add_from_environment(cli_app *app, int rules, uint64_t rights, const 
 
 static int confine(cli_app *app, int rules, uint64_t rights, const char *environment)
 {
-    const cli_list *roots = &app->options.roots;
+    const cli_list *roots = &app->options->roots;
     int status = add_from_environment(app, rules, rights, environment);
     for (size_t i = 0; i < roots->count && status == CLI_DONE; i++)
         status = add_root(app, rules, rights, roots->items[i]);
@@ -104,7 +106,7 @@ int cli_roots_confine(cli_app *app)
 {
     const char *environment = getenv("CSGMESH_ROOT");
     const char *reason = "it needs Linux 5.13 or newer with Landlock";
-    if (!app->options.roots.count && (!environment || !*environment))
+    if (!app->options->roots.count && (!environment || !*environment))
         return CLI_DONE;
 #ifdef __linux__
     long version = syscall(CREATE_RULESET, NULL, 0, ASK_VERSION);

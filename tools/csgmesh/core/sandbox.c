@@ -20,6 +20,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "core/options.h"
 #include "core/roots.h"
 
 #if defined(__linux__) && __has_include(<linux/seccomp.h>) && __has_include(<linux/filter.h>)
@@ -134,7 +135,7 @@ static const char *enter(void)
 static bool is_wanted(const cli_app *app)
 {
     const char *environment = getenv("CSGMESH_SANDBOX");
-    return app->options.sandbox || (environment && *environment && strcmp(environment, "0") != 0);
+    return app->options->sandbox || (environment && *environment && strcmp(environment, "0") != 0);
 }
 
 /* ---- the fence --------------------------------------------------------------------------------
@@ -159,7 +160,7 @@ static void fence_memory(const cli_app *app)
 {
     const uint64_t of_thread = (uint64_t)10 << 20; /* its stack, above all */
     const uint64_t of_libraries = (uint64_t)64 << 20;
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     uint64_t most = options->given[CLI_OPTION_max_memory]
                         ? options->max_memory
                         : csgm_context_options_default().limits.memory_bytes;

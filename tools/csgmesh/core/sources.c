@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/options.h"
+
 /* What tells a file from others. Not regular (a device, a pipe): it may be read and written. */
 typedef struct identity {
     bool is_file;
@@ -86,7 +88,7 @@ bool cli_sources_is_output(const cli_options *options, const char *path)
 
 static int guard(cli_app *app, const char *path, const char *verb)
 {
-    const char *option, *writer = find_writer(&app->options, path, &option);
+    const char *option, *writer = find_writer(app->options, path, &option);
     if (!writer)
         return CLI_DONE;
     app->overwriter = option;
@@ -119,11 +121,11 @@ static int guard_outputs(cli_app *app)
     bool is_last = false, is_last_other;
     for (size_t i = 0; !is_last; i++) {
         const char *option, *other_option;
-        const char *path = output_at(&app->options, i, &option, &is_last);
+        const char *path = output_at(app->options, i, &option, &is_last);
         identity one = identify(path);
         is_last_other = is_last || !path;
         for (size_t j = i + 1; !is_last_other; j++) {
-            const char *other = output_at(&app->options, j, &other_option, &is_last_other);
+            const char *other = output_at(app->options, j, &other_option, &is_last_other);
             if (other && strcmp(path, "-") == 0 && strcmp(other, "-") == 0) {
                 app->overwriter = other_option;
                 return cli_usage_error(app, "write one of them to a file",
@@ -144,7 +146,7 @@ static int guard_outputs(cli_app *app)
 int cli_sources_guard(cli_app *app)
 {
     int status = guard_outputs(app);
-    for (size_t i = 0; status == CLI_DONE && i < app->options.operands.count; i++)
-        status = cli_sources_guard_file(app, app->options.operands.items[i]);
+    for (size_t i = 0; status == CLI_DONE && i < app->options->operands.count; i++)
+        status = cli_sources_guard_file(app, app->options->operands.items[i]);
     return status;
 }

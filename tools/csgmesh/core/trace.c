@@ -5,12 +5,13 @@
 
 #include <string.h>
 
+#include "core/options.h"
 #include "core/textfile.h"
 #include "mesh/outputs.h"
 
 int cli_trace_begin(cli_app *app)
 {
-    const char *path = app->options.trace;
+    const char *path = app->options->trace;
     if (!path)
         return CLI_DONE;
     if (cli_outputs_check_place(app, path) != CLI_DONE)
@@ -28,11 +29,11 @@ void cli_trace_open(cli_app *app)
 #include "core/commands.def"
 #undef COMMAND
     };
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (app->zone_note)
         csgm_trace_begin(app->context, "job", app->zone_note);
     else
-        csgm_trace_begin(app->context, names[app->options.command],
+        csgm_trace_begin(app->context, names[app->options->command],
                          operands->count ? operands->items[0] : NULL);
 }
 
@@ -50,8 +51,8 @@ static int write_trace(cli_app *app)
     if (dropped)
         cli_console_say(&app->console, CSGM_WARNING, NULL,
                         "%llu zones found no room and are not in %s", (unsigned long long)dropped,
-                        app->options.trace);
-    return cli_text_write(app, &text, app->options.trace);
+                        app->options->trace);
+    return cli_text_write(app, &text, app->options->trace);
 }
 
 int cli_trace_end(cli_app *app, int status)

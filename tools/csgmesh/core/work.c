@@ -5,17 +5,18 @@
 
 #include <math.h>
 
+#include "core/options.h"
 #include "core/sources.h"
 #include "mesh/outputs.h"
 
 int cli_work_check(cli_app *app)
 {
-    if (app->options.given[CLI_OPTION_resolution] && app->options.given[CLI_OPTION_cell_size])
+    if (app->options->given[CLI_OPTION_resolution] && app->options->given[CLI_OPTION_cell_size])
         return cli_usage_error(app, NULL, "-r and -s both set the size of a cell: give one");
-    if (app->options.given[CLI_OPTION_tolerance] && app->options.given[CLI_OPTION_simplify])
+    if (app->options->given[CLI_OPTION_tolerance] && app->options->given[CLI_OPTION_simplify])
         return cli_usage_error(app, NULL,
                                "-e and --simplify both say what may be taken away: give one");
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     bool equal_cells = o->given[CLI_OPTION_resolution] || o->given[CLI_OPTION_cell_size];
     if (o->given[CLI_OPTION_quality] && (equal_cells || o->given[CLI_OPTION_tolerance]))
         return cli_usage_error(
@@ -44,7 +45,7 @@ int cli_work_load(cli_app *app, cli_work *work, const char *path)
 
 double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality quality)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     if (o->resolution || o->given[CLI_OPTION_cell_size] || o->given[CLI_OPTION_tolerance] ||
         o->given[CLI_OPTION_simplify])
         return 0;
@@ -59,7 +60,7 @@ double cli_work_tolerance(const cli_app *app, const cli_work *work, csgm_quality
 
 static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     csgm_mesh_options mesh = csgm_mesh_options_default();
     if (options->given[CLI_OPTION_bounds])
         mesh.bounds = options->bounds;
@@ -128,14 +129,14 @@ static csgm_status mesh_level(cli_app *app, cli_work *work, double tolerance, si
 
 int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write_options)
 {
-    size_t wanted = (size_t)app->options.lod;
+    size_t wanted = (size_t)app->options->lod;
     csgm_status status = CSGM_OK;
     uint64_t before = csgm_mesh_get_view(work->mesh).triangle_count;
     double tolerance =
-        app->options.tolerance > 0 ? app->options.tolerance
+        app->options->tolerance > 0 ? app->options->tolerance
         : work->stats.tolerance > 0
             ? work->stats.tolerance
-            : csgm_quality_tolerance((csgm_quality)app->options.quality, work->info.bounds);
+            : csgm_quality_tolerance((csgm_quality)app->options->quality, work->info.bounds);
     while (status == CSGM_OK && !work->is_leveled && work->level_count + 1 < wanted) {
         tolerance *= 4;
         status = mesh_level(app, work, tolerance, work->level_count);

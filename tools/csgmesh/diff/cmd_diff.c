@@ -7,7 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/commands.h"
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "core/sources.h"
 #include "diff/diff_folders.h"
 #include "diff/diff_report.h"
@@ -29,8 +31,8 @@ static int read_ignored(cli_app *app, uint32_t *ignored)
                  {"colors", CSGM_DIFF_IGNORE_COLORS}, {"names", CSGM_DIFF_IGNORE_NAMES},
                  {"up", CSGM_DIFF_IGNORE_UP},         {"topology", CSGM_DIFF_IGNORE_TOPOLOGY}};
     enum { WORDS = sizeof words / sizeof *words };
-    const cli_list *list = &app->options.diff_ignore;
-    *ignored = app->options.diff_ignore_topology ? CSGM_DIFF_IGNORE_TOPOLOGY : 0;
+    const cli_list *list = &app->options->diff_ignore;
+    *ignored = app->options->diff_ignore_topology ? CSGM_DIFF_IGNORE_TOPOLOGY : 0;
     for (size_t i = 0; i < list->count; i++)
         for (const char *word = list->items[i]; word;) {
             size_t length = strcspn(word, ","), w = 0;
@@ -51,7 +53,7 @@ static int read_ignored(cli_app *app, uint32_t *ignored)
 /* With --tol-volume alone distances do not decide. */
 static csgm_diff_options diff_options(cli_app *app, uint32_t ignored)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     csgm_diff_options diff = csgm_diff_options_default();
     bool has_tolerance =
         options->given[CLI_OPTION_diff_tol] || options->given[CLI_OPTION_diff_tol_rel];
@@ -110,14 +112,14 @@ static int check_scene_options(cli_app *app)
                 {CLI_OPTION_simplify, "--simplify"},
                 {CLI_OPTION_improve, "--improve"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (app->options.given[rows[i].id])
+        if (app->options->given[rows[i].id])
             return cli_usage_error(app, NULL, "%s wants a scene: both are meshes", rows[i].name);
     return CLI_DONE;
 }
 
 static int check_usage(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     const char *const *paths = o->operands.items;
     if (o->operands.count != 2)
         return cli_usage_error(app, "as csgmesh diff old.stl new.stl",
@@ -172,11 +174,11 @@ static void warn(cli_app *app, const csgm_diff_report *r)
 {
     bool is_open = (r->figures[0].triangles && !r->figures[0].is_closed) ||
                    (r->figures[1].triangles && !r->figures[1].is_closed);
-    if (app->options.diff_one_sided && is_open)
+    if (app->options->diff_one_sided && is_open)
         cli_console_say(&app->console, CSGM_WARNING, NULL,
                         "--one-sided wants closed meshes: added and removed count alike");
     for (int i = 0; i < 2; i++)
-        if (r->distance[i].is_measured && !r->distance[i].is_refined && !app->options.quiet)
+        if (r->distance[i].is_measured && !r->distance[i].is_refined && !app->options->quiet)
             cli_console_say(&app->console, CSGM_NOTE, NULL,
                             "%s: the maximum is only known to be between %.6g and %.6g",
                             i ? "B to A" : "A to B", r->distance[i].lower, r->distance[i].upper);
@@ -208,7 +210,7 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
     csgm_diff_options options = *wanted;
     csgm_diff *diff;
     options.ignored |= ignored_by_format(sides[0].format) | ignored_by_format(sides[1].format);
-    if (app->options.diff_field) {
+    if (app->options->diff_field) {
         options.scene_a = sides[0].work.scene;
         options.scene_b = sides[1].work.scene;
     }
@@ -217,7 +219,7 @@ static int compare_sides(cli_app *app, const csgm_diff_options *wanted, diff_sid
     result->report = *csgm_diff_get_report(diff);
     result->outcome = result->report.is_different ? DIFF_DIFFERENT : DIFF_SAME;
     warn(app, &result->report);
-    const char *heatmap = app->options.diff_heatmap;
+    const char *heatmap = app->options->diff_heatmap;
     int exit_status = CLI_DONE;
     if (heatmap && !csgm_diff_vertex_distances(diff, 1)) {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "no heat map: a mesh is empty");
@@ -249,7 +251,7 @@ static void share_tolerance(cli_app *app, const csgm_diff_options *options, diff
     double within = INFINITY, finest = INFINITY;
     for (int i = 0; i < 2; i++) {
         const cli_work *work = &sides[i].work;
-        csgm_quality quality = (csgm_quality)app->options.quality;
+        csgm_quality quality = (csgm_quality)app->options->quality;
         double own = work->scene ? cli_work_tolerance(app, work, quality) : 0;
         if (!(own > 0))
             return;
@@ -267,7 +269,7 @@ static void share_tolerance(cli_app *app, const csgm_diff_options *options, diff
 static int compare(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
                    diff_result *result)
 {
-    if (!app->options.diff_heatmap && !diff_report_draws(app, result) &&
+    if (!app->options->diff_heatmap && !diff_report_draws(app, result) &&
         diff_same_bytes(result->a, result->b)) {
         result->report = (csgm_diff_report){.level = CSGM_DIFF_SAME_BYTES};
         result->outcome = DIFF_SAME;
@@ -288,11 +290,11 @@ static void work_on(cli_app *app, const csgm_diff_options *options, diff_result 
 {
     diff_side sides[2] = {{.path = NULL}, {.path = NULL}};
     int status = CLI_DONE;
-    if (result->a && result->b && app->options.diff_update && is_missing(result->a))
+    if (result->a && result->b && app->options->diff_update && is_missing(result->a))
         result->outcome = DIFF_ONLY_B;
     else if (result->a && result->b)
         status = compare(app, options, sides, result);
-    bool accepts = app->options.diff_update && status == CLI_DONE && result->a && result->b &&
+    bool accepts = app->options->diff_update && status == CLI_DONE && result->a && result->b &&
                    (result->outcome == DIFF_DIFFERENT || result->outcome == DIFF_ONLY_B);
     if (accepts) {
         status = diff_update(app, result->a, &sides[1], result->b);
@@ -312,7 +314,7 @@ static void work_on(cli_app *app, const csgm_diff_options *options, diff_result 
 /* A file that only B's folder has gets its name in A's, so that --update can put it there. */
 static bool name_in_a(cli_app *app, const char *a, const char *b, diff_result *result)
 {
-    if (!app->options.diff_update || result->a)
+    if (!app->options->diff_update || result->a)
         return true;
     if (asprintf(&result->a, "%s%s", a, result->b + strlen(b)) >= 0)
         return true;
@@ -323,8 +325,8 @@ static bool name_in_a(cli_app *app, const char *a, const char *b, diff_result *r
 
 static int compare_pairs(cli_app *app, const csgm_diff_options *options, diff_results *results)
 {
-    const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
-    const cli_options *o = &app->options;
+    const char *a = app->options->operands.items[0], *b = app->options->operands.items[1];
+    const cli_options *o = app->options;
     bool is_shown = !o->quiet && !(o->diff_json && strcmp(o->diff_json, "-") == 0) &&
                     !(o->diff_junit && strcmp(o->diff_junit, "-") == 0) &&
                     !(o->diff_html && strcmp(o->diff_html, "-") == 0);
@@ -350,10 +352,10 @@ static int compare_pairs(cli_app *app, const csgm_diff_options *options, diff_re
 
 static int find_pairs(cli_app *app, diff_results *results)
 {
-    const char *a = app->options.operands.items[0], *b = app->options.operands.items[1];
+    const char *a = app->options->operands.items[0], *b = app->options->operands.items[1];
     bool folder_b = diff_is_folder(b);
     /* one that is not there yet has no files: --update makes it */
-    bool folder_a = diff_is_folder(a) || (app->options.diff_update && folder_b && is_missing(a));
+    bool folder_a = diff_is_folder(a) || (app->options->diff_update && folder_b && is_missing(a));
     if (folder_a && folder_b) {
         results->of_folders = true;
         return diff_pair_folders(app, a, b, results);
@@ -367,7 +369,7 @@ static int find_pairs(cli_app *app, diff_results *results)
 /* All reports appear, or none. The exit status of the comparison, unless one cannot be written. */
 static int write_reports(cli_app *app, const diff_results *results, int status)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     bool good = !app->overwriter;
     for (size_t i = 0; i < results->count && good; i++)
         good = !results->items[i].lacks_picture;
@@ -399,7 +401,7 @@ int cli_cmd_diff(cli_app *app)
             cli_sources_guard_file(app, i % 2 ? results.items[i / 2].b : results.items[i / 2].a);
     if (status == CLI_DONE) {
         csgm_diff_options options = diff_options(app, ignored);
-        if (!app->options.diff_update) /* what is accepted is there at once */
+        if (!app->options->diff_update) /* what is accepted is there at once */
             csgm_files_hold(app->context);
         status = write_reports(app, &results, compare_pairs(app, &options, &results));
     }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/options.h"
 #include "diff/diff_view.h"
 #include "render/picture_options.h"
 
@@ -99,7 +100,7 @@ static bool chosen_view(cli_app *app, csgm_vec3 *out)
 {
     const double degree = 0.017453292519943295, grid = 1e9, least = 1e-6;
     csgm_camera camera = {.azimuth_deg = 0};
-    if (!app->options.view || cli_picture_view(app, &camera) != CLI_DONE)
+    if (!app->options->view || cli_picture_view(app, &camera) != CLI_DONE)
         return false;
     double azimuth = camera.azimuth_deg * degree, elevation = camera.elevation_deg * degree;
     double level = fmax(round(cos(elevation) * grid) / grid, least);

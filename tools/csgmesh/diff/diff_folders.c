@@ -14,6 +14,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "core/options.h"
+
 bool diff_is_folder(const char *path)
 {
     struct stat status;
@@ -85,7 +87,7 @@ static bool read_folder(cli_app *app, const char *root, const char *folder, name
     bool good = true;
     snprintf(path, sizeof path, "%s%s%s", root, *folder ? "/" : "", folder);
     DIR *dir = opendir(path);
-    if (!dir && errno == ENOENT && app->options.diff_update)
+    if (!dir && errno == ENOENT && app->options->diff_update)
         return true; /* what is accepted will make it */
     if (!dir) {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "cannot read the folder %s: %s", path,

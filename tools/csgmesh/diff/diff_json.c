@@ -6,6 +6,7 @@
 
 #include "core/facts.h"
 #include "core/markup.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "diff/diff_report.h"
 
@@ -210,10 +211,10 @@ static int write_with(cli_app *app, const char *path, const diff_results *result
 
 int diff_write_json(cli_app *app, const diff_results *results)
 {
-    return write_with(app, app->options.diff_json, results, put_json);
+    return write_with(app, app->options->diff_json, results, put_json);
 }
 
 int diff_write_junit(cli_app *app, const diff_results *results)
 {
-    return write_with(app, app->options.diff_junit, results, put_junit);
+    return write_with(app, app->options->diff_junit, results, put_junit);
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/markup.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "diff/diff_report.h"
 
@@ -147,7 +148,7 @@ int diff_write_html(cli_app *app, const diff_results *results)
 {
     cli_text text;
     if (!cli_text_open(&text) || put_page(text.out, results))
-        return cli_text_write(app, &text, app->options.diff_html);
+        return cli_text_write(app, &text, app->options->diff_html);
     free(cli_text_close(&text));
     cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
     return CLI_TROUBLE;

@@ -6,20 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/options.h"
 #include "diff/diff_folders.h"
 #include "render/picture_options.h"
 
 /* The pair of the command line, not one of two folders. */
 static bool is_alone(const cli_app *app, const diff_result *result)
 {
-    return result->a && strcmp(result->a, app->options.operands.items[0]) == 0;
+    return result->a && strcmp(result->a, app->options->operands.items[0]) == 0;
 }
 
 static int check_png(cli_app *app)
 {
-    const char *path = app->options.diff_png;
+    const char *path = app->options->diff_png;
     csgm_image_format format = csgm_image_format_from_path(path);
-    if (diff_is_folder(app->options.operands.items[0]))
+    if (diff_is_folder(app->options->operands.items[0]))
         return cli_usage_error(app, "--html shows all pairs on one page",
                                "--png wants two files, not folders");
     if (format == CSGM_IMAGE_AUTO)
@@ -32,7 +33,7 @@ static int check_png(cli_app *app)
 
 int diff_report_check(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     csgm_camera camera = {.azimuth_deg = 0};
     if (o->view && !o->diff_png && !o->diff_html)
         return cli_usage_error(app, NULL, "--view needs --png or --html");
@@ -43,7 +44,7 @@ int diff_report_check(cli_app *app)
 
 bool diff_report_draws(const cli_app *app, const diff_result *result)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     return o->diff_png || (o->diff_html && is_alone(app, result));
 }
 
@@ -55,7 +56,7 @@ void diff_report_begin(diff_results *results, size_t index)
 int diff_report_add(cli_app *app, const csgm_diff *diff, const diff_side sides[2],
                     diff_result *result)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     bool is_shown = o->diff_html && (result->outcome == DIFF_DIFFERENT || is_alone(app, result));
     diff_drawing drawing;
     int status = CLI_DONE;

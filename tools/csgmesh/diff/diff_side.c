@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/options.h"
 #include "core/textfile.h"
 #include "mesh/outputs.h"
 
@@ -71,9 +72,9 @@ static int open_scene(cli_app *app, diff_side *side, const char *other)
     uint32_t traits = csgm_format_traits(format);
     bool creases = traits & CSGM_KEEPS_CREASES;
     side->as = csgm_format_available(format, false) ? format : CSGM_FORMAT_AUTO;
-    side->normals = app->options.given[CLI_OPTION_normals] ? cli_outputs_normals(&app->options)
-                    : creases                              ? CSGM_NORMALS_CREASE
-                                                           : CSGM_NORMALS_VERTEX;
+    side->normals = app->options->given[CLI_OPTION_normals] ? cli_outputs_normals(app->options)
+                    : creases                               ? CSGM_NORMALS_CREASE
+                                                            : CSGM_NORMALS_VERTEX;
     side->draco = traits & CSGM_HEEDS_DRACO && is_compressed(other);
     return CLI_DONE;
 }
@@ -81,7 +82,7 @@ static int open_scene(cli_app *app, diff_side *side, const char *other)
 bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
 {
     if (!side->work.scene || side->as == CSGM_FORMAT_AUTO || side->normals != CSGM_NORMALS_CREASE ||
-        app->options.given[CLI_OPTION_normals])
+        app->options->given[CLI_OPTION_normals])
         return false;
     csgm_mesh_destroy(side->mesh);
     csgm_mesh_destroy(side->work.mesh);

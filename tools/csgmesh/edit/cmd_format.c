@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "csgmesh/editing.h"
 
@@ -31,7 +33,7 @@ static void take(void *user, const char *text, size_t length)
     target *to = user;
     bool is_new = length != to->length || memcmp(text, to->text, length) != 0;
     bool is_standard = strcmp(to->path, "-") == 0;
-    if (to->app->options.format_check) {
+    if (to->app->options->format_check) {
         if (is_new)
             printf("%s\n", is_standard ? "standard input" : to->path);
         to->status = is_new ? CLI_INPUT_AT_FAULT : CLI_DONE;
@@ -54,7 +56,7 @@ static int format(cli_app *app, const char *path)
 
 int cli_cmd_format(cli_app *app)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (!operands->count)
         return cli_usage_error(app, "as csgmesh format mug.txt", "no scene given");
     int worst = cli_app_open(app);

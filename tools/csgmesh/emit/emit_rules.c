@@ -5,6 +5,7 @@
 
 #include "batch/batch_names.h"
 #include "batch/batch_record.h"
+#include "core/options.h"
 #include "emit/emit.h"
 
 static void add_word(batch_plan *plan, emit_rule *rule, emit_word word)
@@ -39,11 +40,11 @@ static void add_arguments(batch_plan *plan, emit_rule *rule)
 /* What a rule may read and write is what this run may; CSGMESH_ROOT stays with the environment. */
 static void add_roots(batch_plan *plan, emit_rule *rule)
 {
-    const cli_list *roots = &plan->app->options.roots;
+    const cli_list *roots = &plan->app->options->roots;
     for (size_t i = 0; i < roots->count; i++)
         add_word(plan, rule,
                  (emit_word){.kind = EMIT_SOURCE, .prefix = "--root=", .path = roots->items[i]});
-    if (plan->app->options.sandbox)
+    if (plan->app->options->sandbox)
         add_text(plan, rule, "--sandbox");
 }
 
@@ -160,7 +161,7 @@ int emit_plan(batch_plan *plan)
     if (plan->arena.failed)
         return cli_usage_error(plan->app, NULL, "out of memory");
     if (status == CLI_DONE)
-        status = writers[plan->app->options.emit](&rules);
+        status = writers[plan->app->options->emit](&rules);
     return cli_finish_stdout(plan->app, status);
 }
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/commands.h"
+#include "core/options.h"
 #include "lsp/lsp.h"
 
 /* Findings of the server's own context are words for an error. */
@@ -196,9 +198,9 @@ static int open_server(lsp_server *server)
 int cli_cmd_lsp(cli_app *app)
 {
     lsp_server server = {.app = app};
-    if (app->options.operands.count)
+    if (app->options->operands.count)
         return cli_usage_error(app, "an editor starts it: csgmesh lsp", "lsp takes no scene");
-    if (app->options.strict && app->options.lenient)
+    if (app->options->strict && app->options->lenient)
         return cli_usage_error(app, NULL, "--strict and --lenient say the opposite: give one");
     keep_memory();
     int status = open_server(&server);

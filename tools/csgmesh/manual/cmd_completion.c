@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "manual/completion.h"
 
 static const char SCENES[] = "txt|scad|csg";
@@ -170,7 +172,7 @@ int cli_cmd_completion(cli_app *app)
         void (*print)(void);
     } shells[] = {
         {"bash", cli_completion_bash}, {"zsh", cli_completion_zsh}, {"fish", cli_completion_fish}};
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (operands->count != 1)
         return cli_usage_error(app, "bash, zsh or fish",
                                operands->count ? "one shell at a time" : "no shell given");

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "manual/rows.h"
 
 enum { TEXT_COLUMN = 28, LINE_WIDTH = 92 };
@@ -88,7 +90,7 @@ void cli_help(void)
 
 bool cli_read_topic(cli_app *app, bool *is_given, cli_command *topic)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     *is_given = operands->count > 0;
     if (operands->count > 1) {
         cli_usage_error(app, NULL, "one command at a time: '%s' is one too many",

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
 #include "core/format_lists.h"
 #include "manual/rows.h"
 

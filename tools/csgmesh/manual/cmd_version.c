@@ -5,6 +5,8 @@
 
 #include "batch/batch_hash.h"
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 #include "view/view_server.h"
 
 int cli_print_version(cli_app *app)
@@ -18,7 +20,7 @@ int cli_print_version(cli_app *app)
 
 int cli_cmd_version(cli_app *app)
 {
-    if (app->options.operands.count)
-        return cli_usage_error(app, NULL, "version takes no '%s'", app->options.operands.items[0]);
+    if (app->options->operands.count)
+        return cli_usage_error(app, NULL, "version takes no '%s'", app->options->operands.items[0]);
     return cli_print_version(app);
 }

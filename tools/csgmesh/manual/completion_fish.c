@@ -3,6 +3,7 @@
  */
 #include <stdio.h>
 
+#include "core/commands.h"
 #include "manual/completion.h"
 
 static const char HEAD[] =

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/commands.h"
 #include "manual/completion.h"
 
 static const char HEAD[] =

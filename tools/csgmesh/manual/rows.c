@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/command_bits.h"
+#include "core/commands.h"
 
 const cli_command_row cli_command_rows[CLI_COMMAND_COUNT] = {
 #define COMMAND(NAME, name, operands, summary, examples) {#name, operands, summary, examples},

@@ -8,8 +8,10 @@
 #include <sys/stat.h>
 
 #include "convert/convert.h"
+#include "core/commands.h"
 #include "core/facts.h"
 #include "core/mesh_files.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "core/work.h"
 #include "mesh/certify.h"
@@ -111,8 +113,8 @@ static void put_results(cli_json *json, const cli_work *work, const run_report *
  * (reported). */
 static bool put_file(cli_json *json, cli_app *app, size_t index)
 {
-    const char *path = app->options.outputs.items[index];
-    csgm_format format = cli_outputs_format(&app->options, index);
+    const char *path = app->options->outputs.items[index];
+    csgm_format format = cli_outputs_format(app->options, index);
     csgm_mesh *mesh;
     csgm_mesh_view view = {.positions = NULL};
     csgm_mesh_check check;
@@ -151,7 +153,7 @@ static bool put_statistics(FILE *out, cli_app *app, const cli_work *work, const 
     put_results(&json, work, report);
     cli_json_open(&json, "files", '[');
     bool all_read = true;
-    for (size_t i = 0; i < app->options.outputs.count; i++)
+    for (size_t i = 0; i < app->options->outputs.count; i++)
         all_read = put_file(&json, app, i) && all_read;
     cli_json_end(&json, ']');
     cli_json_count(&json, "peak_rss_bytes", report->peak_rss_bytes);
@@ -170,7 +172,7 @@ static int write_statistics(cli_app *app, const cli_work *work, run_report *repo
     report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view, &report->vertices_measured);
     cli_text text;
     bool all_read = !cli_text_open(&text) || put_statistics(text.out, app, work, report);
-    int written = cli_text_write(app, &text, app->options.stats);
+    int written = cli_text_write(app, &text, app->options->stats);
     return all_read ? written : CLI_TROUBLE;
 }
 
@@ -180,9 +182,9 @@ static void tell_result(cli_app *app, uint64_t triangle_count, const run_report 
 {
     if (!app->console.is_terminal || app->console.quiet || app->console.json)
         return;
-    for (size_t i = 0; i < app->options.outputs.count; i++)
-        fprintf(stderr, "%s%s", i ? ", " : "", app->options.outputs.items[i]);
-    fprintf(stderr, "%s%llu triangles, %.2f s\n", app->options.outputs.count ? ": " : "",
+    for (size_t i = 0; i < app->options->outputs.count; i++)
+        fprintf(stderr, "%s%s", i ? ", " : "", app->options->outputs.items[i]);
+    fprintf(stderr, "%s%llu triangles, %.2f s\n", app->options->outputs.count ? ": " : "",
             (unsigned long long)triangle_count, report->total_s);
 }
 
@@ -199,7 +201,7 @@ static int name_outputs(cli_app *app, int status)
 static int write_all(cli_app *app, cli_work *work, run_report *report)
 {
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
-    if (view.triangle_count == 0 && app->options.outputs.count) {
+    if (view.triangle_count == 0 && app->options->outputs.count) {
         cli_console_say(&app->console, CSGM_ERROR, NULL,
                         "the mesh has no triangles: nothing was written");
         return CLI_INPUT_AT_FAULT;
@@ -207,7 +209,7 @@ static int write_all(cli_app *app, cli_work *work, run_report *report)
     double begin_s = cli_now_s();
     int status = cli_outputs_write(app, work);
     status = name_outputs(app, status);
-    if (status == CLI_DONE && app->options.depfile)
+    if (status == CLI_DONE && app->options->depfile)
         status = cli_depfile_write(app, work->scene);
     double end_s = cli_now_s();
     report->write_s = end_s - begin_s;
@@ -217,7 +219,7 @@ static int write_all(cli_app *app, cli_work *work, run_report *report)
         tell_result(app, view.triangle_count, report);
     if (status == CLI_DONE)
         cli_certify_tell(app, &work->stats.certify);
-    if (status == CLI_DONE && app->options.stats)
+    if (status == CLI_DONE && app->options->stats)
         status = write_statistics(app, work, report);
     return status;
 }
@@ -233,13 +235,13 @@ static bool goes_straight_to_file(const cli_options *options)
 
 static int mesh_to_file(cli_app *app, cli_work *work, run_report *report)
 {
-    csgm_write_options write_options = cli_outputs_options(app, app->options.operands.items[0]);
+    csgm_write_options write_options = cli_outputs_options(app, app->options->operands.items[0]);
     uint64_t triangle_count;
     int status =
-        cli_work_mesh_file(app, work, app->options.outputs.items[0],
-                           cli_outputs_format(&app->options, 0), &write_options, &triangle_count);
+        cli_work_mesh_file(app, work, app->options->outputs.items[0],
+                           cli_outputs_format(app->options, 0), &write_options, &triangle_count);
     status = name_outputs(app, status);
-    if (status == CLI_DONE && app->options.depfile)
+    if (status == CLI_DONE && app->options->depfile)
         status = cli_depfile_write(app, work->scene);
     report->total_s = cli_now_s() - app->start_s;
     if (status == CLI_DONE)
@@ -255,7 +257,7 @@ static int draw_scene(cli_app *app, const cli_work *work)
     int status = app->flat == CSGM_FLAT_PLATE ? CLI_DONE : cli_drawings_write(app, work->scene);
     if (app->flat == CSGM_FLAT_DRAWING)
         status = name_outputs(app, status);
-    if (status == CLI_DONE && app->flat == CSGM_FLAT_DRAWING && app->options.depfile)
+    if (status == CLI_DONE && app->flat == CSGM_FLAT_DRAWING && app->options->depfile)
         status = cli_depfile_write(app, work->scene);
     return status;
 }
@@ -263,7 +265,7 @@ static int draw_scene(cli_app *app, const cli_work *work)
 /* --cells: what the mesh was made from. A mesh that failed has none. */
 static int write_cells(cli_app *app, int status)
 {
-    const char *path = app->options.cells;
+    const char *path = app->options->cells;
     csgm_mesh *cells;
     csgm_status made = csgm_survey_end(app->context, &cells);
     if (status != CLI_DONE || made != CSGM_OK) {
@@ -271,7 +273,7 @@ static int write_cells(cli_app *app, int status)
         return status != CLI_DONE ? status : cli_exit_status(made);
     }
     csgm_mesh_view view = csgm_mesh_get_view(cells);
-    csgm_write_options given = cli_outputs_options(app, app->options.operands.items[0]);
+    csgm_write_options given = cli_outputs_options(app, app->options->operands.items[0]);
     csgm_write_options options = csgm_write_options_default();
     options.unit = given.unit;
     options.y_up = given.y_up;
@@ -289,28 +291,28 @@ static int mesh_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
     run_report report = {0};
-    app->flat = cli_drawings_flat(&app->options);
+    app->flat = cli_drawings_flat(app->options);
     int status = cli_work_load(app, &work, path);
     if (status == CLI_DONE)
         status = cli_exit_status(csgm_files_hold(app->context));
     if (status == CLI_DONE)
         status = draw_scene(app, &work);
     bool is_meshed = status == CLI_DONE && app->flat != CSGM_FLAT_DRAWING;
-    if (status == CLI_DONE && !is_meshed && app->options.cells)
+    if (status == CLI_DONE && !is_meshed && app->options->cells)
         cli_console_say(&app->console, CSGM_WARNING, NULL,
                         "--cells has no effect: the scene is drawn and not meshed");
-    if (is_meshed && app->options.cells)
+    if (is_meshed && app->options->cells)
         status = cli_exit_status(csgm_survey_begin(app->context));
     if (status != CLI_DONE) {
         is_meshed = false;
-    } else if (is_meshed && goes_straight_to_file(&app->options)) {
+    } else if (is_meshed && goes_straight_to_file(app->options)) {
         status = mesh_to_file(app, &work, &report);
     } else if (is_meshed) {
         status = cli_work_mesh(app, &work);
         if (status == CLI_DONE)
             status = write_all(app, &work, &report);
     }
-    if (is_meshed && app->options.cells)
+    if (is_meshed && app->options->cells)
         status = write_cells(app, status);
     cli_work_release(&work);
     return status;
@@ -318,7 +320,7 @@ static int mesh_scene(cli_app *app, const char *path)
 
 int cli_cmd_mesh(cli_app *app)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (operands->count == 0)
         return cli_usage_error(app, "as csgmesh mug.txt -o mug.glb; csgmesh --help shows more",
                                "no scene given");
@@ -327,7 +329,7 @@ int cli_cmd_mesh(cli_app *app)
                                "one scene at a time: '%s' is one too many", operands->items[1]);
     if (cli_path_is_mesh(operands->items[0]))
         return cli_convert_operand(app, operands->items[0]);
-    if (app->options.smooth)
+    if (app->options->smooth)
         return cli_usage_error(app, "blends and offset() round a scene",
                                "--smooth is for meshes, not for scenes");
     int status = cli_outputs_check(app, operands->items[0]);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/options.h"
 #include "core/textfile.h"
 
 static void put_name(FILE *out, const char *name)
@@ -48,8 +49,8 @@ static const char **list_targets(const cli_options *options, size_t *count)
 int cli_depfile_check(cli_app *app)
 {
     size_t count = 1;
-    if (app->options.depfile)
-        free(list_targets(&app->options, &count));
+    if (app->options->depfile)
+        free(list_targets(app->options, &count));
     if (!count)
         return cli_usage_error(app, "add -o FILE", "-M needs an output file to name in its rule");
     return CLI_DONE;
@@ -91,13 +92,13 @@ int cli_depfile_write(cli_app *app, const csgm_scene *scene)
     cli_list targets = {0}, dependencies = {0};
     while (csgm_scene_dependency(scene, dependencies.count))
         dependencies.count++;
-    targets.items = list_targets(&app->options, &targets.count);
+    targets.items = list_targets(app->options, &targets.count);
     dependencies.items = malloc((dependencies.count + 1) * sizeof *dependencies.items);
     int status = CLI_TROUBLE;
     if (targets.items && dependencies.items) {
         for (size_t i = 0; i < dependencies.count; i++)
             dependencies.items[i] = csgm_scene_dependency(scene, i);
-        status = cli_depfile_put(app, app->options.depfile, &targets, &dependencies);
+        status = cli_depfile_put(app, app->options->depfile, &targets, &dependencies);
     } else {
         cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
     }

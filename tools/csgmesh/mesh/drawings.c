@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/options.h"
 #include "mesh/outputs.h"
 
 csgm_drawing_format cli_drawings_format(const cli_options *options, size_t index)
@@ -68,9 +69,9 @@ int cli_drawings_write(cli_app *app, const csgm_scene *scene)
     int worst = CLI_DONE;
     if (check_layers(app, scene) != CLI_DONE)
         return CLI_INPUT_AT_FAULT;
-    for (size_t i = 0; i < app->options.outputs.count; i++) {
-        const char *path = app->options.outputs.items[i];
-        csgm_drawing_format format = cli_drawings_format(&app->options, i);
+    for (size_t i = 0; i < app->options->outputs.count; i++) {
+        const char *path = app->options->outputs.items[i];
+        csgm_drawing_format format = cli_drawings_format(app->options, i);
         if (format == CSGM_DRAWING_NONE)
             continue;
         csgm_status status = strcmp(path, "-") == 0

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/format_lists.h"
+#include "core/options.h"
 #include "mesh/drawings.h"
 
 csgm_format cli_outputs_format(const cli_options *options, size_t index)
@@ -44,10 +45,10 @@ static int refuse_format(cli_app *app, const char *known, csgm_format format, co
 
 static int check_format(cli_app *app, size_t index)
 {
-    const char *path = app->options.outputs.items[index];
-    csgm_format format = cli_outputs_format(&app->options, index);
+    const char *path = app->options->outputs.items[index];
+    csgm_format format = cli_outputs_format(app->options, index);
     char known[200];
-    if (cli_drawings_format(&app->options, index) != CSGM_DRAWING_NONE)
+    if (cli_drawings_format(app->options, index) != CSGM_DRAWING_NONE)
         return CLI_DONE;
     cli_formats_of_this_build(known, sizeof known);
     if (format == CSGM_FORMAT_AUTO && strcmp(path, "-") == 0)
@@ -104,7 +105,7 @@ bool cli_outputs_draco(const cli_options *options)
 /* An option that no output of this run can follow is said to be so, not dropped in silence. */
 static void warn_without_effect(cli_app *app)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     static const struct {
         cli_option_id id;
         const char *name;
@@ -143,20 +144,20 @@ static void warn_without_effect(cli_app *app)
 
 int cli_outputs_check_contents(cli_app *app)
 {
-    const cli_list *given = &app->options.meta;
+    const cli_list *given = &app->options->meta;
     for (size_t i = 0; i < given->count; i++) {
         const char *value = strchr(given->items[i], '=');
         if (!value || value == given->items[i] || !value[1])
             return cli_usage_error(app, "as --meta title=Mug", "--meta wants KEY=VALUE, not '%s'",
                                    given->items[i]);
     }
-    if (app->options.given[CLI_OPTION_lod] &&
-        (app->options.lod < 2 || app->options.lod > CSGM_DETAILS_MOST + 1))
+    if (app->options->given[CLI_OPTION_lod] &&
+        (app->options->lod < 2 || app->options->lod > CSGM_DETAILS_MOST + 1))
         return cli_usage_error(app, NULL, "--lod wants 2 to %d levels, the first one too",
                                CSGM_DETAILS_MOST + 1);
-    if (app->options.draco && is_meshopt(&app->options))
+    if (app->options->draco && is_meshopt(app->options))
         return cli_usage_error(app, NULL, "--draco and --compress meshopt exclude each other");
-    if (app->options.uv && cli_outputs_draco(&app->options))
+    if (app->options->uv && cli_outputs_draco(app->options))
         return cli_usage_error(app, NULL,
                                "--uv is not written with Draco: take --compress meshopt");
     if (given->count > CLI_META_MOST)
@@ -175,7 +176,7 @@ static int check_cells(cli_app *app, const char *path)
 
 int cli_outputs_check(cli_app *app, const char *scene_path)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     int status = CLI_DONE;
     if (options->format && csgm_format_from_name(options->format) == CSGM_FORMAT_AUTO &&
         csgm_drawing_format_from_name(options->format) == CSGM_DRAWING_NONE) {
@@ -214,7 +215,7 @@ csgm_normals cli_outputs_normals(const cli_options *options)
 /* The name alone: no file says where a folder is. */
 static void describe(cli_app *app, const char *scene_path, csgm_write_options *write)
 {
-    const cli_list *given = &app->options.meta;
+    const cli_list *given = &app->options->meta;
     if (scene_path && strcmp(scene_path, "-") != 0) {
         snprintf(app->source, sizeof app->source, "source=%s", cli_file_name(scene_path));
         app->metadata[write->metadata_count++] = app->source;
@@ -228,7 +229,7 @@ csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
 {
     static const csgm_unit units[] = {CSGM_UNIT_MM, CSGM_UNIT_CM, CSGM_UNIT_M, CSGM_UNIT_IN,
                                       CSGM_UNIT_NONE}; /* the values of --unit */
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     csgm_write_options write = csgm_write_options_default();
     write.ascii = options->ascii;
     write.draco = cli_outputs_draco(options);
@@ -254,10 +255,10 @@ int cli_outputs_write_view(cli_app *app, const csgm_mesh_view *mesh,
                            const csgm_write_options *options)
 {
     int worst = CLI_DONE;
-    for (size_t i = 0; i < app->options.outputs.count; i++) {
-        const char *path = app->options.outputs.items[i];
-        csgm_format format = cli_outputs_format(&app->options, i);
-        if (cli_drawings_format(&app->options, i) != CSGM_DRAWING_NONE)
+    for (size_t i = 0; i < app->options->outputs.count; i++) {
+        const char *path = app->options->outputs.items[i];
+        csgm_format format = cli_outputs_format(app->options, i);
+        if (cli_drawings_format(app->options, i) != CSGM_DRAWING_NONE)
             continue; /* it is written already */
         csgm_status status = strcmp(path, "-") == 0
                                  ? csgm_mesh_write_fd(app->context, mesh, STDOUT_FILENO,
@@ -272,13 +273,13 @@ int cli_outputs_write_view(cli_app *app, const csgm_mesh_view *mesh,
 int cli_outputs_write(cli_app *app, cli_work *work)
 {
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
-    csgm_write_options options = cli_outputs_options(app, app->options.operands.items[0]);
+    csgm_write_options options = cli_outputs_options(app, app->options->operands.items[0]);
     int status = CLI_DONE;
     bool leveled = false;
-    for (size_t i = 0; i < app->options.outputs.count; i++)
+    for (size_t i = 0; i < app->options->outputs.count; i++)
         leveled |=
-            (csgm_format_traits(cli_outputs_format(&app->options, i)) & CSGM_HEEDS_LEVELS) != 0;
-    if (leveled && app->options.given[CLI_OPTION_lod])
+            (csgm_format_traits(cli_outputs_format(app->options, i)) & CSGM_HEEDS_LEVELS) != 0;
+    if (leveled && app->options->given[CLI_OPTION_lod])
         status = cli_work_mesh_levels(app, work, &options);
     return status == CLI_DONE ? cli_outputs_write_view(app, &view, &options) : status;
 }

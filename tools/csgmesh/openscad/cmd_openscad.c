@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/commands.h"
+#include "core/options.h"
 #include "core/sandbox.h"
 #include "core/sources.h"
 #include "core/textfile.h"
@@ -103,14 +105,15 @@ typedef int openscad_work(cli_app *app, openscad_run *run);
 /* Runs one command on the scene. */
 static int run_words(openscad_words *w, openscad_run *run, cli_command command, openscad_work *work)
 {
-    cli_app app = {.start_s = cli_now_s(), .console = cli_console_make()};
+    cli_options options = {.command = CLI_MESH};
+    cli_app app = {.options = &options, .start_s = cli_now_s(), .console = cli_console_make()};
     cli_problem problem;
     int status = CLI_TROUBLE;
     add(w, "--");
     add(w, run->line->scene);
-    bool parsed = !w->failed && cli_options_parse(&app.options, command, (int)w->list.count,
+    bool parsed = !w->failed && cli_options_parse(&options, command, (int)w->list.count,
                                                   (char **)w->list.items, &problem);
-    cli_console_configure(&app.console, &app.options);
+    cli_console_configure(&app.console, &options);
     if (parsed)
         status = work(&app, run);
     else
@@ -118,7 +121,7 @@ static int run_words(openscad_words *w, openscad_run *run, cli_command command, 
                         w->failed ? "out of memory" : problem.message);
     cli_console_flush(&app.console);
     csgm_context_destroy(app.context);
-    cli_options_release(&app.options);
+    cli_options_release(&options);
     release_words(w);
     run->is_first = false;
     return status;
@@ -134,16 +137,16 @@ static void put_text(void *user, const char *text, size_t length)
 /* Loads the scene for an output that is written here; with the rule for make, if it is due. */
 static int load(cli_app *app, openscad_run *run, csgm_scene **scene)
 {
-    app->options.outputs = (cli_list){&run->path, 1}; /* to be guarded, and named by the rule */
-    app->options.depfile = run->needs_rule ? run->line->depfile : NULL;
+    app->options->outputs = (cli_list){&run->path, 1}; /* to be guarded, and named by the rule */
+    app->options->depfile = run->needs_rule ? run->line->depfile : NULL;
     int status = cli_app_open(app);
     if (status == CLI_DONE)
-        status = cli_exit_status(cli_app_load(app, app->options.operands.items[0], scene));
+        status = cli_exit_status(cli_app_load(app, app->options->operands.items[0], scene));
     if (status == CLI_DONE)
         status = cli_sources_guard_scene(app, *scene);
-    if (status == CLI_DONE && app->options.depfile)
+    if (status == CLI_DONE && app->options->depfile)
         status = cli_depfile_write(app, *scene);
-    app->options.outputs = (cli_list){NULL, 0};
+    app->options->outputs = (cli_list){NULL, 0};
     return status;
 }
 
@@ -198,7 +201,7 @@ static int measure(cli_app *app, openscad_run *run)
     csgm_scene *scene = NULL;
     int status = cli_app_open(app);
     if (status == CLI_DONE)
-        status = cli_exit_status(cli_app_load(app, app->options.operands.items[0], &scene));
+        status = cli_exit_status(cli_app_load(app, app->options->operands.items[0], &scene));
     if (status == CLI_DONE)
         run->box = csgm_scene_get_info(scene).bounds;
     csgm_scene_destroy(scene);
@@ -366,7 +369,7 @@ static int write_frame(cli_app *app, openscad_run *run)
 /* All that will be written against each other and the scene, before anything is. */
 static int guard(cli_app *app, const openscad_line *line)
 {
-    cli_options *options = &app->options; /* which releases the lists */
+    cli_options *options = app->options; /* which releases the lists */
     options->operands.items = calloc(1, sizeof(const char *));
     options->outputs.items = calloc(line->output_count, sizeof(const char *));
     if (!options->operands.items || !options->outputs.items)

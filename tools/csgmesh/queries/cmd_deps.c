@@ -4,10 +4,12 @@
 #include <stdio.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 
 int cli_cmd_deps(cli_app *app)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (operands->count != 1)
         return cli_usage_error(app, "as csgmesh deps mug.txt",
                                operands->count ? "one scene at a time" : "no scene given");

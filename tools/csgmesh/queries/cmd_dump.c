@@ -5,6 +5,8 @@
 #include <stdio.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 
 static void put_on_stdout(void *user, const char *text, size_t length)
 {
@@ -13,7 +15,7 @@ static void put_on_stdout(void *user, const char *text, size_t length)
 
 int cli_cmd_dump(cli_app *app)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     if (options->operands.count != 1)
         return cli_usage_error(app, "as csgmesh dump --scene mug.txt",
                                options->operands.count ? "one scene at a time" : "no scene given");

@@ -5,7 +5,9 @@
 #include <stdio.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
 #include "core/json.h"
+#include "core/options.h"
 
 typedef struct field_sample {
     csgm_vec3 at, gradient;
@@ -53,7 +55,7 @@ static void eval_points(const cli_options *options, const csgm_scene *scene)
 
 int cli_cmd_eval(cli_app *app)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     if (options->operands.count != 1)
         return cli_usage_error(app, "as csgmesh eval mug.txt --at 0,0,10",
                                options->operands.count ? "one scene at a time" : "no scene given");

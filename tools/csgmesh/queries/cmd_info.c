@@ -6,7 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/commands.h"
 #include "core/facts.h"
+#include "core/options.h"
 #include "core/work.h"
 
 static int inspect(cli_app *app, const csgm_mesh *mesh, csgm_mesh_view *view,
@@ -37,7 +39,7 @@ static int info_of_mesh(cli_app *app, const char *path, csgm_format format)
     int status = cli_exit_status(csgm_mesh_read(app->context, path, format, &mesh));
     if (status == CLI_DONE)
         status = inspect(app, mesh, &view, &check);
-    if (status == CLI_DONE && app->options.json) {
+    if (status == CLI_DONE && app->options->json) {
         cli_json json = cli_json_make(stdout, true);
         cli_json_begin(&json, '{');
         cli_json_string(&json, "file", path);
@@ -102,7 +104,7 @@ static int info_of_scene(cli_app *app, const char *path)
     bool is_meshed = false;
     int status = cli_work_load(app, &work, path);
     if (status == CLI_DONE &&
-        (app->options.given[CLI_OPTION_bounds] ||
+        (app->options->given[CLI_OPTION_bounds] ||
          (is_finite(work.info.bounds) && work.info.bounds.min.x <= work.info.bounds.max.x))) {
         status = cli_work_mesh(app, &work);
         is_meshed = status == CLI_DONE;
@@ -110,7 +112,7 @@ static int info_of_scene(cli_app *app, const char *path)
     if (is_meshed)
         status = inspect(app, work.mesh, &view, &check);
     if (status == CLI_DONE)
-        (app->options.json ? print_scene_json : print_scene_text)(
+        (app->options->json ? print_scene_json : print_scene_text)(
             path, &work, is_meshed ? &view : NULL, is_meshed ? &check : NULL);
     cli_work_release(&work);
     return status;
@@ -118,14 +120,14 @@ static int info_of_scene(cli_app *app, const char *path)
 
 int cli_cmd_info(cli_app *app)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     csgm_format asked = CSGM_FORMAT_AUTO;
     if (!operands->count)
         return cli_usage_error(app, "as csgmesh info mug.glb", "no mesh or scene given");
-    if (app->options.format) {
-        asked = csgm_format_from_name(app->options.format);
+    if (app->options->format) {
+        asked = csgm_format_from_name(app->options->format);
         if (asked == CSGM_FORMAT_AUTO)
-            return cli_usage_error(app, NULL, "unknown format '%s'", app->options.format);
+            return cli_usage_error(app, NULL, "unknown format '%s'", app->options->format);
     }
     int worst = cli_work_check(app);
     if (worst == CLI_DONE)

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 #include "queries/params_json.h"
 
 /* The file's name without folder and extension. */
@@ -35,7 +37,7 @@ static void put_params(const csgm_params *params, const char *path)
 
 int cli_cmd_params(cli_app *app)
 {
-    const cli_list *operands = &app->options.operands;
+    const cli_list *operands = &app->options->operands;
     if (operands->count != 1)
         return cli_usage_error(app, "as csgmesh params mug.txt",
                                operands->count ? "one scene at a time" : "no scene given");

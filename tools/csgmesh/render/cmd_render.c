@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/commands.h"
+#include "core/options.h"
 #include "core/textfile.h"
 #include "core/work.h"
 #include "mesh/depfile.h"
@@ -56,17 +58,17 @@ static void warn_without_effect(cli_app *app, bool is_mesh)
         {CLI_OPTION_depfile, "depfile", false},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (app->options.given[rows[i].id] && rows[i].of_mesh != is_mesh)
+        if (app->options->given[rows[i].id] && rows[i].of_mesh != is_mesh)
             cli_console_say(&app->console, CSGM_WARNING, NULL, "--%s has no effect on a %s",
                             rows[i].name, is_mesh ? "mesh" : "scene");
-    const char *plain = app->options.slice ? "section" : "picture by the lazy evaluator";
-    if (app->options.edges && !is_mesh && (app->options.slice || app->options.evaluator))
+    const char *plain = app->options->slice ? "section" : "picture by the lazy evaluator";
+    if (app->options->edges && !is_mesh && (app->options->slice || app->options->evaluator))
         cli_console_say(&app->console, CSGM_WARNING, NULL, "--edges has no effect on a %s", plain);
 }
 
 static int check(cli_app *app, csgm_image_format *format)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     if (options->operands.count != 1)
         return cli_usage_error(app, "as csgmesh render mug.txt -o mug.png",
                                options->operands.count ? "one scene or mesh at a time"
@@ -168,7 +170,7 @@ static int write_stats(cli_app *app, const csgm_render_options *options, uint64_
     cli_text text;
     if (cli_text_open(&text))
         put_stats(text.out, app, options, pictures, stats);
-    return cli_text_write(app, &text, app->options.stats);
+    return cli_text_write(app, &text, app->options->stats);
 }
 
 /* ---- pictures -------------------------------------------------------------------------- */
@@ -189,7 +191,7 @@ static char *name_of_turn(const char *path, uint64_t turn, uint64_t turns)
 static csgm_status save(cli_app *app, const csgm_image *image, csgm_image_format format,
                         uint64_t turn)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     if (!options->outputs.count)
         return CSGM_OK;
     const char *path = options->outputs.items[0];
@@ -227,7 +229,7 @@ static csgm_status draw(cli_app *app, const subject *s, const csgm_render_option
 static int draw_all(cli_app *app, const subject *s, csgm_render_options *options,
                     csgm_image_format format)
 {
-    uint64_t turns = app->options.turntable ? app->options.turntable : 1;
+    uint64_t turns = app->options->turntable ? app->options->turntable : 1;
     double azimuth_deg = options->camera.azimuth_deg;
     csgm_render_stats sum = {0};
     csgm_status status = CSGM_OK;
@@ -244,29 +246,29 @@ static int draw_all(cli_app *app, const subject *s, csgm_render_options *options
     }
     if (status != CSGM_OK)
         return cli_exit_status(status);
-    return app->options.stats ? write_stats(app, options, turns, &sum) : CLI_DONE;
+    return app->options->stats ? write_stats(app, options, turns, &sum) : CLI_DONE;
 }
 
 /* The rule for Make or Ninja: of a turntable the targets are all its files. */
 static int write_rule(cli_app *app, const subject *s)
 {
-    cli_list given = app->options.outputs, turns = {0};
-    if (!app->options.turntable || !given.count)
+    cli_list given = app->options->outputs, turns = {0};
+    if (!app->options->turntable || !given.count)
         return cli_depfile_write(app, s->work.scene);
-    char **names = calloc(app->options.turntable, sizeof *names);
+    char **names = calloc(app->options->turntable, sizeof *names);
     bool done = names != NULL;
-    for (turns.items = (const char **)names; done && turns.count < app->options.turntable;
+    for (turns.items = (const char **)names; done && turns.count < app->options->turntable;
          turns.count++) {
-        names[turns.count] = name_of_turn(given.items[0], turns.count, app->options.turntable);
+        names[turns.count] = name_of_turn(given.items[0], turns.count, app->options->turntable);
         done = names[turns.count] != NULL;
     }
     int status = CLI_TROUBLE;
-    app->options.outputs = turns;
+    app->options->outputs = turns;
     if (done)
         status = cli_depfile_write(app, s->work.scene);
     else
         cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
-    app->options.outputs = given;
+    app->options->outputs = given;
     for (size_t i = 0; i < turns.count; i++)
         free(names[i]);
     free(names);
@@ -286,12 +288,12 @@ int cli_cmd_render(cli_app *app)
     if (status == CLI_DONE)
         status = cli_app_open(app);
     if (status == CLI_DONE)
-        status = load(app, app->options.operands.items[0], &s);
+        status = load(app, app->options->operands.items[0], &s);
     if (status == CLI_DONE)
         warn_without_effect(app, s.mesh != NULL);
     if (status == CLI_DONE)
         status = draw_all(app, &s, &options, format);
-    if (status == CLI_DONE && app->options.depfile && !s.mesh)
+    if (status == CLI_DONE && app->options->depfile && !s.mesh)
         status = write_rule(app, &s);
     release(&s);
     return status;

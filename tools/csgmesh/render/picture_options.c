@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/options.h"
+
 /* Exactly `count` finite numbers with commas between. */
 static bool read_numbers(const char *text, double *out, size_t count)
 {
@@ -23,7 +25,7 @@ static bool read_numbers(const char *text, double *out, size_t count)
 
 static int read_size(cli_app *app, csgm_render_options *out)
 {
-    const char *text = app->options.size;
+    const char *text = app->options->size;
     char *after, *end;
     if (!text)
         return CLI_DONE;
@@ -45,7 +47,7 @@ int cli_picture_view(cli_app *app, csgm_camera *camera)
         double azimuth_deg, elevation_deg;
     } names[] = {{"front", 0, 0}, {"right", 90, 0},   {"back", 180, 0},           {"left", 270, 0},
                  {"top", 0, 90},  {"bottom", 0, -90}, {"corner", 45, 35.26438968}};
-    const char *text = app->options.view;
+    const char *text = app->options->view;
     double angles[2];
     if (!text)
         return CLI_DONE;
@@ -67,7 +69,7 @@ int cli_picture_view(cli_app *app, csgm_camera *camera)
 
 static int read_camera(cli_app *app, csgm_camera *camera)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     double v[9] = {0, 0, 0, 0, 0, 0, camera->up.x, camera->up.y, camera->up.z};
     if (options->given[CLI_OPTION_fov])
         camera->fov_deg = options->fov;
@@ -118,7 +120,7 @@ static bool read_hex(const char *text, uint8_t out[4])
 
 static int read_background(cli_app *app, uint8_t out[4])
 {
-    const char *text = app->options.background;
+    const char *text = app->options->background;
     static const struct {
         const char *name, *color;
     } names[] = {
@@ -136,16 +138,16 @@ static int read_background(cli_app *app, uint8_t out[4])
 
 static int read_slice(cli_app *app, csgm_render_options *out)
 {
-    const char *text = app->options.slice;
-    if (app->options.given[CLI_OPTION_iso] && !text)
+    const char *text = app->options->slice;
+    if (app->options->given[CLI_OPTION_iso] && !text)
         return cli_usage_error(app, NULL, "--iso needs --slice");
-    out->iso_step = app->options.iso;
+    out->iso_step = app->options->iso;
     if (!text)
         return CLI_DONE;
     if (*text < 'x' || *text > 'z' || text[1] != '=' || !read_numbers(text + 2, &out->slice_at, 1))
         return cli_usage_error(app, "as --slice z=10",
                                "--slice wants x=NUMBER, y=NUMBER or z=NUMBER, not '%.80s'", text);
-    if (app->options.camera || app->options.view || app->options.turntable)
+    if (app->options->camera || app->options->view || app->options->turntable)
         return cli_usage_error(app, NULL,
                                "--slice looks along its axis: no --view, --camera or "
                                "--turntable");
@@ -155,7 +157,7 @@ static int read_slice(cli_app *app, csgm_render_options *out)
 
 static int read_evaluator(cli_app *app, csgm_render_options *out)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     out->evaluator = options->evaluator == 1 ? CSGM_EVALUATOR_LAZY : CSGM_EVALUATOR_FAST;
     out->lazy = !options->no_lazy;
     out->bounds_used = !options->no_bounds;
@@ -173,7 +175,7 @@ static int read_evaluator(cli_app *app, csgm_render_options *out)
 
 int cli_picture_options(cli_app *app, csgm_render_options *out)
 {
-    const cli_options *options = &app->options;
+    const cli_options *options = app->options;
     *out = csgm_render_options_default();
     if (options->given[CLI_OPTION_samples])
         out->samples = (uint32_t)options->samples;

@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include "core/cli.h"
+#include "core/commands.h"
+#include "core/options.h"
 #include "core/work.h"
 #include "view/view_server.h"
 
@@ -20,7 +22,7 @@ enum { MOST_PORT = 65535 };
 
 static int check(cli_app *app)
 {
-    const cli_options *o = &app->options;
+    const cli_options *o = app->options;
     if (o->operands.count != 1)
         return cli_usage_error(app, "as csgmesh view mug.txt",
                                o->operands.count ? "one scene at a time" : "no scene given");
@@ -78,16 +80,16 @@ static int show(cli_app *app, view_store *store)
         return CLI_TROUBLE;
     }
     view_server *server =
-        view_server_start(app, (uint16_t)app->options.port, store, &builder, url, sizeof url);
+        view_server_start(app, (uint16_t)app->options->port, store, &builder, url, sizeof url);
     int status = server ? CLI_DONE : CLI_TROUBLE;
     if (server) {
         printf("%s\n", url);
         status = cli_finish_stdout(app, status);
-        if (!app->options.quiet)
+        if (!app->options->quiet)
             cli_console_say(&app->console, CSGM_NOTE, NULL,
                             "%s is shown there and followed; Ctrl-C ends it",
-                            app->options.operands.items[0]);
-        if (!app->options.no_open && !app->options.roots.count)
+                            app->options->operands.items[0]);
+        if (!app->options->no_open && !app->options->roots.count)
             open_browser(url);
         cli_follow(&(cli_follower){&builder, take_files, ask});
     }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/options.h"
 #include "view/view_job.h"
 
 /* A mesh that takes less is not shown coarsely first. */
@@ -24,7 +25,8 @@ static bool is_cancelled(void *app)
 
 typedef struct job {
     view_builder *builder;
-    view_job shown;
+    cli_options options;
+    view_job shown; /* with these */
     view_values values;
     uint64_t model; /* number of the one to show */
     double read_s;
@@ -120,7 +122,7 @@ static int make_all(job *j)
 /* With the builder's lock. */
 static bool take_values(view_builder *builder, cli_options *options, view_values *out)
 {
-    const cli_list *given = &builder->app->options.defines;
+    const cli_list *given = &builder->app->options->defines;
     const view_defines *set = &builder->defines;
     char **items = calloc(given->count + set->count + 1, sizeof *items);
     if (!items)
@@ -184,8 +186,9 @@ static void *follow_requests(void *user)
 {
     view_builder *b = user;
     for (;;) {
-        job j = {.builder = b,
-                 .shown = {.app = {.options = b->app->options, .start_s = cli_now_s()}}};
+        job j = {
+            .builder = b, .options = *b->app->options, .shown = {.app = {.start_s = cli_now_s()}}};
+        j.shown.app.options = &j.options;
         pthread_mutex_lock(&b->lock);
         while (b->wanted == b->begun && !b->is_ending)
             pthread_cond_wait(&b->asked, &b->lock);
@@ -195,7 +198,7 @@ static void *follow_requests(void *user)
         }
         b->begun = b->wanted;
         atomic_store(&is_outdated, false);
-        bool ready = take_values(b, &j.shown.app.options, &j.values);
+        bool ready = take_values(b, &j.options, &j.values);
         pthread_mutex_unlock(&b->lock);
         if (ready)
             run_job(&j);
@@ -210,7 +213,7 @@ bool view_builder_begin(view_builder *builder, const cli_app *app, view_store *s
 {
     *builder = (view_builder){.app = app, .store = store, .wanted = 1};
     builder->read_s = cli_watch_clock_s();
-    return cli_looked_add(&builder->files, app->options.operands.items[0], CLI_LOOKED_FOUND,
+    return cli_looked_add(&builder->files, app->options->operands.items[0], CLI_LOOKED_FOUND,
                           &builder->has_files) &&
            pthread_mutex_init(&builder->lock, NULL) == 0 &&
            pthread_cond_init(&builder->asked, NULL) == 0 &&

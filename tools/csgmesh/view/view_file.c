@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/options.h"
 #include "core/textfile.h"
 #include "mesh/drawings.h"
 
@@ -15,7 +16,8 @@
 static const size_t STACK_BYTES = (size_t)8 << 20;
 
 typedef struct making {
-    cli_app app; /* first: cancelled() gets it */
+    cli_app app;         /* first: cancelled() gets it */
+    cli_options options; /* its own */
     view_store *store;
     cli_text said;
     int out; /* the end of the pipe that is written to; held so that it does not end early */
@@ -78,7 +80,7 @@ static void read_all(int in, char **bytes, size_t *length)
 /* What was asked for, to the pipe; its options stay those of the command line. */
 static void prepare(making *m, const char *format, const char **path)
 {
-    cli_options *o = &m->app.options;
+    cli_options *o = m->app.options;
     o->command = CLI_MESH;
     o->outputs = (cli_list){path, 1};
     o->format = format;
@@ -123,10 +125,11 @@ static view_file make_through(making *m, int in)
 view_file view_file_make(view_builder *builder, const char *format)
 {
     view_file file = {.bytes = NULL};
-    making m = {.app = {.options = builder->app->options}, .store = builder->store};
+    making m = {.options = *builder->app->options, .store = builder->store};
     view_values values;
     int ends[2];
-    if (view_values_take(builder, &m.app.options, &values) && cli_text_open(&m.said)) {
+    m.app.options = &m.options;
+    if (view_values_take(builder, &m.options, &values) && cli_text_open(&m.said)) {
         if (pipe(ends) == 0) {
             char name[32];
             const char *path = name;

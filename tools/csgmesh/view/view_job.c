@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/options.h"
 #include "queries/params_json.h"
 #include "view/view_model.h"
 
@@ -18,7 +19,7 @@ bool view_job_begin(view_job *j)
     j->begin_s = cli_now_s();
     j->work.normals = &normals;
     j->app.console = cli_console_make();
-    cli_console_configure(&j->app.console, &j->app.options);
+    cli_console_configure(&j->app.console, j->app.options);
     j->app.console.json = true;
     j->app.console.quiet = false;
     if (!cli_text_open(&j->said))
@@ -90,7 +91,7 @@ char *view_job_state(view_job *j, const char *phase, uint64_t model)
     cli_json json = cli_json_make(text.out, false);
     json.first = true;
     fputs("\"scene\":{", text.out);
-    cli_json_string(&json, "name", cli_file_name(j->app.options.operands.items[0]));
+    cli_json_string(&json, "name", cli_file_name(j->app.options->operands.items[0]));
     cli_json_string(&json, "phase", phase);
     cli_json_count(&json, "model", model);
     cli_json_number(&json, "seconds", cli_now_s() - j->begin_s);
@@ -109,7 +110,7 @@ char *view_job_state(view_job *j, const char *phase, uint64_t model)
 /* A mesh is shown as it is. */
 int view_job_read(view_job *j)
 {
-    const char *path = j->app.options.operands.items[0];
+    const char *path = j->app.options->operands.items[0];
     csgm_format format = csgm_format_from_path(path);
     int status = cli_app_open(&j->app);
     if (status == CLI_DONE && format != CSGM_FORMAT_AUTO)
@@ -124,7 +125,7 @@ void view_job_read_parameters(view_job *j)
     csgm_params *params = NULL;
     cli_silence silence;
     cli_silence_begin(&silence, &j->app.console);
-    if (cli_app_load_params(&j->app, j->app.options.operands.items[0], &params) == CSGM_OK) {
+    if (cli_app_load_params(&j->app, j->app.options->operands.items[0], &params) == CSGM_OK) {
         cli_text text;
         if (cli_text_open(&text)) {
             cli_json json = cli_json_make(text.out, false);
@@ -154,7 +155,7 @@ char *view_job_model(const view_job *j, size_t *length)
 /* Equal cells, without creases: tens of milliseconds for nearly everything. */
 bool view_job_mesh_coarsely(view_job *j)
 {
-    cli_options own = j->app.options, *o = &j->app.options;
+    cli_options *o = j->app.options, own = *o;
     cli_silence silence;
     cli_silence_begin(&silence, &j->app.console);
     o->resolution = COARSE_CELLS;
@@ -164,7 +165,7 @@ bool view_job_mesh_coarsely(view_job *j)
     o->improve = false;
     o->features = CSGM_FEATURES_SMOOTH;
     bool made = cli_work_mesh(&j->app, &j->work) == CLI_DONE;
-    j->app.options = own;
+    *j->app.options = own;
     cli_silence_end(&silence, &j->app.console);
     return made;
 }
@@ -186,7 +187,7 @@ void view_job_mesh_marks(view_job *j)
 {
     for (int i = 0; i < CSGM_MARK_COUNT; i++) {
         const csgm_scene *marked = csgm_scene_get_marked(j->work.scene, (csgm_mark)i);
-        cli_options own = j->app.options;
+        cli_options own = *j->app.options;
         cli_silence silence;
         cli_work work = {.normals = j->work.normals};
         if (!marked)
@@ -194,14 +195,14 @@ void view_job_mesh_marks(view_job *j)
         cli_silence_begin(&silence, &j->app.console);
         work.info = csgm_scene_get_info(marked);
         if (!is_finite(work.info.bounds) && !own.given[CLI_OPTION_bounds]) {
-            j->app.options.bounds = j->work.info.bounds;
-            j->app.options.given[CLI_OPTION_bounds] = true;
+            j->app.options->bounds = j->work.info.bounds;
+            j->app.options->given[CLI_OPTION_bounds] = true;
         }
         if (csgm_field_compile(j->app.context, marked, &work.field) == CSGM_OK)
             cli_work_mesh(&j->app, &work);
         csgm_field_destroy(work.field);
         j->marks[i] = work.mesh;
-        j->app.options = own;
+        *j->app.options = own;
         cli_silence_end(&silence, &j->app.console);
     }
 }

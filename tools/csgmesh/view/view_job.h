@@ -11,7 +11,8 @@
 #include "core/work.h"
 
 typedef struct view_job {
-    cli_app app; /* its options, start_s and cancelled are the caller's */
+    cli_app
+        app; /* its options, start_s and cancelled are the caller's; options change for a while */
     cli_work work;
     cli_text said;
     char *parameters; /* JSON; NULL: not known */

@@ -3,6 +3,7 @@
  */
 #include "view/view_server.h"
 
+#include "core/options.h"
 #include "view/view_file.h"
 
 #ifndef CLI_HAS_MICROHTTPD
@@ -173,7 +174,7 @@ static enum MHD_Result send_file(view_server *s, struct MHD_Connection *connecti
         free(file.problem);
         return result;
     }
-    name_file(&s->builder->app->options, format, disposition, sizeof disposition);
+    name_file(s->builder->app->options, format, disposition, sizeof disposition);
     return answer_file(connection, MHD_HTTP_OK, "application/octet-stream", file.bytes, file.length,
                        disposition);
 }

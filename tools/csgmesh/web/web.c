@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/cli.h"
+#include "core/options.h"
 #include "view/view_job.h"
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
@@ -21,6 +22,7 @@ typedef struct request {
 } request;
 
 static view_job shown;
+static cli_options shown_options;
 static request shown_request;
 static bool is_shown; /* there is one */
 static char *answer, *model;
@@ -50,7 +52,7 @@ static void release(request *r)
 static bool parse(cli_app *app, const request *r)
 {
     cli_problem problem;
-    if (cli_options_parse(&app->options, CLI_MESH, r->count, r->items, &problem))
+    if (cli_options_parse(app->options, CLI_MESH, r->count, r->items, &problem))
         return true;
     cli_usage_error(app, problem.hint[0] ? problem.hint : NULL, "%s", problem.message);
     return false;
@@ -67,7 +69,7 @@ static void end_shown(void)
 {
     if (is_shown) {
         view_job_release(&shown);
-        cli_options_release(&shown.app.options);
+        cli_options_release(shown.app.options);
         release(&shown_request);
     }
     is_shown = false;
@@ -95,7 +97,8 @@ void *EXPORT(web_allocate)(size_t bytes)
 int EXPORT(web_begin)(char *text, size_t length)
 {
     end_shown();
-    shown = (view_job){.app = {.start_s = cli_now_s()}};
+    shown_options = (cli_options){.command = CLI_MESH};
+    shown = (view_job){.app = {.options = &shown_options, .start_s = cli_now_s()}};
     is_shown = true;
     if (!split(&shown_request, text, length) || !view_job_begin(&shown))
         return CLI_TROUBLE;
@@ -144,7 +147,8 @@ const char *EXPORT(web_state)(char *phase)
  * line. */
 int EXPORT(web_write)(char *text, size_t length)
 {
-    cli_app app = {.start_s = cli_now_s(), .console = cli_console_make()};
+    cli_options options = {.command = CLI_MESH};
+    cli_app app = {.options = &options, .start_s = cli_now_s(), .console = cli_console_make()};
     cli_text said;
     request wanted;
     int status = CLI_TROUBLE;
@@ -157,7 +161,7 @@ int EXPORT(web_write)(char *text, size_t length)
             status = cli_cmd_mesh(&app);
         cli_console_flush(&app.console);
         csgm_context_destroy(app.context);
-        cli_options_release(&app.options);
+        cli_options_release(&options);
     }
     release(&wanted);
     answer_with(cli_text_close(&said));
