@@ -28,15 +28,18 @@ static const csg_primitive rows[] = {
 #include "scene/primitives/primitives.def"
 };
 
-/* Room for them all; {f >= -level} is known in one way; a trait that tubes have and no other. */
+/* Room for them all; {f >= -level} is known in one way; a trait that tubes have and no other.
+ * A condition that fails says which primitive and what it lacks. */
 #define CSG_PRIMITIVE(NAME, name, count, traits, ...)                                              \
-    _Static_assert((int)CSG_##NAME##_OWN <= (int)CSG_LEAF_MOST_OWN, #name);                        \
-    _Static_assert((count) <= CSG_PRIMITIVE_MOST_PARAMETERS, #name);                               \
-    _Static_assert(!((traits)&CSG_TRAIT_OUTSIDE) == !!((traits)&CSG_TRAIT_GAUGE), #name);          \
-    _Static_assert(!((traits)&CSG_TRAIT_CURVE), #name);
+    _Static_assert((int)CSG_##NAME##_OWN <= (int)CSG_LEAF_MOST_OWN,                                \
+                   #name ": CSG_LEAF_MOST_OWN floats at most (leaf.h)");                           \
+    _Static_assert((count) <= CSG_PRIMITIVE_MOST_PARAMETERS, #name ": too many parameters");       \
+    _Static_assert(!((traits)&CSG_TRAIT_OUTSIDE) == !!((traits)&CSG_TRAIT_GAUGE),                  \
+                   #name ": either OUTSIDE or GAUGE must hold (primitive.h)");                     \
+    _Static_assert(!((traits)&CSG_TRAIT_CURVE), #name ": CURVE is of tubes");
 #define CSG_CURVE_PRIMITIVE(NAME, name, count, traits, ...)                                        \
-    _Static_assert((count) <= CSG_PRIMITIVE_MOST_PARAMETERS, #name);                               \
-    _Static_assert((traits)&CSG_TRAIT_CURVE, #name);
+    _Static_assert((count) <= CSG_PRIMITIVE_MOST_PARAMETERS, #name ": too many parameters");       \
+    _Static_assert((traits)&CSG_TRAIT_CURVE, #name ": a tube has CURVE");
 #include "scene/primitives/primitives.def"
 
 const csg_primitive *csg_primitive_of(csg_primitive_kind kind)
