@@ -26,7 +26,7 @@ LONG_FUNCTIONS = {}
 
 # What such a function runs, puts or joins is what its name should say.
 SAYS_NOTHING = {"run", "put", "join", "push", "finish"}
-NAMED = ("src/", "tools/csgmesh/")
+NAMED = ("src/", "tools/csgmesh/", "tests/")
 # Types of headers that only kernels include, each in a file of its own: they are named as a .c names its own.
 SHARED_TYPES = {"curve", "range"}
 

@@ -23,7 +23,7 @@ static diff_shape make(uint64_t vertex_count, uint64_t triangle_count)
                         take(3 * triangle_count, sizeof(uint32_t)), vertex_count, triangle_count};
 }
 
-static void put(diff_shape *shape, uint64_t vertex, double x, double y, double z)
+static void set_vertex(diff_shape *shape, uint64_t vertex, double x, double y, double z)
 {
     shape->positions[3 * vertex] = (float)x;
     shape->positions[3 * vertex + 1] = (float)y;
@@ -45,11 +45,11 @@ diff_shape diff_ball(uint32_t columns, uint32_t rows, double radius, csgm_vec3 c
     diff_shape ball = make(north + 1, 2 * (uint64_t)columns * (rows - 1));
     for (uint32_t i = 0; i < south; i++) {
         double t = pi * (i / columns + 1) / rows, u = 2 * pi * (i % columns) / columns;
-        put(&ball, i, center.x + radius * sin(t) * cos(u), center.y + radius * sin(t) * sin(u),
-            center.z - radius * cos(t));
+        set_vertex(&ball, i, center.x + radius * sin(t) * cos(u),
+                   center.y + radius * sin(t) * sin(u), center.z - radius * cos(t));
     }
-    put(&ball, south, center.x, center.y, center.z - radius);
-    put(&ball, north, center.x, center.y, center.z + radius);
+    set_vertex(&ball, south, center.x, center.y, center.z - radius);
+    set_vertex(&ball, north, center.x, center.y, center.z + radius);
     uint32_t *at = ball.indices;
     for (uint32_t j = 0; j < columns; j++) {
         uint32_t k = (j + 1) % columns, top = (rings - 1) * columns;
@@ -74,7 +74,7 @@ static void put_face(diff_shape *box, uint64_t face, uint32_t n, const double *c
             double p[3], u = (double)j / n, v = (double)i / n;
             for (int k = 0; k < 3; k++)
                 p[k] = corner[k] + u * right[k] + v * up[k];
-            put(box, base + i * (n + 1) + j, p[0], p[1], p[2]);
+            set_vertex(box, base + i * (n + 1) + j, p[0], p[1], p[2]);
         }
     uint32_t *at = box->indices + 6 * face * n * n;
     for (uint32_t i = 0; i < n; i++)

@@ -98,7 +98,7 @@ static void set_stretch(const subject *s, mpfi_t out, int axis, double low, doub
     mpfi_add_d(out, out, of[axis]);
 }
 
-static mpfi_srcptr run(subject *s, csg_vec3 low, csg_vec3 high)
+static mpfi_srcptr true_range(subject *s, csg_vec3 low, csg_vec3 high)
 {
     set_stretch(s, s->truth.at[0], 0, low.x, high.x);
     set_stretch(s, s->truth.at[1], 1, low.y, high.y);
@@ -114,7 +114,7 @@ static bool is_proven(subject *s, cube k, double low, double high, int parts)
         csg_vec3 at = {k.center.x - k.half + edge * (i % parts),
                        k.center.y - k.half + edge * (i / parts % parts),
                        k.center.z - k.half + edge * (i / parts / parts)};
-        mpfi_srcptr range = run(s, at, csg_vec3_add(at, csg_vec3_make(edge, edge, edge)));
+        mpfi_srcptr range = true_range(s, at, csg_vec3_add(at, csg_vec3_make(edge, edge, edge)));
         if (mpfi_nan_p(range) || mpfr_cmp_d(&range->left, low) < 0 ||
             mpfr_cmp_d(&range->right, high) > 0)
             return false;
@@ -134,7 +134,7 @@ static void expect_within(const subject *s, mpfi_srcptr value, double low, doubl
 static mpfi_srcptr true_value(subject *s, csg_vec3 p)
 {
     if (s->bounds)
-        return run(s, p, p);
+        return true_range(s, p, p);
     csg_vec3 at = csg_vec3_add(p, s->walk.subject.field->center);
     double value = test_sample(s->walk.subject.scene, at).value;
     double error = 1e-12 * (1 + fabs(value));

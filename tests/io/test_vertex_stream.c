@@ -23,7 +23,7 @@ static uint32_t next(void)
     return state >> 16;
 }
 
-static void put(uint8_t *at, uint32_t value, int bytes)
+static void store_little_endian(uint8_t *at, uint32_t value, int bytes)
 {
     for (int i = 0; i < bytes; i++)
         at[i] = (uint8_t)(value >> 8 * i);
@@ -38,9 +38,10 @@ static void make(uint8_t *data, uint32_t count, uint32_t stride, int kind)
         for (uint32_t k = 0; k < stride && kind == SMOOTH_BYTES; k++)
             at[k] = (uint8_t)(i * 3 * (k + 1) + (next() & 7));
         for (uint32_t k = 0; k < stride && kind == SMOOTH_PAIRS; k += 2)
-            put(at + k, 5000 + i * (41 + k) - (next() & 63), 2);
+            store_little_endian(at + k, 5000 + i * (41 + k) - (next() & 63), 2);
         for (uint32_t k = 0; k < stride && kind == FLOATS; k += 4)
-            put(at + k, 0x3f800000 + (i >> 3) * 0x100000 + ((next() & 15) << 12), 4);
+            store_little_endian(at + k, 0x3f800000 + (i >> 3) * 0x100000 + ((next() & 15) << 12),
+                                4);
         for (uint32_t k = 0; k < stride && kind == ROUGH_BYTES; k++)
             at[k] = (uint8_t)(k == 1 ? next() & 255 : k == 2 ? next() & 1 : 7);
     }

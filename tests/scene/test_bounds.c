@@ -36,7 +36,7 @@ static csg_node_id turned(double angle_deg, csg_vec3 axis, csg_node_id node)
     return csg_build_transform(&builder, &turn, node, NOWHERE);
 }
 
-static csg_node_id join(csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b)
+static csg_node_id build_operator(csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b)
 {
     return csg_build_operator(&builder, kind, blend, (csg_node_id[]){a, b}, 2, NOWHERE);
 }
@@ -99,18 +99,18 @@ static void test_half_spaces(void **state)
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
     csg_box cut = cube(1);
     cut.max.z = 0.25;
-    check_bounds(join(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1),
-                      primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25)),
+    check_bounds(build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1),
+                                primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25)),
                  cut);
-    check_bounds(join(CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_COSINE, 0.5},
-                      primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25), sphere(0, 0, 0, 1)),
+    check_bounds(build_operator(CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_COSINE, 0.5},
+                                primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25), sphere(0, 0, 0, 1)),
                  cut);
-    check_bounds(
-        join(CSG_NODE_DIFFERENCE, sharp, sphere(0, 0, 0, 1),
-             turned(90, csg_vec3_make(1, 0, 0), primitive(CSG_NODE_PLANE, 0, 1, 0, -0.25))),
-        (csg_box){{-1, -1, -0.25}, {1, 1, 1}});
-    check_bounds(join(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1),
-                      primitive(CSG_NODE_PLANE, 0.6, 0, 0.8, 0.25)),
+    check_bounds(build_operator(
+                     CSG_NODE_DIFFERENCE, sharp, sphere(0, 0, 0, 1),
+                     turned(90, csg_vec3_make(1, 0, 0), primitive(CSG_NODE_PLANE, 0, 1, 0, -0.25))),
+                 (csg_box){{-1, -1, -0.25}, {1, 1, 1}});
+    check_bounds(build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1),
+                                primitive(CSG_NODE_PLANE, 0.6, 0, 0.8, 0.25)),
                  cube(1));
 }
 
@@ -154,7 +154,7 @@ static void test_polytopes(void **state)
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
     csg_node_id above = primitive(CSG_NODE_PLANE, 0, -1, 0, -1);
     csg_node_id below = primitive(CSG_NODE_PLANE, -1e-5, 1, 0, 0); /* only where x > 1e5 */
-    scene = test_seal(&builder, join(CSG_NODE_INTERSECTION, sharp, above, below));
+    scene = test_seal(&builder, build_operator(CSG_NODE_INTERSECTION, sharp, above, below));
     csg_vec3 far_out = {1e6, 5, 0};
     assert_true(test_sample(scene, far_out).value > 0);
     assert_true(csg_box_contains_box(csg_bounds_of_solid(scene), (csg_box){far_out, far_out}));
@@ -164,13 +164,14 @@ static void test_polytopes(void **state)
 static void test_blended_unions_grow_only_near(void **state)
 {
     const csg_blend round = {CSG_BLEND_ROUND, 0.5};
-    check_bounds(join(CSG_NODE_UNION, round, sphere(-3, 0, 0, 1), sphere(3, 0, 0, 1)),
+    check_bounds(build_operator(CSG_NODE_UNION, round, sphere(-3, 0, 0, 1), sphere(3, 0, 0, 1)),
                  (csg_box){{-4, -1, -1}, {4, 1, 1}});
     double excess = 0.5 * (1 - sqrt(0.5));
-    csg_node_id same = join(CSG_NODE_UNION, round, sphere(0, 0, 0, 1), sphere(0, 0, 0, 1));
+    csg_node_id same =
+        build_operator(CSG_NODE_UNION, round, sphere(0, 0, 0, 1), sphere(0, 0, 0, 1));
     check_bounds(same, cube(1 + excess));
-    check_bounds(join(CSG_NODE_UNION, (csg_blend){CSG_BLEND_HYPERBOLA, 0.04}, sphere(0, 0, 0, 1),
-                      sphere(0, 0, 0, 1)),
+    check_bounds(build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_HYPERBOLA, 0.04},
+                                sphere(0, 0, 0, 1), sphere(0, 0, 0, 1)),
                  cube(1.1));
 }
 
@@ -198,13 +199,17 @@ static void test_long_chains_stay_tight(void **state)
 
 static void test_ancestors_cut(void **state)
 {
-    csg_node_id both = join(CSG_NODE_UNION, sharp, sphere(0, 5, 0, 1), sphere(1, 0, 0, 1));
-    check_bounds(join(CSG_NODE_INTERSECTION, sharp, both, primitive(CSG_NODE_BOX, 1, 9, 3, 0)),
-                 (csg_box){{-1, -1, -1}, {1, 6, 1}});
-    both = join(CSG_NODE_UNION, sharp, sphere(0, 5, 0, 1), sphere(1, 0, 0, 1));
-    check_bounds(join(CSG_NODE_INTERSECTION, sharp, both, primitive(CSG_NODE_BOX, 2, 3, 9, 0)),
-                 (csg_box){{0, -1, -1}, {2, 1, 1}}); /* the far ball is gone, its hull too */
-    csg_node_id apart = join(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1), sphere(3, 0, 0, 1));
+    csg_node_id both =
+        build_operator(CSG_NODE_UNION, sharp, sphere(0, 5, 0, 1), sphere(1, 0, 0, 1));
+    check_bounds(
+        build_operator(CSG_NODE_INTERSECTION, sharp, both, primitive(CSG_NODE_BOX, 1, 9, 3, 0)),
+        (csg_box){{-1, -1, -1}, {1, 6, 1}});
+    both = build_operator(CSG_NODE_UNION, sharp, sphere(0, 5, 0, 1), sphere(1, 0, 0, 1));
+    check_bounds(
+        build_operator(CSG_NODE_INTERSECTION, sharp, both, primitive(CSG_NODE_BOX, 2, 3, 9, 0)),
+        (csg_box){{0, -1, -1}, {2, 1, 1}}); /* the far ball is gone, its hull too */
+    csg_node_id apart =
+        build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1), sphere(3, 0, 0, 1));
     csgm_scene *scene = test_seal(&builder, apart);
     assert_true(csg_box_is_empty(csg_bounds_of_solid(scene)));
     csg_scene_destroy(scene);
@@ -213,7 +218,8 @@ static void test_ancestors_cut(void **state)
 /* A turned group is as tight as its turned parts. */
 static void test_turned_groups(void **state)
 {
-    csg_node_id both = join(CSG_NODE_UNION, sharp, sphere(-2, 0, 0, 1), sphere(2, 0, 0, 1));
+    csg_node_id both =
+        build_operator(CSG_NODE_UNION, sharp, sphere(-2, 0, 0, 1), sphere(2, 0, 0, 1));
     double reach = sqrt(2) + 1;
     check_bounds(turned(45, csg_vec3_make(0, 0, 1), both),
                  (csg_box){{-reach, -reach, -1}, {reach, reach, 1}});
@@ -419,16 +425,18 @@ static void test_band_is_exact(void **state)
 /* The worked example of the field's literature: (A & B) U C minus a capsule, band 0.01. */
 static void test_worked_example(void **state)
 {
-    csg_node_id cut =
-        join(CSG_NODE_INTERSECTION, sharp, sphere(-0.3, 0, 0, 0.7), sphere(0.4, 0, 0, 0.8));
+    csg_node_id cut = build_operator(CSG_NODE_INTERSECTION, sharp, sphere(-0.3, 0, 0, 0.7),
+                                     sphere(0.4, 0, 0, 0.8));
     csg_affine move = csg_affine_translate(csg_vec3_make(0.2, 0.9, 0));
     csg_node_id box =
         csg_build_transform(&builder, &move, primitive(CSG_NODE_BOX, 0.5, 0.3, 0.4, 0), NOWHERE);
-    csg_node_id both = join(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
+    csg_node_id both =
+        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
     csg_node_id bar = csg_build_capsule(&builder, csg_vec3_make(0, -1, 0),
                                         csg_vec3_make(0, 1.5, 0.2), 0.2, 0.2, NOWHERE);
-    csgm_scene *scene = test_seal(
-        &builder, join(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_COSINE, 0.4}, both, bar));
+    csgm_scene *scene =
+        test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_COSINE, 0.4},
+                                           both, bar));
     csg_node_bounds b[16];
     assert_true(scene->node_count <= 16);
     assert_int_equal(csg_bounds_compute(scene, 0.01, b), CSGM_OK);

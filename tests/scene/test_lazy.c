@@ -38,7 +38,7 @@ static csg_node_id capsule(csg_vec3 from, csg_vec3 to, double r)
     return csg_build_capsule(&builder, from, to, r, r, NOWHERE);
 }
 
-static csg_node_id join(csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b)
+static csg_node_id build_operator(csg_node_kind kind, csg_blend blend, csg_node_id a, csg_node_id b)
 {
     return csg_build_operator(&builder, kind, blend, (csg_node_id[]){a, b}, 2, NOWHERE);
 }
@@ -91,13 +91,14 @@ static double value_with(const csgm_scene *scene, csg_lazy_bounds bounds, double
 /* ((A & B) U C) \ D of operators.md's vectors, A.17. */
 static csgm_scene *worked_example(void)
 {
-    csg_node_id cut =
-        join(CSG_NODE_INTERSECTION, sharp, sphere(-0.3, 0, 0, 0.7), sphere(0.4, 0, 0, 0.8));
+    csg_node_id cut = build_operator(CSG_NODE_INTERSECTION, sharp, sphere(-0.3, 0, 0, 0.7),
+                                     sphere(0.4, 0, 0, 0.8));
     csg_node_id box = moved(0.2, 0.9, 0, primitive(CSG_NODE_BOX, 0.5, 0.3, 0.4, 0));
-    csg_node_id both = join(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
+    csg_node_id both =
+        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
     csg_node_id bar = capsule(csg_vec3_make(0, -1, 0), csg_vec3_make(0, 1.5, 0.2), 0.2);
-    return test_seal(&builder,
-                     join(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_COSINE, 0.4}, both, bar));
+    return test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE,
+                                              (csg_blend){CSG_BLEND_COSINE, 0.4}, both, bar));
 }
 
 typedef struct named_nodes {
@@ -204,8 +205,9 @@ static void test_counts_of_the_worked_example(void **state)
 static void test_shared_boxes_blend_too_much(void **state)
 {
     csg_blend soft = {CSG_BLEND_PARABOLA, 1.2};
-    csgm_scene *scene = test_seal(&builder, join(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 0.1),
-                                                 primitive(CSG_NODE_BOX, 5, 5, 5, 0)));
+    csgm_scene *scene =
+        test_seal(&builder, build_operator(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 0.1),
+                                           primitive(CSG_NODE_BOX, 5, 5, 5, 0)));
     csg_vec3 p = {0.09, 0, 0};
     test_near(test_sample(scene, p).value, 0.01, 1e-15);
     test_near(value_with(scene, CSG_LAZY_SHARED_BOXES, 0, p), -0.065, 1e-15);
@@ -217,10 +219,10 @@ static void test_shared_boxes_blend_too_much(void **state)
 static void test_own_boxes_blend_too_little(void **state)
 {
     csg_node_id none =
-        join(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1), sphere(2.02, 0, 0, 1));
+        build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1), sphere(2.02, 0, 0, 1));
     csg_blend soft = {CSG_BLEND_PARABOLA, 1.2};
     csgm_scene *scene =
-        test_seal(&builder, join(CSG_NODE_UNION, soft, none, sphere(1.01, 0.3, 0, 0.25)));
+        test_seal(&builder, build_operator(CSG_NODE_UNION, soft, none, sphere(1.01, 0.3, 0, 0.25)));
     csg_vec3 p = {1.01, 0.03, 0};
     double plain = test_sample(scene, p).value;
     test_near(plain, 0.0599, 1e-4);
@@ -235,7 +237,8 @@ static void test_shared_boxes_shut_holes(void **state)
 {
     csg_node_id block = primitive(CSG_NODE_BOX, 1, 1, 1, 0);
     csg_node_id bore = primitive(CSG_NODE_FRUSTUM, 0.5, 0.5, 3, 0);
-    csgm_scene *scene = test_seal(&builder, join(CSG_NODE_DIFFERENCE, sharp, block, bore));
+    csgm_scene *scene =
+        test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE, sharp, block, bore));
     csg_vec3 mouth = {0, 0, 1};
     test_near(test_sample(scene, mouth).value, -0.5, 0);
     test_near(value_with(scene, CSG_LAZY_SHARED_BOXES, 0, mouth), 0, 0);
@@ -376,7 +379,7 @@ static csg_node_id rule_tree(csg_random *random, unsigned depth)
         blend = test_random_blend(random, pick);
     }
     csg_node_id first = rule_tree(random, depth - 1);
-    return join(kind, blend, first, rule_tree(random, depth - 1));
+    return build_operator(kind, blend, first, rule_tree(random, depth - 1));
 }
 
 static void test_rules_are_exact_too(void **state)
@@ -415,9 +418,11 @@ static csg_node_id steep_field(void)
 static void test_steep_fields(void **state)
 {
     csg_blend soft = {CSG_BLEND_PARABOLA, 0.8};
-    csg_node_id cut = join(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 1), steep_field());
-    csg_node_id bitten = join(CSG_NODE_DIFFERENCE, sharp, sphere(1.5, 0, 0.4, 0.9), steep_field());
-    csgm_scene *scene = test_seal(&builder, join(CSG_NODE_UNION, soft, cut, bitten));
+    csg_node_id cut =
+        build_operator(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 1), steep_field());
+    csg_node_id bitten =
+        build_operator(CSG_NODE_DIFFERENCE, sharp, sphere(1.5, 0, 0.4, 0.9), steep_field());
+    csgm_scene *scene = test_seal(&builder, build_operator(CSG_NODE_UNION, soft, cut, bitten));
     csg_random random = {12};
     double parts[2] = {0};
     for (int i = 0; i < 10; i++) {
@@ -546,8 +551,8 @@ static void test_deep_trees(void **state)
 {
     csg_node_id chain = sphere(0, 0, 0, 0.6);
     for (int i = 1; i < 5000; i++)
-        chain =
-            join(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.4}, chain, sphere(i, 0, 0, 0.6));
+        chain = build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.4}, chain,
+                               sphere(i, 0, 0, 0.6));
     csgm_scene *scene = test_seal(&builder, chain);
     evaluator e = evaluator_of(scene, true, CSG_LAZY_OWN_BOXES, 0);
     csg_vec3 p = {4998.4, 0.5, 0};

@@ -30,7 +30,7 @@ typedef struct finished {
     size_t room;
 } finished;
 
-static finished finish(csg_terms *terms, csg_term result)
+static finished seal_formula(csg_terms *terms, csg_term result)
 {
     finished f = {.room = terms->count};
     f.steps = calloc(f.room, sizeof *f.steps);
@@ -70,7 +70,7 @@ static void check_scene(csgm_scene *scene, csg_random *random, const char *what)
     csg_formula_begin(&terms, &context.memory);
     terms.most = 1u << 22;
     assert_int_equal(csg_formulate(scene, &terms, &result, &obstacle), CSGM_OK);
-    finished direct = finish(&terms, result);
+    finished direct = seal_formula(&terms, result);
     assert_int_equal(csg_vm_print(scene, collect, &tape), CSGM_OK);
     csg_formula_begin(&read, &context.memory);
     read.most = 1u << 22;
@@ -78,7 +78,7 @@ static void check_scene(csgm_scene *scene, csg_random *random, const char *what)
     if (status != CSGM_OK)
         print_error("line %zu: %s\n", problem.line, problem.text);
     assert_int_equal(status, CSGM_OK);
-    finished back = finish(&read, result);
+    finished back = seal_formula(&read, result);
     for (int i = 0; i < 60; i++) {
         double reach = i % 3 ? 1.2 : 5;
         csg_vec3 p = csg_vec3_make(csg_random_uniform(random, -reach, reach),
@@ -210,7 +210,7 @@ static csgm_status read_tape(const char *tape, finished *out, csg_vm_problem *pr
     csg_formula_begin(&terms, &context.memory);
     csgm_status status = csg_vm_read(&terms, tape, strlen(tape), &result, problem);
     if (status == CSGM_OK)
-        *out = finish(&terms, result);
+        *out = seal_formula(&terms, result);
     csg_formula_end(&terms);
     return status;
 }

@@ -320,7 +320,7 @@ static void the_limit_holds_for_the_library_too(void **state)
     assert_int_equal(csg_polygons_clean(&a, CSG_FILL_NONZERO, &out), CSGM_OK);
 }
 
-static csgm_status run(int which, const csg_outline *left, const csg_outline *right)
+static csgm_status call_function(int which, const csg_outline *left, const csg_outline *right)
 {
     switch (which) {
     case 0:
@@ -346,7 +346,7 @@ static void every_allocation_may_fail(void **state)
             csg_outline left = a, right = b;
             failing_init(&f, n);
             left.memory = right.memory = &f.memory;
-            status = run(which, &left, &right);
+            status = call_function(which, &left, &right);
             assert_int_equal(status, f.allocator.left < 0 ? CSGM_ERR_MEMORY : CSGM_OK);
             assert_true(!status || !out.points);
             csg_outline_release(&out);
