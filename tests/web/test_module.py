@@ -37,6 +37,7 @@ SCENES = {
     "field": ("intersection() { sphere(r = 1); field(function (p) 0.3 - abs(sin(400 * p.x) * cos(400 * p.y) + sin(400 * p.y) * cos(400 * p.z))); }\n",
               ["-r", "48"]),
     "hull": ("hull() { sphere(5); translate([20, 0, 0]) cube(8); }\nminkowski() { translate([0, 20, 0]) cube(4); sphere(1); }\n", ["-r", "48"]),
+    "large": ("cube([1.5e14, 2e14, 123456789012345.678]);\n", ["-r", "8"]),
     "set": ("size = 3; // [1:10]\ncube(size);\n", ["-D", "size=5", "-r", "32"]),
 }
 
@@ -80,7 +81,8 @@ class Module(cli.CliTest):
         self.compare({**SCENES, **{name: (f"linear_extrude(3) {text}", options) for name, (text, options) in FLAT.items()}}, FORMATS)
 
     def test_the_same_drawings(self):
-        self.compare(FLAT, DRAWINGS)
+        """Also of large sizes, whose decimals tools/web/wasm/decimals.cpp makes."""
+        self.compare({**FLAT, "large": ("translate([0.0625, 5e14]) square([123456789.015625, 98765432109876.5]);\n", [])}, DRAWINGS)
 
     def test_the_font_of_every_name(self):
         """A page has one font; another one that is asked for is a finding, as it is natively where it is not installed."""

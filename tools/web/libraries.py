@@ -33,13 +33,15 @@ LIBRARIES = {
     "zlib": {"package": "zlib", "sources": ["*.c"], "include": ["."], "without": ["gz"], "library": "z"},
     "polyclipping": {"package": "libpolyclipping", "sources": ["cpp/clipper.cpp"], "include": ["cpp"],
                      "flags": ["-std=c++20", "-include", os.path.join(HERE, "config", "polyclipping", "sort.h")]},
-    "qhull_r": {"package": "qhull", "sources": ["src/libqhull_r/*.c"], "include": ["src"], "without": ["rbox"], "flags": ["-Dqh_NOtrace"]},
+    "qhull_r": {"package": "qhull", "sources": ["src/libqhull_r/*.c"], "include": ["src"], "without": ["rbox", "userprintf"],
+                "flags": ["-Dqh_NOtrace", "-include", os.path.join(HERE, "config", "qhull_r", "silent.h")]},
     "expat": {"package": "expat", "sources": ["expat/lib/xml*.c"], "include": ["expat/lib"], "flags": ["-DXML_STATIC"]},
     "freetype2": {"package": "freetype", "include": ["include"], "needs": ["zlib"], "library": "freetype",
                   "sources": ["src/base/ftinit.c", "src/base/ftbase.c", "src/base/ftsystem.c", "src/base/ftdebug.c",
                               "src/base/ftmm.c", "src/base/ftbitmap.c", "src/gzip/ftgzip.c", "src/truetype/truetype.c",
                               "src/sfnt/sfnt.c"],
-                  "flags": ["-DFT2_BUILD_LIBRARY", "-DFT_CONFIG_OPTION_SYSTEM_ZLIB", "-DFT_CONFIG_MODULES_H=<freetype_modules.h>"]},
+                  "flags": ["-DFT2_BUILD_LIBRARY", "-DFT_CONFIG_OPTION_SYSTEM_ZLIB", "-DFT_CONFIG_MODULES_H=<freetype_modules.h>",
+                            "-DFT_CONFIG_OPTIONS_H=<freetype_options.h>"]},
     "harfbuzz": {"package": "harfbuzz", "sources": ["src/harfbuzz.cc"], "include": ["src"], "flags": HARFBUZZ},
     "fribidi": {"package": "fribidi", "sources": ["lib/*.c"], "include": ["lib"], "flags": ["-DHAVE_CONFIG_H", "-DFRIBIDI_BUILD"]},
     # Archives in memory are read, by one thread; there are no ciphers and no temporary files.
@@ -201,7 +203,8 @@ def build_library(compiler, name, folders, prefix):
 
 
 def build_exceptions(compiler):
-    """What throws and catches in C++ and jumps in C, from zig's own sources: those that it has built are without exceptions."""
+    """What throws and catches in C++ and jumps in C, from zig's own sources: those that it has built are without exceptions;
+    and what stands in for a part of libc++."""
     lib = os.path.join(os.path.dirname(compiler.zig), "lib")
     flags = COMMON + ["-D_LIBCXXABI_BUILDING_LIBRARY", "-D_LIBCPP_BUILDING_LIBRARY", "-D_LIBCXXABI_HAS_NO_THREADS",
                       "-D_LIBUNWIND_HAS_NO_THREADS", "-D_LIBUNWIND_HIDE_SYMBOLS", "-fdeclspec",
@@ -210,6 +213,7 @@ def build_exceptions(compiler):
             for name in ("cxa_exception", "cxa_personality", "stdlib_new_delete")] + [
         compiler.object(os.path.join(lib, "libunwind", "src", "Unwind-wasm.c"), flags),
         compiler.object(os.path.join(lib, "libc", "wasi", "libc-top-half", "musl", "src", "setjmp", "wasm32", "rt.c"), COMMON),
+        compiler.object(os.path.join(HERE, "wasm", "decimals.cpp"), flags + ["-std=c++23"]),
         compiler.object(os.path.join(HERE, "wasm", "tags.s"), ["-mexception-handling"])]
 
 
