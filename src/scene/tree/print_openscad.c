@@ -78,6 +78,25 @@ static const char *primitive_obstacle(csg_primitive_kind kind)
     }
 }
 
+/* NULL: it can be said. What OpenSCAD turns or narrows are figures. */
+static const char *obstacle_of_warp(const csg_warp *warp, bool of_figure)
+{
+    switch ((csg_warp_kind)warp->kind) {
+    case CSG_WARP_REVOLVE:
+    case CSG_WARP_SLICE:
+        return NULL;
+    case CSG_WARP_TWIST:
+        return of_figure ? NULL : "twisted solids";
+    case CSG_WARP_TAPER:
+        return of_figure ? NULL : "tapered solids";
+    case CSG_WARP_BEND:
+        return "bent solids";
+    case CSG_WARP_COUNT:
+        break;
+    }
+    return NULL;
+}
+
 /* NULL: it can be said. */
 static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
 {
@@ -90,13 +109,7 @@ static const char *obstacle_of(const csgm_scene *scene, const csg_node *node)
     case CSG_NODE_SOFT:
         return "soft solids";
     case CSG_NODE_WARP:
-        if (scene->warps[node->payload].kind == CSG_WARP_BEND)
-            return "bent solids";
-        if (child->flags & CSG_FLAG_FLAT)
-            return NULL;
-        if (scene->warps[node->payload].kind == CSG_WARP_TAPER)
-            return "tapered solids";
-        return scene->warps[node->payload].kind == CSG_WARP_TWIST ? "twisted solids" : NULL;
+        return obstacle_of_warp(&scene->warps[node->payload], child->flags & CSG_FLAG_FLAT);
     case CSG_NODE_OFFSET:
         if (node->flags & CSG_FLAG_FLAT)
             return NULL;
@@ -384,14 +397,23 @@ static void put_taper(const csg_printer *out, const double *v)
 
 static void put_warp(const csg_printer *out, const csg_warp *warp)
 {
-    if (warp->kind == CSG_WARP_REVOLVE)
+    switch ((csg_warp_kind)warp->kind) {
+    case CSG_WARP_REVOLVE:
         csg_put(out, "rotate_extrude(" FACETS ")\n");
-    else if (warp->kind == CSG_WARP_SLICE)
+        break;
+    case CSG_WARP_SLICE:
         csg_put(out, "projection(cut = true)\n");
-    else if (warp->kind == CSG_WARP_TAPER)
+        break;
+    case CSG_WARP_TAPER:
         put_taper(out, warp->parameters);
-    else
+        break;
+    case CSG_WARP_TWIST:
         put_twist(out, warp->parameters);
+        break;
+    case CSG_WARP_BEND: /* obstacle_of_warp */
+    case CSG_WARP_COUNT:
+        break;
+    }
 }
 
 static void put_offset(const csg_printer *out, const csg_node *node)
@@ -428,13 +450,23 @@ static void put_call(const csg_printer *out, const csg_node *node)
     case CSG_NODE_OFFSET:
         put_offset(out, node);
         return;
-    default:
+    case CSG_NODE_UNION:
+    case CSG_NODE_INTERSECTION:
+    case CSG_NODE_DIFFERENCE:
         if (csg_node_is_plate(node)) {
             put_plate(out, node);
             return;
         }
         csg_put(out, csg_node_kind_name((csg_node_kind)node->kind));
         csg_put(out, "() {\n");
+        return;
+    case CSG_NODE_EMPTY:
+    case CSG_NODE_FIELD:
+    case CSG_NODE_SHAPE:
+    case CSG_NODE_COMBINE: /* obstacle_of */
+    case CSG_NODE_SOFT:
+    case CSG_NODE_FIRST_PRIMITIVE:
+        return;
     }
 }
 
