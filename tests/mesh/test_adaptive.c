@@ -79,8 +79,8 @@ static void test_coincident_walls(void **state)
 /* ---- what is small -----------------------------------------------------------------------------
  */
 
-/* Balls as small as two tolerances, beside and in a large block, larger ones on it; the cells that
- * refinement begins with are up to thirty times larger than the tolerance. */
+/* Balls hardly larger than the tolerance, beside and in a large block, larger ones on it; the cells
+ * that refinement begins with are up to thirty times larger than the tolerance. */
 static void test_small_parts(void **state)
 {
     csg_random random = {9};
@@ -88,7 +88,7 @@ static void test_small_parts(void **state)
         mesh_case c;
         mesh_case_begin(&c, 2);
         csg_node_id block = make_box(&c, 4, 3, 1);
-        double r = csg_random_uniform(&random, 0.008, 0.05) * (i % 3 == 1 ? 8 : 1);
+        double r = csg_random_uniform(&random, 0.0045, 0.05) * (i % 3 == 1 ? 8 : 1);
         double x = csg_random_uniform(&random, -3.5, 3.5),
                y = csg_random_uniform(&random, -2.5, 2.5);
         double z = i % 3 == 0 ? 1 + 3 * r : i % 3 == 1 ? 1.0 : 0.3;
@@ -105,8 +105,23 @@ static void test_small_parts(void **state)
     }
 }
 
-/* Bumps on a face of a large block, and dents in it, from two tolerances wide: the points between
- * which they lie all say the same without them. */
+/* A ball where the corners of bricks meet: no brick has it alone, nor can say that the next one
+ * does not. */
+static void test_ball_between_bricks(void **state)
+{
+    mesh_case c;
+    mesh_case_begin(&c, 2);
+    csg_node_id block = make_box(&c, 4, 3, 1);
+    csg_node_id ball = moved(&c, make_sphere(&c, 0.0050906), 1.762113, -2.324512, 1.030544);
+    mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, block, ball));
+    csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+    mesh_build_closed(&c, &options, "a ball between bricks");
+    assert_int_equal(c.check.components, 2);
+    mesh_case_end(&c);
+}
+
+/* Bumps on a face of a large block, and dents in it, hardly wider than the tolerance: the points
+ * between which they lie all say the same without them. */
 static void test_bumps_and_dents(void **state)
 {
     csg_random random = {11};
@@ -114,7 +129,7 @@ static void test_bumps_and_dents(void **state)
         mesh_case c;
         mesh_case_begin(&c, 2);
         bool cut = i % 2;
-        double r = csg_random_uniform(&random, 0.008, 0.04);
+        double r = csg_random_uniform(&random, 0.0045, 0.04);
         double x = csg_random_uniform(&random, -3.8, 3.8);
         double y = csg_random_uniform(&random, -2.8, 2.8);
         csg_node_id block = make_box(&c, 4, 3, 1);
@@ -336,19 +351,13 @@ static void test_random_scenes(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_coincident_walls),
-        cmocka_unit_test(test_small_parts),
-        cmocka_unit_test(test_bumps_and_dents),
-        cmocka_unit_test(test_tilted_boxes),
-        cmocka_unit_test(test_thin_sheets),
-        cmocka_unit_test(test_within_tolerance),
-        cmocka_unit_test(test_slits),
-        cmocka_unit_test(test_contacts),
-        cmocka_unit_test(test_triangle_count),
-        cmocka_unit_test(test_random_scenes),
-        cmocka_unit_test(test_bulges),
-        cmocka_unit_test(test_tight_roundings),
+        cmocka_unit_test(test_boxes),           cmocka_unit_test(test_coincident_walls),
+        cmocka_unit_test(test_small_parts),     cmocka_unit_test(test_ball_between_bricks),
+        cmocka_unit_test(test_bumps_and_dents), cmocka_unit_test(test_tilted_boxes),
+        cmocka_unit_test(test_thin_sheets),     cmocka_unit_test(test_within_tolerance),
+        cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
+        cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_bulges),          cmocka_unit_test(test_tight_roundings),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

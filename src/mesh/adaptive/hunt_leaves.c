@@ -20,6 +20,9 @@ enum {
 
 /* Of the tolerance: how deep a place is asked for, and how deep it must be. */
 static const double STEP = 0.5, DEPTH = 0.01;
+/* Of the margin: how far a place is moved along axes on which it did not have to be; it would stay
+ * beside an edge of the leaf, where a step along a gradient leads into the face beyond it. */
+static const double ASIDE = 0.0625;
 /* Cosine to the mean direction: a leaf that climbs in others is not plane in the brick. */
 static const double PLANE = 0.9;
 
@@ -50,6 +53,7 @@ typedef struct leaf_look {
     csg_sheet_probe *probe;
     csg_tape_node node;
     csg_tape tape; /* the leaf alone */
+    bool is_plane; /* as seen from where steps began last */
     double low[3], high[3];
 } leaf_look;
 
@@ -94,11 +98,10 @@ static bool find_zero(const batch *at, int i, double zero[3], double way[3])
 }
 
 /* Moves those points whose step would end beyond or close to a side of the brick to a place within
- * that side, and on towards the middle, so that the next step ends elsewhere. Others stay: on the
- * surface itself a gradient may be none. */
-static void step_closer(leaf_look *l, batch *at, int count, double margin)
+ * that side, and on away from it, so that the next step ends elsewhere. Others stay: on the surface
+ * itself a gradient may be none. */
+static void step_closer(const leaf_look *l, batch *at, int count, double margin)
 {
-    ask_leaf(l, at, count);
     for (int i = 0; i < count; i++) {
         double zero[3], way[3];
         float *place[3] = {&at->x[i], &at->y[i], &at->z[i]};
@@ -111,7 +114,8 @@ static void step_closer(leaf_look *l, batch *at, int count, double margin)
         for (int axis = 0; axis < 3 && leaves; axis++) {
             double within = fmin(fmax(zero[axis], l->low[axis] + margin), l->high[axis] - margin);
             double middle = 0.5 * (l->low[axis] + l->high[axis]);
-            *place[axis] = (float)(within + fmin(fmax(middle - within, -margin), margin));
+            double away = within != zero[axis] ? margin : ASIDE * margin;
+            *place[axis] = (float)(within + fmin(fmax(middle - within, -away), away));
         }
     }
 }
@@ -119,11 +123,31 @@ static void step_closer(leaf_look *l, batch *at, int count, double margin)
 /* Below, on and above the leaf's surface. */
 enum { BELOW, ON, ABOVE, SIDES };
 
+/* Whether the leaf climbs in one direction: it is plane in the brick. */
+static bool is_plane_at(const batch *at, int count)
+{
+    csg_vec3 climb = {0, 0, 0}, directions[DIRECTIONS];
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        double zero[3], way[3];
+        if (!find_zero(at, i, zero, way))
+            continue;
+        directions[found] = csg_vec3_make(way[0], way[1], way[2]);
+        climb = csg_vec3_add(climb, directions[found++]);
+    }
+    bool is_plane = true;
+    for (int i = 0; i < found; i++)
+        is_plane = is_plane && csg_gradients_cosine(directions[i], climb) > PLANE;
+    return is_plane;
+}
+
 /* Such places by threes, all in the brick; how many there are. */
 static int find_places(leaf_look *l, batch *starts, int count, double step, batch *out)
 {
     int found = 0;
     double edge = l->high[0] - l->low[0];
+    ask_leaf(l, starts, count);
+    l->is_plane = is_plane_at(starts, count);
     step_closer(l, starts, count, fmin(3 * step, 0.25 * edge));
     ask_leaf(l, starts, count);
     for (int i = 0; i < count; i++) {
@@ -145,24 +169,20 @@ static int find_places(leaf_look *l, batch *starts, int count, double step, batc
 }
 
 /* Places all around what a leaf has in the brick: the points of its surface that are nearest to
- * them are its ends, which those nearest to the corners of the brick need not be. False: the leaf
- * is plane there, and has none. starts: where the surface was found from. */
+ * them are its ends, which those nearest to the corners of the brick need not be. starts: where the
+ * surface was found from. False: it was not. */
 static bool place_around(const leaf_look *l, batch *starts, int count)
 {
-    csg_vec3 mean = {0, 0, 0}, climb = {0, 0, 0}, directions[DIRECTIONS];
+    csg_vec3 mean = {0, 0, 0};
     int found = 0;
     for (int i = 0; i < count; i++) {
         double zero[3], way[3];
         if (!find_zero(starts, i, zero, way))
             continue;
         mean = csg_vec3_add(mean, csg_vec3_make(zero[0], zero[1], zero[2]));
-        directions[found] = csg_vec3_make(way[0], way[1], way[2]);
-        climb = csg_vec3_add(climb, directions[found++]);
+        found++;
     }
-    bool is_plane = true;
-    for (int i = 0; i < found; i++)
-        is_plane = is_plane && csg_gradients_cosine(directions[i], climb) > PLANE;
-    if (is_plane)
+    if (!found)
         return false;
     double reach = l->high[0] - l->low[0];
     for (int i = 0; i < DIRECTIONS; i++) {
@@ -264,7 +284,7 @@ uint8_t csg_hunt_leaves(csg_sheet_probe *p, const csg_bricks *b, const csg_brick
         place_starts(b, brick, &starts);
         int count = few ? STARTS : 1;
         hidden |= look_from(&look, b, brick, &starts, count, tolerance, out);
-        if (few && place_around(&look, &starts, count))
+        if (few && !look.is_plane && place_around(&look, &starts, count))
             hidden |= look_from(&look, b, brick, &starts, DIRECTIONS, tolerance, out);
     }
     return (uint8_t)(hidden & cells);

@@ -268,8 +268,9 @@ typedef struct brick_work {
     const csg_hunted *hunted;
     double cell;
     bool is_small; /* sheets may fail to meet */
-    double least;  /* height of triangles that must look outwards */
-    unsigned bad;  /* cells that are to be divided */
+    bool out_of_memory;
+    double least; /* height of triangles that must look outwards */
+    unsigned bad; /* cells that are to be divided */
 } brick_work;
 
 /* Keeps the triangles of a cell that is good. */
@@ -306,9 +307,19 @@ static bool is_near_triangles(const csg_judge_room *room, uint32_t first, uint32
     return false;
 }
 
+static void note_unsure(brick_work *w, csg_vec3 at)
+{
+    csg_judge_room *room = w->room;
+    if (csg_memory_reserve(w->judge->memory, (void **)&room->unsure, &room->unsure_capacity,
+                           room->unsure_count + 1, sizeof *room->unsure))
+        room->unsure[room->unsure_count++] = at;
+    else
+        w->out_of_memory = true;
+}
+
 /* The cells in which the surface was found away from triangles. Beside cells that are not searched,
- * and beside other bricks, it may be near triangles that are not there yet. */
-static uint8_t find_uncovered(const brick_work *w, uint8_t cells)
+ * and beside other bricks, it may be near triangles that are not there yet: that is seen later. */
+static uint8_t find_uncovered(brick_work *w, uint8_t cells)
 {
     double tolerance = w->judge->tolerance;
     const csg_judge_room *room = w->room;
@@ -324,12 +335,15 @@ static uint8_t find_uncovered(const brick_work *w, uint8_t cells)
             box.high[axis] =
                 (double)csg_brick_coordinate(w->bricks, w->brick, axis, low + (all ? E : 1));
         }
-        if (!(cells >> cell & 1) || is_near_side(&box, at, tolerance) ||
+        if (!(cells >> cell & 1) ||
             is_near_triangles(room, room->first_triangle[cell], room->end_triangle[cell], at,
                               tolerance) ||
             is_near_triangles(room, 0, room->triangle_count, at, tolerance))
             continue;
-        uncovered |= 1u << cell;
+        if (is_near_side(&box, at, tolerance))
+            note_unsure(w, at);
+        else
+            uncovered |= 1u << cell;
     }
     return (uint8_t)uncovered;
 }
@@ -637,5 +651,5 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     }
     room->evaluations += w.probe.evaluations;
     brick->wanted = is_finest ? 0 : (uint8_t)wanted;
-    return keep(&w, brick->crossed & (uint8_t)~brick->wanted);
+    return !w.out_of_memory && keep(&w, brick->crossed & (uint8_t)~brick->wanted);
 }

@@ -32,13 +32,17 @@ typedef struct csg_judge_room {
     uint8_t first_piece[CSG_BRICK_CELLS], end_piece[CSG_BRICK_CELLS];
     csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
     uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
-    csg_arena kept; /* what the judge keeps of bricks */
+    csg_arena kept;   /* what the judge keeps of bricks */
+    csg_vec3 *unsure; /* places of the surface away from the brick's own triangles, and so near to a
+                         side of it that the next brick's may be there (unsure.h) */
+    size_t unsure_count, unsure_capacity;
     float *scratch;
     size_t scratch_floats;
     uint64_t evaluations, gradients;
 } csg_judge_room;
 
 typedef struct csg_judge {
+    csg_memory *memory;
     csg_judge_room *rooms; /* one per worker */
     double tolerance;      /* how far triangles may be from the surface */
     double bulge;          /* how far sides of polygons may be, before they get a vertex between */

@@ -14,6 +14,7 @@
 #include "base/trace.h"
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
+#include "mesh/adaptive/unsure.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/survey.h"
 #include "mesh/pipeline/workers.h"
@@ -106,7 +107,8 @@ static csgm_status create_judge(adaptive *a)
 {
     csg_memory *memory = &a->input.context->memory;
     const csg_marching *m = &a->workers.marching;
-    a->judge = (csg_judge){.tolerance = SHARE_OF_CELLS * cells_error(a->goal),
+    a->judge = (csg_judge){.memory = memory,
+                           .tolerance = SHARE_OF_CELLS * cells_error(a->goal),
                            .bulge = SHARE_OF_SIDES * cells_error(a->goal),
                            .sharp = a->goal->sharp,
                            .noise = m->noise,
@@ -267,11 +269,17 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
     count_blocks(&a->bricks, stats->blocks);
 }
 
+static void end_room(csg_judge_room *room, csg_memory *memory)
+{
+    csg_arena_reset(&room->kept);
+    csg_memory_release(memory, room->unsure, room->unsure_capacity * sizeof *room->unsure);
+}
+
 static void release(adaptive *a)
 {
     csg_bricks_destroy(&a->bricks);
     for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++)
-        csg_arena_reset(&a->judge.rooms[i].kept);
+        end_room(&a->judge.rooms[i], &a->input.context->memory);
     csg_memory_release(&a->input.context->memory, a->judge.rooms,
                        a->workers.count * sizeof(csg_judge_room));
     csg_mesh_workers_release(&a->workers);
@@ -290,12 +298,31 @@ static void warn_of_result(const adaptive *a)
                             !is_empty && a->input.clipped && touches_bounds(a));
 }
 
+/* Until every place of the surface that was found is near the mesh: hardly ever twice. */
+static csgm_status extract(adaptive *a)
+{
+    csg_extraction *x = &a->extraction;
+    csgm_status status = csg_extract(x);
+    for (bool any = true; status == CSGM_OK;) {
+        status = csg_unsure_check(x, &any);
+        if (status != CSGM_OK || !any)
+            break;
+        csg_mesh_destroy(x->mesh);
+        x->mesh = NULL;
+        x->creases = x->smooth = 0;
+        status = refine(a);
+        if (status == CSGM_OK)
+            status = csg_extract(x);
+    }
+    return status;
+}
+
 static csgm_status make_mesh(adaptive *a)
 {
     csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK)
-        status = csg_extract(&a->extraction);
+        status = extract(a);
     if (status == CSGM_OK) {
         a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
         status = paint(a);
