@@ -205,11 +205,18 @@ typedef struct approach {
     csg_face_crease *face;
     int axis; /* the face's own */
     sheets sheets;
-    csg_vec3 end[2]; /* the gradients that the sheets began with */
     turn first;
     csg_vec3 at, before;
     bool is_there;
 } approach;
+
+/* What of it lies in the face. */
+static csg_vec3 gradient_of_end(const approach *a, int end)
+{
+    csg_vec3 g = a->face->ends[end].gradient;
+    *component(&g, a->axis) = 0;
+    return g;
+}
 
 /* False: there are no two sheets, or they do not meet. */
 static bool set_out(approach *a, csg_face_crease *face)
@@ -220,9 +227,7 @@ static bool set_out(approach *a, csg_face_crease *face)
     a->axis = box->low[0] == box->high[0] ? 0 : box->low[1] == box->high[1] ? 1 : 2;
     a->sheets.count = 2;
     for (int k = 0; k < 2; k++) {
-        csg_vec3 g = face->ends[k].gradient;
-        *component(&g, a->axis) = 0;
-        a->end[k] = g;
+        csg_vec3 g = gradient_of_end(a, k);
         a->sheets.plane[k] = csg_plane_of(face->ends[k].at, 0, g);
         a->sheets.from[k] = a->sheets.toward[k] = face->ends[k].at;
     }
@@ -247,8 +252,10 @@ static bool go_on(approach *a, int step, const csg_vec3 *q, const double *f, csg
 /* Whether a sheet is another one near the meeting than where it began. */
 static bool has_changed_sheet(const approach *a)
 {
-    return csg_gradients_cosine(a->sheets.plane[0].g, a->end[0]) < ANOTHER_SHEET ||
-           csg_gradients_cosine(a->sheets.plane[1].g, a->end[1]) < ANOTHER_SHEET;
+    for (int k = 0; k < 2; k++)
+        if (csg_gradients_cosine(a->sheets.plane[k].g, gradient_of_end(a, k)) < ANOTHER_SHEET)
+            return true;
+    return false;
 }
 
 /* The place kept within the face. False: it is not in the face, or not a crease's. */

@@ -109,6 +109,14 @@ static void find_turns(const csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
     }
 }
 
+/* Takes the edges back at whose triangles `turns` does not say that they turn. */
+static void take_back_beside(const csg_remesh *r, uint8_t *creased, const uint8_t *turns)
+{
+    const csg_corners *m = &r->corners;
+    for (uint32_t c = 0; c < 3 * m->triangle_count; c++)
+        creased[c] = creased[c] && turns[c / 3] && turns[m->across[c] / 3];
+}
+
 /* Takes those edges back at which a triangle is a sliver or, in equal cells, off the surface. */
 static void take_back_bent(csg_remesh *r, uint8_t *creased, uint8_t *turns, float *value)
 {
@@ -118,8 +126,7 @@ static void take_back_bent(csg_remesh *r, uint8_t *creased, uint8_t *turns, floa
         csg_remesh_values_at_centroids(r, turns, value);
     for (uint32_t t = 0; t < m->triangle_count; t++)
         turns[t] = turns[t] && is_flat(r, t, equal ? value[t] : 0);
-    for (uint32_t c = 0; c < 3 * m->triangle_count; c++)
-        creased[c] = creased[c] && turns[c / 3] && turns[m->across[c] / 3];
+    take_back_beside(r, creased, turns);
 }
 
 /* A place in a triangle, beside the edge that a corner faces. */
@@ -233,11 +240,11 @@ static void take_back_low(const csg_remesh *r, const crease_room *room)
         double height = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
         room->turns[t] = height > LOWEST * r->tree.noise * csg_triangle_longest_side(v);
     }
-    for (uint32_t c = 0; c < 3 * m->triangle_count; c++)
-        room->creased[c] = room->creased[c] && room->turns[c / 3] && room->turns[m->across[c] / 3];
+    take_back_beside(r, room->creased, room->turns);
 }
 
-bool csg_remesh_is_plane_around(const csg_remesh *r, uint32_t vertex)
+/* Whether all triangles at a vertex lie in one plane, to rounding. */
+static bool is_plane_around(const csg_remesh *r, uint32_t vertex)
 {
     static const double ROUNDING = 4; /* of the noise */
     const csg_corners *m = &r->corners;
@@ -270,7 +277,7 @@ static bool find_less(csg_remesh *r, const crease_room *room)
         uint32_t creases;
         if (r->corners.corner[v] == CSG_CORNER_NONE || r->kind[v] == CSG_VERTEX_SMOOTH)
             continue;
-        if (csg_remesh_is_plane_around(r, v))
+        if (is_plane_around(r, v))
             r->kind[v] = CSG_VERTEX_SMOOTH;
         else if (kind_of(r, v, room->creased, &creases) == CSG_VERTEX_CREASE && creases == 2)
             r->kind[v] = CSG_VERTEX_CREASE;

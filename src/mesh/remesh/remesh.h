@@ -53,8 +53,6 @@ void csg_remesh_end(csg_remesh *remesh);
  * numbers are closed. split: a vertex for each sheet at creases and corners. */
 csgm_status csg_remesh_write_back(csg_remesh *remesh, bool normals, bool split);
 
-/* Whether all triangles at a vertex lie in one plane, to rounding. */
-bool csg_remesh_is_plane_around(const csg_remesh *remesh, uint32_t vertex);
 /* Looks at creases and corners once more, when triangles are few and large: a corner at which they
  * show nothing but a straight crease is one of it, and where all is plane there is neither. No kind
  * grows. False: stopped, or without memory; the watch knows. */

@@ -371,11 +371,11 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);
     }
-    if (status == CSGM_OK)
-        status = make_tree_again(r);
-    if (status == CSGM_OK && r->corners.live > least) {
+    if (status == CSGM_OK && least <= CSG_DECIMATE_ALL) {
         CSG_ZONE(r->context, "loosening");
-        status = run_loosened(&c, least);
+        status = make_tree_again(r);
+        if (status == CSGM_OK)
+            status = run_loosened(&c, least);
     }
     if (status == CSGM_OK)
         status = make_tree_again(r);
