@@ -9,7 +9,7 @@ import os
 import re
 import sys
 
-ORDER = ["base", "text", "shape", "outline", "scene", "solid", "lang", "field", "grid", "mesh", "io", "render", "diff", "api"]
+ORDER = ["base", "text", "shape", "outline", "scene", "solid", "lang", "field", "grid", "mesh", "io", "render", "diff", "measure", "api"]
 
 # The folders of a layer in their order; files beside them may include any of them and be included by any.
 PARTS = {

@@ -428,6 +428,7 @@ typedef enum csgm_stage {
     CSGM_STAGE_RESHAPE, /* of csgm_mesh_options.tolerance, simplify and improve, with its proofs */
     CSGM_STAGE_CERTIFY,
     CSGM_STAGE_COMPARE, /* csgm_diff_meshes */
+    CSGM_STAGE_MEASURE, /* csgm_measure_field */
     CSGM_STAGE_COUNT
 } csgm_stage;
 
@@ -655,6 +656,57 @@ typedef struct csgm_mesh_check {
 
 CSGM_API csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
                                        csgm_mesh_check *out);
+
+/* ---- measures ---------------------------------------------------------------------- */
+
+/* All numbers from low to high; the true one is among them. Infinite ends: nothing is known. */
+typedef struct csgm_interval {
+    double low, high;
+} csgm_interval;
+
+/* How closely, and what of it. */
+typedef struct csgm_measure_options {
+    uint32_t struct_size; /* set by csgm_measure_options_default; do not touch */
+    double tolerance;     /* > 0, default 1e-4: how wide the volume's interval may be, as a share of
+                             its upper end; those of the bounds, of the longest side */
+    double density;       /* > 0, default 1: mass per cubic scene unit */
+    const char *part;     /* of this name alone; NULL (default): all of it */
+    uint64_t most_cubes;  /* > 0, default 2^24: of the octree, in all; about a million a second */
+    csgm_monitor monitor; /* stage CSGM_STAGE_MEASURE */
+} csgm_measure_options;
+
+CSGM_API csgm_measure_options csgm_measure_options_default(void);
+
+/* What a solid measures, each between proven bounds, in scene units. */
+typedef struct csgm_measures {
+    uint32_t struct_size;       /* set by csgm_measures_default; do not touch */
+    bool is_reached;            /* as closely as the tolerance asks */
+    uint64_t cubes;             /* looked at; 0 of a mesh */
+    csgm_interval volume, mass; /* mass = density * volume */
+    csgm_interval centroid[3];  /* x, y, z */
+    csgm_interval inertia[6];   /* times density, around the centroid along the axes: I_xx, I_yy,
+                                   I_zz, I_xy, I_xz, I_yz, I_xx the integral of y^2 + z^2, I_xy that
+                                   of -x y */
+    csgm_interval bounds[6];    /* the smallest box: its least x, y, z, then its largest */
+} csgm_measures;
+
+/* All zeros but struct_size. */
+CSGM_API csgm_measures csgm_measures_default(void);
+
+/* Volume, centroid, inertia and tight bounds of {f >= 0}: an octree whose cubes are inside, outside
+ * or cut by two planes that the field's gradients prove (docs/measure.md). The same for any number
+ * of threads. options NULL = defaults. CSGM_ERR_ARGUMENT: an option out of range, or no part has
+ * that name (csgm_field_part). CSGM_ERR_SCENE (reported): the solid is empty or unbounded. With
+ * CSGM_ERR_LIMIT, CSGM_ERR_MEMORY and CSGM_CANCELLED *out has what is proven by then; else it is
+ * written on CSGM_OK only. */
+CSGM_API csgm_status csgm_measure_field(csgm_context *context, const csgm_field *field,
+                                        const csgm_measure_options *options, csgm_measures *out);
+
+/* The same of a mesh, exact but for rounding, which the intervals include, by the divergence
+ * theorem: what its triangles enclose more than once counts as often. CSGM_ERR_FORMAT (reported):
+ * it is not closed, edges are shared by more than two triangles, or it is inside out. */
+CSGM_API csgm_status csgm_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                                       const csgm_measure_options *options, csgm_measures *out);
 
 /* For drawing a mesh with fewer triangles than it has: the vertices in each cell of a grid over
  * `frame` become one, and cells grow until at most most_triangles have their corners in three of

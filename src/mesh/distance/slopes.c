@@ -506,20 +506,22 @@ static bool walk(walker *w, const float *low, const float *high)
 }
 
 /* How far gradients are at most from the middle of the balls, which they are in the hull of. */
-static double find_stray(const operand *root)
+static double find_stray(const operand *root, double at[3])
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
-    double stray = 0;
-    if (!balls->count)
-        return INFINITY;
-    if (root->stretched || root->faces || balls->has_edges)
-        return enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
-    for (uint32_t i = 0; i < balls->count; i++)
-        for (int k = 0; k < 3; k++)
-            middle.at[k] += balls->items[i].at[k] / balls->count;
-    for (uint32_t i = 0; i < balls->count; i++)
-        stray = fmax(stray, apart(&middle, &balls->items[i]));
+    double stray = INFINITY;
+    if (balls->count && (root->stretched || root->faces || balls->has_edges)) {
+        stray = enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
+    } else if (balls->count) {
+        for (uint32_t i = 0; i < balls->count; i++)
+            for (int k = 0; k < 3; k++)
+                middle.at[k] += balls->items[i].at[k] / balls->count;
+        stray = 0;
+        for (uint32_t i = 0; i < balls->count; i++)
+            stray = fmax(stray, apart(&middle, &balls->items[i]));
+    }
+    memcpy(at, middle.at, sizeof middle.at);
     return stray;
 }
 
@@ -572,7 +574,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
     out->high = w.stack[0].high;
     out->least = w.stack[0].least;
     out->most = w.stack[0].most;
-    out->stray = find_stray(&w.stack[0]);
+    out->stray = find_stray(&w.stack[0], out->middle);
     out->doubt = w.stack[0].doubt;
     return out->balls.count > 0;
 }

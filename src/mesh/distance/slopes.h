@@ -27,7 +27,8 @@ typedef struct csg_gradients {
     double low, high;   /* over the triangle */
     double least, most; /* over the ball, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
-    double stray; /* no gradient is farther from one and the same vector; INFINITY: not known */
+    double stray;       /* no gradient is farther from `middle`; INFINITY: not known */
+    double middle[3];
     double doubt; /* rounding of the field's values */
 } csg_gradients;
 

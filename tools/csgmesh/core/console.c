@@ -295,10 +295,10 @@ static void draw_bar(const cli_console *console, csgm_stage stage, double fracti
                      double elapsed_s)
 {
     static const char *const names[] = {
-        [CSGM_STAGE_OCTREE] = "sampling",  [CSGM_STAGE_MESH] = "meshing ",
-        [CSGM_STAGE_WRITE] = "writing ",   [CSGM_STAGE_RENDER] = "drawing ",
-        [CSGM_STAGE_RESHAPE] = "thinning", [CSGM_STAGE_CERTIFY] = "proving ",
-        [CSGM_STAGE_COMPARE] = "comparing"};
+        [CSGM_STAGE_OCTREE] = "sampling",   [CSGM_STAGE_MESH] = "meshing ",
+        [CSGM_STAGE_WRITE] = "writing ",    [CSGM_STAGE_RENDER] = "drawing ",
+        [CSGM_STAGE_RESHAPE] = "thinning",  [CSGM_STAGE_CERTIFY] = "proving ",
+        [CSGM_STAGE_COMPARE] = "comparing", [CSGM_STAGE_MEASURE] = "measuring"};
     char bar[BAR_WIDTH + 1];
     int filled = (int)(fraction * BAR_WIDTH);
     for (int i = 0; i < BAR_WIDTH; i++)

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ * Measures of the public interface.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "api/options.h"
+#include "field/field.h"
+#include "measure/measure.h"
+
+csgm_measure_options csgm_measure_options_default(void)
+{
+    return (csgm_measure_options){.struct_size = sizeof(csgm_measure_options),
+                                  .tolerance = 1e-4,
+                                  .density = 1,
+                                  .most_cubes = 1 << 24};
+}
+
+csgm_measures csgm_measures_default(void)
+{
+    return (csgm_measures){.struct_size = sizeof(csgm_measures)};
+}
+
+static bool adopt(csgm_measure_options *own, const csgm_measure_options *given)
+{
+    *own = csgm_measure_options_default();
+    return csg_options_adopt(own, sizeof *own, given) && own->tolerance > 0 &&
+           isfinite(own->tolerance) && own->density > 0 && isfinite(own->density) &&
+           own->most_cubes > 0;
+}
+
+static bool is_name(const char *name, const char *wanted)
+{
+    return name && strcmp(name, wanted) == 0;
+}
+
+/* NULL: there is none of that name. */
+static const csgm_field *field_of(const csgm_field *field, const char *part)
+{
+    if (!part)
+        return field;
+    for (size_t i = 0; i < field->part_count; i++)
+        if (is_name(field->parts[i].name, part))
+            return field->parts[i].field;
+    return NULL;
+}
+
+static void deliver(csgm_status status, const csgm_measures *made, csgm_measures *out)
+{
+    if (status == CSGM_OK || status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY ||
+        status == CSGM_CANCELLED)
+        csg_struct_deliver(out, made);
+}
+
+csgm_status csgm_measure_field(csgm_context *context, const csgm_field *field,
+                               const csgm_measure_options *options, csgm_measures *out)
+{
+    csgm_measure_options own;
+    csgm_measures made = csgm_measures_default();
+    if (!context || !field || !out || !csg_struct_is_known(out, sizeof *out) ||
+        !adopt(&own, options))
+        return CSGM_ERR_ARGUMENT;
+    const csgm_field *of = field_of(field, own.part);
+    if (!of)
+        return CSGM_ERR_ARGUMENT;
+    csgm_status status = csg_measure_field(context, of, &own, &made);
+    deliver(status, &made, out);
+    return status;
+}
+
+csgm_status csgm_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                              const csgm_measure_options *options, csgm_measures *out)
+{
+    csgm_measure_options own;
+    csgm_measures made = csgm_measures_default();
+    if (!context || !mesh || !out || !csg_struct_is_known(out, sizeof *out) ||
+        !adopt(&own, options))
+        return CSGM_ERR_ARGUMENT;
+    csgm_mesh_view of = *mesh;
+    if (own.part) {
+        uint64_t i = 0;
+        while (i < mesh->part_count && !is_name(mesh->parts[i].name, own.part))
+            i++;
+        if (i == mesh->part_count)
+            return CSGM_ERR_ARGUMENT;
+        of.indices += 3 * mesh->parts[i].first_triangle;
+        of.triangle_count = mesh->parts[i].triangle_count;
+        of.parts = NULL;
+        of.part_count = 0;
+    }
+    csgm_status status = csg_measure_mesh(context, &of, &own, &made);
+    deliver(status, &made, out);
+    return status;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ * How far a solid reaches along each axis, between proven bounds.
+ */
+#ifndef CSG_MEASURE_EXTENT_H
+#define CSG_MEASURE_EXTENT_H
+
+#include "measure/walk.h"
+
+enum { CSG_EXTENTS = 6 /* x, y, z: the least, then the largest */ };
+
+typedef struct csg_extents {
+    double low[CSG_EXTENTS], high[CSG_EXTENTS]; /* field frame */
+    bool is_found[CSG_EXTENTS]; /* the solid has a point there for certain; else the bounds' */
+    bool is_close;              /* all are known to the tolerance */
+    uint64_t cubes;
+} csg_extents;
+
+/* tolerance: a length. CSGM_OK, or why it was stopped (reported); *out is what is proven by then.
+ * The same for any number of threads. */
+csgm_status csg_measure_extents(csg_measure_walk *walk, double tolerance, uint64_t most_cubes,
+                                csg_extents *out);
+
+#endif
