@@ -214,10 +214,8 @@ static int write_stream(maker *m)
                         strerror(errno));
         return CLI_TROUBLE;
     }
-    uint64_t counts[2];
     int status = cli_work_mesh_file(&m->app, &m->work, path, csgm_format_from_name(format),
-                                    &options, counts);
-    m->result->triangles = counts[1];
+                                    &options, &m->result->triangles);
     return status == CLI_DONE ? add_output(m, path, format, NULL) : status;
 }
 

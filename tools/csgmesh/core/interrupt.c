@@ -12,7 +12,7 @@
 
 #include "core/cli.h"
 
-static atomic_bool progress_shown;
+static atomic_bool progress_shown, is_asked;
 
 static void say(const char *text)
 {
@@ -41,9 +41,9 @@ static void on_signal(int signal_number)
 }
 
 /* A signal that the parent made ignored stays ignored (nohup, background jobs). */
-static void catch_signal(int signal_number)
+static void catch_signal(int signal_number, void (*handler)(int))
 {
-    struct sigaction old, action = {.sa_handler = on_signal};
+    struct sigaction old, action = {.sa_handler = handler};
     sigfillset(&action.sa_mask);
     if (sigaction(signal_number, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
         sigaction(signal_number, &action, NULL);
@@ -51,11 +51,27 @@ static void catch_signal(int signal_number)
 
 void cli_interrupt_install(void)
 {
-    catch_signal(SIGINT);
-    catch_signal(SIGTERM);
-    catch_signal(SIGHUP);
+    catch_signal(SIGINT, on_signal);
+    catch_signal(SIGTERM, on_signal);
+    catch_signal(SIGHUP, on_signal);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+}
+
+static void on_first_signal(int signal_number)
+{
+    atomic_store(&is_asked, true);
+    catch_signal(signal_number, on_signal);
+}
+
+void cli_interrupt_ask_first(void)
+{
+    catch_signal(SIGINT, on_first_signal);
+}
+
+bool cli_interrupt_is_asked(void)
+{
+    return atomic_load(&is_asked);
 }
 
 bool cli_interrupt_progress_shown(bool shown)

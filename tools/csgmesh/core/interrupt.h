@@ -8,6 +8,10 @@
 
 /* Installs the handlers; SIGPIPE and SIGXFSZ become errors of write(). */
 void cli_interrupt_install(void);
+/* For work whose result so far is worth having: from now on the first Ctrl-C only asks for it, and
+ * the second one ends the process. */
+void cli_interrupt_ask_first(void);
+bool cli_interrupt_is_asked(void);
 /* Ends the process now, without a word: nobody wants what it is making any more. On any thread. */
 _Noreturn void cli_interrupt_end(void);
 /* Tells the handler whether a bar stands on the terminal; returns what was told before. */

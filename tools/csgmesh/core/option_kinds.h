@@ -29,9 +29,9 @@ typedef struct cli_bits {
 typedef bool cli_kind_FLAG;
 typedef const char *cli_kind_TEXT;
 typedef cli_list cli_kind_LIST;
-typedef uint64_t cli_kind_COUNT; /* 1 .. 2^32 - 1 */
-typedef double cli_kind_NUMBER;  /* > 0, finite */
-typedef double cli_kind_MEASURE; /* >= 0, finite; P% is P / 100 */
+typedef uint64_t cli_kind_COUNT;     /* 1 .. 2^32 - 1 */
+typedef double cli_kind_NUMBER;      /* > 0, finite */
+typedef double cli_kind_NONNEGATIVE; /* >= 0, finite; P% is P / 100 */
 typedef struct cli_amount {
     double value; /* > 0, finite; a share is below 1 */
     bool is_share;

@@ -20,7 +20,7 @@ typedef enum kind {
     LIST,
     COUNT,
     NUMBER,
-    MEASURE,
+    NONNEGATIVE,
     AMOUNT,
     BYTES,
     CHOICE,
@@ -292,7 +292,7 @@ static bool set_option(parser *p, const row *option, const char *value)
         return set_count(p, option, value, slot);
     case NUMBER:
         return set_number(p, option, value, slot);
-    case MEASURE:
+    case NONNEGATIVE:
         return set_measure(p, option, value, slot);
     case AMOUNT:
         return set_amount(p, option, value, slot);

@@ -17,8 +17,8 @@ namespace
 
 constexpr auto LOOK_EACH = std::chrono::milliseconds(50);
 
-const char *const stage_names[] = {"octree",  "mesh",    "write",  "render",
-                                   "reshape", "certify", "compare"};
+const char *const stage_names[] = {"octree",  "mesh",    "write",   "render",
+                                   "reshape", "certify", "compare", "measure"};
 static_assert(std::size(stage_names) == CSGM_STAGE_COUNT, "a name for each csgm_stage");
 const char *const severity_names[] = {"note", "warning", "error"};
 

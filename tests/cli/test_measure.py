@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh measure: closed forms, meshes, threads, and what is refused."""
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import cli
+
+PI = math.pi
+# scene: volume, centroid, (I_xx, I_zz) where there is a closed form, bounds
+CLOSED = {
+    "cube([10, 20, 30]);": (6000, (5, 10, 15), (6000 * (400 + 900) / 12, 6000 * 500 / 12), (0, 0, 0, 10, 20, 30)),
+    "sphere(10);": (4 / 3 * PI * 1000, (0, 0, 0), (8 / 15 * PI * 1e5,) * 2, (-10, -10, -10, 10, 10, 10)),
+    "translate([1, 2, 3]) cylinder(h = 10, r = 5);":
+        (250 * PI, (1, 2, 8), (250 * PI * (3 * 25 + 100) / 12, 250 * PI * 25 / 2), (-4, -3, 3, 6, 7, 13)),
+    "cylinder(h = 12, r1 = 5, r2 = 0);":
+        (100 * PI, (0, 0, 3), (100 * PI * 3 / 80 * (4 * 25 + 144), 100 * PI * 0.3 * 25), (-5, -5, 0, 5, 5, 12)),
+    "torus(8, 2);": (2 * PI ** 2 * 8 * 4, (0, 0, 0), None, (-10, -10, -2, 10, 10, 2)),
+    "difference() { cube(20, center = true); sphere(8); }":
+        (8000 - 4 / 3 * PI * 512, (0, 0, 0), (8000 * 800 / 12 - 8 / 15 * PI * 8 ** 5,) * 2, (-10, -10, -10, 10, 10, 10)),
+    "rotate([20, 30, 40]) cube([10, 20, 30], center = true);": (6000, (0, 0, 0), None, None),
+    "scale([1, 2, 3]) sphere(5);": (1000 * PI, (0, 0, 0), (1000 * PI / 5 * 325, 1000 * PI / 5 * 125), (-5, -10, -15, 5, 10, 15)),
+}
+
+
+def write(folder, name, text):
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+class Measure(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def measure(self, scene, *options, status=0):
+        path = write(self.folder, "scene.txt", scene)
+        result = cli.run("measure", path, "--json", *options)
+        self.assertEqual(result.returncode, status, result.stderr)
+        return json.loads(result.stdout)
+
+    def holds(self, interval, value):
+        self.assertLessEqual(interval[0], value)
+        self.assertGreaterEqual(interval[1], value)
+
+    def test_closed_forms(self):
+        to = 1e-3
+        for scene, (volume, centroid, inertia, bounds) in CLOSED.items():
+            with self.subTest(scene):
+                found = self.measure(scene, "--to", to)
+                self.holds(found["volume"], volume)
+                self.assertLessEqual(found["volume"][1] - found["volume"][0], to * found["volume"][1])
+                for axis, value in zip("xyz", centroid):
+                    self.holds(found["centroid"][axis], value)
+                for name, value in zip(("xx", "zz"), inertia or ()):
+                    self.holds(found["inertia"][name], value)
+                for interval, value in zip(found["bounds"].values(), bounds or ()):
+                    self.holds(interval, value)
+                    self.assertLessEqual(interval[1] - interval[0], 30 * to * 1.01)
+
+    def test_density(self):
+        found = self.measure("cube(2);", "--to", 1e-3, "--density", 3)
+        self.holds(found["mass"], 24)
+        self.holds(found["inertia"]["xx"], 24 * 8 / 12)
+
+    def test_random_scenes_against_meshes(self):
+        dice = random.Random(23)
+        for _ in range(6):
+            solids = "".join(
+                f"translate([{dice.uniform(-5, 5):.3f}, {dice.uniform(-5, 5):.3f}, {dice.uniform(-5, 5):.3f}])"
+                f" rotate([{dice.uniform(0, 90):.1f}, {dice.uniform(0, 90):.1f}, 0]) "
+                f"{dice.choice(('cube(6);', 'sphere(4);', 'cylinder(h = 7, r = 3);', 'torus(4, 1);'))}\n"
+                for _ in range(4))
+            scene = f"{dice.choice(('union', 'difference'))}({dice.choice(('', 'blend = 1'))}) {{\n{solids}}}\n"
+            with self.subTest(scene):
+                found = self.measure(scene, "--to", 1e-2)
+                mesh = os.path.join(self.folder, "mesh.ply")
+                made = cli.run(os.path.join(self.folder, "scene.txt"), "-o", mesh, "-r", 96)
+                self.assertEqual(made.returncode, 0, made.stderr)
+                info = json.loads(cli.run("info", "--json", mesh).stdout)["mesh"]
+                # a mesh of cells of h is off by a fraction of h^2 of curvature times its area
+                room = 2e-3 * info["area"]
+                self.assertLessEqual(found["volume"][0], info["volume"] + room)
+                self.assertGreaterEqual(found["volume"][1], info["volume"] - room)
+
+    def test_same_text_with_any_threads(self):
+        path = write(self.folder, "scene.txt", "union(blend = 1) { rotate([10, 20, 30]) cube(10); sphere(6); }\n")
+        texts = {cli.run("measure", path, "--to", 1e-2, "-j", threads).stdout for threads in (1, 2, 3)}
+        self.assertEqual(len(texts), 1)
+
+    def test_parts(self):
+        scene = 'part("box") cube(10);\npart("lid") translate([0, 0, 20]) cube([10, 10, 2]);\n'
+        self.holds(self.measure(scene, "--to", 1e-3, "--part", "lid")["volume"], 200)
+        path = write(self.folder, "scene.txt", scene)
+        result = cli.run("measure", path, "--part", "lit")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('did you mean "lid"', result.stderr)
+
+    def test_meshes(self):
+        path = write(self.folder, "scene.txt", "translate([1, 2, 3]) cube([10, 20, 30]);\n")
+        mesh = os.path.join(self.folder, "mesh.stl")
+        self.assertEqual(cli.run(path, "-o", mesh).returncode, 0)
+        found = json.loads(cli.run("measure", mesh, "--json").stdout)
+        self.holds(found["volume"], 6000)
+        self.holds(found["inertia"]["xx"], 6000 * 1300 / 12)
+        self.assertLess(found["volume"][1] - found["volume"][0], 1e-8 * 6000)
+        open_one = write(self.folder, "open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n")
+        result = cli.run("measure", open_one)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("not closed", result.stderr)
+
+    def test_refused(self):
+        for scene, said in (("plane([0, 0, 1]);", "infinity"), ("union() {}", "empty")):
+            path = write(self.folder, "scene.txt", scene)
+            result = cli.run("measure", path)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn(said, result.stderr)
+        for options in (["--to", "0"], ["--to", "nan"], ["--density", "-1"]):
+            self.assertEqual(cli.run("measure", path, *options).returncode, 2)
+
+    def test_a_limit_prints_what_is_proven(self):
+        path = write(self.folder, "scene.txt", "torus(8, 2);\n")
+        result = cli.run("measure", path, "--to", "1e-12", "--timeout", "0.2", "--json")
+        self.assertEqual(result.returncode, 2)
+        found = json.loads(result.stdout)
+        self.assertFalse(found["reached"])
+        self.holds(found["volume"], CLOSED["torus(8, 2);"][0])
+
+    def test_ctrl_c_prints_what_is_proven(self):
+        path = write(self.folder, "scene.txt", "torus(8, 2);\n")
+        process = subprocess.Popen([cli.PROGRAM, "measure", path, "--to", "1e-13", "--json", "--progress", "always"],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        said = b""
+        while b"measuring" not in said:  # the handler stands by then
+            said += process.stderr.read1()
+        process.send_signal(signal.SIGINT)
+        printed, rest = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2, rest)
+        self.assertIn(b"interrupted", said + rest)
+        self.holds(json.loads(printed)["volume"], CLOSED["torus(8, 2);"][0])
+
+    def test_a_limit_of_memory_prints_what_is_proven(self):
+        path = write(self.folder, "scene.txt", "torus(8, 2);\n")
+        for size in ("100K", "300K", "1M"):
+            result = cli.run("measure", path, "--max-memory", size, "--density", 3, "--to", 0.01, "--json")
+            self.assertIn(result.returncode, (0, 2), result.stderr)
+            if result.stdout:
+                self.holds(json.loads(result.stdout)["mass"], 3 * CLOSED["torus(8, 2);"][0])
+
+
+if __name__ == "__main__":
+    unittest.main()

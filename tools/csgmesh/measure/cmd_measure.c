@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * csgmesh measure SCENE|MESH: volume, centroid, inertia and tight bounds, between proven bounds.
+ * What is proven when a limit or Ctrl-C ends the work is printed too.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/interrupt.h"
+#include "core/mesh_files.h"
+#include "core/options.h"
+#include "core/work.h"
+#include "measure/measure_print.h"
+
+static bool ask_interrupted(void *user)
+{
+    (void)user;
+    return cli_interrupt_is_asked();
+}
+
+static csgm_measure_options measure_options(cli_app *app)
+{
+    const cli_options *o = app->options;
+    csgm_measure_options options = csgm_measure_options_default();
+    if (o->given[CLI_OPTION_measure_density])
+        options.density = o->measure_density;
+    if (o->given[CLI_OPTION_measure_to])
+        options.tolerance = o->measure_to;
+    options.part = o->measure_part;
+    options.monitor = (csgm_monitor){
+        .progress = cli_console_progress, .cancelled = ask_interrupted, .user = &app->console};
+    return options;
+}
+
+/* names: NULL where a part has none. CLI_INPUT_AT_FAULT: none of these is the one asked for. */
+static int find_part(cli_app *app, const char *path, const char **names, size_t count)
+{
+    const char *wanted = app->options->measure_part, *near;
+    char hint[160];
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (names[i] && strcmp(names[i], wanted) == 0)
+            return CLI_DONE;
+        if (names[i])
+            names[kept++] = names[i];
+    }
+    names[kept] = NULL;
+    near = cli_nearest(wanted, names);
+    snprintf(hint, sizeof hint, near ? "did you mean \"%.80s\"?" : "its first part is \"%.80s\"",
+             near ? near : names[0]);
+    cli_console_say(
+        &app->console, CSGM_ERROR, kept ? hint : "part(\"lid\") in a scene names a part",
+        kept ? "%s has no part \"%.80s\"" : "%s has no named parts, so no \"%.80s\"", path, wanted);
+    return CLI_INPUT_AT_FAULT;
+}
+
+static int no_memory(cli_app *app)
+{
+    return cli_usage_error(app, NULL, "out of memory");
+}
+
+static int find_part_of_field(cli_app *app, const char *path, const csgm_field *field)
+{
+    size_t count = 0;
+    const char *name;
+    while (csgm_field_part(field, count, &name))
+        count++;
+    const char **names = calloc(count + 1, sizeof *names);
+    if (!names)
+        return no_memory(app);
+    for (size_t i = 0; i < count; i++)
+        csgm_field_part(field, i, &names[i]);
+    int status = find_part(app, path, names, count);
+    free(names);
+    return status;
+}
+
+static int find_part_of_mesh(cli_app *app, const char *path, const csgm_mesh_view *view)
+{
+    const char **names = calloc(view->part_count + 1, sizeof *names);
+    if (!names)
+        return no_memory(app);
+    for (uint64_t i = 0; i < view->part_count; i++)
+        names[i] = view->parts[i].name;
+    int status = find_part(app, path, names, (size_t)view->part_count);
+    free(names);
+    return status;
+}
+
+/* status: of the measuring; what is proven is printed after a limit, too. */
+static int print(cli_app *app, const char *path, bool is_mesh, csgm_status status,
+                 const csgm_measure_options *options, const csgm_measures *measures)
+{
+    bool is_stopped =
+        status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
+    const cli_measured measured = {.path = path,
+                                   .part = options->part,
+                                   .is_mesh = is_mesh,
+                                   .measures = measures,
+                                   .density = options->density,
+                                   .to = options->tolerance};
+    cli_console_end_progress(&app->console);
+    if (status != CSGM_OK && !is_stopped)
+        return cli_exit_status(status);
+    if (status == CSGM_CANCELLED)
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "interrupted: this is proven so far");
+    else if (status == CSGM_OK && !measures->is_reached)
+        cli_console_say(&app->console, CSGM_WARNING,
+                        "where gradients have no bounds, intervals shrink slowly: a larger --to",
+                        "%s could not be measured to %g: this is what is proven", path,
+                        options->tolerance);
+    (app->options->json ? cli_measure_json : cli_measure_text)(&measured);
+    return is_stopped || !measures->is_reached ? CLI_TROUBLE : CLI_DONE;
+}
+
+static int measure_mesh(cli_app *app, const char *path, csgm_format format)
+{
+    csgm_mesh *mesh = NULL;
+    csgm_measure_options options = measure_options(app);
+    csgm_measures measures = csgm_measures_default();
+    int status = cli_exit_status(csgm_mesh_read(app->context, path, format, &mesh));
+    if (status == CLI_DONE) {
+        csgm_mesh_view view = csgm_mesh_get_view(mesh);
+        if (options.part)
+            status = find_part_of_mesh(app, path, &view);
+        if (status == CLI_DONE) {
+            csgm_status made = csgm_measure_mesh(app->context, &view, &options, &measures);
+            status = print(app, path, true, made, &options, &measures);
+        }
+    }
+    csgm_mesh_destroy(mesh);
+    return status;
+}
+
+static int measure_scene(cli_app *app, const char *path)
+{
+    cli_work work = {0};
+    csgm_measure_options options = measure_options(app);
+    csgm_measures measures = csgm_measures_default();
+    int status = cli_work_load(app, &work, path);
+    if (status == CLI_DONE)
+        status = cli_exit_status(csgm_field_compile(app->context, work.scene, &work.field));
+    if (status == CLI_DONE && options.part)
+        status = find_part_of_field(app, path, work.field);
+    if (status == CLI_DONE) {
+        cli_interrupt_ask_first();
+        csgm_status made = csgm_measure_field(app->context, work.field, &options, &measures);
+        status = print(app, path, false, made, &options, &measures);
+    }
+    cli_work_release(&work);
+    return status;
+}
+
+int cli_cmd_measure(cli_app *app)
+{
+    const cli_list *operands = &app->options->operands;
+    csgm_format asked = CSGM_FORMAT_AUTO;
+    if (operands->count != 1)
+        return cli_usage_error(app, "as csgmesh measure mug.txt",
+                               operands->count ? "one scene or mesh is measured at a time"
+                                               : "no scene or mesh given");
+    if (app->options->format) {
+        asked = csgm_format_from_name(app->options->format);
+        if (asked == CSGM_FORMAT_AUTO)
+            return cli_usage_error(app, NULL, "unknown format '%s'", app->options->format);
+    }
+    int status = cli_app_open(app);
+    if (status != CLI_DONE)
+        return status;
+    const char *path = operands->items[0];
+    bool is_mesh = asked != CSGM_FORMAT_AUTO || cli_path_is_mesh(path);
+    status = is_mesh ? measure_mesh(app, path, asked) : measure_scene(app, path);
+    return cli_finish_stdout(app, status);
+}

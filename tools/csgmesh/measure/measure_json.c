@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ * Measures as one JSON object: every interval is [low, high], null where it has no end.
+ */
+#include "measure/measure_print.h"
+
+static void put_interval(cli_json *json, const char *key, csgm_interval interval)
+{
+    cli_json_open(json, key, '[');
+    cli_json_number(json, NULL, interval.low);
+    cli_json_number(json, NULL, interval.high);
+    cli_json_end(json, ']');
+}
+
+static void put_intervals(cli_json *json, const char *key, const char *const *names,
+                          const csgm_interval *intervals, int count)
+{
+    cli_json_open(json, key, '{');
+    for (int i = 0; i < count; i++)
+        put_interval(json, names[i], intervals[i]);
+    cli_json_end(json, '}');
+}
+
+void cli_measure_json(const cli_measured *measured)
+{
+    static const char *const axes[] = {"x", "y", "z"};
+    static const char *const products[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+    static const char *const sides[] = {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z"};
+    const csgm_measures *m = measured->measures;
+    cli_json json = cli_json_make(stdout, true);
+    cli_json_begin(&json, '{');
+    cli_json_string(&json, "file", measured->path);
+    if (measured->part)
+        cli_json_string(&json, "part", measured->part);
+    cli_json_string(&json, "kind", measured->is_mesh ? "mesh" : "scene");
+    cli_json_number(&json, "to", measured->to);
+    cli_json_bool(&json, "reached", m->is_reached);
+    cli_json_count(&json, "cubes", m->cubes);
+    cli_json_number(&json, "density", measured->density);
+    put_interval(&json, "volume", m->volume);
+    put_interval(&json, "mass", m->mass);
+    put_intervals(&json, "centroid", axes, m->centroid, 3);
+    put_intervals(&json, "inertia", products, m->inertia, 6);
+    put_intervals(&json, "bounds", sides, m->bounds, 6);
+    cli_json_end(&json, '}');
+}
