@@ -33,7 +33,7 @@ csgm_status csg_context_no_memory(csgm_context *context)
     if (atomic_exchange(&memory->limit_refused, false))
         csg_diag_plain(
             &context->diags, CSG_DIAG_OUT_OF_MEMORY, NULL,
-            "raise the limit with --max-memory, or mesh more coarsely: --quality draft, or a "
+            "raise the limit with --max-memory; a scene takes less with --quality draft, or with a "
             "lower -r",
             "more memory is needed than the limit of %llu MiB",
             (unsigned long long)(memory->limit_bytes >> 20));

@@ -190,6 +190,34 @@ class Statistics(cli.CliTest):
             self.assertEqual(mesh[key], stats[key])
         self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
 
+    def test_without_room_for_the_mesh(self):
+        """It goes to its file as it does without --stats, and what needs all of it is left out with a word."""
+        self.write("a.txt", "sphere(10);\n")
+        options = ("a.txt", "-r", "200", "-j", "2", "-o", "a.ply", "--max-memory")
+        whole = self.stats(*options, "1G")["mesh"]
+        want = self.read("a.ply")
+        result = self.run_in(*options, "8M", "--stats=s.json")
+        self.assert_status(result, 0)
+        self.assertIn("warning: --stats: area, volume, topology", result.stderr)
+        self.assertNotIn("E0901", result.stderr)
+        self.assertEqual(self.read("a.ply"), want)
+        stats = json.loads(self.read("s.json"))
+        self.assertEqual(stats["mesh"], {key: whole[key] for key in ("vertices", "triangles")})
+        self.assertEqual((stats["quality"], stats["files"]), ({}, [{"name": "a.ply", "format": "ply"}]))
+        self.assertGreater(stats["octree"]["leaf_blocks"], 0)
+
+    def test_what_needs_less_memory(self):
+        self.write("a.txt", "sphere(10);\n")
+        for options, word in ((("-o", "a.ply"), "equal cells do not: -r 256\n"),
+                              (("-o", "a.obj", "--quality", "fine"), "-r 1024, with one output that is PLY, STL or GLB\n"),
+                              (("-o", "a.obj", "-r", "200"), "one PLY, STL or GLB file alone is written while"),
+                              (("-o", "a.ply", "-o", "a.stl", "-r", "200"), "one PLY, STL or GLB file alone"),
+                              (("-o", "a.ply", "-r", "400"), "--features smooth has none")):
+            with self.subTest(options):
+                limit = "1M" if options[-1] == "400" else "4M"
+                result = self.run_in("a.txt", "-j", "2", "--max-memory", limit, *options)
+                self.assert_refused(result, 2, "E0901", "raise the limit with --max-memory", word)
+        self.assert_files("a.txt")
 
     def test_files(self):
         """Each file as it is read back: what rounding and quantising have made of the mesh."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Help, version and mistakes on the command line: a message that says what to do, exit status 2."""
 import json
+import os
 
 import cli
 
@@ -43,6 +44,15 @@ class Help(cli.CliTest):
             lines = [line for line in features if library in line]
             self.assertEqual(len(lines), 1, features)
             self.assertRegex(lines[0], rf"^(with {library} \d+\.\d+\S*|without .*{library}).* \(.+\)$")
+        bill_path = os.path.join(os.environ["CSGMESH_BUILD"], "csgmesh.cdx.json")
+        if os.path.exists(bill_path):  # a build for another machine has none
+            with open(bill_path, encoding="utf-8") as file:
+                bill = json.load(file)
+            self.assertEqual(bill["metadata"]["component"]["version"], first.split()[1])
+            listed = {f"{part['name']} {part['version']}" for part in bill["components"]}
+            said = [part for line in features if line.startswith("with ")
+                    for part in line[len("with "):line.index(" (")].split(", ")]
+            self.assertLessEqual(set(said), listed)
         scalar = cli.run("--version", env={"CSGMESH_ISA": "scalar"})
         self.assertIn(b"(scalar)", scalar.stdout)
 

@@ -3,10 +3,12 @@
 languages can read (where these are installed). What takes minutes, the packages themselves, is in the checklist of
 tools/packaging/README.md.
 """
+import json
 import os
 import re
 import shutil
 import subprocess
+import sys
 import tarfile
 import tempfile
 import unittest
@@ -149,6 +151,42 @@ class InACopy(unittest.TestCase):
         inside = 'https://example.org/a&b|c\\\\d\\"\\#{e}'  # as Ruby wants it within quotes
         self.assertIn(f'url "{inside}/get?x=1&y=2"', formula)
         self.assertIn(f'homepage "{inside}"', formula)
+
+
+class BillOfMaterials(unittest.TestCase):
+    """tools/packaging/sbom.py; tests/cli/test_usage.py holds the one of the build against --version."""
+
+    def made(self, *rows, **environment):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "bill.json")
+            subprocess.run([sys.executable, os.path.join(PACKAGING, "sbom.py"), path, "1.2.3", "cc 1", *rows], check=True,
+                           env={**os.environ, **environment})
+            with open(path, encoding="utf-8") as file:
+                return json.load(file)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        for name, needs in (("first", "second >= 2"), ("second", "third"), ("third", "")):
+            with open(os.path.join(folder.name, name + ".pc"), "w", encoding="utf-8") as file:
+                file.write(f"Name: {name}\nDescription: a test\nVersion: 4.5\nRequires.private: {needs}\n")
+        self.environment = {"PKG_CONFIG_LIBDIR": folder.name, "SOURCE_DATE_EPOCH": ""}
+
+    @unittest.skipUnless(shutil.which("pkg-config"), "pkg-config is not installed")
+    def test_what_libraries_need(self):
+        rows = ("First|4.5|meshes|first", "Odd|6|names|found without", "First|4.5|pictures|first")
+        bill = self.made(*rows, **self.environment)
+        self.assertEqual({c["bom-ref"]: (c["name"], c["version"], c.get("description")) for c in bill["components"]},
+                         {"first": ("First", "4.5", "meshes; pictures"), "second": ("second", "4.5", None),
+                          "third": ("third", "4.5", None), "found without": ("Odd", "6", "names")})
+        self.assertEqual({row["ref"]: row["dependsOn"] for row in bill["dependencies"]},
+                         {"csgmesh": ["first", "found without"], "first": ["second"], "second": ["third"], "third": [],
+                          "found without": []})
+        self.assertEqual(self.made(*rows, **self.environment), bill, "the same build has the same bytes")
+        self.assertNotEqual(self.made(*rows[:2], **self.environment)["serialNumber"], bill["serialNumber"])
+        self.assertNotIn("timestamp", bill["metadata"])
+        dated = self.made(*rows, **{**self.environment, "SOURCE_DATE_EPOCH": "86400"})
+        self.assertEqual(dated["metadata"]["timestamp"], "1970-01-02T00:00:00Z")
 
 
 class Recipes(unittest.TestCase):

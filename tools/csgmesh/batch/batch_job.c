@@ -214,8 +214,10 @@ static int write_stream(maker *m)
                         strerror(errno));
         return CLI_TROUBLE;
     }
+    uint64_t counts[2];
     int status = cli_work_mesh_file(&m->app, &m->work, path, csgm_format_from_name(format),
-                                    &options, &m->result->triangles);
+                                    &options, counts);
+    m->result->triangles = counts[1];
     return status == CLI_DONE ? add_output(m, path, format, NULL) : status;
 }
 

@@ -91,8 +91,12 @@ csgm_context_options cli_app_context_options(const cli_app *app)
 
 static void take_finding(void *user, const csgm_diag *diag)
 {
+    enum { OUT_OF_MEMORY = 901 };
     cli_app *app = user;
-    cli_console_diag(&app->console, diag);
+    bool is_memory = diag->code == OUT_OF_MEMORY;
+    app->ran_out_of_memory |= is_memory;
+    if (!(is_memory && app->does_without_memory))
+        cli_console_diag(&app->console, diag);
 }
 
 static void take_echo(void *user, const char *text, size_t length)

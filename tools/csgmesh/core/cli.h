@@ -31,9 +31,12 @@ typedef struct cli_app {
      * follows them. */
     void (*looked)(void *user, const char *path, cli_looked_kind kind);
     void *looked_user;
-    bool only_checks;       /* scenes are looked at for mistakes and not made */
-    const char *overwriter; /* option whose output is a file that is read, or another output:
-                               nothing may be written any more; NULL = none */
+    bool ran_out_of_memory;   /* E0901 came */
+    bool does_without_memory; /* whoever works on now has another way then, and says so: it is not
+                                 shown */
+    bool only_checks;         /* scenes are looked at for mistakes and not made */
+    const char *overwriter;   /* option whose output is a file that is read, or another output:
+                                 nothing may be written any more; NULL = none */
 } cli_app;
 
 /* Makes the context from the options. CLI_DONE, or the exit status. */

@@ -155,18 +155,17 @@ int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write
 }
 
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
-                       const csgm_write_options *write_options, uint64_t *triangle_count)
+                       const csgm_write_options *write_options, uint64_t counts[2])
 {
     csgm_mesh_options options = mesh_options(app, work);
     uint32_t errors = app->console.errors;
-    uint64_t counts[2] = {0};
-    csgm_status status = compile(app, work);
+    csgm_status status = work->field ? CSGM_OK : compile(app, work);
+    counts[0] = counts[1] = 0;
     work->stats = csgm_mesh_stats_default();
     if (status == CSGM_OK)
         status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
                                       write_options, counts, &work->stats);
     cli_console_end_progress(&app->console);
-    *triangle_count = counts[1];
     if (status != CSGM_OK && app->console.errors == errors)
         cli_console_say(&app->console, CSGM_ERROR, NULL,
                         "the mesh has no triangles: nothing was written");
