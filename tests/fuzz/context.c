@@ -5,6 +5,8 @@
 
 #include "fuzz/fuzz.h"
 
+uint64_t fuzz_accepted;
+
 static void on_diag(void *user, const csgm_diag *diag)
 {
     char text[4096];

@@ -13,6 +13,9 @@
 /* libFuzzer's entry point; replay.c calls it too. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+/* How many inputs a reader of meshes has taken. */
+extern uint64_t fuzz_accepted;
+
 void fuzz_context_init(csgm_context *context);
 /* Aborts when memory was not given back. */
 void fuzz_context_close(csgm_context *context);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "fuzz/fuzz.h"
+#include "fuzz/mutate.h"
 #include "io/formats.h"
 #include "io/threemf/zip_write.h"
 
@@ -38,6 +39,7 @@ static void read_bytes(csgm_context *context, const uint8_t *bytes, size_t size)
     if (status != CSGM_OK && context->diags.errors != 1)
         fuzz_fail("refused without a word, or with two", "", 0);
     if (status == CSGM_OK) {
+        fuzz_accepted++;
         csgm_mesh_view view = csg_mesh_view(mesh);
         check(&view);
     }
@@ -91,3 +93,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_context_close(&context);
     return 0;
 }
+
+#ifdef FUZZ_MUTATE
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned seed)
+{
+    return FUZZ_MUTATE(data, size, most, seed);
+}
+#endif

@@ -62,6 +62,12 @@ def inputs(target):
     return [folder for folder in folders if os.path.isdir(folder)]
 
 
+def words_of(target):
+    """The target's own dictionary, else that of scenes."""
+    own = os.path.join(HERE, "dictionaries", target + ".dict")
+    return own if os.path.exists(own) else os.path.join(HERE, "scene.dict")
+
+
 def fuzz(program, target, work, options):
     corpus = os.path.join(work, target)
     os.makedirs(corpus, exist_ok=True)
@@ -69,7 +75,7 @@ def fuzz(program, target, work, options):
     with open(log, "wb") as file:
         result = subprocess.run(
             [program, f"-max_total_time={options.seconds}", f"-seed={options.seed}", "-timeout=10", "-rss_limit_mb=2000",
-             "-print_final_stats=1", "-dict=" + os.path.join(HERE, "scene.dict"),
+             "-print_final_stats=1", "-dict=" + words_of(target),
              "-artifact_prefix=" + work + os.sep, corpus, *inputs(target)],
             stdout=file, stderr=subprocess.STDOUT, env=ENVIRONMENT, check=False)
     with open(log, encoding="utf-8", errors="replace") as file:
