@@ -493,8 +493,9 @@ typedef struct csgm_mesh_options {
      * edge, and the result, is checked against the field; creases, colours, materials and parts
      * stay, and a mesh in memory is needed where it would have been streamed. */
     double tolerance;      /* > 0: no point of the mesh is farther than this from the surface, nor,
-                              as measured on the lattice, the surface from the mesh; with resolution
-                              and cell_size 0 the cells follow the shape; default 0 */
+                              as measured on the lattice, the surface from the mesh, whose vertices
+                              lie on both sides of it where it is curved; with resolution and
+                              cell_size 0 the cells follow the shape; default 0 */
     double simplify_error; /* > 0: the same for the mesh of the resolution given; without one, the
                               tolerance of cells that follow the shape, not proven; default 0 */
     double simplify_share; /* > 0, < 1: so many of the triangles may stay; default 0 */

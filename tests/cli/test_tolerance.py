@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """-e, --simplify and --improve as users meet them: every format, parts, colours, figures, errors."""
 import json
+import math
+import os
+import struct
 
 import cli
 
@@ -30,6 +33,35 @@ class Tolerance(cli.CliTest):
         self.assertLessEqual(stats["triangles"], 100)
         self.assertLessEqual(stats["max_distance_measured"], 0.01)
         self.assertEqual(stats["max_distance_bound"], 0.01)
+
+    def radii(self, *arguments):
+        """The least and the largest distance of a ball's vertices from its middle, and their triangles."""
+        stats = self.stats("ball.txt", *arguments, "-o", "out.ply")
+        body = self.read("out.ply").split(b"end_header\n", 1)[1]
+        count = stats["vertices"]
+        step = (len(body) - 13 * stats["triangles"]) // count
+        places = [struct.unpack_from("<3f", body, step * i) for i in range(count)]
+        lengths = [math.hypot(*place) for place in places]
+        return min(lengths), max(lengths), stats["triangles"]
+
+    def test_vertices_on_both_sides(self):
+        """Of a ball of radius 10 vertices on it, and triangles within 0.05, take twice as many of them."""
+        self.write("ball.txt", "sphere(r = 10);\n")
+        low, high, few = self.radii("-e", "0.05")
+        self.assertGreater(high, 10.02)
+        self.assertLess(high, 10.05)
+        self.assertGreater(low, 9.95)
+        on_low, on_high, many = self.radii("--simplify", "0.05")
+        self.assertGreater(on_low, 9.9999)
+        self.assertLess(on_high, 10.0001)
+        self.assertLess(few, 0.8 * many)
+
+    def test_small_files(self):
+        """The mug within 0.05: asked are 30 kB with meshoptimizer."""
+        for option in ("meshopt", "meshopt-khr") if cli.has_library("meshoptimizer") else ():
+            with self.subTest(compress=option):
+                self.assert_status(self.run_in(os.path.join(cli.SCENES, "parts", "mug.txt"), "-e", "0.05", "-o", "mug.glb", "--compress", option), 0)
+                self.assertLess(len(self.read("mug.glb")), 30000)
 
     def test_formats(self):
         self.write("plate.txt", PLATE)

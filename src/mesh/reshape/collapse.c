@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One edge: what its collapse would cost, and whether it may be made. The place of the new vertex
- * is that of least error, brought back to the surface; at creases one of the edge's ends, which lie
- * on them.
+ * is that of least error, brought back to the surface, or near it; at creases one of the edge's
+ * ends, which lie on them.
  */
 #include <math.h>
 #include <string.h>
@@ -234,15 +234,30 @@ static bool is_near(csg_decimation *d, bool one_sheet)
     return csg_remesh_brackets(r, (const csg_vec3(*)[3])room->after, room->seen, room->count);
 }
 
-/* Brings the place of least error to the surface. Where samples are too far from it by more than
- * the way there could make good, the field is not asked. */
-static bool bring_to_surface(csg_decimation *d, csg_vec3 *at, uint32_t to)
+/* Whether no crease is next to what changes. */
+static bool is_smooth_around(const csg_decimation *d)
+{
+    const csg_collapse_room *room = d->room;
+    for (uint32_t i = 0; i < room->count; i++)
+        if (d->remesh->kind[room->vertex[i][1]] != CSG_VERTEX_SMOOTH)
+            return false;
+    return true;
+}
+
+/* Brings the place of least error as near to the surface as vertices have to be. Where samples are
+ * too far from it by more than the way there could make good, the field is not asked. */
+static bool bring_near_surface(csg_decimation *d, csg_vec3 *at, uint32_t to)
 {
     static const double HOPEFUL = 1.25; /* of the error */
     csg_remesh *r = d->remesh;
+    csg_vec3 least = *at;
     if (!csg_decimation_may_hand_over(d, to, HOPEFUL * r->error) ||
         !csg_remesh_come_to_surface(r, at, fmax(r->cell, 4 * r->error)))
         return false;
+    csg_vec3 way = csg_vec3_sub(least, *at);
+    double length = csg_vec3_norm(way);
+    if (length > 0 && is_smooth_around(d))
+        *at = csg_vec3_add(*at, csg_vec3_scale(way, fmin(length, d->farthest_vertex) / length));
     *at = round_place(r, *at);
     move_ring(d->room, *at);
     return has_shape(d);
@@ -254,7 +269,7 @@ static bool new_place_is_good(csg_decimation *d, csg_vec3 *at, uint32_t from, ui
     const csg_remesh *r = d->remesh;
     bool one_sheet;
     move_ring(d->room, *at);
-    if (!has_shape(d) || !bring_to_surface(d, at, to) || !is_within(d, *at))
+    if (!has_shape(d) || !bring_near_surface(d, at, to) || !is_within(d, *at))
         return false;
     if (r->looks)
         d->room->look = look_at(d, *at, from, to);

@@ -81,8 +81,9 @@ typedef struct csg_decimation {
     const uint32_t *region_of; /* per vertex; NONE: of several, it stays */
     uint8_t *state;            /* per vertex: csg_vertex_state */
     uint32_t region;
-    csg_vec3 low, high;   /* the cube */
-    double least_quality; /* of triangles: no worse ones are made of better ones */
+    csg_vec3 low, high;     /* the cube */
+    double least_quality;   /* of triangles: no worse ones are made of better ones */
+    double farthest_vertex; /* that a new vertex may be from the surface */
     uint64_t tried, made;
 } csg_decimation;
 

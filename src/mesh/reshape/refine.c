@@ -87,11 +87,16 @@ static bool bring_to_crease(csg_remesh *r, uint32_t corner, csg_vec3 *at)
     return true;
 }
 
-/* A side of a triangle, by the corner it starts at. */
+/* A side of a triangle, by the corner it starts at, and where it is to be cut. */
 typedef struct side {
     uint32_t corner;
-    double length, away; /* away: of its middle from the surface, by the field or the crease */
+    double length, away; /* away: from the surface, by the field or the crease */
+    csg_vec3 at;
 } side;
+
+static const double FAR = 0.3; /* of the error */
+
+enum { CUTS = 7, MIDDLE = CUTS / 2 }; /* places of a side that are looked at, evenly spread */
 
 /* What is far from the surface comes first, then what is long. */
 static bool is_worse(const side *a, const side *b, double far)
@@ -102,26 +107,47 @@ static bool is_worse(const side *a, const side *b, double far)
     return a_far ? a->away > b->away : a->length > b->length;
 }
 
-/* The sides in the order in which they should be halved: long triangles along a curve are as far
- * from it however short they get. */
-static void sides_to_halve(csg_remesh *r, uint32_t triangle, side sides[3])
+static csg_vec3 place_of(const csg_remesh *r, uint32_t corner, int cut)
 {
-    static const double FAR = 0.3; /* of the error */
-    float at[3][3], f[3];
-    int count = 0;
-    for (uint32_t k = 0; k < 3; k++) {
-        uint32_t c = 3 * triangle + k;
-        csg_vec3 a = csg_remesh_corner(r, c), b = csg_remesh_corner(r, csg_corner_next(c));
-        csg_vec3_to_floats(at[k], csg_vec3_scale(csg_vec3_add(a, b), 0.5));
-    }
-    csg_probe_values(&r->probe, (const float(*)[3])at, 3, f);
-    for (uint32_t k = 0; k < 3; k++) {
-        uint32_t c = 3 * triangle + k;
-        csg_vec3 a = csg_remesh_corner(r, c), b = csg_remesh_corner(r, csg_corner_next(c));
-        csg_vec3 middle = csg_vec3_scale(csg_vec3_add(a, b), 0.5), to = middle;
-        side one = {c, csg_vec3_norm(csg_vec3_sub(b, a)), fabs((double)f[k])};
-        if (csg_remesh_is_crease(r, c) && bring_to_crease(r, c, &to))
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    double share = (cut + 1.0) / (CUTS + 1);
+    return csg_vec3_add(csg_vec3_scale(a, 1 - share), csg_vec3_scale(b, share));
+}
+
+/* Sides are cut in the middle, unless they are much farther from the surface elsewhere: a long side
+ * that ends in a tight curve would be halved many times until it meets that. */
+static side look_at_side(csg_remesh *r, uint32_t corner, const float f[CUTS])
+{
+    static const double MUCH = 1.5;
+    int worst = MIDDLE;
+    for (int i = 0; i < CUTS; i++)
+        if (fabs((double)f[i]) > MUCH * fabs((double)f[MIDDLE]) && fabsf(f[i]) > fabsf(f[worst]))
+            worst = i;
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    side one = {corner, csg_vec3_norm(csg_vec3_sub(b, a)), fabs((double)f[worst]),
+                place_of(r, corner, worst)};
+    csg_vec3 middle = place_of(r, corner, MIDDLE), to = middle;
+    if (csg_remesh_is_crease(r, corner)) {
+        one.at = middle;
+        one.away = fabs((double)f[MIDDLE]);
+        if (bring_to_crease(r, corner, &to))
             one.away = csg_vec3_norm(csg_vec3_sub(to, middle));
+    }
+    return one;
+}
+
+/* The sides in the order in which they should be cut: long triangles along a curve are as far from
+ * it however short they get. */
+static void sides_to_cut(csg_remesh *r, uint32_t triangle, side sides[3])
+{
+    float at[3 * CUTS][3], f[3 * CUTS];
+    int count = 0;
+    for (uint32_t k = 0; k < 3; k++)
+        for (int i = 0; i < CUTS; i++)
+            csg_vec3_to_floats(at[k * CUTS + (uint32_t)i], place_of(r, 3 * triangle + k, i));
+    csg_probe_values(&r->probe, (const float(*)[3])at, 3 * CUTS, f);
+    for (uint32_t k = 0; k < 3; k++) {
+        side one = look_at_side(r, 3 * triangle + k, f + k * CUTS);
         int i = count++;
         for (; i && is_worse(&one, &sides[i - 1], FAR * r->error); i--)
             sides[i] = sides[i - 1];
@@ -150,12 +176,13 @@ static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
     double worst = fmin(csg_triangle_quality(c, a, b), csg_triangle_quality(d, b, a));
     double least = fmin(1e-3, 0.25 * worst);
     csg_vec3 outward = outward_at(r, at);
-    const csg_vec3 cut[4][3] = {{c, a, at}, {c, at, b}, {d, b, at}, {d, at, a}};
+    const csg_vec3 parts[4][3] = {{c, a, at}, {c, at, b}, {d, b, at}, {d, at, a}};
     for (int i = 0; i < 4; i++) {
-        csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(cut[i][0], cut[i][1], cut[i][2]));
+        csg_vec3 normal =
+            csg_vec3_normalize(csg_triangle_cross(parts[i][0], parts[i][1], parts[i][2]));
         if ((csg_vec3_dot(normal, i < 2 ? left : right) < 0.3 &&
              csg_vec3_dot(normal, outward) < 0.3) ||
-            csg_triangle_quality(cut[i][0], cut[i][1], cut[i][2]) < least)
+            csg_triangle_quality(parts[i][0], parts[i][1], parts[i][2]) < least)
             return false;
     }
     const uint32_t *v = r->corners.vertex;
@@ -165,7 +192,7 @@ static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
                                 {apexes[0], new, ends[1]},
                                 {apexes[1], ends[1], new},
                                 {apexes[1], new, ends[0]}};
-    const csg_crossing_change change = {.at = cut,
+    const csg_crossing_change change = {.at = parts,
                                         .vertex = ids,
                                         .count = 4,
                                         .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
@@ -226,15 +253,18 @@ static bool bring_to_surface(csg_remesh *r, csg_vec3 *at, csg_vec3 normal)
     return find_entry(r, at, normal);
 }
 
-static bool halve(refiner *f, uint32_t corner)
+/* A new vertex goes all the way to the surface, or a share of it. */
+static bool cut(refiner *f, const side *where, double share)
 {
     csg_remesh *r = f->remesh;
-    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
-    csg_vec3 at = csg_vec3_scale(csg_vec3_add(a, b), 0.5);
+    uint32_t corner = where->corner;
+    csg_vec3 at = where->at;
+    csg_vec3 from = at;
     bool is_crease = csg_remesh_is_crease(r, corner);
     if (!(is_crease && bring_to_crease(r, corner, &at)) &&
         !bring_to_surface(r, &at, normal_at(r, corner)))
         return false;
+    at = csg_vec3_add(from, csg_vec3_scale(csg_vec3_sub(at, from), share));
     if (!is_sound(r, corner, at))
         return false;
     uint32_t vertex = free_vertex(f);
@@ -254,7 +284,25 @@ static bool halve(refiner *f, uint32_t corner)
     return true;
 }
 
-/* Halves the open triangles, each at most once a round. */
+/* Where a side is too far from the surface it helps to cut no others: a fan that shares it would
+ * only get narrower. Of narrow triangles a vertex that goes half the way turns less. */
+static bool cut_one(refiner *f, const side sides[3])
+{
+    static const double TOO_FAR = 0.7; /* of the error */
+    double error = f->remesh->error;
+    int count = 0;
+    while (count < 3 && (sides[0].away <= TOO_FAR * error || sides[count].away > FAR * error))
+        count++;
+    for (int i = 0; i < count; i++)
+        if (cut(f, &sides[i], 1))
+            return true;
+    for (int i = 0; i < count && sides[0].away > TOO_FAR * error; i++)
+        if (cut(f, &sides[i], 0.5))
+            return true;
+    return false;
+}
+
+/* Cuts the open triangles, each at most once a round. */
 static bool refine_open(refiner *f)
 {
     csg_remesh *r = f->remesh;
@@ -263,11 +311,8 @@ static bool refine_open(refiner *f)
         if (f->pending[t] != 1 || !csg_corners_is_live(&r->corners, t))
             continue;
         side sides[3];
-        sides_to_halve(r, t, sides);
-        bool done = false;
-        for (int i = 0; i < 3 && !done; i++)
-            done = halve(f, sides[i].corner);
-        changed |= done;
+        sides_to_cut(r, t, sides);
+        changed |= cut_one(f, sides);
     }
     return changed;
 }

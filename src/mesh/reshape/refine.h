@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * More triangles where a thinned out mesh is not good enough: sides are halved, the new vertices
+ * More triangles where a thinned out mesh is not good enough: sides are cut, the new vertices
  * brought to the surface, until everything is proven or nothing helps.
  */
 #ifndef CSG_MESH_RESHAPE_REFINE_H
