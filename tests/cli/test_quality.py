@@ -87,7 +87,7 @@ class Quality(cli.CliTest):
         """What to do where it is too much says how these cells, too, get fewer."""
         # read in milliseconds, meshed in minutes: the limit is reached while it is meshed, however busy the machine is
         endless = "intersection() { cube(40); gyroid(cell = 2, thickness = 0.3); }"
-        for text, options, words in (("sphere(1);", ["--max-memory", "3M"], "--quality draft, or a lower -r"),
+        for text, options, words in (("sphere(1);", ["--max-memory", "3M"], "--quality draft, or with a lower -r"),
                                      (endless, ["--timeout", "1"], "--quality draft, or a lower -r"),
                                      ("sphere(1);", ["--bounds=-1e7,-1e7,-1e7,1e7,1e7,1e7"], "smaller --bounds, or -r")):
             self.write("scene.txt", text)
