@@ -319,16 +319,29 @@ typedef struct preparation {
     csgm_status status[2];
 } preparation;
 
-static bool prepare_side(void *user, uint32_t worker, size_t index)
+static bool inspect_side(void *user, uint32_t worker, size_t index)
 {
     (void)worker;
     preparation *p = user;
     csg_diff_side *side = &p->pair->sides[index];
     side->is_closed = is_closed(side);
-    p->status[index] = inspect(p->pair, side);
-    if (p->status[index] == CSGM_OK && p->with_trees && side->chain.count)
+    p->status[index] = csg_diff_is_cancelled(p->pair) ? CSGM_CANCELLED : inspect(p->pair, side);
+    return p->status[index] == CSGM_OK;
+}
+
+static bool plant_side(void *user, uint32_t worker, size_t index)
+{
+    (void)worker;
+    preparation *p = user;
+    csg_diff_side *side = &p->pair->sides[index];
+    if (p->with_trees && side->chain.count)
         p->status[index] = make_tree(p->pair, side);
     return p->status[index] == CSGM_OK;
+}
+
+static bool is_cancelled(void *pair)
+{
+    return csg_diff_is_cancelled(pair);
 }
 
 static void report_sides(void *user, size_t done, size_t count)
@@ -340,9 +353,19 @@ csgm_status csg_diff_pair_prepare(csg_diff_pair *pair, bool with_trees)
 {
     CSG_ZONE(pair->context, "trees");
     preparation p = {pair, with_trees, {CSGM_OK, CSGM_OK}};
-    csg_diff_take(pair, 0.1);
-    if (csg_pool_run(pair->context->pool, 2, prepare_side, report_sides, &p))
+    csg_diff_take(pair, 0.05);
+    csg_memory *memory = &pair->context->memory;
+    csg_pool *pool = pair->context->pool;
+    bool good = csg_pool_run(pool, 2, inspect_side, report_sides, &p);
+    csg_diff_take(pair, 0.05);
+    csg_memory_end_when(memory, is_cancelled,
+                        pair); /* trees of millions of triangles take a while */
+    good = good && csg_pool_run(pool, 2, plant_side, report_sides, &p);
+    csg_memory_end_when(memory, NULL, NULL);
+    if (good)
         return CSGM_OK;
+    if (csg_diff_is_cancelled(pair))
+        return CSGM_CANCELLED;
     return p.status[0] == CSGM_ERR_LIMIT || p.status[1] == CSGM_ERR_LIMIT
                ? CSGM_ERR_LIMIT
                : csg_context_no_memory(pair->context);

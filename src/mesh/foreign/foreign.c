@@ -104,9 +104,15 @@ static csgm_status do_part(job *j, csg_arena *arena, const csgm_mesh_part *part)
 {
     csg_foreign_piece piece;
     csg_repairs repairs;
+    csg_memory *memory = &j->watch->context->memory;
+    csg_memory_end_when(memory, stop,
+                        j); /* mending knows of no time, but takes memory in each step */
     csgm_status status = csg_foreign_piece_make(arena, &j->source, part->first_triangle,
                                                 part->triangle_count, &piece, &repairs);
-    bool good = true;
+    bool good = true, is_late = csg_memory_has_ended(memory);
+    csg_memory_end_when(memory, NULL, NULL);
+    if (is_late)
+        return why_stopped(j);
     if (status == CSGM_ERR_SCENE) {
         tell_left(j, part);
         good =

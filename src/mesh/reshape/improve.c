@@ -164,12 +164,19 @@ static bool flip(csg_improver *m, uint32_t corner)
 /* ---- the passes -------------------------------------------------------------------------------
  */
 
+/* Not when time is up: asked from time to time, for a pass over millions takes a while. */
+static bool goes_on(const csg_improver *m, uint32_t index)
+{
+    enum { PER_QUESTION = 1024 };
+    return index % PER_QUESTION != 0 || !csg_mesh_should_stop(m->remesh->watch);
+}
+
 /* Of each bad triangle the shortest edge that may go. */
 static uint64_t collapse_all(csg_improver *m)
 {
     csg_remesh *r = m->remesh;
     uint64_t changes = 0;
-    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
+    for (uint32_t t = 0; t < r->corners.triangle_count && goes_on(m, t); t++) {
         if (!csg_corners_is_live(&r->corners, t))
             continue;
         const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
@@ -190,7 +197,7 @@ static uint64_t flip_all(csg_improver *m)
 {
     const csg_corners *corners = &m->remesh->corners;
     uint64_t changes = 0;
-    for (uint32_t c = 0; c < 3 * corners->triangle_count; c++)
+    for (uint32_t c = 0; c < 3 * corners->triangle_count && goes_on(m, c); c++)
         if (csg_corners_is_live(corners, c / 3) &&
             csg_corner_previous(c) < corners->across[csg_corner_previous(c)])
             changes += flip(m, c);
@@ -201,7 +208,7 @@ static uint64_t move_all(csg_improver *m, double enough)
 {
     const csg_corners *corners = &m->remesh->corners;
     uint64_t changes = 0;
-    for (uint32_t v = 0; v < corners->vertex_count; v++)
+    for (uint32_t v = 0; v < corners->vertex_count && goes_on(m, v); v++)
         if (corners->corner[v] != CSG_CORNER_NONE)
             changes += move(m, v, enough);
     return changes;
