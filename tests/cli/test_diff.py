@@ -61,6 +61,8 @@ class Diff(diff_support.DiffTest):
         ways = [(name, "--normals", "auto") for name in formats]
         ways += [(name, "--normals", normals) for name in {"obj", "glb"} & set(formats) for normals in ("vertex", "none")]
         ways += [("glb", "--draco"), ("gltf", "--draco")] if "drc" in formats else []
+        if cli.has_library("meshoptimizer") and cli.has_library("tinygltf"):
+            ways += [("glb", "--compress=meshopt"), ("gltf", "--compress=meshopt"), ("glb", "--compress=meshopt-khr")]
         for extension, *options in ways:
             self.write("s.txt", parts)
             self.assert_status(self.run_in("s.txt", "-q", "-r", "24", "-o", "s." + extension, *options), 0)

@@ -56,8 +56,9 @@ static size_t scan_atom(document *d, size_t at)
     if (d->data[at] == '"' || d->data[at] == '\'') {
         for (end = at + 1; end < d->size && d->data[end] != d->data[at]; end++)
             end += d->data[end] == '\\' && end + 1 < d->size;
-        add(d->atoms, &d->atom_count, at + 1, end < d->size ? end : d->size);
-        return end + 1;
+        end = end < d->size ? end : d->size;
+        add(d->atoms, &d->atom_count, at + 1, end);
+        return end < d->size ? end + 1 : end;
     }
     while (end < d->size && is_of_number(d->data[end]))
         end++;
@@ -95,8 +96,8 @@ static void scan_xml(document *d)
         bool ends = at < d->size && d->data[at] == '/';
         while (at < d->size && d->data[at] != '>')
             at = d->data[at] == '"' || d->data[at] == '\'' ? scan_atom(d, at) : at + 1;
-        bool alone = !ends && (d->data[(at < d->size ? at : d->size) - 1] == '/' ||
-                               d->data[begin + 1] == '?');
+        bool alone =
+            !ends && at - 1 > begin && (d->data[at - 1] == '/' || d->data[begin + 1] == '?');
         at += at < d->size;
         if (alone)
             add(d->items, &d->item_count, begin, at);

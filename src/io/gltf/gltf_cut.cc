@@ -4,6 +4,7 @@
 #include "io/gltf/gltf_cut.hh"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "io/parts.h"
 #include "io/units.h"
@@ -23,6 +24,16 @@ void refuse(csgm_status status, const char *format, ...)
 
 /* ---- before tinygltf: a smaller document ------------------------------------------------------
  */
+
+/* Whether the system has so much. nlohmann's values allocate when they are destroyed, so memory
+ * that ends among them ends the program: it is asked for as a whole before there is one. */
+static bool can_be_had(uint64_t bytes)
+{
+    void *volatile room = bytes <= SIZE_MAX ? std::malloc(static_cast<size_t>(bytes)) : nullptr;
+    bool is_there = room;
+    std::free(room);
+    return is_there;
+}
 
 /* The parser itself does not recurse, but what walks its result may. And neither it nor tinygltf
  * can be told how much memory there is: what they will take is bounded from what is in the text. */
@@ -56,7 +67,7 @@ static void check_document(const char *text, size_t size, const csg_gltf_calls *
             depth--;
         }
     }
-    if (!calls->allows(calls->user, bytes))
+    if (!calls->allows(calls->user, bytes) || !can_be_had(bytes))
         refuse(CSGM_ERR_MEMORY, "the document takes too much memory");
 }
 

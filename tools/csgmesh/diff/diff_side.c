@@ -25,23 +25,46 @@ bool diff_path_is_scene(const char *path)
 }
 
 /* Does the file name the extension? It may stand behind a whole buffer in base64. */
-static bool is_compressed(const char *path)
+static bool names(const char *path, const char *wanted)
 {
-    static const char wanted[] = "KHR_draco_mesh_compression";
-    enum { CHUNK = 1 << 16, KEPT = sizeof wanted - 2 };
-    static char bytes[KEPT + CHUNK];
+    enum { CHUNK = 1 << 16, LONGEST = 64 };
+    static char bytes[LONGEST + CHUNK];
+    const size_t length = strlen(wanted), most = length - 1;
     FILE *file = fopen(path, "rbe");
     size_t kept = 0, got;
     bool found = false;
     while (file && !found && (got = fread(bytes + kept, 1, CHUNK, file)) > 0) {
-        found = memmem(bytes, kept + got, wanted, sizeof wanted - 1);
-        size_t left = kept + got < KEPT ? kept + got : KEPT;
+        found = memmem(bytes, kept + got, wanted, length);
+        size_t left = kept + got < most ? kept + got : most;
         memmove(bytes, bytes + kept + got - left, left);
         kept = left;
     }
     if (file)
         fclose(file);
     return found;
+}
+
+/* How a glTF file is compressed. */
+static diff_compression compression_of(csgm_format format, const char *path)
+{
+    uint32_t traits = csgm_format_traits(format);
+    if (traits & CSGM_HEEDS_DRACO && names(path, "KHR_draco_mesh_compression"))
+        return DIFF_DRACO;
+    if (!(traits & CSGM_HEEDS_MESHOPT))
+        return DIFF_PLAIN;
+    return names(path, "KHR_meshopt_compression")   ? DIFF_MESHOPT_KHR
+           : names(path, "EXT_meshopt_compression") ? DIFF_MESHOPT
+                                                    : DIFF_PLAIN;
+}
+
+/* Unless the command line says another way. */
+static void compress_so(csgm_write_options *options, diff_compression compression)
+{
+    if (options->draco || options->meshopt)
+        return;
+    options->draco = compression == DIFF_DRACO;
+    options->meshopt = compression == DIFF_MESHOPT || compression == DIFF_MESHOPT_KHR;
+    options->meshopt_khr = compression == DIFF_MESHOPT_KHR;
 }
 
 /* The scene's mesh as the other file would hold it. */
@@ -55,7 +78,7 @@ static int mesh_scene(cli_app *app, diff_side *side)
     side->view = csgm_mesh_get_view(side->work.mesh);
     if (side->as == CSGM_FORMAT_AUTO || !side->view.triangle_count)
         return CLI_DONE;
-    options.draco |= side->draco;
+    compress_so(&options, side->compression);
     csgm_status made =
         csgm_mesh_as_file(app->context, &side->view, side->as, &options, &side->mesh);
     if (made == CSGM_OK)
@@ -75,7 +98,7 @@ static int open_scene(cli_app *app, diff_side *side, const char *other)
     side->normals = app->options->given[CLI_OPTION_normals] ? cli_outputs_normals(app->options)
                     : creases                               ? CSGM_NORMALS_CREASE
                                                             : CSGM_NORMALS_VERTEX;
-    side->draco = traits & CSGM_HEEDS_DRACO && is_compressed(other);
+    side->compression = compression_of(format, other);
     return CLI_DONE;
 }
 
@@ -231,7 +254,7 @@ int diff_update(cli_app *app, const char *path_a, diff_side *b, const char *path
         return status;
     csgm_write_options options = cli_outputs_options(app, NULL);
     options.ascii |= ascii;
-    options.draco |= csgm_format_traits(format) & CSGM_HEEDS_DRACO && is_compressed(path_a);
+    compress_so(&options, compression_of(format, path_a));
     csgm_mesh_view view = b->work.mesh ? csgm_mesh_get_view(b->work.mesh) : b->view;
     return cli_exit_status(
         csgm_mesh_write(app->context, &view, path_a, CSGM_FORMAT_AUTO, &options));

@@ -6,15 +6,22 @@
 
 #include "core/work.h"
 
+typedef enum diff_compression {
+    DIFF_PLAIN,
+    DIFF_DRACO,
+    DIFF_MESHOPT,
+    DIFF_MESHOPT_KHR
+} diff_compression;
+
 typedef struct diff_side {
     const char *path;
     csgm_format format; /* AUTO: a scene, or nothing */
     cli_work work;      /* of a scene */
     csgm_mesh *mesh;    /* of a file, or a scene's as a file of the other's format has it */
     csgm_mesh_view view;
-    csgm_format as;       /* of a scene: the other's format, AUTO: none */
-    csgm_normals normals; /* of a scene: as the other is thought to have them */
-    bool draco;           /* the other is compressed glTF */
+    csgm_format as;               /* of a scene: the other's format, AUTO: none */
+    csgm_normals normals;         /* of a scene: as the other is thought to have them */
+    diff_compression compression; /* of the other, which is glTF */
 } diff_side;
 
 bool diff_path_is_nothing(const char *path); /* as git names a file that is not there */
