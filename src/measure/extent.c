@@ -60,20 +60,42 @@ static double reach_of(const search *s, const csg_measure_cube *q, double value,
     return middle + fmin(fmax(-rest / along, -q->half), q->half);
 }
 
+/* The same of a formula; sure: of points that are in the solid for certain. Of an intersection that
+ * is known of one operand alone, where the others hold all over the cube. */
+static double reach_of_halves(const search *s, const csg_measure_cube *q, const csg_halves *h,
+                              bool sure)
+{
+    static const double ROUNDING = 1e-12; /* of the planes' own arithmetic */
+    double stack[CSG_HALVES_CODE], full = s->turn * q->c[s->axis] + q->half;
+    int top = 0;
+    for (int i = 0; i < h->length; i++) {
+        if (h->code[i] >= 0) {
+            const csg_enclosure *e = &h->planes[h->code[i]];
+            double steep = fabs(e->slope[0]) + fabs(e->slope[1]) + fabs(e->slope[2]);
+            double room = ROUNDING * (fabs(e->value) + q->half * steep);
+            double value = sure ? e->value - e->below - room : e->value + e->above + room;
+            bool is_all = sure && value >= q->half * steep;
+            stack[top++] = is_all ? INFINITY : reach_of(s, q, value, e->slope);
+            continue;
+        }
+        double a = stack[top - 2], b = stack[top - 1], least = fmin(a, b), most = fmax(a, b);
+        if (h->code[i] == CSG_HALVES_UNION)
+            stack[--top - 1] = most;
+        else
+            stack[--top - 1] = !sure || most >= INFINITY ? least : -INFINITY;
+    }
+    return fmin(stack[0], full);
+}
+
 /* What the cube shows, and how far the solid in it can reach. */
 static double look_at(search *s, csg_measure_cube *q)
 {
-    static const double ROUNDING = 1e-12; /* of the planes' own arithmetic */
-    csg_enclosure e;
+    csg_halves halves;
     double most = s->turn * q->c[s->axis] + q->half;
     s->cubes++;
-    if (q->state == CSG_CELL_SURFACE && csg_measure_enclose(s->walk, s->worker, q, &e)) {
-        double room =
-            ROUNDING *
-            (fabs(e.value) + q->half * (fabs(e.slope[0]) + fabs(e.slope[1]) + fabs(e.slope[2])));
-        double least = reach_of(s, q, e.value - e.below - room, e.slope);
-        most = fmin(most, reach_of(s, q, e.value + e.above + room, e.slope));
-        s->found = fmax(s->found, least);
+    if (q->state == CSG_CELL_SURFACE && csg_measure_enclose(s->walk, s->worker, q, &halves)) {
+        s->found = fmax(s->found, reach_of_halves(s, q, &halves, true));
+        most = fmin(most, reach_of_halves(s, q, &halves, false));
     }
     if (q->state == CSG_CELL_INSIDE)
         s->found = fmax(s->found, most);

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "measure/cut.h"
+#include "measure/carve.h"
 
 enum { ASK_EVERY = 256 /* cubes, whether to stop */ };
 
@@ -89,15 +89,15 @@ static bool settle(const rounds *r, csg_measure_worker *worker, sum *s, csg_meas
                    bool is_last)
 {
     double known[CSG_INTEGRALS] = {0}, open = volume_of(q);
-    csg_enclosure e;
+    csg_halves halves;
     s->cubes++;
-    if (csg_measure_enclose(r->walk, worker, q, &e)) {
+    if (csg_measure_enclose(r->walk, worker, q, &halves)) {
         if (q->state == CSG_CELL_INSIDE)
             add_inside(s, q);
         if (q->state != CSG_CELL_SURFACE)
             return true;
-        double most = csg_cut_cube(q->half, e.value + e.above, e.slope, NULL);
-        double least = csg_cut_cube(q->half, e.value - e.below, e.slope, known);
+        double most = csg_carve(&halves, q->half, CSG_CARVE_MOST, NULL);
+        double least = csg_carve(&halves, q->half, CSG_CARVE_LEAST, known);
         open = fmin(fmax(most - least, 0), open);
     }
     if (open > r->share && !is_last)

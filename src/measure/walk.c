@@ -82,17 +82,13 @@ bool csg_measure_divide(const csg_measure_walk *w, csg_measure_worker *s,
 }
 
 bool csg_measure_enclose(const csg_measure_walk *w, csg_measure_worker *s, csg_measure_cube *q,
-                         csg_enclosure *out)
+                         csg_halves *out)
 {
-    if (q->tape.count > CSG_SLOPES_NODES ||
-        !csg_enclosure_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats, out))
+    if (!csg_halves_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats, out))
         return false;
-    double reach = q->half * (fabs(out->slope[0]) + fabs(out->slope[1]) + fabs(out->slope[2]));
-    reach *= 1 + 1e-12;
-    if (out->value + out->above < -reach)
-        q->state = CSG_CELL_OUTSIDE;
-    else if (out->value - out->below > reach)
-        q->state = CSG_CELL_INSIDE;
+    csg_truth state = csg_halves_state(out, q->half);
+    if (state != CSG_TRUTH_OPEN)
+        q->state = state == CSG_TRUTH_YES ? CSG_CELL_INSIDE : CSG_CELL_OUTSIDE;
     return true;
 }
 

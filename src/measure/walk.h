@@ -6,7 +6,7 @@
 #define CSG_MEASURE_WALK_H
 
 #include "field/prune/prune.h"
-#include "measure/enclosure.h"
+#include "measure/halves.h"
 #include "mesh/watch.h"
 
 enum { CSG_MEASURE_DEEPEST = 16 /* levels below the root: 8 bits of half and these are a float */ };
@@ -52,9 +52,8 @@ bool csg_measure_divide(const csg_measure_walk *walk, csg_measure_worker *worker
                         const csg_measure_cube *parent, csg_arena *arena,
                         csg_measure_cube children[CSG_OCTANTS]);
 
-/* Between which planes the field is in the cube. It may become INSIDE or OUTSIDE. False: nothing is
- * known. */
+/* The solid in the cube. It may become INSIDE or OUTSIDE. False: nothing is known. */
 bool csg_measure_enclose(const csg_measure_walk *walk, csg_measure_worker *worker,
-                         csg_measure_cube *cube, csg_enclosure *out);
+                         csg_measure_cube *cube, csg_halves *out);
 
 #endif

@@ -189,3 +189,25 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
         balls->corner = l.norm; /* in its own frame they are unit vectors */
     return !leaf->warp || csg_cone_unwarp(&way, balls, first);
 }
+
+bool csg_cone_find_faces(csg_cone_balls *balls, csg_cone_face faces[CSG_CONE_MOST],
+                         const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                         double radius)
+{
+    const float *parameters = tape->parameters + leaf->parameters;
+    double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
+    double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
+    csg_cone_leaf l = {
+        .balls = balls, .faces = faces, .rho = radius + (double)parameters[CSG_LEAF_SLACK]};
+    balls->count = 0;
+    if (leaf->warp || !csg_op_has(leaf->op, CSG_TRAIT_FACES) || !add_placed(&l, tape, leaf, at) ||
+        l.face_count != balls->count || !(-raise / sigma >= l.sharp_from))
+        return false;
+    for (uint32_t i = 0; i < l.face_count; i++) {
+        csg_cone_face f = faces[i];
+        faces[i].value = sigma * f.value + raise;
+        faces[i].below = fabs(sigma) * (sigma > 0 ? f.below : f.above);
+        faces[i].above = fabs(sigma) * (sigma > 0 ? f.above : f.below);
+    }
+    return balls->count > 0;
+}

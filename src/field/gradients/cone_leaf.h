@@ -14,4 +14,12 @@
 bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                        const float c[3], double radius);
 
+/* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
+ * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is
+ * not so.
+ */
+bool csg_cone_find_faces(csg_cone_balls *balls, csg_cone_face faces[CSG_CONE_MOST],
+                         const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                         double radius);
+
 #endif

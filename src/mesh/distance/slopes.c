@@ -182,6 +182,13 @@ static double joined_value(const csg_tape_node *node, float n, float chi, double
     return fmax(a, b) + (double)blend_at(node->join_blend, n, chi, a - b).value;
 }
 
+double csg_slopes_fold(const csg_tape_node *node, float n, float chi, double a, double b,
+                       double *share)
+{
+    *share = share_at(node->join_blend, n, chi, a - b);
+    return joined_value(node, n, chi, a, b);
+}
+
 static double orthogonal_value(double n, double turn, double a, double b)
 {
     double u = turn * (a - n), v = turn * (b - n);
@@ -278,18 +285,18 @@ double csg_slopes_value(const operand *o, which w)
     return NAN;
 }
 
-/* The value of a round union, by Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12),
- * from its largest operand: convex and falling there, so they rise to the root. */
-static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
+/* By Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12), from its largest operand:
+ * convex and falling there, so they rise to the root. */
+double csg_slopes_round(const double *values, uint32_t count, double w)
 {
     enum { STEPS = 40 };
     double f = -INFINITY;
     for (uint32_t i = 0; i < count; i++)
-        f = fmax(f, turn * csg_slopes_value(&of[i], what));
+        f = fmax(f, values[i]);
     for (int step = 0; step < STEPS; step++) {
         double squares = -w * w, slope = 0;
         for (uint32_t i = 0; i < count; i++) {
-            double u = fmax(turn * csg_slopes_value(&of[i], what) - f + w, 0);
+            double u = fmax(values[i] - f + w, 0);
             squares += u * u;
             slope += 2 * u;
         }
@@ -297,7 +304,15 @@ static double round_value(const operand *of, which what, uint32_t count, double 
             break;
         f += squares / slope;
     }
-    return turn * f;
+    return f;
+}
+
+static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
+{
+    double values[CSG_SLOPES_NODES];
+    for (uint32_t i = 0; i < count; i++)
+        values[i] = turn * csg_slopes_value(&of[i], what);
+    return turn * csg_slopes_round(values, count, w);
 }
 
 /* Shares are in the proportions of (f_i - F + w)_+. Operands are mixed one after the other, each

@@ -38,4 +38,11 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
                         csg_vec3 c, double radius, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
 
+/* What a join by a fold gives of two values of a union (of an intersection: turned around), and the
+ * share of a. n, chi: the join's parameters. */
+double csg_slopes_fold(const csg_tape_node *node, float n, float chi, double a, double b,
+                       double *share);
+/* A round union of width w of these values. */
+double csg_slopes_round(const double *values, uint32_t count, double w);
+
 #endif

@@ -38,10 +38,19 @@ typedef struct csg_cone_balls {
         corner; /* of the leaf added last: 0, or how long its gradients may be where faces meet */
 } csg_cone_balls;
 
+/* A face as a field of its own: within [value - below, value + above] + (its ball's centre) .
+ * (x - q) all over the ball. */
+typedef struct csg_cone_face {
+    double value, below, above;
+} csg_cone_face;
+
 /* A leaf in its own frame. */
 typedef struct csg_cone_leaf {
     csg_cone_balls *balls;
-    const float *own; /* parameters as packed */
+    csg_cone_face *faces; /* of each ball where it is a face; NULL: nobody asks */
+    uint32_t face_count;
+    double sharp_from; /* {f >= level} is the faces' intersection for levels no less than this */
+    const float *own;  /* parameters as packed */
     double q[3], rho;
     double turn[3][3]; /* own gradient -> tape's: sigma times the frame's transpose */
     double norm;       /* of turn, at least */
@@ -58,6 +67,23 @@ static inline bool csg_cone_add(csg_cone_leaf *l, double x, double y, double z, 
         ball->at[k] = l->turn[k][0] * g[0] + l->turn[k][1] * g[1] + l->turn[k][2] * g[2];
     ball->spread = l->norm * spread;
     return true;
+}
+
+/* A flat face with its outward normal turned around, whose field is `value` at q. */
+static inline bool csg_cone_add_face(csg_cone_leaf *l, double x, double y, double z, double value)
+{
+    if (l->faces && l->balls->count < CSG_CONE_MOST)
+        l->faces[l->face_count++] = (csg_cone_face){value, 0, 0};
+    return csg_cone_add(l, x, y, z, 0);
+}
+
+/* One that bends: its field leaves the plane by no more than these. */
+static inline bool csg_cone_add_bent_face(csg_cone_leaf *l, double x, double y, double z,
+                                          double spread, csg_cone_face face)
+{
+    if (l->faces && l->balls->count < CSG_CONE_MOST)
+        l->faces[l->face_count++] = face;
+    return csg_cone_add(l, x, y, z, spread);
 }
 
 /* Chord of the largest turn of a vector of length d that moves by rho; 2 = any direction. */

@@ -178,19 +178,22 @@ static inline bool csg_frustum_gradients(csg_cone_leaf *l)
     double from = fmin(0, most - l->rho), reach = l->rho * (1 + 2.2 / nx);
     uint32_t faces = 0;
     bool done = true;
+    l->sharp_from = (double)own[6];
     if (side + reach >= from) {
-        double turn = csg_cone_turn_within(radius, l->rho);
+        double turn = csg_cone_turn_within(radius, l->rho), v = (double)own[6] - side;
         double ex = radius > 0 ? l->q[0] / radius : 0, ey = radius > 0 ? l->q[1] / radius : 0;
-        done = turn < 1.4 ? csg_cone_add(l, -nx * ex, -nx * ey, -nz, nx * turn)
-                          : csg_cone_add(l, 0, 0, -nz, nx);
+        const csg_cone_face bent = {v, 0.5 * nx * turn * l->rho, 0},
+                            tip = {v, nx * l->rho, nx * l->rho};
+        done = turn < 1.4 ? csg_cone_add_bent_face(l, -nx * ex, -nx * ey, -nz, nx * turn, bent)
+                          : csg_cone_add_bent_face(l, 0, 0, -nz, nx, tip);
         faces++;
     }
     if (top + reach >= from && (own[1] + own[7] > 0 || own[6] > 0)) {
-        done = done && csg_cone_add(l, 0, 0, -1, 0);
+        done = done && csg_cone_add_face(l, 0, 0, -1, (double)own[6] - top);
         faces++;
     }
     if (bottom + reach >= from && (own[0] > 0 || own[6] > 0)) {
-        done = done && csg_cone_add(l, 0, 0, 1, 0);
+        done = done && csg_cone_add_face(l, 0, 0, 1, (double)own[6] - bottom);
         faces++;
     }
     l->balls->has_edges |= faces > 1 && own[6] == 0;

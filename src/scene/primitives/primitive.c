@@ -85,6 +85,7 @@ bool csg_cone_add_box(csg_cone_leaf *l, int axes)
     if (sqrt(over[0] * over[0] + over[1] * over[1] + over[2] * over[2]) > 1.2 * l->rho)
         return csg_cone_add_away(l, over[0], over[1], over[2]);
     uint32_t faces = 0;
+    l->sharp_from = (double)l->own[axes];
     for (int k = 0; k < axes; k++) {
         if (a[k] + l->rho < fmin(0, most - l->rho))
             continue;
@@ -94,7 +95,8 @@ bool csg_cone_add_box(csg_cone_leaf *l, int axes)
             if (side * l->q[k] < -l->rho)
                 continue; /* the other side is the nearer one all over the ball */
             faces++;
-            if (!csg_cone_add(l, g[0], g[1], g[2], 0))
+            if (!csg_cone_add_face(l, g[0], g[1], g[2],
+                                   (double)l->own[axes] + (double)l->own[k] - side * l->q[k]))
                 return false;
         }
     }

@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: MIT
+ * Formulas of half spaces from tapes; see halves.h. A stack of operands, as the tape's own
+ * evaluation has one; their planes and code stand one after the other in what goes out.
+ */
+#include "measure/halves.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "field/gradients/cone_leaf.h"
+#include "field/point.h"
+#include "scene/operators/blend.h"
+#include "scene/operators/blend_kinds.h"
+
+typedef struct operand {
+    uint32_t first;  /* node of its subtree */
+    int plane, at;   /* where its planes and its code begin */
+    bool signs_only; /* the planes tell inside from outside, not the field's value */
+} operand;
+
+/* What a blend makes of planes' values, all turned, and the shares of them. */
+typedef struct blender {
+    const csg_tape_node *node; /* NULL: a round one */
+    float n, support;
+} blender;
+
+enum { ORIGIN_MOST = 4 };
+
+/* Of a plane: the blend that it encloses, turned, up to these errors. */
+typedef struct origin {
+    csg_enclosure operands[ORIGIN_MOST];
+    uint32_t count; /* 0: it is none, or of more operands */
+    blender by;
+    double turn, below, above;
+} origin;
+
+typedef struct walker {
+    const csg_kernel *kernel;
+    const csg_tape *tape;
+    const double *c;
+    double half;
+    float *scratch;
+    size_t scratch_floats;
+    float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS]; /* corners */
+    float low_at_c[CSG_SLOPES_NODES * CSG_OCTANTS], high_at_c[CSG_SLOPES_NODES * CSG_OCTANTS];
+    operand stack[CSG_SLOPES_NODES];
+    uint32_t top;
+    origin origins[CSG_HALVES_MOST];
+    csg_halves *out;
+} walker;
+
+static double corner(const walker *w, int o, int axis)
+{
+    return o >> axis & 1 ? w->half : -w->half;
+}
+
+static double plane_at(const csg_enclosure *e, const double at[3])
+{
+    return e->value + e->slope[0] * at[0] + e->slope[1] * at[1] + e->slope[2] * at[2];
+}
+
+static double plane_at_corner(const walker *w, const csg_enclosure *e, int o)
+{
+    const double at[3] = {corner(w, o, 0), corner(w, o, 1), corner(w, o, 2)};
+    return plane_at(e, at);
+}
+
+/* ---- the formula -------------------------------------------------------------------------------
+ */
+
+static bool put_code(csg_halves *h, int code)
+{
+    if (h->length >= CSG_HALVES_CODE)
+        return false;
+    h->code[h->length++] = (signed char)code;
+    return true;
+}
+
+static bool put_plane(walker *w, const csg_enclosure *e)
+{
+    csg_halves *h = w->out;
+    if (h->plane_count >= CSG_HALVES_MOST || !put_code(h, h->plane_count))
+        return false;
+    w->origins[h->plane_count].count = 0;
+    h->planes[h->plane_count++] = *e;
+    return true;
+}
+
+static void push_operand(walker *w, uint32_t first)
+{
+    w->stack[w->top++] =
+        (operand){.first = first, .plane = w->out->plane_count, .at = w->out->length};
+}
+
+/* What the operand has is taken back. */
+static void forget(walker *w, const operand *o)
+{
+    w->out->plane_count = o->plane;
+    w->out->length = o->at;
+}
+
+/* The operand's plane, where it is one alone. */
+static csg_enclosure *single(const walker *w, const operand *o)
+{
+    bool is_last = o == &w->stack[w->top - 1];
+    int end = is_last ? w->out->length : o[1].at;
+    return end - o->at == 1 ? &w->out->planes[o->plane] : NULL;
+}
+
+/* The operand's value is known by one plane. */
+static bool has_value(const walker *w, const operand *o)
+{
+    return single(w, o) && !o->signs_only;
+}
+
+/* ---- pieces ------------------------------------------------------------------------------------
+ */
+
+/* The subtree of these nodes becomes one operand, between the planes that its gradients allow. */
+static bool take_whole(walker *w, uint32_t first, uint32_t last, bool with_join)
+{
+    csg_tape_node nodes[CSG_SLOPES_NODES];
+    csg_tape tape = *w->tape;
+    csg_enclosure e;
+    tape.nodes = nodes;
+    tape.count = last - first + 1;
+    memcpy(nodes, w->tape->nodes + first, tape.count * sizeof *nodes);
+    if (!with_join)
+        nodes[last - first].join = CSG_JOIN_NONE;
+    if (!csg_enclosure_find(w->kernel, &tape, w->c, w->half, w->scratch, w->scratch_floats, &e))
+        return false;
+    push_operand(w, first);
+    return put_plane(w, &e);
+}
+
+/* A concave field is nowhere above its tangent plane, and farthest below it at a corner of the
+ * cube. */
+static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
+{
+    csg_tape_node alone = w->tape->nodes[index];
+    csg_tape tape = *w->tape;
+    const float *low = w->low + (size_t)index * CSG_OCTANTS,
+                *high = w->high + (size_t)index * CSG_OCTANTS;
+    double at_low = (double)w->low_at_c[(size_t)index * CSG_OCTANTS];
+    double at_high = (double)w->high_at_c[(size_t)index * CSG_OCTANTS], most = 0;
+    bool is_turned = tape.parameters[alone.parameters + CSG_LEAF_SIGMA] < 0;
+    alone.join = CSG_JOIN_NONE;
+    tape.nodes = &alone;
+    tape.count = 1;
+    csg_vec3 g = csg_tape_gradient_at(w->kernel, &tape, csg_vec3_make(w->c[0], w->c[1], w->c[2]),
+                                      w->scratch, w->scratch_floats);
+    *e = (csg_enclosure){.value = 0.5 * (at_low + at_high), .slope = {g.x, g.y, g.z}};
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        double plane = plane_at_corner(w, e, o);
+        most = fmax(most, is_turned ? (double)high[o] - plane : plane - (double)low[o]);
+    }
+    double rounding =
+        2 * (at_high - at_low) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g)) * 2 * w->half;
+    e->below = rounding + (is_turned ? 0 : most);
+    e->above = rounding + (is_turned ? most : 0);
+    return isfinite(e->value + e->below + e->above + csg_vec3_norm(g));
+}
+
+/* Where its faces meet, as their intersection. */
+static bool put_faces(walker *w, uint32_t index)
+{
+    const csg_tape_node *leaf = &w->tape->nodes[index];
+    const float *parameters = w->tape->parameters + leaf->parameters;
+    const float c[3] = {(float)w->c[0], (float)w->c[1], (float)w->c[2]};
+    double radius = csg_enclosure_radius(w->half);
+    csg_cone_balls balls = {.count = 0};
+    csg_cone_face faces[CSG_CONE_MOST];
+    int joined = parameters[CSG_LEAF_SIGMA] < 0 ? CSG_HALVES_UNION : CSG_HALVES_INTERSECTION;
+    if (!csg_cone_find_faces(&balls, faces, w->tape, leaf, c, radius))
+        return false;
+    for (uint32_t i = 0; i < balls.count; i++) {
+        const double *g = balls.items[i].at;
+        double rounding = 2 * (double)parameters[CSG_LEAF_SLACK] +
+                          CSG_ENCLOSURE_ROUNDING *
+                              fmax(1, sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])) * radius;
+        const csg_enclosure e = {.value = faces[i].value,
+                                 .slope = {g[0], g[1], g[2]},
+                                 .below = faces[i].below + rounding,
+                                 .above = faces[i].above + rounding};
+        if (!isfinite(e.value + e.below + e.above) || !put_plane(w, &e) ||
+            (i && !put_code(w->out, joined)))
+            return false;
+    }
+    return true;
+}
+
+static bool push_leaf(walker *w, uint32_t index)
+{
+    static const double BENT = 0.05; /* of the half edge */
+    const csg_tape_node *leaf = &w->tape->nodes[index];
+    csg_enclosure e;
+    if (leaf->warp || !csg_op_has(leaf->op, CSG_TRAIT_CONVEX))
+        return take_whole(w, index, index, false);
+    push_operand(w, index);
+    if (!find_of_concave(w, index, &e))
+        return false;
+    if (e.below + e.above > BENT * w->half) {
+        operand *o = &w->stack[w->top - 1];
+        o->signs_only = put_faces(w, index);
+        if (o->signs_only)
+            return true;
+        forget(w, o);
+    }
+    return put_plane(w, &e);
+}
+
+/* ---- operators ---------------------------------------------------------------------------------
+ */
+
+/* How far the plane reaches from its value at the centre. */
+static double reach_of(const double slope[3], double half)
+{
+    return half * (fabs(slope[0]) + fabs(slope[1]) + fabs(slope[2])) * (1 + 1e-12);
+}
+
+/* Whether b is nowhere above a, both turned. */
+static bool hides(const walker *w, const csg_enclosure *a, const csg_enclosure *b, double turn)
+{
+    double d[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = a->slope[k] - b->slope[k];
+    double room = turn > 0 ? a->below + b->above : a->above + b->below;
+    return turn * (a->value - b->value) - reach_of(d, w->half) - room >= 0;
+}
+
+/* Whether the plane is nowhere above zero, turned: an orthogonal join with it is a sharp one. */
+static bool is_negative(const walker *w, const csg_enclosure *e, double turn)
+{
+    double room = turn > 0 ? e->above : e->below;
+    return turn * e->value + reach_of(e->slope, w->half) + room <= 0;
+}
+
+/* is_orthogonal: of the same sign only, unless one operand has no say. */
+static bool join_sharply(walker *w, const csg_tape_node *node, bool is_orthogonal)
+{
+    operand *a = &w->stack[w->top - 2], *b = &w->stack[w->top - 1];
+    double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
+    csg_enclosure *p = single(w, a), *q = single(w, b);
+    bool plain = p && q && (is_negative(w, p, turn) || is_negative(w, q, turn));
+    w->top--;
+    a->signs_only |= b->signs_only || (is_orthogonal && !plain);
+    if (p && q && hides(w, p, q, turn)) {
+        forget(w, b);
+        return true;
+    }
+    if (p && q && hides(w, q, p, turn)) {
+        csg_enclosure kept = *q;
+        origin from = w->origins[b->plane];
+        forget(w, a);
+        bool done = put_plane(w, &kept);
+        w->origins[a->plane] = from;
+        return done;
+    }
+    return put_code(w->out, turn > 0 ? CSG_HALVES_UNION : CSG_HALVES_INTERSECTION);
+}
+
+static double blend(const blender *b, const double *values, uint32_t count, double *shares)
+{
+    if (b->node) {
+        double value = csg_slopes_fold(b->node, b->n, b->support, values[0], values[1], shares);
+        shares[1] = 1 - shares[0];
+        return value;
+    }
+    double value = csg_slopes_round(values, count, (double)b->n), sum = 0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += shares[i] = fmax(values[i] - value + (double)b->n, 0);
+    for (uint32_t i = 0; i < count; i++)
+        shares[i] /= sum;
+    return value;
+}
+
+/* A union by a convex blend is a convex function of its operands, so with planes for them it is
+ * nowhere below its tangent plane, and farthest above it at a corner of the cube. And it grows with
+ * its operands, by no more than the most that one of them does. */
+static bool join_smoothly(walker *w, const operand *of, uint32_t count, const blender *b,
+                          double turn)
+{
+    static const double ROUNDING = 2e-6; /* of floats in blends */
+    double values[CSG_SLOPES_NODES] = {0}, shares[CSG_SLOPES_NODES], ignored[CSG_SLOPES_NODES];
+    const csg_enclosure *planes = &w->out->planes[of->plane];
+    csg_enclosure e = {.below = 0};
+    double most = 0, widest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        values[i] = turn * planes[i].value;
+        e.below = fmax(e.below, planes[i].below);
+        e.above = fmax(e.above, planes[i].above);
+    }
+    e.value = turn * blend(b, values, count, shares);
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            e.slope[k] += shares[i] * planes[i].slope[k];
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        for (uint32_t i = 0; i < count; i++) {
+            values[i] = turn * plane_at_corner(w, &planes[i], o);
+            widest = fmax(widest, fabs(values[i] - values[0]));
+        }
+        most = fmax(most, blend(b, values, count, ignored) - turn * plane_at_corner(w, &e, o));
+    }
+    double rounding = ROUNDING * (widest + fabs(e.value)) + (b->node ? 0 : 1e-5 * (double)b->n);
+    rounding += CSG_ENCLOSURE_ROUNDING * reach_of(e.slope, w->half);
+    origin from = {.count = count <= ORIGIN_MOST ? count : 0, .by = *b, .turn = turn};
+    from.below = rounding + (turn > 0 ? e.below : e.above);
+    from.above = rounding + (turn > 0 ? e.above : e.below);
+    memcpy(from.operands, planes, from.count * sizeof *planes);
+    e.below += rounding + (turn < 0 ? most : 0);
+    e.above += rounding + (turn > 0 ? most : 0);
+    forget(w, of);
+    if (!isfinite(e.value + e.below + e.above) || !put_plane(w, &e))
+        return false;
+    w->origins[of->plane] = from;
+    return true;
+}
+
+static bool join_siblings(walker *w, uint32_t index)
+{
+    const csg_tape_node *node = &w->tape->nodes[index];
+    const float *parameters = w->tape->parameters + node->join_parameters;
+    const blender b = {node, parameters[CSG_OPERATOR_N], parameters[CSG_OPERATOR_SUPPORT]};
+    const operand *a = &w->stack[w->top - 2];
+    bool is_orthogonal = node->join_blend == CSG_BLEND_ORTHOGONAL;
+    double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
+    if (node->join_blend == CSG_BLEND_SHARP ||
+        (is_orthogonal && !(b.n > 0) && !(b.n < 0))) { /* of the same sign as a sharp one */
+        if (join_sharply(w, node, is_orthogonal))
+            return true;
+    } else if (node->join_blend < CSG_BLEND_COUNT && csg_blend_is_convex(node->join_blend) &&
+               has_value(w, a) && has_value(w, a + 1)) {
+        bool done = join_smoothly(w, a, 2, &b, turn);
+        w->top--;
+        return done;
+    }
+    w->top = (uint32_t)(a - w->stack);
+    forget(w, a);
+    return take_whole(w, a->first, index, true);
+}
+
+/* An operator that takes all its operands at once. */
+static bool combine(walker *w, uint32_t index)
+{
+    const csg_tape_node *node = &w->tape->nodes[index];
+    operand *of = &w->stack[w->top - node->arity];
+    bool is_round = csg_op_is_round(node->op);
+    for (uint32_t i = 0; i < node->arity && is_round; i++)
+        is_round = has_value(w, &of[i]);
+    if (is_round) {
+        const blender b = {.n = w->tape->parameters[node->parameters + CSG_OPERATOR_N]};
+        bool done = join_smoothly(w, of, node->arity, &b, node->op == CSG_OP_ROUND_UNION ? 1 : -1);
+        w->top -= node->arity - 1;
+        return done;
+    }
+    w->top -= node->arity;
+    forget(w, of);
+    return take_whole(w, of->first, index, false);
+}
+
+/* How far the blend is above the plane, both turned. */
+static double excess_at(const origin *from, const csg_enclosure *e, const double at[3])
+{
+    double values[ORIGIN_MOST], ignored[ORIGIN_MOST];
+    for (uint32_t i = 0; i < from->count; i++)
+        values[i] = from->turn * plane_at(&from->operands[i], at);
+    return blend(&from->by, values, from->count, ignored) - from->turn * plane_at(e, at);
+}
+
+/* The most that the blend exceeds the plane by where the turned plane is within `room` of zero: at
+ * a vertex of that part of the cube, on an edge of it. Corners below that must be outside for
+ * certain, and all between them is then. INFINITY: they are not. */
+static double excess_near(const walker *w, const origin *from, const csg_enclosure *e, double room)
+{
+    double most = 0;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        const double a[3] = {corner(w, o, 0), corner(w, o, 1), corner(w, o, 2)};
+        double at_a = from->turn * plane_at(e, a), over = excess_at(from, e, a);
+        if (at_a < -room && !(at_a + over + from->above < 0))
+            return INFINITY;
+        if (fabs(at_a) <= room)
+            most = fmax(most, over);
+        for (int axis = 0; axis < 3; axis++) {
+            double step = 2 * w->half * from->turn * e->slope[axis];
+            for (int side = -1; side <= 1 && !(o >> axis & 1); side += 2) {
+                double share = (side * room - at_a) / step;
+                if (!(share > 0 && share < 1))
+                    continue;
+                double p[3] = {a[0], a[1], a[2]};
+                p[axis] += 2 * w->half * share;
+                most = fmax(most, excess_at(from, e, p));
+            }
+        }
+    }
+    return most;
+}
+
+/* Planes need to tell inside from outside alone, so that only what is near the surface counts: deep
+ * inside a blend may bend as it likes. */
+static void tighten(const walker *w, csg_enclosure *e, const origin *from)
+{
+    enum { ROUNDS = 3 };
+    double *above = from->turn > 0 ? &e->above : &e->below;
+    for (int i = 0; i < ROUNDS && from->count; i++) {
+        double room = fmax(*above, from->below) * (1 + 1e-9);
+        double most = excess_near(w, from, e, room) + from->above;
+        if (!(most < *above))
+            return;
+        *above = most;
+    }
+}
+
+static bool walk(walker *w)
+{
+    for (uint32_t i = 0; i < w->tape->count; i++) {
+        const csg_tape_node *node = &w->tape->nodes[i];
+        bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
+        if (csg_op_is_leaf(node->op))
+            known = push_leaf(w, i);
+        else if (csg_op_takes_all(node->op))
+            known = node->arity <= w->top && combine(w, i);
+        if (!known || (node->join && !join_siblings(w, i)))
+            return false;
+    }
+    for (int i = 0; i < w->out->plane_count; i++)
+        tighten(w, &w->out->planes[i], &w->origins[i]);
+    return w->top == 1;
+}
+
+bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const double c[3], double half,
+                     float *scratch, size_t scratch_floats, csg_halves *out)
+{
+    walker w; /* not filled: it is large */
+    float x[3][CSG_OCTANTS], middle[3][CSG_OCTANTS];
+    if (tape->count > CSG_SLOPES_NODES || !tape->count)
+        return false;
+    w.kernel = kernel;
+    w.tape = tape;
+    w.c = c;
+    w.half = half;
+    w.scratch = scratch;
+    w.scratch_floats = scratch_floats;
+    w.top = 0;
+    w.out = out;
+    out->plane_count = out->length = 0;
+    for (int axis = 0; axis < 3; axis++)
+        for (int o = 0; o < CSG_OCTANTS; o++) {
+            x[axis][o] = (float)(c[axis] + corner(&w, o, axis));
+            middle[axis][o] = (float)c[axis];
+        }
+    kernel->intervals(tape, x[0], x[1], x[2], 0, NULL, w.low, w.high, scratch);
+    kernel->intervals(tape, middle[0], middle[1], middle[2], 0, NULL, w.low_at_c, w.high_at_c,
+                      scratch);
+    return walk(&w);
+}
+
+/* ---- what is known of it -----------------------------------------------------------------------
+ */
+
+csg_truth csg_halves_evaluate(const csg_halves *h, const csg_truth planes[CSG_HALVES_MOST])
+{
+    csg_truth stack[CSG_HALVES_CODE];
+    int top = 0;
+    for (int i = 0; i < h->length; i++) {
+        int code = h->code[i];
+        if (code >= 0) {
+            stack[top++] = planes[code];
+            continue;
+        }
+        csg_truth a = stack[top - 2], b = stack[top - 1];
+        csg_truth wins = code == CSG_HALVES_UNION ? CSG_TRUTH_YES : CSG_TRUTH_NO;
+        stack[--top - 1] = a == wins || b == wins                       ? wins
+                           : a == CSG_TRUTH_OPEN || b == CSG_TRUTH_OPEN ? CSG_TRUTH_OPEN
+                                                                        : a;
+    }
+    return stack[0];
+}
+
+csg_truth csg_halves_state(const csg_halves *h, double half)
+{
+    csg_truth planes[CSG_HALVES_MOST];
+    for (int i = 0; i < h->plane_count; i++) {
+        const csg_enclosure *e = &h->planes[i];
+        double reach = reach_of(e->slope, half);
+        planes[i] = e->value + e->above < -reach  ? CSG_TRUTH_NO
+                    : e->value - e->below > reach ? CSG_TRUTH_YES
+                                                  : CSG_TRUTH_OPEN;
+    }
+    return csg_halves_evaluate(h, planes);
+}

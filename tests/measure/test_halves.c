@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT
+ * Formulas of half spaces hold what they promise: in random cubes of random scenes, points that the
+ * lower planes have inside are inside by the reference, those that the upper planes have outside
+ * are outside. And carved cubes have the volumes that cut ones have, by inclusion and exclusion.
+ */
+#include <stdlib.h>
+
+#include "field/point.h"
+#include "measure/carve.h"
+#include "mesh/mesh_support.h"
+#include "scene/primitives/kinds.h"
+
+enum { CUBES = 120, POINTS = 60 };
+
+static double plane_at(const csg_enclosure *e, double moved, csg_vec3 d)
+{
+    return e->value + moved + e->slope[0] * d.x + e->slope[1] * d.y + e->slope[2] * d.z;
+}
+
+static csg_truth holds(const csg_halves *h, csg_carve_side side, csg_vec3 d)
+{
+    csg_truth planes[CSG_HALVES_MOST];
+    for (int i = 0; i < h->plane_count; i++) {
+        const csg_enclosure *e = &h->planes[i];
+        double moved = side == CSG_CARVE_MOST ? e->above : -e->below;
+        planes[i] = plane_at(e, moved, d) >= 0 ? CSG_TRUTH_YES : CSG_TRUTH_NO;
+    }
+    return csg_halves_evaluate(h, planes);
+}
+
+typedef struct tally {
+    uint32_t known, many, inside, outside;
+} tally;
+
+/* Fillets turn on their operands' gradients: where these jump the reference and floats may be on
+ * different sides of the jump, and either will do. */
+static bool has_fillets;
+
+/* c: field frame. */
+static void try_cube(const mesh_case *m, csg_random *random, const double c[3], double half,
+                     float *scratch, size_t floats, tally *seen)
+{
+    static const double ROUNDING = 3e-6; /* of the reference against floats */
+    csg_halves h;
+    if (!csg_halves_find(csg_kernel_for(CSGM_ISA_AUTO), &m->field->tape, c, half, scratch, floats,
+                         &h))
+        return;
+    seen->known++;
+    seen->many += h.plane_count > 1;
+    csg_truth state = csg_halves_state(&h, half);
+    for (int i = 0; i < POINTS; i++) {
+        double d[3];
+        for (int k = 0; k < 3; k++) { /* a third of them on faces, edges and corners */
+            double u = csg_random_uniform(random, -1.2, 1.2);
+            d[k] = half * fmin(fmax(u, -1), 1);
+        }
+        csg_vec3 at = csg_vec3_make(d[0], d[1], d[2]);
+        csg_vec3 p =
+            csg_vec3_add(m->field->center, csg_vec3_make(c[0] + d[0], c[1] + d[1], c[2] + d[2]));
+        double f = test_sample(m->scene, p).value;
+        double other = csg_tape_value_at(csg_kernel_for(CSGM_ISA_AUTO), &m->field->tape,
+                                         csg_vec3_sub(p, m->field->center), scratch, floats);
+        bool sure = state == CSG_TRUTH_YES || holds(&h, CSG_CARVE_LEAST, at) == CSG_TRUTH_YES;
+        bool never = state == CSG_TRUTH_NO || holds(&h, CSG_CARVE_MOST, at) == CSG_TRUTH_NO;
+        if (has_fillets && fabs(f - other) > ROUNDING)
+            f = sure ? fmax(f, other) : fmin(f, other);
+        if ((sure && f < -ROUNDING) || (never && f > ROUNDING))
+            fail_msg("f = %g at (%.9g, %.9g, %.9g), called %s, in a cube of half %g", f, p.x, p.y,
+                     p.z, sure ? "inside" : "outside", half);
+        seen->inside += sure;
+        seen->outside += never;
+    }
+}
+
+/* Cubes near the surface, centres and halves exact as floats. */
+static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
+{
+    size_t floats = csg_kernel_scratch_floats(m->field->depth);
+    float *scratch = malloc(floats * sizeof *scratch);
+    assert_non_null(scratch);
+    csg_box b = m->field->bounds;
+    csg_vec3 size = csg_box_size(b);
+    if (csg_box_is_finite(b) && !csg_box_is_empty(b))
+        for (int i = 0; i < CUBES; i++) {
+            double half = ldexp(1, -2 - (int)csg_random_below(random, 7)), c[3];
+            csg_vec3 p;
+            double f = INFINITY;
+            for (int k = 0; k < 20 && fabs(f) > half; k++) {
+                p = csg_vec3_make(csg_random_uniform(random, b.min.x, b.min.x + size.x),
+                                  csg_random_uniform(random, b.min.y, b.min.y + size.y),
+                                  csg_random_uniform(random, b.min.z, b.min.z + size.z));
+                csg_sample s = test_sample(m->scene, p);
+                double square = csg_vec3_dot(s.gradient, s.gradient);
+                if (square > 0.01) /* towards the surface */
+                    p = csg_vec3_sub(p, csg_vec3_scale(s.gradient, s.value / square));
+                f = test_sample(m->scene, p).value;
+            }
+            p = csg_vec3_sub(p, m->field->center);
+            c[0] = half * round(p.x / half);
+            c[1] = half * round(p.y / half);
+            c[2] = half * round(p.z / half);
+            try_cube(m, random, c, half, scratch, floats, seen);
+        }
+    free(scratch);
+}
+
+static void halves_hold(void **state)
+{
+    tally seen = {0};
+    for (uint64_t i = 0; i < 60 * test_times; i++) {
+        csg_random random = {.state = 7000 + test_first_seed + i};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        test_random_shapes = i % 3 == 1;
+        test_random_rules = i % 6 == 2;
+        test_random_fillets = has_fillets = i % 6 == 5;
+        test_random_curves = i % 12 == 3;
+        csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 5));
+        assert_true(root != CSG_NODE_NONE);
+        mesh_case_compile(&m, root);
+        if (!test_has_debulge(m.scene))
+            try_scene(&m, &random, &seen);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.known > 2000 * test_times && seen.many > 200 * test_times);
+    assert_true(seen.inside > 20000 * test_times && seen.outside > 20000 * test_times);
+}
+
+/* Boxes, cylinders and cones by their edges, flat ones too, joined sharply. */
+static void creases_hold(void **state)
+{
+    tally seen = {0};
+    has_fillets = false;
+    for (uint64_t i = 0; i < 60 * test_times; i++) {
+        csg_random random = {.state = 9000 + test_first_seed + i};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        csg_node_id ids[2];
+        for (int k = 0; k < 2; k++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
+            bool is_box = csg_random_below(&random, 2);
+            for (int n = 0; n < 3; n++)
+                v[n] = csg_random_uniform(&random, is_box ? 0.2 : 0, 1);
+            if (!is_box)
+                v[2] *= csg_random_below(&random, 3) ? 1 : 0.1;
+            v[2] += 0.01;
+            ids[k] = posed_anyhow(&m,
+                                  csg_build_primitive(&m.builder,
+                                                      is_box ? (csg_primitive_kind)CSG_NODE_BOX
+                                                             : (csg_primitive_kind)CSG_NODE_FRUSTUM,
+                                                      v, NOWHERE),
+                                  &random);
+        }
+        csg_node_kind kinds[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE, CSG_NODE_INTERSECTION};
+        mesh_case_compile(&m, joined(&m, kinds[i % 3], SHARP, ids[0], ids[1]));
+        try_scene(&m, &random, &seen);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.many > 2000 * test_times);
+}
+
+static void add_plane(csg_halves *h, csg_random *random)
+{
+    csg_enclosure *e = &h->planes[h->plane_count];
+    e->value = csg_random_uniform(random, -0.8, 0.8);
+    for (int k = 0; k < 3; k++)
+        e->slope[k] = csg_random_uniform(random, -1, 1);
+    e->below = e->above = 0;
+    h->code[h->length++] = (signed char)h->plane_count++;
+}
+
+static void carved_as_cut(void **state)
+{
+    csg_random random = {.state = 23};
+    for (int i = 0; i < 2000; i++) {
+        csg_halves both = {.length = 0}, one[2];
+        double half = exp(csg_random_uniform(&random, -8, 3)), volume[4];
+        double integrals[4][CSG_INTEGRALS];
+        add_plane(&both, &random);
+        add_plane(&both, &random);
+        for (int k = 0; k < 2; k++) {
+            both.planes[k].value *= half;
+            one[k] = (csg_halves){.plane_count = 1, .length = 1};
+            one[k].planes[0] = both.planes[k];
+            volume[k] = csg_carve(&one[k], half, CSG_CARVE_LEAST, integrals[k]);
+        }
+        both.length = 3;
+        both.code[2] = CSG_HALVES_UNION;
+        volume[2] = csg_carve(&both, half, CSG_CARVE_LEAST, integrals[2]);
+        both.code[2] = CSG_HALVES_INTERSECTION;
+        volume[3] = csg_carve(&both, half, CSG_CARVE_MOST, integrals[3]);
+        double whole = 8 * half * half * half, room = CSG_CUT_ROUNDING * whole;
+        assert_true(fabs(volume[0] + volume[1] - volume[2] - volume[3]) <= room);
+        assert_true(volume[2] >= fmax(volume[0], volume[1]) - room);
+        for (int n = 0; n < CSG_INTEGRALS; n++) {
+            double size = n == 0 ? 1 : n < CSG_INTEGRAL_XX ? half : half * half;
+            double off = integrals[0][n] + integrals[1][n] - integrals[2][n] - integrals[3][n];
+            assert_true(fabs(off) <= room * size);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(halves_hold),
+        cmocka_unit_test(creases_hold),
+        cmocka_unit_test(carved_as_cut),
+    };
+    test_take_search(argc, argv);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
