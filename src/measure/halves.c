@@ -154,10 +154,12 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
         double plane = plane_at_corner(w, e, o);
         most = fmax(most, is_turned ? (double)high[o] - plane : plane - (double)low[o]);
     }
+    /* Of the tangent plane; on the other side the corners' intervals have it all. */
     double rounding =
-        2 * (at_high - at_low) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g)) * 2 * w->half;
-    e->below = rounding + (is_turned ? 0 : most);
-    e->above = rounding + (is_turned ? most : 0);
+        (at_high - at_low) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g)) * 2 * w->half;
+    most += 1e-12 * (fabs(e->value) + w->half);
+    e->below = is_turned ? rounding : most;
+    e->above = is_turned ? most : rounding;
     return isfinite(e->value + e->below + e->above + csg_vec3_norm(g));
 }
 
