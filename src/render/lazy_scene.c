@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * Pictures by the lazy evaluator; see lazy_scene.h. Each ray makes plain steps of |f| / lambda from
- * the nearest plane of what the camera frames to the farthest, n x n rays per pixel.
+ * Pictures by the lazy evaluator; see lazy_scene.h. Each ray makes steps of |f| / lambda from the
+ * nearest plane of what the camera frames to the farthest, n x n rays per pixel.
  */
 #include "render/lazy_scene.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/trace.h"
 #include "scene/lazy/lazy.h"
 
-enum { MOST_STEPS = 1000 };
+enum { PATIENCE = 1000 }; /* steps that are as long as the field's constant allows */
+#define GROWTH (1.0 / 16) /* of steps that are made longer, each time, in tolerances */
+#define ROUNDING 1e-6     /* of gradients: those of distances have length 1 */
 
 typedef struct lazy_room {
     void *scratch;
@@ -28,18 +31,50 @@ typedef struct lazy_job {
     double tolerance, tolerance_slope;
 } lazy_job;
 
-/* The distance along the ray, INFINITY where nothing was hit; *sample is what is there. */
+/* Whether the surface is nearer than the tolerance, as far as the gradient says: where the field is
+ * less steep than its constant, f / lambda is small long before that. */
+static bool is_reached(const csg_sample *sample, double tolerance)
+{
+    double slope = csg_vec3_norm(sample->gradient) * (1 + ROUNDING);
+    return sample->value >= 0 || -sample->value < tolerance * slope;
+}
+
+/* Half way again and again between t - step, outside, and t, inside. */
+static double cross(const lazy_job *job, lazy_room *room, csg_vec3 origin, csg_vec3 direction,
+                    double t, double step, double tolerance, csg_sample *sample)
+{
+    while (step > tolerance) {
+        step /= 2;
+        csg_vec3 at = csg_vec3_add(origin, csg_vec3_scale(direction, t - step));
+        csg_sample middle = csg_lazy_eval(job->lazy, at, room->scratch, &room->counts);
+        if (middle.value >= 0) {
+            t -= step;
+            *sample = middle;
+        }
+    }
+    return t;
+}
+
+/* The distance along the ray, INFINITY where nothing was hit; *sample is what is there. Where steps
+ * by the constant would be shorter than the tolerance, or have become too many, they are made
+ * longer, more so each time, so that rays end. */
 static double trace(const lazy_job *job, lazy_room *room, csg_vec3 origin, csg_vec3 direction,
                     csg_sample *sample)
 {
     double end = job->farthest / csg_vec3_dot(direction, job->picture->view.forward), t = 0;
-    for (int step = 0; step < MOST_STEPS && t < end; step++) {
+    double lengthened = 0, step = 0;
+    for (int count = 0; t < end; count++, t += step) {
         csg_vec3 at = csg_vec3_add(origin, csg_vec3_scale(direction, t));
         *sample = csg_lazy_eval(job->lazy, at, room->scratch, &room->counts);
         double radius = -sample->value / job->lipschitz;
-        if (radius < job->tolerance + job->tolerance_slope * t)
+        double tolerance = job->tolerance + job->tolerance_slope * t;
+        if (sample->value > 0 && step > tolerance && lengthened > 0)
+            return cross(job, room, origin, direction, t, step, tolerance, sample);
+        if (radius < tolerance && is_reached(sample, tolerance))
             return t;
-        t += radius;
+        step = radius;
+        if (!(radius >= tolerance) || count >= PATIENCE)
+            step = fmax(radius, tolerance * (1 + GROWTH * lengthened++));
     }
     return INFINITY;
 }

@@ -59,6 +59,25 @@ static void test_loose_bound(void **state)
     render_end(&c);
 }
 
+/* The lazy evaluator sees the same ball there: where f / lambda is small the surface may be far. */
+static void test_loose_bound_lazily(void **state)
+{
+    render_case c;
+    render_begin(&c, 2, CSGM_ISA_AUTO,
+                 "union(blend = interior(eps = 0.001))\n"
+                 "  for (i = [0 : 30]) sphere(r = 1 - 0.005 * i);\n");
+    assert_true(csgm_scene_get_info(c.scene).lipschitz > 100);
+    csgm_render_options options = front_options(48, 3);
+    options.samples = 1;
+    options.occlusion = options.shadows = false;
+    render_scene(&c, &options);
+    double exact = covered(&c);
+    options.evaluator = CSGM_EVALUATOR_LAZY;
+    render_scene(&c, &options);
+    assert_true(fabs(covered(&c) / exact - 1) < 0.01);
+    render_end(&c);
+}
+
 static void test_front_hides_back(void **state)
 {
     static const char text[] =
@@ -354,6 +373,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_silhouettes),
         cmocka_unit_test(test_loose_bound),
+        cmocka_unit_test(test_loose_bound_lazily),
         cmocka_unit_test(test_front_hides_back),
         cmocka_unit_test(test_bounds_cut),
         cmocka_unit_test(test_light),
