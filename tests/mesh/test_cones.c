@@ -45,17 +45,36 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     return true;
 }
 
-/* The gradients of mesh/distance/slopes.h, tried at random points of the ball: none is longer, none
- * strays farther from the others, and all climb along the axis that the balls have in common. */
-static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec3 at, double radius,
-                            const csg_gradients *found)
+/* Where a random place of a region of mesh/distance/slopes.h, made smaller by `share`, lies from c.
+ */
+static csg_vec3 place_in(const csg_gradients_region *r, csg_random *random, double share)
 {
+    double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
+    double to_triangle = csg_random_uniform(random, 0, 1);
+    const double weight[3] = {s, t, 1 - s - t};
+    csg_vec3 d =
+        csg_vec3_scale(test_direction(random), r->around * csg_random_uniform(random, 0, 0.999));
+    d.x += r->half * csg_random_uniform(random, -0.999, 0.999);
+    d.y += r->half * csg_random_uniform(random, -0.999, 0.999);
+    d.z += r->half * csg_random_uniform(random, -0.999, 0.999);
+    for (int k = 0; k < 3; k++)
+        d = csg_vec3_add(
+            d, csg_vec3_scale(csg_vec3_sub(r->triangle[k], r->c), 0.999 * to_triangle * weight[k]));
+    return csg_vec3_scale(d, share);
+}
+
+/* The gradients of mesh/distance/slopes.h, tried at random points of the region: none is longer,
+ * none strays farther from the others, and all climb along the axis that the balls have in common.
+ */
+static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec3 at,
+                            const csg_gradients_region *region, const csg_gradients *found)
+{
+    double radius = region->around + sqrt(3.0) * region->half;
     csg_cone cone;
     csg_vec3 first = {0, 0, 0};
     bool has_axis = csg_cone_find_axis(&found->balls, &cone);
     for (int i = 0; i < TRIES; i++) {
-        csg_vec3 d =
-            csg_vec3_scale(test_direction(random), radius * csg_random_uniform(random, 0, 0.999));
+        csg_vec3 d = place_in(region, random, 1);
         double value = test_sample(scene, csg_vec3_add(at, d)).value;
         csg_vec3 g = test_sample(scene, csg_vec3_add(at, d)).gradient;
         double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
@@ -77,19 +96,19 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     }
 }
 
-/* And between two places of the ball, on a line along that axis and on any other: gradients as the
- * reference gives them leave out what a fillet's operands turn. */
+/* And between two places of the region, on a line along that axis and on any other: gradients as
+ * the reference gives them leave out what a fillet's operands turn. */
 static void check_differences(const csgm_scene *scene, csg_random *random, csg_vec3 at,
-                              double radius, const csg_gradients *found)
+                              const csg_gradients_region *region, const csg_gradients *found)
 {
+    double radius = region->around + region->half;
     csg_cone cone;
     bool has_axis = csg_cone_find_axis(&found->balls, &cone);
     for (int i = 0; i < TRIES; i++) {
-        csg_vec3 way = test_direction(random), d = test_direction(random);
+        csg_vec3 way = test_direction(random), d = place_in(region, random, 0.6);
         if (has_axis && i % 2)
             way = csg_vec3_make(cone.axis[0], cone.axis[1], cone.axis[2]);
-        csg_vec3 p =
-            csg_vec3_add(at, csg_vec3_scale(d, radius * csg_random_uniform(random, 0, 0.6)));
+        csg_vec3 p = csg_vec3_add(at, d);
         double length = radius * csg_random_uniform(random, 0.05, 0.39);
         csg_vec3 q = csg_vec3_add(p, csg_vec3_scale(way, length));
         double climb = test_sample(scene, q).value - test_sample(scene, p).value;
@@ -112,13 +131,17 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
     float *scratch = malloc(floats * sizeof *scratch);
     assert_non_null(scratch);
     csg_gradients found;
-    csg_vec3 v[3], local[3], c = csg_vec3_sub(at, field->center);
+    csg_vec3 v[3];
+    double share = csg_random_uniform(random, 0, 1), ball = csg_random_uniform(random, 0, 1);
+    csg_gradients_region region = {.c = csg_vec3_sub(at, field->center),
+                                   .around = (1 - share) * ball * radius,
+                                   .half = (1 - share) * (1 - ball) * radius / sqrt(3.0)};
     for (int i = 0; i < 3; i++) {
-        v[i] = csg_vec3_add(at, csg_vec3_scale(test_direction(random), 0.99 * radius));
-        local[i] = csg_vec3_sub(v[i], field->center);
+        double length = share * radius * csg_random_uniform(random, 0.05, 0.99);
+        v[i] = csg_vec3_add(at, csg_vec3_scale(test_direction(random), length));
+        region.triangle[i] = csg_vec3_sub(v[i], field->center);
     }
-    bool is_known =
-        csg_gradients_find(kernel, &field->tape, local, c, radius, scratch, floats, &found);
+    bool is_known = csg_gradients_find(kernel, &field->tape, &region, scratch, floats, &found);
     for (int i = 0; is_known && i < TRIES; i++) {
         double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
         csg_vec3 p = csg_vec3_add(csg_vec3_scale(v[0], s), csg_vec3_scale(v[1], t));
@@ -129,8 +152,8 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
                      found.high, at.x, at.y, at.z, radius);
     }
     if (is_known) {
-        check_gradients(scene, random, at, radius, &found);
-        check_differences(scene, random, at, radius, &found);
+        check_gradients(scene, random, at, &region, &found);
+        check_differences(scene, random, at, &region, &found);
     }
     free(scratch);
     return is_known;
@@ -161,10 +184,11 @@ static void shared_faces_are_no_surface(void **state)
         csg_vec3 face = cuts ? csg_vec3_make(0.3 + y, 0.4, z) : csg_vec3_make(0.5, y, z);
         csg_vec3 at = csg_vec3_sub(
             csg_vec3_add(face, csg_vec3_scale(test_direction(&random), 0.02)), c.field->center);
-        const csg_vec3 middle[3] = {at, at, at};
+        const csg_gradients_region region = {
+            {at, at, at}, at, cuts ? 0.05 : 0, cuts ? 0 : 0.05 / sqrt(3.0)};
         csg_gradients found;
-        assert_true(csg_gradients_find(csg_kernel_for(CSGM_ISA_AUTO), &c.field->tape, middle, at,
-                                       0.05, scratch, floats, &found));
+        assert_true(csg_gradients_find(csg_kernel_for(CSGM_ISA_AUTO), &c.field->tape, &region,
+                                       scratch, floats, &found));
         if (cuts)
             assert_true(found.most < 1e-5 && found.least < -0.01);
         else

@@ -32,8 +32,9 @@ static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double 
     return worst;
 }
 
-/* w moves towards the vector of the ball that is nearest to the other side. */
-static void step_towards(double w[3], const csg_cone_ball *ball)
+/* w moves towards the vector of the ball that is nearest to the other side, as far as it gets
+ * shorter by that. False: it hardly does. */
+static bool step_towards(double w[3], const csg_cone_ball *ball)
 {
     double point[3], to[3], norm = sqrt(dot(w, w));
     for (int k = 0; k < 3; k++) {
@@ -44,6 +45,7 @@ static void step_towards(double w[3], const csg_cone_ball *ball)
     share = share < 0 ? 0 : share > 1 ? 1 : share;
     for (int k = 0; k < 3; k++)
         w[k] += share * to[k];
+    return share > 1e-6;
 }
 
 bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
@@ -63,9 +65,8 @@ bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
             for (int k = 0; k < 3; k++)
                 out->axis[k] = w[k] / norm;
         }
-        if (balls->count == 1)
+        if (balls->count == 1 || !step_towards(w, &balls->items[worst]))
             break;
-        step_towards(w, &balls->items[worst]);
     }
     out->least = best;
     return best > 0;

@@ -181,9 +181,10 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
     static const double STEPS_REACH = 6; /* of the error */
     disc d = disc_of(v);
     double steepest = (double)s->tape.lipschitz, value;
+    const csg_gradients_region near = {{v[0], v[1], v[2]}, d.center, p->error, 0};
     csg_gradients gradients;
-    bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, v, d.center,
-                                    d.radius + p->error, s->scratch, p->scratch_floats, &gradients);
+    bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, &near, s->scratch,
+                                    p->scratch_floats, &gradients);
     s->pieces++;
     if (known && settles_by_cone(p, s, d, v, &gradients)) {
         s->by_cone++;

@@ -24,8 +24,9 @@ enum {
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
 static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
 static const double SHARE = 0.2; /* of what is left of the stage, for progress */
-/* How near a sheet's gradients must be to their middle, of the field's slope. */
-static const double SMOOTH = 0.5, CREASED = 0.45;
+/* How near a sheet's gradients must be to their middle, of the field's slope. A sheet that leans
+ * farther is looked at in eight places. */
+static const double SMOOTH = 0.5, CREASED = 0.45, LEANING = 0.2;
 
 /* What a frontier cube gave, and where it is. */
 typedef struct segment {
@@ -65,6 +66,7 @@ typedef struct cube {
     csg_vec3 c;
     double half, around, value; /* in the middle, where the cube is small enough for one sheet */
     csg_tape tape;
+    bool is_sheet; /* with those around it */
 } cube;
 
 /* ---- the field in a cube -----------------------------------------------------------------------
@@ -119,32 +121,30 @@ static double least_depth(const walk *w)
     return fmax(noise_of(w), last);
 }
 
-/* Whether f has that sign, 1 or -1, next to a place where it is zero. */
-static bool has_sign(const walk *w, worker *s, const cube *q, csg_vec3 p, csg_vec3 uphill,
-                     double sign)
-{
-    enum { WAYS = 6 };
-    double noise = noise_of(w), reach = 0.25 * w->error;
-    if (sign * value_at(w, s, &q->tape, csg_vec3_add(p, csg_vec3_scale(uphill, sign * reach))) >
-        noise)
-        return true;
-    for (int ring = 0; ring < RINGS; ring++, reach /= 4)
-        for (int i = 0; i < WAYS; i++) {
-            double step = i % 2 ? reach : -reach;
-            csg_vec3 off = {i / 2 == 0 ? step : 0, i / 2 == 1 ? step : 0, i / 2 == 2 ? step : 0};
-            if (sign * value_at(w, s, &q->tape, csg_vec3_add(p, off)) > noise)
-                return true;
-        }
-    return false;
-}
-
 /* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
  * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
  * would be none. */
 static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
 {
+    enum { WAYS = 6, PLACES = 2 + RINGS * WAYS, PADDED = PLACES + CSG_LANES };
+    float at[3][PADDED] = {{0}}, f[PADDED] = {0};
     csg_vec3 uphill = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
-    return has_sign(w, s, q, p, uphill, -1) && has_sign(w, s, q, p, uphill, 1);
+    double noise = noise_of(w), reach = 0.25 * w->error;
+    for (int i = 0; i < PLACES; i++) {
+        int ring = (i - 2) / WAYS, way = (i - 2) % WAYS / 2;
+        double step = (i % 2 ? reach : -reach) / (i < 2 ? 1 : 1 << 2 * ring);
+        csg_vec3 off = {way == 0 ? step : 0, way == 1 ? step : 0, way == 2 ? step : 0};
+        csg_vec3 to = csg_vec3_add(p, i < 2 ? csg_vec3_scale(uphill, step) : off);
+        at[0][i] = (float)to.x, at[1][i] = (float)to.y, at[2][i] = (float)to.z;
+    }
+    w->remesh->probe.marching->kernel->values(&q->tape, at[0], at[1], at[2], PLACES, f, s->scratch,
+                                              w->scratch_floats);
+    bool inside = false, outside = false;
+    for (int i = 0; i < PLACES; i++) {
+        inside |= (double)f[i] > noise;
+        outside |= (double)f[i] < -noise;
+    }
+    return inside && outside;
 }
 
 /* How far the field can be from its value in the middle, all over the cube. */
@@ -161,22 +161,16 @@ static double change_in(const cube *q, const csg_gradients *gradients)
     return most * q->half + gradients->doubt;
 }
 
-/* Whether all gradients are near to one direction. */
-static bool is_one_sheet(const csg_cone_balls *balls)
+/* How near all gradients are at least to one direction, of the steepest. */
+static double leaning_of(const csg_cone_balls *balls)
 {
-    csg_vec3 axis = {0, 0, 0};
-    double least = INFINITY, steepest = 0;
+    double steepest = 0;
+    csg_cone cone;
     for (uint32_t i = 0; i < balls->count; i++) {
         const double *g = balls->items[i].at;
-        axis = csg_vec3_add(axis, csg_vec3_make(g[0], g[1], g[2]));
+        steepest = fmax(steepest, csg_vec3_norm(csg_vec3_make(g[0], g[1], g[2])));
     }
-    axis = csg_vec3_normalize(axis);
-    for (uint32_t i = 0; i < balls->count; i++) {
-        csg_vec3 g = {balls->items[i].at[0], balls->items[i].at[1], balls->items[i].at[2]};
-        least = fmin(least, csg_vec3_dot(g, axis) - balls->items[i].spread);
-        steepest = fmax(steepest, csg_vec3_norm(g));
-    }
-    return least >= (balls->count > 1 ? CREASED : SMOOTH) * steepest;
+    return csg_cone_find_axis(balls, &cone) ? cone.least / steepest : 0;
 }
 
 /* ---- the walk ----------------------------------------------------------------------------------
@@ -222,35 +216,54 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
     return fmin(distance, far);
 }
 
-/* A place of the surface at hand, how far from the mesh it is. */
-static verdict settle(const walk *w, worker *s, const cube *q)
+/* The place of a sheet that goes through all of the cubes around it. */
+static bool is_sheet_near(const walk *w, worker *s, const cube *q)
 {
-    double ball = sqrt(3.0) * q->half, value = q->value;
+    csg_vec3 p;
+    return find_surface(w, s, q, &p) && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error);
+}
+
+typedef enum content { NOTHING, SHEET, ANYTHING } content;
+
+/* What the field's gradients say that there is in the cube. */
+static content content_of(const walk *w, worker *s, cube *q)
+{
+    const csg_gradients_region all = {{q->c, q->c, q->c}, q->c, 0, q->half};
+    csg_gradients gradients;
+    if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, &all, s->scratch,
+                            w->scratch_floats, &gradients))
+        return ANYTHING;
+    if (fabs(q->value) > change_in(q, &gradients) + noise_of(w) ||
+        gradients.least > -least_depth(w) || gradients.most < least_depth(w))
+        return NOTHING; /* or a face that solids share */
+    double leaning = leaning_of(&gradients.balls);
+    q->is_sheet = leaning >= LEANING;
+    return leaning >= (gradients.balls.count > 1 ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+}
+
+/* A place of the surface at hand, how far from the mesh it is. */
+static verdict settle(const walk *w, worker *s, cube *q)
+{
     uint32_t triangle;
     csg_vec3 p;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    double noise = noise_of(w);
-    const csg_vec3 middle[3] = {q->c, q->c, q->c};
-    csg_gradients gradients;
-    if (fabs(value) > w->lipschitz * ball + noise)
+    if (fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w) ||
+        (q->is_sheet && is_sheet_near(w, s, q)))
         return SETTLED;
-    bool known = csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, middle, q->c, ball,
-                                    s->scratch, w->scratch_floats, &gradients);
-    if (known && fabs(value) > change_in(q, &gradients) + noise)
-        return SETTLED;
-    if (known && (gradients.least > -least_depth(w) || gradients.most < least_depth(w)))
-        return SETTLED; /* nothing, or a face that solids share */
-    bool small = q->half <= w->least, sheet = known && is_one_sheet(&gradients.balls);
-    bool near = !small && !sheet && is_near_mesh(w, q);
-    if (!small && !sheet && !near)
-        return DIVIDE;
+    bool ends = q->half <= w->least || is_near_mesh(w, q), sheet = false;
+    if (!ends) {
+        content what = content_of(w, s, q);
+        if (what != SHEET)
+            return what == NOTHING ? SETTLED : DIVIDE;
+        sheet = true;
+    }
     if (!find_surface(w, s, q, &p))
-        return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
+        return ends ? SETTLED : DIVIDE;
     if (sheet && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error))
         return SETTLED;
     if (!is_border(w, s, q, p))
-        return small || near || is_near_mesh(w, q) ? SETTLED : DIVIDE;
+        return ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
@@ -295,6 +308,7 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
         child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
         child.tape = tapes[o];
         child.value = may_be_sheet(w, child.half) ? (double)f[o] : 0;
+        child.is_sheet = parent->is_sheet;
         verdict what = settle(w, s, &child);
         done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &child, depth + 1));
     }

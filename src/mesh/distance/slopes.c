@@ -31,24 +31,42 @@ static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
     return norm_of(d) + a->spread + b->spread;
 }
 
-/* How fast the difference of two operands can change. Between faces' normals a unit vector is at
- * most 1 / cos(phi / 4) as far from any other as one of these, where they are phi apart: at most
- * sqrt(2), for a disc without thickness. */
-static double rate_of(const walker *w, const operand *a, const operand *b)
+/* How much a field can change from c within the region whose gradients are in a ball of vectors. */
+static double span_of(const walker *w, const double at[3], double spread)
 {
+    const csg_gradients_region *r = &w->region;
     double most = 0;
-    if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
-        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz);
-    for (uint32_t i = 0; i < a->balls.count; i++)
-        for (uint32_t k = 0; k < b->balls.count; k++)
-            most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
-    return a->faces || b->faces ? 1.41421357 * most : most;
+    for (int i = 0; i < 3; i++) {
+        csg_vec3 to = csg_vec3_sub(r->triangle[i], r->c);
+        most = fmax(most, fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z));
+    }
+    return most + r->around * norm_of(at) + r->half * (fabs(at[0]) + fabs(at[1]) + fabs(at[2])) +
+           spread * w->radius;
 }
 
-/* By how much it can change from the centre, within the ball. */
+/* By how much the difference of two operands can change. Between faces' normals a unit vector is at
+ * most 1 / cos(phi / 4) as far from any other as one of these, where they are phi apart: at most
+ * sqrt(2), for a disc without thickness. */
+static double change_of(const walker *w, const operand *a, const operand *b)
+{
+    double most = 0;
+    bool faces = a->faces || b->faces;
+    if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
+        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz) * w->radius;
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++) {
+            const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
+            const double d[3] = {p->at[0] - q->at[0], p->at[1] - q->at[1], p->at[2] - q->at[2]};
+            most =
+                fmax(most, faces ? apart(p, q) * w->radius : span_of(w, d, p->spread + q->spread));
+        }
+    return faces ? 1.41421357 * most : most;
+}
+
+/* By how much it can change from c, within the region. */
 double csg_slopes_reach(const walker *w, const operand *a, const operand *b)
 {
-    return w->radius * rate_of(w, a, b) + a->doubt + b->doubt;
+    return change_of(w, a, b) + a->doubt + b->doubt;
 }
 
 /* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
@@ -195,12 +213,12 @@ static double orthogonal_value(double n, double turn, double a, double b)
     return u > 0 && v > 0 ? n + turn * sqrt(u * u + v * v) : turn * fmax(turn * a, turn * b);
 }
 
-/* What the larger one of two operands is nowhere less than in the ball: their mean with some
+/* What the larger one of two operands is nowhere less than in the region: their mean with some
  * weights, whose gradient is next to nothing where two solids share a face, so that a field of zero
  * is seen to be no surface. turn: of the operands' values. */
 static double least_of_larger(const walker *w, const operand *a, const operand *b, double turn)
 {
-    double along = 0, square = 0, steepest = 0;
+    double along = 0, square = 0, most = 0;
     if (a->stretched || b->stretched || a->faces || b->faces || a->balls.has_edges ||
         b->balls.has_edges)
         return -INFINITY;
@@ -216,9 +234,9 @@ static double least_of_larger(const walker *w, const operand *a, const operand *
             double mean[3];
             for (int axis = 0; axis < 3; axis++)
                 mean[axis] = share * p->at[axis] + other * q->at[axis];
-            steepest = fmax(steepest, norm_of(mean) + share * p->spread + other * q->spread);
+            most = fmax(most, span_of(w, mean, share * p->spread + other * q->spread));
         }
-    return turn * (share * a->value + other * b->value) - steepest * w->radius;
+    return turn * (share * a->value + other * b->value) - most;
 }
 
 /* An intersection is a union of what is turned around: shares are the same, values too but for the
@@ -320,7 +338,7 @@ static double round_value(const operand *of, which what, uint32_t count, double 
 static bool join_round(walker *w, const csg_tape_node *node)
 {
     double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, steepest = 0;
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, change = 0;
     operand *of = &w->stack[w->top - node->arity];
     double value = round_value(of, CSG_SLOPES_MIDDLE, node->arity, turn, size);
     double low = round_value(of, CSG_SLOPES_LOW, node->arity, turn, size);
@@ -330,14 +348,14 @@ static bool join_round(walker *w, const csg_tape_node *node)
     for (uint32_t i = 0; i < node->arity; i++) {
         doubt = fmax(doubt, of[i].doubt);
         for (uint32_t k = i + 1; k < node->arity; k++)
-            steepest = fmax(steepest, rate_of(w, &of[i], &of[k]));
+            change = fmax(change, change_of(w, &of[i], &of[k]));
     }
     operand sum;
     range total = {0, 0}; /* of the weights so far */
     bool done = true;
     for (uint32_t i = 0; i < node->arity && done; i++) {
         double at = turn * (of[i].value - value) + size;
-        double reach = w->radius * steepest + 2 * doubt + 1e-5 * size;
+        double reach = change + 2 * doubt + 1e-5 * size;
         range weight = {fmax(0, at - reach), at + reach};
         if (weight.high <= 0)
             continue;
@@ -414,10 +432,11 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
     alone.join = CSG_JOIN_NONE;
     tape.nodes = &alone;
     tape.count = 1;
-    csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, w->c, w->scratch, w->scratch_floats);
+    const csg_gradients_region *r = &w->region;
+    csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, r->c, w->scratch, w->scratch_floats);
     double most = 0;
     for (int k = 0; k < 3; k++)
-        most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(w->v[k], w->c)));
+        most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c)));
     return value + turn * (most + 1e-5 * w->flat);
 }
 
@@ -472,11 +491,23 @@ static void join_faces(operand *leaf)
     leaf->balls.corner = 0;
 }
 
-/* low, high: of the leaf's value at the corners, and at the centre behind them. */
+/* How much it can change within the region. */
+static double span_of_leaf(const walker *w, const operand *leaf)
+{
+    double most = 0;
+    if (leaf->faces || leaf->stretched || leaf->balls.has_edges)
+        return leaf->longest * w->radius;
+    for (uint32_t i = 0; i < leaf->balls.count; i++)
+        most = fmax(most, span_of(w, leaf->balls.items[i].at, leaf->balls.items[i].spread));
+    return most;
+}
+
+/* low, high: of the leaf's value at the corners, and at c behind them. */
 static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, const float *high)
 {
     operand *leaf = &w->stack[w->top++];
-    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    const csg_vec3 at = w->region.c;
+    const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     leaf->balls.count = 0;
     leaf->balls.has_edges = leaf->stretched = false;
     leaf->value = 0.5 * ((double)low[3] + (double)high[3]);
@@ -494,8 +525,9 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
     find_range(w, node, low, high, leaf);
-    leaf->least = leaf->value - leaf->longest * w->radius;
-    leaf->most = leaf->value + leaf->longest * w->radius;
+    double span = span_of_leaf(w, leaf);
+    leaf->least = leaf->value - span;
+    leaf->most = leaf->value + span;
     return true;
 }
 
@@ -552,8 +584,8 @@ static double find_longest(const operand *root)
     return most;
 }
 
-bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
-                        csg_vec3 c, double radius, float *scratch, size_t scratch_floats,
+bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
+                        const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out)
 {
     float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS];
@@ -563,22 +595,19 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const cs
         return false;
     w.kernel = kernel;
     w.tape = tape;
-    w.c = c;
-    w.radius = radius;
+    w.region = *region;
     w.flat = 0;
     w.scratch = scratch;
     w.scratch_floats = scratch_floats;
     w.top = 0;
     for (int k = 0; k < CSG_OCTANTS; k++) {
-        csg_vec3 p = k < 3 ? triangle[k] : c;
+        csg_vec3 p = k < 3 ? region->triangle[k] : region->c;
         x[k] = (float)p.x;
         y[k] = (float)p.y;
         z[k] = (float)p.z;
-        if (k < 3) {
-            w.v[k] = p;
-            w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, c)));
-        }
+        w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, region->c)));
     }
+    w.radius = w.flat + region->around + sqrt(3.0) * region->half;
     kernel->intervals(tape, x, y, z, 0, NULL, low, high, scratch);
     if (!walk(&w, low, high))
         return false;

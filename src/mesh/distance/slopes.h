@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * The gradients that a field can have in a ball, through its operators: a few balls of vectors
+ * The gradients that a field can have in a region, through its operators: a few balls of vectors
  * whose convex hull holds them all. Leaves give theirs (field/cones/cone.h). A blend mixes its
  * operands' gradients in shares that depend on the operands' difference alone, and that changes
- * within the ball by no more than the gradients allow: so where two surfaces flow into each other
- * the set shrinks with the ball, and what a sharp operator hides there does not take part at all.
+ * within the region by no more than the gradients allow: so where two surfaces flow into each other
+ * the set shrinks with the region, and what a sharp operator hides there does not take part at all.
+ * Leaves are asked in a ball around the region; how far operands part from each other in it is told
+ * by its extent along their gradients' difference, which along a straight fillet is none.
  *
- * And the field's range over a triangle in the ball: that of a leaf from its values at the corners
- * and how far its gradients stray, of convex primitives by their tangent planes, then through the
- * operators, which are monotone. A triangle that ends at a crease has a narrow one.
+ * And the field's range over a triangle in the region: that of a leaf from its values at the
+ * corners and how far its gradients stray, of convex primitives by their tangent planes, then
+ * through the operators, which are monotone. A triangle that ends at a crease has a narrow one.
  *
- * And over the ball: where two solids share a face their union is zero there, but nowhere less, and
- * what is cut off along a face that a solid has already is nowhere more.
+ * And over the region: where two solids share a face their union is zero there, but nowhere less,
+ * and what is cut off along a face that a solid has already is nowhere more.
  */
 #ifndef CSG_MESH_DISTANCE_SLOPES_H
 #define CSG_MESH_DISTANCE_SLOPES_H
@@ -21,21 +23,27 @@
 
 enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
 
+/* What is within `around` of the convex hull of a triangle and a point c, or in a cube of that half
+ * edge along the axes around a place that is. */
+typedef struct csg_gradients_region {
+    csg_vec3 triangle[3], c;
+    double around, half;
+} csg_gradients_region;
+
 typedef struct csg_gradients {
     csg_cone_balls balls;
-    double value;       /* of the field, at the centre */
+    double value;       /* of the field, at c */
     double low, high;   /* over the triangle */
-    double least, most; /* over the ball, but for rounding: nowhere less, nowhere more */
+    double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
     double stray;       /* no gradient is farther from `middle`; INFINITY: not known */
     double middle[3];
     double doubt; /* rounding of the field's values */
 } csg_gradients;
 
-/* Over the ball around c, and over a triangle within it. scratch: as the kernel needs it. False: no
- * bound is known. */
-bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape, const csg_vec3 triangle[3],
-                        csg_vec3 c, double radius, float *scratch, size_t scratch_floats,
+/* scratch: as the kernel needs it. False: no bound is known. */
+bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
+                        const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
 
 /* What a join by a fold gives of two values of a union (of an intersection: turned around), and the

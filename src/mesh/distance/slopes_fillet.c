@@ -26,7 +26,7 @@ static double value_of_node(const walker *w, const csg_tape_node *node)
     nodes[node->size - 1].join = CSG_JOIN_NONE;
     below.nodes = nodes;
     below.count = node->size;
-    return csg_tape_value_at(w->kernel, &below, w->c, w->scratch, w->scratch_floats);
+    return csg_tape_value_at(w->kernel, &below, w->region.c, w->scratch, w->scratch_floats);
 }
 
 /* What a fillet ends at: how far inside of the nearest of its planes operands are at least. */
@@ -99,7 +99,8 @@ static range fillet_shares(const walker *w, const operand *of, double turn, doub
 /* Those that blend turn little from each other, or are planes. */
 static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32_t count)
 {
-    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    const csg_vec3 at = w->region.c;
+    const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     operand *of = &w->stack[w->top - node->arity];
     double stray, apart = 0;
     if (count == 2)
@@ -122,7 +123,8 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
 {
     static const which ends[2][2] = {{CSG_SLOPES_LOW, CSG_SLOPES_HIGH},
                                      {CSG_SLOPES_LEAST, CSG_SLOPES_MOST}};
-    const float c[3] = {(float)w->c.x, (float)w->c.y, (float)w->c.z};
+    const csg_vec3 at = w->region.c;
+    const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     double r = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
     double turn = csg_op_is_union(node->op) ? 1 : -1, doubt = 0, low[2], high[2];
     uint32_t count = node->arity - node->planes;

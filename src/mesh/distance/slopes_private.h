@@ -6,11 +6,11 @@
 
 #include "mesh/distance/slopes.h"
 
-/* What one operand can be in the ball. */
+/* What one operand can be in the region. */
 typedef struct csg_slopes_operand {
-    double value, doubt; /* at the centre; rounding */
+    double value, doubt; /* at c; rounding */
     double low, high;    /* over the triangle */
-    double least, most;  /* over the ball, but for rounding */
+    double least, most;  /* over the region, but for rounding */
     csg_cone_balls balls;
     double longest; /* gradient */
     bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
@@ -21,8 +21,8 @@ typedef struct csg_slopes_operand {
 typedef struct csg_slopes_walker {
     const csg_kernel *kernel;
     const csg_tape *tape;
-    csg_vec3 v[3], c;
-    double radius, flat; /* of the ball; of the triangle's corners around the centre */
+    csg_gradients_region region;
+    double radius, flat; /* of the ball around c that holds the region; the triangle */
     float *scratch;
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
@@ -43,7 +43,7 @@ typedef enum csg_slopes_which {
 } csg_slopes_which;
 
 double csg_slopes_value(const csg_slopes_operand *o, csg_slopes_which what);
-/* By how much the difference of two operands can change from the centre, within the ball. */
+/* By how much the difference of two operands can change from c, within the region. */
 double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
                         const csg_slopes_operand *b);
 /* a becomes the mixture with b, in any of the shares of a; the value is the caller's. False: no
