@@ -72,12 +72,12 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
 {
     double radius = csg_enclosure_radius(half);
     csg_gradients gradients;
-    csg_vec3 middle = csg_vec3_make(c[0], c[1], c[2]);
-    const csg_vec3 point[3] = {middle, middle, middle};
+    const csg_vec3 at = csg_vec3_make(c[0], c[1], c[2]);
+    const csg_gradients_region cube = {{at, at, at}, at, 0, radius / sqrt(3.0)};
     if (find_of_leaf(kernel, tape, c, radius, scratch, out))
         return isfinite(out->value + out->below + out->above);
-    if (may_jump(tape, c, radius) || !csg_gradients_find(kernel, tape, point, middle, radius,
-                                                         scratch, scratch_floats, &gradients))
+    if (may_jump(tape, c, radius) ||
+        !csg_gradients_find(kernel, tape, &cube, scratch, scratch_floats, &gradients))
         return false;
     bool turns = gradients.stray < gradients.longest;
     double stray = turns ? gradients.stray : gradients.longest;
