@@ -695,9 +695,9 @@ typedef struct csgm_measures {
 CSGM_API csgm_measures csgm_measures_default(void);
 
 /* Volume, centroid, inertia and tight bounds of {f >= 0}: an octree whose cubes are inside, outside
- * or cut by two planes that the field's gradients prove (docs/measure.md). The same for any number
- * of threads. options NULL = defaults. CSGM_ERR_ARGUMENT: an option out of range, or no part has
- * that name (csgm_field_part). CSGM_ERR_SCENE (reported): the solid is empty or unbounded. With
+ * or cut by planes that the solid is proven to lie between (docs/measure.md). The same for any
+ * number of threads. options NULL = defaults. CSGM_ERR_ARGUMENT: an option out of range, or no part
+ * has that name (csgm_field_part). CSGM_ERR_SCENE (reported): the solid is empty or unbounded. With
  * CSGM_ERR_LIMIT, CSGM_ERR_MEMORY and CSGM_CANCELLED *out has what is proven by then; else it is
  * written on CSGM_OK only. */
 CSGM_API csgm_status csgm_measure_field(csgm_context *context, const csgm_field *field,

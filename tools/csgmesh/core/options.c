@@ -178,7 +178,7 @@ static bool set_amount(parser *p, const row *option, const char *text, cli_amoun
     return true;
 }
 
-static bool set_measure(parser *p, const row *option, const char *text, double *slot)
+static bool set_nonnegative(parser *p, const row *option, const char *text, double *slot)
 {
     char number[64];
     size_t length = strlen(text);
@@ -293,7 +293,7 @@ static bool set_option(parser *p, const row *option, const char *value)
     case NUMBER:
         return set_number(p, option, value, slot);
     case NONNEGATIVE:
-        return set_measure(p, option, value, slot);
+        return set_nonnegative(p, option, value, slot);
     case AMOUNT:
         return set_amount(p, option, value, slot);
     case BYTES:
