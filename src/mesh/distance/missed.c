@@ -14,6 +14,7 @@
 /* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
 enum {
     MOST_POINTS = 4096,
+    MOST_FAR = 16384, /* with those that are farther than the error */
     LEAST_CUBES = 1500,
     AGAIN_CUBES = 200000,
     MOST_CUBES = 60000,
@@ -25,15 +26,16 @@ enum {
 static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
 static const double SHARE = 0.2; /* of what is left of the stage, for progress */
 /* How near a sheet's gradients must be to their middle, of the field's slope. A sheet that leans
- * farther is looked at in eight places. */
-static const double SMOOTH = 0.5, CREASED = 0.45, LEANING = 0.2;
+ * farther is looked at in eight places; of one that leans less no place is farther from the mesh
+ * than others by more than a twentieth. */
+static const double SMOOTH = 0.5, CREASED = 0.45, LEANING = 0.2, LEVEL = 0.95;
 
 /* What a frontier cube gave, and where it is. */
 typedef struct segment {
     uint32_t worker;
     bool unfinished;
     size_t first, count;
-    double farthest;
+    double farthest, unlisted;
     csg_vec3 place;
 } segment;
 
@@ -67,6 +69,7 @@ typedef struct cube {
     double half, around, value; /* in the middle, where the cube is small enough for one sheet */
     csg_tape tape;
     bool is_sheet; /* with those around it */
+    bool is_bent;  /* where it is one: it may have a crease, or a narrow fillet */
 } cube;
 
 /* ---- the field in a cube -----------------------------------------------------------------------
@@ -182,8 +185,11 @@ static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t
         s->segment->farthest = distance;
         s->segment->place = p;
     }
-    if (triangle == CSG_CORNER_NONE || s->segment->count >= MOST_POINTS)
+    uint32_t most = distance > w->error ? MOST_FAR : MOST_POINTS;
+    if (triangle == CSG_CORNER_NONE || s->segment->count >= most) {
+        s->segment->unlisted = fmax(s->segment->unlisted, distance);
         return true;
+    }
     if (!csg_memory_reserve(w->remesh->memory, (void **)&s->points, &s->capacity, s->count + 1,
                             sizeof *s->points))
         return false;
@@ -223,6 +229,99 @@ static bool is_sheet_near(const walk *w, worker *s, const cube *q)
     return find_surface(w, s, q, &p) && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error);
 }
 
+/* ---- where a sheet turns -----------------------------------------------------------------------
+ * A mesh that cuts off a crease can be within the error of both faces, so near to every place of
+ * these that is looked at, and still be farther from the crease.
+ */
+
+/* A tangent plane of the surface. */
+typedef struct plane {
+    csg_vec3 normal;
+    double height; /* of all its places, along the normal */
+} plane;
+
+static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, plane *out)
+{
+    double norm = csg_vec3_norm(gradient);
+    if (!(norm > 1e-3))
+        return false;
+    out->normal = csg_vec3_scale(gradient, 1 / norm);
+    out->height = csg_vec3_dot(out->normal, at) - value / norm;
+    return true;
+}
+
+/* The place of both planes that is nearest to p. */
+static bool bring_to_both(const plane *a, const plane *b, csg_vec3 *p)
+{
+    double cosine = csg_vec3_dot(a->normal, b->normal), square = 1 - cosine * cosine;
+    if (!(square > 0.05))
+        return false;
+    double over_a = csg_vec3_dot(a->normal, *p) - a->height,
+           over_b = csg_vec3_dot(b->normal, *p) - b->height;
+    double u = (cosine * over_b - over_a) / square, v = (cosine * over_a - over_b) / square;
+    *p = csg_vec3_add(*p, csg_vec3_add(csg_vec3_scale(a->normal, u), csg_vec3_scale(b->normal, v)));
+    return true;
+}
+
+/* Planes of the two faces that turn most from each other, as the cube's corners and its middle
+ * show them. */
+static bool find_faces(const walk *w, worker *s, const cube *q, plane faces[2])
+{
+    enum { PLACES = CSG_OCTANTS + 1, PADDED = CSG_OCTANTS + CSG_LANES };
+    float at[3][PADDED] = {{0}}, g[3][PADDED], f[PADDED];
+    plane planes[PLACES] = {{{0, 0, 0}, 0}};
+    uint32_t count = 0;
+    double least = 1;
+    for (int i = 0; i < PLACES; i++) {
+        double step = i < CSG_OCTANTS ? q->half : 0;
+        at[0][i] = (float)(q->c.x + (i & 1 ? step : -step));
+        at[1][i] = (float)(q->c.y + (i & 2 ? step : -step));
+        at[2][i] = (float)(q->c.z + (i & 4 ? step : -step));
+    }
+    w->remesh->probe.marching->kernel->values_and_gradients(
+        &q->tape, at[0], at[1], at[2], PLACES, f, g[0], g[1], g[2], s->scratch, w->scratch_floats);
+    for (int i = 0; i < PLACES; i++) {
+        csg_vec3 p = {(double)at[0][i], (double)at[1][i], (double)at[2][i]};
+        csg_vec3 slope = {(double)g[0][i], (double)g[1][i], (double)g[2][i]};
+        count += find_plane(p, (double)f[i], slope, &planes[count]);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < i; k++) {
+            double cosine = csg_vec3_dot(planes[i].normal, planes[k].normal);
+            if (cosine >= least)
+                continue;
+            least = cosine;
+            faces[0] = planes[i];
+            faces[1] = planes[k];
+        }
+    return least < LEVEL;
+}
+
+enum { TURNS = 5 };
+
+/* Places where a sheet turns within the cube: along the line in which tangent planes of both faces
+ * meet, from there to the surface. */
+static uint32_t find_turns(const walk *w, worker *s, const cube *q, csg_vec3 out[TURNS])
+{
+    plane faces[2] = {{{0, 0, 0}, 0}};
+    cube from = *q;
+    csg_vec3 middle = q->c;
+    uint32_t count = 0;
+    if (!find_faces(w, s, q, faces) || !bring_to_both(&faces[0], &faces[1], &middle))
+        return 0;
+    csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].normal, faces[1].normal));
+    for (int i = 0; i < TURNS; i++) {
+        double step = (2.0 * i / (TURNS - 1) - 1) * q->half;
+        from.c = csg_vec3_add(middle, csg_vec3_scale(along, step));
+        csg_vec3 off = csg_vec3_sub(from.c, q->c);
+        if (!(fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= q->half + 0.9 * q->around))
+            continue; /* another cube's */
+        from.value = value_at(w, s, &q->tape, from.c);
+        count += find_surface(w, s, &from, &out[count]);
+    }
+    return count;
+}
+
 typedef enum content { NOTHING, SHEET, ANYTHING } content;
 
 /* What the field's gradients say that there is in the cube. */
@@ -238,7 +337,29 @@ static content content_of(const walk *w, worker *s, cube *q)
         return NOTHING; /* or a face that solids share */
     double leaning = leaning_of(&gradients.balls);
     q->is_sheet = leaning >= LEANING;
+    q->is_bent = leaning < LEVEL;
     return leaning >= (gradients.balls.count > 1 ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+}
+
+/* A sheet that has a place near the mesh. Where it turns at some distance from the mesh it is
+ * looked at in cubes of the error: elsewhere along the crease it may be farther. */
+static verdict settle_turns(const walk *w, worker *s, const cube *q)
+{
+    static const double CLOSE = 0.5; /* of the error */
+    csg_vec3 places[TURNS];
+    uint32_t triangle, count = q->is_bent ? find_turns(w, s, q, places) : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        csg_vec3 p = places[i];
+        if (csg_triangle_tree_is_near(&w->remesh->tree, p, CLOSE * w->error) ||
+            !is_border(w, s, q, p))
+            continue;
+        if (q->half > w->error)
+            return DIVIDE;
+        double distance = distance_from_mesh(w, p, &triangle);
+        if (!keep(w, s, p, distance, triangle))
+            return NO_MEMORY;
+    }
+    return SETTLED;
 }
 
 /* A place of the surface at hand, how far from the mesh it is. */
@@ -248,9 +369,10 @@ static verdict settle(const walk *w, worker *s, cube *q)
     csg_vec3 p;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    if (fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w) ||
-        (q->is_sheet && is_sheet_near(w, s, q)))
+    if (fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w))
         return SETTLED;
+    if (q->is_sheet && is_sheet_near(w, s, q))
+        return settle_turns(w, s, q);
     bool ends = q->half <= w->least || is_near_mesh(w, q), sheet = false;
     if (!ends) {
         content what = content_of(w, s, q);
@@ -261,7 +383,7 @@ static verdict settle(const walk *w, worker *s, cube *q)
     if (!find_surface(w, s, q, &p))
         return ends ? SETTLED : DIVIDE;
     if (sheet && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error))
-        return SETTLED;
+        return settle_turns(w, s, q);
     if (!is_border(w, s, q, p))
         return ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
@@ -309,6 +431,7 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
         child.tape = tapes[o];
         child.value = may_be_sheet(w, child.half) ? (double)f[o] : 0;
         child.is_sheet = parent->is_sheet;
+        child.is_bent = parent->is_bent;
         verdict what = settle(w, s, &child);
         done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &child, depth + 1));
     }
@@ -422,6 +545,7 @@ static bool gather_segments(const walk *w, csg_missed *out)
             out->farthest = s->farthest;
             out->place = s->place;
         }
+        out->unlisted = fmax(out->unlisted, s->unlisted);
         out->unfinished += s->unfinished;
         if (!s->count)
             continue;

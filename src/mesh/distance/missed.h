@@ -21,6 +21,7 @@ typedef struct csg_missed {
     size_t count, capacity;
     double farthest; /* of all places looked at, from the mesh */
     csg_vec3 place;  /* where that is, field frame */
+    double unlisted; /* the same, of those that are not among the points: too far, or too many */
     uint64_t
         unfinished; /* cubes of the octree's frontier that have more in them than is looked at */
 } csg_missed;

@@ -8,6 +8,7 @@
 #define CSG_MESH_RESHAPE_DECIMATE_H
 
 #include "mesh/reshape/decimation.h"
+#include "mesh/reshape/far.h"
 
 /* CSGM_OK or CSGM_ERR_MEMORY (reported). The error may grow from one csg_decimate to the next. */
 csgm_status csg_decimation_begin(csg_decimation *decimation, csg_remesh *remesh,
@@ -20,7 +21,9 @@ enum { CSG_DECIMATE_ALL = 4 /* of triangles: fewer there are never */ };
  * stopped (reported). */
 csgm_status csg_decimate(csg_decimation *decimation, uint32_t least);
 
-/* Largest distance of a sample to the mesh as it is now. */
-double csg_decimation_largest_distance(const csg_decimation *decimation);
+/* The largest distance of a sample to the mesh as it is now, but for those that are farther than
+ * the error: these are added to `far`. False: out of memory. */
+bool csg_decimation_measure(const csg_decimation *decimation, double error, csg_far_places *far,
+                            double *most);
 
 #endif

@@ -413,10 +413,18 @@ void csg_decimation_hand_over(csg_decimation *d)
     }
 }
 
-double csg_decimation_largest_distance(const csg_decimation *d)
+/* Another triangle may be nearer than the one that answers for it. */
+static double distance_of(const csg_decimation *d, csg_vec3 p, const csg_vec3 owner[3], double most)
+{
+    double weights[3], own = sqrt(csg_triangle_nearest(owner, p, weights));
+    return own > most ? fmin(own, csg_triangle_tree_nearest(&d->remesh->tree, p, own, NULL)) : own;
+}
+
+bool csg_decimation_measure(const csg_decimation *d, double error, csg_far_places *far,
+                            double *most)
 {
     const csg_remesh *r = d->remesh;
-    double most = 0, weights[3];
+    *most = 0;
     for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
         if (!csg_corners_is_live(&r->corners, t))
             continue;
@@ -424,10 +432,12 @@ double csg_decimation_largest_distance(const csg_decimation *d)
                                csg_remesh_corner(r, 3 * t + 2)};
         for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->samples[s].next) {
             csg_vec3 p = csg_sample_at(d, s);
-            double own = sqrt(csg_triangle_nearest(v, p, weights));
-            if (own > most) /* another one may be nearer than the one that answers for it */
-                most = fmax(most, fmin(own, csg_triangle_tree_nearest(&r->tree, p, own, NULL)));
+            double distance = distance_of(d, p, v, *most);
+            if (!(distance > error))
+                *most = fmax(*most, distance);
+            else if (!csg_far_places_add(far, r->memory, p))
+                return false;
         }
     }
-    return most;
+    return true;
 }

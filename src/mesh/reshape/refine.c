@@ -253,6 +253,29 @@ static bool bring_to_surface(csg_remesh *r, csg_vec3 *at, csg_vec3 normal)
     return find_entry(r, at, normal);
 }
 
+/* A vertex at this place, in a side that is cut there. */
+static bool split(refiner *f, uint32_t corner, csg_vec3 at)
+{
+    csg_remesh *r = f->remesh;
+    if (!is_sound(r, corner, at))
+        return false;
+    uint32_t vertex = free_vertex(f);
+    const uint32_t triangles[2] = {free_triangle(f), free_triangle(f)};
+    if (vertex == CSG_CORNER_NONE || triangles[0] == CSG_CORNER_NONE ||
+        triangles[1] == CSG_CORNER_NONE)
+        return false;
+    uint32_t other = r->corners.across[csg_corner_previous(corner)] / 3;
+    r->at[vertex] = at;
+    r->kind[vertex] = csg_remesh_is_crease(r, corner) ? CSG_VERTEX_CREASE : CSG_VERTEX_SMOOTH;
+    if (r->looks)
+        r->looks[vertex] = csg_remesh_look(r, at);
+    csg_corners_split(&r->corners, corner, vertex, triangles);
+    csg_triangle_tree_update_around(&r->tree, vertex);
+    f->pending[corner / 3] = f->pending[other] = 2; /* next round */
+    f->pending[triangles[0]] = f->pending[triangles[1]] = 2;
+    return true;
+}
+
 /* A new vertex goes all the way to the surface, or a share of it. */
 static bool cut(refiner *f, const side *where, double share)
 {
@@ -265,23 +288,7 @@ static bool cut(refiner *f, const side *where, double share)
         !bring_to_surface(r, &at, normal_at(r, corner)))
         return false;
     at = csg_vec3_add(from, csg_vec3_scale(csg_vec3_sub(at, from), share));
-    if (!is_sound(r, corner, at))
-        return false;
-    uint32_t vertex = free_vertex(f);
-    const uint32_t triangles[2] = {free_triangle(f), free_triangle(f)};
-    if (vertex == CSG_CORNER_NONE || triangles[0] == CSG_CORNER_NONE ||
-        triangles[1] == CSG_CORNER_NONE)
-        return false;
-    uint32_t other = r->corners.across[csg_corner_previous(corner)] / 3;
-    r->at[vertex] = at;
-    r->kind[vertex] = is_crease ? CSG_VERTEX_CREASE : CSG_VERTEX_SMOOTH;
-    if (r->looks)
-        r->looks[vertex] = csg_remesh_look(r, at);
-    csg_corners_split(&r->corners, corner, vertex, triangles);
-    csg_triangle_tree_update_around(&r->tree, vertex);
-    f->pending[corner / 3] = f->pending[other] = 2; /* next round */
-    f->pending[triangles[0]] = f->pending[triangles[1]] = 2;
-    return true;
+    return split(f, corner, at);
 }
 
 /* Where a side is too far from the surface it helps to cut no others: a fan that shares it would
@@ -302,6 +309,162 @@ static bool cut_one(refiner *f, const side sides[3])
     return false;
 }
 
+/* ---- places that are far -----------------------------------------------------------------------
+ */
+
+/* Whether the place of a side that is nearest to p is no end of it. */
+static bool is_in_side(const csg_remesh *r, uint32_t corner, csg_vec3 p)
+{
+    static const double ENDS = 0.05; /* of the side */
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    csg_vec3 along = csg_vec3_sub(b, a);
+    double square = csg_vec3_dot(along, along);
+    double share = square > 0 ? csg_vec3_dot(csg_vec3_sub(p, a), along) / square : 0;
+    return share > ENDS && share < 1 - ENDS;
+}
+
+static const double LEAST_FACING = 0.3; /* cosine */
+
+/* Whether there is only solid, or only what is outside, between a triangle and a place that is far:
+ * else the place is of another part, and a vertex there would be a spike. */
+static bool is_of_one_part(csg_remesh *r, uint32_t triangle, csg_vec3 p)
+{
+    enum { PLACES = 8 };
+    const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * triangle),
+                           csg_remesh_corner(r, 3 * triangle + 1),
+                           csg_remesh_corner(r, 3 * triangle + 2)};
+    float at[PLACES][3], f[PLACES];
+    double weights[3];
+    bool inside = false, outside = false;
+    csg_triangle_nearest(v, p, weights);
+    csg_vec3 from = csg_vec3_scale(v[0], weights[0]);
+    from = csg_vec3_add(from, csg_vec3_scale(v[1], weights[1]));
+    from = csg_vec3_add(from, csg_vec3_scale(v[2], weights[2]));
+    for (int i = 0; i < PLACES; i++)
+        csg_vec3_to_floats(
+            at[i], csg_vec3_add(from, csg_vec3_scale(csg_vec3_sub(p, from), (i + 0.5) / PLACES)));
+    csg_probe_values(&r->probe, (const float(*)[3])at, PLACES, f);
+    for (int i = 0; i < PLACES; i++) {
+        inside |= f[i] > 4 * r->probe.noise;
+        outside |= f[i] < -4 * r->probe.noise;
+    }
+    return !(inside && outside);
+}
+
+/* The least cosine between how triangles face and how the surface below their middles does. */
+static double facing_of(csg_remesh *r, const csg_vec3 (*triangles)[3], int count)
+{
+    double least = 1;
+    for (int i = 0; i < count; i++) {
+        const csg_vec3 *v = triangles[i];
+        csg_vec3 middle = csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3);
+        csg_vec3 normal = csg_vec3_normalize(csg_triangle_cross(v[0], v[1], v[2]));
+        least = fmin(least, csg_vec3_dot(normal, outward_at(r, middle)));
+    }
+    return least;
+}
+
+/* How well the triangles around a vertex at p in that side would face as the surface does. */
+static double facing_with(csg_remesh *r, uint32_t corner, csg_vec3 p)
+{
+    uint32_t apex = csg_corner_previous(corner);
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, r->corners.across[apex]);
+    const csg_vec3 parts[4][3] = {{c, a, p}, {c, p, b}, {d, b, p}, {d, p, a}};
+    return facing_of(r, parts, 4);
+}
+
+/* Brings a vertex to a place: one in a side of the triangle that is nearest to it. */
+static bool reach(refiner *f, csg_vec3 p)
+{
+    csg_remesh *r = f->remesh;
+    uint32_t triangle, sides[3];
+    static const double LEAST = -0.3;
+    double facing[3];
+    int count = 0;
+    double distance = csg_triangle_tree_nearest(&r->tree, p, 4 * r->error, &triangle);
+    if (!(distance > r->error) || distance == INFINITY || !is_of_one_part(r, triangle, p))
+        return false;
+    for (uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; corner++) {
+        double one = facing_with(r, corner, p);
+        if (one < LEAST || !is_in_side(r, corner, p))
+            continue;
+        int i = count++;
+        for (; i && one > facing[i - 1]; i--) {
+            sides[i] = sides[i - 1];
+            facing[i] = facing[i - 1];
+        }
+        sides[i] = corner;
+        facing[i] = one;
+    }
+    for (int i = 0; i < count; i++)
+        if (split(f, sides[i], p))
+            return true;
+    return false;
+}
+
+/* ---- slivers -----------------------------------------------------------------------------------
+ */
+
+/* How far all places of a segment are from the surface, by the field. */
+static double away_of(csg_remesh *r, csg_vec3 a, csg_vec3 b)
+{
+    float at[CUTS][3], f[CUTS];
+    double most = 0;
+    for (int i = 0; i < CUTS; i++) {
+        double share = (i + 1.0) / (CUTS + 1);
+        csg_vec3_to_floats(at[i], csg_vec3_add(a, csg_vec3_scale(csg_vec3_sub(b, a), share)));
+    }
+    csg_probe_values(&r->probe, (const float(*)[3])at, CUTS, f);
+    for (int i = 0; i < CUTS; i++)
+        most = fmax(most, fabs((double)f[i]));
+    return most;
+}
+
+/* Slivers that stand on the surface are near it, but face any way, and cuts make more of them: a
+ * side becomes the other diagonal where both triangles get better, or face the right way then. What
+ * looks like a crease beside a sliver is none where the other diagonal is near the surface. */
+static bool flip(refiner *f, uint32_t corner)
+{
+    static const double GAIN = 2, LOSS = 0.5, AWAY = 0.7 /* of the error */;
+    csg_remesh *r = f->remesh;
+    csg_corners *m = &r->corners;
+    uint32_t apex = csg_corner_previous(corner), other = m->across[apex];
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, other);
+    const csg_vec3 now[2][3] = {{c, a, b}, {d, b, a}}, then[2][3] = {{c, a, d}, {d, b, c}};
+    double before = fmin(csg_triangle_quality(c, a, b), csg_triangle_quality(d, b, a));
+    double after = fmin(csg_triangle_quality(c, a, d), csg_triangle_quality(d, b, c));
+    bool is_crease = csg_remesh_is_crease(r, corner);
+    double facing = facing_of(r, then, 2), faced = facing_of(r, now, 2);
+    if (!(after > (faced < LEAST_FACING ? LOSS : GAIN) * before) ||
+        facing < fmax(LEAST_FACING, faced) || (is_crease && faced >= LEAST_FACING) ||
+        !csg_corners_can_flip(m, corner) || away_of(r, c, d) > (is_crease ? FAR : AWAY) * r->error)
+        return false;
+    const uint32_t *v = m->vertex, ids[2][3] = {{v[apex], v[corner], v[other]},
+                                                {v[other], v[csg_corner_next(corner)], v[apex]}};
+    const csg_crossing_change change = {.at = then,
+                                        .vertex = ids,
+                                        .count = 2,
+                                        .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
+                                        .triangles = {corner / 3, other / 3}};
+    if (csg_crossing_is_made(&r->tree, &change, NULL))
+        return false;
+    csg_corners_flip(m, corner);
+    csg_triangle_tree_update(&r->tree, corner / 3);
+    csg_triangle_tree_update(&r->tree, other / 3);
+    f->pending[corner / 3] = f->pending[other / 3] = 2; /* next round */
+    return true;
+}
+
+static bool flip_one(refiner *f, const side sides[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (flip(f, sides[i].corner))
+            return true;
+    return false;
+}
+
 /* Cuts the open triangles, each at most once a round. */
 static bool refine_open(refiner *f)
 {
@@ -312,18 +475,21 @@ static bool refine_open(refiner *f)
             continue;
         side sides[3];
         sides_to_cut(r, t, sides);
-        changed |= cut_one(f, sides);
+        changed |= flip_one(f, sides) || cut_one(f, sides);
     }
     return changed;
 }
 
-csgm_status csg_refine_until_near(csg_remesh *r, double error, csg_distance_proof *out)
+csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_places *far,
+                                  csg_distance_proof *out)
 {
     enum { MOST_ROUNDS = 12, MOST_IDLE = 2 };
     size_t count = r->corners.triangle_count;
     refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
     if (!f.pending)
         return csg_context_no_memory(r->context);
+    for (size_t i = 0; i < far->count; i++)
+        reach(&f, far->at[i]);
     memset(f.pending, 1, count);
     csgm_status status = csg_check_distance(r, error, false, f.pending, out);
     uint64_t least = UINT64_MAX / 10;

@@ -6,8 +6,11 @@
 #define CSG_MESH_RESHAPE_REFINE_H
 
 #include "mesh/distance/check.h"
+#include "mesh/reshape/far.h"
 
-/* Proves the distance and refines what stays open, in a few rounds; *out is of the last one. */
-csgm_status csg_refine_until_near(csg_remesh *remesh, double error, csg_distance_proof *out);
+/* Brings vertices to the places that are far, then proves the distance and refines what stays open,
+ * in a few rounds; *out is of the last one. */
+csgm_status csg_refine_until_near(csg_remesh *remesh, double error, const csg_far_places *far,
+                                  csg_distance_proof *out);
 
 #endif

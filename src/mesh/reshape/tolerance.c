@@ -83,7 +83,8 @@ static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
 /* Triangles whose vertices lie on a curved surface are all on its one side. With vertices that lie
  * a little on the other they are larger by half, and as near. That is for those who ask how near
  * the mesh is; others want to find its vertices where the surface is. */
-static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed *missed)
+static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed *missed,
+                            csg_far_places *far)
 {
     static const double OFF = 0.75; /* of what changes may make */
     CSG_ZONE(r->context, "decimation");
@@ -94,14 +95,15 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
         return status;
     d.farthest_vertex = goal->proves && !has_count(goal) ? OFF * r->error : 0;
     status = has_count(goal) ? reach_count(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
-    if (status == CSGM_OK)
-        goal->measured = csg_decimation_largest_distance(&d);
+    double error = goal->proves && !has_count(goal) ? goal->error : INFINITY;
+    if (status == CSGM_OK && !csg_decimation_measure(&d, error, far, &goal->measured))
+        status = csg_context_no_memory(r->context);
     csg_decimation_end(&d);
     return status;
 }
 
-/* The bound that is proven. */
-static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
+/* The bound that is proven, of a mesh that is brought to the places that are far. */
+static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal, const csg_far_places *far)
 {
     CSG_ZONE(r->context, "distance proof");
     csg_distance_proof proof;
@@ -109,7 +111,7 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal)
     goal->bound = INFINITY;
     if (has_count(goal) || !goal->proves)
         return CSGM_OK; /* a proof might refine it again: every collapse was checked, that is all */
-    csgm_status status = csg_refine_until_near(r, goal->allowed, &proof);
+    csgm_status status = csg_refine_until_near(r, goal->allowed, far, &proof);
     if (status != CSGM_OK)
         return status;
     goal->unproven = proof.stopped;
@@ -137,33 +139,48 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
     return status;
 }
 
-static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
+/* The largest distance of a place from the mesh as it is now. */
+static double measure(const csg_remesh *r, const csg_mesh_goal *goal, const csg_far_places *far)
 {
-    goal->begun = r->corners.live;
-    csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
-    if (status != CSGM_OK || goal->cell_size > 0)
-        return status;
+    double most = csg_lattice_extent(r->marching->lattice);
+    return fmax(goal->measured, csg_far_places_distance(far, &r->tree, most));
+}
+
+static csgm_status thin_and_prove(csg_remesh *r, csg_mesh_goal *goal, csg_far_places *far)
+{
     bool thins = goal->error > 0 || has_count(goal);
     csg_missed missed;
-    status = find_missed(r, goal, &missed);
+    csgm_status status = find_missed(r, goal, &missed);
     if (status == CSGM_OK && thins && !(goal->cell_size > 0))
-        status = thin_out(r, goal, &missed);
-    goal->measured = fmax(goal->measured, missed.farthest); /* some belong to no triangle */
+        status = thin_out(r, goal, &missed, far);
+    goal->measured = fmax(goal->measured, missed.unlisted);
     csg_missed_release(&missed, r->memory);
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;
     if (status == CSGM_OK && goal->improve)
         status = csg_improve(r, thins);
-    if (status == CSGM_OK && thins && goal->chooses && goal->measured > goal->error &&
+    if (status == CSGM_OK && thins && goal->chooses && measure(r, goal, far) > goal->error &&
         !goal->is_last)
         goal->cell_size = 0.6 * r->cell; /* the lattice is too coarse for its own samples */
     else if (status == CSGM_OK && thins)
-        status = prove(r, goal);
+        status = prove(r, goal, far);
+    goal->measured = measure(r, goal, far);
     if (status == CSGM_OK && goal->open && !goal->is_last && !goal->follows)
         goal->cell_size = goal->chooses ? 0.6 * r->cell : r->cell;
     if (status == CSGM_OK && !(goal->cell_size > 0))
         status = csg_remesh_write_back(r, goal->normals != CSGM_NORMALS_NONE,
                                        goal->normals == CSGM_NORMALS_CREASE);
+    return status;
+}
+
+static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
+{
+    csg_far_places far = {0};
+    goal->begun = r->corners.live;
+    csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
+    if (status == CSGM_OK && !(goal->cell_size > 0))
+        status = thin_and_prove(r, goal, &far);
+    csg_far_places_release(&far, r->memory);
     return status;
 }
 
