@@ -127,6 +127,14 @@ enum {
 /* Parameters of an operator. n is 1 for sharp ones, so that nothing divides by zero; for orthogonal
  * ones it is what offsets above have added to the operands. */
 enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
+/* Of a fillet, behind those of an operator: whether angles in its own frame are others than in the
+ * scene's (it is scaled unequally), and then the rows of the matrix that takes gradients into that
+ * frame. How far its operands reach beyond its planes comes next. */
+enum {
+    CSG_FILLET_IS_SKEWED = CSG_OPERATOR_PARAMETERS,
+    CSG_FILLET_TO_OWN,
+    CSG_FILLET_REACHES = CSG_FILLET_TO_OWN + 9
+};
 
 /* One operation of an expression field over slots of floats, angles in radians. `out` is neither
  * `a` nor `b`; slots 0 to 2 are the point. */

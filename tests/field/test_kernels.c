@@ -8,6 +8,7 @@
  */
 #include <float.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "field/field_support.h"
@@ -414,12 +415,74 @@ static void test_random_trees(void **state)
     }
 }
 
-int main(void)
+/* Kernels have gradients as they are above a warp, the reference as they are below it. */
+static bool has_warped_fillet(const csgm_scene *scene)
 {
+    bool *warped = calloc(scene->node_count, sizeof *warped), found = false;
+    for (size_t i = scene->node_count; i-- > 0;) {
+        const csg_node *node = &scene->nodes[i];
+        found |= warped[i] && csg_node_is_fillet(node);
+        for (uint32_t k = 0; k < node->child_count; k++)
+            warped[csg_scene_children(scene, node)[k]] = warped[i] || node->kind == CSG_NODE_WARP;
+    }
+    free(warped);
+    return found;
+}
+
+/* Trees with fillets, some of them scaled unequally or with empty operands: every build, and the
+ * reference's values wherever it is smooth: where a gradient of an operand jumps, rounding decides
+ * on which side a point lies. Returns how many points were compared. */
+static size_t check_fillets(csg_random *random, unsigned i)
+{
+    static test_points points;
+    static test_results results;
+    test_subject subject;
+    size_t compared = 0;
+    double tolerance = test_random_rules ? 1e-3 : 1e-5; /* steep rules grow rounding */
+    char what[80];
+    snprintf(what, sizeof what, "fillets %u", i);
+    test_subject_begin(&subject);
+    test_subject_compile(&subject, test_random_scene(&subject.builder, random, 2 + i % 12));
+    test_points_clear(&points);
+    while (test_points_add(&points, test_point(random, 2)) && points.count < 256) {
+    }
+    check_builds(subject.field, &points, &results, what);
+    bool warped = has_warped_fillet(subject.scene);
+    for (size_t k = 0; k < points.count && !warped; k++) {
+        csg_vec3 p = test_points_in_scene(&points, k, subject.field);
+        csg_sample expected = test_sample(subject.scene, p);
+        double error = fabs((double)results.value[k] - expected.value);
+        if (error > tolerance && test_is_smooth(subject.scene, p, 1e-5))
+            fail_msg("%s: %.9g instead of %.9g at %.9g %.9g %.9g", what, (double)results.value[k],
+                     expected.value, p.x, p.y, p.z);
+        compared += error <= tolerance;
+    }
+    test_subject_end(&subject);
+    return compared;
+}
+
+static void test_fillets(void **state)
+{
+    csg_random random = {test_first_seed + 6};
+    size_t compared = 0;
+    test_random_fillets = true;
+    for (unsigned i = 0; i < 60 * test_times; i++) {
+        test_random_shapes = i % 3 == 1;
+        test_random_curves = i % 5 == 3;
+        test_random_rules = i % 4 == 2;
+        compared += check_fillets(&random, i);
+    }
+    test_random_fillets = test_random_shapes = test_random_curves = test_random_rules = false;
+    assert_true(compared > 60 * test_times * 250);
+}
+
+int main(int argc, char **argv)
+{
+    test_take_search(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_primitives),   cmocka_unit_test(test_extreme_primitives),
         cmocka_unit_test(test_blends),       cmocka_unit_test(test_batches),
-        cmocka_unit_test(test_random_trees),
+        cmocka_unit_test(test_random_trees), cmocka_unit_test(test_fillets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -111,11 +111,12 @@ static void test_random_fillet_scenes(void **state)
         snprintf(what, sizeof what, "random fillets %u", i);
         test_random_shapes = i % 3 == 1;
         test_random_curves = i % 5 == 3;
+        test_random_rules = i % 4 == 2;
         test_subject_begin(&w.subject);
         csg_node_id root = test_random_scene(&w.subject.builder, &random, 2 + i * 7 % 20);
         walk_through(&w, root, &random, 1, 1.5, what, &totals);
     }
-    test_random_fillets = test_random_shapes = test_random_curves = false;
+    test_random_fillets = test_random_shapes = test_random_curves = test_random_rules = false;
     assert_true(totals.cells > 3000 && totals.shortened > 400 && totals.in_band > 10000);
 }
 

@@ -13,6 +13,7 @@
 #include "scene/operators/soft.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
+#include "scene/warp_kinds.h"
 
 enum { MOST_OPERANDS = 5, MOST_LEAVES = 1024 };
 
@@ -93,6 +94,36 @@ bool test_has_debulge(const csgm_scene *scene)
         if (scene->rules[i].kind == CSG_BLEND_SCALE_SET && scene->rules[i].parameters[3] > 0)
             return true;
     return false;
+}
+
+static double own_waver(const csgm_scene *scene, const csg_node *node, double below)
+{
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    if (below > 0 && (node->kind == CSG_NODE_SOFT || node->kind == CSG_NODE_COMBINE ||
+                      (rule && csg_blend_takes_fields(rule->kind))))
+        return INFINITY;
+    if (node->kind == CSG_NODE_TRANSFORM)
+        return below * scene->scales[node->payload];
+    if (node->kind == CSG_NODE_WARP)
+        return below * csg_warp_scale(&scene->warps[node->payload]);
+    if (csg_node_is_fillet(node))
+        return below + csg_blend_excess(csg_scene_blend(scene, node), node->child_count);
+    return rule ? below * pow(fmax(rule->k[0], rule->k[1]), node->child_count - 1) : below;
+}
+
+double test_waver(const csgm_scene *scene)
+{
+    double *waver = calloc(scene->node_count, sizeof *waver), root;
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        double below = 0;
+        for (uint32_t k = 0; k < node->child_count; k++)
+            below = fmax(below, waver[csg_scene_children(scene, node)[k]]);
+        waver[i] = own_waver(scene, node, below);
+    }
+    root = waver[scene->root];
+    free(waver);
+    return root;
 }
 
 unsigned test_times = 1;

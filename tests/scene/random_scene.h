@@ -46,6 +46,11 @@ void test_random_parameters(csg_random *random, csg_primitive_kind kind, double 
  * low = high), then a shift of at most `shift` along each axis. */
 csg_affine test_random_affine(csg_random *random, double low, double high, double shift);
 
+/* How far the root's value may be from a field with the scene's Lipschitz constant: fillets lie
+ * between their largest operand and that plus an excess, whatever gradients do. INFINITY: not
+ * known, what is soft or combined by a formula has one below it. */
+double test_waver(const csgm_scene *scene);
+
 /* With bulge elimination, whose share in gradients is left out (scene/operators/operators.def). */
 bool test_has_debulge(const csgm_scene *scene);
 /* Longer searches with other seeds (tools/soak): the arguments TIMES and SEED of a test program.

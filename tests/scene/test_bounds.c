@@ -231,11 +231,18 @@ typedef struct valuer {
     const csgm_scene *scene;
     const csg_node_bounds *clamp; /* NULL = plain */
     const csg_box *contain;       /* per node: must contain where the value is >= 0; or NULL */
+    const csg_sample *samples;    /* of the reference, for what looks at gradients */
 } valuer;
 
-/* The cosine that debulge needs is that of the gradients there, which is not known here. */
-static double operate_fields(const csg_node *node, const csgm_scene *scene, double *values,
-                             double cosine)
+/* Bounds change gradients, so the operands of such operators are not clamped either. */
+static bool looks_at_gradients(const csgm_scene *scene, const csg_node *node)
+{
+    const csg_rule *rule = csg_scene_rule(scene, node);
+    return csg_node_is_fillet(node) ||
+           (rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0);
+}
+
+static double operate_fields(const csg_node *node, const csgm_scene *scene, double *values)
 {
     double partials[64], slope;
     for (uint32_t k = 0; k < node->child_count; k++) {
@@ -244,7 +251,7 @@ static double operate_fields(const csg_node *node, const csgm_scene *scene, doub
             values[k] = 1 - values[k];
     }
     double value = csg_rule_apply(csg_scene_rule(scene, node), node->kind == CSG_NODE_UNION, values,
-                                  node->child_count, cosine, partials);
+                                  node->child_count, 0, partials);
     return (value - 0.5) / csg_scene_parameters(scene, node)[CSG_OPERATOR_LAMBDA];
 }
 
@@ -253,7 +260,7 @@ static double operate(const csg_node *node, const csgm_scene *scene, double *val
     double partials[64];
     const csg_rule *rule = csg_scene_rule(scene, node);
     if (rule && csg_blend_takes_fields(rule->kind))
-        return operate_fields(node, scene, values, 0);
+        return operate_fields(node, scene, values);
     double first = node->kind == CSG_NODE_UNION ? 1 : -1;
     double rest = node->kind == CSG_NODE_INTERSECTION ? -1 : 1;
     for (uint32_t k = 0; k < node->child_count; k++)
@@ -287,9 +294,13 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
         inner = csg_warp_at(&scene->warps[node->payload], p).at;
         scale = csg_warp_scale(&scene->warps[node->payload]);
     }
+    bool looks = looks_at_gradients(scene, node);
+    valuer below = {scene, looks ? NULL : v->clamp, v->contain, v->samples};
     for (uint32_t k = 0; k < node->child_count; k++)
-        values[k] = scale * value_of(v, csg_scene_children(scene, node)[k], inner);
-    if (csg_node_is_operator(node->kind))
+        values[k] = scale * value_of(&below, csg_scene_children(scene, node)[k], inner);
+    if (looks)
+        value = v->samples[id].value;
+    else if (csg_node_is_operator(node->kind))
         value = operate(node, scene, values);
     else if (node->kind == CSG_NODE_OFFSET)
         value = values[0] + csg_scene_parameters(scene, node)[0];
@@ -310,12 +321,21 @@ static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)
     return value;
 }
 
+/* The root's value at p; room: for the reference's samples. */
+static double value_at(valuer v, csg_reference_room *room, csg_vec3 p)
+{
+    csg_reference_below(room, v.scene, 0, v.scene->root, p);
+    v.samples = room->samples;
+    return value_of(&v, v.scene->root, p);
+}
+
 static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 {
     *random = (csg_random){seed};
     test_random_shapes = seed % 2;
     test_random_rules = seed % 3 == 1;
     test_random_curves = seed % 5 == 2;
+    test_random_fillets = seed % 7 == 3;
     csg_build_abandon(&builder);
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
     return test_seal(&builder, test_random_scene(&builder, random, 1 + (unsigned)seed % 60));
@@ -330,14 +350,16 @@ static void test_random_trees_are_contained(void **state)
         csg_box box = csg_bounds_of_solid(scene);
         /* blends without an end may join what is soft everywhere */
         assert_true(test_random_rules || csg_box_is_finite(box) || csg_box_is_empty(box));
-        valuer plain = {scene, NULL, scene->bounds};
+        valuer plain = {scene, NULL, scene->bounds, NULL};
+        csg_reference_room room;
+        assert_true(csg_reference_room_begin(&room, scene));
         for (int i = 0; i < 400; i++) {
             csg_vec3 p = test_point(&random, i % 4 ? 1.2 : 4);
-            double value = value_of(&plain, scene->root, p);
-            if (!test_has_debulge(scene))
-                test_near(value, test_sample(scene, p).value, 1e-13);
+            double value = value_at(plain, &room, p);
+            test_near(value, test_sample(scene, p).value, 1e-13);
             inside += value >= 0;
         }
+        csg_reference_room_end(&room, scene);
         csg_scene_destroy(scene);
     }
     assert_true(inside > 5000);
@@ -396,10 +418,12 @@ static void check_band(const csgm_scene *scene, csg_random *random, double delta
     csg_node_bounds *bounds = calloc(scene->node_count, sizeof *bounds);
     assert_non_null(bounds);
     assert_int_equal(csg_bounds_compute(scene, delta, bounds), CSGM_OK);
-    valuer plain = {scene, NULL, NULL}, clamped = {scene, bounds, NULL};
+    valuer plain = {scene, NULL, NULL, NULL}, clamped = {scene, bounds, NULL, NULL};
+    csg_reference_room room;
+    assert_true(csg_reference_room_begin(&room, scene));
     for (int i = 0; i < 300; i++) {
         csg_vec3 p = test_point(random, i % 3 ? 1.2 : 3);
-        double value = value_of(&plain, scene->root, p), cut = value_of(&clamped, scene->root, p);
+        double value = value_at(plain, &room, p), cut = value_at(clamped, &room, p);
         if (value > delta)
             assert_true(cut >= delta - 1e-12);
         else if (value >= -delta)
@@ -407,6 +431,7 @@ static void check_band(const csgm_scene *scene, csg_random *random, double delta
         else
             assert_true(cut < -delta + 1e-12);
     }
+    csg_reference_room_end(&room, scene);
     free(bounds);
 }
 

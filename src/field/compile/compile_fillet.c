@@ -10,8 +10,9 @@
 #include "scene/operators/fillet.h"
 #include "scene/primitives/kinds.h"
 
-/* The plane with this number lies where the operand ends that reaches farthest, of those that end.
- * False: fewer than two do, so that none of the operands' unions ends there. */
+/* The plane with this number lies where the operand ends that reaches farthest, of those that end
+ * (what is empty ends everywhere, at -INFINITY). False: fewer than two do, so that none of the
+ * operands' unions ends there. */
 static bool find_plane(const csg_compiler *c, const csg_node *node, size_t number, double *d)
 {
     csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
@@ -19,31 +20,46 @@ static bool find_plane(const csg_compiler *c, const csg_node *node, size_t numbe
     *d = -INFINITY;
     for (uint32_t k = 0; k < node->child_count; k++) {
         double reach = planes.reaches[k * planes.count + number];
-        ending += isfinite(reach);
+        ending += reach < INFINITY;
         *d = isfinite(reach) ? fmax(*d, reach) : *d;
     }
+    *d = isfinite(*d) ? *d : 0;
     return ending > 1;
+}
+
+/* Angles between gradients are those of the fillet's own frame, as a solid that is scaled is scaled
+ * with its fillets. With the frame's matrix M and the factor of its values, a gradient g of the
+ * scene is M^T g / factor there. */
+static void pack_frame(const csg_compile_frame *f, float *own)
+{
+    double largest, smallest;
+    csg_affine_singular_values(&f->place, &smallest, &largest);
+    own[CSG_FILLET_IS_SKEWED] = largest - smallest > 1e-12 * largest;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            own[CSG_FILLET_TO_OWN + 3 * row + column] =
+                (float)(f->place.m[column][row] / f->factor);
 }
 
 bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t)
 {
     const csg_node *node = &c->scene->nodes[t->node];
     csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
-    const float own[CSG_OPERATOR_PARAMETERS] = {(float)t->blend.n,
-                                                (float)csg_blend_support(t->blend)};
+    float own[CSG_FILLET_REACHES] = {(float)t->blend.n, (float)csg_blend_support(t->blend)};
     const float unknown = INFINITY;
     uint32_t at;
-    if (!csg_compile_push(c, own, CSG_OPERATOR_PARAMETERS, &t->parameters))
+    pack_frame(&t->frame, own);
+    if (!csg_compile_push(c, own, CSG_FILLET_REACHES, &t->parameters))
         return false;
     for (size_t i = 0; i < planes.count * node->child_count; i++)
         if (!csg_compile_push(c, &unknown, 1, &at))
             return false;
-    float *beyond = c->parameters + t->parameters + CSG_OPERATOR_PARAMETERS;
+    float *beyond = c->parameters + t->parameters + CSG_FILLET_REACHES;
     for (size_t i = 0; i < planes.count; i++) {
         double d;
         bool is_known = find_plane(c, node, i, &d);
         for (size_t k = i; is_known && k < planes.count * node->child_count; k += planes.count)
-            if (isfinite(planes.reaches[k]))
+            if (planes.reaches[k] < INFINITY)
                 beyond[k] = (float)((planes.reaches[k] - d) * t->frame.factor);
     }
     return true;
@@ -52,7 +68,7 @@ bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t)
 uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t)
 {
     size_t planes = csg_scene_fillet_planes(c->scene, &c->scene->nodes[t->node]).count;
-    return t->parameters + CSG_OPERATOR_PARAMETERS + t->written * (uint32_t)planes;
+    return t->parameters + CSG_FILLET_REACHES + t->written * (uint32_t)planes;
 }
 
 bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count)

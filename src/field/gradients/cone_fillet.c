@@ -19,6 +19,12 @@ enum { MOST_OPERANDS = 8 };
 
 static const csg_fillet_turns any_turn = {0, 2};
 
+/* Then cones of gradients, which are the scene's, say nothing of its angles. */
+static bool is_skewed(const csg_tape *tape, const csg_tape_node *node)
+{
+    return tape->parameters[node->parameters + CSG_FILLET_IS_SKEWED] > 0;
+}
+
 /* A unit vector within `spread` of `at`. */
 static bool unit_ball(const csg_cone_ball *ball, csg_cone_ball *out)
 {
@@ -93,7 +99,7 @@ csg_fillet_turns csg_fillet_find_turns(const csg_tape *tape, const csg_tape_node
     uint32_t count = node->arity - node->planes;
     const csg_tape_node *child = node - 1 - node->planes;
     csg_fillet_turns all = {2, 0};
-    if (count > MOST_OPERANDS)
+    if (count > MOST_OPERANDS || is_skewed(tape, node))
         return any_turn;
     for (uint32_t k = 0; k < count; k++, child -= child->size) {
         if (!find_turning(tape, child, c, radius, &found[k]))
@@ -131,6 +137,8 @@ bool csg_fillet_find_stray(const csg_tape *tape, const csg_tape_node *node, cons
     const csg_tape_node *child = node - 1 - node->planes;
     uint32_t count = node->arity - node->planes;
     double bends = 0, r = (double)tape->parameters[node->parameters + CSG_OPERATOR_N];
+    if (is_skewed(tape, node))
+        return false;
     for (uint32_t k = 0; k < count; k++, child -= child->size) {
         double bend;
         if (!csg_op_is_leaf(child->op) || !find_bend(tape, child, c, radius, &bend))

@@ -28,6 +28,7 @@ typedef struct fillet_arrays {
     uint32_t per, operands, planes;
     float turn; /* -1: an intersection, the union of what is negated */
     double radius;
+    const float *to_own; /* where angles are other ones in the fillet's own frame, else NULL */
 } fillet_arrays;
 
 /* Where the operator's children, the last of which is the node before it, have their numbers. */
@@ -95,6 +96,7 @@ static uint32_t fillet_gather(const fillet_arrays *a, size_t i, float largest,
         csg_fillet_operand made = {.index = k};
         double x = (double)fillet_channel(a, k, 0)[i], y = (double)fillet_channel(a, k, 1)[i],
                z = (double)fillet_channel(a, k, 2)[i];
+        fillet_into_own(a->to_own, &x, &y, &z);
         if ((double)largest - v < 2 * a->radius &&
             csg_fillet_set(&made, v, (double)a->turn * x, (double)a->turn * y, (double)a->turn * z))
             count = csg_fillet_insert(reach, count, &made);
@@ -188,8 +190,12 @@ static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count
         {fillet_channel(a, 0, 0), fillet_channel(a, 0, 1), fillet_channel(a, 0, 2)},
         {fillet_channel(a, 1, 0), fillet_channel(a, 1, 1), fillet_channel(a, 1, 2)},
     };
-    fillet_pairs_blend(a->turn, a->radius, a->values, a->values + a->stride, gradients, count,
-                       &pairs);
+    if (a->to_own) /* a loop of its own: few are skewed */
+        fillet_pairs_blend(a->to_own, a->turn, a->radius, a->values, a->values + a->stride,
+                           gradients, count, &pairs);
+    else
+        fillet_pairs_blend(NULL, a->turn, a->radius, a->values, a->values + a->stride, gradients,
+                           count, &pairs);
     for (size_t i = 0; i < count; i++) {
         pairs.end[i] = INFINITY;
         pairs.plane[i] = 0;

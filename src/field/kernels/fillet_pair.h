@@ -19,28 +19,44 @@ typedef struct fillet_pairs {
     float lower[CSG_BATCH], plane[CSG_BATCH];
 } fillet_pairs;
 
+/* A gradient in the fillet's own frame, whose rows are in m; NULL: angles are the same there. */
+static inline void fillet_into_own(const float *m, double *x, double *y, double *z)
+{
+    if (!m)
+        return;
+    double u = *x, v = *y, w = *z;
+    *x = (double)m[0] * u + (double)m[1] * v + (double)m[2] * w;
+    *y = (double)m[3] * u + (double)m[4] * v + (double)m[5] * w;
+    *z = (double)m[6] * u + (double)m[7] * v + (double)m[8] * w;
+}
+
+static inline bool fillet_set_one(csg_fillet_operand *o, const float *m, float turn,
+                                  const float *const g[3], size_t i)
+{
+    double sign = (double)turn, x = (double)g[0][i], y = (double)g[1][i], z = (double)g[2][i];
+    fillet_into_own(m, &x, &y, &z);
+    return csg_fillet_set(o, 0, sign * x, sign * y, sign * z);
+}
+
 /* 1 - cos of the angle between two gradients; 0, where nothing blends, if one is missing. */
-static inline double fillet_turn_of(float turn, const float *const a[3], const float *const b[3],
-                                    size_t i)
+static inline double fillet_turn_of(const float *m, float turn, const float *const a[3],
+                                    const float *const b[3], size_t i)
 {
     csg_fillet_operand p, q;
-    double sign = (double)turn;
-    bool both = csg_fillet_set(&p, 0, sign * (double)a[0][i], sign * (double)a[1][i],
-                               sign * (double)a[2][i]) &
-                csg_fillet_set(&q, 0, sign * (double)b[0][i], sign * (double)b[1][i],
-                               sign * (double)b[2][i]);
+    bool both = fillet_set_one(&p, m, turn, a, i) & fillet_set_one(&q, m, turn, b, i);
     double d = csg_fillet_turn(&p, &q);
     return both ? d : 0;
 }
 
 /* gradients: of both operands. */
-static void fillet_pairs_blend(float turn, double radius, const float *restrict first,
-                               const float *restrict second, const float *const gradients[2][3],
-                               size_t count, fillet_pairs *restrict out)
+static inline void fillet_pairs_blend(const float *to_own, float turn, double radius,
+                                      const float *restrict first, const float *restrict second,
+                                      const float *const gradients[2][3], size_t count,
+                                      fillet_pairs *restrict out)
 {
     for (size_t i = 0; i < count; i++) {
         double a = (double)(turn * first[i]), b = (double)(turn * second[i]);
-        double d = fillet_turn_of(turn, gradients[0], gradients[1], i);
+        double d = fillet_turn_of(to_own, turn, gradients[0], gradients[1], i);
         double top = b > a ? b : a, x = b > a ? b - a : a - b;
         csg_fillet_pair made = csg_fillet_of_two(radius, x, d);
         out->largest[i] = top;

@@ -335,6 +335,7 @@ static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots
 static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, slots s,
                                size_t first, float *work)
 {
+    const float *own = tape->parameters + node->parameters;
     fillet_numbers(tape, node, (uint32_t *)(void *)work);
     return (fillet_arrays){
         .values = slot(s, first),
@@ -345,7 +346,8 @@ static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, 
         .operands = node->arity - node->planes,
         .planes = node->planes,
         .turn = csg_op_is_union(node->op) ? 1.0f : -1.0f,
-        .radius = (double)tape->parameters[node->parameters + CSG_OPERATOR_N],
+        .radius = (double)own[CSG_OPERATOR_N],
+        .to_own = own[CSG_FILLET_IS_SKEWED] > 0 ? own + CSG_FILLET_TO_OWN : NULL,
     };
 }
 
