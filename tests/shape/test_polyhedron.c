@@ -7,6 +7,8 @@
 #include <limits.h>
 #include <string.h>
 
+#include "shape/shape_kernel.h"
+
 static void make(solid_case *c)
 {
     assert_int_equal(csg_polyhedron_create(&c->memory, &c->triangles, &c->repairs, &c->shape),
@@ -229,6 +231,51 @@ static void test_batches(void **state)
     end(&c);
 }
 
+/* Points that lie together are searched together: by lanes as one by one, to the bit. */
+static void check_packet(const solid_case *c, csg_random *random)
+{
+    enum { MOST = 150 };
+    float x[MOST], y[MOST], z[MOST], f[MOST], lanes[4][MOST], one[4];
+    const csg_triangles *t = csg_polyhedron_triangles(c->shape);
+    csg_vec3 at = t->points[csg_random_below(random, (uint32_t)t->point_count)];
+    double spread = pow(10, csg_random_uniform(random, -7, 0.5));
+    uint32_t count = 1 + csg_random_below(random, MOST);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_vec3 p = csg_vec3_add(at, solid_random_point(random, spread));
+        x[i] = (float)p.x, y[i] = (float)p.y, z[i] = (float)p.z;
+    }
+    csg_shape_values(c->shape, &csg_shape_kernel_scalar, NULL, x, y, z, count, f);
+    csg_shape_gradients(c->shape, &csg_shape_kernel_scalar, NULL, x, y, z, count, lanes[0],
+                        lanes[1], lanes[2], lanes[3]);
+    assert_memory_equal(f, lanes[0], count * sizeof *f);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_shape_gradients(c->shape, NULL, NULL, x + i, y + i, z + i, 1, one, one + 1, one + 2,
+                            one + 3);
+        for (int k = 0; k < 4; k++)
+            assert_memory_equal(&lanes[k][i], &one[k], sizeof *one);
+    }
+}
+
+static void test_packets(void **state)
+{
+    csg_random random = {8};
+    for (uint32_t i = 0; i < 12; i++) {
+        solid_case c;
+        solid_begin(&c);
+        solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 5 + 20 * i, 4 + 10 * i,
+                       i % 3 ? 0.5 : 0);
+        if (i % 4 == 1) /* needles */
+            solid_add_box(&c.triangles, csg_vec3_make(0.9, 0, 0), csg_vec3_make(1.5, 1e-9, 1e-9),
+                          false);
+        if (i % 4 == 2) /* ties, and shells that cross */
+            solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 7);
+        make(&c);
+        for (int k = 0; k < 60; k++)
+            check_packet(&c, &random);
+        end(&c);
+    }
+}
+
 /* f(p + h g) - f(p) = h wherever there is one nearest point. */
 /* ---- parts that matter in a cell ---------------------------------------------------------------
  */
@@ -266,7 +313,8 @@ static void check_cell(const solid_case *c, const near_list *list, const csg_sha
     }
     csg_shape_values(c->shape, NULL, NULL, x, y, z, CELL_POINTS, all);
     csg_shape_gradients(c->shape, NULL, NULL, x, y, z, CELL_POINTS, g[0], g[1], g[2], g[3]);
-    csg_shape_gradients(c->shape, NULL, list->near, x, y, z, CELL_POINTS, g[4], g[5], g[6], g[7]);
+    csg_shape_gradients(c->shape, &csg_shape_kernel_scalar, list->near, x, y, z, CELL_POINTS, g[4],
+                        g[5], g[6], g[7]);
     for (int i = 0; i < CELL_POINTS; i++) {
         assert_int_equal(signbit(g[4][i]), signbit(all[i]));
         assert_true(fabsf(g[4][i]) >= fabsf(all[i]));
@@ -470,13 +518,21 @@ static void test_every_allocation_fails(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box),       cmocka_unit_test(test_near_edges),
-        cmocka_unit_test(test_ball),      cmocka_unit_test(test_solids_of_all_kinds),
-        cmocka_unit_test(test_needles),   cmocka_unit_test(test_batches),
-        cmocka_unit_test(test_cells),     cmocka_unit_test(test_cells_of_long_triangles),
-        cmocka_unit_test(test_gradients), cmocka_unit_test(test_far_and_not_numbers),
-        cmocka_unit_test(test_scales),    cmocka_unit_test(test_convex),
-        cmocka_unit_test(test_hash),      cmocka_unit_test(test_every_allocation_fails),
+        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_near_edges),
+        cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_solids_of_all_kinds),
+        cmocka_unit_test(test_needles),
+        cmocka_unit_test(test_batches),
+        cmocka_unit_test(test_packets),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_cells_of_long_triangles),
+        cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_far_and_not_numbers),
+        cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_convex),
+        cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_every_allocation_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,15 +7,7 @@
 
 #include <string.h>
 
-/* As many doubles as a register holds: gcc 12 takes comparisons of wider vectors apart, lane by
- * lane. */
-#if defined(__AVX512F__)
-enum { LANES = 8 };
-#elif defined(__AVX__)
-enum { LANES = 4 };
-#else
-enum { LANES = 2 };
-#endif
+enum { LANES = CSG_SHAPE_WIDTH };
 
 /* Vector types of gcc and clang: the loops are too short for the compiler to find by itself.
  * Numbers of leaves and segments are kept as doubles, which hold them exactly. */
@@ -86,8 +78,8 @@ static void search_first_leaves(const csg_segment_tree *tree, search *s)
     }
 }
 
-static void search_lanes(const csg_segment_tree *tree, csg_segment_list list, const double *x,
-                         const double *y, csg_segment_hit *hits)
+static void search_some(const csg_segment_tree *tree, csg_segment_list list, const double *x,
+                        const double *y, csg_segment_hit *hits)
 {
     search s = {.is_first_seen = {0}};
     double first[LANES];
@@ -118,14 +110,9 @@ static void search_lanes(const csg_segment_tree *tree, csg_segment_list list, co
     }
 }
 
-static void nearest_segments(const csg_segment_tree *tree, csg_segment_list list, const double *x,
-                             const double *y, csg_segment_hit *hits)
+void CSG_SHAPE_BUILD(csg_nearest_segments)(const csg_segment_tree *tree, csg_segment_list list,
+                                           const double *x, const double *y, csg_segment_hit *hits)
 {
     for (int l = 0; l < CSG_SHAPE_LANES; l += LANES)
-        search_lanes(tree, list, x + l, y + l, hits + l);
+        search_some(tree, list, x + l, y + l, hits + l);
 }
-
-#define CONCATENATE_(a, b) a##b
-#define CONCATENATE(a, b) CONCATENATE_(a, b)
-extern const csg_shape_kernel CONCATENATE(csg_shape_kernel_, CSG_KERNEL);
-const csg_shape_kernel CONCATENATE(csg_shape_kernel_, CSG_KERNEL) = {nearest_segments};

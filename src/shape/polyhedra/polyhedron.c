@@ -13,6 +13,7 @@
 
 #include "base/table.h"
 #include "shape/polyhedra/convex.h"
+#include "shape/polyhedra/packet.h"
 #include "shape/polyhedra/repair.h"
 #include "shape/polyhedra/tree.h"
 
@@ -116,19 +117,26 @@ static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *
 {
     /* cosines are off by less: the foot is more than LEAST away */
     static const double UNCERTAIN = 1e-3;
+    /* No corner of a convex solid is nearest to a point within. Where rounding makes a corner of a
+     * foot in the face, the way there is the normal. */
+    static const double ALONG = 0.9;
     const csg_tree_triangle *t = &solid->tree.triangles[place];
     csg_triangle_part part;
     csg_vec3 foot = csg_triangle_locate(t, p, &part);
-    if (part == CSG_PART_CORNER || !is_plain(solid, place))
+    if (!is_plain(solid, place) || (part == CSG_PART_CORNER && !solid->is_convex))
         return false;
     if (part == CSG_PART_FACE) {
         *winding = csg_vec3_dot(csg_vec3_sub(p, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
         return true;
     }
+    csg_vec3 away = csg_vec3_sub(p, foot);
+    if (part == CSG_PART_CORNER) {
+        *winding = 0;
+        return csg_vec3_dot(away, outward(t)) > -ALONG * csg_vec3_norm(away);
+    }
     uint32_t other = solid->beside[place][part];
     if (other == NO_PLACE || !is_plain(solid, other))
         return false;
-    csg_vec3 away = csg_vec3_sub(p, foot);
     csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
     *winding = along < 0;
@@ -183,17 +191,19 @@ static bool is_inside(walker *w, csg_vec3 p, double distance, uint32_t place)
 }
 
 /* p is in frame units, within 2^60. */
-static found look_up(walker *w, csg_vec3 p)
+static csg_triangle_hit find_nearest(walker *w, csg_vec3 p)
 {
     const csg_tree *tree = &w->solid->tree;
-    found f = {.at = p};
-    if (w->near)
-        f.nearest = csg_tree_nearest_of(tree, w->near->items, w->near->count, p, w->hint);
-    else
-        f.nearest = csg_tree_nearest(tree, p, w->hint);
-    w->hint = f.nearest.place;
-    f.inside = is_inside(w, p, sqrt(f.nearest.squared), f.nearest.place);
-    return f;
+    csg_triangle_hit hit =
+        w->near ? csg_tree_nearest_of(tree, w->near->items, w->near->count, p, w->hint)
+                : csg_tree_nearest(tree, p, w->hint);
+    w->hint = hit.place;
+    return hit;
+}
+
+static found look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest)
+{
+    return (found){p, nearest, is_inside(w, p, sqrt(nearest.squared), nearest.place)};
 }
 
 static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
@@ -252,7 +262,7 @@ static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gr
     if (is_far(at))
         return far_value(solid, at, gradient ? gradient : &ignored);
     walker w = begin_walk(solid, NULL);
-    found f = look_up(&w, at);
+    found f = look_up(&w, at, find_nearest(&w, at));
     if (gradient)
         *gradient = gradient_of(solid, &f);
     return signed_distance(solid, &f);
@@ -263,20 +273,69 @@ static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
     return csg_triangle_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
 }
 
+/* Points that are searched together, in frame units. */
+enum { PACKET = 64 };
+
+typedef struct packet {
+    csg_vec3 at[PACKET];
+    csg_triangle_hit nearest[PACKET];
+    size_t count;
+} packet;
+
+/* False: some point is far away. */
+static bool enter_packet(const polyhedron *solid, const float *x, const float *y, const float *z,
+                         packet *k)
+{
+    bool is_near = true;
+    for (size_t i = 0; i < k->count; i++) {
+        k->at[i] = enter_float(solid, x[i], y[i], z[i]);
+        is_near &= !is_far(k->at[i]);
+    }
+    return is_near;
+}
+
+static void sample_far(const polyhedron *solid, const packet *k, float *out, csg_vec3 *gradients)
+{
+    walker w = begin_walk(solid, NULL);
+    for (size_t i = 0; i < k->count; i++) {
+        if (is_far(k->at[i])) {
+            out[i] = (float)far_value(solid, k->at[i], &gradients[i]);
+            continue;
+        }
+        found f = look_up(&w, k->at[i], find_nearest(&w, k->at[i]));
+        out[i] = (float)signed_distance(solid, &f);
+        gradients[i] = gradient_of(solid, &f);
+    }
+}
+
+/* gradients may be NULL */
+static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
+                        const csg_shape_near *near, packet *k, float *out, csg_vec3 *gradients)
+{
+    walker w = begin_walk(solid, near);
+    csg_packet_search(&w.solid->tree, kernel, near ? near->items : NULL, near ? near->count : 0,
+                      k->at, k->count, k->nearest);
+    for (size_t i = 0; i < k->count; i++) {
+        found f = look_up(&w, k->at[i], k->nearest[i]);
+        out[i] = (float)signed_distance(solid, &f);
+        if (gradients)
+            gradients[i] = gradient_of(solid, &f);
+    }
+}
+
 static void polyhedron_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,
                               const csg_shape_near *near, const float *x, const float *y,
                               const float *z, size_t count, float *out)
 {
-    (void)kernel; /* triangles are searched point by point */
-    walker w = begin_walk(as_polyhedron(shape), near);
-    for (size_t i = 0; i < count; i++) {
-        csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), ignored;
-        if (is_far(at)) {
-            out[i] = (float)far_value(w.solid, at, &ignored);
-            continue;
-        }
-        found f = look_up(&w, at);
-        out[i] = (float)signed_distance(w.solid, &f);
+    const polyhedron *solid = as_polyhedron(shape);
+    packet k;
+    csg_vec3 ignored[PACKET];
+    for (size_t i = 0; i < count; i += k.count) {
+        k.count = count - i < PACKET ? count - i : PACKET;
+        if (enter_packet(solid, x + i, y + i, z + i, &k))
+            sample_near(solid, kernel, near, &k, out + i, NULL);
+        else
+            sample_far(solid, &k, out + i, ignored);
     }
 }
 
@@ -285,20 +344,20 @@ static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_
                                  const float *z, size_t count, float *out, float *gx, float *gy,
                                  float *gz)
 {
-    (void)kernel;
-    walker w = begin_walk(as_polyhedron(shape), near);
-    for (size_t i = 0; i < count; i++) {
-        csg_vec3 at = enter_float(w.solid, x[i], y[i], z[i]), gradient;
-        if (is_far(at)) {
-            out[i] = (float)far_value(w.solid, at, &gradient);
-        } else {
-            found f = look_up(&w, at);
-            out[i] = (float)signed_distance(w.solid, &f);
-            gradient = gradient_of(w.solid, &f);
+    const polyhedron *solid = as_polyhedron(shape);
+    packet k;
+    csg_vec3 gradients[PACKET];
+    for (size_t i = 0; i < count; i += k.count) {
+        k.count = count - i < PACKET ? count - i : PACKET;
+        if (enter_packet(solid, x + i, y + i, z + i, &k))
+            sample_near(solid, kernel, near, &k, out + i, gradients);
+        else
+            sample_far(solid, &k, out + i, gradients);
+        for (size_t j = 0; j < k.count; j++) {
+            gx[i + j] = (float)gradients[j].x;
+            gy[i + j] = (float)gradients[j].y;
+            gz[i + j] = (float)gradients[j].z;
         }
-        gx[i] = (float)gradient.x;
-        gy[i] = (float)gradient.y;
-        gz[i] = (float)gradient.z;
     }
 }
 

@@ -3,15 +3,14 @@
  * when its distance is above the best by more than all rounding can be: boxes are wider by 2^-22,
  * which is more than rounding p (2^-24 of it; beyond 2 that is small against the distance) and the
  * box, and the feet of triangles lie in their boxes up to 2^-50; float arithmetic errs by 2^-21 and
- * SLACK leaves 2^-18. So whatever the order, the triangle with the least computed distance is seen.
- * SLACK is not larger, since for a point far from a small mesh it decides how much of that is seen.
+ * CSG_TREE_SLACK leaves 2^-18. So whatever the order, the triangle with the least computed distance
+ * is seen. CSG_TREE_SLACK is not larger, since for a point far from a small mesh it decides how
+ * much of that is seen.
  */
 #include <float.h>
 
 #include "base/four.h"
 #include "shape/polyhedra/tree.h"
-
-static const float SLACK = 1 + 0x1p-18f;
 
 /* ---- one triangle -----------------------------------------------------------------------------
  */
@@ -158,7 +157,7 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, csg
         if (squared < best->squared || (squared == best->squared && place < best->place)) {
             best->squared = squared;
             best->place = place;
-            q->limit = (float)squared * SLACK;
+            q->limit = (float)squared * CSG_TREE_SLACK;
         }
     }
 }
@@ -182,8 +181,8 @@ static inline void search(const csg_tree *tree, csg_vec3 p, entry *stack, size_t
 
 static query query_of(csg_vec3 p, double squared)
 {
-    query q = {.p = {(float)p.x, (float)p.y, (float)p.z}, .limit = (float)squared * SLACK};
-    q.error = 0x1p-20f * (1 + fabsf(q.p[0]) + fabsf(q.p[1]) + fabsf(q.p[2]));
+    query q = {.p = {(float)p.x, (float)p.y, (float)p.z}, .limit = (float)squared * CSG_TREE_SLACK};
+    q.error = csg_tree_error(q.p[0], q.p[1], q.p[2]);
     return q;
 }
 
@@ -267,6 +266,15 @@ csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items
     return best;
 }
 
+csg_triangle_hit csg_tree_some_near(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                                    csg_vec3 p)
+{
+    csg_triangle_hit best = {INFINITY, UINT32_MAX, 0};
+    query q = query_of(p, best.squared);
+    try_leaf(tree, near_leaf(tree, items, count, q.p), p, &q, &best);
+    return best;
+}
+
 /* A box, wider by more than its own rounding; the limit is a square. */
 typedef struct inquiry {
     float low[3], high[3], limit;
@@ -288,7 +296,7 @@ static inline csg_four_mask comes_near(const csg_tree_node *node, const inquiry 
 static inquiry inquiry_of(csg_vec3 center, csg_vec3 half, double reach)
 {
     const double c[3] = {center.x, center.y, center.z}, h[3] = {half.x, half.y, half.z};
-    inquiry q = {.limit = (float)(reach * reach) * SLACK + FLT_MIN};
+    inquiry q = {.limit = (float)(reach * reach) * CSG_TREE_SLACK + FLT_MIN};
     for (int k = 0; k < 3; k++) {
         double more = 0x1p-20 * (1 + fabs(c[k]) + h[k]);
         q.low[k] = (float)(c[k] - h[k] - more);
@@ -335,6 +343,49 @@ uint32_t csg_tree_narrow(const csg_tree *tree, const uint32_t *among, uint32_t a
     return done;
 }
 
+/* ---- leaves near a box ------------------------------------------------------------------------
+ */
+
+static void add_leaf(const csg_tree_node *node, uint32_t child, csg_tree_leaves *out)
+{
+    uint32_t at = out->count++;
+    out->numbers[at] = node->children[child] & ~CSG_TREE_LEAF;
+    for (int k = 0; k < 3; k++) {
+        out->low[k][at] = node->low[k][child];
+        out->high[k][at] = node->high[k][child];
+    }
+}
+
+bool csg_tree_gather(const csg_tree *tree, const uint32_t *items, uint32_t count, csg_vec3 center,
+                     csg_vec3 half, double reach, uint32_t most, csg_tree_leaves *out)
+{
+    uint32_t stack[STACK];
+    inquiry q = inquiry_of(center, half, reach);
+    out->count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        size_t depth = 0;
+        stack[depth++] = items[i];
+        while (depth) {
+            uint32_t item = stack[--depth];
+            const csg_tree_node *node = node_of(tree, item);
+            unsigned is_leaf = csg_four_bits(leaf_mask(node)),
+                     near = csg_four_bits(comes_near(node, &q));
+            if (item & CSG_TREE_LEAVES_ONLY)
+                near &= is_leaf;
+            if (out->count + 4 > most)
+                return false;
+            for (; near; near &= near - 1) {
+                uint32_t child = (uint32_t)__builtin_ctz(near);
+                if (is_leaf >> child & 1)
+                    add_leaf(node, child, out);
+                else
+                    stack[depth++] = node->children[child];
+            }
+        }
+    }
+    return true;
+}
+
 bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,
                      void *user)
 {
@@ -342,7 +393,7 @@ bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_vi
     size_t depth = 0;
     const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
     double squared = reach * reach * (1 + 0x1p-40);
-    float limit = (float)squared * SLACK + FLT_MIN;
+    float limit = (float)squared * CSG_TREE_SLACK + FLT_MIN;
     stack[depth++] = 0;
     while (depth) {
         uint32_t next = stack[--depth];
