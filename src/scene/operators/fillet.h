@@ -101,11 +101,12 @@ static inline double csg_fillet_turn(const csg_fillet_operand *a, const csg_fill
 }
 
 /* Makes the gradient (x, y, z) of a value that of an operand; false: it has none, and does not
- * blend. */
+ * blend. What is shorter than 1e-6 is the rounding of floats: a field may be flat (below a taper,
+ * say), and its direction would be any. */
 static inline bool csg_fillet_set(csg_fillet_operand *o, double f, double x, double y, double z)
 {
     double square = x * x + y * y + z * z, length = sqrt(square);
-    bool is_there = square > 1e-24 && square < 1e24;
+    bool is_there = square > 1e-12 && square < 1e24;
     double inverse = is_there ? 1 / length : 0;
     o->f = f;
     o->g[0] = x * inverse;
