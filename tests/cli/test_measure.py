@@ -8,6 +8,7 @@ import signal
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 import cli
 
@@ -65,6 +66,64 @@ class Measure(unittest.TestCase):
                 for interval, value in zip(found["bounds"].values(), bounds or ()):
                     self.holds(interval, value)
                     self.assertLessEqual(interval[1] - interval[0], 30 * to * 1.01)
+
+    def check(self, scene, *conditions, status, options=()):
+        path = write(self.folder, "scene.txt", scene)
+        result = cli.run("measure", path, "--to", 1e-3, *options, *(w for c in conditions for w in ("--check", c)))
+        self.assertEqual(result.returncode, status, result.stderr)
+        return result
+
+    def test_checks_hold_fail_and_stay_open(self):
+        scene = "cube([10, 20, 30]);"
+        self.check(scene, "volume < 6010 && volume > 5990", "size_x <= 10.1", "max_z - min_z > 29", status=0)
+        self.check(scene, "!(volume > 7000) && (mass < 1 || volume / 2 + 1 > 2 * -3)", status=0)
+        failed = self.check(scene, "size_x < 5 && size_y < 25", "volume < 1", status=1)
+        self.assertIn("this fails: size_x < 5\n", failed.stderr)
+        self.assertIn("this fails: volume < 1\n", failed.stderr)
+        self.assertNotIn("size_y", failed.stderr)
+        self.assertIn(b"holds        size_y < 25", failed.stdout)
+        exact = 4 / 3 * PI * 1000  # the interval holds it, and is wider than rounding
+        open_ = self.check("sphere(10);", f"volume < {exact!r}", status=2)
+        self.assertIn("neither proven nor refuted", open_.stderr)
+        self.assertIn("--to", open_.stderr)
+
+    def test_checks_of_meshes(self):
+        mesh = os.path.join(self.folder, "cube.stl")
+        self.assertEqual(cli.run(write(self.folder, "cube.txt", "cube(2);"), "-o", mesh).returncode, 0)
+        self.assertEqual(cli.run("measure", mesh, "--check", "volume > 7.99 && volume < 8.01").returncode, 0)
+        self.assertEqual(cli.run("measure", mesh, "--check", "volume > 8.01").returncode, 1)
+
+    def test_checks_in_reports(self):
+        report = os.path.join(self.folder, "report.xml")
+        found = self.check("cube(2);", "volume < 9 && volume > 8.5", status=1, options=("--json", "--junit", report))
+        self.assertEqual(json.loads(found.stdout)["checks"],
+                         [{"check": "volume < 9", "result": "holds"}, {"check": "volume > 8.5", "result": "fails"}])
+        suite = xml.etree.ElementTree.parse(report).getroot()
+        self.assertEqual((suite.get("tests"), suite.get("failures")), ("2", "1"))
+        self.assertEqual([case.get("name") for case in suite], ["volume < 9", "volume > 8.5"])
+        self.assertEqual([len(case) for case in suite], [0, 1])
+
+    def test_wrong_checks(self):
+        for condition, column, words in (
+            ("volume <", 8, "ends too early"),
+            ("volum < 3", 0, "volume"),
+            ("volume < 3 4", 11, "should end here"),
+            ("volume", 0, "comparison is needed"),
+            ("(volume < 3) + 1 < 2", 0, "number is needed"),
+            ("1 < volume < 3", 11, "join them by &&"),
+            ("volume == 8", 7, "never proven to be equal"),
+            ("volume < 3 && (mass", 19, "parenthesis"),
+            ("volume < 3 && mass", 14, "comparison is needed"),
+            ("(" * 200 + "1", 100, "too deep"),
+            ("volume < 1e999", 9, "no number"),
+            ("", 0, "ends too early"),
+        ):
+            with self.subTest(condition):
+                result = self.check("cube(2);", condition, status=2)
+                self.assertIn(words, result.stderr)
+                caret = next(line for line in result.stderr.splitlines() if line.strip() == "^")
+                self.assertEqual(len(caret) - 3, column)
+        self.check("cube(2);", status=2, options=("--junit", os.path.join(self.folder, "r.xml")))
 
     def test_density(self):
         found = self.measure("cube(2);", "--to", 1e-3, "--density", 3)

@@ -54,11 +54,18 @@ static const char *output_at(const cli_options *o, size_t index, const char **op
 {
     const struct {
         const char *option, *path;
-    } others[] = {
-        {"-M", o->depfile},         {"--stats", o->stats},           {"--trace", o->trace},
-        {"--cells", o->cells},      {"--junit", o->junit},           {"--json", o->diff_json},
-        {"--junit", o->diff_junit}, {"--heatmap", o->diff_heatmap},  {"--png", o->diff_png},
-        {"--html", o->diff_html},   {"--json", o->json ? "-" : NULL}};
+    } others[] = {{"-M", o->depfile},
+                  {"--stats", o->stats},
+                  {"--trace", o->trace},
+                  {"--cells", o->cells},
+                  {"--junit", o->junit},
+                  {"--json", o->diff_json},
+                  {"--junit", o->diff_junit},
+                  {"--heatmap", o->diff_heatmap},
+                  {"--png", o->diff_png},
+                  {"--html", o->diff_html},
+                  {"--json", o->json ? "-" : NULL},
+                  {"--junit", o->measure_junit}};
     enum { OTHERS = sizeof others / sizeof *others };
     bool is_other = index >= o->outputs.count;
     *is_last = index + 1 >= o->outputs.count + OTHERS;

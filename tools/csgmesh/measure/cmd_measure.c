@@ -87,18 +87,38 @@ static int find_part_of_mesh(cli_app *app, const char *path, const csgm_mesh_vie
     return status;
 }
 
-/* status: of the measuring; what is proven is printed after a limit, too. */
+/* What the checks come to: the worst of them. */
+static int report_checks(cli_app *app, const cli_measured *measured)
+{
+    cli_truth worst = CLI_HOLDS;
+    for (size_t i = 0; i < measured->checks.count; i++) {
+        const cli_check *check = &measured->checks.items[i];
+        worst = check->truth < worst ? check->truth : worst;
+        if (check->truth == CLI_FAILS)
+            cli_console_say(&app->console, CSGM_ERROR, NULL, "%s: this fails: %.400s",
+                            measured->path, check->text);
+        else if (check->truth == CLI_UNDECIDED)
+            cli_console_say(
+                &app->console, CSGM_ERROR, "a smaller --to makes the measures' intervals narrower",
+                "%s: this can be neither proven nor refuted: %.400s", measured->path, check->text);
+    }
+    return worst == CLI_HOLDS ? CLI_DONE : worst == CLI_FAILS ? CLI_INPUT_AT_FAULT : CLI_TROUBLE;
+}
+
+/* status: of the measuring; what is proven is printed after a limit, too. What is checked decides
+ * about the exit status: what is proven by then is proven. */
 static int print(cli_app *app, const char *path, bool is_mesh, csgm_status status,
                  const csgm_measure_options *options, const csgm_measures *measures)
 {
     bool is_stopped =
         status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
-    const cli_measured measured = {.path = path,
-                                   .part = options->part,
-                                   .is_mesh = is_mesh,
-                                   .measures = measures,
-                                   .density = options->density,
-                                   .to = options->tolerance};
+    const cli_options *o = app->options;
+    cli_measured measured = {.path = path,
+                             .part = options->part,
+                             .is_mesh = is_mesh,
+                             .measures = measures,
+                             .density = options->density,
+                             .to = options->tolerance};
     cli_console_end_progress(&app->console);
     if (status != CSGM_OK && !is_stopped)
         return cli_exit_status(status);
@@ -109,8 +129,19 @@ static int print(cli_app *app, const char *path, bool is_mesh, csgm_status statu
                         "where gradients have no bounds, intervals shrink slowly: a larger --to",
                         "%s could not be measured to %g: this is what is proven", path,
                         options->tolerance);
-    (app->options->json ? cli_measure_json : cli_measure_text)(&measured);
-    return is_stopped || !measures->is_reached ? CLI_TROUBLE : CLI_DONE;
+    if (!cli_checks_decide(&measured.checks, &o->measure_checks, measures)) {
+        cli_checks_release(&measured.checks);
+        return no_memory(app);
+    }
+    if (!o->measure_junit || strcmp(o->measure_junit, "-") != 0)
+        (o->json ? cli_measure_json : cli_measure_text)(&measured);
+    int result = is_stopped || !measures->is_reached ? CLI_TROUBLE : CLI_DONE;
+    if (measured.checks.count)
+        result = report_checks(app, &measured);
+    if (o->measure_junit && cli_measure_junit(app, &measured) != CLI_DONE)
+        result = CLI_TROUBLE;
+    cli_checks_release(&measured.checks);
+    return result;
 }
 
 static int measure_mesh(cli_app *app, const char *path, csgm_format format)
@@ -164,7 +195,11 @@ int cli_cmd_measure(cli_app *app)
         if (asked == CSGM_FORMAT_AUTO)
             return cli_usage_error(app, NULL, "unknown format '%s'", app->options->format);
     }
-    int status = cli_app_open(app);
+    int status = cli_checks_read(app, &app->options->measure_checks);
+    if (status == CLI_DONE && app->options->measure_junit && !app->options->measure_checks.count)
+        return cli_usage_error(app, "as --check 'volume < 1000'", "--junit needs a --check");
+    if (status == CLI_DONE)
+        status = cli_app_open(app);
     if (status != CLI_DONE)
         return status;
     const char *path = operands->items[0];

@@ -20,6 +20,18 @@ static void put_intervals(cli_json *json, const char *key, const char *const *na
     cli_json_end(json, '}');
 }
 
+static void put_checks(cli_json *json, const cli_checks *checks)
+{
+    cli_json_open(json, "checks", '[');
+    for (size_t i = 0; i < checks->count; i++) {
+        cli_json_open(json, NULL, '{');
+        cli_json_string(json, "check", checks->items[i].text);
+        cli_json_string(json, "result", cli_truth_name(checks->items[i].truth));
+        cli_json_end(json, '}');
+    }
+    cli_json_end(json, ']');
+}
+
 void cli_measure_json(const cli_measured *measured)
 {
     static const char *const axes[] = {"x", "y", "z"};
@@ -41,5 +53,7 @@ void cli_measure_json(const cli_measured *measured)
     put_intervals(&json, "centroid", axes, m->centroid, 3);
     put_intervals(&json, "inertia", products, m->inertia, 6);
     put_intervals(&json, "bounds", sides, m->bounds, 6);
+    if (measured->checks.count)
+        put_checks(&json, &measured->checks);
     cli_json_end(&json, '}');
 }

@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: MIT
- * Measures as JSON and as lines for people.
+ * Measures as JSON and as lines for people, checks as JUnit XML.
  */
 #ifndef CLI_MEASURE_PRINT_H
 #define CLI_MEASURE_PRINT_H
 
-#include "core/cli.h"
+#include "measure/measure_check.h"
 
 typedef struct cli_measured {
     const char *path, *part; /* part: NULL = all */
     bool is_mesh;
     const csgm_measures *measures;
     double density, to;
+    cli_checks checks;
 } cli_measured;
 
 void cli_measure_json(const cli_measured *measured);
 void cli_measure_text(const cli_measured *measured);
+/* A report of the checks; CLI_DONE or CLI_TROUBLE. */
+int cli_measure_junit(cli_app *app, const cli_measured *measured);
 
 #endif

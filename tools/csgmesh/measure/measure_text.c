@@ -59,4 +59,7 @@ void cli_measure_text(const cli_measured *measured)
         print_interval(products[i], m->inertia[i]);
     for (int i = 0; i < 6; i++)
         print_interval(sides[i], m->bounds[i]);
+    for (size_t i = 0; i < measured->checks.count; i++)
+        printf("  %-12s %s\n", cli_truth_name(measured->checks.items[i].truth),
+               measured->checks.items[i].text);
 }
