@@ -283,6 +283,47 @@ static void test_balls_are_no_beads(void **state)
     assert_int_equal(pieces_of_balls(CSGM_FEATURES_SHARP), pieces);
 }
 
+/* ---- no crease without cause -------------------------------------------------------------------
+ */
+
+/* How often the field is asked for 64 balls whose surfaces are `gap` apart, and what it finds. */
+static uint64_t evaluations_of_balls(csgm_features features, double gap, uint64_t *apexes)
+{
+    enum { BALLS = 64 };
+    mesh_case c;
+    csg_node_id balls[BALLS];
+    mesh_case_begin(&c, 2);
+    for (int i = 0; i < BALLS; i++) {
+        csg_affine place = csg_affine_identity();
+        place.t[0] = (i & 3) * 0.5, place.t[1] = (i >> 2 & 3) * 0.5, place.t[2] = (i >> 4) * 0.5;
+        balls[i] = csg_build_transform(
+            &c.builder, &place, primitive(&c, CSG_NODE_SPHERE, (const double[]){(0.5 - gap) / 2}),
+            csg_span_nowhere());
+    }
+    mesh_case_compile(&c, csg_build_operator(&c.builder, CSG_NODE_UNION, CSG_SHARP, balls, BALLS,
+                                             csg_span_nowhere()));
+    csgm_mesh_options options = mesh_options(RESOLUTION);
+    options.features = features;
+    mesh_build_closed(&c, &options, "balls");
+    *apexes = c.stats.feature_vertices;
+    uint64_t evaluations = c.stats.point_evaluations;
+    mesh_case_end(&c);
+    return evaluations;
+}
+
+/* Balls that share blocks and come no nearer than three cells cost nothing but a look at cells;
+ * those that run into each other have their creases. */
+static void test_balls_apart(void **state)
+{
+    uint64_t apexes;
+    uint64_t smooth = evaluations_of_balls(CSGM_FEATURES_SMOOTH, 0.12, &apexes);
+    uint64_t sharp = evaluations_of_balls(CSGM_FEATURES_SHARP, 0.12, &apexes);
+    assert_int_equal(apexes, 0);
+    assert_true(sharp < smooth + smooth / 10);
+    evaluations_of_balls(CSGM_FEATURES_SHARP, -0.1, &apexes);
+    assert_true(apexes > 1000);
+}
+
 /* ---- smooth on demand --------------------------------------------------------------------------
  */
 
@@ -304,9 +345,9 @@ int main(int argc, char **argv)
     if (argc > 1)
         pose_count = (unsigned)strtoul(argv[1], NULL, 10);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_poses),        cmocka_unit_test(test_smooth_solids),
-        cmocka_unit_test(test_split),        cmocka_unit_test(test_balls_are_no_beads),
-        cmocka_unit_test(test_features_off),
+        cmocka_unit_test(test_poses),       cmocka_unit_test(test_smooth_solids),
+        cmocka_unit_test(test_split),       cmocka_unit_test(test_balls_are_no_beads),
+        cmocka_unit_test(test_balls_apart), cmocka_unit_test(test_features_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

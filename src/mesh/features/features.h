@@ -166,6 +166,7 @@ typedef struct csg_feature_room {
     uint32_t loop_count;
     uint8_t joined[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by cell: pair.h */
     bool any_joined;
+    uint8_t possible[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by row of cells, a bit each: possible.h */
     float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
     float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
     uint32_t which[CSG_FEATURE_SEGMENTS];

@@ -106,6 +106,12 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
     room->loop_count += any;
 }
 
+/* All loops of a cell with a joined face are features. */
+static bool may_crease(const csg_feature_room *room, int cell)
+{
+    return room->possible[cell / E] >> cell % E & 1 || (room->any_joined && room->joined[cell]);
+}
+
 static void collect_loops(const csg_marching *m, const csg_block *block, csg_feature_room *room)
 {
     room->segment_count = room->loop_count = 0;
@@ -116,6 +122,8 @@ static void collect_loops(const csg_marching *m, const csg_block *block, csg_fea
                 int i = __builtin_ctz(rest);
                 unsigned pattern = csg_cell_pattern(&rows, i);
                 int cell = (k * E + j) * E + i;
+                if (!may_crease(room, cell))
+                    continue;
                 csg_cell_loops loops = csg_feature_loops(room, m->tables, (unsigned)cell, pattern);
                 for (int l = 0; l < loops.count; l++)
                     add_loop(m, room, cell, pattern, &loops, l);
@@ -299,28 +307,35 @@ static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_bloc
     return true;
 }
 
+static bool find_in_block(csg_feature_room *room, csg_feature_probe *probe, csg_memory *memory)
+{
+    const csg_marching *m = probe->marching;
+    const csg_block *block = probe->block;
+    bool possible = csg_feature_find_possible(probe, room->possible);
+    bool has_pairs = csg_feature_has_pairs(block);
+    if (!possible && !has_pairs)
+        return true;
+    probe->evaluations += csg_marching_roots(m, block, &room->edges, &room->slots, probe->scratch,
+                                             probe->scratch_floats);
+    take_gradients(room, probe);
+    /* before gradients are corrected: that depends on the block, this must not */
+    room->any_joined = has_pairs && csg_feature_pair(room, probe);
+    if (!possible && !room->any_joined)
+        return true;
+    find_creases(m, block, room, probe);
+    size_t before = room->count;
+    return csg_feature_solve(room, probe, memory) &&
+           csg_feature_help(room, before, probe, memory) && end_block(room, memory, block, before);
+}
+
 bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats)
 {
     csg_feature_probe probe =
         csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
-    bool possible = csg_feature_is_possible(&probe);
-    bool has_pairs = csg_feature_has_pairs(block);
-    if (!possible && !has_pairs)
-        return true;
-    room->evaluations +=
-        csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
-    take_gradients(room, &probe);
-    /* before gradients are corrected: that depends on the block, this must not */
-    room->any_joined = has_pairs && csg_feature_pair(room, &probe);
-    if (!possible && !room->any_joined)
-        return true;
-    find_creases(m, block, room, &probe);
-    size_t before = room->count;
-    if (!csg_feature_solve(room, &probe, memory) || !csg_feature_help(room, before, &probe, memory))
-        return false;
+    bool done = find_in_block(room, &probe, memory);
     room->evaluations += probe.evaluations;
-    return end_block(room, memory, block, before);
+    return done;
 }
 
 /* The large arrays are filled before they are read, but for whole vectors of edges. */

@@ -7,15 +7,24 @@
  * places only such count as the surface can reach: where f = 0 an operand of a union is at least
  * minus the widths of the blends, one of an intersection at most their sum.
  *
+ * Where all operators are sharp and all leaves primitives, cells are told apart: the field is that
+ * of one leaf at a time, and turns into that of another only where both are near zero.
+ *
  * A fillet much finer than a cell looks like a crease. Whether it is taken for one must not depend
  * on what pruning has left, so only blends as wide as a cell pass here.
  */
 #include "mesh/features/possible.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "grid/octree/octree.h"
 #include "scene/operators/blend_kinds.h"
+
+enum { PART_CELLS = CSG_PART_EDGE * CSG_PART_EDGE * CSG_PART_EDGE };
+
+/* sqrt(3) / 2, rounded up: of a cube's diagonal, in edges. */
+static const float HALF_DIAGONAL = 0.8661f;
 
 typedef struct ball {
     float at[3], radius;
@@ -105,7 +114,7 @@ static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, ui
 /* Of one part of the block: the ball around it. */
 static ball ball_of(const csg_feature_probe *probe, int octant, float cell)
 {
-    ball at = {.radius = 0.8661f * CSG_PART_EDGE * cell}; /* sqrt(3) / 2 */
+    ball at = {.radius = HALF_DIAGONAL * CSG_PART_EDGE * cell};
     for (int axis = 0; axis < 3; axis++)
         at.at[axis] = probe->line[axis][CSG_PART_EDGE * (octant >> axis & 1) + CSG_PART_EDGE / 2];
     return at;
@@ -134,13 +143,128 @@ static bool split(const csg_feature_probe *probe, csg_block_part parts[CSG_OCTAN
                             &tape, &probe->around->arena, parts);
 }
 
+/* ---- cells -----------------------------------------------------------------------------------
+ */
+
+/* Cells of one part of a block that the surface passes: their centres, and how many leaves may be
+ * what the field is there. */
+typedef struct part_cells {
+    size_t count;
+    uint16_t cell[PART_CELLS];
+    float x[PART_CELLS], y[PART_CELLS], z[PART_CELLS], f[PART_CELLS];
+    uint8_t leaves[PART_CELLS];
+    bool may_crease[PART_CELLS];
+} part_cells;
+
+static float middle(const float *line, int i)
+{
+    return 0.5f * (line[i] + line[i + 1]);
+}
+
+static void gather_cells(const csg_feature_probe *probe, int octant, part_cells *cells)
+{
+    enum { P = CSG_PART_EDGE };
+    int low[3];
+    for (int axis = 0; axis < 3; axis++)
+        low[axis] = (octant >> axis & 1) * P;
+    cells->count = 0;
+    for (int row = 0; row < P * P; row++) {
+        int j = low[1] + row % P, k = low[2] + row / P;
+        unsigned mixed = csg_cell_rows_of(probe->block, j, k).mixed;
+        for (int i = low[0]; i < low[0] + P; i++) {
+            if (!(mixed >> i & 1))
+                continue;
+            size_t n = cells->count++;
+            cells->cell[n] = (uint16_t)((k * CSG_BLOCK_EDGE + j) * CSG_BLOCK_EDGE + i);
+            cells->x[n] = middle(probe->line[0], i);
+            cells->y[n] = middle(probe->line[1], j);
+            cells->z[n] = middle(probe->line[2], k);
+            cells->leaves[n] = 0;
+            cells->may_crease[n] = false;
+        }
+    }
+}
+
+/* Whether at each point the field is the value of one primitive. */
+static bool is_one_at_a_time(const csg_block_part *part)
+{
+    for (uint32_t i = 0; i < part->node_count; i++) {
+        const csg_tape_node *node = &part->nodes[i];
+        bool is_sharp = node->join == CSG_JOIN_NONE || node->join_blend == CSG_BLEND_SHARP;
+        bool is_known = csg_op_is_primitive(node->op) && !node->warp;
+        bool is_operator = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
+        if (!is_sharp || !(is_known || is_operator))
+            return false;
+    }
+    return true;
+}
+
+/* A segment of a polygon runs between two points of the surface in one cell, so that no point of it
+ * is farther than half a diagonal from one of them, and f there no farther from zero than it can
+ * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
+ */
+static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, part_cells *cells)
+{
+    csg_tape_node alone = *node;
+    csg_tape tape = probe->marching->field->tape;
+    float cell = (float)probe->marching->lattice->cell_size;
+    float slack = probe->marching->noise + tape.waver;
+    float off = 1.01f * HALF_DIAGONAL * cell * tape.lipschitz + slack;
+    float reach = off + 1.01f * HALF_DIAGONAL * cell * fmaxf(tape.steepest, 1.0f) + slack;
+    alone.join = CSG_JOIN_NONE;
+    tape.nodes = &alone;
+    tape.count = 1;
+    probe->marching->kernel->values(&tape, cells->x, cells->y, cells->z, cells->count, cells->f,
+                                    probe->scratch, probe->scratch_floats);
+    probe->evaluations += cells->count;
+    for (size_t i = 0; i < cells->count; i++) {
+        if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
+            continue;
+        ball at = {{cells->x[i], cells->y[i], cells->z[i]}, HALF_DIAGONAL * cell};
+        cells->may_crease[i] =
+            ++cells->leaves[i] > 1 || leaf_may_crease(&tape, &alone, at, (csg_band){-off, off});
+    }
+}
+
+static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part *part,
+                      uint8_t *rows)
+{
+    part_cells cells;
+    bool any = false, all = !is_one_at_a_time(part);
+    gather_cells(probe, octant, &cells);
+    for (size_t i = cells.count; i % CSG_LANES; i++)
+        cells.x[i] = cells.x[0], cells.y[i] = cells.y[0], cells.z[i] = cells.z[0];
+    for (uint32_t i = 0; i < part->node_count && !all && cells.count; i++)
+        if (csg_op_is_leaf(part->nodes[i].op))
+            count_leaf(probe, &part->nodes[i], &cells);
+    for (size_t i = 0; i < cells.count; i++)
+        if (all || cells.may_crease[i]) {
+            rows[cells.cell[i] / CSG_BLOCK_EDGE] |= (uint8_t)(1u << cells.cell[i] % CSG_BLOCK_EDGE);
+            any = true;
+        }
+    return any;
+}
+
+static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts, uint8_t *rows)
+{
+    bool any = false;
+    for (int octant = 0; octant < CSG_OCTANTS; octant++) {
+        const csg_block_part *part = &parts[octant];
+        if (part->state == CSG_CELL_SURFACE)
+            any = mark_part(probe, octant, part, rows) || any;
+    }
+    return any;
+}
+
 /* A sharp operand that is in the block's tape but far away would have smooth thin parts looked at
  * that a shorter tape leaves alone; so whatever the octree has dropped, parts are asked. */
-bool csg_feature_is_possible(const csg_feature_probe *probe)
+bool csg_feature_find_possible(csg_feature_probe *probe,
+                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE])
 {
     const csg_block *block = probe->block;
+    memset(rows, 0, CSG_BLOCK_EDGE * CSG_BLOCK_EDGE);
     if (block->parts)
-        return parts_may_crease(probe, block->parts);
+        return parts_may_crease(probe, block->parts) && mark_parts(probe, block->parts, rows);
     csg_block_part parts[CSG_OCTANTS];
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
         parts[octant] = (csg_block_part){block->nodes, block->node_count, CSG_CELL_SURFACE};
@@ -148,8 +272,8 @@ bool csg_feature_is_possible(const csg_feature_probe *probe)
         return false;
     csg_feature_around_begin(probe->around, probe->memory, probe->marching);
     csg_arena_mark mark = csg_arena_get_mark(&probe->around->arena);
-    bool done = split(probe, parts);
-    bool possible = !done || parts_may_crease(probe, parts);
+    bool done = split(probe, parts); /* without memory the run ends */
+    bool possible = !done || (parts_may_crease(probe, parts) && mark_parts(probe, parts, rows));
     probe->around->out_of_memory |= !done;
     csg_arena_release_to(&probe->around->arena, mark);
     return possible;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Blocks that cannot have creases, told by what stands in their tapes.
+ * Blocks and cells that cannot have creases, told by what stands in their tapes.
  */
 #ifndef CSG_MESH_FEATURES_POSSIBLE_H
 #define CSG_MESH_FEATURES_POSSIBLE_H
 
 #include "mesh/features/probe.h"
 
-/* False: the gradient does not jump anywhere on the surface in the probe's block, and does not turn
- * so fast that it would look like a jump. */
-bool csg_feature_is_possible(const csg_feature_probe *probe);
+/* Which cells of the probe's block may: rows[8 z + y] has bit x. False: none, the gradient does not
+ * jump anywhere on the surface in the block, and does not turn so fast that it would look like a
+ * jump. */
+bool csg_feature_find_possible(csg_feature_probe *probe,
+                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]);
 
 #endif
