@@ -291,14 +291,16 @@ static bool cut(refiner *f, const side *where, double share)
     return split(f, corner, at);
 }
 
-/* Where a side is too far from the surface it helps to cut no others: a fan that shares it would
- * only get narrower. Of narrow triangles a vertex that goes half the way turns less. */
+/* Where a side is too far from the surface it helps to cut no others, nor short ones: a fan that
+ * shares it would only get narrower. Of narrow triangles a vertex that goes half the way turns
+ * less. */
 static bool cut_one(refiner *f, const side sides[3])
 {
-    static const double TOO_FAR = 0.7; /* of the error */
+    static const double TOO_FAR = 0.7, SHORT = 0.25; /* of the error */
     double error = f->remesh->error;
     int count = 0;
-    while (count < 3 && (sides[0].away <= TOO_FAR * error || sides[count].away > FAR * error))
+    while (count < 3 && (sides[0].away <= TOO_FAR * error || sides[count].away > FAR * error) &&
+           (sides[count].away > FAR * error || sides[count].length > SHORT * error))
         count++;
     for (int i = 0; i < count; i++)
         if (cut(f, &sides[i], 1))
@@ -439,7 +441,8 @@ static bool flip(refiner *f, uint32_t corner)
     double facing = facing_of(r, then, 2), faced = facing_of(r, now, 2);
     if (!(after > (faced < LEAST_FACING ? LOSS : GAIN) * before) ||
         facing < fmax(LEAST_FACING, faced) || (is_crease && faced >= LEAST_FACING) ||
-        !csg_corners_can_flip(m, corner) || away_of(r, c, d) > (is_crease ? FAR : AWAY) * r->error)
+        !csg_corners_can_flip(m, corner) ||
+        away_of(r, c, d) > (is_crease ? FAR * r->error : fmax(AWAY * r->error, away_of(r, a, b))))
         return false;
     const uint32_t *v = m->vertex, ids[2][3] = {{v[apex], v[corner], v[other]},
                                                 {v[other], v[csg_corner_next(corner)], v[apex]}};
@@ -483,7 +486,7 @@ static bool refine_open(refiner *f)
 csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_places *far,
                                   csg_distance_proof *out)
 {
-    enum { MOST_ROUNDS = 12, MOST_IDLE = 2 };
+    enum { MOST_ROUNDS = 16, MOST_IDLE = 2, FEW = 32, MOST_IDLE_OF_FEW = 5 };
     size_t count = r->corners.triangle_count;
     refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
     if (!f.pending)
@@ -497,7 +500,7 @@ csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_pla
     for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;
          round++) {
         idle += out->open * 10 >= least * 9;
-        if (idle > MOST_IDLE)
+        if (idle > (out->open > FEW ? MOST_IDLE : MOST_IDLE_OF_FEW))
             break;
         least = out->open < least ? out->open : least;
         if (!refine_open(&f))
