@@ -538,12 +538,12 @@ bool cli_options_unfit(const cli_options *options, cli_command as, size_t *at, c
 
 void cli_options_release(cli_options *options)
 {
-    free(options->outputs.items);
-    free(options->defines.items);
-    free(options->include_dirs.items);
-    free(options->meta.items);
-    free(options->diff_ignore.items);
-    free(options->points.items);
-    free(options->roots.items);
+    for (size_t i = 0; i < ROW_COUNT; i++) {
+        void *field = (char *)options + rows[i].offset;
+        if (rows[i].kind == LIST)
+            free(((cli_list *)field)->items);
+        else if (rows[i].kind == POINTS)
+            free(((cli_points *)field)->items);
+    }
     free(options->operands.items);
 }
