@@ -294,21 +294,22 @@ static bool enter_packet(const polyhedron *solid, const float *x, const float *y
     return is_near;
 }
 
+/* Here and below gradients may be NULL. */
 static void sample_far(const polyhedron *solid, const packet *k, float *out, csg_vec3 *gradients)
 {
     walker w = begin_walk(solid, NULL);
     for (size_t i = 0; i < k->count; i++) {
+        csg_vec3 ignored, *gradient = gradients ? &gradients[i] : &ignored;
         if (is_far(k->at[i])) {
-            out[i] = (float)far_value(solid, k->at[i], &gradients[i]);
+            out[i] = (float)far_value(solid, k->at[i], gradient);
             continue;
         }
         found f = look_up(&w, k->at[i], find_nearest(&w, k->at[i]));
         out[i] = (float)signed_distance(solid, &f);
-        gradients[i] = gradient_of(solid, &f);
+        *gradient = gradient_of(solid, &f);
     }
 }
 
-/* gradients may be NULL */
 static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
                         const csg_shape_near *near, packet *k, float *out, csg_vec3 *gradients)
 {
@@ -323,20 +324,27 @@ static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
     }
 }
 
+/* At most as many points as fit; how many there were. */
+static size_t sample_packet(const polyhedron *solid, const csg_shape_kernel *kernel,
+                            const csg_shape_near *near, const float *x, const float *y,
+                            const float *z, size_t count, float *out, csg_vec3 *gradients)
+{
+    packet k;
+    k.count = count < PACKET ? count : PACKET;
+    if (enter_packet(solid, x, y, z, &k))
+        sample_near(solid, kernel, near, &k, out, gradients);
+    else
+        sample_far(solid, &k, out, gradients);
+    return k.count;
+}
+
 static void polyhedron_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,
                               const csg_shape_near *near, const float *x, const float *y,
                               const float *z, size_t count, float *out)
 {
     const polyhedron *solid = as_polyhedron(shape);
-    packet k;
-    csg_vec3 ignored[PACKET];
-    for (size_t i = 0; i < count; i += k.count) {
-        k.count = count - i < PACKET ? count - i : PACKET;
-        if (enter_packet(solid, x + i, y + i, z + i, &k))
-            sample_near(solid, kernel, near, &k, out + i, NULL);
-        else
-            sample_far(solid, &k, out + i, ignored);
-    }
+    for (size_t i = 0; i < count;)
+        i += sample_packet(solid, kernel, near, x + i, y + i, z + i, count - i, out + i, NULL);
 }
 
 static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_kernel *kernel,
@@ -345,15 +353,12 @@ static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_
                                  float *gz)
 {
     const polyhedron *solid = as_polyhedron(shape);
-    packet k;
     csg_vec3 gradients[PACKET];
-    for (size_t i = 0; i < count; i += k.count) {
-        k.count = count - i < PACKET ? count - i : PACKET;
-        if (enter_packet(solid, x + i, y + i, z + i, &k))
-            sample_near(solid, kernel, near, &k, out + i, gradients);
-        else
-            sample_far(solid, &k, out + i, gradients);
-        for (size_t j = 0; j < k.count; j++) {
+    size_t done;
+    for (size_t i = 0; i < count; i += done) {
+        done =
+            sample_packet(solid, kernel, near, x + i, y + i, z + i, count - i, out + i, gradients);
+        for (size_t j = 0; j < done; j++) {
             gx[i + j] = (float)gradients[j].x;
             gy[i + j] = (float)gradients[j].y;
             gz[i + j] = (float)gradients[j].z;
