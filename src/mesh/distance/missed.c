@@ -10,6 +10,7 @@
 #include "field/point.h"
 #include "grid/octree/octree.h"
 #include "mesh/distance/slopes.h"
+#include "mesh/plane.h"
 
 /* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
 enum {
@@ -234,42 +235,23 @@ static bool is_sheet_near(const walk *w, worker *s, const cube *q)
  * these that is looked at, and still be farther from the crease.
  */
 
-/* A tangent plane of the surface. */
-typedef struct plane {
-    csg_vec3 normal;
-    double height; /* of all its places, along the normal */
-} plane;
-
-static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, plane *out)
+/* Of a unit gradient, so that planes of different steepness compare. */
+static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, csg_plane *out)
 {
     double norm = csg_vec3_norm(gradient);
     if (!(norm > 1e-3))
         return false;
-    out->normal = csg_vec3_scale(gradient, 1 / norm);
-    out->height = csg_vec3_dot(out->normal, at) - value / norm;
-    return true;
-}
-
-/* The place of both planes that is nearest to p. */
-static bool bring_to_both(const plane *a, const plane *b, csg_vec3 *p)
-{
-    double cosine = csg_vec3_dot(a->normal, b->normal), square = 1 - cosine * cosine;
-    if (!(square > 0.05))
-        return false;
-    double over_a = csg_vec3_dot(a->normal, *p) - a->height,
-           over_b = csg_vec3_dot(b->normal, *p) - b->height;
-    double u = (cosine * over_b - over_a) / square, v = (cosine * over_a - over_b) / square;
-    *p = csg_vec3_add(*p, csg_vec3_add(csg_vec3_scale(a->normal, u), csg_vec3_scale(b->normal, v)));
+    *out = csg_plane_of(at, value / norm, csg_vec3_scale(gradient, 1 / norm));
     return true;
 }
 
 /* Planes of the two faces that turn most from each other, as the cube's corners and its middle
  * show them. */
-static bool find_faces(const walk *w, worker *s, const cube *q, plane faces[2])
+static bool find_faces(const walk *w, worker *s, const cube *q, csg_plane faces[2])
 {
     enum { PLACES = CSG_OCTANTS + 1, PADDED = CSG_OCTANTS + CSG_LANES };
     float at[3][PADDED] = {{0}}, g[3][PADDED], f[PADDED];
-    plane planes[PLACES] = {{{0, 0, 0}, 0}};
+    csg_plane planes[PLACES] = {{{0, 0, 0}, 0}};
     uint32_t count = 0;
     double least = 1;
     for (int i = 0; i < PLACES; i++) {
@@ -287,7 +269,7 @@ static bool find_faces(const walk *w, worker *s, const cube *q, plane faces[2])
     }
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = 0; k < i; k++) {
-            double cosine = csg_vec3_dot(planes[i].normal, planes[k].normal);
+            double cosine = csg_vec3_dot(planes[i].g, planes[k].g);
             if (cosine >= least)
                 continue;
             least = cosine;
@@ -303,13 +285,14 @@ enum { TURNS = 5 };
  * meet, from there to the surface. */
 static uint32_t find_turns(const walk *w, worker *s, const cube *q, csg_vec3 out[TURNS])
 {
-    plane faces[2] = {{{0, 0, 0}, 0}};
+    static const double LEAST_SQUARE = 0.05; /* of the sine */
+    csg_plane faces[2] = {{{0, 0, 0}, 0}};
     cube from = *q;
     csg_vec3 middle = q->c;
     uint32_t count = 0;
-    if (!find_faces(w, s, q, faces) || !bring_to_both(&faces[0], &faces[1], &middle))
+    if (!find_faces(w, s, q, faces) || !csg_planes_meet_in_line(faces, LEAST_SQUARE, &middle))
         return 0;
-    csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].normal, faces[1].normal));
+    csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].g, faces[1].g));
     for (int i = 0; i < TURNS; i++) {
         double step = (2.0 * i / (TURNS - 1) - 1) * q->half;
         from.c = csg_vec3_add(middle, csg_vec3_scale(along, step));

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/plane.h"
+
 typedef struct refiner {
     csg_remesh *remesh;
     uint8_t *pending;          /* per triangle: to be proven (again) */
@@ -30,25 +32,16 @@ static uint32_t free_vertex(refiner *f)
     return f->vertex < m->vertex_count ? f->vertex++ : CSG_CORNER_NONE;
 }
 
-/* The field's tangent plane a step from a place, along one side's triangle. */
-typedef struct plane {
-    csg_vec3 normal;
-    double height; /* of the place above it */
-} plane;
-
-static bool find_plane(csg_remesh *r, csg_vec3 at, csg_vec3 way, plane *out)
+/* The field's tangent plane at a place. */
+static bool find_plane(csg_remesh *r, csg_vec3 at, csg_plane *out)
 {
     float place[1][3], f, g[1][3];
-    csg_vec3_to_floats(place[0], csg_vec3_add(at, way));
+    csg_vec3_to_floats(place[0], at);
     csg_probe_values(&r->probe, (const float(*)[3])place, 1, &f);
     csg_probe_gradients(&r->probe, (const float(*)[3])place, 1, g);
     csg_vec3 slope = {(double)g[0][0], (double)g[0][1], (double)g[0][2]};
-    double norm = csg_vec3_norm(slope);
-    if (!(norm > 1e-3))
-        return false;
-    out->normal = csg_vec3_scale(slope, 1 / norm);
-    out->height = (double)f / norm - csg_vec3_dot(out->normal, way);
-    return true;
+    *out = csg_plane_of(at, (double)f, slope);
+    return csg_vec3_norm(slope) > 1e-3;
 }
 
 /* A crease's place is where the tangent planes of both its sides meet, of all such places the
@@ -56,6 +49,7 @@ static bool find_plane(csg_remesh *r, csg_vec3 at, csg_vec3 way, plane *out)
 static bool bring_to_crease(csg_remesh *r, uint32_t corner, csg_vec3 *at)
 {
     enum { STEPS = 3 };
+    static const double LEAST_SQUARE = 0.05; /* of the sine */
     csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
     csg_vec3 along = csg_vec3_normalize(csg_vec3_sub(b, a)), way[2], p = *at;
     uint32_t apex = csg_corner_previous(corner);
@@ -69,17 +63,11 @@ static bool bring_to_crease(csg_remesh *r, uint32_t corner, csg_vec3 *at)
         way[i] = csg_vec3_scale(off, fmin(2 * r->error, 0.5 * height) / height);
     }
     for (int step = 0; step < STEPS; step++) {
-        plane face[2];
-        if (!find_plane(r, p, way[0], &face[0]) || !find_plane(r, p, way[1], &face[1]))
+        csg_plane face[2];
+        if (!find_plane(r, csg_vec3_add(p, way[0]), &face[0]) ||
+            !find_plane(r, csg_vec3_add(p, way[1]), &face[1]) ||
+            !csg_planes_meet_in_line(face, LEAST_SQUARE, &p))
             return false;
-        double cosine = csg_vec3_dot(face[0].normal, face[1].normal);
-        double square = 1 - cosine * cosine;
-        if (!(square > 0.05))
-            return false;
-        double u = (cosine * face[1].height - face[0].height) / square;
-        double v = (cosine * face[0].height - face[1].height) / square;
-        p = csg_vec3_add(
-            p, csg_vec3_add(csg_vec3_scale(face[0].normal, u), csg_vec3_scale(face[1].normal, v)));
         if (!(csg_vec3_norm(csg_vec3_sub(p, *at)) <= 4 * r->error))
             return false;
     }
@@ -164,6 +152,17 @@ static csg_vec3 outward_at(csg_remesh *r, csg_vec3 at)
     return csg_vec3_normalize(csg_vec3_make(-(double)g[0][0], -(double)g[0][1], -(double)g[0][2]));
 }
 
+/* The triangles that a vertex at this place makes of both beside a side: two of the corner's own,
+ * then two of the other's. */
+static void parts_of_cut(const csg_remesh *r, uint32_t corner, csg_vec3 at, csg_vec3 out[4][3])
+{
+    uint32_t apex = csg_corner_previous(corner);
+    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
+    csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, r->corners.across[apex]);
+    const csg_vec3 parts[4][3] = {{c, a, at}, {c, at, b}, {d, b, at}, {d, at, a}};
+    memcpy(out, parts, sizeof parts);
+}
+
 /* Whether the four triangles keep the way they face, or face as the surface does (slivers turn),
  * and cross nothing. */
 static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
@@ -176,7 +175,8 @@ static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
     double worst = fmin(csg_triangle_quality(c, a, b), csg_triangle_quality(d, b, a));
     double least = fmin(1e-3, 0.25 * worst);
     csg_vec3 outward = outward_at(r, at);
-    const csg_vec3 parts[4][3] = {{c, a, at}, {c, at, b}, {d, b, at}, {d, at, a}};
+    csg_vec3 parts[4][3];
+    parts_of_cut(r, corner, at, parts);
     for (int i = 0; i < 4; i++) {
         csg_vec3 normal =
             csg_vec3_normalize(csg_triangle_cross(parts[i][0], parts[i][1], parts[i][2]));
@@ -192,7 +192,7 @@ static bool is_sound(csg_remesh *r, uint32_t corner, csg_vec3 at)
                                 {apexes[0], new, ends[1]},
                                 {apexes[1], ends[1], new},
                                 {apexes[1], new, ends[0]}};
-    const csg_crossing_change change = {.at = parts,
+    const csg_crossing_change change = {.at = (const csg_vec3(*)[3])parts,
                                         .vertex = ids,
                                         .count = 4,
                                         .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
@@ -369,11 +369,9 @@ static double facing_of(csg_remesh *r, const csg_vec3 (*triangles)[3], int count
 /* How well the triangles around a vertex at p in that side would face as the surface does. */
 static double facing_with(csg_remesh *r, uint32_t corner, csg_vec3 p)
 {
-    uint32_t apex = csg_corner_previous(corner);
-    csg_vec3 a = csg_remesh_corner(r, corner), b = csg_remesh_corner(r, csg_corner_next(corner));
-    csg_vec3 c = csg_remesh_corner(r, apex), d = csg_remesh_corner(r, r->corners.across[apex]);
-    const csg_vec3 parts[4][3] = {{c, a, p}, {c, p, b}, {d, b, p}, {d, p, a}};
-    return facing_of(r, parts, 4);
+    csg_vec3 parts[4][3];
+    parts_of_cut(r, corner, p, parts);
+    return facing_of(r, (const csg_vec3(*)[3])parts, 4);
 }
 
 /* Brings a vertex to a place: one in a side of the triangle that is nearest to it. */
