@@ -119,15 +119,16 @@ static bool check_gradient(const csgm_scene *scene, csg_vec3 p)
 static void test_gradients(void **state)
 {
     int checked = 0;
-    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         bool has_fillet = test_waver(scene) > 0; /* normals of operands count as constant */
+        n += !has_fillet;
         for (int i = 0; i < 40 && !has_fillet; i++)
             checked += check_gradient(scene, test_point(&random, 1.5));
         csg_scene_destroy(scene);
     }
-    assert_true(checked > 3300);
+    assert_true(checked > 3900);
 }
 
 /* Sampled points of the other sign are never nearer than |f|. */
