@@ -10,7 +10,7 @@
 
 #include "core/options.h"
 
-/* Below the names of a csgm_measures, in its order. */
+/* What conditions call them, and where they stand in csgm_measures. */
 #define EACH_MEASURE(M)                                                                            \
     M(volume, volume)                                                                              \
     M(mass, mass)                                                                                  \
