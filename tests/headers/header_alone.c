@@ -4,6 +4,7 @@
 #include <csgmesh/csgmesh.h>
 #include <csgmesh/editing.h>
 #include <csgmesh/reshaping.h>
+#include <csgmesh/slicing.h>
 
 int header_alone(void);
 

@@ -47,7 +47,7 @@ class Planted(unittest.TestCase):
                 ("src/mesh/odd/a.c", '"mesh/remesh/remesh.h"', "no folder 'odd'"),
                 ("src/mesh/reshape/a.c", '"mesh/remesh/remesh.h"', ""),
                 ("src/odd/a.c", '"base/memory.h"', "no layer"),
-                ("tools/csgmesh/a.c", '"scene/scene.h"', "reshaping.h only"),
+                ("tools/csgmesh/a.c", '"scene/scene.h"', "slicing.h only"),
                 ("src/lang/a.c", '"scene/scene.h"', ""),
                 ("tools/csgmesh/a.c", '"csgmesh/csgmesh.h"', ""),
                 ("src/base/a.c", "<stdio.h>", "")):

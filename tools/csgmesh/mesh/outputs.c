@@ -225,10 +225,15 @@ static void describe(cli_app *app, const char *scene_path, csgm_write_options *w
     write->metadata = app->metadata;
 }
 
-csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
+csgm_unit cli_outputs_unit(const cli_options *options)
 {
     static const csgm_unit units[] = {CSGM_UNIT_MM, CSGM_UNIT_CM, CSGM_UNIT_M, CSGM_UNIT_IN,
                                       CSGM_UNIT_NONE}; /* the values of --unit */
+    return units[options->unit];
+}
+
+csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
+{
     const cli_options *options = app->options;
     csgm_write_options write = csgm_write_options_default();
     write.ascii = options->ascii;
@@ -239,7 +244,7 @@ csgm_write_options cli_outputs_options(cli_app *app, const char *scene_path)
     write.y_up = options->up == 0;
     write.sync = !options->no_sync;
     write.only_if_changed = options->if_changed;
-    write.unit = units[options->unit];
+    write.unit = cli_outputs_unit(options);
     if (options->given[CLI_OPTION_draco_bits]) {
         write.draco_position_bits = options->draco_bits.position;
         write.draco_normal_bits = options->draco_bits.normal;

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ * Layers of a solid as files for printers, in millimetres: what is written before, for each and
+ * after all of them. Layers are put onto pages by any worker and go to the file in their order.
+ */
+#ifndef CSG_IO_LAYERS_H
+#define CSG_IO_LAYERS_H
+
+#include "csgmesh/slicing.h"
+#include "io/drawings/drawings.h"
+
+csgm_layers_format csg_layers_format_from_path(const char *path); /* NULL gives NONE */
+csgm_layers_format csg_layers_format_from_name(const char *name);
+const char *csg_layers_format_name(csgm_layers_format format);
+
+/* What is the same for all layers of a file; scene units. */
+typedef struct csg_layers_head {
+    csg_box box;      /* of the solid */
+    double tolerance; /* of the contours */
+    double scale;     /* from scene units to millimetres */
+    size_t count;
+} csg_layers_head;
+
+typedef struct csg_layer {
+    size_t number;        /* from 0, from below */
+    double low, high;     /* where it begins and ends */
+    double at;            /* where the solid was cut */
+    csg_outline contours; /* outer ones counter-clockwise, holes clockwise */
+} csg_layer;
+
+/* An empty page for such layers. */
+csg_page csg_layers_page(csg_memory *memory, const csg_layers_head *head);
+void csg_layers_release_page(csg_page *page);
+
+typedef struct csg_layers_writer {
+    void (*begin)(csg_page *page, const csg_layers_head *head);
+    void (*layer)(csg_page *page, const csg_layers_head *head, const csg_layer *layer);
+    void (*end)(csg_page *page, const csg_layers_head *head);
+} csg_layers_writer;
+
+const csg_layers_writer *csg_layers_writer_of(csgm_layers_format format);
+
+#define CSG_LAYERS(ID, name, title, remarks) extern const csg_layers_writer csg_layers_##name;
+#include "io/layers/layers.def"
+#undef CSG_LAYERS
+
+#endif

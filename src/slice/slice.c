@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT
+ * Layers, slab by slab; see slice.h.
+ */
+#include "slice/slice.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/mesh_codes.h"
+#include "base/pool.h"
+#include "base/trace.h"
+#include "io/units.h"
+#include "slice/contours.h"
+
+/* Slabs for each thread at a time: their pages wait for each other in memory. */
+enum { SLABS_AT_ONCE = 4, MOST_LAYERS = 10000000 };
+static const double SHARE_OF_LONGEST = 1e-4; /* the tolerance where none is given */
+
+typedef struct slab_page {
+    csg_page page;
+    size_t first, end; /* of its layers */
+    uint64_t contours, points, unsettled;
+    double area; /* of its layers, each times its height: a volume */
+} slab_page;
+
+typedef struct slice_worker {
+    csg_slice_cubes cubes;
+    csg_slice_contours contours;
+    csg_outline outline;
+} slice_worker;
+
+typedef struct slice_job {
+    csg_slice_plan plan;
+    csgm_context *context;
+    csg_mesh_watch *watch;
+    const csg_layers_receiver *receiver;
+    csg_layers_head head;
+    double *z; /* of the layers' middles, in the field's frame */
+    double bottom, height;
+    slice_worker *workers;
+    uint32_t worker_count;
+    slab_page *pages;
+    size_t page_count;
+    uint32_t first_slab; /* of the pages at hand */
+    size_t layers_done;
+    atomic_bool is_open;
+} slice_job;
+
+/* ---- slabs -------------------------------------------------------------------------------------
+ */
+
+static double area_of(const csg_outline *outline)
+{
+    double twice = 0;
+    for (size_t loop = 0; loop < outline->loop_count; loop++) {
+        size_t first = csg_outline_first(outline, loop), end = outline->ends[loop];
+        csg_vec2 from = outline->points[first];
+        for (size_t i = first + 1; i + 1 < end; i++) {
+            csg_vec2 a = outline->points[i], b = outline->points[i + 1];
+            twice += (a.x - from.x) * (b.y - from.y) - (a.y - from.y) * (b.x - from.x);
+        }
+    }
+    return 0.5 * twice;
+}
+
+static bool put_layer(slice_job *job, slice_worker *w, slab_page *slab, size_t number)
+{
+    csg_outline *o = &w->outline;
+    o->point_count = o->loop_count = 0;
+    if (!csg_slice_contours_make(&w->contours, number, o))
+        return false;
+    csg_layer layer = {.number = number,
+                       .low = job->bottom + (double)number * job->height,
+                       .high = job->bottom + (double)(number + 1) * job->height,
+                       .at = job->bottom + ((double)number + 0.5) * job->height,
+                       .contours = *o};
+    job->receiver->layer(job->receiver->user, &slab->page, &job->head, &layer);
+    slab->contours += o->loop_count;
+    slab->points += o->point_count;
+    slab->area += area_of(o) * job->height;
+    return !slab->page.failed;
+}
+
+static bool make_slab(void *user, uint32_t worker, size_t index)
+{
+    slice_job *job = user;
+    slice_worker *w = &job->workers[worker];
+    slab_page *slab = &job->pages[index];
+    uint32_t number = job->first_slab + (uint32_t)index;
+    double edge = ldexp(job->plan.step, job->plan.levels - job->plan.slab_level);
+    double from = job->plan.corner[2] + number * edge;
+    slab->page.length = 0;
+    slab->contours = slab->points = slab->unsettled = 0;
+    slab->area = 0;
+    slab->first = csg_slice_layers_below(&job->plan, from);
+    slab->end = csg_slice_layers_below(&job->plan, job->plan.corner[2] + (number + 1.0) * edge);
+    if (slab->first == slab->end)
+        return true;
+    bool done = csg_slice_cubes_make(&w->cubes, number);
+    slab->unsettled = w->cubes.unsettled;
+    for (size_t i = slab->first; i < slab->end && done; i++)
+        done = !csg_mesh_should_stop(job->watch) && put_layer(job, w, slab, i);
+    if (w->contours.is_open)
+        atomic_store(&job->is_open, true);
+    else if (!done && !csg_mesh_should_stop(job->watch))
+        return csg_mesh_stop_without_memory(job->watch);
+    return done;
+}
+
+static void tell_progress(void *user, size_t done, size_t count)
+{
+    const slice_job *job = user;
+    double slabs = ldexp(1, job->plan.slab_level);
+    (void)count;
+    csg_mesh_report_progress(job->watch, ((double)job->first_slab + (double)done) / slabs);
+}
+
+static csgm_status report_open(csgm_context *context)
+{
+    csg_diag_plain(&context->diags, CSG_DIAG_OPEN_MESH, NULL, "please report this with the scene",
+                   "a layer's contour is not closed, which is a bug in csgmesh");
+    return CSGM_ERR_INTERNAL;
+}
+
+static csgm_status make_slabs(slice_job *job, csgm_slice_stats *stats)
+{
+    const csg_layers_receiver *r = job->receiver;
+    uint32_t slabs = 1u << job->plan.slab_level;
+    csg_mesh_take(job->watch, CSGM_STAGE_WRITE, 1);
+    for (; job->first_slab < slabs; job->first_slab += (uint32_t)job->page_count) {
+        size_t count = slabs - job->first_slab;
+        count = count < job->page_count ? count : job->page_count;
+        if (!csg_pool_run(job->context->pool, count, make_slab, tell_progress, job))
+            return atomic_load(&job->is_open) ? report_open(job->context)
+                                              : csg_mesh_why_stopped(job->watch);
+        for (size_t i = 0; i < count; i++) {
+            const slab_page *slab = &job->pages[i];
+            if (slab->page.length && !r->page(r->user, &slab->page))
+                return CSGM_ERR_IO;
+            stats->layers += slab->end - slab->first;
+            stats->contours += slab->contours;
+            stats->points += slab->points;
+            stats->unsettled += slab->unsettled;
+            stats->volume += slab->area;
+        }
+    }
+    return CSGM_OK;
+}
+
+/* ---- the whole ---------------------------------------------------------------------------------
+ */
+
+static csgm_status check_solid(csgm_context *context, csg_box bounds)
+{
+    if (csg_box_is_empty(bounds)) {
+        csg_diag_plain(&context->diags, CSG_DIAG_NOTHING_TO_MEASURE, NULL, NULL,
+                       "the solid is empty: there is nothing to slice");
+        return CSGM_ERR_SCENE;
+    }
+    if (csg_box_is_finite(bounds))
+        return CSGM_OK;
+    csg_diag_plain(&context->diags, CSG_DIAG_UNBOUNDED, NULL, "intersect the solid with a cube",
+                   "the solid reaches to infinity, so it has no layers");
+    return CSGM_ERR_SCENE;
+}
+
+static csgm_status place_layers(slice_job *job, csg_box bounds, double height)
+{
+    double count = ceil((bounds.max.z - bounds.min.z) / height - 1e-6);
+    job->bottom = bounds.min.z;
+    job->height = height;
+    job->head.count = count > 1 ? (size_t)fmin(count, 2.0 * MOST_LAYERS) : 1;
+    if (job->head.count > MOST_LAYERS) {
+        csg_diag_plain(&job->context->diags, CSG_DIAG_TOO_FINE, NULL, NULL,
+                       "%g layers of %g: %d is the most", count, height, MOST_LAYERS);
+        return CSGM_ERR_LIMIT;
+    }
+    job->z = csg_memory_alloc(&job->context->memory, job->head.count * sizeof *job->z);
+    if (!job->z)
+        return csg_context_no_memory(job->context);
+    for (size_t i = 0; i < job->head.count; i++)
+        job->z[i] = job->bottom + ((double)i + 0.5) * height;
+    return CSGM_OK;
+}
+
+static bool create_rooms(slice_job *job)
+{
+    csg_memory *memory = &job->context->memory;
+    job->worker_count = csg_pool_threads(job->context->pool);
+    job->page_count = (size_t)SLABS_AT_ONCE * job->worker_count;
+    job->workers = csg_memory_alloc(memory, job->worker_count * sizeof *job->workers);
+    job->pages = csg_memory_alloc(memory, job->page_count * sizeof *job->pages);
+    for (size_t i = 0; job->pages && i < job->page_count; i++)
+        job->pages[i] = (slab_page){.page = csg_layers_page(memory, &job->head)};
+    bool done = job->workers && job->pages;
+    for (uint32_t i = 0; job->workers && i < job->worker_count; i++) {
+        slice_worker *w = &job->workers[i];
+        bool has_cubes = csg_slice_cubes_init(&w->cubes, &job->plan);
+        bool has_contours = csg_slice_contours_init(&w->contours, &w->cubes);
+        csg_outline_init(&w->outline, memory);
+        done = done && has_cubes && has_contours;
+    }
+    return done;
+}
+
+static void release_rooms(slice_job *job)
+{
+    csg_memory *memory = &job->context->memory;
+    for (uint32_t i = 0; job->workers && i < job->worker_count; i++) {
+        slice_worker *w = &job->workers[i];
+        csg_outline_release(&w->outline);
+        csg_slice_contours_release(&w->contours);
+        csg_slice_cubes_release(&w->cubes);
+    }
+    for (size_t i = 0; job->pages && i < job->page_count; i++)
+        csg_layers_release_page(&job->pages[i].page);
+    csg_memory_release(memory, job->workers, job->worker_count * sizeof *job->workers);
+    csg_memory_release(memory, job->pages, job->page_count * sizeof *job->pages);
+    csg_memory_release(memory, job->z, job->head.count * sizeof *job->z);
+}
+
+csgm_status csg_slice_field(csgm_context *context, const csgm_field *field,
+                            const csgm_slice_options *options, const csg_layers_receiver *receiver,
+                            csgm_slice_stats *stats)
+{
+    CSG_ZONE(context, "slice");
+    csg_mesh_watch watch = {0};
+    slice_job job = {.context = context, .watch = &watch, .receiver = receiver};
+    csgm_status status = check_solid(context, field->bounds);
+    if (status == CSGM_OK)
+        status = place_layers(&job, field->bounds, options->height);
+    if (status != CSGM_OK)
+        return status;
+    csg_vec3 size = csg_box_size(field->bounds);
+    double longest = fmax(size.x, fmax(size.y, size.z));
+    csg_mesh_watch_begin(&watch, context, &options->monitor, 0);
+    stats->tolerance = options->tolerance > 0 ? options->tolerance : SHARE_OF_LONGEST * longest;
+    job.head.box = field->bounds;
+    job.head.tolerance = stats->tolerance;
+    job.head.scale = options->unit ? csg_unit_metres(options->unit) * 1000 : 1;
+    for (size_t i = 0; i < job.head.count; i++)
+        job.z[i] -= field->center.z;
+    csg_slice_plan_make(&job.plan, context, field, &watch, stats->tolerance, job.z, job.head.count);
+    stats->smallest = job.plan.step;
+    if (!create_rooms(&job))
+        status = csg_context_no_memory(context);
+    else if (!receiver->begin(receiver->user, &job.head))
+        status = CSGM_ERR_IO;
+    else
+        status = make_slabs(&job, stats);
+    release_rooms(&job);
+    return status;
+}

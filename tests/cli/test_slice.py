@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh slice: layers in files, threads, limits, and what is refused."""
+import json
+import math
+import os
+import re
+import signal
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import cli
+
+SVG = "{http://www.w3.org/2000/svg}"
+SLIC3R = "{http://slic3r.org/namespaces/slic3r}"
+
+
+def write(folder, name, text):
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def area(loop):
+    return sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(loop, loop[1:] + loop[:1])) / 2
+
+
+def svg_layers(path):
+    """(z, loops of points with y upwards) of each layer of an SVG file."""
+    layers = []
+    for group in xml.etree.ElementTree.parse(path).getroot().iter(SVG + "g"):
+        loops = []
+        for drawn in group.iter(SVG + "path"):
+            for loop in drawn.get("d").split("Z")[:-1]:
+                numbers = [float(word) for word in re.findall(r"-?[0-9.]+", loop)]
+                loops.append([(x, -y) for x, y in zip(numbers[::2], numbers[1::2])])
+        layers.append((float(group.get(SLIC3R + "z")), loops))
+    return layers
+
+
+class Slice(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def slice(self, scene, *options, name="layers.svg", status=0):
+        out = os.path.join(self.folder, name)
+        result = cli.run("slice", write(self.folder, "scene.txt", scene), "-o", out, *options)
+        self.assertEqual(result.returncode, status, result.stderr)
+        return out, result
+
+    def test_boxes_are_exact(self):
+        out, _ = self.slice("translate([1, 2, 3]) cube([10, 20, 30]);\n", "--layer", 1.5)
+        layers = svg_layers(out)
+        self.assertEqual([z for z, _ in layers], [3.75 + 1.5 * i for i in range(20)])
+        for _, loops in layers:
+            self.assertEqual(len(loops), 1)
+            self.assertEqual({(round(x, 4), round(y, 4)) for x, y in loops[0]}, {(1, 2), (11, 2), (11, 22), (1, 22)})
+            self.assertAlmostEqual(area(loops[0]), 200, 3)
+
+    def test_a_torus_has_holes_in_its_discs(self):
+        out, result = self.slice("torus(8, 2);\n", "--layer", 0.25, "-e", 0.005, "--json")
+        layers = svg_layers(out)
+        self.assertEqual(len(layers), 16)
+        for z, loops in layers:
+            half = math.sqrt(4 - z * z)
+            found = sorted(area(loop) for loop in loops)
+            self.assertEqual(len(found), 2)
+            self.assertAlmostEqual(found[0], -math.pi * (8 - half) ** 2, delta=0.02 * 2 * math.pi * 8 / half)
+            self.assertAlmostEqual(found[1], math.pi * (8 + half) ** 2, delta=0.02 * 2 * math.pi * 10 / half)
+        said = json.loads(result.stdout)
+        self.assertEqual((said["layers"], said["contours"], said["tolerance"]), (16, 32, 0.005))
+        self.assertAlmostEqual(said["volume"], sum(0.25 * area(loop) for _, loops in layers for loop in loops), 3)
+
+    def test_units_and_standard_output(self):
+        scene = write(self.folder, "scene.txt", "cube(1);\n")
+        result = cli.run("slice", scene, "--layer", 0.5, "--unit", "in", "-o", "-", "-f", "svg")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(b'width="25.4mm"', result.stdout)
+        self.assertIn(b'slic3r:z="6.35"', result.stdout)
+        self.assertNotIn(b"contours", result.stdout)
+
+    def test_same_bytes_with_any_threads(self):
+        scene = "union(blend = 1) { rotate([10, 20, 30]) cube(10); sphere(6); }\n"
+        files = set()
+        for threads in (1, 2, 3):
+            out, _ = self.slice(scene, "--layer", 0.3, "-e", 0.01, "-j", threads)
+            with open(out, "rb") as file:
+                files.add(file.read())
+        self.assertEqual(len(files), 1)
+
+    def test_what_is_thin_is_told(self):
+        _, result = self.slice("cube([10, 10, 5]);\ntranslate([12, 0, 0]) rotate([0, 0, 20]) cube([5, 0.004, 5]);\n",
+                               "--layer", 1, "-e", 0.02, "--json")
+        self.assertGreater(json.loads(result.stdout)["unsettled"], 0)
+        _, result = self.slice("cube([10, 10, 5]);\n", "--layer", 1, "-e", 0.02, "--json")
+        self.assertEqual(json.loads(result.stdout)["unsettled"], 0)
+
+    def test_refused(self):
+        scene = write(self.folder, "scene.txt", "cube(1);\n")
+        for options, said in (
+            (["-o", "x.svg"], "how high is a layer"),
+            (["--layer", "0", "-o", "x.svg"], "--layer"),
+            (["--layer", "-1", "-o", "x.svg"], "--layer"),
+            (["--layer", "nan", "-o", "x.svg"], "--layer"),
+            (["--layer", "1", "-e", "0", "-o", "x.svg"], "--tolerance"),
+            (["--layer", "1"], "no output file"),
+            (["--layer", "1", "-o", "x.gcode"], "tells no format of layers"),
+            (["--layer", "1", "-o", "x", "-f", "stl"], "no format 'stl'"),
+            (["--layer", "1", "-o", "-"], "standard output needs a format"),
+            (["--layer", "1", "-o", "a.svg", "-o", "b.svg"], "one file"),
+            (["--layer", "1", "-o", "/nowhere/x.svg"], "cannot write"),
+        ):
+            with self.subTest(options):
+                result = cli.run("slice", scene, *options, cwd=self.folder)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn(said, result.stderr)
+                self.assertFalse(os.path.exists(os.path.join(self.folder, "x.svg")))
+        for text, said in (("plane([0, 0, 1]);", "infinity"), ("union() {}", "empty")):
+            _, result = self.slice(text, "--layer", 1, status=1)
+            self.assertIn(said, result.stderr)
+        _, result = self.slice("cube(1);", "--layer", "1e-9", status=2)
+        self.assertIn("layers", result.stderr)
+
+    def test_limits_leave_no_file(self):
+        scene = "rotate([10, 20, 30]) cube(10);\n"
+        out, result = self.slice(scene, "--layer", 0.001, "-e", 0.0005, "--timeout", 0.3, status=2)
+        self.assertIn("time", result.stderr)
+        self.assertFalse(os.path.exists(out))
+        for size in ("100K", "300K", "1M", "3M"):
+            out = os.path.join(self.folder, "small.svg")
+            result = cli.run("slice", os.path.join(self.folder, "scene.txt"), "-o", out, "--layer", 0.1, "--max-memory", size)
+            self.assertIn(result.returncode, (0, 2), result.stderr)
+            self.assertEqual(os.path.exists(out), result.returncode == 0)
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted({"scene.txt"} | ({"small.svg"} if os.path.exists(out) else set())))
+
+    def test_ctrl_c_leaves_no_file(self):
+        path = write(self.folder, "scene.txt", "rotate([10, 20, 30]) cube(10);\n")
+        out = os.path.join(self.folder, "layers.svg")
+        process = subprocess.Popen([cli.PROGRAM, "slice", path, "--layer", "0.001", "-e", "0.0005", "-o", out, "--progress", "always"],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        said = b""
+        while b"writing" not in said:  # the handler stands by then
+            more = process.stderr.read1()
+            self.assertTrue(more, said)
+            said += more
+        process.send_signal(signal.SIGINT)
+        _, rest = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2, rest)
+        self.assertIn(b"interrupted", said + rest)
+        self.assertEqual(os.listdir(self.folder), ["scene.txt"])
+
+
+if __name__ == "__main__":
+    unittest.main()
