@@ -70,11 +70,11 @@ static bool put_layer(slice_job *job, slice_worker *w, slab_page *slab, size_t n
     o->point_count = o->loop_count = 0;
     if (!csg_slice_contours_make(&w->contours, number, o))
         return false;
-    csg_layer layer = {.number = number,
-                       .low = job->bottom + (double)number * job->height,
-                       .high = job->bottom + (double)(number + 1) * job->height,
-                       .at = job->bottom + ((double)number + 0.5) * job->height,
-                       .contours = *o};
+    csg_sliced_layer layer = {.number = number,
+                              .low = job->bottom + (double)number * job->height,
+                              .high = job->bottom + (double)(number + 1) * job->height,
+                              .at = job->bottom + ((double)number + 0.5) * job->height,
+                              .contours = *o};
     job->receiver->layer(job->receiver->user, &slab->page, &job->head, &layer);
     slab->contours += o->loop_count;
     slab->points += o->point_count;

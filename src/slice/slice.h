@@ -13,7 +13,8 @@ typedef struct csg_layers_receiver {
     /* Before all of them. False: it takes none. */
     bool (*begin)(void *user, const csg_layers_head *head);
     /* Any worker: onto the page, of layers that follow each other. */
-    void (*layer)(void *user, csg_page *page, const csg_layers_head *head, const csg_layer *layer);
+    void (*layer)(void *user, csg_page *page, const csg_layers_head *head,
+                  const csg_sliced_layer *layer);
     /* On the calling thread, page after page. False: no more. */
     bool (*page)(void *user, const csg_page *page);
 } csg_layers_receiver;

@@ -37,7 +37,7 @@ static bool begin_file(void *user, const csg_layers_head *head)
 }
 
 static void put_on_page(void *user, csg_page *page, const csg_layers_head *head,
-                        const csg_layer *layer)
+                        const csg_sliced_layer *layer)
 {
     const layers_file *file = user;
     file->writer->layer(page, head, layer);

@@ -12,7 +12,7 @@
 enum { MOST_LAYERS = 64 };
 
 typedef struct taken_layers {
-    csg_layer layers[MOST_LAYERS];
+    csg_sliced_layer layers[MOST_LAYERS];
     size_t count;
     csg_memory *memory;
     csgm_slice_stats stats;
@@ -26,10 +26,10 @@ static bool accept_head(void *user, const csg_layers_head *head)
 }
 
 static void take_layer(void *user, csg_page *page, const csg_layers_head *head,
-                       const csg_layer *layer)
+                       const csg_sliced_layer *layer)
 {
     taken_layers *t = user;
-    csg_layer *own = &t->layers[layer->number];
+    csg_sliced_layer *own = &t->layers[layer->number];
     *own = *layer;
     csg_outline_init(&own->contours, t->memory);
     assert_true(csg_outline_append(&own->contours, &layer->contours));
@@ -287,7 +287,7 @@ static int winding(const csg_outline *o, csg_vec2 at)
 
 static bool has_jumps; /* of fillets: the field is not what its gradients say */
 
-static size_t check_layer(const mesh_case *c, const csg_layer *layer, double tolerance,
+static size_t check_layer(const mesh_case *c, const csg_sliced_layer *layer, double tolerance,
                           csg_random *random, const char *what)
 {
     enum { POINTS = 200 };

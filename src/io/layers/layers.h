@@ -20,12 +20,12 @@ typedef struct csg_layers_head {
     size_t count;
 } csg_layers_head;
 
-typedef struct csg_layer {
+typedef struct csg_sliced_layer {
     size_t number;        /* from 0, from below */
     double low, high;     /* where it begins and ends */
     double at;            /* where the solid was cut */
     csg_outline contours; /* outer ones counter-clockwise, holes clockwise */
-} csg_layer;
+} csg_sliced_layer;
 
 /* An empty page for such layers. */
 csg_page csg_layers_page(csg_memory *memory, const csg_layers_head *head);
@@ -33,7 +33,7 @@ void csg_layers_release_page(csg_page *page);
 
 typedef struct csg_layers_writer {
     void (*begin)(csg_page *page, const csg_layers_head *head);
-    void (*layer)(csg_page *page, const csg_layers_head *head, const csg_layer *layer);
+    void (*layer)(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer);
     void (*end)(csg_page *page, const csg_layers_head *head);
 } csg_layers_writer;
 

@@ -45,7 +45,7 @@ static void put_attribute(csg_page *page, const char *name, double value)
     csg_page_text(page, "\"");
 }
 
-static void put_svg(csg_page *page, const csg_layers_head *head, const csg_layer *layer)
+static void put_svg(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer)
 {
     (void)head;
     csg_page_format(page, "<g id=\"layer%zu\" inkscape:groupmode=\"layer\" inkscape:label=\"",
