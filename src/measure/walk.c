@@ -113,11 +113,16 @@ static bool split(csg_measure_walk *w, const csg_measure_cube *parent)
     return true;
 }
 
+csg_measure_cube csg_measure_root(const csg_measure_walk *w)
+{
+    return (csg_measure_cube){.half = w->half, .state = CSG_CELL_SURFACE, .tape = w->field->tape};
+}
+
 /* Level by level, on one thread: there are few of them. */
 static csgm_status find_frontier(csg_measure_walk *w)
 {
     size_t first = 0, surfaces = 1;
-    csg_measure_cube root = {.half = w->half, .state = CSG_CELL_SURFACE, .tape = w->field->tape};
+    csg_measure_cube root = csg_measure_root(w);
     bool done = keep(w, &root);
     for (int level = 0; done && level < FRONTIER_LEVELS && surfaces && surfaces < FRONTIER;
          level++) {
@@ -138,8 +143,8 @@ static csgm_status find_frontier(csg_measure_walk *w)
     return done ? CSGM_OK : csg_context_no_memory(w->context);
 }
 
-csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
-                                   const csgm_field *field, csg_mesh_watch *watch)
+bool csg_measure_walk_open(csg_measure_walk *w, csgm_context *context, const csgm_field *field,
+                           csg_mesh_watch *watch)
 {
     *w = (csg_measure_walk){.context = context,
                             .field = field,
@@ -154,9 +159,14 @@ csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
     w->half = rounded_up(largest_coordinate(w->bounds));
     double rounding = 32 * (double)FLT_EPSILON * w->half * sqrt(3.0);
     w->tau = (float)(4 * rounding * fmax(1, (double)field->tape.lipschitz));
-    if (!begin_workers(w, (float)rounding))
-        return csg_context_no_memory(context);
-    return find_frontier(w);
+    return begin_workers(w, (float)rounding);
+}
+
+csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
+                                   const csgm_field *field, csg_mesh_watch *watch)
+{
+    return csg_measure_walk_open(w, context, field, watch) ? find_frontier(w)
+                                                           : csg_context_no_memory(context);
 }
 
 void csg_measure_walk_release(csg_measure_walk *w)

@@ -44,6 +44,11 @@ typedef struct csg_measure_walk {
  */
 csgm_status csg_measure_walk_begin(csg_measure_walk *walk, csgm_context *context,
                                    const csgm_field *field, csg_mesh_watch *watch);
+/* The same without a frontier, on any thread: cubes come from the root, on. False: out of memory,
+ * not reported. */
+bool csg_measure_walk_open(csg_measure_walk *walk, csgm_context *context, const csgm_field *field,
+                           csg_mesh_watch *watch);
+csg_measure_cube csg_measure_root(const csg_measure_walk *walk);
 void csg_measure_walk_release(csg_measure_walk *walk);
 
 /* The parent's octants; new tapes are in the arena. Those beyond the bounds are OUTSIDE. False: out

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The public headers, alone and first: compiled as C99, C17 and C++17 with warnings as errors.
  */
+#include <csgmesh/clearance.h>
 #include <csgmesh/csgmesh.h>
 #include <csgmesh/editing.h>
 #include <csgmesh/reshaping.h>

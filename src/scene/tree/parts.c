@@ -168,6 +168,18 @@ const char *csg_parts_name(const csg_parts *parts, size_t index)
     return number ? parts->scene->part_names[number - 1] : NULL;
 }
 
+csg_box csg_parts_box(const csg_parts *parts, size_t index)
+{
+    csg_box box = csg_box_empty();
+    for (size_t i = 0; i < parts->unit_count; i++) {
+        const csg_part_unit *unit = &parts->units[i];
+        const csg_part_way *way = &parts->ways[unit->way];
+        if (way->look.part == parts->numbers[index])
+            box = csg_box_hull(box, csg_affine_box(&way->place, parts->scene->bounds[unit->node]));
+    }
+    return box;
+}
+
 /* ---- a part alone ---------------------------------------------------------------------------- */
 
 /* array: where the pointer stands. */

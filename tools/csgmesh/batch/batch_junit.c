@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "batch/batch_report.h"
+#include "core/junit.h"
 #include "core/markup.h"
 #include "core/options.h"
 #include "core/textfile.h"
@@ -46,13 +47,11 @@ static void put_suite(FILE *out, const batch_run *run)
         skipped += run->results[i].outcome == BATCH_NOT_RUN;
         seconds += run->results[i].seconds;
     }
-    fprintf(out,
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"csgmesh batch\" "
-            "tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"%zu\" time=\"%.3f\">\n",
-            run->plan->count, failed, skipped, seconds);
+    cli_junit_open(out, "batch",
+                   &(cli_junit_counts){run->plan->count, failed, 0, skipped, seconds});
     for (size_t i = 0; i < run->plan->count; i++)
         put_case(out, &run->plan->jobs[i], &run->results[i]);
-    fputs("</testsuite>\n", out);
+    cli_junit_close(out);
 }
 
 int batch_junit_write(batch_run *run)

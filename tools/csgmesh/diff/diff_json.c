@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "core/facts.h"
+#include "core/junit.h"
 #include "core/markup.h"
 #include "core/options.h"
 #include "core/textfile.h"
@@ -191,13 +192,10 @@ static void put_junit(FILE *out, const diff_results *results)
         errors += r->outcome == DIFF_FAILED;
         failures += r->outcome != DIFF_SAME && r->outcome != DIFF_FAILED && !r->is_updated;
     }
-    fprintf(out,
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"csgmesh diff\" "
-            "tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" skipped=\"0\">\n",
-            results->count, failures, errors);
+    cli_junit_open(out, "diff", &(cli_junit_counts){results->count, failures, errors, 0, -1});
     for (size_t i = 0; i < results->count; i++)
         put_case(out, &results->items[i]);
-    fputs("</testsuite>\n", out);
+    cli_junit_close(out);
 }
 
 static int write_with(cli_app *app, const char *path, const diff_results *results,

@@ -9,6 +9,7 @@
 #include "core/interrupt.h"
 #include "core/mesh_files.h"
 #include "core/options.h"
+#include "core/part_names.h"
 #include "core/work.h"
 #include "measure/measure_print.h"
 
@@ -32,28 +33,6 @@ static csgm_measure_options measure_options(cli_app *app)
     return options;
 }
 
-/* names: NULL where a part has none. CLI_INPUT_AT_FAULT: none of these is the one asked for. */
-static int find_part(cli_app *app, const char *path, const char **names, size_t count)
-{
-    const char *wanted = app->options->measure_part, *near;
-    char hint[160];
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (names[i] && strcmp(names[i], wanted) == 0)
-            return CLI_DONE;
-        if (names[i])
-            names[kept++] = names[i];
-    }
-    names[kept] = NULL;
-    near = cli_nearest(wanted, names);
-    snprintf(hint, sizeof hint, near ? "did you mean \"%.80s\"?" : "its first part is \"%.80s\"",
-             near ? near : names[0]);
-    cli_console_say(
-        &app->console, CSGM_ERROR, kept ? hint : "part(\"lid\") in a scene names a part",
-        kept ? "%s has no part \"%.80s\"" : "%s has no named parts, so no \"%.80s\"", path, wanted);
-    return CLI_INPUT_AT_FAULT;
-}
-
 static int no_memory(cli_app *app)
 {
     return cli_usage_error(app, NULL, "out of memory");
@@ -70,7 +49,7 @@ static int find_part_of_field(cli_app *app, const char *path, const csgm_field *
         return no_memory(app);
     for (size_t i = 0; i < count; i++)
         csgm_field_part(field, i, &names[i]);
-    int status = find_part(app, path, names, count);
+    int status = cli_part_find(app, path, app->options->measure_part, names, count);
     free(names);
     return status;
 }
@@ -82,7 +61,8 @@ static int find_part_of_mesh(cli_app *app, const char *path, const csgm_mesh_vie
         return no_memory(app);
     for (uint64_t i = 0; i < view->part_count; i++)
         names[i] = view->parts[i].name;
-    int status = find_part(app, path, names, (size_t)view->part_count);
+    int status =
+        cli_part_find(app, path, app->options->measure_part, names, (size_t)view->part_count);
     free(names);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * --junit of measure: one test case a condition, as CI servers read it. No time stamps.
  */
+#include "core/junit.h"
 #include "core/markup.h"
 #include "core/options.h"
 #include "core/textfile.h"
@@ -25,13 +26,11 @@ int cli_measure_junit(cli_app *app, const cli_measured *measured)
     for (size_t i = 0; i < measured->checks.count; i++)
         failures += measured->checks.items[i].truth != CLI_HOLDS;
     if (cli_text_open(&text)) {
-        fprintf(text.out,
-                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"csgmesh measure\" "
-                "tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"0\" time=\"0\">\n",
-                measured->checks.count, failures);
+        cli_junit_open(text.out, "measure",
+                       &(cli_junit_counts){measured->checks.count, failures, 0, 0, 0});
         for (size_t i = 0; i < measured->checks.count; i++)
             put_case(text.out, measured->path, &measured->checks.items[i]);
-        fputs("</testsuite>\n", text.out);
+        cli_junit_close(text.out);
     }
     return cli_text_write(app, &text, app->options->measure_junit);
 }

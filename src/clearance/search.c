@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: MIT
+ * One pair of parts; see search.h. The candidates are pairs of cubes, one over each part, that may
+ * hold points of them. Along a direction d the parts in such a pair are at least
+ *   min d . b - max d . a
+ * from each other, which is exact where both are plane and d is their normal; where it is negative,
+ * what they have in common is no thicker along d. The least over all candidates is a lower bound of
+ * the gap, points found on the way are the upper one. The candidate with the least bound is divided
+ * first. Two cubes that are inside for certain and overlap prove that the parts interfere.
+ *
+ * Cubes that are inside matter where they overlap others alone: of parts that have no point in
+ * common the nearest points are on both surfaces.
+ */
+#include "clearance/search.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "clearance/overlap.h"
+#include "clearance/places.h"
+
+enum { ASK_EVERY = 64, FIRST_TRIES = 8, TRY_EVERY = 32, ROUNDS = 8, FINEST = 16 /* of T */ };
+
+typedef struct candidate {
+    double bound;
+    uint32_t a, b;
+} candidate;
+
+typedef struct search {
+    const csg_clear_task *task;
+    csg_clear_tree a, b;
+    candidate *heap; /* the least bound first */
+    size_t count, capacity;
+    double left; /* the least bound of those that were let go */
+    double left_size;
+    double high; /* nearest are so far apart */
+    csg_vec3 nearest[2], inside;
+    bool interferes;
+    uint64_t looked, popped;
+    bool out_of_memory;
+} search;
+
+/* ---- the candidates ----------------------------------------------------------------------------
+ */
+
+/* A total order, so that the search is the same everywhere. */
+static bool comes_before(const candidate *p, const candidate *q)
+{
+    if (p->bound < q->bound || q->bound < p->bound)
+        return p->bound < q->bound;
+    return p->a != q->a ? p->a < q->a : p->b < q->b;
+}
+
+static bool push(search *s, candidate item)
+{
+    csg_memory *memory = s->a.arena.memory;
+    if (!csg_memory_reserve(memory, (void **)&s->heap, &s->capacity, s->count + 1, sizeof item)) {
+        s->out_of_memory = true;
+        return false;
+    }
+    size_t i = s->count++;
+    for (; i > 0 && comes_before(&item, &s->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        s->heap[i] = s->heap[(i - 1) / 2];
+    s->heap[i] = item;
+    return true;
+}
+
+static candidate pop(search *s)
+{
+    candidate first = s->heap[0], item = s->heap[--s->count];
+    size_t i = 0;
+    for (size_t child; (child = 2 * i + 1) < s->count; i = child) {
+        if (child + 1 < s->count && comes_before(&s->heap[child + 1], &s->heap[child]))
+            child++;
+        if (!comes_before(&s->heap[child], &item))
+            break;
+        s->heap[i] = s->heap[child];
+    }
+    s->heap[i] = item;
+    return first;
+}
+
+static void let_go(search *s, const candidate *item)
+{
+    s->left = fmin(s->left, item->bound);
+    if (item->bound <= 0) {
+        double a = s->a.nodes[item->a].cube.half, b = s->b.nodes[item->b].cube.half;
+        s->left_size = fmax(s->left_size, 2 * fmin(a, b));
+    }
+}
+
+/* ---- bounds ------------------------------------------------------------------------------------
+ */
+
+typedef struct bounding {
+    const csg_clear_node *a, *b;
+    double offset[3];
+    double bound, slack;
+} bounding;
+
+static void look_along(bounding *w, const double d[3])
+{
+    const double back[3] = {-d[0], -d[1], -d[2]};
+    double along = d[0] * w->offset[0] + d[1] * w->offset[1] + d[2] * w->offset[2];
+    double apart = along - csg_clear_reach(w->a->pieces, w->a->cube.half, d) -
+                   csg_clear_reach(w->b->pieces, w->b->cube.half, back);
+    w->bound = fmax(w->bound, apart - w->slack);
+}
+
+static void look_along_vector(bounding *w, double x, double y, double z)
+{
+    double length = sqrt(x * x + y * y + z * z);
+    const double d[3] = {x / length, y / length, z / length};
+    if (length > 0)
+        look_along(w, d);
+}
+
+static void look_along_normals(bounding *w, const csg_clear_pieces *pieces, double turn)
+{
+    uint8_t used = 0;
+    for (int i = 0; pieces && i < pieces->count; i++)
+        used |= pieces->masks[i];
+    for (int i = 0; pieces && i < pieces->plane_count; i++) {
+        const double *s = pieces->planes[i].slope;
+        const double d[3] = {turn * s[0], turn * s[1], turn * s[2]};
+        if (used >> i & 1)
+            look_along(w, d);
+    }
+}
+
+/* How far apart the parts in the two cubes are at least; negative: how thin what they have in
+ * common is at most. More than `enough` need not be known exactly. */
+static double bound_of(search *s, uint32_t a, uint32_t b, double enough, bool *overlap)
+{
+    bounding w = {.a = &s->a.nodes[a], .b = &s->b.nodes[b]};
+    csg_vec3 offset = csg_clear_offset(&s->a, a, &s->b, b);
+    csg_vec3 origin_a = csg_clear_part_origin(s->a.part),
+             origin_b = csg_clear_part_origin(s->b.part);
+    double reach = w.a->cube.half + w.b->cube.half, widest = -INFINITY, square = 0, between[3];
+    memcpy(w.offset, (const double[3]){offset.x, offset.y, offset.z}, sizeof w.offset);
+    w.slack = 1e-15 * (csg_vec3_norm(origin_a) + csg_vec3_norm(origin_b) +
+                       4 * csg_vec3_norm(offset) + 4 * reach);
+    for (int k = 0; k < 3; k++) {
+        double gap = fabs(w.offset[k]) - reach;
+        widest = fmax(widest, gap);
+        between[k] = gap > 0 ? copysign(gap, w.offset[k]) : 0;
+        square += gap > 0 ? gap * gap : 0;
+    }
+    *overlap = widest <= w.slack;
+    w.bound = (*overlap ? widest : sqrt(square)) - w.slack;
+    s->looked++;
+    if (w.bound >= enough || (!w.a->pieces && !w.b->pieces))
+        return w.bound;
+    look_along_normals(&w, w.a->pieces, -1);
+    look_along_normals(&w, w.b->pieces, 1);
+    if (w.bound >= enough)
+        return w.bound;
+    look_along_vector(&w, w.offset[0], w.offset[1], w.offset[2]);
+    look_along_vector(&w, between[0], between[1], between[2]);
+    if (s->high < INFINITY) {
+        csg_vec3 d = csg_vec3_sub(s->nearest[1], s->nearest[0]);
+        look_along_vector(&w, d.x, d.y, d.z);
+    }
+    return w.bound;
+}
+
+/* ---- points ------------------------------------------------------------------------------------
+ */
+
+static csg_vec3 center_of(const csg_clear_tree *t, uint32_t node)
+{
+    const double *c = t->nodes[node].cube.c;
+    return csg_vec3_add(csg_clear_part_origin(t->part), csg_vec3_make(c[0], c[1], c[2]));
+}
+
+static void found_common(search *s, csg_vec3 at)
+{
+    s->interferes = true;
+    s->inside = at;
+}
+
+static void take_nearest(search *s, csg_vec3 a, csg_vec3 b)
+{
+    double apart = csg_vec3_norm(csg_vec3_sub(b, a));
+    if (apart < s->high) {
+        s->high = apart;
+        s->nearest[0] = a;
+        s->nearest[1] = b;
+    }
+}
+
+/* From one surface to the other and back. */
+static void try_nearest(search *s, csg_vec3 from)
+{
+    const csg_clear_task *t = s->task;
+    csg_vec3 p[2];
+    const csg_clear_part *parts[2] = {t->a, t->b};
+    double last = INFINITY;
+    for (int i = 0; i < 2 * ROUNDS && !s->interferes; i++) {
+        int side = i % 2;
+        if (!csg_clear_settle(parts[side], t->worker, i ? p[1 - side] : from, &p[side],
+                              &s->out_of_memory))
+            return;
+        if (csg_clear_is_inside(parts[1 - side], t->worker, p[side], &s->out_of_memory))
+            found_common(s, p[side]);
+        else if (i)
+            take_nearest(s, p[0], p[1]);
+        if (i && side) {
+            double apart = csg_vec3_norm(csg_vec3_sub(p[1], p[0]));
+            if (apart > last - t->tolerance / 8)
+                return;
+            last = apart;
+        }
+    }
+}
+
+static void try_common(search *s, const candidate *top)
+{
+    const csg_clear_task *t = s->task;
+    const csg_measure_cube *a = &s->a.nodes[top->a].cube, *b = &s->b.nodes[top->b].cube;
+    csg_vec3 from = a->half < b->half ? center_of(&s->a, top->a) : center_of(&s->b, top->b), found;
+    if (csg_clear_find_common(t->a, t->b, t->worker, from, fmin(a->half, b->half), &found,
+                              &s->out_of_memory))
+        found_common(s, found);
+}
+
+static void try_points(search *s, const candidate *top)
+{
+    bool overlap = top->bound <= 0;
+    if (s->popped > FIRST_TRIES && s->popped % TRY_EVERY)
+        return;
+    if (overlap)
+        try_common(s, top);
+    if (!s->interferes && s->high > fmax(top->bound, 0) + 0.25 * s->task->tolerance)
+        try_nearest(s, center_of(&s->a, top->a));
+}
+
+/* ---- the search --------------------------------------------------------------------------------
+ */
+
+/* Two cubes that are inside and overlap: the middle of what they have in common. */
+static csg_vec3 middle_of(const search *s, uint32_t a, uint32_t b)
+{
+    csg_vec3 p = center_of(&s->a, a), q = center_of(&s->b, b);
+    double ha = s->a.nodes[a].cube.half, hb = s->b.nodes[b].cube.half;
+    const double pa[3] = {p.x, p.y, p.z}, pb[3] = {q.x, q.y, q.z};
+    double m[3];
+    for (int k = 0; k < 3; k++)
+        m[k] = 0.5 * (fmax(pa[k] - ha, pb[k] - hb) + fmin(pa[k] + ha, pb[k] + hb));
+    return csg_vec3_make(m[0], m[1], m[2]);
+}
+
+/* False: out of memory. */
+static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
+{
+    bool overlap;
+    double enough = s->high - s->task->tolerance;
+    candidate item = {.a = a, .b = b};
+    item.bound = fmax(parent_bound, bound_of(s, a, b, fmin(enough, s->task->enough), &overlap));
+    bool in_a = s->a.nodes[a].cube.state == CSG_CELL_INSIDE,
+         in_b = s->b.nodes[b].cube.state == CSG_CELL_INSIDE;
+    if ((in_a || in_b) && !overlap)
+        return true;
+    if (in_a && in_b) {
+        csg_vec3 middle = middle_of(s, a, b);
+        if (csg_clear_is_inside(s->task->a, s->task->worker, middle, &s->out_of_memory) &&
+            csg_clear_is_inside(s->task->b, s->task->worker, middle, &s->out_of_memory)) {
+            found_common(s, middle);
+            return true;
+        }
+        let_go(s, &item); /* they touch, or nearly */
+        return !s->out_of_memory;
+    }
+    if (item.bound > 0 && item.bound >= fmin(enough, s->task->enough)) {
+        let_go(s, &item);
+        return true;
+    }
+    return push(s, item);
+}
+
+static bool divide(search *s, const candidate *top)
+{
+    int which = csg_clear_choose(&s->a, top->a, &s->b, top->b);
+    csg_clear_tree *tree = which == 0 ? &s->a : &s->b;
+    uint32_t node = which == 0 ? top->a : top->b;
+    if (which < 0) {
+        let_go(s, top);
+        return true;
+    }
+    if (!csg_clear_tree_divide(tree, node)) {
+        s->out_of_memory = true;
+        return false;
+    }
+    uint32_t first = tree->nodes[node].first_child, count = tree->nodes[node].child_count;
+    for (uint32_t i = first; i < first + count && !s->interferes; i++)
+        if (!consider(s, which == 0 ? i : top->a, which == 0 ? top->b : i, top->bound))
+            return false;
+    return true;
+}
+
+static double low_of(const search *s)
+{
+    return s->count ? fmin(s->left, s->heap[0].bound) : s->left;
+}
+
+static bool is_known(const search *s)
+{
+    const csg_clear_task *t = s->task;
+    double low = low_of(s);
+    bool straddles = low < t->min_gap && t->min_gap <= s->high;
+    if (low > 0 && low >= t->enough)
+        return true;
+    if (straddles)
+        return low >= s->high - t->tolerance / FINEST;
+    return (s->high <= t->tolerance && low >= -t->tolerance) || low >= s->high - t->tolerance;
+}
+
+/* False: it was stopped. */
+static bool run(search *s)
+{
+    const csg_clear_task *t = s->task;
+    while (s->count && !s->interferes && !is_known(s) && s->looked < t->most_pairs) {
+        if (++s->popped % ASK_EVERY == 0 && csg_mesh_should_stop(t->watch))
+            return false;
+        try_points(s, &s->heap[0]);
+        if (s->out_of_memory)
+            return false;
+        if (s->interferes || is_known(s))
+            return true;
+        candidate top = pop(s);
+        if (!divide(s, &top)) {
+            let_go(s, &top);
+            return false;
+        }
+        if (s->out_of_memory)
+            return false;
+    }
+    return true;
+}
+
+static bool tell(search *s, csgm_clear_pair *out)
+{
+    const csg_clear_task *t = s->task;
+    bool done = true;
+    double low = low_of(s);
+    out->pairs = s->looked;
+    if (s->interferes) {
+        out->state = CSGM_CLEAR_INTERFERING;
+        out->gap = (csgm_interval){0, 0};
+        out->inside = s->inside;
+        done = csg_clear_overlap(&s->a, &s->b, t->enough_volume, t->watch, &out->volume,
+                                 &s->out_of_memory);
+        return done;
+    }
+    out->gap = (csgm_interval){fmin(fmax(low, 0), s->high), s->high};
+    out->nearest[0] = s->nearest[0];
+    out->nearest[1] = s->nearest[1];
+    if (low > 0)
+        out->state = CSGM_CLEAR_APART;
+    else if (low >= -t->tolerance && s->high <= t->tolerance)
+        out->state = CSGM_CLEAR_TOUCHING;
+    else
+        out->state = CSGM_CLEAR_UNDECIDED;
+    if (out->state == CSGM_CLEAR_UNDECIDED) {
+        for (size_t i = 0; i < s->count; i++)
+            let_go(s, &s->heap[i]);
+        out->size = s->left_size;
+    }
+    return done;
+}
+
+bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *out_of_memory)
+{
+    search s = {.task = task, .left = INFINITY, .high = INFINITY};
+    if (!task->a->is_open || !task->b->is_open) {
+        out->gap = (csgm_interval){INFINITY, INFINITY};
+        return true;
+    }
+    bool done = csg_clear_tree_begin(&s.a, task->a, task->worker) &&
+                csg_clear_tree_begin(&s.b, task->b, task->worker);
+    s.out_of_memory = !done;
+    if (done && s.a.count && s.b.count) {
+        done = consider(&s, 0, 0, -INFINITY) && run(&s);
+        done = tell(&s, out) && done && !s.out_of_memory;
+    } else if (done) {
+        out->gap = (csgm_interval){INFINITY, INFINITY};
+    } else {
+        out->state = CSGM_CLEAR_UNDECIDED;
+        out->gap = (csgm_interval){0, INFINITY};
+    }
+    *out_of_memory |= s.out_of_memory;
+    csg_memory_release(&task->a->walk.context->memory, s.heap, s.capacity * sizeof *s.heap);
+    csg_clear_tree_release(&s.a);
+    csg_clear_tree_release(&s.b);
+    return done;
+}

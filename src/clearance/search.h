@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ * One pair of parts: how far apart, or a point in both. Branch and bound over pairs of cubes.
+ */
+#ifndef CSG_CLEARANCE_SEARCH_H
+#define CSG_CLEARANCE_SEARCH_H
+
+#include "clearance/tree.h"
+#include "csgmesh/clearance.h"
+
+typedef struct csg_clear_task {
+    const csg_clear_part *a, *b;
+    double tolerance;
+    double enough;        /* a gap of which no more need be known than that it is no less */
+    double min_gap;       /* > 0: on which side of it the gap is matters */
+    double enough_volume; /* likewise of what they have in common, that it is no more */
+    uint64_t most_pairs;
+    uint32_t worker;
+    csg_mesh_watch *watch;
+} csg_clear_task;
+
+/* False: stopped, or out of memory (then *out_of_memory); *out is what is proven by then in any
+ * case. Fills state, gap, nearest, inside, volume, size, pairs. */
+bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *out_of_memory);
+
+#endif

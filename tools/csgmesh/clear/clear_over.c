@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT
+ * See clear_over.h.
+ */
+#include "clear/clear_over.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char HINT[] = "as --over t=0:0.01:1, first value, step and last value";
+
+static bool read_number(const char **at, double *out)
+{
+    char *end;
+    *out = strtod(*at, &end);
+    bool done = end > *at && isfinite(*out);
+    *at = end;
+    return done;
+}
+
+/* A:STEP:B, or A:B in steps of 1, as ranges of the language are. */
+static bool read_range(const char *at, cli_over *out)
+{
+    bool done = read_number(&at, &out->first) && *at++ == ':' && read_number(&at, &out->last);
+    out->step = 1;
+    if (done && *at == ':') {
+        at++;
+        out->step = out->last;
+        done = read_number(&at, &out->last);
+    }
+    return done && *at == 0;
+}
+
+int cli_over_read(cli_app *app, const char *text, cli_over *out)
+{
+    static const double NEARLY = 1e-9; /* of a step: so that 0:0.1:1 ends in 1 */
+    *out = (cli_over){.count = 1};
+    if (!text)
+        return CLI_DONE;
+    size_t length = cli_name_length(text);
+    if (length == 0 || text[length] != '=' || (*text >= '0' && *text <= '9'))
+        return cli_usage_error(app, HINT, "--over wants NAME=A:STEP:B, not '%.80s'", text);
+    if (!read_range(text + length + 1, out))
+        return cli_usage_error(app, HINT, "--over wants numbers, A:STEP:B, not '%.80s'",
+                               text + length + 1);
+    double steps = floor((out->last - out->first) / out->step + NEARLY);
+    if (!(steps >= 0))
+        return cli_usage_error(app, HINT, "--over never comes from %g to %g in steps of %g",
+                               out->first, out->last, out->step);
+    if (!(steps < CLI_OVER_MOST))
+        return cli_usage_error(app, "a larger step makes fewer", "--over has more than %d poses",
+                               CLI_OVER_MOST);
+    out->count = (size_t)steps + 1;
+    out->name = strndup(text, length);
+    return out->name ? CLI_DONE : cli_usage_error(app, NULL, "out of memory");
+}
+
+void cli_over_release(cli_over *over)
+{
+    free(over->name);
+}
+
+const char *cli_over_value(const cli_over *over, size_t pose, char text[CLI_OVER_TEXT])
+{
+    double value = over->first + (double)pose * over->step;
+    if (fabs(value) < 1e-9 * fabs(over->step)) /* 0 is what is meant */
+        value = 0;
+    snprintf(text, CLI_OVER_TEXT, "%.12g", value);
+    return text;
+}

@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ * csgmesh clear SCENE: which parts stay clear of each other, at one pose or at many. What is proven
+ * when a limit or Ctrl-C ends the work is printed too.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clear/clear_print.h"
+#include "core/interrupt.h"
+#include "core/mesh_files.h"
+#include "core/options.h"
+#include "core/part_names.h"
+#include "core/sources.h"
+
+enum { SAID_MOST = 20 /* pairs that are told one by one as errors */ };
+
+/* --parts as a list of names, and the text that these are in. */
+typedef struct wanted_parts {
+    char *text;
+    const char **names;
+    size_t count;
+} wanted_parts;
+
+static bool ask_interrupted(void *user)
+{
+    (void)user;
+    return cli_interrupt_is_asked();
+}
+
+static int no_memory(cli_app *app)
+{
+    return cli_usage_error(app, NULL, "out of memory");
+}
+
+static int read_parts(cli_app *app, wanted_parts *out)
+{
+    const char *text = app->options->clear_parts;
+    *out = (wanted_parts){.text = NULL};
+    if (!text)
+        return CLI_DONE;
+    out->text = strdup(text);
+    out->names = calloc(strlen(text) + 1, sizeof *out->names);
+    if (!out->text || !out->names)
+        return no_memory(app);
+    for (char *at = out->text, *comma = at; comma; at = comma + 1) {
+        comma = strchr(at, ',');
+        if (comma)
+            *comma = 0;
+        if (!*at)
+            return cli_usage_error(app, "as --parts lid,box",
+                                   "--parts has a name that is empty: '%.80s'", text);
+        out->names[out->count++] = at;
+    }
+    return CLI_DONE;
+}
+
+/* A part that was asked for is not there: which, and what is meant perhaps. */
+static void say_missing(cli_app *app, const csgm_clearances *pairs, const wanted_parts *wanted)
+{
+    size_t count = 0;
+    const char *name;
+    while (csgm_clearances_part(pairs, count, &name))
+        count++;
+    const char **names = calloc(count + 1, sizeof *names);
+    for (size_t k = 0; names && k < wanted->count; k++) {
+        for (size_t i = 0; i < count; i++)
+            csgm_clearances_part(pairs, i, &names[i]);
+        if (cli_part_find(app, app->options->operands.items[0], wanted->names[k], names, count) !=
+            CLI_DONE)
+            break;
+    }
+    free(names);
+}
+
+/* The scene with its parameter at this pose: as if -D had said so. */
+static csgm_status load_pose(cli_app *app, const cli_over *over, size_t pose, csgm_scene **scene)
+{
+    cli_options *o = app->options;
+    const char *path = o->operands.items[0];
+    if (!over->name)
+        return cli_app_load(app, path, scene);
+    cli_list before = o->defines;
+    char value[CLI_OVER_TEXT];
+    size_t size = strlen(over->name) + sizeof value + 2;
+    char *define = malloc(size);
+    const char **items = calloc(before.count + 1, sizeof *items);
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (define && items) {
+        snprintf(define, size, "%s=%s", over->name, cli_over_value(over, pose, value));
+        for (size_t i = 0; i < before.count; i++)
+            items[i] = before.items[i];
+        items[before.count] = define;
+        o->defines = (cli_list){items, before.count + 1};
+        status = cli_app_load(app, path, scene);
+        o->defines = before;
+    } else {
+        no_memory(app);
+    }
+    free(items);
+    free(define);
+    return status;
+}
+
+/* All poses, as far as they go. */
+static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_clearances *pairs,
+                                 const wanted_parts *wanted, size_t *poses)
+{
+    csgm_status status = CSGM_OK;
+    for (size_t i = 0; i < over->count && status == CSGM_OK; i++) {
+        csgm_scene *scene = NULL;
+        status = load_pose(app, over, i, &scene);
+        if (status == CSGM_OK && i == 0 && cli_sources_guard_scene(app, scene) != CLI_DONE)
+            status = CSGM_ERR_ARGUMENT;
+        if (status == CSGM_OK) {
+            cli_interrupt_ask_first();
+            status = csgm_clearances_add(pairs, scene);
+            *poses += status != CSGM_ERR_ARGUMENT && status != CSGM_ERR_SCENE;
+            if (status == CSGM_ERR_ARGUMENT)
+                say_missing(app, pairs, wanted);
+        }
+        csgm_scene_destroy(scene);
+        if (over->count > 1)
+            cli_console_progress(&app->console, CSGM_STAGE_MEASURE,
+                                 (double)(i + 1) / (double)over->count);
+    }
+    return status;
+}
+
+static cli_verdict worst_verdict(const csgm_clearances *pairs)
+{
+    cli_verdict worst = CLI_PAIR_CLEAR;
+    const csgm_clear_pair *p;
+    for (size_t i = 0; (p = csgm_clearances_get(pairs, i)) != NULL; i++)
+        if (cli_verdict_of(p) > worst)
+            worst = cli_verdict_of(p);
+    return worst;
+}
+
+/* Pairs that are not clear, as errors. */
+static void say_faults(cli_app *app, const cli_cleared *cleared)
+{
+    const csgm_clear_pair *p;
+    size_t said = 0;
+    char text[600];
+    for (size_t i = 0; (p = csgm_clearances_get(cleared->pairs, i)) != NULL; i++) {
+        if (cli_verdict_of(p) == CLI_PAIR_CLEAR || ++said > SAID_MOST)
+            continue;
+        cli_clear_say(cleared, p, text, sizeof text);
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "%s: %s", cleared->path, text);
+    }
+    if (said > SAID_MOST)
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "%s: %zu more pairs are not clear",
+                        cleared->path, said - SAID_MOST);
+}
+
+static int print(cli_app *app, const cli_cleared *cleared, csgm_status status)
+{
+    const cli_options *o = app->options;
+    cli_console_end_progress(&app->console);
+    bool is_stopped =
+        status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
+    if ((status != CSGM_OK && !is_stopped) || !cleared->poses)
+        return CLI_TROUBLE;
+    if (status == CSGM_CANCELLED)
+        cli_console_say(&app->console, CSGM_ERROR, NULL, "interrupted: this is proven so far");
+    if (!o->clear_junit || strcmp(o->clear_junit, "-") != 0)
+        (o->json ? cli_clear_json : cli_clear_text)(cleared);
+    say_faults(app, cleared);
+    cli_verdict worst = worst_verdict(cleared->pairs);
+    int result = worst == CLI_PAIR_BAD                  ? CLI_INPUT_AT_FAULT
+                 : worst == CLI_PAIR_OPEN || is_stopped ? CLI_TROUBLE
+                                                        : CLI_DONE;
+    if (o->clear_junit && cli_clear_junit(app, cleared) != CLI_DONE)
+        result = CLI_TROUBLE;
+    return result;
+}
+
+static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
+{
+    const cli_options *o = app->options;
+    csgm_clear_options options = csgm_clear_options_default();
+    cli_cleared cleared = {.path = o->operands.items[0], .over = over};
+    csgm_clearances *pairs = NULL;
+    options.tolerance = o->clear_to;
+    options.min_gap = cleared.min_gap = o->clear_min_gap;
+    options.parts = wanted->names;
+    options.part_count = wanted->count;
+    options.monitor = (csgm_monitor){.cancelled = ask_interrupted, .user = &app->console};
+    csgm_status status = csgm_clearances_create(app->context, &options, &pairs);
+    if (status == CSGM_OK)
+        status = look_at_poses(app, over, pairs, wanted, &cleared.poses);
+    cleared.pairs = pairs;
+    int result = pairs ? print(app, &cleared, status) : CLI_TROUBLE;
+    csgm_clearances_destroy(pairs);
+    return result;
+}
+
+int cli_cmd_clear(cli_app *app)
+{
+    const cli_list *operands = &app->options->operands;
+    cli_over over = {.count = 1};
+    wanted_parts wanted = {.text = NULL};
+    if (operands->count != 1)
+        return cli_usage_error(app, "as csgmesh clear hinge.txt",
+                               operands->count ? "one scene is looked at at a time"
+                                               : "no scene given");
+    if (app->options->clear_over && strcmp(operands->items[0], "-") == 0)
+        return cli_usage_error(app, NULL,
+                               "--over reads the scene many times, and standard input comes once");
+    int status = cli_over_read(app, app->options->clear_over, &over);
+    if (status == CLI_DONE)
+        status = read_parts(app, &wanted);
+    if (status == CLI_DONE)
+        status = cli_app_open(app);
+    if (status == CLI_DONE)
+        status = cli_finish_stdout(app, clear(app, &over, &wanted));
+    free(wanted.names);
+    free(wanted.text);
+    cli_over_release(&over);
+    return status;
+}
