@@ -78,14 +78,15 @@ bool csg_clear_settle(const csg_clear_part *part, uint32_t worker, csg_vec3 near
 {
     csg_vec3 own = to_own(part, near), g = {0, 0, 0};
     double close = (double)worker_of(part, worker)->pruner.rounding;
+    double level = 3 * close * (double)part->field->tape.steepest; /* what is proven to be inside */
     for (int step = 0; step < STEPS; step++) {
         double f = value_at(part, worker, own);
         g = gradient_at(part, worker, own);
         double steep = csg_vec3_dot(g, g);
         if (!(steep > 1e-12) || !isfinite(f))
             return false;
-        own = csg_vec3_sub(own, csg_vec3_scale(g, f / steep));
-        if (fabs(f) < close * sqrt(steep))
+        own = csg_vec3_sub(own, csg_vec3_scale(g, (f - level) / steep));
+        if (fabs(f - level) < 0.25 * level)
             break;
     }
     return push_in(part, worker, own, csg_vec3_normalize(g), out, out_of_memory);

@@ -19,7 +19,15 @@
 #include "clearance/overlap.h"
 #include "clearance/places.h"
 
-enum { ASK_EVERY = 64, FIRST_TRIES = 8, TRY_EVERY = 32, ROUNDS = 8, FINEST = 16 /* of T */ };
+enum {
+    ASK_EVERY = 64,
+    TRIES = 8 /* while the number of candidates doubles */,
+    ROUNDS = 8,
+    FINEST = 16 /* of T */
+};
+/* Once the gap is nearly known, all but a part of what may be looked at is saved. */
+enum { SHARE_DECIDED = 16 };
+static const double NEARLY = 0.9;
 
 typedef struct candidate {
     double bound;
@@ -36,7 +44,7 @@ typedef struct search {
     double high; /* nearest are so far apart */
     csg_vec3 nearest[2], inside;
     bool interferes;
-    uint64_t looked, popped;
+    uint64_t looked, popped, next_try;
     bool out_of_memory;
 } search;
 
@@ -227,8 +235,9 @@ static void try_common(search *s, const candidate *top)
 static void try_points(search *s, const candidate *top)
 {
     bool overlap = top->bound <= 0;
-    if (s->popped > FIRST_TRIES && s->popped % TRY_EVERY)
+    if (s->popped < s->next_try)
         return;
+    s->next_try = s->popped + 1 + s->popped / TRIES;
     if (overlap)
         try_common(s, top);
     if (!s->interferes && s->high > fmax(top->bound, 0) + 0.25 * s->task->tolerance)
@@ -237,6 +246,17 @@ static void try_points(search *s, const candidate *top)
 
 /* ---- the search --------------------------------------------------------------------------------
  */
+
+/* Candidates that are as far apart need not be divided: the gap is known by the others, or on which
+ * side of min_gap it is. */
+static double enough_of(const search *s)
+{
+    const csg_clear_task *t = s->task;
+    double enough = s->high - t->tolerance;
+    if (t->min_gap > enough && t->min_gap <= s->high)
+        enough = fmin(t->min_gap, s->high - t->tolerance / FINEST);
+    return fmin(enough, t->enough);
+}
 
 /* Two cubes that are inside and overlap: the middle of what they have in common. */
 static csg_vec3 middle_of(const search *s, uint32_t a, uint32_t b)
@@ -254,9 +274,9 @@ static csg_vec3 middle_of(const search *s, uint32_t a, uint32_t b)
 static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
 {
     bool overlap;
-    double enough = s->high - s->task->tolerance;
+    double enough = enough_of(s);
     candidate item = {.a = a, .b = b};
-    item.bound = fmax(parent_bound, bound_of(s, a, b, fmin(enough, s->task->enough), &overlap));
+    item.bound = fmax(parent_bound, bound_of(s, a, b, enough, &overlap));
     bool in_a = s->a.nodes[a].cube.state == CSG_CELL_INSIDE,
          in_b = s->b.nodes[b].cube.state == CSG_CELL_INSIDE;
     if ((in_a || in_b) && !overlap)
@@ -271,7 +291,7 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
         let_go(s, &item); /* they touch, or nearly */
         return !s->out_of_memory;
     }
-    if (item.bound > 0 && item.bound >= fmin(enough, s->task->enough)) {
+    if (item.bound > 0 && item.bound >= enough) {
         let_go(s, &item);
         return true;
     }
@@ -307,8 +327,11 @@ static bool is_known(const search *s)
 {
     const csg_clear_task *t = s->task;
     double low = low_of(s);
-    bool straddles = low < t->min_gap && t->min_gap <= s->high;
-    if (low > 0 && low >= t->enough)
+    bool straddles = t->min_gap > 0 && low < t->min_gap && t->min_gap <= s->high;
+    bool is_decided = low > 0 && !straddles;
+    if (is_decided && low >= t->enough)
+        return true;
+    if (is_decided && low >= NEARLY * s->high && s->looked >= t->most_pairs / SHARE_DECIDED)
         return true;
     if (straddles)
         return low >= s->high - t->tolerance / FINEST;
@@ -380,7 +403,10 @@ bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *ou
                 csg_clear_tree_begin(&s.b, task->b, task->worker);
     s.out_of_memory = !done;
     if (done && s.a.count && s.b.count) {
-        done = consider(&s, 0, 0, -INFINITY) && run(&s);
+        done = consider(&s, 0, 0, -INFINITY);
+        if (!done)
+            s.left = -INFINITY; /* of the only candidate nothing is known */
+        done = done && run(&s);
         done = tell(&s, out) && done && !s.out_of_memory;
     } else if (done) {
         out->gap = (csgm_interval){INFINITY, INFINITY};

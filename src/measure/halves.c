@@ -11,6 +11,7 @@
 #include "field/point.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/primitives/kinds.h"
 
 typedef struct operand {
     uint32_t first;  /* node of its subtree */
@@ -133,6 +134,24 @@ static bool take_whole(walker *w, uint32_t first, uint32_t last, bool with_join)
     return put_plane(w, &e);
 }
 
+/* How far the gradient of a leaf may be from what floats say. A capsule's is the direction from the
+ * nearest point of its segment: near that, nothing but rounding. Others' have errors there that
+ * keep them among the slopes of planes above the field. */
+static bool find_stray(const csg_tape *tape, const csg_tape_node *leaf, const double c[3],
+                       double *stray)
+{
+    const float at[3] = {(float)c[0], (float)c[1], (float)c[2]};
+    csg_cone_balls balls = {.count = 0};
+    *stray = 0;
+    if (leaf->op != CSG_OP_OF(CAPSULE))
+        return true;
+    double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    if (!csg_cone_add_leaf(&balls, tape, leaf, at, slack) || balls.count != 1)
+        return false;
+    *stray = 2 * balls.items[0].spread;
+    return true;
+}
+
 /* A concave field is nowhere above its tangent plane, and farthest below it at a corner of the
  * cube. */
 static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
@@ -142,11 +161,13 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
     const float *low = w->low + (size_t)index * CSG_OCTANTS,
                 *high = w->high + (size_t)index * CSG_OCTANTS;
     double at_low = (double)w->low_at_c[(size_t)index * CSG_OCTANTS];
-    double at_high = (double)w->high_at_c[(size_t)index * CSG_OCTANTS], most = 0;
+    double at_high = (double)w->high_at_c[(size_t)index * CSG_OCTANTS], most = 0, stray;
     bool is_turned = tape.parameters[alone.parameters + CSG_LEAF_SIGMA] < 0;
     alone.join = CSG_JOIN_NONE;
     tape.nodes = &alone;
     tape.count = 1;
+    if (!find_stray(&tape, &alone, w->c, &stray))
+        return false;
     csg_vec3 g = csg_tape_gradient_at(w->kernel, &tape, csg_vec3_make(w->c[0], w->c[1], w->c[2]),
                                       w->scratch, w->scratch_floats);
     *e = (csg_enclosure){.value = 0.5 * (at_low + at_high), .slope = {g.x, g.y, g.z}};
@@ -157,6 +178,7 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
     /* Of the tangent plane; on the other side the corners' intervals have it all. */
     double rounding =
         (at_high - at_low) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g)) * 2 * w->half;
+    rounding += stray * csg_enclosure_radius(w->half);
     most += 1e-12 * (fabs(e->value) + w->half);
     e->below = is_turned ? rounding : most;
     e->above = is_turned ? most : rounding;
