@@ -381,19 +381,21 @@ static bool is_there(const csgm_clearances *c, const pair *p)
     return c->parts[p->a].is_there && c->parts[p->b].is_there;
 }
 
-/* A pose that was begun and not ended: of the pairs that were not looked at nothing is known. */
+/* A pose that was begun and not ended: pairs that were not looked at do not have it. Where it was
+ * their first, nothing is known of them. */
 static void leave_open(csgm_clearances *c)
 {
     for (size_t i = 0; i < c->pair_count; i++) {
         pair *p = &c->pairs[i];
         if (p->poses == p->told.poses)
             continue;
+        if (p->poses) {
+            p->told.poses = p->poses;
+            continue;
+        }
         count_pose(p, OPEN);
         p->told.gap.low = 0;
-        if (!p->is_known)
-            p->told.pose = c->poses;
-        if (!p->is_known || p->told.state != CSGM_CLEAR_INTERFERING)
-            p->told.state = CSGM_CLEAR_UNDECIDED;
+        p->told.pose = c->poses;
         p->is_known = true;
     }
 }
@@ -436,7 +438,8 @@ static csgm_status search_all(csgm_clearances *c)
     bool done = csg_pool_run(c->context->pool, c->search_count, search_one, NULL, c);
     for (size_t i = 0; i < c->search_count; i++) {
         pair *p = &c->pairs[c->search[i]];
-        take_found(c, p);
+        if (done || !p->poses || outcome_of(c, &p->found) != OPEN)
+            take_found(c, p);
         out_of_memory |= p->out_of_memory;
     }
     if (done)

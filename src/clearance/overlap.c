@@ -29,7 +29,7 @@ static bool comes_before(const shared *p, const shared *q)
     return p->a != q->a ? p->a < q->a : p->b < q->b;
 }
 
-static void push(overlap *o, shared item)
+static void push_shared(overlap *o, shared item)
 {
     csg_memory *memory = o->a->arena.memory;
     if (!csg_memory_reserve(memory, (void **)&o->heap, &o->capacity, o->count + 1, sizeof item)) {
@@ -42,7 +42,7 @@ static void push(overlap *o, shared item)
     o->heap[i] = item;
 }
 
-static shared pop(overlap *o)
+static shared pop_shared(overlap *o)
 {
     shared first = o->heap[0], item = o->heap[--o->count];
     size_t i = 0;
@@ -74,7 +74,7 @@ static void consider(overlap *o, uint32_t a, uint32_t b)
         return;
     }
     o->open += volume;
-    push(o, (shared){volume, a, b});
+    push_shared(o, (shared){volume, a, b});
 }
 
 static bool is_known(const overlap *o, double enough)
@@ -92,7 +92,7 @@ bool csg_clear_overlap(csg_clear_tree *a, csg_clear_tree *b, double enough, csg_
     bool done = true;
     consider(&o, 0, 0);
     for (int n = 0; o.count && n < MOST_DIVIDED && done && !is_known(&o, enough); n++) {
-        shared top = pop(&o);
+        shared top = pop_shared(&o);
         int which = csg_clear_choose(a, top.a, b, top.b);
         if (n % ASK_EVERY == ASK_EVERY - 1 && csg_mesh_should_stop(watch))
             done = false;

@@ -59,7 +59,7 @@ static bool comes_before(const candidate *p, const candidate *q)
     return p->a != q->a ? p->a < q->a : p->b < q->b;
 }
 
-static bool push(search *s, candidate item)
+static bool push_candidate(search *s, candidate item)
 {
     csg_memory *memory = s->a.arena.memory;
     if (!csg_memory_reserve(memory, (void **)&s->heap, &s->capacity, s->count + 1, sizeof item)) {
@@ -73,7 +73,7 @@ static bool push(search *s, candidate item)
     return true;
 }
 
-static candidate pop(search *s)
+static candidate pop_candidate(search *s)
 {
     candidate first = s->heap[0], item = s->heap[--s->count];
     size_t i = 0;
@@ -295,7 +295,7 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
         let_go(s, &item);
         return true;
     }
-    return push(s, item);
+    return push_candidate(s, item);
 }
 
 static bool divide(search *s, const candidate *top)
@@ -339,7 +339,7 @@ static bool is_known(const search *s)
 }
 
 /* False: it was stopped. */
-static bool run(search *s)
+static bool divide_on(search *s)
 {
     const csg_clear_task *t = s->task;
     while (s->count && !s->interferes && !is_known(s) && s->looked < t->most_pairs) {
@@ -350,7 +350,7 @@ static bool run(search *s)
             return false;
         if (s->interferes || is_known(s))
             return true;
-        candidate top = pop(s);
+        candidate top = pop_candidate(s);
         if (!divide(s, &top)) {
             let_go(s, &top);
             return false;
@@ -406,7 +406,7 @@ bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *ou
         done = consider(&s, 0, 0, -INFINITY);
         if (!done)
             s.left = -INFINITY; /* of the only candidate nothing is known */
-        done = done && run(&s);
+        done = done && divide_on(&s);
         done = tell(&s, out) && done && !s.out_of_memory;
     } else if (done) {
         out->gap = (csgm_interval){INFINITY, INFINITY};

@@ -25,7 +25,7 @@ static operand everything(void)
     return (operand){.count = 1};
 }
 
-static operand join(const operand *a, const operand *b)
+static operand join_operands(const operand *a, const operand *b)
 {
     operand out = *a;
     if (a->count + b->count > CSG_PIECES_MOST)
@@ -36,7 +36,7 @@ static operand join(const operand *a, const operand *b)
 }
 
 /* Too many: what one of them contains, contains the intersection. */
-static operand meet(const operand *a, const operand *b)
+static operand meet_operands(const operand *a, const operand *b)
 {
     operand out = {.count = 0};
     if (a->count * b->count > CSG_PIECES_MOST)
@@ -79,7 +79,7 @@ void csg_clear_pieces_find(const csg_halves *h, double half, csg_clear_pieces *o
             continue;
         }
         operand *a = &stack[top - 2], *b = &stack[top - 1];
-        operand both = code == CSG_HALVES_UNION ? join(a, b) : meet(a, b);
+        operand both = code == CSG_HALVES_UNION ? join_operands(a, b) : meet_operands(a, b);
         stack[--top - 1] = both;
     }
     memcpy(out->masks, stack[0].masks, sizeof out->masks);

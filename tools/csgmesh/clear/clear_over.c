@@ -45,7 +45,7 @@ int cli_over_read(cli_app *app, const char *text, cli_over *out)
         return cli_usage_error(app, HINT, "--over wants numbers, A:STEP:B, not '%.80s'",
                                text + length + 1);
     double steps = floor((out->last - out->first) / out->step + NEARLY);
-    if (!(steps >= 0))
+    if (!(steps >= 0) || !(fabs(out->step) > 0))
         return cli_usage_error(app, HINT, "--over never comes from %g to %g in steps of %g",
                                out->first, out->last, out->step);
     if (!(steps < CLI_OVER_MOST))

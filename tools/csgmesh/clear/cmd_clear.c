@@ -102,6 +102,12 @@ static csgm_status load_pose(cli_app *app, const cli_over *over, size_t pose, cs
     return status;
 }
 
+/* What is proven by then is worth telling. */
+static bool is_stopped(csgm_status status)
+{
+    return status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
+}
+
 /* All poses, as far as they go. */
 static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_clearances *pairs,
                                  const wanted_parts *wanted, size_t *poses)
@@ -110,12 +116,17 @@ static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_cleara
     for (size_t i = 0; i < over->count && status == CSGM_OK; i++) {
         csgm_scene *scene = NULL;
         status = load_pose(app, over, i, &scene);
-        if (status == CSGM_OK && i == 0 && cli_sources_guard_scene(app, scene) != CLI_DONE)
+        if (status == CSGM_OK && app->varies_nothing) {
+            cli_usage_error(app, NULL,
+                            "--over has nothing to change: the scene has no parameter '%.80s'",
+                            over->name);
+            status = CSGM_ERR_ARGUMENT;
+        } else if (status == CSGM_OK && i == 0 && cli_sources_guard_scene(app, scene) != CLI_DONE)
             status = CSGM_ERR_ARGUMENT;
         if (status == CSGM_OK) {
             cli_interrupt_ask_first();
             status = csgm_clearances_add(pairs, scene);
-            *poses += status != CSGM_ERR_ARGUMENT && status != CSGM_ERR_SCENE;
+            *poses += status == CSGM_OK || (is_stopped(status) && i == 0);
             if (status == CSGM_ERR_ARGUMENT)
                 say_missing(app, pairs, wanted);
         }
@@ -158,9 +169,7 @@ static int print(cli_app *app, const cli_cleared *cleared, csgm_status status)
 {
     const cli_options *o = app->options;
     cli_console_end_progress(&app->console);
-    bool is_stopped =
-        status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
-    if ((status != CSGM_OK && !is_stopped) || !cleared->poses)
+    if ((status != CSGM_OK && !is_stopped(status)) || !cleared->poses)
         return CLI_TROUBLE;
     if (status == CSGM_CANCELLED)
         cli_console_say(&app->console, CSGM_ERROR, NULL, "interrupted: this is proven so far");
@@ -168,9 +177,9 @@ static int print(cli_app *app, const cli_cleared *cleared, csgm_status status)
         (o->json ? cli_clear_json : cli_clear_text)(cleared);
     say_faults(app, cleared);
     cli_verdict worst = worst_verdict(cleared->pairs);
-    int result = worst == CLI_PAIR_BAD                  ? CLI_INPUT_AT_FAULT
-                 : worst == CLI_PAIR_OPEN || is_stopped ? CLI_TROUBLE
-                                                        : CLI_DONE;
+    int result = worst == CLI_PAIR_BAD                          ? CLI_INPUT_AT_FAULT
+                 : worst == CLI_PAIR_OPEN || is_stopped(status) ? CLI_TROUBLE
+                                                                : CLI_DONE;
     if (o->clear_junit && cli_clear_junit(app, cleared) != CLI_DONE)
         result = CLI_TROUBLE;
     return result;
@@ -187,6 +196,7 @@ static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
     options.parts = wanted->names;
     options.part_count = wanted->count;
     options.monitor = (csgm_monitor){.cancelled = ask_interrupted, .user = &app->console};
+    app->varied = over->name;
     csgm_status status = csgm_clearances_create(app->context, &options, &pairs);
     if (status == CSGM_OK)
         status = look_at_poses(app, over, pairs, wanted, &cleared.poses);

@@ -87,14 +87,27 @@ csgm_context_options cli_app_context_options(const cli_app *app)
     return options;
 }
 
+enum { CLI_NAME_MOST = 200 };
+
 /* ---- what the library tells ------------------------------------------------------------------- */
+
+/* Does the message speak of the parameter that is to be varied? */
+static bool names_varied(const cli_app *app, const char *message)
+{
+    char quoted[CLI_NAME_MOST + 3];
+    if (!app->varied)
+        return false;
+    snprintf(quoted, sizeof quoted, "'%.*s'", CLI_NAME_MOST, app->varied);
+    return strstr(message, quoted) != NULL;
+}
 
 static void take_finding(void *user, const csgm_diag *diag)
 {
-    enum { OUT_OF_MEMORY = 901 };
+    enum { OUT_OF_MEMORY = 901, NOTHING_TO_REPLACE = 213 };
     cli_app *app = user;
     bool is_memory = diag->code == OUT_OF_MEMORY;
     app->ran_out_of_memory |= is_memory;
+    app->varies_nothing |= diag->code == NOTHING_TO_REPLACE && names_varied(app, diag->message);
     if (!(is_memory && app->does_without_memory))
         cli_console_diag(&app->console, diag);
 }

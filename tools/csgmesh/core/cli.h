@@ -34,6 +34,8 @@ typedef struct cli_app {
     bool ran_out_of_memory;   /* E0901 came */
     bool does_without_memory; /* whoever works on now has another way then, and says so: it is not
                                  shown */
+    const char *varied;       /* a parameter that is to be given many values; NULL: none */
+    bool varies_nothing;      /* the scene has none of that name */
     bool only_checks;         /* scenes are looked at for mistakes and not made */
     const char *overwriter;   /* option whose output is a file that is read, or another output:
                                  nothing may be written any more; NULL = none */

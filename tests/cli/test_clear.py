@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh clear: gaps and collisions of parts, poses, reports, what is refused."""
+import json
+import math
+import os
+import signal
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import cli
+
+TWO = """t = 0;
+part("a") cube(10);
+part("b") translate([12 - t, 3, 3]) cube(2);
+"""
+FOUR = TWO + """part("far") translate([1000, 0, 0]) sphere(1);
+part("on top") translate([2, 2, 10]) cylinder(h = 3, r = 1);
+"""
+
+
+class Clear(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def run_on(self, scene, *options, status=0):
+        path = os.path.join(self.folder, "scene.txt")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(scene)
+        result = cli.run("clear", path, *options)
+        self.assertEqual(result.returncode, status, result.stderr + result.stdout.decode())
+        return result
+
+    def pairs(self, scene, *options, status=0):
+        found = json.loads(self.run_on(scene, "--json", *options, status=status).stdout)
+        return {tuple(pair["parts"]): pair for pair in found["pairs"]}
+
+    def test_states(self):
+        pairs = self.pairs(FOUR, "--to", 0.001)
+        self.assertEqual(len(pairs), 6)
+        gap = pairs["a", "b"]["gap"]
+        self.assertTrue(gap[0] <= 2 <= gap[1] < 2.001, gap)
+        near = pairs["a", "b"]["nearest"]
+        self.assertAlmostEqual(math.dist(*near), gap[1])
+        self.assertEqual(pairs["a", "on top"]["state"], "touching")
+        self.assertEqual(pairs["a", "on top"]["result"], "clear")
+        far = pairs["a", "far"]
+        self.assertTrue(far["by_boxes"])
+        self.assertEqual(far["cubes"], 0)
+        self.assertTrue(980 < far["gap"][0] <= 989 and far["gap"][1] is None)
+
+    def test_interfering(self):
+        pairs = self.pairs(FOUR, "-D", "t=3", status=1)
+        pair = pairs["a", "b"]
+        self.assertEqual((pair["state"], pair["result"]), ("interfering", "not clear"))
+        self.assertTrue(0 < pair["volume"][0] <= 4 <= pair["volume"][1], pair["volume"])
+        x, y, z = pair["inside"]
+        self.assertTrue(9 <= x <= 10 and 3 <= y <= 5 and 3 <= z <= 5)
+        text = self.run_on(FOUR, "-D", "t=3", status=1)
+        self.assertIn('"a" and "b": interfering', text.stdout.decode())
+        self.assertIn('"a" and "b" interfere', text.stderr)
+
+    def test_min_gap(self):
+        self.run_on(TWO, "--min-gap", 1.99)
+        failed = self.run_on(TWO, "--min-gap", 2.01, status=1)
+        self.assertIn("closer than 2.01", failed.stderr)
+        self.run_on(TWO, "-D", "t=2")  # they touch, which is clear
+        self.run_on(TWO, "-D", "t=2", "--min-gap", 0.1, status=1)
+        undecided = self.run_on(TWO, "--min-gap", 2, status=2)  # it is as large: nothing shows that it is not less
+        self.assertIn("could not be told", undecided.stderr)
+
+    def test_over(self):
+        pairs = self.pairs(FOUR, "--over", "t=-1:0.25:1.5")
+        pair = pairs["a", "b"]
+        self.assertEqual(pair["worst"], {"pose": 10, "t": 1.5})
+        self.assertEqual(pair["poses"], 11)
+        self.assertTrue(pair["gap"][0] <= 0.5 <= pair["gap"][1])
+        self.assertEqual(pairs["a", "on top"]["poses"], 11)
+        found = self.run_on(FOUR, "--over", "t=0:4", status=1)
+        self.assertIn('"a" and "b" interfere at t = 4', found.stderr)
+        self.assertIn("between them nothing is claimed", found.stdout.decode())
+        self.assertIn("2 of 5 interfere", found.stdout.decode())
+        whole = json.loads(self.run_on(FOUR, "--over", "t=0:4", "--json", status=1).stdout)
+        self.assertEqual(whole["over"], {"parameter": "t", "first": 0, "step": 1, "last": 4})
+        self.assertEqual(whole["between_poses"], "nothing is claimed")
+        downwards = self.pairs(TWO, "--over", "t=1:-0.1:0")["a", "b"]
+        self.assertEqual((downwards["poses"], downwards["worst"]["pose"]), (11, 0))
+
+    def test_parts(self):
+        self.assertEqual(set(self.pairs(FOUR, "--parts", "b,on top")), {("b", "on top")})
+        pairs = self.pairs(FOUR, "--parts", "far")
+        self.assertEqual(len(pairs), 3)
+        self.assertFalse(pairs["a", "far"]["by_boxes"])  # named, so it is wanted exactly
+        self.assertIsNotNone(pairs["a", "far"]["gap"][1])
+
+    def test_same_for_any_threads(self):
+        self.assertEqual(*(self.run_on(FOUR, "--json", "--over", "t=0:0.5:3", "-j", threads, status=1).stdout
+                           for threads in (1, 3)))
+
+    def test_junit(self):
+        report = os.path.join(self.folder, "report.xml")
+        self.run_on(FOUR, "-D", "t=3", "--junit", report, status=1)
+        suite = xml.etree.ElementTree.parse(report).getroot()
+        self.assertEqual((suite.get("name"), suite.get("tests"), suite.get("failures"), suite.get("errors")),
+                         ("csgmesh clear", "6", "1", "0"))
+        cases = {case.get("name"): case for case in suite}
+        self.assertIn("interfere", cases['"a" and "b"'].find("failure").get("message"))
+        self.assertIsNone(cases['"a" and "on top"'].find("failure"))
+        self.run_on(TWO, "--min-gap", 2, "--junit", report, status=2)
+        self.assertEqual(xml.etree.ElementTree.parse(report).getroot().get("errors"), "1")
+
+    def test_what_is_refused(self):
+        for scene, options, words in (
+                (TWO, ("--parts", "a,bb"), ('no part "bb"', 'did you mean "b"')),
+                (TWO, ("--parts", "a,,b"), ("name that is empty",)),
+                ("sphere(1);", (), ("fewer than two parts", "part(")),
+                ('part("a") sphere(1);', (), ("fewer than two parts",)),
+                ('part("a") sphere(1); part("b") plane([0, 0, 1], 0);', (), ('part "b" reaches to infinity',)),
+                (TWO, ("--over", "t"), ("NAME=A:STEP:B",)),
+                (TWO, ("--over", "t=0:x:1"), ("wants numbers",)),
+                (TWO, ("--over", "t=0:0:1"), ("never comes",)),
+                (TWO, ("--over", "t=0:-1:1"), ("never comes",)),
+                (TWO, ("--over", "t=0:1e-9:1"), ("more than 1000000 poses",)),
+                (TWO, ("--over", "tt=0:1"), ("'t'",)),
+                (TWO, ("--min-gap", "-1"), ("--min-gap",)),
+                (TWO + "cub(1);", (), ("cube",))):
+            with self.subTest(options or scene):
+                result = self.run_on(scene, *options, status=2)
+                for word in words:
+                    self.assertIn(word, result.stderr)
+                self.assertEqual(result.stdout, b"")
+        self.assertEqual(cli.run("clear").returncode, 2)
+        self.assertIn("many times", cli.run("clear", "-", "--over", "t=0:1", stdin=TWO.encode()).stderr)
+        self.assertEqual(cli.run("clear", "-", stdin=TWO.encode()).returncode, 0)
+
+    def test_limits(self):
+        slow = 'part("a") difference() { cube(30, center = true); sphere(10); }\npart("b") sphere(9.9999);\n'
+        late = self.run_on(slow, "--timeout", 0.05, "--to", 1e-7, status=2)
+        self.assertIn("could not be told", late.stderr)
+        self.assertIn("undecided", late.stdout.decode())
+        short = self.run_on(slow, "--max-memory", "6M", "--to", 1e-7, status=2)
+        self.assertIn("more memory is needed", short.stderr)
+
+    def test_interrupted(self):
+        path = os.path.join(self.folder, "scene.txt")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(FOUR)
+        process = subprocess.Popen([cli.PROGRAM, "clear", path, "--over", "t=0:0.00001:1.9", "--progress", "never"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            process.wait(1)
+        except subprocess.TimeoutExpired:
+            pass
+        process.send_signal(signal.SIGINT)
+        out, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2, errors)
+        self.assertIn(b"this is proven so far", errors)
+        self.assertIn(b'"a" and "b": apart', out)
+
+
+if __name__ == "__main__":
+    unittest.main()
