@@ -15,6 +15,7 @@ extern "C" {
 typedef enum csgm_layers_format {
     CSGM_LAYERS_NONE,
     CSGM_LAYERS_SVG, /* a group for each layer */
+    CSGM_LAYERS_CLI, /* Common Layer Interface, ASCII */
     CSGM_LAYERS_COUNT
 } csgm_layers_format;
 

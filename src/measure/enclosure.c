@@ -33,6 +33,7 @@ static bool find_of_leaf(const csg_kernel *kernel, const csg_tape *tape, const d
     double rounding = 0.5 * ((double)high[0] - (double)low[0]) + CSG_ENCLOSURE_ROUNDING * radius;
     out->value = 0.5 * ((double)high[0] + (double)low[0]);
     out->below = out->above = rounding + 0.5 * ball->spread * radius;
+    out->stray = ball->spread + CSG_ENCLOSURE_ROUNDING;
     memcpy(out->slope, ball->at, sizeof out->slope);
     return true;
 }
@@ -85,6 +86,7 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     if (turns)
         memcpy(out->slope, gradients.middle, sizeof out->slope);
     out->value = gradients.value;
+    out->stray = stray + CSG_ENCLOSURE_ROUNDING * gradients.longest;
     out->below = out->above =
         stray * radius + gradients.doubt + CSG_ENCLOSURE_ROUNDING * gradients.longest * radius;
     return isfinite(out->value + out->above) && isfinite(norm_of(out->slope));

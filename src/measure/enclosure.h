@@ -12,6 +12,7 @@
 typedef struct csg_enclosure {
     double value, slope[3];
     double below, above;
+    double stray; /* > 0: no gradient of the field is farther from `slope`; 0: not known */
 } csg_enclosure;
 
 /* Of gradients, which are found with floats here and there: primitives allow themselves as much. */

@@ -213,12 +213,18 @@ static bool put_faces(walker *w, uint32_t index)
     return true;
 }
 
+/* Is it enclosed by its values at the cube's corners? */
+static bool asks_corners(const csg_tape_node *leaf)
+{
+    return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
+}
+
 static bool push_leaf(walker *w, uint32_t index)
 {
     static const double BENT = 0.05; /* of the half edge */
     const csg_tape_node *leaf = &w->tape->nodes[index];
     csg_enclosure e;
-    if (leaf->warp || !csg_op_has(leaf->op, CSG_TRAIT_CONVEX))
+    if (!asks_corners(leaf))
         return take_whole(w, index, index, false);
     push_operand(w, index);
     if (!find_of_concave(w, index, &e))
@@ -472,9 +478,11 @@ bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const doubl
             x[axis][o] = (float)(c[axis] + corner(&w, o, axis));
             middle[axis][o] = (float)c[axis];
         }
-    kernel->intervals(tape, x[0], x[1], x[2], 0, NULL, w.low, w.high, scratch);
-    kernel->intervals(tape, middle[0], middle[1], middle[2], 0, NULL, w.low_at_c, w.high_at_c,
-                      scratch);
+    if (tape->count > 1 || asks_corners(tape->nodes)) {
+        kernel->intervals(tape, x[0], x[1], x[2], 0, NULL, w.low, w.high, scratch);
+        kernel->intervals(tape, middle[0], middle[1], middle[2], 0, NULL, w.low_at_c, w.high_at_c,
+                          scratch);
+    }
     return walk(&w);
 }
 

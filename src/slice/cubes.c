@@ -38,12 +38,20 @@ void csg_slice_cubes_release(csg_slice_cubes *c)
 /* ---- what is known of a cube -------------------------------------------------------------------
  */
 
-/* How thick the sheet is in which the piece's surface runs. */
-static double thickness(const csg_enclosure *e)
+/* How far chords may be from the piece's surface in a cube of this edge, and how thick what its
+ * corners do not show. Both are less than the sheet is thick in which the surface runs. And where
+ * all gradients are within s of one, of length g: along a chord, at whose ends the field is 0, it
+ * changes at rates that differ by 2 s at most, so that it is s / 2 times the length at most; where
+ * it is negative at all corners of a square, it is s / 2 times the edge at most on its sides, and
+ * as much more between two of these. The distance to the surface is that by g - s at most. */
+static double strays_by(const csg_enclosure *e, double edge)
 {
     double slope =
         sqrt(e->slope[0] * e->slope[0] + e->slope[1] * e->slope[1] + e->slope[2] * e->slope[2]);
-    return (e->below + e->above) / slope;
+    double sheet = (e->below + e->above) / slope;
+    if (!(e->stray > 0 && e->stray < slope))
+        return sheet;
+    return fmin(sheet, edge * e->stray / (slope - e->stray));
 }
 
 /* Two pieces that face each other may be the two sides of something thin. */
@@ -59,30 +67,81 @@ static bool face_each_other(const csg_enclosure *a, const csg_enclosure *b)
     return !(both > FACING * sqrt(aa * bb));
 }
 
-/* SPLIT: it takes smaller cubes to tell. */
-static csg_slice_kind look_at(csg_slice_cubes *c, const place *p, const csg_tape *tape)
-{
-    const csg_slice_plan *plan = c->plan;
+/* Formulas of half spaces that hold in a cube, around a place in it. */
+typedef struct known_planes {
     csg_halves halves;
-    double middle[3], half = 0.5 * p->edge * plan->step * (1 + 1e-6) + (double)plan->rounding / 16;
-    bool is_smallest = p->edge == 1;
+    double middle[3];
+    bool are_good; /* each piece is known to the tolerance, and no two face each other */
+} known_planes;
+
+static bool are_good(const csg_halves *h, double edge, double tolerance)
+{
+    for (int i = 0; i < h->plane_count; i++) {
+        if (!(strays_by(&h->planes[i], edge) <= tolerance))
+            return false;
+        for (int k = 0; k < i; k++)
+            if (face_each_other(&h->planes[i], &h->planes[k]))
+                return false;
+    }
+    return true;
+}
+
+static void place_of_middle(const csg_slice_plan *plan, const place *p, double middle[3])
+{
     for (int k = 0; k < 3; k++)
         middle[k] = (double)csg_slice_place(plan, k, p->at[k] + 0.5 * p->edge);
+}
+
+/* With what floats may be off. */
+static double half_of(const csg_slice_plan *plan, const place *p)
+{
+    return 0.5 * p->edge * plan->step * (1 + 1e-6) + (double)plan->rounding / 16;
+}
+
+/* SPLIT: it takes smaller cubes to tell. */
+static csg_slice_kind look_at(csg_slice_cubes *c, const place *p, const csg_tape *tape,
+                              known_planes *known)
+{
+    const csg_slice_plan *plan = c->plan;
+    csg_halves *halves = &known->halves;
+    double half = half_of(plan, p);
+    bool is_smallest = p->edge == 1;
+    known->are_good = false;
+    place_of_middle(plan, p, known->middle);
     csg_slice_kind open = is_smallest ? CSG_SLICE_UNSETTLED : CSG_SLICE_SPLIT;
-    if (!csg_halves_find(plan->kernel, tape, middle, half, c->scratch, c->scratch_floats, &halves))
+    if (!csg_halves_find(plan->kernel, tape, known->middle, half, c->scratch, c->scratch_floats,
+                         halves))
         return open;
-    if (csg_halves_state(&halves, half) != CSG_TRUTH_OPEN)
+    if (csg_halves_state(halves, half) != CSG_TRUTH_OPEN)
         return CSG_SLICE_EMPTY;
-    for (int i = 0; i < halves.plane_count; i++)
-        if (!(thickness(&halves.planes[i]) <= plan->tolerance))
-            return open;
-    if (halves.plane_count == 1)
-        return CSG_SLICE_SMOOTH;
-    for (int i = 0; i < halves.plane_count; i++)
-        for (int k = 0; k < i; k++)
-            if (face_each_other(&halves.planes[i], &halves.planes[k]))
-                return open;
-    return is_smallest ? CSG_SLICE_SHARP : CSG_SLICE_SPLIT;
+    known->are_good = are_good(halves, 2 * half, plan->tolerance);
+    if (!known->are_good)
+        return open;
+    return halves->plane_count == 1 ? CSG_SLICE_SMOOTH
+           : is_smallest            ? CSG_SLICE_SHARP
+                                    : CSG_SLICE_SPLIT;
+}
+
+/* The same, within a cube whose planes are good. */
+static csg_slice_kind look_by_planes(const csg_slice_plan *plan, const place *p,
+                                     const known_planes *known)
+{
+    csg_halves here = known->halves;
+    double middle[3], half = half_of(plan, p);
+    int open = 0;
+    place_of_middle(plan, p, middle);
+    for (int i = 0; i < here.plane_count; i++) {
+        csg_enclosure *e = &here.planes[i];
+        double reach = 0;
+        for (int k = 0; k < 3; k++) {
+            e->value += e->slope[k] * (middle[k] - known->middle[k]);
+            reach += half * fabs(e->slope[k]);
+        }
+        open += e->value + e->above >= -reach && e->value - e->below <= reach;
+    }
+    if (csg_halves_state(&here, half) != CSG_TRUTH_OPEN)
+        return CSG_SLICE_EMPTY;
+    return open == 1 ? CSG_SLICE_SMOOTH : p->edge == 1 ? CSG_SLICE_SHARP : CSG_SLICE_SPLIT;
 }
 
 /* ---- the tree ----------------------------------------------------------------------------------
@@ -147,7 +206,6 @@ static bool find_octants(csg_slice_cubes *c, uint32_t parent, const place *p, co
     for (int o = 0; o < CSG_OCTANTS; o++) {
         csg_slice_cube *cube = &c->cubes[c->cubes[parent].first + (uint32_t)o];
         csg_tape tape;
-        *cube = (csg_slice_cube){.kind = CSG_SLICE_EMPTY};
         if (skip[o] || csg_prune_state(&c->pruner, o) != CSG_CELL_SURFACE)
             continue;
         if (!csg_prune_shorten(&c->pruner, o, tau, &c->arena, &tape))
@@ -160,35 +218,66 @@ static bool find_octants(csg_slice_cubes *c, uint32_t parent, const place *p, co
     return true;
 }
 
+/* Eight more cubes, all empty so far. */
+static bool add_octants(csg_slice_cubes *c, uint32_t parent)
+{
+    uint32_t first = (uint32_t)c->count;
+    if (csg_mesh_should_stop(c->plan->watch) || c->count > UINT32_MAX - CSG_OCTANTS ||
+        !csg_memory_reserve(&c->plan->context->memory, (void **)&c->cubes, &c->capacity,
+                            c->count + CSG_OCTANTS, sizeof *c->cubes))
+        return false;
+    for (uint32_t o = 0; o < CSG_OCTANTS; o++)
+        c->cubes[first + o] = (csg_slice_cube){.kind = CSG_SLICE_EMPTY};
+    c->cubes[parent].first = first;
+    c->count += CSG_OCTANTS;
+    return true;
+}
+
+/* Where all pieces are known planes tell the rest, and tapes stay as they are. */
+static bool divide_by_planes(csg_slice_cubes *c, uint32_t parent, const place *p,
+                             const known_planes *known)
+{
+    if (!add_octants(c, parent))
+        return false;
+    uint32_t first = c->cubes[parent].first;
+    for (uint32_t o = 0; o < CSG_OCTANTS; o++) {
+        place child = octant_of(p, (int)o);
+        if (is_beyond(c->plan, &child) || !has_layers(c->plan, &child))
+            continue;
+        csg_slice_kind kind = look_by_planes(c->plan, &child, known);
+        c->cubes[first + o].kind = (uint8_t)kind;
+        c->cubes[first + o].tape = c->cubes[parent].tape;
+        if (kind == CSG_SLICE_SPLIT && !divide_by_planes(c, first + o, &child, known))
+            return false;
+    }
+    return true;
+}
+
 static bool divide(csg_slice_cubes *c, uint32_t parent, const place *p, uint32_t slab)
 {
     const csg_slice_plan *plan = c->plan;
     bool skip[CSG_OCTANTS];
-    uint32_t first = (uint32_t)c->count;
-    if (csg_mesh_should_stop(plan->watch) || c->count > UINT32_MAX - CSG_OCTANTS)
-        return false;
-    if (!csg_memory_reserve(&plan->context->memory, (void **)&c->cubes, &c->capacity,
-                            c->count + CSG_OCTANTS, sizeof *c->cubes))
-        return false;
-    c->cubes[parent].first = first;
-    c->count += CSG_OCTANTS;
     for (int o = 0; o < CSG_OCTANTS; o++) {
         place child = octant_of(p, o);
         bool is_other = child.level <= plan->slab_level &&
                         child.at[2] / child.edge != slab >> (plan->slab_level - child.level);
         skip[o] = is_other || is_beyond(plan, &child) || !has_layers(plan, &child);
     }
-    if (!find_octants(c, parent, p, skip))
+    if (!add_octants(c, parent) || !find_octants(c, parent, p, skip))
         return false;
+    uint32_t first = c->cubes[parent].first;
     for (uint32_t o = 0; o < CSG_OCTANTS; o++) {
+        known_planes known = {.are_good = false};
         place child = octant_of(p, (int)o);
         csg_slice_cube *cube = &c->cubes[first + o];
         if (cube->kind == CSG_SLICE_EMPTY)
             continue;
         if (child.level >= plan->slab_level)
-            cube->kind = (uint8_t)look_at(c, &child, &c->tapes[cube->tape]);
+            cube->kind = (uint8_t)look_at(c, &child, &c->tapes[cube->tape], &known);
         c->unsettled += cube->kind == CSG_SLICE_UNSETTLED;
-        if (cube->kind == CSG_SLICE_SPLIT && !divide(c, first + o, &child, slab))
+        if (cube->kind == CSG_SLICE_SPLIT &&
+            !(known.are_good ? divide_by_planes(c, first + o, &child, &known)
+                             : divide(c, first + o, &child, slab)))
             return false;
     }
     return true;

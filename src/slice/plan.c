@@ -60,7 +60,7 @@ void csg_slice_plan_make(csg_slice_plan *plan, csgm_context *context, const csgm
     double height =
         layer_count > 1 ? (z[layer_count - 1] - z[0]) / (double)(layer_count - 1) : edge;
     while (plan->slab_level < CSG_SLICE_SLAB_LEVELS && plan->slab_level < plan->levels &&
-           ldexp(edge, -plan->slab_level - 1) >= height)
+           ldexp(edge, -plan->slab_level - 1) >= CSG_SLICE_SLAB_LAYERS * height)
         plan->slab_level++;
     double reach = largest_coordinate(b) + edge * MARGIN;
     plan->rounding = (float)(32 * (double)FLT_EPSILON * reach * sqrt(3.0));

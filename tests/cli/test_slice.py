@@ -40,6 +40,28 @@ def svg_layers(path):
     return layers
 
 
+def cli_layers(path):
+    """(top, loops) of each layer of a CLI file, in millimetres, and the lines of its head; turns and counts must agree."""
+    with open(path, encoding="ascii") as file:
+        lines = file.read().splitlines()
+    start = lines.index("$$GEOMETRYSTART")
+    head = dict(line.partition("/")[::2] for line in lines[:start])
+    unit, layers = float(head["$$UNITS"]), []
+    assert lines[0] == "$$HEADERSTART" and lines[1] == "$$ASCII" and lines[-1] == "$$GEOMETRYEND"
+    for line in lines[start + 1:-1]:
+        word, _, rest = line.partition("/")
+        numbers = [int(number) for number in rest.split(",")]
+        if word == "$$LAYER":
+            layers.append((numbers[0] * unit, []))
+            continue
+        assert word == "$$POLYLINE" and numbers[0] == 1 and len(numbers) == 3 + 2 * numbers[2]
+        points = [(x * unit, y * unit) for x, y in zip(numbers[3::2], numbers[4::2])]
+        assert points[0] == points[-1]
+        assert numbers[1] == (area(points[:-1]) > 0)
+        layers[-1][1].append(points[:-1])
+    return layers, head
+
+
 class Slice(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -74,6 +96,20 @@ class Slice(unittest.TestCase):
         said = json.loads(result.stdout)
         self.assertEqual((said["layers"], said["contours"], said["tolerance"]), (16, 32, 0.005))
         self.assertAlmostEqual(said["volume"], sum(0.25 * area(loop) for _, loops in layers for loop in loops), 3)
+
+    def test_cli_has_what_svg_has(self):
+        scene = "torus(8, 2);\ntranslate([0, 0, -2]) cube([3, 2, 4]);\n"
+        drawn = svg_layers(self.slice(scene, "--layer", 0.5, "-e", 0.01)[0])
+        layers, head = cli_layers(self.slice(scene, "--layer", 0.5, "-e", 0.01, name="layers.cli")[0])
+        self.assertEqual(head["$$LAYERS"], "8")
+        self.assertEqual([float(word) for word in head["$$DIMENSION"].split(",")], [-10, -10, -2, 10, 10, 2])
+        self.assertEqual(len(layers), len(drawn))
+        for (top, loops), (middle, others) in zip(layers, drawn):
+            self.assertAlmostEqual(top, middle + 0.25, 9)
+            self.assertEqual([len(loop) for loop in loops], [len(loop) for loop in others])
+            for loop, other in zip(loops, others):
+                for (x, y), (u, v) in zip(loop, other):
+                    self.assertLess(abs(x - u) + abs(y - v), 2.1e-5)
 
     def test_units_and_standard_output(self):
         scene = write(self.folder, "scene.txt", "cube(1);\n")
