@@ -98,6 +98,53 @@ static double half_of(const csg_slice_plan *plan, const place *p)
     return 0.5 * p->edge * plan->step * (1 + 1e-6) + (double)plan->rounding / 16;
 }
 
+/* What planes say of a box in their cube, given by its middle and half edges; *open: how many of
+ * them cut it. */
+static csg_truth state_in_box(const known_planes *known, const double middle[3],
+                              const double half[3], int *open)
+{
+    csg_truth planes[CSG_HALVES_MOST];
+    *open = 0;
+    for (int i = 0; i < known->halves.plane_count; i++) {
+        const csg_enclosure *e = &known->halves.planes[i];
+        double value = e->value, reach = 1e-12 * fabs(e->value);
+        for (int k = 0; k < 3; k++) {
+            value += e->slope[k] * (middle[k] - known->middle[k]);
+            reach += half[k] * fabs(e->slope[k]);
+        }
+        planes[i] = value + e->above < -reach  ? CSG_TRUTH_NO
+                    : value - e->below > reach ? CSG_TRUTH_YES
+                                               : CSG_TRUTH_OPEN;
+        *open += planes[i] == CSG_TRUTH_OPEN;
+    }
+    return csg_halves_evaluate(&known->halves, planes);
+}
+
+/* In a cube whose planes are good, or one within it. Only its layers count: a piece that ends
+ * between two of them, such as the face of a box on its back, is in none. */
+static csg_slice_kind look_by_planes(const csg_slice_plan *plan, const place *p,
+                                     const known_planes *known)
+{
+    double middle[3], half[3];
+    csg_slice_kind kind = CSG_SLICE_EMPTY;
+    place_of_middle(plan, p, middle);
+    half[0] = half[1] = half_of(plan, p);
+    half[2] = (double)plan->rounding / 16;
+    double from = plan->corner[2] + p->at[2] * plan->step;
+    double to = plan->corner[2] + (p->at[2] + (double)p->edge) * plan->step;
+    for (size_t i = csg_slice_layers_below(plan, from); i < plan->layer_count && plan->z[i] < to;
+         i++) {
+        int open;
+        middle[2] = plan->z[i];
+        if (state_in_box(known, middle, half, &open) != CSG_TRUTH_OPEN)
+            continue;
+        kind = CSG_SLICE_SMOOTH;
+        if (open > 1)
+            return p->edge == 1 ? CSG_SLICE_SHARP : CSG_SLICE_SPLIT;
+    }
+    return kind;
+}
+
 /* SPLIT: it takes smaller cubes to tell. */
 static csg_slice_kind look_at(csg_slice_cubes *c, const place *p, const csg_tape *tape,
                               known_planes *known)
@@ -117,31 +164,7 @@ static csg_slice_kind look_at(csg_slice_cubes *c, const place *p, const csg_tape
     known->are_good = are_good(halves, 2 * half, plan->tolerance);
     if (!known->are_good)
         return open;
-    return halves->plane_count == 1 ? CSG_SLICE_SMOOTH
-           : is_smallest            ? CSG_SLICE_SHARP
-                                    : CSG_SLICE_SPLIT;
-}
-
-/* The same, within a cube whose planes are good. */
-static csg_slice_kind look_by_planes(const csg_slice_plan *plan, const place *p,
-                                     const known_planes *known)
-{
-    csg_halves here = known->halves;
-    double middle[3], half = half_of(plan, p);
-    int open = 0;
-    place_of_middle(plan, p, middle);
-    for (int i = 0; i < here.plane_count; i++) {
-        csg_enclosure *e = &here.planes[i];
-        double reach = 0;
-        for (int k = 0; k < 3; k++) {
-            e->value += e->slope[k] * (middle[k] - known->middle[k]);
-            reach += half * fabs(e->slope[k]);
-        }
-        open += e->value + e->above >= -reach && e->value - e->below <= reach;
-    }
-    if (csg_halves_state(&here, half) != CSG_TRUTH_OPEN)
-        return CSG_SLICE_EMPTY;
-    return open == 1 ? CSG_SLICE_SMOOTH : p->edge == 1 ? CSG_SLICE_SHARP : CSG_SLICE_SPLIT;
+    return halves->plane_count == 1 ? CSG_SLICE_SMOOTH : look_by_planes(plan, p, known);
 }
 
 /* ---- the tree ----------------------------------------------------------------------------------
