@@ -16,12 +16,15 @@ typedef enum csgm_layers_format {
     CSGM_LAYERS_NONE,
     CSGM_LAYERS_SVG, /* a group for each layer */
     CSGM_LAYERS_CLI, /* Common Layer Interface, ASCII */
+    CSGM_LAYERS_ZIP, /* masks for printers with a screen: an archive with a PNG for each layer */
     CSGM_LAYERS_COUNT
 } csgm_layers_format;
 
 CSGM_API csgm_layers_format csgm_layers_format_from_path(const char *path);
 CSGM_API csgm_layers_format csgm_layers_format_from_name(const char *name);
 CSGM_API const char *csgm_layers_format_name(csgm_layers_format format);
+/* Masks need zlib. */
+CSGM_API bool csgm_layers_format_available(csgm_layers_format format);
 
 typedef struct csgm_slice_options {
     uint32_t struct_size; /* set by csgm_slice_options_default; do not touch */
@@ -29,6 +32,7 @@ typedef struct csgm_slice_options {
     double tolerance;     /* >= 0: how far contours may be from the surface; 0 (default): a 10000th
                              of the longest side */
     csgm_unit unit; /* the length of a scene unit, default CSGM_UNIT_MM: files have millimetres */
+    double pixel;   /* > 0: the edge of a mask's pixel in millimetres, default 0.05 */
     bool sync;      /* default true: the file is on the disk before it has its name */
     csgm_monitor monitor; /* stage CSGM_STAGE_WRITE */
 } csgm_slice_options;

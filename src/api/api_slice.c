@@ -23,10 +23,18 @@ const char *csgm_layers_format_name(csgm_layers_format format)
     return csg_layers_format_name(format);
 }
 
+bool csgm_layers_format_available(csgm_layers_format format)
+{
+    return (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
+           (format != CSGM_LAYERS_ZIP || csg_masks_available());
+}
+
 csgm_slice_options csgm_slice_options_default(void)
 {
-    return (csgm_slice_options){
-        .struct_size = sizeof(csgm_slice_options), .unit = CSGM_UNIT_MM, .sync = true};
+    return (csgm_slice_options){.struct_size = sizeof(csgm_slice_options),
+                                .unit = CSGM_UNIT_MM,
+                                .pixel = 0.05,
+                                .sync = true};
 }
 
 csgm_slice_stats csgm_slice_stats_default(void)
@@ -40,8 +48,9 @@ static bool adopt(csgm_slice_options *own, const csgm_slice_options *given,
     *own = csgm_slice_options_default();
     return csg_options_adopt(own, sizeof *own, given) && own->height > 0 && isfinite(own->height) &&
            own->tolerance >= 0 && isfinite(own->tolerance) && (int)own->unit >= 0 &&
-           own->unit <= CSGM_UNIT_IN && (int)format > CSGM_LAYERS_NONE &&
-           format < CSGM_LAYERS_COUNT && csg_struct_is_known(stats, sizeof *stats);
+           own->unit <= CSGM_UNIT_IN && own->pixel > 0 && isfinite(own->pixel) &&
+           (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
+           csg_struct_is_known(stats, sizeof *stats);
 }
 
 csgm_status csgm_slice_field(csgm_context *context, const csgm_field *field, const char *path,

@@ -1,19 +1,39 @@
 /* SPDX-License-Identifier: MIT
  * Layers to files; see slice.h.
  */
+#include <math.h>
+
+#include "base/mesh_codes.h"
 #include "io/file.h"
 #include "io/sink.h"
 #include "slice/slice.h"
+
+enum { MOST_SIDE = 16384 /* pixels */ };
 
 typedef struct layers_file {
     const csg_layers_writer *writer;
     csg_sink sink;
     csg_layers_head head;
+    double pixel;
+    uint64_t written;
+    bool is_refused; /* reported */
 } layers_file;
+
+static bool refuse(layers_file *file, const char *format, double value)
+{
+    csg_diag_plain(&file->sink.context->diags, CSG_DIAG_FORMAT_LIMIT, file->sink.name, NULL, format,
+                   value);
+    file->is_refused = true;
+    return false;
+}
 
 static bool pass_page(void *user, const csg_page *page)
 {
     layers_file *file = user;
+    file->written += page->length;
+    if (file->writer->most_bytes && file->written > file->writer->most_bytes)
+        return refuse(file, "the archive would be larger than %g bytes",
+                      (double)file->writer->most_bytes);
     csg_sink_put(&file->sink, page->data, page->length);
     return !page->failed && !file->sink.error;
 }
@@ -29,10 +49,33 @@ static bool put_frame(layers_file *file, frame_fn *put)
     return done;
 }
 
+/* Pixels around the solid, as many on all sides. False: too many (reported), or out of memory. */
+static bool plan_masks(layers_file *file)
+{
+    csg_layers_head *h = &file->head;
+    csg_vec3 low = csg_vec3_scale(h->box.min, h->scale),
+             size = csg_vec3_scale(csg_box_size(h->box), h->scale);
+    double width = fmax(ceil(size.x / file->pixel - 1e-6), 1),
+           height = fmax(ceil(size.y / file->pixel - 1e-6), 1);
+    if (width > MOST_SIDE || height > MOST_SIDE)
+        return refuse(file, "a mask would have %g pixels in a row", fmax(width, height));
+    h->pixel = file->pixel;
+    h->width = (uint32_t)width;
+    h->height = (uint32_t)height;
+    h->corner = (csg_vec2){low.x + 0.5 * (size.x - width * h->pixel),
+                           low.y + 0.5 * (size.y + height * h->pixel)};
+    h->masks = csg_memory_alloc(&file->sink.context->memory, h->count * sizeof *h->masks);
+    return h->masks;
+}
+
 static bool begin_file(void *user, const csg_layers_head *head)
 {
     layers_file *file = user;
     file->head = *head;
+    if (file->writer->most_layers && head->count > file->writer->most_layers)
+        return refuse(file, "%g layers are too many for an archive", (double)head->count);
+    if (file->writer->has_masks && !plan_masks(file))
+        return false;
     return put_frame(file, file->writer->begin);
 }
 
@@ -40,14 +83,15 @@ static void put_on_page(void *user, csg_page *page, const csg_layers_head *head,
                         const csg_sliced_layer *layer)
 {
     const layers_file *file = user;
-    file->writer->layer(page, head, layer);
+    (void)head; /* of which the file has its own */
+    file->writer->layer(page, &file->head, layer);
 }
 
 csgm_status csg_slice_fd(csgm_context *context, const csgm_field *field, int fd, const char *name,
                          csgm_layers_format format, const csgm_slice_options *options,
                          csgm_slice_stats *stats)
 {
-    layers_file file = {.writer = csg_layers_writer_of(format)};
+    layers_file file = {.writer = csg_layers_writer_of(format), .pixel = options->pixel};
     const csg_layers_receiver receiver = {&file, begin_file, put_on_page, pass_page};
     csgm_status status = csg_sink_open(&file.sink, context, fd, name);
     if (status != CSGM_OK)
@@ -55,9 +99,13 @@ csgm_status csg_slice_fd(csgm_context *context, const csgm_field *field, int fd,
     status = csg_slice_field(context, field, options, &receiver, stats);
     if (status == CSGM_OK && !put_frame(&file, file.writer->end))
         status = CSGM_ERR_IO;
+    csg_memory_release(&context->memory, file.head.masks,
+                       file.head.count * sizeof *file.head.masks);
     if (status == CSGM_OK || (status == CSGM_ERR_IO && file.sink.error))
         return csg_sink_close(&file.sink);
     csg_sink_discard(&file.sink);
+    if (file.is_refused)
+        return CSGM_ERR_LIMIT;
     return status == CSGM_ERR_IO ? csg_context_no_memory(context) : status;
 }
 

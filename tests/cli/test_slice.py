@@ -6,9 +6,12 @@ import os
 import re
 import signal
 import subprocess
+import struct
 import tempfile
 import unittest
 import xml.etree.ElementTree
+import zipfile
+import zlib
 
 import cli
 
@@ -62,6 +65,24 @@ def cli_layers(path):
     return layers, head
 
 
+def grey_png(data):
+    """(width, height, rows) of a grey PNG without filters; sums must agree."""
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, packed = 8, b""
+    while at < len(data):
+        length, = struct.unpack(">I", data[at:at + 4])
+        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
+        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", body[:8])
+            assert body[8:] == b"\x08\0\0\0\0"
+        packed += body if kind == b"IDAT" else b""
+        at += length + 12
+    raw = zlib.decompress(packed)
+    assert len(raw) == (width + 1) * height and not any(raw[::width + 1])
+    return width, height, [raw[y * (width + 1) + 1:(y + 1) * (width + 1)] for y in range(height)]
+
+
 class Slice(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -111,6 +132,30 @@ class Slice(unittest.TestCase):
                 for (x, y), (u, v) in zip(loop, other):
                     self.assertLess(abs(x - u) + abs(y - v), 2.1e-5)
 
+    def test_masks(self):
+        scene = "difference() { cube([10, 6, 4]); translate([3, 3, -1]) cylinder(h = 6, r = 2); }\ntranslate([8, 4, 3.9]) cube([1, 1.5, 1]);\n"
+        out, result = self.slice(scene, "--layer", 0.5, "--pixel", 0.1, "-e", 0.001, "--json", name="masks.zip")
+        with zipfile.ZipFile(out) as archive:
+            self.assertIsNone(archive.testzip())
+            names = archive.namelist()
+            self.assertEqual(names, [f"{i:05}.png" for i in range(10)])
+            pictures = [grey_png(archive.read(name)) for name in names]
+        self.assertEqual({(width, height) for width, height, _ in pictures}, {(100, 60)})
+        rows = pictures[0][2]
+        self.assertEqual((rows[59][0], rows[0][99], rows[29][29], rows[30][30]), (255, 255, 0, 0))
+        self.assertAlmostEqual(sum(map(sum, rows)) / 255 * 0.01, 60 - 4 * math.pi, delta=0.02)
+        rows = pictures[9][2]  # y runs down: the peg is in the upper right
+        self.assertEqual((rows[10][85], rows[50][85], rows[10][15]), (255, 0, 0))
+        volume = json.loads(result.stdout)["volume"]
+        self.assertAlmostEqual(sum(sum(map(sum, rows)) for _, _, rows in pictures) / 255 * 0.01 * 0.5, volume, delta=0.002 * volume)
+
+    def test_masks_too_large(self):
+        _, result = self.slice("cube(1);\n", "--layer", 0.5, "--pixel", 1e-5, name="masks.zip", status=2)
+        self.assertIn("pixels in a row", result.stderr)
+        _, result = self.slice("cube(1);\n", "--layer", 1e-5, "--pixel", 0.1, name="masks.zip", status=2)
+        self.assertIn("too many for an archive", result.stderr)
+        self.assertEqual(os.listdir(self.folder), ["scene.txt"])
+
     def test_units_and_standard_output(self):
         scene = write(self.folder, "scene.txt", "cube(1);\n")
         result = cli.run("slice", scene, "--layer", 0.5, "--unit", "in", "-o", "-", "-f", "svg")
@@ -143,6 +188,7 @@ class Slice(unittest.TestCase):
             (["--layer", "-1", "-o", "x.svg"], "--layer"),
             (["--layer", "nan", "-o", "x.svg"], "--layer"),
             (["--layer", "1", "-e", "0", "-o", "x.svg"], "--tolerance"),
+            (["--layer", "1", "--pixel", "0", "-o", "x.zip"], "--pixel"),
             (["--layer", "1"], "no output file"),
             (["--layer", "1", "-o", "x.gcode"], "tells no format of layers"),
             (["--layer", "1", "-o", "x", "-f", "stl"], "no format 'stl'"),

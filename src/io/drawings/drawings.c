@@ -49,7 +49,7 @@ const char *csg_drawing_format_name(csgm_drawing_format format)
 
 /* ---- pages ----------------------------------------------------------------------------------- */
 
-static void put_bytes(csg_page *page, const char *bytes, size_t length)
+void csg_page_bytes(csg_page *page, const void *bytes, size_t length)
 {
     if (page->failed || !csg_memory_reserve(page->memory, (void **)&page->data, &page->capacity,
                                             page->length + length, 1)) {
@@ -62,7 +62,7 @@ static void put_bytes(csg_page *page, const char *bytes, size_t length)
 
 void csg_page_text(csg_page *page, const char *text)
 {
-    put_bytes(page, text, strlen(text));
+    csg_page_bytes(page, text, strlen(text));
 }
 
 void csg_page_format(csg_page *page, const char *format, ...)
@@ -72,13 +72,13 @@ void csg_page_format(csg_page *page, const char *format, ...)
     va_start(arguments, format);
     int length = vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    put_bytes(page, text, length < (int)sizeof text ? (size_t)length : sizeof text - 1);
+    csg_page_bytes(page, text, length < (int)sizeof text ? (size_t)length : sizeof text - 1);
 }
 
 void csg_page_number(csg_page *page, double value, int decimals)
 {
     char text[CSG_FIXED_MOST];
-    put_bytes(page, text, (size_t)(csg_number_put_fixed(text, value, decimals) - text));
+    csg_page_bytes(page, text, (size_t)(csg_number_put_fixed(text, value, decimals) - text));
 }
 
 const char *csg_layer_label(const csg_drawn_layer *layer, char buffer[8])

@@ -37,6 +37,7 @@ typedef void csg_draw_fn(csg_page *page, const csg_drawing *drawing);
 #include "io/drawings/drawings.def"
 #undef CSG_DRAWING
 
+void csg_page_bytes(csg_page *page, const void *bytes, size_t count);
 void csg_page_text(csg_page *page, const char *text);
 void csg_page_format(csg_page *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Without an exponent, as short as the decimals allow, in no locale. */

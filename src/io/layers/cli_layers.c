@@ -77,4 +77,4 @@ static void end_cli(csg_page *page, const csg_layers_head *head)
     csg_page_text(page, "$$GEOMETRYEND\n");
 }
 
-const csg_layers_writer csg_layers_cli = {begin_cli, put_cli, end_cli};
+const csg_layers_writer csg_layers_cli = {.begin = begin_cli, .layer = put_cli, .end = end_cli};

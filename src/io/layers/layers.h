@@ -12,12 +12,23 @@ csgm_layers_format csg_layers_format_from_path(const char *path); /* NULL gives 
 csgm_layers_format csg_layers_format_from_name(const char *name);
 const char *csg_layers_format_name(csgm_layers_format format);
 
+/* A picture in an archive. */
+typedef struct csg_mask_entry {
+    uint32_t crc, bytes;
+} csg_mask_entry;
+
 /* What is the same for all layers of a file; scene units. */
 typedef struct csg_layers_head {
     csg_box box;      /* of the solid */
     double tolerance; /* of the contours */
     double scale;     /* from scene units to millimetres */
     size_t count;
+    /* of masks, in millimetres: pixels, the upper left corner, and an entry for each layer that its
+     * worker fills */
+    double pixel;
+    uint32_t width, height;
+    csg_vec2 corner;
+    csg_mask_entry *masks;
 } csg_layers_head;
 
 typedef struct csg_sliced_layer {
@@ -35,9 +46,15 @@ typedef struct csg_layers_writer {
     void (*begin)(csg_page *page, const csg_layers_head *head);
     void (*layer)(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer);
     void (*end)(csg_page *page, const csg_layers_head *head);
+    bool has_masks;     /* pixels and entries are asked for */
+    size_t most_layers; /* 0: any */
+    uint64_t most_bytes;
 } csg_layers_writer;
 
 const csg_layers_writer *csg_layers_writer_of(csgm_layers_format format);
+
+/* Is zlib there? */
+bool csg_masks_available(void);
 
 #define CSG_LAYERS(ID, name, title, remarks) extern const csg_layers_writer csg_layers_##name;
 #include "io/layers/layers.def"

@@ -70,4 +70,4 @@ static void end_svg(csg_page *page, const csg_layers_head *head)
     csg_page_text(page, "</svg>\n");
 }
 
-const csg_layers_writer csg_layers_svg = {begin_svg, put_svg, end_svg};
+const csg_layers_writer csg_layers_svg = {.begin = begin_svg, .layer = put_svg, .end = end_svg};

@@ -25,6 +25,8 @@ static csgm_slice_options slice_options(cli_app *app)
     options.height = o->layer;
     if (o->given[CLI_OPTION_tolerance])
         options.tolerance = o->tolerance;
+    if (o->given[CLI_OPTION_pixel])
+        options.pixel = o->pixel;
     options.unit = cli_outputs_unit(o);
     options.sync = !o->no_sync;
     options.monitor = (csgm_monitor){
@@ -48,6 +50,8 @@ static int find_format(cli_app *app, const char *path, csgm_layers_format *out)
     snprintf(hint, sizeof hint, "layers are written as%s", known);
     const char *named = app->options->format;
     *out = named ? csgm_layers_format_from_name(named) : csgm_layers_format_from_path(path);
+    if (*out != CSGM_LAYERS_NONE && !csgm_layers_format_available(*out))
+        return cli_usage_error(app, hint, "this build cannot write %s", path);
     if (*out != CSGM_LAYERS_NONE)
         return CLI_DONE;
     if (named)

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT
+ * Masks for printers with a screen: a ZIP archive with a grey PNG for each layer, 00000.png and so
+ * on, white where the solid is, grey by how much of a pixel it covers. Pictures are compressed
+ * already, so that they are stored; no time stamps. The pictures are written here, with zlib alone,
+ * since they are made by all threads in memory: bands of rows, no filter.
+ */
+#include <string.h>
+#include <zlib.h>
+
+#include "base/sized_block.h"
+#include "io/layers/coverage.h"
+#include "io/layers/layers.h"
+#include "io/sink.h"
+
+enum {
+    BAND = 32, /* rows at once */
+    LEVEL = 6,
+    ROOM = 1 << 14,
+    HEAD_BYTES = 30,
+    RECORD_BYTES = 46,
+    END_BYTES = 22,
+    CHUNK_BYTES = 12, /* of a PNG, around its data */
+    NAME_BYTES = 9,
+    VERSION = 10,    /* of the format: 1.0, stored */
+    NO_DATE = 0x0021 /* 1 January 1980, the format's zero */
+};
+
+/* ---- PNG -------------------------------------------------------------------------------------- */
+
+static uint8_t *store_big(uint8_t *at, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        at[i] = (uint8_t)(value >> (24 - 8 * i));
+    return at + 4;
+}
+
+/* Where a chunk begins; its length comes at its end. */
+static size_t begin_chunk(csg_page *page, const char *type)
+{
+    size_t at = page->length;
+    csg_page_bytes(page, "\0\0\0\0", 4);
+    csg_page_bytes(page, type, 4);
+    return at;
+}
+
+static void end_chunk(csg_page *page, size_t at)
+{
+    uint8_t sum[4];
+    if (page->failed)
+        return;
+    uint8_t *chunk = (uint8_t *)page->data + at;
+    uint32_t length = (uint32_t)(page->length - at - 8);
+    store_big(chunk, length);
+    store_big(sum, (uint32_t)crc32(0, chunk + 4, length + 4));
+    csg_page_bytes(page, sum, sizeof sum);
+}
+
+static void *allocate_for_zlib(void *memory, unsigned count, unsigned size)
+{
+    return csg_sized_block_alloc(memory, (size_t)count * size);
+}
+
+static void give_back(void *memory, void *pointer)
+{
+    csg_sized_block_release(memory, pointer);
+}
+
+typedef struct picture_room {
+    z_stream stream;
+    bool is_ready;
+    double *sums; /* of a band */
+    uint8_t *row;
+} picture_room;
+
+static void deflate_bytes(csg_page *page, z_stream *stream, const uint8_t *bytes, size_t count,
+                          int flush)
+{
+    uint8_t out[ROOM];
+    stream->next_in = (uint8_t *)bytes;
+    stream->avail_in = (unsigned)count;
+    do {
+        stream->next_out = out;
+        stream->avail_out = ROOM;
+        deflate(stream, flush);
+        csg_page_bytes(page, out, ROOM - stream->avail_out);
+    } while (!stream->avail_out);
+}
+
+static void put_rows(csg_page *page, const csg_layers_head *head, const csg_outline *contours,
+                     picture_room *room)
+{
+    size_t stride = (size_t)head->width + 2;
+    for (uint32_t first = 0; first < head->height; first += BAND) {
+        uint32_t end = first + BAND < head->height ? first + BAND : head->height;
+        memset(room->sums, 0, stride * BAND * sizeof *room->sums);
+        csg_coverage_add(contours, head->scale, head->corner, head->pixel, head->width, first, end,
+                         room->sums);
+        for (uint32_t y = first; y < end; y++) {
+            room->row[0] = 0; /* no filter */
+            csg_coverage_bytes(room->sums + (y - first) * stride, head->width, room->row + 1);
+            deflate_bytes(page, &room->stream, room->row, (size_t)head->width + 1,
+                          y + 1 < head->height ? Z_NO_FLUSH : Z_FINISH);
+        }
+    }
+}
+
+static void put_picture(csg_page *page, const csg_layers_head *head, const csg_outline *contours)
+{
+    static const uint8_t signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    csg_memory *memory = page->memory;
+    size_t sums_bytes = ((size_t)head->width + 2) * BAND * sizeof(double);
+    uint8_t size[13] = {[8] = 8}; /* bits of a pixel; grey, one pass */
+    picture_room room = {
+        .stream = {.zalloc = allocate_for_zlib, .zfree = give_back, .opaque = memory}};
+    room.sums = csg_memory_alloc(memory, sums_bytes);
+    room.row = csg_memory_alloc(memory, (size_t)head->width + 1);
+    room.is_ready = deflateInit(&room.stream, LEVEL) == Z_OK;
+    csg_page_bytes(page, signature, sizeof signature);
+    store_big(store_big(size, head->width), head->height);
+    size_t chunk = begin_chunk(page, "IHDR");
+    csg_page_bytes(page, size, sizeof size);
+    end_chunk(page, chunk);
+    chunk = begin_chunk(page, "IDAT");
+    if (room.sums && room.row && room.is_ready)
+        put_rows(page, head, contours, &room);
+    else
+        page->failed = true;
+    end_chunk(page, chunk);
+    end_chunk(page, begin_chunk(page, "IEND"));
+    if (room.is_ready)
+        deflateEnd(&room.stream);
+    csg_memory_release(memory, room.sums, sums_bytes);
+    csg_memory_release(memory, room.row, (size_t)head->width + 1);
+}
+
+/* ---- the archive ------------------------------------------------------------------------------ */
+
+/* What the head of a file and its record share, from the version on. */
+static uint8_t *store_entry(uint8_t *at, const csg_mask_entry *entry)
+{
+    at = csg_store_u16(at, VERSION);
+    at = csg_store_u16(at, 0); /* flags */
+    at = csg_store_u16(at, 0); /* stored */
+    at = csg_store_u16(at, 0);
+    at = csg_store_u16(at, NO_DATE);
+    at = csg_store_u32(at, entry->crc);
+    at = csg_store_u32(at, entry->bytes);
+    at = csg_store_u32(at, entry->bytes);
+    at = csg_store_u16(at, NAME_BYTES);
+    return csg_store_u16(at, 0); /* no more fields */
+}
+
+static void put_mask(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer)
+{
+    uint8_t empty[HEAD_BYTES] = {0};
+    csg_mask_entry *entry = &head->masks[layer->number];
+    size_t at = page->length;
+    csg_page_bytes(page, empty, sizeof empty);
+    csg_page_format(page, "%05zu.png", layer->number);
+    size_t from = page->length;
+    put_picture(page, head, &layer->contours);
+    if (page->failed)
+        return;
+    const uint8_t *picture = (const uint8_t *)page->data + from;
+    entry->bytes = (uint32_t)(page->length - from);
+    entry->crc = (uint32_t)crc32(0, picture, entry->bytes);
+    store_entry(csg_store_u32((uint8_t *)page->data + at, 0x04034b50), entry);
+}
+
+static void begin_masks(csg_page *page, const csg_layers_head *head)
+{
+    (void)page, (void)head;
+}
+
+static void end_masks(csg_page *page, const csg_layers_head *head)
+{
+    uint32_t at = 0;
+    uint8_t end[END_BYTES] = {0};
+    for (size_t i = 0; i < head->count; i++) {
+        uint8_t record[RECORD_BYTES] = {0}, *next = csg_store_u32(record, 0x02014b50);
+        store_entry(csg_store_u16(next, VERSION), &head->masks[i]);
+        csg_store_u32(record + RECORD_BYTES - 4, at);
+        csg_page_bytes(page, record, sizeof record);
+        csg_page_format(page, "%05zu.png", i);
+        at += HEAD_BYTES + NAME_BYTES + head->masks[i].bytes;
+    }
+    uint8_t *next = csg_store_u32(csg_store_u32(end, 0x06054b50), 0);
+    next = csg_store_u16(next, (uint32_t)head->count);
+    next = csg_store_u16(next, (uint32_t)head->count);
+    next = csg_store_u32(next, (uint32_t)(head->count * (RECORD_BYTES + NAME_BYTES)));
+    csg_store_u32(next, at);
+    csg_page_bytes(page, end, sizeof end);
+}
+
+const csg_layers_writer csg_layers_zip = {begin_masks,
+                                          put_mask,
+                                          end_masks,
+                                          .has_masks = true,
+                                          .most_layers = 65535,
+                                          .most_bytes = 0xf0000000};
+
+bool csg_masks_available(void)
+{
+    return true;
+}
