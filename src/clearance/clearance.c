@@ -261,21 +261,33 @@ static int rank_of(csgm_clear_state state)
     return state == CSGM_CLEAR_INTERFERING ? 2 : state == CSGM_CLEAR_UNDECIDED ? 1 : 0;
 }
 
-/* A gap that is as large makes a pose neither worse than the worst nor bad. */
-static double enough_of(const csgm_clearances *c, const pair *p)
+/* Of a gap, where no tolerance was asked for. */
+static double share_of(const csgm_clearances *c)
 {
-    double worst = !p->is_known || p->told.by_boxes ? INFINITY
-                   : rank_of(p->told.state)         ? 0
-                                                    : p->told.gap.high;
-    return fmax(worst, c->options.min_gap);
+    static const double SHARE = 1.0 / 64;
+    return c->options.tolerance > 0 ? 0 : SHARE;
 }
 
-/* Far: farther apart than one of them is long. Where pairs were named, these are wanted. */
+/* A gap that is as large makes a pose neither worse than the worst, within the tolerance, nor bad.
+ */
+static double enough_of(const csgm_clearances *c, const pair *p)
+{
+    const csgm_clear_pair *told = &p->told;
+    double worst = INFINITY;
+    if (p->is_known && rank_of(told->state))
+        worst = 0;
+    else if (p->is_known && !told->by_boxes)
+        worst = told->gap.high - fmax(c->tolerance, share_of(c) * told->gap.high);
+    return fmax(fmax(worst, 0), c->options.min_gap);
+}
+
+/* Far: farther apart than half of what one of them is long. Where pairs were named, these are
+ * wanted. */
 static bool is_far(const csgm_clearances *c, const pair *p, double apart)
 {
     double a = longest_side(c->parts[p->a].box), b = longest_side(c->parts[p->b].box);
     return apart >= INFINITY ||
-           (c->options.part_count == 0 && apart > fmin(a, b) && apart >= c->options.min_gap);
+           (c->options.part_count == 0 && apart > 0.5 * fmin(a, b) && apart >= c->options.min_gap);
 }
 
 /* False: they have to be searched. */
@@ -354,6 +366,7 @@ static bool search_one(void *user, uint32_t worker, size_t index)
     csg_clear_task task = {.a = &c->parts[p->a].at,
                            .b = &c->parts[p->b].at,
                            .tolerance = c->tolerance,
+                           .share = share_of(c),
                            .enough = enough_of(c, p),
                            .min_gap = c->options.min_gap,
                            .enough_volume = p->told.volume.low,

@@ -6,8 +6,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "field/point.h"
-
 enum { STEPS = 10, CLIMBS = 24 };
 
 static csg_measure_worker *worker_of(const csg_clear_part *part, uint32_t worker)
@@ -20,16 +18,19 @@ static csg_vec3 to_own(const csg_clear_part *part, csg_vec3 at)
     return csg_vec3_sub(at, csg_clear_part_origin(part));
 }
 
-static double value_at(const csg_clear_part *part, uint32_t worker, csg_vec3 own)
+/* Value and gradient at one point. */
+static double look_at(const csg_clear_part *part, uint32_t worker, csg_vec3 own, csg_vec3 *gradient)
 {
-    return csg_tape_value_at(part->walk.kernel, &part->field->tape, own,
-                             worker_of(part, worker)->scratch, part->walk.scratch_floats);
-}
-
-static csg_vec3 gradient_at(const csg_clear_part *part, uint32_t worker, csg_vec3 own)
-{
-    return csg_tape_gradient_at(part->walk.kernel, &part->field->tape, own,
-                                worker_of(part, worker)->scratch, part->walk.scratch_floats);
+    float x[3][CSG_LANES], f[CSG_LANES], g[3][CSG_LANES], at[3];
+    csg_vec3_to_floats(at, own);
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < CSG_LANES; i++)
+            x[axis][i] = at[axis];
+    part->walk.kernel->values_and_gradients(&part->field->tape, x[0], x[1], x[2], 1, f, g[0], g[1],
+                                            g[2], worker_of(part, worker)->scratch,
+                                            part->walk.scratch_floats);
+    *gradient = csg_vec3_make((double)g[0][0], (double)g[1][0], (double)g[2][0]);
+    return (double)f[0];
 }
 
 bool csg_clear_is_inside(const csg_clear_part *part, uint32_t worker, csg_vec3 at,
@@ -80,8 +81,7 @@ bool csg_clear_settle(const csg_clear_part *part, uint32_t worker, csg_vec3 near
     double close = (double)worker_of(part, worker)->pruner.rounding;
     double level = 3 * close * (double)part->field->tape.steepest; /* what is proven to be inside */
     for (int step = 0; step < STEPS; step++) {
-        double f = value_at(part, worker, own);
-        g = gradient_at(part, worker, own);
+        double f = look_at(part, worker, own, &g);
         double steep = csg_vec3_dot(g, g);
         if (!(steep > 1e-12) || !isfinite(f))
             return false;
@@ -99,8 +99,9 @@ bool csg_clear_find_common(const csg_clear_part *a, const csg_clear_part *b, uin
     double best = -INFINITY, last = -INFINITY;
     bool found = false;
     for (int i = 0; i < CLIMBS; i++) {
-        double fa = value_at(a, worker, to_own(a, at)), fb = value_at(b, worker, to_own(b, at));
-        const csg_clear_part *least = fa < fb ? a : b;
+        csg_vec3 ga, gb;
+        double fa = look_at(a, worker, to_own(a, at), &ga),
+               fb = look_at(b, worker, to_own(b, at), &gb);
         double f = fmin(fa, fb);
         if (f > 0 && f > best && csg_clear_is_inside(a, worker, at, out_of_memory) &&
             csg_clear_is_inside(b, worker, at, out_of_memory)) {
@@ -113,7 +114,7 @@ bool csg_clear_find_common(const csg_clear_part *a, const csg_clear_part *b, uin
         if (f <= last)
             step *= 0.5;
         last = f;
-        csg_vec3 g = gradient_at(least, worker, to_own(least, at));
+        csg_vec3 g = fa < fb ? ga : gb;
         double steep = csg_vec3_norm(g);
         if (!(steep > 1e-6))
             return found;

@@ -22,7 +22,8 @@
 enum {
     ASK_EVERY = 64,
     TRIES = 8 /* while the number of candidates doubles */,
-    ROUNDS = 8,
+    LATE = 64,
+    ROUNDS = 4,
     FINEST = 16 /* of T */
 };
 /* Once the gap is nearly known, all but a part of what may be looked at is saved. */
@@ -159,16 +160,18 @@ static double bound_of(search *s, uint32_t a, uint32_t b, double enough, bool *o
     s->looked++;
     if (w.bound >= enough || (!w.a->pieces && !w.b->pieces))
         return w.bound;
-    look_along_normals(&w, w.a->pieces, -1);
-    look_along_normals(&w, w.b->pieces, 1);
-    if (w.bound >= enough)
-        return w.bound;
-    look_along_vector(&w, w.offset[0], w.offset[1], w.offset[2]);
-    look_along_vector(&w, between[0], between[1], between[2]);
     if (s->high < INFINITY) {
         csg_vec3 d = csg_vec3_sub(s->nearest[1], s->nearest[0]);
         look_along_vector(&w, d.x, d.y, d.z);
     }
+    if (w.bound < enough)
+        look_along_normals(&w, w.a->pieces, -1);
+    if (w.bound < enough)
+        look_along_normals(&w, w.b->pieces, 1);
+    if (w.bound < enough)
+        look_along_vector(&w, w.offset[0], w.offset[1], w.offset[2]);
+    if (w.bound < enough)
+        look_along_vector(&w, between[0], between[1], between[2]);
     return w.bound;
 }
 
@@ -252,7 +255,7 @@ static void try_points(search *s, const candidate *top)
 static double enough_of(const search *s)
 {
     const csg_clear_task *t = s->task;
-    double enough = s->high - t->tolerance;
+    double enough = s->high < INFINITY ? s->high - csg_clear_room(t, s->high) : INFINITY;
     if (t->min_gap > enough && t->min_gap <= s->high)
         enough = fmin(t->min_gap, s->high - t->tolerance / FINEST);
     return fmin(enough, t->enough);
@@ -335,7 +338,7 @@ static bool is_known(const search *s)
         return true;
     if (straddles)
         return low >= s->high - t->tolerance / FINEST;
-    return (s->high <= t->tolerance && low >= -t->tolerance) || low >= s->high - t->tolerance;
+    return (s->high <= t->tolerance && low >= -t->tolerance) || low >= enough_of(s);
 }
 
 /* False: it was stopped. */
@@ -395,6 +398,8 @@ static bool tell(search *s, csgm_clear_pair *out)
 bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *out_of_memory)
 {
     search s = {.task = task, .left = INFINITY, .high = INFINITY};
+    if (task->enough < INFINITY) /* bounds alone will do as a rule */
+        s.next_try = LATE;
     if (!task->a->is_open || !task->b->is_open) {
         out->gap = (csgm_interval){INFINITY, INFINITY};
         return true;

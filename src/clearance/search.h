@@ -4,12 +4,15 @@
 #ifndef CSG_CLEARANCE_SEARCH_H
 #define CSG_CLEARANCE_SEARCH_H
 
+#include <math.h>
+
 #include "clearance/tree.h"
 #include "csgmesh/clearance.h"
 
 typedef struct csg_clear_task {
     const csg_clear_part *a, *b;
     double tolerance;
+    double share;         /* of the gap, within which it need not be known either */
     double enough;        /* a gap of which no more need be known than that it is no less */
     double min_gap;       /* > 0: on which side of it the gap is matters */
     double enough_volume; /* likewise of what they have in common, that it is no more */
@@ -17,6 +20,12 @@ typedef struct csg_clear_task {
     uint32_t worker;
     csg_mesh_watch *watch;
 } csg_clear_task;
+
+/* How closely a gap of this size is to be known. */
+static inline double csg_clear_room(const csg_clear_task *task, double gap)
+{
+    return fmax(task->tolerance, task->share * gap);
+}
 
 /* False: stopped, or out of memory (then *out_of_memory); *out is what is proven by then in any
  * case. Fills state, gap, nearest, inside, volume, size, pairs. */
