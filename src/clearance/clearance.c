@@ -281,13 +281,13 @@ static double enough_of(const csgm_clearances *c, const pair *p)
     return fmax(fmax(worst, 0), c->options.min_gap);
 }
 
-/* Far: farther apart than half of what one of them is long. Where pairs were named, these are
- * wanted. */
+/* Far: farther apart than half of what one of them is long, and never nearer so far. Where pairs
+ * were named, these are wanted. */
 static bool is_far(const csgm_clearances *c, const pair *p, double apart)
 {
     double a = longest_side(c->parts[p->a].box), b = longest_side(c->parts[p->b].box);
-    return apart >= INFINITY ||
-           (c->options.part_count == 0 && apart > 0.5 * fmin(a, b) && apart >= c->options.min_gap);
+    return apart >= INFINITY || (c->options.part_count == 0 && (!p->is_known || p->told.by_boxes) &&
+                                 apart > 0.5 * fmin(a, b) && apart >= c->options.min_gap);
 }
 
 /* False: they have to be searched. */

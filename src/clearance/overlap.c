@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include "clearance/between.h"
+
 enum { ASK_EVERY = 64, MOST_DIVIDED = 1 << 11 };
 
 typedef struct shared {
@@ -68,6 +70,9 @@ static void consider(overlap *o, uint32_t a, uint32_t b)
         volume *= fmax(side, 0);
     }
     if (!(volume > 0))
+        return;
+    bool together;
+    if (csg_clear_between(o->a, a, o->b, b, (csg_vec3){0, 0, 0}, 0, &together) > 0)
         return;
     if (p->state == CSG_CELL_INSIDE && q->state == CSG_CELL_INSIDE) {
         o->sure += volume;

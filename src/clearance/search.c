@@ -16,6 +16,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "clearance/between.h"
 #include "clearance/overlap.h"
 #include "clearance/places.h"
 
@@ -26,8 +27,8 @@ enum {
     ROUNDS = 4,
     FINEST = 16 /* of T */
 };
-/* Once the gap is nearly known, all but a part of what may be looked at is saved. */
-enum { SHARE_DECIDED = 16 };
+/* Of what may be looked at: for how far apart they are, once that they are is known. */
+enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16, SHARE_LATER = 64 };
 static const double NEARLY = 0.9;
 
 typedef struct candidate {
@@ -96,83 +97,6 @@ static void let_go(search *s, const candidate *item)
         double a = s->a.nodes[item->a].cube.half, b = s->b.nodes[item->b].cube.half;
         s->left_size = fmax(s->left_size, 2 * fmin(a, b));
     }
-}
-
-/* ---- bounds ------------------------------------------------------------------------------------
- */
-
-typedef struct bounding {
-    const csg_clear_node *a, *b;
-    double offset[3];
-    double bound, slack;
-} bounding;
-
-static void look_along(bounding *w, const double d[3])
-{
-    const double back[3] = {-d[0], -d[1], -d[2]};
-    double along = d[0] * w->offset[0] + d[1] * w->offset[1] + d[2] * w->offset[2];
-    double apart = along - csg_clear_reach(w->a->pieces, w->a->cube.half, d) -
-                   csg_clear_reach(w->b->pieces, w->b->cube.half, back);
-    w->bound = fmax(w->bound, apart - w->slack);
-}
-
-static void look_along_vector(bounding *w, double x, double y, double z)
-{
-    double length = sqrt(x * x + y * y + z * z);
-    const double d[3] = {x / length, y / length, z / length};
-    if (length > 0)
-        look_along(w, d);
-}
-
-static void look_along_normals(bounding *w, const csg_clear_pieces *pieces, double turn)
-{
-    uint8_t used = 0;
-    for (int i = 0; pieces && i < pieces->count; i++)
-        used |= pieces->masks[i];
-    for (int i = 0; pieces && i < pieces->plane_count; i++) {
-        const double *s = pieces->planes[i].slope;
-        const double d[3] = {turn * s[0], turn * s[1], turn * s[2]};
-        if (used >> i & 1)
-            look_along(w, d);
-    }
-}
-
-/* How far apart the parts in the two cubes are at least; negative: how thin what they have in
- * common is at most. More than `enough` need not be known exactly. */
-static double bound_of(search *s, uint32_t a, uint32_t b, double enough, bool *overlap)
-{
-    bounding w = {.a = &s->a.nodes[a], .b = &s->b.nodes[b]};
-    csg_vec3 offset = csg_clear_offset(&s->a, a, &s->b, b);
-    csg_vec3 origin_a = csg_clear_part_origin(s->a.part),
-             origin_b = csg_clear_part_origin(s->b.part);
-    double reach = w.a->cube.half + w.b->cube.half, widest = -INFINITY, square = 0, between[3];
-    memcpy(w.offset, (const double[3]){offset.x, offset.y, offset.z}, sizeof w.offset);
-    w.slack = 1e-15 * (csg_vec3_norm(origin_a) + csg_vec3_norm(origin_b) +
-                       4 * csg_vec3_norm(offset) + 4 * reach);
-    for (int k = 0; k < 3; k++) {
-        double gap = fabs(w.offset[k]) - reach;
-        widest = fmax(widest, gap);
-        between[k] = gap > 0 ? copysign(gap, w.offset[k]) : 0;
-        square += gap > 0 ? gap * gap : 0;
-    }
-    *overlap = widest <= w.slack;
-    w.bound = (*overlap ? widest : sqrt(square)) - w.slack;
-    s->looked++;
-    if (w.bound >= enough || (!w.a->pieces && !w.b->pieces))
-        return w.bound;
-    if (s->high < INFINITY) {
-        csg_vec3 d = csg_vec3_sub(s->nearest[1], s->nearest[0]);
-        look_along_vector(&w, d.x, d.y, d.z);
-    }
-    if (w.bound < enough)
-        look_along_normals(&w, w.a->pieces, -1);
-    if (w.bound < enough)
-        look_along_normals(&w, w.b->pieces, 1);
-    if (w.bound < enough)
-        look_along_vector(&w, w.offset[0], w.offset[1], w.offset[2]);
-    if (w.bound < enough)
-        look_along_vector(&w, between[0], between[1], between[2]);
-    return w.bound;
 }
 
 /* ---- points ------------------------------------------------------------------------------------
@@ -279,7 +203,10 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
     bool overlap;
     double enough = enough_of(s);
     candidate item = {.a = a, .b = b};
-    item.bound = fmax(parent_bound, bound_of(s, a, b, enough, &overlap));
+    csg_vec3 along =
+        s->high < INFINITY ? csg_vec3_sub(s->nearest[1], s->nearest[0]) : (csg_vec3){0, 0, 0};
+    s->looked++;
+    item.bound = fmax(parent_bound, csg_clear_between(&s->a, a, &s->b, b, along, enough, &overlap));
     bool in_a = s->a.nodes[a].cube.state == CSG_CELL_INSIDE,
          in_b = s->b.nodes[b].cube.state == CSG_CELL_INSIDE;
     if ((in_a || in_b) && !overlap)
@@ -334,7 +261,11 @@ static bool is_known(const search *s)
     bool is_decided = low > 0 && !straddles;
     if (is_decided && low >= t->enough)
         return true;
-    if (is_decided && low >= NEARLY * s->high && s->looked >= t->most_pairs / SHARE_DECIDED)
+    /* of a later pose it is enough that they are apart: it may be told as the worst then */
+    uint64_t share = t->enough < INFINITY      ? SHARE_LATER
+                     : low >= NEARLY * s->high ? SHARE_NEARLY
+                                               : SHARE_DECIDED;
+    if (is_decided && s->looked >= t->most_pairs / share)
         return true;
     if (straddles)
         return low >= s->high - t->tolerance / FINEST;

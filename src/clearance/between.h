@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ * How far apart what two cubes hold of two parts is.
+ */
+#ifndef CSG_CLEARANCE_BETWEEN_H
+#define CSG_CLEARANCE_BETWEEN_H
+
+#include "clearance/tree.h"
+
+/* At least; negative: how thin what they have in common is at most. More than `enough` need not be
+ * known exactly. line: a direction that may tell; zero: none. *overlap: whether the cubes do. */
+double csg_clear_between(const csg_clear_tree *a, uint32_t cube_a, const csg_clear_tree *b,
+                         uint32_t cube_b, csg_vec3 line, double enough, bool *overlap);
+
+#endif
