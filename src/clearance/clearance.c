@@ -421,6 +421,8 @@ static csgm_status plan(csgm_clearances *c, const csg_parts *parts)
     c->search_count = 0;
     for (uint32_t i = 0; i < c->pair_count && status == CSGM_OK; i++) {
         pair *p = &c->pairs[i];
+        if (i % 64 == 0 && csg_mesh_should_stop(&c->watch))
+            return csg_mesh_why_stopped(&c->watch);
         if (!is_there(c, p) || ask_boxes(c, p))
             continue;
         status = refresh(c, parts, p->a);
@@ -439,8 +441,6 @@ static csgm_status plan(csgm_clearances *c, const csg_parts *parts)
             c->search[c->search_count++] = i;
             p->found = (csgm_clear_pair){.state = CSGM_CLEAR_UNDECIDED, .gap = {0, INFINITY}};
         }
-        if (i % 64 == 0 && csg_mesh_should_stop(&c->watch))
-            status = csg_mesh_why_stopped(&c->watch);
     }
     return status;
 }

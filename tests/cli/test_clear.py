@@ -13,7 +13,7 @@ import cli
 
 TWO = """t = 0;
 part("a") cube(10);
-part("b") translate([12 - t, 3, 3]) cube(2);
+part("b") translate([12 - t, 2, 3]) cube([2, 6, 2]);
 """
 FOUR = TWO + """part("far") translate([1000, 0, 0]) sphere(1);
 part("on top") translate([2, 2, 10]) cylinder(h = 3, r = 1);
@@ -56,9 +56,9 @@ class Clear(unittest.TestCase):
         pairs = self.pairs(FOUR, "-D", "t=3", status=1)
         pair = pairs["a", "b"]
         self.assertEqual((pair["state"], pair["result"]), ("interfering", "not clear"))
-        self.assertTrue(0 < pair["volume"][0] <= 4 <= pair["volume"][1], pair["volume"])
+        self.assertTrue(0 < pair["volume"][0] <= 12 <= pair["volume"][1], pair["volume"])
         x, y, z = pair["inside"]
-        self.assertTrue(9 <= x <= 10 and 3 <= y <= 5 and 3 <= z <= 5)
+        self.assertTrue(9 <= x <= 10 and 2 <= y <= 8 and 3 <= z <= 5)
         text = self.run_on(FOUR, "-D", "t=3", status=1)
         self.assertIn('"a" and "b": interfering', text.stdout.decode())
         self.assertIn('"a" and "b" interfere', text.stderr)
