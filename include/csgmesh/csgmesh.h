@@ -925,6 +925,23 @@ CSGM_API csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_fiel
  * STL corners with equal position bits become one vertex. */
 CSGM_API csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
                                     csgm_mesh **out);
+
+/* What is in a mesh file, as csgm_mesh_read and csgm_mesh_inspect would find it. */
+typedef struct csgm_file_figures {
+    uint32_t struct_size; /* set by csgm_file_figures_default; do not touch */
+    bool has_normals, has_colors;
+    uint64_t vertices, triangles;
+    csgm_mesh_check check;
+} csgm_file_figures;
+
+/* All zeros but struct_size. */
+CSGM_API csgm_file_figures csgm_file_figures_default(void);
+
+/* Where the limit of memory is too narrow to read it, a binary STL or PLY is gone through several
+ * times, in runs: then four bytes for each triangle and a few MB are enough. */
+CSGM_API csgm_status csgm_mesh_file_inspect(csgm_context *context, const char *path,
+                                            csgm_format format, csgm_file_figures *out);
+
 /* The mesh as a file of this format gives it back: rounded, welded or split, and without what the
  * format does not keep. */
 CSGM_API csgm_status csgm_mesh_as_file(csgm_context *context, const csgm_mesh_view *mesh,

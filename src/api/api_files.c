@@ -150,6 +150,24 @@ csgm_status csgm_mesh_as_file(csgm_context *context, const csgm_mesh_view *mesh,
     return csg_io_as_file(context, mesh, format, &own, out);
 }
 
+csgm_file_figures csgm_file_figures_default(void)
+{
+    return (csgm_file_figures){.struct_size = sizeof(csgm_file_figures)};
+}
+
+csgm_status csgm_mesh_file_inspect(csgm_context *context, const char *path, csgm_format format,
+                                   csgm_file_figures *out)
+{
+    csgm_file_figures found = csgm_file_figures_default();
+    if (!context || !path || format >= CSGM_FORMAT_COUNT || !out ||
+        !csg_struct_is_known(out, sizeof *out))
+        return CSGM_ERR_ARGUMENT;
+    csgm_status status = csg_io_inspect(context, path, format, &found);
+    if (status == CSGM_OK)
+        csg_struct_deliver(out, &found);
+    return status;
+}
+
 csgm_status csgm_mesh_read(csgm_context *context, const char *path, csgm_format format,
                            csgm_mesh **out)
 {

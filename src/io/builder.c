@@ -6,18 +6,16 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
-#include "base/mesh_codes.h"
+#include "io/origin.h"
 #include "io/parts.h"
 
 static const uint16_t plain_material[2] = {CSG_MATERIAL_METALLIC, CSG_MATERIAL_ROUGHNESS};
 
-void csg_builder_init(csg_mesh_builder *b, csgm_context *context)
+void csg_builder_init(csg_mesh_builder *b, csgm_context *context, double from_s)
 {
     *b = (csg_mesh_builder){.context = context};
     memcpy(b->material, plain_material, sizeof b->material);
-    if (context->limits.timeout_s > 0)
-        b->deadline_s = csg_clock_now_s() + context->limits.timeout_s;
+    csg_read_clock_start(&b->clock, context, from_s);
     csg_arena_init(&b->names, &context->memory);
 }
 
@@ -31,7 +29,7 @@ void csg_builder_release(csg_mesh_builder *b)
     csg_memory_release(memory, b->indices, b->index_room * 3 * sizeof(uint32_t));
     csg_memory_release(memory, b->parts, b->part_room * sizeof *b->parts);
     csg_arena_reset(&b->names);
-    csg_builder_init(b, b->context);
+    csg_builder_init(b, b->context, 0);
 }
 
 /* array: where the pointer stands. */
@@ -78,13 +76,9 @@ static bool add_material(csg_mesh_builder *b)
 
 static bool has_time(csg_mesh_builder *b)
 {
-    enum { EACH = 1 << 10 };
-    if (++b->added % EACH != 0)
-        return !b->is_late;
-    b->is_cancelled = csg_context_is_cancelled(b->context);
-    if (b->is_cancelled || (b->deadline_s > 0 && csg_clock_now_s() > b->deadline_s))
-        b->failed = b->is_late = true;
-    return !b->is_late;
+    bool has = csg_read_has_time_for_step(&b->clock);
+    b->failed |= !has;
+    return has;
 }
 
 bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const float *normal,
@@ -96,9 +90,8 @@ bool csg_builder_vertex(csg_mesh_builder *b, const double position[3], const flo
         b->failed = true;
         return false;
     }
-    const double FARTHEST = 1e38; /* so are differences of two still floats */
     for (int k = 0; k < 3; k++)
-        b->too_far |= !(fabs(position[k]) <= FARTHEST);
+        b->too_far |= !csg_origin_is_near(position[k]);
     memcpy(b->positions + 3 * b->vertex_count, position, 3 * sizeof(double));
     if (!normal)
         b->lacks_normals = true;
@@ -186,27 +179,12 @@ void csg_builder_leave_out(csg_mesh_builder *b, const char *what)
 
 /* ---- the end ---------------------------------------------------------------------- */
 
-/* Zero when every position is a float already, or when the mesh is at least 1/16 as large as it is
- * far away: rounding then costs less than a millionth of its size. */
 static csgm_vec3 choose_origin(const csg_mesh_builder *b)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    bool exact = true;
-    for (size_t i = 0; i < 3 * b->vertex_count; i++) {
-        double p = b->positions[i];
-        exact &= (double)(float)p == p;
-        low[i % 3] = fmin(low[i % 3], p);
-        high[i % 3] = fmax(high[i % 3], p);
-    }
-    double size = 0, distance = 0, center[3];
-    for (int k = 0; k < 3; k++) {
-        center[k] = (double)(float)(low[k] / 2 + high[k] / 2);
-        size = fmax(size, high[k] - low[k]);
-        distance = fmax(distance, fabs(center[k]));
-    }
-    if (exact || !(distance > 16 * size))
-        return (csgm_vec3){0, 0, 0};
-    return (csgm_vec3){center[0], center[1], center[2]};
+    csg_origin_choice choice = csg_origin_begin();
+    for (size_t v = 0; v < b->vertex_count; v++)
+        csg_origin_add(&choice, b->positions + 3 * v);
+    return csg_origin_choose(&choice);
 }
 
 /* Triangles before the first part are one without a name. */
@@ -242,13 +220,7 @@ static csgm_status add_rest(const csg_mesh_builder *b, csgm_mesh *mesh)
 
 csgm_status csg_builder_why_failed(const csg_mesh_builder *b)
 {
-    if (!b->is_late)
-        return csg_context_no_memory(b->context);
-    if (b->is_cancelled)
-        return CSGM_CANCELLED;
-    csg_diag_plain(&b->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
-                   "reading the mesh takes more than %g seconds", b->context->limits.timeout_s);
-    return CSGM_ERR_LIMIT;
+    return b->clock.is_late ? csg_read_why_late(&b->clock) : csg_context_no_memory(b->context);
 }
 
 csgm_status csg_builder_finish(csg_mesh_builder *b, csgm_mesh **out)

@@ -5,6 +5,7 @@
 #ifndef CSG_IO_BUILDER_H
 #define CSG_IO_BUILDER_H
 
+#include "io/read_clock.h"
 #include "mesh/mesh.h"
 
 typedef struct csg_mesh_builder {
@@ -25,14 +26,12 @@ typedef struct csg_mesh_builder {
     csg_arena names;
     bool lacks_normals; /* a vertex came without: the mesh will have none */
     bool failed;        /* out of memory or of time; sticky */
-    bool is_late;       /* it is time */
-    bool is_cancelled;  /* and why */
-    double deadline_s;  /* by csg_clock_now_s, from the limits; 0 = none */
-    uint32_t added;     /* vertices and triangles; the clock is looked at now and then */
-    bool too_far;       /* a coordinate is beyond what floats hold; sticky */
+    csg_read_clock clock;
+    bool too_far; /* a coordinate is beyond what floats hold; sticky */
 } csg_mesh_builder;
 
-void csg_builder_init(csg_mesh_builder *builder, csgm_context *context);
+/* from_s: when the reading began, as csg_read_clock_start has it. */
+void csg_builder_init(csg_mesh_builder *builder, csgm_context *context, double from_s);
 void csg_builder_release(csg_mesh_builder *builder);
 
 /* Room ahead for counts that are known and believed. */

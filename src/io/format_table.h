@@ -5,6 +5,7 @@
 #define CSG_IO_FORMAT_TABLE_H
 
 #include "io/reader.h"
+#include "io/runs.h"
 #include "io/stream_kind.h"
 #include "io/writers.h"
 
@@ -19,6 +20,7 @@ typedef struct csg_format_row {
     csg_write_fn *write;           /* NULL: it is only read */
     csg_read_fn *read;             /* NULL: it is only written */
     const csg_stream_kind *stream; /* NULL: it is written from a whole mesh */
+    const csg_runs_kind *runs;     /* NULL: it is read as a whole */
     const csg_format_library *write_library, *read_library; /* NULL = needs none */
     uint32_t traits;         /* without those of the pointers above */
     const char *first_bytes; /* several, each terminated; an empty one ends them */

@@ -29,14 +29,18 @@ static const csg_format_library library_NONE = {"nothing", is_always_there};
 #define READER_READ_ONLY(name) csg_##name##_read
 #define STREAM_STREAMED(name) &csg_##name##_stream
 #define STREAM_WHOLE(name) NULL
+#define RUNS_IN_RUNS(name) &csg_##name##_runs
+#define RUNS_AT_ONCE(name) NULL
 
-#define CSG_FORMAT(ID, name_, title_, way, fill, writes_by, reads_by, traits_, bytes, remarks_)    \
+#define CSG_FORMAT(ID, name_, title_, way, fill, scan, writes_by, reads_by, traits_, bytes,        \
+                   remarks_)                                                                       \
     static const csg_format_row row_##ID = {.id = CSGM_FORMAT_##ID,                                \
                                             .name = #name_,                                        \
                                             .title = title_,                                       \
                                             .write = WRITER_##way(name_),                          \
                                             .read = READER_##way(name_),                           \
                                             .stream = STREAM_##fill(name_),                        \
+                                            .runs = RUNS_##scan(name_),                            \
                                             .write_library = &library_##writes_by,                 \
                                             .read_library = &library_##reads_by,                   \
                                             .traits = traits_,                                     \

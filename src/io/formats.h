@@ -30,6 +30,9 @@ csgm_status csg_io_write_fd(csgm_context *context, const csgm_mesh_view *mesh, i
 /* AUTO = by extension, and where that says nothing by the first bytes. */
 csgm_status csg_io_read(csgm_context *context, const char *path, csgm_format format,
                         csgm_mesh **out);
+/* What is in the file, as public csgm_mesh_file_inspect has it. out->struct_size stays. */
+csgm_status csg_io_inspect(csgm_context *context, const char *path, csgm_format format,
+                           csgm_file_figures *out);
 csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm_format format,
                            csgm_mesh **out);
 /* companion: as csg_input has it. */

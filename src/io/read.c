@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/mesh_codes.h"
 #include "base/trace.h"
 #include "io/format_table.h"
@@ -55,69 +56,104 @@ csgm_status csg_read_unsupported(const csg_input *input, const char *format, ...
  */
 
 typedef struct bytes {
-    csgm_context *context;
+    csg_read_clock clock;
     void *data;
     size_t count, room;
 } bytes;
 
-static csgm_status unreadable(csgm_context *context, const char *path, int error)
+csgm_status csg_read_failed(csgm_context *context, const char *path, int error)
 {
     csg_diag_plain(&context->diags, CSG_DIAG_MESH_UNREADABLE, path, NULL, "cannot read: %s",
                    strerror(error));
     return CSGM_ERR_IO;
 }
 
-/* First room for the size that the system tells, then as much as comes: pipes tell nothing. */
+/* Up to `most` bytes to `at`, at least one unless the file ends. */
+static int read_some(int fd, void *at, size_t most, size_t *got)
+{
+    ssize_t count;
+    do
+        count = read(fd, at, most);
+    while (count < 0 && errno == EINTR);
+    *got = count > 0 ? (size_t)count : 0;
+    return count < 0 ? errno : 0;
+}
+
+static bool append(bytes *b, const void *more, size_t count)
+{
+    if (!csg_memory_reserve(&b->clock.context->memory, &b->data, &b->room, b->count + count, 1))
+        return false;
+    memcpy((uint8_t *)b->data + b->count, more, count);
+    b->count += count;
+    return true;
+}
+
+/* First room for just the size that the system tells, then as much as comes: pipes tell nothing. In
+ * steps, between which the clock is looked at: ETIME where it is late. */
 static int read_all(int fd, bytes *b)
 {
+    enum { STEP = 16 << 20, BEYOND = 1 << 14 };
     struct stat state;
-    size_t step = 1 << 16;
-    if (fstat(fd, &state) == 0 && S_ISREG(state.st_mode) && state.st_size > 0)
-        step = (size_t)state.st_size + 1;
-    for (;;) {
-        if (b->room - b->count < 1 &&
-            !csg_memory_reserve(&b->context->memory, &b->data, &b->room, b->count + step, 1))
-            return ENOMEM;
-        step = 1 << 16;
-        ssize_t got = read(fd, (uint8_t *)b->data + b->count, b->room - b->count);
-        if (got == 0)
-            return 0;
-        if (got < 0 && errno != EINTR)
-            return errno;
-        b->count += got > 0 ? (size_t)got : 0;
+    uint8_t beyond[BEYOND]; /* the told size, so that room for it is all that most files take */
+    int error = 0;
+    size_t got = 1;
+    if (fstat(fd, &state) == 0 && S_ISREG(state.st_mode) && state.st_size > 0 &&
+        !csg_memory_reserve(&b->clock.context->memory, &b->data, &b->room, (size_t)state.st_size,
+                            1))
+        return ENOMEM;
+    while (!error && got) {
+        size_t left = b->room - b->count;
+        if (!csg_read_has_time(&b->clock))
+            return ETIME;
+        if (left) {
+            error = read_some(fd, (uint8_t *)b->data + b->count, left < STEP ? left : STEP, &got);
+            b->count += got;
+        } else {
+            error = read_some(fd, beyond, sizeof beyond, &got);
+            if (got && !append(b, beyond, got))
+                return ENOMEM;
+        }
     }
+    return error;
 }
 
 /* The array keeps its exact size, so that its owner can release it. */
 static csgm_status trim(bytes *b, uint8_t **out, size_t *size_bytes)
 {
+    csgm_context *context = b->clock.context;
     *size_bytes = b->count;
+    *out = b->data;
+    if (b->room == b->count)
+        return CSGM_OK;
     *out = NULL;
     if (b->count) {
-        *out = csg_memory_alloc(&b->context->memory, b->count);
+        *out = csg_memory_alloc(&context->memory, b->count);
         if (*out)
             memcpy(*out, b->data, b->count);
     }
-    csg_memory_release(&b->context->memory, b->data, b->room);
-    return *out || !b->count ? CSGM_OK : csg_context_no_memory(b->context);
+    csg_memory_release(&context->memory, b->data, b->room);
+    return *out || !b->count ? CSGM_OK : csg_context_no_memory(context);
 }
 
 csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint8_t **out,
                            size_t *size_bytes)
 {
-    bytes b = {.context = context};
+    bytes b = {.data = NULL};
+    csg_read_clock_start(&b.clock, context, 0);
     int own = fd < 0 ? open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY) : fd;
     if (fd < 0)
         csg_context_tell_file(context, path, own >= 0);
     if (own < 0)
-        return unreadable(context, path, errno);
+        return csg_read_failed(context, path, errno);
     int error = read_all(own, &b);
     if (fd < 0)
         close(own);
     if (!error)
         return trim(&b, out, size_bytes);
     csg_memory_release(&context->memory, b.data, b.room);
-    return error == ENOMEM ? csg_context_no_memory(context) : unreadable(context, path, error);
+    if (b.clock.is_late)
+        return csg_read_why_late(&b.clock);
+    return error == ENOMEM ? csg_context_no_memory(context) : csg_read_failed(context, path, error);
 }
 
 /* ---- the door --------------------------------------------------------------------- */
@@ -136,10 +172,10 @@ static csgm_status read_input(csg_input *input, csgm_format format, csgm_mesh **
     if (status)
         return status;
     csg_mesh_builder builder;
-    csg_builder_init(&builder, context);
+    csg_builder_init(&builder, context, input->started_s);
     status = row->read(input, &builder);
     if (!status && builder.too_far)
-        status = csg_read_broken(input, 0, "a coordinate is beyond the range of floats");
+        status = csg_read_broken(input, 0, CSG_READ_TOO_FAR);
     if (!status)
         status = csg_builder_finish(&builder, out);
     csg_builder_release(&builder);
@@ -149,7 +185,7 @@ static csgm_status read_input(csg_input *input, csgm_format format, csgm_mesh **
 csgm_status csg_io_read_memory(csgm_context *context, const uint8_t *data, size_t size_bytes,
                                const char *path, csgm_format format, csgm_mesh **out)
 {
-    csg_input input = {context, path, data, size_bytes, NULL};
+    csg_input input = {.context = context, .path = path, .bytes = data, .size_bytes = size_bytes};
     return read_input(&input, format, out);
 }
 
@@ -162,12 +198,13 @@ csgm_status csg_io_read_fd(csgm_context *context, int fd, const char *name, csgm
 csgm_status csg_io_read_both(csgm_context *context, int fd, const int *companion, const char *name,
                              csgm_format format, csgm_mesh **out)
 {
-    uint8_t *data;
-    size_t size;
+    uint8_t *data = NULL;
+    size_t size = 0;
+    double started_s = csg_clock_now_s();
     csgm_status status = csg_input_load(context, name, fd, &data, &size);
     if (status)
         return status;
-    csg_input input = {context, name, data, size, companion};
+    csg_input input = {context, name, data, size, companion, started_s};
     status = read_input(&input, format, out);
     csg_memory_release(&context->memory, data, size);
     return status;

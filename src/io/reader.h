@@ -17,6 +17,7 @@ typedef struct csg_input {
     size_t size_bytes;
     const int *companion; /* NULL: files that it names are looked for beside it; else the one, open,
                              that csg_companion.nameless was when it was written */
+    double started_s;     /* when its reading began, for --timeout, by csg_clock_now_s; 0 = now */
 } csg_input;
 
 /* CSGM_OK, or an error already reported; out of memory may be left to the builder. */
@@ -35,6 +36,14 @@ csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *f
     __attribute__((format(printf, 3, 4)));
 csgm_status csg_read_unsupported(const csg_input *input, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* Of a file that is read several times. */
+#define CSG_READ_SHORTER "the file has become shorter while it was read"
+
+#define CSG_READ_TOO_FAR "a coordinate is beyond the range of floats"
+
+/* Reports what the system said. CSGM_ERR_IO. */
+csgm_status csg_read_failed(csgm_context *context, const char *path, int error);
 
 /* All of a file's bytes from context->memory. fd < 0 = open the path. Reports failures. */
 csgm_status csg_input_load(csgm_context *context, const char *path, int fd, uint8_t **bytes,

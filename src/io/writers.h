@@ -6,6 +6,7 @@
 #ifndef CSG_IO_WRITERS_H
 #define CSG_IO_WRITERS_H
 
+#include "io/formats/stl.h"
 #include "io/sink.h"
 
 /* The program and its version, as files name who made them. */
@@ -35,7 +36,6 @@ void csg_ply_pack_vertices(uint8_t *at, const csgm_mesh_view *mesh, uint64_t fir
 void csg_ply_pack_faces(uint8_t *at, const uint32_t *indices, uint64_t count);
 
 /* Binary STL in pieces: 9 floats per triangle. */
-enum { CSG_STL_HEAD_BYTES = 84, CSG_STL_FACET_BYTES = 50 };
 csgm_status csg_stl_check(csgm_context *context, const char *file, const csgm_mesh_view *mesh);
 void csg_stl_pack_head(uint8_t head[CSG_STL_HEAD_BYTES], uint64_t triangle_count);
 void csg_stl_pack_corners(uint8_t *at, const float *corners, uint64_t count);

@@ -240,39 +240,57 @@ static double aspect_of(const csg_vec3 edge[3], double cross)
     return longest / cross;
 }
 
-/* Volume is summed over tetrahedra with the apex in the box's centre: small terms, small errors. */
+csg_mesh_measures csg_mesh_measures_begin(csg_box box)
+{
+    bool empty = !(box.min.x <= box.max.x);
+    return (csg_mesh_measures){.apex = empty ? csg_vec3_make(0, 0, 0) : csg_box_center(box),
+                               .cotangent = -INFINITY};
+}
+
+void csg_mesh_measures_add(csg_mesh_measures *m, csg_vec3 a, csg_vec3 b, csg_vec3 c)
+{
+    a = csg_vec3_sub(a, m->apex);
+    b = csg_vec3_sub(b, m->apex);
+    c = csg_vec3_sub(c, m->apex);
+    csg_vec3 edge[3] = {csg_vec3_sub(b, a), csg_vec3_sub(c, b), csg_vec3_sub(a, c)};
+    csg_vec3 normal = csg_vec3_cross(edge[0], edge[1]);
+    double cross = csg_vec3_norm(normal);
+    m->triangles++;
+    m->volume += csg_vec3_dot(a, normal) / 6;
+    m->area += cross / 2;
+    if (cross > 0) {
+        m->cotangent = fmax(m->cotangent, largest_cotangent(edge, cross));
+        m->aspect = fmax(m->aspect, aspect_of(edge, cross));
+    } else {
+        m->flat++;
+    }
+}
+
+void csg_mesh_measures_end(const csg_mesh_measures *m, csg_box box, csgm_vec3 origin,
+                           csgm_mesh_check *check)
+{
+    bool flat = m->flat > 0 || m->triangles == 0;
+    check->area = m->area;
+    check->volume = m->volume;
+    check->zero_area_triangles = m->flat;
+    check->min_angle_deg = flat ? 0 : csg_atan2(1, m->cotangent) * 180 / csg_acos(-1);
+    check->max_aspect = m->flat ? INFINITY : m->aspect;
+    check->bounds = box;
+    if (m->triangles)
+        check->bounds = (csg_box){csg_vec3_add(box.min, origin), csg_vec3_add(box.max, origin)};
+}
+
 static void measure(inspection *in)
 {
-    csgm_mesh_check *check = in->check;
     csg_box box = used_box(in);
-    csg_vec3 apex = in->sound_count ? csg_box_center(box) : csg_vec3_make(0, 0, 0);
-    double cotangent = -INFINITY, aspect = 0;
+    csg_mesh_measures measures = csg_mesh_measures_begin(box);
     for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
         const uint32_t *v = triangle_at(in, t);
-        if (!is_sound(in, v))
-            continue;
-        csg_vec3 a = csg_vec3_sub(position(in, v[0]), apex);
-        csg_vec3 b = csg_vec3_sub(position(in, v[1]), apex);
-        csg_vec3 c = csg_vec3_sub(position(in, v[2]), apex);
-        csg_vec3 edge[3] = {csg_vec3_sub(b, a), csg_vec3_sub(c, b), csg_vec3_sub(a, c)};
-        csg_vec3 normal = csg_vec3_cross(edge[0], edge[1]);
-        double cross = csg_vec3_norm(normal);
-        check->volume += csg_vec3_dot(a, normal) / 6;
-        check->area += cross / 2;
-        if (cross > 0) {
-            cotangent = fmax(cotangent, largest_cotangent(edge, cross));
-            aspect = fmax(aspect, aspect_of(edge, cross));
-        } else {
-            check->zero_area_triangles++;
-        }
+        if (is_sound(in, v))
+            csg_mesh_measures_add(&measures, position(in, v[0]), position(in, v[1]),
+                                  position(in, v[2]));
     }
-    bool flat = check->zero_area_triangles > 0 || in->sound_count == 0;
-    check->min_angle_deg = flat ? 0 : csg_atan2(1, cotangent) * 180 / csg_acos(-1);
-    check->max_aspect = check->zero_area_triangles ? INFINITY : aspect;
-    check->bounds = box;
-    if (in->sound_count)
-        check->bounds = (csg_box){csg_vec3_add(box.min, in->mesh->origin),
-                                  csg_vec3_add(box.max, in->mesh->origin)};
+    csg_mesh_measures_end(&measures, box, in->mesh->origin, in->check);
 }
 
 /* ---- memory -------------------------------------------------------------------------- */
@@ -301,15 +319,19 @@ static void release_arrays(csg_memory *memory, inspection *in)
     csg_memory_release(memory, in->fans, in->mesh->vertex_count * sizeof *in->fans);
 }
 
+csgm_status csg_mesh_too_large(csgm_context *context, uint64_t triangle_count)
+{
+    csg_diag_plain(&context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, NULL,
+                   "a mesh of %llu triangles is too large to be inspected",
+                   (unsigned long long)triangle_count);
+    return CSGM_ERR_LIMIT;
+}
+
 static csgm_status inspect_indexed(csgm_context *context, const csgm_mesh_view *mesh,
                                    csgm_mesh_check *out)
 {
-    if (mesh->triangle_count > UINT32_MAX / 3) {
-        csg_diag_plain(&context->diags, CSG_DIAG_MESH_TOO_LARGE, NULL, NULL,
-                       "a mesh of %llu triangles is too large to be inspected",
-                       (unsigned long long)mesh->triangle_count);
-        return CSGM_ERR_LIMIT;
-    }
+    if (mesh->triangle_count > UINT32_MAX / 3)
+        return csg_mesh_too_large(context, mesh->triangle_count);
     csgm_mesh_check check = {0};
     inspection in = {.mesh = mesh, .check = &check, .corner_count = 3 * mesh->triangle_count};
     if (!take_arrays(&context->memory, &in)) {

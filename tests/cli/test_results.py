@@ -191,10 +191,12 @@ class Statistics(cli.CliTest):
         self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
 
     def test_without_room_for_the_mesh(self):
-        """It goes to its file as it does without --stats, and what needs all of it is left out with a word."""
+        """It goes to its file as it does without --stats, and what needs all of it is left out with a word; the file is looked
+        at all the same, in runs."""
         self.write("a.txt", "sphere(10);\n")
         options = ("a.txt", "-r", "200", "-j", "2", "-o", "a.ply", "--max-memory")
-        whole = self.stats(*options, "1G")["mesh"]
+        wide = self.stats(*options, "1G")
+        whole = wide["mesh"]
         want = self.read("a.ply")
         result = self.run_in(*options, "8M", "--stats=s.json")
         self.assert_status(result, 0)
@@ -203,7 +205,12 @@ class Statistics(cli.CliTest):
         self.assertEqual(self.read("a.ply"), want)
         stats = json.loads(self.read("s.json"))
         self.assertEqual(stats["mesh"], {key: whole[key] for key in ("vertices", "triangles")})
-        self.assertEqual((stats["quality"], stats["files"]), ({}, [{"name": "a.ply", "format": "ply"}]))
+        self.assertIn(", but those of its file\n", result.stderr)
+        self.assertEqual((stats["quality"], stats["files"]), ({}, wide["files"]))
+        for name, limit in (("a.ply", "3M"), ("a.stl", "3M")):  # some 100 bytes for each of 270 000 triangles else
+            self.assert_status(self.run_in("a.txt", "-r", "200", "-j", "2", "-o", name, "-q"), 0)
+            self.assertEqual(self.run_in("info", "--json", name, "--max-memory", limit).stdout, self.run_in("info", "--json", name).stdout)
+        self.assert_refused(self.run_in("info", "a.stl", "--max-memory", "1M"), 2, "E0901")
         self.assertGreater(stats["octree"]["leaf_blocks"], 0)
 
     def test_what_needs_less_memory(self):

@@ -166,7 +166,7 @@ def format_rows():
     """(name, title, way, traits, remarks) of each mesh format."""
     for macro, fields in calls("src/io/formats.def"):
         if macro == "CSG_FORMAT":
-            _, name, title, way, _, _, _, traits, _, remarks = fields
+            _, name, title, way, _, _, _, _, traits, _, remarks = fields
             yield name, title, way, set(re.findall(r"\w+", traits)), remarks
 
 

@@ -112,6 +112,8 @@ bool collect(const draco::Mesh &mesh, const draco::PointAttribute *attribute, ui
              std::vector<float> *out)
 {
     const uint32_t count = mesh.num_points();
+    if (attribute->data_type() == draco::DT_BOOL)
+        return false; /* Draco takes any byte for one, which is undefined; no place is a truth */
     out->resize(static_cast<size_t>(count) * components);
     for (uint32_t i = 0; i < count; i++) {
         draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(i));

@@ -64,6 +64,24 @@ typedef struct csg_ply_header {
     csg_ply_element elements[CSG_PLY_MOST_ELEMENTS];
 } csg_ply_header;
 
+/* What is wrong with rows, whoever finds it. */
+#define CSG_PLY_NOT_FINITE "this vertex has a coordinate that is not finite"
+#define CSG_PLY_NO_FACE "expected a face"
+#define CSG_PLY_SHORT_FACE "this face has fewer vertices than it tells"
+#define CSG_PLY_NO_SUCH_VERTEX "this face names a vertex that does not exist"
+
+/* A number of binary data. */
+double csg_ply_decode(const uint8_t *at, csg_ply_type type, bool big_endian);
+/* Is it a list's count? */
+bool csg_ply_is_count(double value);
+/* Which slots the element fills, as bits; those of a place, a normal, a colour. */
+uint32_t csg_ply_slots(const csg_ply_element *element);
+enum {
+    CSG_PLY_PLACE = 7u << CSG_PLY_X,
+    CSG_PLY_NORMAL = 7u << CSG_PLY_NX,
+    CSG_PLY_COLOR = 7u << CSG_PLY_RED
+};
+
 /* Leaves the scan on the first byte of data. Reports what is broken. */
 csgm_status csg_ply_read_header(const csg_input *input, csg_text_scan *scan,
                                 csg_ply_header *header);

@@ -3,6 +3,8 @@
  */
 #include "io/formats/ply.h"
 
+#include <math.h>
+
 const uint8_t csg_ply_type_bytes[CSG_PLY_TYPES] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 typedef struct word {
@@ -128,6 +130,54 @@ static csgm_status set_format(const csg_input *input, csg_text_scan *scan, csg_p
                                (int)(name.length < 40 ? name.length : 40), name.text);
     return CSGM_OK;
 }
+
+/* ---- binary data and elements -------------------------------------------------------- */
+
+double csg_ply_decode(const uint8_t *at, csg_ply_type type, bool big_endian)
+{
+    uint64_t bits = 0;
+    unsigned size = csg_ply_type_bytes[type];
+    for (unsigned i = 0; i < size; i++)
+        bits |= (uint64_t)at[i] << 8 * (big_endian ? size - 1 - i : i);
+    float single;
+    double wide;
+    uint32_t low = (uint32_t)bits;
+    switch (type) {
+    case CSG_PLY_I8:
+        return (int8_t)low;
+    case CSG_PLY_I16:
+        return (int16_t)low;
+    case CSG_PLY_I32:
+        return (int32_t)low;
+    case CSG_PLY_F32:
+        memcpy(&single, &low, sizeof single);
+        return (double)single;
+    case CSG_PLY_F64:
+        memcpy(&wide, &bits, sizeof wide);
+        return wide;
+    case CSG_PLY_U8:
+    case CSG_PLY_U16:
+    case CSG_PLY_U32:
+    case CSG_PLY_TYPES:
+        break;
+    }
+    return low;
+}
+
+bool csg_ply_is_count(double value)
+{
+    return value >= 0 && value <= UINT32_MAX && value == floor(value);
+}
+
+uint32_t csg_ply_slots(const csg_ply_element *element)
+{
+    uint32_t slots = 0;
+    for (uint32_t i = 0; i < element->property_count; i++)
+        slots |= 1u << element->properties[i].slot;
+    return slots;
+}
+
+/* ---- the header ---------------------------------------------------------------------- */
 
 csgm_status csg_ply_read_header(const csg_input *input, csg_text_scan *scan, csg_ply_header *header)
 {

@@ -26,37 +26,6 @@ static csgm_status broken(const ply *p, const char *what)
 /* ---- one value ----------------------------------------------------------------------------------
  */
 
-static double decode(const uint8_t *at, csg_ply_type type, bool big_endian)
-{
-    uint64_t bits = 0;
-    unsigned size = csg_ply_type_bytes[type];
-    for (unsigned i = 0; i < size; i++)
-        bits |= (uint64_t)at[i] << 8 * (big_endian ? size - 1 - i : i);
-    float single;
-    double wide;
-    uint32_t low = (uint32_t)bits;
-    switch (type) {
-    case CSG_PLY_I8:
-        return (int8_t)low;
-    case CSG_PLY_I16:
-        return (int16_t)low;
-    case CSG_PLY_I32:
-        return (int32_t)low;
-    case CSG_PLY_F32:
-        memcpy(&single, &low, sizeof single);
-        return (double)single;
-    case CSG_PLY_F64:
-        memcpy(&wide, &bits, sizeof wide);
-        return wide;
-    case CSG_PLY_U8:
-    case CSG_PLY_U16:
-    case CSG_PLY_U32:
-    case CSG_PLY_TYPES:
-        break;
-    }
-    return low;
-}
-
 static bool next_value(ply *p, csg_ply_type type, double *value)
 {
     if (p->header.ascii) {
@@ -66,7 +35,7 @@ static bool next_value(ply *p, csg_ply_type type, double *value)
     size_t size = csg_ply_type_bytes[type];
     if ((size_t)(p->scan.end - p->scan.at) < size)
         return false;
-    *value = decode((const uint8_t *)p->scan.at, type, p->header.big_endian);
+    *value = csg_ply_decode((const uint8_t *)p->scan.at, type, p->header.big_endian);
     p->scan.at += size;
     return true;
 }
@@ -74,8 +43,7 @@ static bool next_value(ply *p, csg_ply_type type, double *value)
 static bool next_count(ply *p, const csg_ply_property *list, uint64_t *count)
 {
     double value;
-    if (!next_value(p, list->count_type, &value) || !(value >= 0 && value <= UINT32_MAX) ||
-        value != floor(value))
+    if (!next_value(p, list->count_type, &value) || !csg_ply_is_count(value))
         return false;
     *count = (uint64_t)value;
     return true;
@@ -109,15 +77,6 @@ static uint8_t to_color(double value, csg_ply_type type)
     }
 }
 
-/* Which slots the element fills, as bits. */
-static uint32_t slots_of(const csg_ply_element *element)
-{
-    uint32_t slots = 0;
-    for (uint32_t i = 0; i < element->property_count; i++)
-        slots |= 1u << element->properties[i].slot;
-    return slots;
-}
-
 static csgm_status read_vertex(ply *p, const csg_ply_element *element, bool normals, bool colors)
 {
     double position[3] = {0};
@@ -141,7 +100,7 @@ static csgm_status read_vertex(ply *p, const csg_ply_element *element, bool norm
             color[property->slot - CSG_PLY_RED] = to_color(value, property->type);
     }
     if (!isfinite(position[0]) || !isfinite(position[1]) || !isfinite(position[2]))
-        return broken(p, "this vertex has a coordinate that is not finite");
+        return broken(p, CSG_PLY_NOT_FINITE);
     csg_builder_vertex(p->builder, position, normals ? normal : NULL, colors ? color : NULL);
     return CSGM_OK;
 }
@@ -151,13 +110,13 @@ static csgm_status read_corners(ply *p, const csg_ply_property *property)
     uint64_t count;
     uint32_t fan[2] = {0, 0};
     if (!next_count(p, property, &count))
-        return broken(p, "expected a face");
+        return broken(p, CSG_PLY_NO_FACE);
     for (uint64_t i = 0; i < count; i++) {
         double index;
         if (!next_value(p, property->type, &index))
-            return broken(p, "this face has fewer vertices than it tells");
+            return broken(p, CSG_PLY_SHORT_FACE);
         if (!(index >= 0 && index < (double)p->vertex_count) || index != floor(index))
-            return broken(p, "this face names a vertex that does not exist");
+            return broken(p, CSG_PLY_NO_SUCH_VERTEX);
         if (i >= 2 && !csg_builder_triangle(p->builder, fan[0], fan[1], (uint32_t)index))
             return CSGM_OK;
         fan[i != 0] = (uint32_t)index;
@@ -174,7 +133,7 @@ static csgm_status read_row(ply *p, const csg_ply_element *element)
             if (status)
                 return status;
         } else if (!skip_property(p, property)) {
-            return broken(p, element->kind == CSG_PLY_FACE ? "expected a face" : "expected a row");
+            return broken(p, element->kind == CSG_PLY_FACE ? CSG_PLY_NO_FACE : "expected a row");
         }
     }
     return CSGM_OK;
@@ -197,8 +156,8 @@ static bool fits(const ply *p, const csg_ply_element *element)
 
 static csgm_status read_element(ply *p, const csg_ply_element *element)
 {
-    const uint32_t xyz = 7u << CSG_PLY_X, nxyz = 7u << CSG_PLY_NX, rgb = 7u << CSG_PLY_RED;
-    uint32_t slots = slots_of(element);
+    const uint32_t xyz = CSG_PLY_PLACE, nxyz = CSG_PLY_NORMAL, rgb = CSG_PLY_COLOR;
+    uint32_t slots = csg_ply_slots(element);
     bool is_vertex = element->kind == CSG_PLY_VERTEX;
     csgm_status status = CSGM_OK;
     if (!fits(p, element))

@@ -6,6 +6,8 @@
 #include <math.h>
 
 #include "base/places.h"
+#include "io/formats/stl.h"
+#include "io/runs.h"
 #include "io/text/scan.h"
 
 /* ---- welding ---------------------------------------------------------------------- */
@@ -48,33 +50,111 @@ static bool add_facet(weld *w, double corners[3][3])
 
 /* ---- binary ----------------------------------------------------------------------- */
 
-enum { HEADER = 84, FACET = 50 };
+/* The corners of a facet; false: one is not finite. */
+static bool unpack_facet(const uint8_t *at, float corners[9])
+{
+    bool finite = true;
+    for (int k = 0; k < 9; k++) {
+        uint32_t bits = csg_load_u32(at + CSG_STL_NORMAL_BYTES + 4 * k);
+        memcpy(&corners[k], &bits, sizeof bits);
+        finite &= isfinite(corners[k]) != 0;
+    }
+    return finite;
+}
+
+static csgm_status not_finite(const csg_input *input, uint64_t facet)
+{
+    return csg_read_broken(input, 0,
+                           "triangle %llu at byte %llu has a coordinate that is not finite",
+                           (unsigned long long)facet,
+                           (unsigned long long)(CSG_STL_HEAD_BYTES + facet * CSG_STL_FACET_BYTES));
+}
 
 static csgm_status read_binary(csg_input *input, weld *w)
 {
     uint64_t count = csg_load_u32(input->bytes + 80);
-    if (count > (input->size_bytes - HEADER) / FACET)
+    uint64_t most = (input->size_bytes - CSG_STL_HEAD_BYTES) / CSG_STL_FACET_BYTES;
+    if (count > most)
         return csg_read_broken(
             input, 0, "the file ends too soon: it says %llu triangles and has room for %llu",
-            (unsigned long long)count, (unsigned long long)((input->size_bytes - HEADER) / FACET));
-    const uint8_t *at = input->bytes + HEADER;
-    for (uint64_t i = 0; i < count; i++, at += FACET) {
+            (unsigned long long)count, (unsigned long long)most);
+    const uint8_t *at = input->bytes + CSG_STL_HEAD_BYTES;
+    for (uint64_t i = 0; i < count; i++, at += CSG_STL_FACET_BYTES) {
+        float values[9];
         double corners[3][3];
-        for (int k = 0; k < 9; k++) {
-            uint32_t bits = csg_load_u32(at + 12 + 4 * k);
-            float value;
-            memcpy(&value, &bits, sizeof value);
-            if (!isfinite(value))
-                return csg_read_broken(
-                    input, 0, "triangle %llu at byte %llu has a coordinate that is not finite",
-                    (unsigned long long)i, (unsigned long long)(at - input->bytes));
-            corners[k / 3][k % 3] = (double)value;
-        }
+        if (!unpack_facet(at, values))
+            return not_finite(input, i);
+        for (int k = 0; k < 9; k++)
+            corners[k / 3][k % 3] = (double)values[k];
         if (!add_facet(w, corners))
             return CSGM_OK; /* out of memory: csg_builder_finish reports it */
     }
     return CSGM_OK;
 }
+
+/* Is it binary, and not text? By its first 84 bytes, of which there are `have`, and its size. */
+static bool is_binary(const uint8_t *bytes, size_t have, uint64_t size)
+{
+    bool text = have >= 5 && memcmp(bytes, "solid", 5) == 0;
+    return have >= CSG_STL_HEAD_BYTES &&
+           (!text ||
+            size == CSG_STL_HEAD_BYTES + CSG_STL_FACET_BYTES * (uint64_t)csg_load_u32(bytes + 80));
+}
+
+/* ---- in runs ---------------------------------------------------------------------- */
+
+typedef struct stl_runs {
+    uint64_t count, next;
+} stl_runs;
+
+static csgm_status begin_runs(csg_runs *r)
+{
+    stl_runs *s = r->state;
+    csgm_status status;
+    const uint8_t *head = csg_runs_take(r, CSG_STL_HEAD_BYTES, &status);
+    if (status)
+        return status;
+    if (!head || !is_binary(head, CSG_STL_HEAD_BYTES, r->size_bytes))
+        return CSGM_ERR_UNSUPPORTED;
+    s->count = csg_load_u32(head + 80);
+    if (s->count > (r->size_bytes - CSG_STL_HEAD_BYTES) / CSG_STL_FACET_BYTES)
+        return CSGM_ERR_UNSUPPORTED;
+    return CSGM_OK;
+}
+
+static csgm_status rewind_runs(csg_runs *r)
+{
+    stl_runs *s = r->state;
+    csg_runs_seek(r, CSG_STL_HEAD_BYTES);
+    s->next = 0;
+    return CSGM_OK;
+}
+
+static csgm_status next_of_runs(csg_runs *r, bool places, csg_runs_triangle *triangle,
+                                bool *is_there)
+{
+    stl_runs *s = r->state;
+    const csg_input input = {.context = r->context, .path = r->path};
+    csgm_status status;
+    float values[9];
+    *is_there = s->next < s->count;
+    if (!*is_there)
+        return CSGM_OK;
+    const uint8_t *at = csg_runs_take(r, CSG_STL_FACET_BYTES, &status);
+    if (!at)
+        return status ? status : csg_read_broken(&input, 0, CSG_READ_SHORTER);
+    if (!unpack_facet(at, values))
+        return not_finite(&input, s->next);
+    s->next++;
+    for (int k = 0; k < 9; k++)
+        triangle->at[k / 3][k % 3] = values[k] + 0.0F;
+    return CSGM_OK;
+}
+
+const csg_runs_kind csg_stl_runs = {.state_bytes = sizeof(stl_runs),
+                                    .begin = begin_runs,
+                                    .rewind = rewind_runs,
+                                    .next = next_of_runs};
 
 /* ---- ASCII ------------------------------------------------------------------------ */
 
@@ -147,11 +227,9 @@ csgm_status csg_stl_read(csg_input *input, csg_mesh_builder *builder)
     weld w = {.builder = builder, .table = {.memory = &builder->context->memory}};
     csgm_status status;
     uint64_t size = input->size_bytes;
-    bool text = size >= 5 && memcmp(input->bytes, "solid", 5) == 0;
-    if (size >= HEADER &&
-        (!text || size == HEADER + FACET * (uint64_t)csg_load_u32(input->bytes + 80)))
+    if (is_binary(input->bytes, input->size_bytes, size))
         status = read_binary(input, &w);
-    else if (text)
+    else if (size >= 5 && memcmp(input->bytes, "solid", 5) == 0)
         status = read_ascii(input, &w);
     else
         status =

@@ -109,7 +109,8 @@ static int put_json(cli_app *app, const conversion *c, cli_json *json)
         cli_json_string(json, NULL, app->options->outputs.items[i]);
     cli_json_end(json, ']');
     cli_json_count(json, "triangles_read", before.triangle_count);
-    cli_facts_mesh_json(json, &c->view, &check);
+    csgm_file_figures mesh = cli_facts_of_mesh(&c->view, &check);
+    cli_facts_mesh_json(json, &mesh);
     if (c->made) {
         cli_json_count(json, "triangles_mended", c->stats.mended_triangles);
         cli_json_open(json, "distance", '[');

@@ -21,10 +21,22 @@ static bool is_manifold(const csgm_mesh_check *check)
            check->degenerate_triangles == 0 && check->index_out_of_range == 0;
 }
 
-void cli_facts_mesh_json(cli_json *json, const csgm_mesh_view *view, const csgm_mesh_check *check)
+csgm_file_figures cli_facts_of_mesh(const csgm_mesh_view *view, const csgm_mesh_check *check)
 {
-    cli_json_count(json, "vertices", view->vertex_count);
-    cli_json_count(json, "triangles", view->triangle_count);
+    csgm_file_figures mesh = csgm_file_figures_default();
+    mesh.vertices = view->vertex_count;
+    mesh.triangles = view->triangle_count;
+    mesh.has_normals = view->normals != NULL;
+    mesh.has_colors = view->colors != NULL;
+    mesh.check = *check;
+    return mesh;
+}
+
+void cli_facts_mesh_json(cli_json *json, const csgm_file_figures *mesh)
+{
+    const csgm_mesh_check *check = &mesh->check;
+    cli_json_count(json, "vertices", mesh->vertices);
+    cli_json_count(json, "triangles", mesh->triangles);
     cli_json_count(json, "components", check->components);
     cli_json_integer(json, "euler", check->euler);
     if (is_manifold(check))
@@ -154,11 +166,12 @@ static void print_soundness(const csgm_mesh_check *check)
     putchar('\n');
 }
 
-void cli_facts_mesh_text(const csgm_mesh_view *view, const csgm_mesh_check *check)
+void cli_facts_mesh_text(const csgm_file_figures *mesh)
 {
-    printf("  vertices     %" PRIu64 "%s%s\n", view->vertex_count,
-           view->normals ? ", with normals" : "", view->colors ? ", with colours" : "");
-    printf("  triangles    %" PRIu64 "\n", view->triangle_count);
+    const csgm_mesh_check *check = &mesh->check;
+    printf("  vertices     %" PRIu64 "%s%s\n", mesh->vertices,
+           mesh->has_normals ? ", with normals" : "", mesh->has_colors ? ", with colours" : "");
+    printf("  triangles    %" PRIu64 "\n", mesh->triangles);
     print_bounds(check->bounds);
     printf("  area         %.9g\n", check->area);
     printf("  volume       %.9g%s\n", check->volume,

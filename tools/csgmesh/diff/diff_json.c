@@ -19,7 +19,8 @@ static void put_figures(cli_json *json, const char *key, const csgm_diff_figures
 {
     csgm_mesh_view counts = {.vertex_count = f->vertices, .triangle_count = f->triangles};
     cli_json_open(json, key, '{');
-    cli_facts_mesh_json(json, &counts, &f->check);
+    csgm_file_figures mesh = cli_facts_of_mesh(&counts, &f->check);
+    cli_facts_mesh_json(json, &mesh);
     cli_json_bool(json, "closed", f->is_closed);
     cli_json_count(json, "parts", f->parts);
     cli_json_bool(json, "normals", f->has_normals);

@@ -68,7 +68,8 @@ static void put_mesh(cli_json *json, const cli_work *work, const cli_report *rep
     cli_json_open(json, "mesh", '{');
     if (report->is_checked) {
         csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
-        cli_facts_mesh_json(json, &view, &report->check);
+        csgm_file_figures mesh = cli_facts_of_mesh(&view, &report->check);
+        cli_facts_mesh_json(json, &mesh);
     } else {
         cli_json_count(json, "vertices", report->vertices);
         cli_json_count(json, "triangles", report->triangles);
@@ -111,36 +112,29 @@ static void put_times(cli_json *json, const cli_work *work, const cli_report *re
     cli_json_end(json, '}');
 }
 
-/* What each file holds, by reading it: formats round, weld and split. Without the room for that it
- * has its name alone. false: it cannot be read (reported). */
+/* What each file holds, by reading it: formats round, weld and split. Without the room for that,
+ * nor for going through it in runs, it has its name alone. false: it cannot be read (reported). */
 static bool put_file(cli_json *json, cli_app *app, size_t index)
 {
     const char *path = app->options->outputs.items[index];
     csgm_format format = cli_outputs_format(app->options, index);
-    csgm_mesh *mesh;
-    csgm_mesh_view view = {.positions = NULL};
-    csgm_mesh_check check;
+    csgm_file_figures mesh = csgm_file_figures_default();
     struct stat info;
     if (strcmp(path, "-") == 0 || !csgm_format_available(format, true) ||
         (stat(path, &info) == 0 && !S_ISREG(info.st_mode)))
         return true;
-    csgm_status status = csgm_mesh_read(app->context, path, format, &mesh);
-    if (status == CSGM_OK) {
-        view = csgm_mesh_get_view(mesh);
-        status = csgm_mesh_inspect(app->context, &view, &check);
-    }
+    csgm_status status = csgm_mesh_file_inspect(app->context, path, format, &mesh);
     if (status == CSGM_OK || status == CSGM_ERR_MEMORY) {
         cli_json_open(json, NULL, '{');
         cli_json_string(json, "name", path);
         cli_json_string(json, "format", csgm_format_name(format));
         if (status == CSGM_OK)
-            cli_facts_mesh_json(json, &view, &check);
+            cli_facts_mesh_json(json, &mesh);
         cli_json_end(json, '}');
     } else {
         cli_console_say(&app->console, CSGM_ERROR, NULL,
                         "--stats: %s has been written and cannot be read back", path);
     }
-    csgm_mesh_destroy(mesh);
     return status == CSGM_OK || status == CSGM_ERR_MEMORY;
 }
 
@@ -185,17 +179,23 @@ static csgm_status measure(cli_app *app, const cli_work *work, cli_report *repor
 int cli_statistics_write(cli_app *app, const cli_work *work, cli_report *report)
 {
     cli_text text;
+    bool mesh_is_too_large = app->ran_out_of_memory;
     app->does_without_memory = true;
     csgm_status status = measure(app, work, report);
+    mesh_is_too_large |= app->ran_out_of_memory;
+    app->ran_out_of_memory = false;
     bool all_read =
         status != CSGM_OK || !cli_text_open(&text) || put_statistics(text.out, app, work, report);
+    bool files_are_too_large = app->ran_out_of_memory;
+    app->ran_out_of_memory |= mesh_is_too_large;
     app->does_without_memory = false;
     if (status != CSGM_OK)
         return cli_exit_status(status);
     if (app->ran_out_of_memory)
         cli_console_say(&app->console, CSGM_WARNING, "raise the limit with --max-memory",
                         "--stats: area, volume, topology and angles of a mesh that is too large "
-                        "for the memory were not found out");
+                        "for the memory were not found out%s",
+                        files_are_too_large ? "" : ", but those of its file");
     int written = cli_text_write(app, &text, app->options->stats);
     return all_read ? written : CLI_TROUBLE;
 }
