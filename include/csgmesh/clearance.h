@@ -36,8 +36,8 @@ typedef struct csgm_clear_options {
     size_t part_count;
     uint64_t most_pairs;  /* > 0, default 2^20: of cubes that are looked at for one pair of parts at
                              one pose, a quarter of it once they are known to be apart, a 16th where
-                             the gap is known to a tenth by then, a 64th at later poses; about a
-                             million a second */
+                             the gap is known to a tenth by then, or at later poses; about a million
+                             a second */
     csgm_monitor monitor; /* stage CSGM_STAGE_MEASURE */
 } csgm_clear_options;
 

@@ -28,7 +28,7 @@ enum {
     FINEST = 16 /* of T */
 };
 /* Of what may be looked at: for how far apart they are, once that they are is known. */
-enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16, SHARE_LATER = 64 };
+enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16 };
 static const double NEARLY = 0.9;
 
 typedef struct candidate {
@@ -262,9 +262,8 @@ static bool is_known(const search *s)
     if (is_decided && low >= t->enough)
         return true;
     /* of a later pose it is enough that they are apart: it may be told as the worst then */
-    uint64_t share = t->enough < INFINITY      ? SHARE_LATER
-                     : low >= NEARLY * s->high ? SHARE_NEARLY
-                                               : SHARE_DECIDED;
+    bool is_nearly = low >= NEARLY * s->high || t->enough < INFINITY;
+    uint64_t share = is_nearly ? SHARE_NEARLY : SHARE_DECIDED;
     if (is_decided && s->looked >= t->most_pairs / share)
         return true;
     if (straddles)
