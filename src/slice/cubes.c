@@ -98,6 +98,24 @@ static double half_of(const csg_slice_plan *plan, const place *p)
     return 0.5 * p->edge * plan->step * (1 + 1e-6) + (double)plan->rounding / 16;
 }
 
+/* The slab's layers from *first to below *end run through the cube. */
+static void layers_of(const csg_slice_cubes *c, const place *p, size_t *first, size_t *end)
+{
+    const csg_slice_plan *plan = c->plan;
+    double from = plan->corner[2] + p->at[2] * plan->step;
+    double to = plan->corner[2] + (p->at[2] + (double)p->edge) * plan->step;
+    size_t low = csg_slice_layers_below(plan, from), high = csg_slice_layers_below(plan, to);
+    *first = low > c->first_layer ? low : c->first_layer;
+    *end = high < c->end_layer ? high : c->end_layer;
+}
+
+static bool has_layers(const csg_slice_cubes *c, const place *p)
+{
+    size_t first, end;
+    layers_of(c, p, &first, &end);
+    return first < end;
+}
+
 /* What planes say of a box in their cube, given by its middle and half edges; *open: how many of
  * them cut it. */
 static csg_truth state_in_box(const known_planes *known, const double middle[3],
@@ -122,18 +140,18 @@ static csg_truth state_in_box(const known_planes *known, const double middle[3],
 
 /* In a cube whose planes are good, or one within it. Only its layers count: a piece that ends
  * between two of them, such as the face of a box on its back, is in none. */
-static csg_slice_kind look_by_planes(const csg_slice_plan *plan, const place *p,
+static csg_slice_kind look_by_planes(const csg_slice_cubes *c, const place *p,
                                      const known_planes *known)
 {
+    const csg_slice_plan *plan = c->plan;
+    size_t first, end;
     double middle[3], half[3];
     csg_slice_kind kind = CSG_SLICE_EMPTY;
     place_of_middle(plan, p, middle);
     half[0] = half[1] = half_of(plan, p);
     half[2] = (double)plan->rounding / 16;
-    double from = plan->corner[2] + p->at[2] * plan->step;
-    double to = plan->corner[2] + (p->at[2] + (double)p->edge) * plan->step;
-    for (size_t i = csg_slice_layers_below(plan, from); i < plan->layer_count && plan->z[i] < to;
-         i++) {
+    layers_of(c, p, &first, &end);
+    for (size_t i = first; i < end; i++) {
         int open;
         middle[2] = plan->z[i];
         if (state_in_box(known, middle, half, &open) != CSG_TRUTH_OPEN)
@@ -164,7 +182,7 @@ static csg_slice_kind look_at(csg_slice_cubes *c, const place *p, const csg_tape
     known->are_good = are_good(halves, 2 * half, plan->tolerance);
     if (!known->are_good)
         return open;
-    return halves->plane_count == 1 ? CSG_SLICE_SMOOTH : look_by_planes(plan, p, known);
+    return halves->plane_count == 1 ? CSG_SLICE_SMOOTH : look_by_planes(c, p, known);
 }
 
 /* ---- the tree ----------------------------------------------------------------------------------
@@ -180,13 +198,6 @@ static bool is_beyond(const csg_slice_plan *plan, const place *p)
             return true;
     }
     return false;
-}
-
-static bool has_layers(const csg_slice_plan *plan, const place *p)
-{
-    double from = plan->corner[2] + p->at[2] * plan->step;
-    double to = plan->corner[2] + (p->at[2] + (double)p->edge) * plan->step;
-    return csg_slice_layers_below(plan, from) < csg_slice_layers_below(plan, to);
 }
 
 static bool keep_tape(csg_slice_cubes *c, const csg_tape *tape, uint32_t *index)
@@ -265,9 +276,9 @@ static bool divide_by_planes(csg_slice_cubes *c, uint32_t parent, const place *p
     uint32_t first = c->cubes[parent].first;
     for (uint32_t o = 0; o < CSG_OCTANTS; o++) {
         place child = octant_of(p, (int)o);
-        if (is_beyond(c->plan, &child) || !has_layers(c->plan, &child))
+        if (is_beyond(c->plan, &child) || !has_layers(c, &child))
             continue;
-        csg_slice_kind kind = look_by_planes(c->plan, &child, known);
+        csg_slice_kind kind = look_by_planes(c, &child, known);
         c->cubes[first + o].kind = (uint8_t)kind;
         c->cubes[first + o].tape = c->cubes[parent].tape;
         if (kind == CSG_SLICE_SPLIT && !divide_by_planes(c, first + o, &child, known))
@@ -276,15 +287,13 @@ static bool divide_by_planes(csg_slice_cubes *c, uint32_t parent, const place *p
     return true;
 }
 
-static bool divide(csg_slice_cubes *c, uint32_t parent, const place *p, uint32_t slab)
+static bool divide(csg_slice_cubes *c, uint32_t parent, const place *p)
 {
     const csg_slice_plan *plan = c->plan;
     bool skip[CSG_OCTANTS];
     for (int o = 0; o < CSG_OCTANTS; o++) {
         place child = octant_of(p, o);
-        bool is_other = child.level <= plan->slab_level &&
-                        child.at[2] / child.edge != slab >> (plan->slab_level - child.level);
-        skip[o] = is_other || is_beyond(plan, &child) || !has_layers(plan, &child);
+        skip[o] = is_beyond(plan, &child) || !has_layers(c, &child);
     }
     if (!add_octants(c, parent) || !find_octants(c, parent, p, skip))
         return false;
@@ -295,27 +304,29 @@ static bool divide(csg_slice_cubes *c, uint32_t parent, const place *p, uint32_t
         csg_slice_cube *cube = &c->cubes[first + o];
         if (cube->kind == CSG_SLICE_EMPTY)
             continue;
-        if (child.level >= plan->slab_level)
+        if (child.level + CSG_SLICE_LEVELS_ABOVE >= plan->slab_level)
             cube->kind = (uint8_t)look_at(c, &child, &c->tapes[cube->tape], &known);
         c->unsettled += cube->kind == CSG_SLICE_UNSETTLED;
         if (cube->kind == CSG_SLICE_SPLIT &&
             !(known.are_good ? divide_by_planes(c, first + o, &child, &known)
-                             : divide(c, first + o, &child, slab)))
+                             : divide(c, first + o, &child)))
             return false;
     }
     return true;
 }
 
-bool csg_slice_cubes_make(csg_slice_cubes *c, uint32_t slab)
+bool csg_slice_cubes_make(csg_slice_cubes *c, size_t first_layer, size_t end_layer)
 {
     const csg_slice_plan *plan = c->plan;
     const place root = {.edge = 1u << plan->levels};
     csg_arena_reset(&c->arena);
     c->count = c->tape_count = 0;
     c->unsettled = 0;
+    c->first_layer = first_layer;
+    c->end_layer = end_layer;
     if (!csg_memory_reserve(&plan->context->memory, (void **)&c->cubes, &c->capacity, 1,
                             sizeof *c->cubes))
         return false;
     c->cubes[c->count++] = (csg_slice_cube){.kind = CSG_SLICE_SPLIT};
-    return keep_tape(c, &plan->field->tape, &c->cubes[0].tape) && divide(c, 0, &root, slab);
+    return keep_tape(c, &plan->field->tape, &c->cubes[0].tape) && divide(c, 0, &root);
 }

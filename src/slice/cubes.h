@@ -39,6 +39,7 @@ typedef struct csg_slice_cubes {
     size_t tape_count, tape_capacity;
     csg_slice_cube *cubes; /* the first is the root */
     size_t count, capacity;
+    size_t first_layer, end_layer; /* of the slab */
     uint64_t unsettled;
     float *scratch;
     size_t scratch_floats;
@@ -48,8 +49,8 @@ typedef struct csg_slice_cubes {
 bool csg_slice_cubes_init(csg_slice_cubes *cubes, const csg_slice_plan *plan);
 void csg_slice_cubes_release(csg_slice_cubes *cubes);
 
-/* Of slab number `slab`, from below; those of the last slab are gone. False: out of memory, or it
- * was stopped. */
-bool csg_slice_cubes_make(csg_slice_cubes *cubes, uint32_t slab);
+/* Of the slab of these layers; those of the last slab are gone. False: out of memory, or it was
+ * stopped. */
+bool csg_slice_cubes_make(csg_slice_cubes *cubes, size_t first_layer, size_t end_layer);
 
 #endif

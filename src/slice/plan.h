@@ -13,6 +13,7 @@ enum {
     CSG_SLICE_DEEPEST = 20,          /* levels of cubes below the root: corners are floats */
     CSG_SLICE_SLAB_LEVELS = 9,       /* levels down to a slab at most */
     CSG_SLICE_SLAB_LAYERS = 16,      /* in a slab at least, or all */
+    CSG_SLICE_LEVELS_ABOVE = 2,      /* of cubes that reach beyond their slab and may stay whole */
     CSG_SLICE_CUBES_IN_TOLERANCE = 3 /* a smallest square's diagonal is below half the tolerance */
 };
 

@@ -97,7 +97,7 @@ static bool make_slab(void *user, uint32_t worker, size_t index)
     slab->end = csg_slice_layers_below(&job->plan, job->plan.corner[2] + (number + 1.0) * edge);
     if (slab->first == slab->end)
         return true;
-    bool done = csg_slice_cubes_make(&w->cubes, number);
+    bool done = csg_slice_cubes_make(&w->cubes, slab->first, slab->end);
     slab->unsettled = w->cubes.unsettled;
     for (size_t i = slab->first; i < slab->end && done; i++)
         done = !csg_mesh_should_stop(job->watch) && put_layer(job, w, slab, i);
