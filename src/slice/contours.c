@@ -8,11 +8,11 @@
 
 #include "field/point.h"
 
-enum { CORNERS = 4, SQUARES_AT_ONCE = CSG_BATCH / CORNERS, NOTHING = -1 };
+enum { CORNERS = 4, NOTHING = -1 };
 
 struct csg_slice_square {
     uint32_t x, y, edge; /* in steps */
-    uint32_t tape;
+    uint32_t tape, plane;
     uint32_t first, count; /* of its crossings, into of_squares */
     bool inside[CORNERS];  /* bit 0 of a corner's number: x, bit 1: y */
     bool is_smooth, has_corner;
@@ -81,38 +81,65 @@ static bool list_squares(const layer_path *path, uint32_t index, int level, uint
                             c->square_count + 1, sizeof *c->squares))
         return false;
     cube->square = (uint32_t)c->square_count;
-    c->squares[c->square_count++] = (csg_slice_square){.x = x,
-                                                       .y = y,
-                                                       .edge = edge,
-                                                       .tape = cube->tape,
-                                                       .is_smooth = cube->kind == CSG_SLICE_SMOOTH};
+    c->squares[c->square_count++] =
+        (csg_slice_square){.x = x,
+                           .y = y,
+                           .edge = edge,
+                           .tape = cube->tape,
+                           .plane = cube->kind == CSG_SLICE_SMOOTH ? cube->first : 0,
+                           .is_smooth = cube->kind == CSG_SLICE_SMOOTH};
     return true;
 }
 
+/* Corners whose signs are asked of the field, of squares with one tape. */
+typedef struct corner_batch {
+    float x[3][CSG_BATCH], f[CSG_BATCH];
+    bool *inside[CSG_BATCH];
+    uint32_t tape;
+    size_t count;
+} corner_batch;
+
+static void ask_corners(csg_slice_contours *c, corner_batch *b)
+{
+    for (size_t i = b->count; i % CSG_LANES; i++)
+        b->x[0][i] = b->x[0][0], b->x[1][i] = b->x[1][0];
+    if (b->count)
+        c->cubes->plan->kernel->values(&c->cubes->tapes[b->tape], b->x[0], b->x[1], b->x[2],
+                                       b->count, b->f, c->cubes->scratch, c->cubes->scratch_floats);
+    for (size_t i = 0; i < b->count; i++)
+        *b->inside[i] = b->f[i] >= 0;
+    b->count = 0;
+}
+
+/* Where the square's plane leaves no doubt it is not. */
 static void find_signs(csg_slice_contours *c, float z)
 {
     const csg_slice_plan *plan = c->cubes->plan;
-    float x[3][CSG_BATCH], f[CSG_BATCH];
+    corner_batch batch = {.count = 0};
     for (size_t i = 0; i < CSG_BATCH; i++)
-        x[2][i] = z;
-    for (size_t from = 0, to; from < c->square_count; from = to) {
-        csg_slice_square *first = &c->squares[from];
-        size_t n = 0;
-        for (to = from; to < c->square_count && to - from < SQUARES_AT_ONCE &&
-                        c->squares[to].tape == first->tape;
-             to++)
-            for (uint32_t o = 0; o < CORNERS; o++, n++) {
-                const csg_slice_square *s = &c->squares[to];
-                x[0][n] = csg_slice_place(plan, 0, s->x + (o & 1) * s->edge);
-                x[1][n] = csg_slice_place(plan, 1, s->y + (o >> 1) * s->edge);
-            }
-        for (size_t i = n; i % CSG_LANES; i++)
-            x[0][i] = x[0][0], x[1][i] = x[1][0];
-        plan->kernel->values(&c->cubes->tapes[first->tape], x[0], x[1], x[2], n, f,
-                             c->cubes->scratch, c->cubes->scratch_floats);
-        for (size_t i = 0; i < n; i++)
-            first[i / CORNERS].inside[i % CORNERS] = f[i] >= 0;
+        batch.x[2][i] = z;
+    for (size_t i = 0; i < c->square_count; i++) {
+        csg_slice_square *s = &c->squares[i];
+        const csg_slice_plane *plane = s->plane ? &c->cubes->planes[s->plane - 1] : NULL;
+        if (s->tape != batch.tape || batch.count + CORNERS > CSG_BATCH)
+            ask_corners(c, &batch);
+        batch.tape = s->tape;
+        for (uint32_t o = 0; o < CORNERS; o++) {
+            float x = csg_slice_place(plan, 0, s->x + (o & 1) * s->edge);
+            float y = csg_slice_place(plan, 1, s->y + (o >> 1) * s->edge);
+            double value = plane ? plane->constant + (double)plane->slope[0] * (double)x +
+                                       (double)plane->slope[1] * (double)y +
+                                       (double)plane->slope[2] * (double)z
+                                 : 0;
+            s->inside[o] = value > 0;
+            if (plane && fabs(value) > (double)plane->room)
+                continue;
+            batch.x[0][batch.count] = x;
+            batch.x[1][batch.count] = y;
+            batch.inside[batch.count++] = &s->inside[o];
+        }
     }
+    ask_corners(c, &batch);
 }
 
 /* ---- crossings ---------------------------------------------------------------------------------

@@ -31,6 +31,7 @@ void csg_slice_cubes_release(csg_slice_cubes *c)
     csg_pruner_release(&c->pruner);
     csg_arena_reset(&c->arena);
     csg_memory_release(memory, c->tapes, c->tape_capacity * sizeof *c->tapes);
+    csg_memory_release(memory, c->planes, c->plane_capacity * sizeof *c->planes);
     csg_memory_release(memory, c->cubes, c->capacity * sizeof *c->cubes);
     csg_memory_release(memory, c->scratch, c->scratch_floats * sizeof *c->scratch);
 }
@@ -210,6 +211,27 @@ static bool keep_tape(csg_slice_cubes *c, const csg_tape *tape, uint32_t *index)
     return true;
 }
 
+/* The plane of a smooth cube: corners that are far from it need no evaluation. */
+static bool keep_plane(csg_slice_cubes *c, const known_planes *known, uint32_t *index)
+{
+    const csg_enclosure *e = &known->halves.planes[0];
+    if (!csg_memory_reserve(&c->plan->context->memory, (void **)&c->planes, &c->plane_capacity,
+                            c->plane_count + 1, sizeof *c->planes))
+        return false;
+    csg_slice_plane *plane = &c->planes[c->plane_count++];
+    double longest = 1;
+    plane->constant = e->value;
+    for (int k = 0; k < 3; k++) {
+        plane->constant -= e->slope[k] * known->middle[k];
+        plane->slope[k] = (float)e->slope[k];
+        longest = fmax(longest, fabs(e->slope[k]));
+    }
+    /* what floats leave out of slopes is in the rounding of lengths */
+    plane->room = (float)((fmax(e->below, e->above) + longest * (double)c->plan->rounding) * 1.001);
+    *index = (uint32_t)c->plane_count;
+    return true;
+}
+
 /* The place of a child. */
 static place octant_of(const place *p, int o)
 {
@@ -307,6 +329,9 @@ static bool divide(csg_slice_cubes *c, uint32_t parent, const place *p)
         if (child.level + CSG_SLICE_LEVELS_ABOVE >= plan->slab_level)
             cube->kind = (uint8_t)look_at(c, &child, &c->tapes[cube->tape], &known);
         c->unsettled += cube->kind == CSG_SLICE_UNSETTLED;
+        if (cube->kind == CSG_SLICE_SMOOTH && known.halves.plane_count == 1 &&
+            !keep_plane(c, &known, &cube->first))
+            return false;
         if (cube->kind == CSG_SLICE_SPLIT &&
             !(known.are_good ? divide_by_planes(c, first + o, &child, &known)
                              : divide(c, first + o, &child)))
@@ -320,7 +345,7 @@ bool csg_slice_cubes_make(csg_slice_cubes *c, size_t first_layer, size_t end_lay
     const csg_slice_plan *plan = c->plan;
     const place root = {.edge = 1u << plan->levels};
     csg_arena_reset(&c->arena);
-    c->count = c->tape_count = 0;
+    c->count = c->tape_count = c->plane_count = 0;
     c->unsettled = 0;
     c->first_layer = first_layer;
     c->end_layer = end_layer;

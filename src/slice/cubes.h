@@ -24,8 +24,14 @@ typedef enum csg_slice_kind {
     CSG_SLICE_UNSETTLED
 } csg_slice_kind;
 
+/* Where the field is constant + slope . x, but for `room`. */
+typedef struct csg_slice_plane {
+    double constant;
+    float slope[3], room;
+} csg_slice_plane;
+
 typedef struct csg_slice_cube {
-    uint32_t first; /* SPLIT: of its eight children */
+    uint32_t first; /* SPLIT: of its eight children; SMOOTH: its plane's index + 1, 0 = none */
     uint32_t tape;
     uint32_t square; /* of the layer at hand */
     uint8_t kind;    /* csg_slice_kind */
@@ -37,6 +43,8 @@ typedef struct csg_slice_cubes {
     csg_arena arena; /* nodes of tapes */
     csg_tape *tapes;
     size_t tape_count, tape_capacity;
+    csg_slice_plane *planes;
+    size_t plane_count, plane_capacity;
     csg_slice_cube *cubes; /* the first is the root */
     size_t count, capacity;
     size_t first_layer, end_layer; /* of the slab */
