@@ -213,6 +213,13 @@ class Statistics(cli.CliTest):
         self.assert_refused(self.run_in("info", "a.stl", "--max-memory", "1M"), 2, "E0901")
         self.assertGreater(stats["octree"]["leaf_blocks"], 0)
 
+    def test_parts_that_touch(self):
+        """Each is closed; a file that has nothing but places joins them, and --stats says so."""
+        self.write("two.txt", 'part("a") cube(10);\npart("b") translate([10, 0, 0]) cube(10);\n')
+        files = {file["format"]: file for file in self.stats("two.txt", "-o", "a.ply", "-o", "a.stl")["files"]}
+        self.assertTrue(files["ply"]["manifold"])
+        self.assertEqual((files["stl"]["manifold"], files["stl"]["nonmanifold_edges"]), (False, 5))
+
     def test_what_needs_less_memory(self):
         self.write("a.txt", "sphere(10);\n")
         for options, word in ((("-o", "a.ply"), "equal cells do not: -r 256\n"),
