@@ -225,6 +225,51 @@ static csgm_status fill_rounded(csgm_context *context, const csgm_mesh_view *mes
     return status;
 }
 
+/* ---- parts that touch ------------------------------------------------------------------ */
+
+/* The part of each vertex that triangles use. */
+static void mark_parts(const csgm_mesh_view *mesh, uint32_t *part_of)
+{
+    for (uint64_t p = 0; p < mesh->part_count; p++) {
+        const csgm_mesh_part *part = &mesh->parts[p];
+        const uint32_t *corner = mesh->indices + 3 * part->first_triangle;
+        for (uint64_t i = 0; i < 3 * part->triangle_count; i++)
+            part_of[corner[i]] = (uint32_t)p;
+    }
+}
+
+/* Each part is closed, and their vertices are told apart by number alone: where a format has only
+ * places, who reads it joins parts that touch, and edges there are used by more than two triangles.
+ */
+static csgm_status tell_of_touching(csgm_context *context, const csgm_mesh_view *mesh,
+                                    const char *name, const csg_format_row *row)
+{
+    if (mesh->part_count < 2 || !mesh->vertex_count || row->traits & CSGM_KEEPS_VERTICES)
+        return CSGM_OK;
+    csg_memory *memory = &context->memory;
+    size_t bytes = (size_t)mesh->vertex_count * sizeof(uint32_t);
+    uint32_t *to = csg_memory_alloc(memory, bytes), *part_of = csg_memory_alloc(memory, bytes);
+    uint64_t touching = 0;
+    bool failed = !to || !part_of;
+    if (!failed) {
+        memset(part_of, 0, bytes);
+        mark_parts(mesh, part_of);
+        csg_weld_map(memory, mesh, CSG_WELD_ALL, to, &failed);
+    }
+    for (uint64_t v = 0; v < mesh->vertex_count && !failed; v++)
+        touching += part_of[to[v]] != part_of[v];
+    csg_memory_release(memory, to, bytes);
+    csg_memory_release(memory, part_of, bytes);
+    if (failed)
+        return csg_context_no_memory(context);
+    if (touching)
+        csg_diag_plain(
+            &context->diags, CSG_DIAG_PARTS_TOUCH, name, "3MF, glTF and OBJ keep parts apart",
+            "parts touch in %llu vertices, which readers of %s join: not a manifold there",
+            (unsigned long long)touching, row->title);
+    return CSGM_OK;
+}
+
 /* Formats that keep creases have a vertex for each sheet there, for the others they are joined. */
 static csgm_status fill_joined(csgm_context *context, const csgm_mesh_view *mesh, const target *to,
                                const csg_format_row *row, const csgm_write_options *options)
@@ -300,7 +345,9 @@ csgm_status csg_io_write(csgm_context *context, const csgm_mesh_view *mesh, cons
     csg_companion companion = {.is_there = false};
     csg_arena_init(&companion.names, &context->memory);
     const target to = {file.fd, path, file.target ? &companion : NULL};
-    status = fill_joined(context, mesh, &to, row, options);
+    status = tell_of_touching(context, mesh, path, row);
+    if (!status)
+        status = fill_joined(context, mesh, &to, row, options);
     if (!status)
         status = heed_warnings(context, errors);
     status = commit_both(&file, &companion, status);

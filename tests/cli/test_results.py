@@ -214,11 +214,17 @@ class Statistics(cli.CliTest):
         self.assertGreater(stats["octree"]["leaf_blocks"], 0)
 
     def test_parts_that_touch(self):
-        """Each is closed; a file that has nothing but places joins them, and --stats says so."""
+        """Each is closed; a file that has nothing but places joins them, and a warning and --stats say so."""
         self.write("two.txt", 'part("a") cube(10);\npart("b") translate([10, 0, 0]) cube(10);\n')
-        files = {file["format"]: file for file in self.stats("two.txt", "-o", "a.ply", "-o", "a.stl")["files"]}
+        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.stl", "--stats")
+        self.assert_status(result, 0)
+        files = {file["format"]: file for file in json.loads(result.stdout)["files"]}
         self.assertTrue(files["ply"]["manifold"])
         self.assertEqual((files["stl"]["manifold"], files["stl"]["nonmanifold_edges"]), (False, 5))
+        self.assertEqual(result.stderr.count("W0514"), 1)
+        self.assertIn("a.stl: warning W0514: parts touch in 4 vertices", result.stderr)
+        self.write("two.txt", 'part("a") cube(10);\npart("b") translate([11, 0, 0]) cube(10);\n')
+        self.assertNotIn("W0514", self.run_in("two.txt", "-o", "a.stl").stderr)
 
     def test_what_needs_less_memory(self):
         self.write("a.txt", "sphere(10);\n")
