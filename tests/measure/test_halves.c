@@ -159,6 +159,38 @@ static void creases_hold(void **state)
     assert_true(seen.many > 2000 * test_times);
 }
 
+/* In cubes whose centre is on a capsule's axis, where its gradient is a direction of rounding
+ * errors.
+ */
+static void capsules_hold_on_their_axes(void **state)
+{
+    tally seen = {0};
+    has_fillets = false;
+    for (uint64_t i = 0; i < 60 * test_times; i++) {
+        csg_random random = {.state = 15000 + test_first_seed + i};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        double r = csg_random_uniform(&random, 0.2, 1);
+        const double v[] = {csg_random_uniform(&random, 1, 3), r, r};
+        csg_node_id id =
+            csg_build_primitive(&m.builder, (csg_primitive_kind)CSG_NODE_CAPSULE, v, NOWHERE);
+        mesh_case_compile(&m, posed_anyhow(&m, id, &random));
+        size_t floats = csg_kernel_scratch_floats(m.field->depth);
+        float *scratch = malloc(floats * sizeof *scratch);
+        assert_non_null(scratch);
+        for (int k = 0; k < 24; k++) { /* 0 is the middle of its box */
+            float c[3];
+            for (int axis = 0; axis < 3; axis++)
+                c[axis] = k ? (float)ldexp(csg_random_uniform(&random, -1, 1), -k) : 0;
+            const double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
+            try_cube(&m, &random, at, ldexp(1, k % 5 - 2), scratch, floats, &seen);
+        }
+        free(scratch);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.inside > 2000 * test_times);
+}
+
 static void add_plane(csg_halves *h, csg_random *random)
 {
     csg_enclosure *e = &h->planes[h->plane_count];
@@ -205,6 +237,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(halves_hold),
         cmocka_unit_test(creases_hold),
+        cmocka_unit_test(capsules_hold_on_their_axes),
         cmocka_unit_test(carved_as_cut),
     };
     test_take_search(argc, argv);
