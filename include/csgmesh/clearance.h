@@ -26,7 +26,7 @@ typedef enum csgm_clear_state {
 typedef struct csgm_clear_options {
     uint32_t struct_size; /* set by csgm_clear_options_default; do not touch */
     double tolerance;     /* T: how closely gaps are to be known; 0 (the default): 1e-4 of the
-                             longest side of the box of all parts at the first pose, but no closer
+                             longest side of the largest part at the first pose, but no closer
                              than a 64th of the gap */
     double min_gap; /* > 0: of each pair and pose it is to be known whether the gap is as large;
                        0 (the default): whether they interfere */

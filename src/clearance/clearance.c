@@ -222,10 +222,9 @@ static double longest_side(csg_box box)
 static csgm_status begin(csgm_clearances *c)
 {
     static const double SHARE = 1e-4;
-    csg_box all = csg_box_empty();
+    double longest = 0; /* of one part: how far away others are says nothing of how fine it is */
     for (size_t i = 0; i < c->part_count; i++)
-        all = csg_box_hull(all, c->parts[i].box);
-    double longest = longest_side(all);
+        longest = fmax(longest, longest_side(c->parts[i].box));
     c->tolerance = c->options.tolerance > 0 ? c->options.tolerance : SHARE * longest;
     if (!(c->tolerance > 0))
         c->tolerance = SHARE;
