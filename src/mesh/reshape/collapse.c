@@ -173,6 +173,7 @@ static bool has_shape(const csg_decimation *d)
         if (!(own > 0))
             return false;
     }
+    room->makes_slivers |= least < worst;
     return least >= worst;
 }
 
@@ -388,6 +389,7 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
         return from;
     csg_quadric q = csg_quadric_add(d->quadrics[from], d->quadrics[to]);
     proposal p = places_of(d, &q, from, to);
+    d->room->makes_slivers = false;
     for (int i = 0; i < p.count; i++) {
         bool moves = p.end[i] == CSG_CORNER_NONE;
         uint32_t kept = moves ? to : p.end[i], gone = kept == to ? from : to;
@@ -399,5 +401,7 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to)
         r->kind[kept] = r->kind[from] > r->kind[to] ? r->kind[from] : r->kind[to];
         return kept;
     }
+    if (d->room->makes_slivers && d->state[from] == CSG_VERTEX_SETTLED)
+        d->state[from] = CSG_VERTEX_SLIVERED;
     return CSG_CORNER_NONE;
 }

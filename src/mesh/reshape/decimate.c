@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The order of collapses in one region; see decimate.h. A queue by cost, then by number, so the
  * result depends on nothing but the mesh; entries whose ends have changed since are dropped when
- * they come up. What was refused is tried again if something near it has changed since, for as long
- * as that is worth while.
+ * they come up. What was refused is tried again by who comes next to the region, if something near
+ * it has changed since: at once, one try in a hundred would succeed.
  */
 #include "mesh/reshape/decimate.h"
 
@@ -99,7 +99,7 @@ static bool add_edges_around(csg_decimation *d, uint32_t vertex)
             d->state[vertex] = CSG_VERTEX_HELD_UP;
         else if (!add_edge(d, vertex, other))
             return false;
-        else if (d->state[other] == CSG_VERTEX_SETTLED)
+        else if (d->state[other] != CSG_VERTEX_HELD_UP)
             d->state[other] = CSG_VERTEX_FRESH;
         c = csg_corner_swing(m, c);
     } while (c != first);
@@ -327,18 +327,9 @@ static csgm_status collapse_waiting(csg_decimation *d, uint32_t least)
 csgm_status csg_decimate_region(csg_decimation *d, const uint32_t *items, uint32_t count,
                                 uint32_t least)
 {
-    enum { MOST_PASSES = 4, WORTH = 20 /* a part of the tries that a pass must succeed in */ };
-    csg_remesh *r = d->remesh;
-    csgm_status status = CSGM_OK;
-    for (int pass = 0; pass < MOST_PASSES && r->corners.live > least && status == CSGM_OK; pass++) {
-        uint64_t made = d->made, tried = d->tried;
-        d->queue->count = 0;
-        if (!add_all_edges(d, items, count))
-            return CSGM_ERR_MEMORY;
-        settle_all(d, items, count);
-        status = collapse_waiting(d, least);
-        if ((d->made - made) * WORTH <= d->tried - tried)
-            break;
-    }
-    return status;
+    d->queue->count = 0;
+    if (!add_all_edges(d, items, count))
+        return CSGM_ERR_MEMORY;
+    settle_all(d, items, count);
+    return collapse_waiting(d, least);
 }

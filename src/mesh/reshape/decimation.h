@@ -50,6 +50,7 @@ typedef struct csg_collapse_room {
     uint32_t vertex[CSG_RING_MOST][3];
     uint32_t count;               /* that stay */
     uint32_t gone;                /* that go: two, where an edge is flipped none */
+    bool makes_slivers;           /* the last try failed by them */
     double most;                  /* that samples may be away, squared */
     double farthest;              /* of the samples handed over, squared */
     uint16_t seen[CSG_RING_MOST]; /* points of after near which there are samples that face its way:
@@ -91,7 +92,8 @@ typedef struct csg_decimation {
 typedef enum csg_vertex_state {
     CSG_VERTEX_SETTLED,
     CSG_VERTEX_FRESH,
-    CSG_VERTEX_HELD_UP /* by what lies in other regions: fresh for those that come later */
+    CSG_VERTEX_SLIVERED, /* settled; collapses of it failed by slivers, which may be made at last */
+    CSG_VERTEX_HELD_UP   /* by what lies in other regions: fresh for those that come later */
 } csg_vertex_state;
 
 static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)

@@ -272,7 +272,9 @@ static csgm_status run_loosened(cutting *c, uint32_t least)
 {
     csg_decimation *d = c->d;
     d->least_quality = LEAST_QUALITY_AT_LAST;
-    memset(d->state, CSG_VERTEX_FRESH, d->remesh->corners.vertex_count);
+    for (uint32_t v = 0; v < d->remesh->corners.vertex_count; v++)
+        if (d->state[v] == CSG_VERTEX_SLIVERED)
+            d->state[v] = CSG_VERTEX_FRESH;
     csgm_status status = CSGM_OK;
     bool any = true;
     for (int round = 0; round < ROUNDS && any && status == CSGM_OK; round++) {
