@@ -1,20 +1,28 @@
 /* SPDX-License-Identifier: MIT
  * Faces in which the surface is curved: the straight way between two of its points is too far from
- * it, but a cell a half as large would cost four times as many. So a vertex is put half way
- * between: first where a curve with the points' tangents is, then by Newton's steps in the face.
+ * it, but a cell a half as large would cost four times as many. So a vertex is put between: first
+ * where the points' tangents meet, or where a curve with these tangents is, then by Newton's steps
+ * in the face. Between it and either point there may be a crease, or another bend: so a rounded
+ * edge, or a chamfer, passes through a face by three vertices.
  */
 #include <math.h>
 
 #include "base/elementary.h"
 
 #include "mesh/adaptive/sheets.h"
+#include "mesh/plane.h"
+
+/* Of two tangents that meet: sin^2 of 2 degrees. */
+static const double LEAST_SINE_SQUARE = 1e-3;
 
 enum { NEWTON = 3, MOST = (CSG_MOST_FACES + CSG_LANES - 1) / CSG_LANES * CSG_LANES };
 
 /* Of a cell: how far from its sides a place is kept. */
 static const double MARGIN = 0x1p-9;
 /* Cosine: where gradients turn more there may be two sheets. */
-static const double LEAST_COSINE = 0.5;
+static const double LEAST_COSINE = -0.5;
+/* The same: where they turn less between a bend and a point, no crease is between. */
+static const double NO_CREASE = 0.978;
 /* Of all that the gradients turn: between one end and the middle. */
 static const double MOST_TURN = 0.9;
 
@@ -35,6 +43,17 @@ static int axis_of(const csg_cell_box *face)
     return face->low[0] == face->high[0] ? 0 : face->low[1] == face->high[1] ? 1 : 2;
 }
 
+static bool is_within(const approach *a)
+{
+    const csg_cell_box *box = &a->face->face;
+    const double at[3] = {a->at.x, a->at.y, a->at.z};
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != a->axis && !(at[axis] >= box->low[axis] + MARGIN * box->cell &&
+                                 at[axis] <= box->high[axis] - MARGIN * box->cell))
+            return false;
+    return true;
+}
+
 /* False: the surface does not bulge by more than `most`. */
 static bool set_out(approach *a, csg_face_crease *face, double most)
 {
@@ -53,7 +72,12 @@ static bool set_out(approach *a, csg_face_crease *face, double most)
         return false;
     csg_vec3 middle = csg_vec3_scale(csg_vec3_add(face->ends[0].at, face->ends[1].at), 0.5);
     csg_vec3 normal = csg_vec3_normalize(csg_vec3_add(unit[0], unit[1]));
-    a->at = csg_vec3_add(middle, csg_vec3_scale(normal, bulge));
+    csg_plane planes[2] = {csg_plane_of(face->ends[0].at, 0, unit[0]),
+                           csg_plane_of(face->ends[1].at, 0, unit[1])};
+    a->at = middle;
+    *component(&a->at, a->axis) = face->face.low[a->axis];
+    if (!csg_planes_meet_in_line(planes, LEAST_SINE_SQUARE, &a->at) || !is_within(a))
+        a->at = csg_vec3_add(middle, csg_vec3_scale(normal, bulge));
     *component(&a->at, a->axis) = face->face.low[a->axis];
     return true;
 }
@@ -68,17 +92,6 @@ static void ask(csg_sheet_probe *p, const approach *ways, int count, float *f, f
     p->kernel->values_and_gradients(p->tape, x, y, z, (size_t)count, f, g[0], g[1], g[2],
                                     p->scratch, p->scratch_floats);
     p->evaluations += (uint64_t)count;
-}
-
-static bool is_within(const approach *a)
-{
-    const csg_cell_box *box = &a->face->face;
-    const double at[3] = {a->at.x, a->at.y, a->at.z};
-    for (int axis = 0; axis < 3; axis++)
-        if (axis != a->axis && !(at[axis] >= box->low[axis] + MARGIN * box->cell &&
-                                 at[axis] <= box->high[axis] - MARGIN * box->cell))
-            return false;
-    return true;
 }
 
 /* One of Newton's steps in the face. False: it leads out of it. */
@@ -136,4 +149,67 @@ void csg_sheets_bulge_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int c
         face->at = ways[i].at;
         face->gradient = ways[i].gradient;
     }
+}
+
+/* ---- parts of a side ---------------------------------------------------------------------------
+ */
+
+/* Sides' parts that are looked for at once. */
+typedef struct parts {
+    csg_face_crease search[CSG_MOST_FACES];
+    csg_face_crease *of[CSG_MOST_FACES];
+    int count;
+} parts;
+
+static void find_parts(csg_sheet_probe *p, parts *all, double most)
+{
+    csg_sheets_meet_in_faces(p, all->search, all->count);
+    csg_sheets_bulge_in_faces(p, all->search, all->count, most);
+    for (int i = 0; i < all->count; i++)
+        *all->of[i] = all->search[i];
+    all->count = 0;
+}
+
+static double cosine_in_face(const csg_face_crease *part)
+{
+    csg_vec3 g[2] = {part->ends[0].gradient, part->ends[1].gradient};
+    for (int k = 0; k < 2; k++)
+        *component(&g[k], axis_of(&part->face)) = 0;
+    return csg_gradients_cosine(g[0], g[1]);
+}
+
+/* What is between a bend and either end is to be looked for where gradients turn. */
+static void add_parts(csg_sheet_probe *p, parts *all, csg_face_side *side, double most)
+{
+    const csg_face_crease *bend = &side->part[CSG_BETWEEN];
+    for (int k = 0; k < 2; k++) {
+        csg_face_crease *part = &side->part[k ? CSG_ABOVE : CSG_BELOW];
+        *part = (csg_face_crease){.face = bend->face};
+        part->ends[k] = bend->ends[k];
+        part->ends[1 - k] = (csg_surface_point){bend->at, bend->gradient};
+        if (cosine_in_face(part) > NO_CREASE)
+            continue;
+        if (all->count == CSG_MOST_FACES)
+            find_parts(p, all, most);
+        all->of[all->count] = part;
+        all->search[all->count++] = *part;
+    }
+}
+
+void csg_sheets_find_in_faces(csg_sheet_probe *p, csg_face_side *sides, int count, double most,
+                              bool divides)
+{
+    parts all = {.count = 0};
+    for (int i = 0; i < count; i++) {
+        sides[i].part[CSG_BELOW] = sides[i].part[CSG_ABOVE] = (csg_face_crease){.is_there = false};
+        all.of[all.count] = &sides[i].part[CSG_BETWEEN];
+        all.search[all.count++] = sides[i].part[CSG_BETWEEN];
+        if (all.count == CSG_MOST_FACES)
+            find_parts(p, &all, most);
+    }
+    find_parts(p, &all, most);
+    for (int i = 0; i < count && divides; i++)
+        if (sides[i].part[CSG_BETWEEN].is_there && sides[i].part[CSG_BETWEEN].is_smooth)
+            add_parts(p, &all, &sides[i], most);
+    find_parts(p, &all, most);
 }

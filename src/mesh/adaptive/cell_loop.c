@@ -30,6 +30,25 @@ uint64_t csg_cells_place(const csg_bricks *b, const csg_brick *brick, const unsi
     return place;
 }
 
+uint64_t csg_cells_place_of_part(const csg_bricks *b, const csg_brick *brick,
+                                 const unsigned cell[3], const csg_polygon_side *side,
+                                 unsigned part)
+{
+    unsigned q[3], axis = 0;
+    csg_local_place(side->face, q);
+    while (q[axis] % 4)
+        axis++;
+    axis = (axis + 1) % 3;
+    uint64_t size = csg_bricks_cell(b, brick->level) / (q[axis] == 2 ? 1 : 2);
+    uint64_t quarter = (size / 2) << (21 * axis);
+    uint64_t place = csg_cells_place(b, brick, cell, side->crease);
+    if (part == CSG_BETWEEN)
+        return place;
+    if (!csg_judge_divides_sides((uint32_t)size))
+        return CSG_CELLS_NO_PLACE;
+    return part == CSG_BELOW ? place - quarter : place + quarter;
+}
+
 static uint64_t hash_of_place(uint64_t place)
 {
     return csg_hash_word(CSG_HASH_START, place);

@@ -83,6 +83,14 @@ bool csg_cells_add_triangle(csg_cell_loop *loop, uint32_t worker, uint32_t a, ui
  * local: in quarters of the cell, as csg_local_place has it. */
 uint64_t csg_cells_place(const csg_bricks *bricks, const csg_brick *brick, const unsigned cell[3],
                          unsigned local);
+/* Where no vertex is. */
+#define CSG_CELLS_NO_PLACE UINT64_MAX
+
+/* The place of a part of a side, as csg_face_side has them: of CSG_BETWEEN that of side->crease,
+ * the others' a quarter of the face from there, along the axis after the face's own. */
+uint64_t csg_cells_place_of_part(const csg_bricks *bricks, const csg_brick *brick,
+                                 const unsigned cell[3], const csg_polygon_side *side,
+                                 unsigned part);
 /* The vertex there; CSG_TABLE_NONE. */
 uint32_t csg_cells_find_vertex(const csg_cell_loop *loop, uint64_t place);
 

@@ -136,38 +136,62 @@ static bool is_judged(const csg_cell_at_hand *c, const csg_polygon_side *side)
     return whole || !c->is_border;
 }
 
-/* What is in a face that the judge has not seen. False: nothing, or, which the cell will say, there
- * is no vertex at one end. */
-static bool find_crease(csg_cell_at_hand *c, const csg_polygon_side *side, int axis, unsigned upper,
-                        csg_placed_vertex *found)
+/* What is in a face that the judge has not seen. False: which the cell will say, there is no vertex
+ * at one end. */
+static bool find_in_face(csg_cell_at_hand *c, const csg_polygon_side *side, int axis,
+                         unsigned upper, csg_face_side *found)
 {
     csg_cell_loop *w = c->loop;
     const csg_bricks *b = w->x->bricks;
     const csg_brick *brick = c->shell->brick;
-    csg_face_crease face = {.face = csg_judge_cell_box(b, brick, c->at), .is_wedge = side->pierced};
-    double plane = upper ? face.face.high[axis] : face.face.low[axis];
-    face.face.low[axis] = face.face.high[axis] = plane;
+    csg_face_crease *face = &found->part[CSG_BETWEEN];
+    *face =
+        (csg_face_crease){.face = csg_judge_cell_box(b, brick, c->at), .is_wedge = side->pierced};
+    double plane = upper ? face->face.high[axis] : face->face.low[axis];
+    face->face.low[axis] = face->face.high[axis] = plane;
     unsigned first = side->from < side->to ? side->from : side->to;
     unsigned last = side->from < side->to ? side->to : side->from;
     uint32_t a = csg_cells_find_vertex(w, csg_cells_place(b, brick, c->at, first));
     uint32_t z = csg_cells_find_vertex(w, csg_cells_place(b, brick, c->at, last));
     if (a == CSG_TABLE_NONE || z == CSG_TABLE_NONE)
         return false;
-    face.ends[0] = point_of(&w->vertices[a]);
-    face.ends[1] = point_of(&w->vertices[z]);
-    csg_sheets_meet_in_faces(c->probe, &face, 1);
-    csg_sheets_bulge_in_faces(c->probe, &face, 1, w->x->judge->bulge);
-    csg_vec3_to_floats(found->at, face.at);
-    csg_vec3_to_floats(found->gradient, face.gradient);
-    found->is_crease = !face.is_smooth;
-    found->is_torn = face.is_torn;
-    return face.is_there;
+    face->ends[0] = point_of(&w->vertices[a]);
+    face->ends[1] = point_of(&w->vertices[z]);
+    csg_sheets_find_in_faces(c->probe, found, 1, w->x->judge->bulge,
+                             csg_judge_divides_sides(csg_bricks_cell(b, brick->level)));
+    return true;
+}
+
+/* Whether the judge knows a vertex in that part of the side. */
+static bool take_judged(const csg_cell_at_hand *c, int axis, unsigned upper, unsigned part,
+                        csg_placed_vertex *v)
+{
+    unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
+    low[axis] += upper;
+    const csg_judged_crease *found =
+        csg_judged_crease_in(c->shell->brick->judged, csg_brick_slot(axis, low), part);
+    if (!found)
+        return false;
+    memcpy(v->at, found->at, sizeof v->at);
+    memcpy(v->gradient, found->gradient, sizeof v->gradient);
+    v->is_crease = !found->is_smooth;
+    v->is_torn = found->is_torn;
+    return true;
+}
+
+static bool take_found(const csg_face_side *side, unsigned part, csg_placed_vertex *v)
+{
+    const csg_face_crease *found = &side->part[part];
+    csg_vec3_to_floats(v->at, found->at);
+    csg_vec3_to_floats(v->gradient, found->gradient);
+    v->is_crease = !found->is_smooth;
+    v->is_torn = csg_face_side_is_torn(side);
+    return found->is_there;
 }
 
 static bool look_into_faces(csg_cell_at_hand *c)
 {
     csg_cell_loop *w = c->loop;
-    const csg_brick *brick = c->shell->brick;
     for (unsigned i = 0; i < c->polygons.first[c->polygons.count]; i++) {
         const csg_polygon_side *side = &c->polygons.side[i];
         unsigned upper;
@@ -175,24 +199,19 @@ static bool look_into_faces(csg_cell_at_hand *c)
         if (axis < 0 || (!side->alone && !side->pierced) || side->along_edge ||
             (!side->pierced && !w->x->judge->sharp) || !is_for(c, axis, upper, side->pierced))
             continue;
-        csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, brick, c->at, side->crease)};
-        if (is_judged(c, side)) {
-            unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
-            low[axis] += upper;
-            const csg_judged_crease *found =
-                csg_judged_crease_in(brick->judged, csg_brick_slot(axis, low));
-            if (!found)
-                continue;
-            memcpy(v.at, found->at, sizeof v.at);
-            memcpy(v.gradient, found->gradient, sizeof v.gradient);
-            v.is_crease = !found->is_smooth;
-            v.is_torn = found->is_torn;
-        } else if (!find_crease(c, side, axis, upper, &v)) {
+        csg_face_side found;
+        bool judged = is_judged(c, side);
+        if (!judged && !find_in_face(c, side, axis, upper, &found))
             continue;
+        for (unsigned part = 0; part < CSG_SIDE_PARTS; part++) {
+            csg_placed_vertex v = {
+                .place = csg_cells_place_of_part(w->x->bricks, c->shell->brick, c->at, side, part)};
+            if (judged ? !take_judged(c, axis, upper, part, &v) : !take_found(&found, part, &v))
+                continue;
+            w->workers[c->worker].creases += v.is_crease;
+            if (!csg_cells_add_vertex(w, c->worker, &v))
+                return false;
         }
-        w->workers[c->worker].creases += v.is_crease;
-        if (!csg_cells_add_vertex(w, c->worker, &v))
-            return false;
     }
     return true;
 }
@@ -224,6 +243,26 @@ bool csg_cells_is_missing(const csg_cell_at_hand *c)
     return false;
 }
 
+/* Appends what is in a part of a side. False: there is no room. */
+static bool gather_part(const csg_cell_at_hand *c, const csg_polygon_side *side, unsigned part,
+                        csg_polygon *out)
+{
+    const csg_cell_loop *w = c->loop;
+    uint32_t v = csg_cells_find_vertex(
+        w, csg_cells_place_of_part(w->x->bricks, c->shell->brick, c->at, side, part));
+    if (v == CSG_TABLE_NONE || (side->pierced && part != CSG_BETWEEN))
+        return true;
+    if (out->count == CSG_POLYGON_MOST)
+        return false;
+    out->vertex[out->count] = v;
+    out->faces[out->count] = csg_local_faces(side->face);
+    out->is_crease[out->count] = w->vertices[v].is_crease;
+    out->is_torn |= w->vertices[v].is_torn;
+    out->point[out->count++] = point_of(&w->vertices[v]);
+    out->in_faces++;
+    return true;
+}
+
 bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
 {
     csg_cell_loop *w = c->loop;
@@ -235,26 +274,20 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
         const csg_polygon_side *side = &c->polygons.side[i];
         uint32_t v =
             csg_cells_find_vertex(w, csg_cells_place(w->x->bricks, brick, c->at, side->from));
-        if (v == CSG_TABLE_NONE || out->count + 2 > CSG_POLYGON_MOST)
+        if (v == CSG_TABLE_NONE || out->count == CSG_POLYGON_MOST)
             return csg_cells_is_missing(c);
         out->vertex[out->count] = v;
         out->faces[out->count] = csg_local_faces(side->from);
         out->is_crease[out->count] = false;
         out->point[out->count++] = point_of(&w->vertices[v]);
-        uint32_t crease = CSG_TABLE_NONE;
-        if (side->pierced || (creased && side->alone && !side->along_edge))
-            crease =
-                csg_cells_find_vertex(w, csg_cells_place(w->x->bricks, brick, c->at, side->crease));
-        if (side->pierced && crease == CSG_TABLE_NONE)
-            return csg_cells_is_missing(c);
-        if (crease == CSG_TABLE_NONE)
+        if (!side->pierced && !(creased && side->alone && !side->along_edge))
             continue;
-        out->vertex[out->count] = crease;
-        out->faces[out->count] = csg_local_faces(side->face);
-        out->is_crease[out->count] = w->vertices[crease].is_crease;
-        out->is_torn |= w->vertices[crease].is_torn;
-        out->point[out->count++] = point_of(&w->vertices[crease]);
-        out->in_faces++;
+        int before = out->count;
+        for (unsigned k = 0; k < CSG_SIDE_PARTS; k++)
+            if (!gather_part(c, side, csg_side_part(side, k), out))
+                return csg_cells_is_missing(c);
+        if (side->pierced && out->count == before)
+            return csg_cells_is_missing(c);
     }
     return true;
 }

@@ -60,16 +60,21 @@ static const double ONE_WAY = 0.95;
 /* Of its length: what a diagonal costs where the surface is plane. */
 static const double LENGTH_SHARE = 0.02;
 
-/* How far the surface is from a diagonal; INFINITY: it would lie in a face, where the next cell may
- * have it, too. */
+/* How far the surface is from the middle of a diagonal, by the tangent planes at its ends: an
+ * eighth of what they differ by there, a quarter of how far an end on a crease is from the other's
+ * plane. Two such ends are on one sheet at least, and may be on one crease. INFINITY: it would lie
+ * in a face, where the next cell may have it, too. */
 static double cost_of(const csg_polygon *p, int a, int b)
 {
     if (p->faces[a] & p->faces[b])
         return INFINITY;
-    csg_vec3 way = csg_vec3_sub(p->point[b].at, p->point[a].at);
-    csg_vec3 turn = csg_vec3_sub(csg_vec3_normalize(p->point[b].gradient),
-                                 csg_vec3_normalize(p->point[a].gradient));
-    return fabs(csg_vec3_dot(way, turn)) / 8 + LENGTH_SHARE * csg_vec3_norm(way);
+    csg_vec3 way = csg_vec3_sub(p->point[b].at, p->point[a].at), turn = {0, 0, 0};
+    if (!p->is_crease[a])
+        turn = csg_vec3_sub(turn, csg_vec3_normalize(p->point[a].gradient));
+    if (!p->is_crease[b])
+        turn = csg_vec3_add(turn, csg_vec3_normalize(p->point[b].gradient));
+    double share = p->is_crease[a] == p->is_crease[b] ? 1.0 / 8 : 1.0 / 4;
+    return share * fabs(csg_vec3_dot(way, turn)) + LENGTH_SHARE * csg_vec3_norm(way);
 }
 
 /* Puts the triangles between two vertices, and those behind theirs, into the cut. */
@@ -138,22 +143,52 @@ static bool looks_one_way(const csg_cut_polygon *piece)
     return true;
 }
 
+static int count_creases(const csg_polygon *p)
+{
+    int creases = 0;
+    for (int i = 0; i < p->count; i++)
+        creases += p->is_crease[i];
+    return creases;
+}
+
+/* Whether all gradients are near their mean: it is one sheet. */
+static bool is_one_sheet(const csg_polygon *p)
+{
+    csg_vec3 mean = {0, 0, 0};
+    for (int i = 0; i < p->count; i++)
+        mean = csg_vec3_add(mean, csg_vec3_normalize(p->point[i].gradient));
+    for (int i = 0; i < p->count; i++)
+        if (!(csg_gradients_cosine(p->point[i].gradient, mean) > ONE_WAY))
+            return false;
+    return true;
+}
+
+/* Whether a diagonal leads from each crease point to another: no crease ends in the cell. */
+static bool joins_creases(const csg_cut_polygon *piece)
+{
+    const csg_polygon *p = &piece->polygon;
+    unsigned joined = 0, creases = 0;
+    for (int i = 0; i < p->count; i++)
+        creases |= (unsigned)p->is_crease[i] << i;
+    for (int i = 0; i < 3 * (p->count - 2); i++) {
+        unsigned a = piece->cut[i], b = piece->cut[i % 3 == 2 ? i - 2 : i + 1];
+        if (creases >> a & creases >> b & 1)
+            joined |= 1u << a | 1u << b;
+    }
+    return joined == creases;
+}
+
 bool csg_cut_without_apex(csg_cut_polygon *piece)
 {
     const csg_polygon *p = &piece->polygon;
     if (!p->in_faces)
         return csg_cut_plain(piece);
     piece->is_fan = false;
-    csg_vec3 mean = {0, 0, 0};
-    for (int i = 0; i < p->count; i++) {
-        mean = csg_vec3_add(mean, csg_vec3_normalize(p->point[i].gradient));
-        if (p->is_crease[i])
-            return false;
-    }
-    for (int i = 0; i < p->count; i++)
-        if (!(csg_gradients_cosine(p->point[i].gradient, mean) > ONE_WAY))
-            return false;
-    return p->count <= MOST_BETWEEN && choose_cut(piece) && looks_one_way(piece);
+    int creases = count_creases(p);
+    if (creases ? creases == 1 || p->is_torn : !is_one_sheet(p))
+        return false; /* a crease that ends in the cell does so in an apex */
+    return p->count <= MOST_BETWEEN && choose_cut(piece) && joins_creases(piece) &&
+           looks_one_way(piece);
 }
 
 /* ---- distances ---------------------------------------------------------------------------------

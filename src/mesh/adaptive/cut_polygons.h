@@ -7,7 +7,7 @@
 #include "mesh/adaptive/sheets.h"
 #include "mesh/marching/tables.h"
 
-enum { CSG_CUT_MOST_CORNERS = 30 };
+enum { CSG_CUT_MOST_CORNERS = 66 };
 
 /* Around an apex, or without a point inside. */
 typedef struct csg_cut_polygon {

@@ -18,6 +18,8 @@ static const double FAILURE = 1;
 static const double SEVERAL = 1;
 /* Of the tolerance: how near triangles between vertices in faces are; else a fan is made. */
 static const double NEARER = 0.6;
+/* The same: how far from where sheets meet the point may be in which their triangles do. */
+static const double NEAR = 0.1;
 /* Of a cell: how far beside each other's triangles its polygons are. */
 static const double APART = 1e-3;
 
@@ -108,7 +110,8 @@ csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, con
                              .tape = tape,
                              .scratch = room->scratch,
                              .scratch_floats = room->scratch_floats,
-                             .noise = (double)judge->noise};
+                             .noise = (double)judge->noise,
+                             .near = NEAR * judge->tolerance};
 }
 
 /* ---- faces -------------------------------------------------------------------------------------
@@ -250,11 +253,11 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
             if (room->face[slot] != CSG_NO_FACE || !(side->pierced || (creased && side->alone)))
                 continue;
             room->face[slot] = (uint8_t)room->face_count;
-            room->faces[room->face_count++] = face_of(room, &box, at, side);
+            room->faces[room->face_count++].part[CSG_BETWEEN] = face_of(room, &box, at, side);
         }
     }
-    csg_sheets_meet_in_faces(probe, room->faces, room->face_count);
-    csg_sheets_bulge_in_faces(probe, room->faces, room->face_count, judge->bulge);
+    csg_sheets_find_in_faces(probe, room->faces, room->face_count, judge->bulge,
+                             csg_judge_divides_sides(csg_bricks_cell(b, brick->level)));
 }
 
 enum { MOST_PIECES = CSG_JUDGED_MOST_APEXES / CSG_BRICK_CELLS /* of a cell */ };
@@ -383,6 +386,17 @@ static void make_polygons(brick_work *w)
     }
 }
 
+/* A vertex in a face. */
+static void gather_part(const csg_face_crease *part, const csg_polygon_side *side, csg_polygon *p)
+{
+    if (!part->is_there)
+        return;
+    p->faces[p->count] = csg_local_faces(side->face);
+    p->is_crease[p->count] = !part->is_smooth;
+    p->point[p->count++] = (csg_surface_point){part->at, part->gradient};
+    p->in_faces++;
+}
+
 /* The vertices of a polygon, and what is found in the faces between them. */
 static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_polygon *p)
 {
@@ -402,14 +416,9 @@ static void gather(const brick_work *w, unsigned cell, unsigned polygon, csg_pol
         bool creased = polygons->count == 1 && side->alone;
         if (!(side->pierced || creased) || face == CSG_NO_FACE)
             continue;
-        p->is_torn |= room->faces[face].is_torn;
-        if (!room->faces[face].is_there)
-            continue;
-        p->faces[p->count] = csg_local_faces(side->face);
-        p->is_crease[p->count] = !room->faces[face].is_smooth;
-        p->point[p->count++] =
-            (csg_surface_point){room->faces[face].at, room->faces[face].gradient};
-        p->in_faces++;
+        p->is_torn |= csg_face_side_is_torn(&room->faces[face]);
+        for (unsigned k = 0; k < CSG_SIDE_PARTS; k++)
+            gather_part(&room->faces[face].part[csg_side_part(side, k)], side, p);
     }
 }
 
@@ -564,13 +573,16 @@ static uint8_t list_creases(const csg_judge_room *room, csg_judged_crease *creas
     unsigned count = 0;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
         uint8_t face = room->face[slot];
-        if (face == CSG_NO_FACE || !room->faces[face].is_there)
-            continue;
-        creases[count] = (csg_judged_crease){.slot = (uint8_t)slot};
-        creases[count].is_smooth = room->faces[face].is_smooth;
-        creases[count].is_torn = room->faces[face].is_torn;
-        csg_vec3_to_floats(creases[count].gradient, room->faces[face].gradient);
-        csg_vec3_to_floats(creases[count++].at, room->faces[face].at);
+        for (unsigned k = 0; face != CSG_NO_FACE && k < CSG_SIDE_PARTS; k++) {
+            const csg_face_crease *part = &room->faces[face].part[k];
+            if (!part->is_there)
+                continue;
+            creases[count] = (csg_judged_crease){.slot = (uint8_t)slot, .part = (uint8_t)k};
+            creases[count].is_smooth = part->is_smooth;
+            creases[count].is_torn = csg_face_side_is_torn(&room->faces[face]);
+            csg_vec3_to_floats(creases[count].gradient, part->gradient);
+            csg_vec3_to_floats(creases[count++].at, part->at);
+        }
     }
     return (uint8_t)count;
 }
@@ -596,7 +608,7 @@ static bool keep(const brick_work *w, uint8_t cells)
 {
     csg_judge_room *room = w->room;
     csg_judged_root roots[CSG_JUDGED_MOST_ROOTS];
-    csg_judged_crease creases[CSG_MOST_FACES];
+    csg_judged_crease creases[CSG_SIDE_PARTS * CSG_MOST_FACES];
     csg_judged_apex apexes[CSG_JUDGED_MOST_APEXES];
     csg_judged judged = {.roots = roots, .creases = creases, .apexes = apexes};
     if (!cells)

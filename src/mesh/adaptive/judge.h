@@ -25,7 +25,7 @@ typedef struct csg_judge_room {
     uint16_t edge[2][CSG_BRICK_SLOTS];
     csg_cell_polygons polygons[CSG_BRICK_CELLS]; /* of crossed cells */
     uint8_t face[CSG_BRICK_SLOTS];               /* place in `faces`, or CSG_NO_FACE */
-    csg_face_crease faces[CSG_MOST_FACES];       /* that creases are looked for in */
+    csg_face_side faces[CSG_MOST_FACES];         /* that creases are looked for in */
     int face_count;
     csg_cut_polygon pieces[CSG_JUDGED_MOST_APEXES]; /* of the brick's cells, each cell's together */
     int piece_count;
@@ -74,6 +74,13 @@ typedef struct csg_cell_faces {
 
 /* The sign of the field there: the same whichever cell asks, fine or coarse. */
 bool csg_cell_face_is_inside(void *cell_faces, const csg_face_look *look);
+
+/* Whether there may be several vertices in a face of that size, in cells of the finest: their
+ * places are a quarter of it apart (cell_loop.h). */
+static inline bool csg_judge_divides_sides(uint32_t face_size)
+{
+    return face_size >= 2;
+}
 
 /* The box of a cell. */
 csg_cell_box csg_judge_cell_box(const csg_bricks *bricks, const csg_brick *brick,

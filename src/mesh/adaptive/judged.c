@@ -43,10 +43,11 @@ const csg_pierced *csg_judged_pierced(const csg_judged *judged)
     return judged && judged->pierced ? judged->pierced : &NOTHING_PIERCED;
 }
 
-const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot)
+const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot,
+                                              unsigned part)
 {
     for (unsigned i = 0; judged && i < judged->crease_count; i++)
-        if (judged->creases[i].slot == slot)
+        if (judged->creases[i].slot == slot && judged->creases[i].part == part)
             return &judged->creases[i];
     return NULL;
 }

@@ -37,9 +37,9 @@ typedef struct csg_judged_root {
 /* A vertex in a face. */
 typedef struct csg_judged_crease {
     float at[3], gradient[3];
-    uint8_t slot;
-    bool is_smooth; /* it has a gradient */
-    bool is_torn;   /* csg_face_crease */
+    uint8_t slot, part; /* of csg_face_side */
+    bool is_smooth;     /* it has a gradient */
+    bool is_torn;       /* csg_face_crease */
 } csg_judged_crease;
 
 /* The point in the middle of a fan, as long as the polygon has so many vertices in faces. */
@@ -62,8 +62,9 @@ const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged);
 
 /* Of a brick whose judge kept nothing, because no leaf is left of it, there is nothing. */
 const csg_pierced *csg_judged_pierced(const csg_judged *judged);
-/* NULL: no crease goes through that face. */
-const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot);
+/* NULL: there is none in that face, in that part of the side. */
+const csg_judged_crease *csg_judged_crease_in(const csg_judged *judged, unsigned slot,
+                                              unsigned part);
 /* NULL: it was not cut that way, or had other vertices. */
 const csg_judged_apex *csg_judged_apex_of(const csg_judged *judged, unsigned cell, unsigned polygon,
                                           unsigned in_faces);

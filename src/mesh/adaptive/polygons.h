@@ -92,6 +92,13 @@ static inline uint8_t csg_local_faces(unsigned place)
     return (uint8_t)faces;
 }
 
+/* Of three parts from the lower of a side's ends, whichever cell asks, to the upper: the k-th along
+ * the side. */
+static inline unsigned csg_side_part(const csg_polygon_side *side, unsigned k)
+{
+    return side->from < side->to ? k : 2 - k;
+}
+
 /* The number that csg_cell_tables gives an edge of a cell, by its middle. */
 static inline uint8_t csg_local_edge(unsigned place)
 {

@@ -191,10 +191,16 @@ static bool has_arrived(const csg_cell_box *box, int step, csg_vec3 before, csg_
     return step > 0 && csg_vec3_norm(csg_vec3_sub(at, before)) < 1e-5 * box->cell;
 }
 
-/* Whether a value is that of a place on the surface. */
+/* Whether a value is that of a place so near to the surface. */
+static bool is_within(const csg_sheet_probe *p, double most, double f, double slope)
+{
+    return fabs(f) <= most * slope + 4 * p->noise;
+}
+
+/* The same of a place on it. */
 static bool is_zero(const csg_sheet_probe *p, const csg_cell_box *box, double f, double slope)
 {
-    return fabs(f) <= ZERO * box->cell * slope + 4 * p->noise;
+    return is_within(p, ZERO * box->cell, f, slope);
 }
 
 /* ---- in a face ---------------------------------------------------------------------------------
@@ -465,28 +471,37 @@ static void check(apex_way *a, csg_vec3 kept)
     a->at = kept;
 }
 
+/* How far a place may be from where sheets met: where these would not meet in the mesh otherwise, a
+ * part of the tolerance. */
+static double reach_of(const csg_sheet_probe *p, const apex_way *a, double otherwise)
+{
+    bool would_fail = a->otherwise == CSG_APEX_FAILED && !a->search->polygon->is_torn;
+    return would_fail ? fmax(p->near, otherwise) : otherwise;
+}
+
 /* The place in which sheets met, kept within the cell. */
-static void check_meeting(apex_way *a)
+static void check_meeting(const csg_sheet_probe *p, apex_way *a)
 {
     const csg_cell_box *box = &a->search->box;
-    csg_vec3 kept = keep_within(box, a->at, MARGIN * box->cell);
-    if (csg_vec3_norm(csg_vec3_sub(kept, a->at)) <= MARGIN * box->cell)
+    double margin = MARGIN * box->cell;
+    csg_vec3 kept = keep_within(box, a->at, margin);
+    if (csg_vec3_norm(csg_vec3_sub(kept, a->at)) <= reach_of(p, a, margin))
         check(a, kept);
     else
         land(a);
 }
 
 /* Goes on to meet, where there is more to learn and the place is near the cell. */
-static void approach_meeting(apex_way *a)
+static void approach_meeting(const csg_sheet_probe *p, apex_way *a)
 {
     const csg_cell_box *box = &a->search->box;
     if (a->step == STEPS || has_arrived(box, a->step - 1, a->before, a->at))
-        check_meeting(a);
+        check_meeting(p, a);
     else if (!(way_out(box, a->at) < box->cell))
         land(a);
 }
 
-static void set_out_to_meet(apex_way *a, int creases)
+static void set_out_to_meet(const csg_sheet_probe *p, apex_way *a, int creases)
 {
     const csg_polygon *polygon = a->search->polygon;
     csg_vec3 sum = {0, 0, 0};
@@ -499,7 +514,7 @@ static void set_out_to_meet(apex_way *a, int creases)
         a->otherwise = CSG_APEX_FAILED;
     if (gather_sheets(polygon, creases, &a->sheets) &&
         meet(a->sheets.plane, a->sheets.count, &a->at))
-        approach_meeting(a);
+        approach_meeting(p, a);
     else
         land(a);
 }
@@ -521,7 +536,7 @@ static void set_out_to_tip(apex_way *a)
         land(a);
 }
 
-static void set_out_in_cell(apex_way *a, csg_apex_search *search)
+static void set_out_in_cell(const csg_sheet_probe *p, apex_way *a, csg_apex_search *search)
 {
     const csg_polygon *polygon = search->polygon;
     csg_vec3 mean;
@@ -535,7 +550,7 @@ static void set_out_in_cell(apex_way *a, csg_apex_search *search)
     if (polygon->is_torn)
         a->otherwise = CSG_APEX_FAILED;
     if (creases >= 2)
-        set_out_to_meet(a, creases);
+        set_out_to_meet(p, a, creases);
     else if (least_cosine(polygon, &mean) < ONE_POLYGON)
         set_out_to_tip(a);
     else
@@ -553,13 +568,14 @@ static int place_looks_of(const apex_way *a, csg_vec3 *q)
     return a->stage == FOUND ? 0 : 1;
 }
 
-static void take_meeting(apex_way *a, const csg_vec3 *q, const double *f, csg_vec3 *g)
+static void take_meeting(const csg_sheet_probe *p, apex_way *a, const csg_vec3 *q, const double *f,
+                         csg_vec3 *g)
 {
     a->before = a->at;
     take_looks(&a->sheets, q, f, g, -1);
     a->step++;
     if (meet(a->sheets.plane, a->sheets.count, &a->at))
-        approach_meeting(a);
+        approach_meeting(p, a);
     else
         land(a);
 }
@@ -585,10 +601,10 @@ static void take_looks_of(const csg_sheet_probe *p, apex_way *a, const csg_vec3 
                           csg_vec3 *g)
 {
     if (a->stage == MEETING) {
-        take_meeting(a, q, f, g);
+        take_meeting(p, a, q, f, g);
     } else if (a->stage == LANDING) {
         take_landing(p, a, *f, *g);
-    } else if (is_zero(p, &a->search->box, *f, a->slope)) {
+    } else if (is_within(p, reach_of(p, a, ZERO * a->search->box.cell), *f, a->slope)) {
         a->stage = FOUND;
         a->search->kind = CSG_APEX_CREASE;
     } else {
@@ -602,7 +618,7 @@ static void find_some_apexes(csg_sheet_probe *p, csg_apex_search *searches, int 
     csg_vec3 q[MOST_ASKED], g[MOST_ASKED];
     double f[MOST_ASKED];
     for (int i = 0; i < count; i++)
-        set_out_in_cell(&ways[i], &searches[i]);
+        set_out_in_cell(p, &ways[i], &searches[i]);
     for (int looks = 1; looks > 0;) {
         int number[CSG_MOST_APEXES];
         looks = 0;

@@ -21,6 +21,7 @@ typedef struct csg_sheet_probe {
     float *scratch;
     size_t scratch_floats;
     double noise; /* of values: rounding */
+    double near;  /* how far from where sheets meet a point may be that stands for it */
     uint64_t evaluations;
 } csg_sheet_probe;
 
@@ -52,10 +53,29 @@ enum { CSG_MOST_FACES = 36 }; /* at once: those of a brick */
 
 void csg_sheets_meet_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count);
 
-/* Of those faces through which no crease goes: a place half way between the points where the
- * surface, curved, is farther than `most` from the straight way between them (bulges.c). */
+/* Of those faces through which no crease goes: a place between the points where the surface,
+ * curved, is farther than `most` from the straight way between them (bulges.c). */
 void csg_sheets_bulge_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count,
                                double most);
+
+/* What is between two points of a face's border: a crease, or a bend, and where it is a bend what
+ * is between it and either point. */
+enum { CSG_BELOW, CSG_BETWEEN, CSG_ABOVE, CSG_SIDE_PARTS };
+typedef struct csg_face_side {
+    csg_face_crease part[CSG_SIDE_PARTS];
+} csg_face_side;
+
+/* The part's face, ends and is_wedge of CSG_BETWEEN are given. divides: there may be others than
+ * that. */
+void csg_sheets_find_in_faces(csg_sheet_probe *probe, csg_face_side *sides, int count, double most,
+                              bool divides);
+
+/* Whether some part joins sheets that do not meet there. */
+static inline bool csg_face_side_is_torn(const csg_face_side *side)
+{
+    return side->part[CSG_BELOW].is_torn || side->part[CSG_BETWEEN].is_torn ||
+           side->part[CSG_ABOVE].is_torn;
+}
 
 /* A loop on the faces of a cell: vertices on its edges, which have gradients, and within its faces,
  * where crease points have none. */
