@@ -18,8 +18,10 @@ enum {
     PADDED = (BATCH + CSG_LANES - 1) / CSG_LANES * CSG_LANES
 };
 
-/* Of the tolerance: how deep a place is asked for, and how deep it must be. */
-static const double STEP = 0.5, DEPTH = 0.01;
+/* Of the tolerance: how deep a place is asked for, and how deep it must be. All of its three points
+ * have to be in the brick: with longer steps the ends of what pokes through the brick's side, a
+ * tolerance wide, would be left out there and in the next brick. */
+static const double STEP = 0.0625, DEPTH = 0.01;
 /* Of the margin: how far a place is moved along axes on which it did not have to be; it would stay
  * beside an edge of the leaf, where a step along a gradient leads into the face beyond it. */
 static const double ASIDE = 0.0625;
