@@ -7,57 +7,17 @@
 #include <math.h>
 
 #include "clearance/between.h"
+#include "clearance/queue.h"
 
 enum { ASK_EVERY = 64, MOST_DIVIDED = 1 << 11 };
 
-typedef struct shared {
-    double volume; /* of what the two cubes have in common */
-    uint32_t a, b;
-} shared;
-
 typedef struct overlap {
     csg_clear_tree *a, *b;
-    shared *heap; /* the largest first */
-    size_t count, capacity;
-    double sure, stuck; /* volumes: inside both; of cubes that cannot be divided */
-    double open;        /* of the others, with the rounding of sums that go up and down */
+    csg_clear_queue queue; /* by less the volume of what the two cubes have in common */
+    double sure, stuck;    /* volumes: inside both; of cubes that cannot be divided */
+    double open;           /* of the others, with the rounding of sums that go up and down */
     bool out_of_memory;
 } overlap;
-
-static bool comes_before(const shared *p, const shared *q)
-{
-    if (p->volume < q->volume || q->volume < p->volume)
-        return p->volume > q->volume;
-    return p->a != q->a ? p->a < q->a : p->b < q->b;
-}
-
-static void push_shared(overlap *o, shared item)
-{
-    csg_memory *memory = o->a->arena.memory;
-    if (!csg_memory_reserve(memory, (void **)&o->heap, &o->capacity, o->count + 1, sizeof item)) {
-        o->out_of_memory = true;
-        return;
-    }
-    size_t i = o->count++;
-    for (; i > 0 && comes_before(&item, &o->heap[(i - 1) / 2]); i = (i - 1) / 2)
-        o->heap[i] = o->heap[(i - 1) / 2];
-    o->heap[i] = item;
-}
-
-static shared pop_shared(overlap *o)
-{
-    shared first = o->heap[0], item = o->heap[--o->count];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < o->count; i = child) {
-        if (child + 1 < o->count && comes_before(&o->heap[child + 1], &o->heap[child]))
-            child++;
-        if (!comes_before(&o->heap[child], &item))
-            break;
-        o->heap[i] = o->heap[child];
-    }
-    o->heap[i] = item;
-    return first;
-}
 
 static void consider(overlap *o, uint32_t a, uint32_t b)
 {
@@ -79,7 +39,8 @@ static void consider(overlap *o, uint32_t a, uint32_t b)
         return;
     }
     o->open += volume;
-    push_shared(o, (shared){volume, a, b});
+    if (!csg_clear_queue_push(&o->queue, o->a->arena.memory, (csg_clear_queued){-volume, a, b}))
+        o->out_of_memory = true;
 }
 
 static bool is_known(const overlap *o, double enough)
@@ -96,16 +57,16 @@ bool csg_clear_overlap(csg_clear_tree *a, csg_clear_tree *b, double enough, csg_
     overlap o = {.a = a, .b = b};
     bool done = true;
     consider(&o, 0, 0);
-    for (int n = 0; o.count && n < MOST_DIVIDED && done && !is_known(&o, enough); n++) {
-        shared top = pop_shared(&o);
+    for (int n = 0; o.queue.count && n < MOST_DIVIDED && done && !is_known(&o, enough); n++) {
+        csg_clear_queued top = csg_clear_queue_pop(&o.queue);
         int which = csg_clear_choose(a, top.a, b, top.b);
         if (n % ASK_EVERY == ASK_EVERY - 1 && csg_mesh_should_stop(watch))
             done = false;
         if (which < 0) {
-            o.stuck += top.volume;
+            o.stuck -= top.key;
             continue;
         }
-        o.open -= top.volume;
+        o.open += top.key;
         csg_clear_tree *tree = which == 0 ? a : b;
         uint32_t node = which == 0 ? top.a : top.b;
         if (!csg_clear_tree_divide(tree, node)) {
@@ -119,12 +80,12 @@ bool csg_clear_overlap(csg_clear_tree *a, csg_clear_tree *b, double enough, csg_
             break;
     }
     double most = o.sure + o.stuck;
-    for (size_t i = 0; i < o.count; i++)
-        most += o.heap[i].volume;
+    for (size_t i = 0; i < o.queue.count; i++)
+        most -= o.queue.items[i].key;
     *out = (csgm_interval){o.sure * (1 - ROUNDING), most * (1 + ROUNDING)};
     if (o.out_of_memory) /* children that found no room were not counted */
         out->high = INFINITY;
-    csg_memory_release(a->arena.memory, o.heap, o.capacity * sizeof *o.heap);
+    csg_clear_queue_release(&o.queue, a->arena.memory);
     *out_of_memory |= o.out_of_memory;
     return done && !o.out_of_memory;
 }

@@ -19,6 +19,7 @@
 #include "clearance/between.h"
 #include "clearance/overlap.h"
 #include "clearance/places.h"
+#include "clearance/queue.h"
 
 enum {
     ASK_EVERY = 64,
@@ -31,17 +32,11 @@ enum {
 enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16 };
 static const double NEARLY = 0.9;
 
-typedef struct candidate {
-    double bound;
-    uint32_t a, b;
-} candidate;
-
 typedef struct search {
     const csg_clear_task *task;
     csg_clear_tree a, b;
-    candidate *heap; /* the least bound first */
-    size_t count, capacity;
-    double left; /* the least bound of those that were let go */
+    csg_clear_queue queue; /* candidates, by their bounds */
+    double left;           /* the least bound of those that were let go */
     double left_size;
     double high; /* nearest are so far apart */
     csg_vec3 nearest[2], inside;
@@ -53,47 +48,10 @@ typedef struct search {
 /* ---- the candidates ----------------------------------------------------------------------------
  */
 
-/* A total order, so that the search is the same everywhere. */
-static bool comes_before(const candidate *p, const candidate *q)
+static void let_go(search *s, const csg_clear_queued *item)
 {
-    if (p->bound < q->bound || q->bound < p->bound)
-        return p->bound < q->bound;
-    return p->a != q->a ? p->a < q->a : p->b < q->b;
-}
-
-static bool push_candidate(search *s, candidate item)
-{
-    csg_memory *memory = s->a.arena.memory;
-    if (!csg_memory_reserve(memory, (void **)&s->heap, &s->capacity, s->count + 1, sizeof item)) {
-        s->out_of_memory = true;
-        return false;
-    }
-    size_t i = s->count++;
-    for (; i > 0 && comes_before(&item, &s->heap[(i - 1) / 2]); i = (i - 1) / 2)
-        s->heap[i] = s->heap[(i - 1) / 2];
-    s->heap[i] = item;
-    return true;
-}
-
-static candidate pop_candidate(search *s)
-{
-    candidate first = s->heap[0], item = s->heap[--s->count];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < s->count; i = child) {
-        if (child + 1 < s->count && comes_before(&s->heap[child + 1], &s->heap[child]))
-            child++;
-        if (!comes_before(&s->heap[child], &item))
-            break;
-        s->heap[i] = s->heap[child];
-    }
-    s->heap[i] = item;
-    return first;
-}
-
-static void let_go(search *s, const candidate *item)
-{
-    s->left = fmin(s->left, item->bound);
-    if (item->bound <= 0) {
+    s->left = fmin(s->left, item->key);
+    if (item->key <= 0) {
         double a = s->a.nodes[item->a].cube.half, b = s->b.nodes[item->b].cube.half;
         s->left_size = fmax(s->left_size, 2 * fmin(a, b));
     }
@@ -149,7 +107,7 @@ static void try_nearest(search *s, csg_vec3 from)
     }
 }
 
-static void try_common(search *s, const candidate *top)
+static void try_common(search *s, const csg_clear_queued *top)
 {
     const csg_clear_task *t = s->task;
     const csg_measure_cube *a = &s->a.nodes[top->a].cube, *b = &s->b.nodes[top->b].cube;
@@ -159,15 +117,15 @@ static void try_common(search *s, const candidate *top)
         found_common(s, found);
 }
 
-static void try_points(search *s, const candidate *top)
+static void try_points(search *s, const csg_clear_queued *top)
 {
-    bool overlap = top->bound <= 0;
+    bool overlap = top->key <= 0;
     if (s->popped < s->next_try)
         return;
     s->next_try = s->popped + 1 + s->popped / TRIES;
     if (overlap)
         try_common(s, top);
-    if (!s->interferes && s->high > fmax(top->bound, 0) + 0.25 * s->task->tolerance)
+    if (!s->interferes && s->high > fmax(top->key, 0) + 0.25 * s->task->tolerance)
         try_nearest(s, center_of(&s->a, top->a));
 }
 
@@ -202,11 +160,11 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
 {
     bool overlap;
     double enough = enough_of(s);
-    candidate item = {.a = a, .b = b};
+    csg_clear_queued item = {.a = a, .b = b};
     csg_vec3 along =
         s->high < INFINITY ? csg_vec3_sub(s->nearest[1], s->nearest[0]) : (csg_vec3){0, 0, 0};
     s->looked++;
-    item.bound = fmax(parent_bound, csg_clear_between(&s->a, a, &s->b, b, along, enough, &overlap));
+    item.key = fmax(parent_bound, csg_clear_between(&s->a, a, &s->b, b, along, enough, &overlap));
     bool in_a = s->a.nodes[a].cube.state == CSG_CELL_INSIDE,
          in_b = s->b.nodes[b].cube.state == CSG_CELL_INSIDE;
     if ((in_a || in_b) && !overlap)
@@ -221,14 +179,16 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
         let_go(s, &item); /* they touch, or nearly */
         return !s->out_of_memory;
     }
-    if (item.bound > 0 && item.bound >= enough) {
+    if (item.key > 0 && item.key >= enough) {
         let_go(s, &item);
         return true;
     }
-    return push_candidate(s, item);
+    bool done = csg_clear_queue_push(&s->queue, s->a.arena.memory, item);
+    s->out_of_memory |= !done;
+    return done;
 }
 
-static bool divide(search *s, const candidate *top)
+static bool divide(search *s, const csg_clear_queued *top)
 {
     int which = csg_clear_choose(&s->a, top->a, &s->b, top->b);
     csg_clear_tree *tree = which == 0 ? &s->a : &s->b;
@@ -243,14 +203,14 @@ static bool divide(search *s, const candidate *top)
     }
     uint32_t first = tree->nodes[node].first_child, count = tree->nodes[node].child_count;
     for (uint32_t i = first; i < first + count && !s->interferes; i++)
-        if (!consider(s, which == 0 ? i : top->a, which == 0 ? top->b : i, top->bound))
+        if (!consider(s, which == 0 ? i : top->a, which == 0 ? top->b : i, top->key))
             return false;
     return true;
 }
 
 static double low_of(const search *s)
 {
-    return s->count ? fmin(s->left, s->heap[0].bound) : s->left;
+    return s->queue.count ? fmin(s->left, s->queue.items[0].key) : s->left;
 }
 
 static bool is_known(const search *s)
@@ -275,15 +235,15 @@ static bool is_known(const search *s)
 static bool divide_on(search *s)
 {
     const csg_clear_task *t = s->task;
-    while (s->count && !s->interferes && !is_known(s) && s->looked < t->most_pairs) {
+    while (s->queue.count && !s->interferes && !is_known(s) && s->looked < t->most_pairs) {
         if (++s->popped % ASK_EVERY == 0 && csg_mesh_should_stop(t->watch))
             return false;
-        try_points(s, &s->heap[0]);
+        try_points(s, &s->queue.items[0]);
         if (s->out_of_memory)
             return false;
         if (s->interferes || is_known(s))
             return true;
-        candidate top = pop_candidate(s);
+        csg_clear_queued top = csg_clear_queue_pop(&s->queue);
         if (!divide(s, &top)) {
             let_go(s, &top);
             return false;
@@ -318,8 +278,8 @@ static bool tell(search *s, csgm_clear_pair *out)
     else
         out->state = CSGM_CLEAR_UNDECIDED;
     if (out->state == CSGM_CLEAR_UNDECIDED) {
-        for (size_t i = 0; i < s->count; i++)
-            let_go(s, &s->heap[i]);
+        for (size_t i = 0; i < s->queue.count; i++)
+            let_go(s, &s->queue.items[i]);
         out->size = s->left_size;
     }
     return done;
@@ -350,7 +310,7 @@ bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *ou
         out->gap = (csgm_interval){0, INFINITY};
     }
     *out_of_memory |= s.out_of_memory;
-    csg_memory_release(&task->a->walk.context->memory, s.heap, s.capacity * sizeof *s.heap);
+    csg_clear_queue_release(&s.queue, &task->a->walk.context->memory);
     csg_clear_tree_release(&s.a);
     csg_clear_tree_release(&s.b);
     return done;
