@@ -42,6 +42,11 @@ void csg_page_text(csg_page *page, const char *text);
 void csg_page_format(csg_page *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Without an exponent, as short as the decimals allow, in no locale. */
 void csg_page_number(csg_page *page, double value, int decimals);
+/* SVG 1.1 up to the first element, with the page's box as its view. namespaces: more of them, each
+ * after a space. */
+void csg_page_begin_svg(csg_page *page, const char *namespaces);
+/* A point of a path in scene units, after a letter. y points down there. */
+void csg_page_svg_point(csg_page *page, const char *letter, csg_vec2 point);
 /* What people call the layer: its part's name, its colour "#rrggbb", or "outline". */
 const char *csg_layer_label(const csg_drawn_layer *layer, char buffer[8]);
 

@@ -24,7 +24,7 @@ static void put_escaped(csg_page *page, const char *text)
     }
 }
 
-static void put_point(csg_page *page, const char *letter, csg_vec2 p)
+void csg_page_svg_point(csg_page *page, const char *letter, csg_vec2 p)
 {
     csg_page_text(page, letter);
     csg_page_number(page, p.x * page->scale, page->decimals);
@@ -38,7 +38,7 @@ static void put_path(csg_page *page, const csg_outline *outline)
     for (size_t loop = 0; loop < outline->loop_count; loop++) {
         size_t first = csg_outline_first(outline, loop);
         for (size_t i = first; i < outline->ends[loop]; i++)
-            put_point(page, i == first ? "M" : i % 8 ? "L" : "\nL", outline->points[i]);
+            csg_page_svg_point(page, i == first ? "M" : i % 8 ? "L" : "\nL", outline->points[i]);
         csg_page_text(page, "Z");
     }
     csg_page_text(page, "\"/>\n");
@@ -65,15 +65,16 @@ static void put_layer(csg_page *page, const csg_drawn_layer *layer, size_t numbe
     csg_page_text(page, "</g>\n");
 }
 
-void csg_draw_svg(csg_page *page, const csg_drawing *drawing)
+void csg_page_begin_svg(csg_page *page, const char *namespaces)
 {
     csg_vec3 size = csg_box_size(page->box);
     const double view[4] = {page->box.min.x, -page->box.max.y, size.x, size.y};
-    csg_page_text(page,
-                  "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                  "<svg xmlns=\"http://www.w3.org/2000/svg\" "
-                  "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" "
-                  "width=\"");
+    csg_page_format(page,
+                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                    "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+                    "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"%s "
+                    "version=\"1.1\" width=\"",
+                    namespaces);
     csg_page_number(page, size.x, page->decimals);
     csg_page_text(page, "mm\" height=\"");
     csg_page_number(page, size.y, page->decimals);
@@ -83,6 +84,11 @@ void csg_draw_svg(csg_page *page, const csg_drawing *drawing)
         csg_page_number(page, view[i], page->decimals);
     }
     csg_page_text(page, "\">\n");
+}
+
+void csg_draw_svg(csg_page *page, const csg_drawing *drawing)
+{
+    csg_page_begin_svg(page, "");
     for (size_t i = 0; i < drawing->count; i++)
         put_layer(page, &drawing->layers[i], i + 1);
     csg_page_text(page, "</svg>\n");

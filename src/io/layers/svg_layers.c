@@ -1,40 +1,24 @@
 /* SPDX-License-Identifier: MIT
  * SVG 1.1 of layers: a group for each, which Inkscape shows as a layer and whose height stands in
- * slic3r:z, as resin printers' programs read it. y points down there, so it changes its sign; the
- * viewBox has millimetres.
+ * slic3r:z, as resin printers' programs read it. The viewBox has millimetres.
  */
 #include "io/layers/layers.h"
 
 static void begin_svg(csg_page *page, const csg_layers_head *head)
 {
-    csg_vec3 size = csg_box_size(page->box);
-    const double view[4] = {page->box.min.x, -page->box.max.y, size.x, size.y};
     (void)head;
-    csg_page_text(page, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                        "<svg xmlns=\"http://www.w3.org/2000/svg\" "
-                        "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" "
-                        "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" version=\"1.1\" "
-                        "width=\"");
-    csg_page_number(page, size.x, page->decimals);
-    csg_page_text(page, "mm\" height=\"");
-    csg_page_number(page, size.y, page->decimals);
-    csg_page_text(page, "mm\" viewBox=\"");
-    for (int i = 0; i < 4; i++) {
-        csg_page_text(page, i ? " " : "");
-        csg_page_number(page, view[i], page->decimals);
-    }
-    csg_page_text(page, "\">\n");
+    csg_page_begin_svg(page, " xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\"");
 }
 
 static void put_loop(csg_page *page, const csg_outline *contours, size_t loop)
 {
     size_t first = csg_outline_first(contours, loop);
-    for (size_t i = first; i < contours->ends[loop]; i++) {
-        csg_page_text(page, i == first ? "M" : (i - first) % 8 ? "L" : "\nL");
-        csg_page_number(page, contours->points[i].x * page->scale, page->decimals);
-        csg_page_text(page, " ");
-        csg_page_number(page, -contours->points[i].y * page->scale, page->decimals);
-    }
+    for (size_t i = first; i < contours->ends[loop]; i++)
+        csg_page_svg_point(page,
+                           i == first        ? "M"
+                           : (i - first) % 8 ? "L"
+                                             : "\nL",
+                           contours->points[i]);
     csg_page_text(page, "Z");
 }
 
