@@ -21,8 +21,6 @@ enum { NEWTON = 3, MOST = (CSG_MOST_FACES + CSG_LANES - 1) / CSG_LANES * CSG_LAN
 static const double MARGIN = 0x1p-9;
 /* Cosine: where gradients turn more there may be two sheets. */
 static const double LEAST_COSINE = -0.5;
-/* The same: where they turn less between a bend and a point, no crease is between. */
-static const double NO_CREASE = 0.978;
 /* Of all that the gradients turn: between one end and the middle. */
 static const double MOST_TURN = 0.9;
 
@@ -123,7 +121,8 @@ static bool is_curved(const approach *a)
     return angle(a->ends[0], g) <= most && angle(a->ends[1], g) <= most;
 }
 
-void csg_sheets_bulge_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int count, double most)
+/* A place between the points of each face through which no crease goes and the surface bulges. */
+static void bulge_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int count, double most)
 {
     approach ways[CSG_MOST_FACES];
     float f[MOST], g[3][MOST];
@@ -164,7 +163,7 @@ typedef struct parts {
 static void find_parts(csg_sheet_probe *p, parts *all, double most)
 {
     csg_sheets_meet_in_faces(p, all->search, all->count);
-    csg_sheets_bulge_in_faces(p, all->search, all->count, most);
+    bulge_in_faces(p, all->search, all->count, most);
     for (int i = 0; i < all->count; i++)
         *all->of[i] = all->search[i];
     all->count = 0;
@@ -187,7 +186,7 @@ static void add_parts(csg_sheet_probe *p, parts *all, csg_face_side *side, doubl
         *part = (csg_face_crease){.face = bend->face};
         part->ends[k] = bend->ends[k];
         part->ends[1 - k] = (csg_surface_point){bend->at, bend->gradient};
-        if (cosine_in_face(part) > NO_CREASE)
+        if (cosine_in_face(part) > CSG_LEAST_CREASE_COSINE)
             continue;
         if (all->count == CSG_MOST_FACES)
             find_parts(p, all, most);

@@ -164,29 +164,29 @@ static bool find_in_face(csg_cell_at_hand *c, const csg_polygon_side *side, int 
 
 /* Whether the judge knows a vertex in that part of the side. */
 static bool take_judged(const csg_cell_at_hand *c, int axis, unsigned upper, unsigned part,
-                        csg_placed_vertex *v)
+                        csg_judged_crease *out)
 {
     unsigned low[3] = {c->at[0], c->at[1], c->at[2]};
     low[axis] += upper;
     const csg_judged_crease *found =
         csg_judged_crease_in(c->shell->brick->judged, csg_brick_slot(axis, low), part);
-    if (!found)
-        return false;
-    memcpy(v->at, found->at, sizeof v->at);
-    memcpy(v->gradient, found->gradient, sizeof v->gradient);
-    v->is_crease = !found->is_smooth;
-    v->is_torn = found->is_torn;
-    return true;
+    if (found)
+        *out = *found;
+    return found != NULL;
 }
 
-static bool take_found(const csg_face_side *side, unsigned part, csg_placed_vertex *v)
+static bool add_crease(csg_cell_at_hand *c, const csg_polygon_side *side,
+                       const csg_judged_crease *found)
 {
-    const csg_face_crease *found = &side->part[part];
-    csg_vec3_to_floats(v->at, found->at);
-    csg_vec3_to_floats(v->gradient, found->gradient);
-    v->is_crease = !found->is_smooth;
-    v->is_torn = csg_face_side_is_torn(side);
-    return found->is_there;
+    csg_cell_loop *w = c->loop;
+    csg_placed_vertex v = {
+        .place = csg_cells_place_of_part(w->x->bricks, c->shell->brick, c->at, side, found->part),
+        .is_crease = !found->is_smooth,
+        .is_torn = found->is_torn};
+    memcpy(v.at, found->at, sizeof v.at);
+    memcpy(v.gradient, found->gradient, sizeof v.gradient);
+    w->workers[c->worker].creases += v.is_crease;
+    return csg_cells_add_vertex(w, c->worker, &v);
 }
 
 static bool look_into_faces(csg_cell_at_hand *c)
@@ -204,12 +204,10 @@ static bool look_into_faces(csg_cell_at_hand *c)
         if (!judged && !find_in_face(c, side, axis, upper, &found))
             continue;
         for (unsigned part = 0; part < CSG_SIDE_PARTS; part++) {
-            csg_placed_vertex v = {
-                .place = csg_cells_place_of_part(w->x->bricks, c->shell->brick, c->at, side, part)};
-            if (judged ? !take_judged(c, axis, upper, part, &v) : !take_found(&found, part, &v))
-                continue;
-            w->workers[c->worker].creases += v.is_crease;
-            if (!csg_cells_add_vertex(w, c->worker, &v))
+            csg_judged_crease crease;
+            if ((judged ? take_judged(c, axis, upper, part, &crease)
+                        : csg_judged_crease_of(&found, part, &crease)) &&
+                !add_crease(c, side, &crease))
                 return false;
         }
     }

@@ -573,16 +573,9 @@ static uint8_t list_creases(const csg_judge_room *room, csg_judged_crease *creas
     unsigned count = 0;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
         uint8_t face = room->face[slot];
-        for (unsigned k = 0; face != CSG_NO_FACE && k < CSG_SIDE_PARTS; k++) {
-            const csg_face_crease *part = &room->faces[face].part[k];
-            if (!part->is_there)
-                continue;
-            creases[count] = (csg_judged_crease){.slot = (uint8_t)slot, .part = (uint8_t)k};
-            creases[count].is_smooth = part->is_smooth;
-            creases[count].is_torn = csg_face_side_is_torn(&room->faces[face]);
-            csg_vec3_to_floats(creases[count].gradient, part->gradient);
-            csg_vec3_to_floats(creases[count++].at, part->at);
-        }
+        for (unsigned k = 0; face != CSG_NO_FACE && k < CSG_SIDE_PARTS; k++)
+            if (csg_judged_crease_of(&room->faces[face], k, &creases[count]))
+                creases[count++].slot = (uint8_t)slot;
     }
     return (uint8_t)count;
 }

@@ -20,6 +20,17 @@ static bool copy(csg_arena *arena, const void *items, size_t bytes, const void *
     return own != NULL;
 }
 
+bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_crease *out)
+{
+    const csg_face_crease *found = &side->part[part];
+    *out = (csg_judged_crease){.part = (uint8_t)part,
+                               .is_smooth = found->is_smooth,
+                               .is_torn = csg_face_side_is_torn(side)};
+    csg_vec3_to_floats(out->at, found->at);
+    csg_vec3_to_floats(out->gradient, found->gradient);
+    return found->is_there;
+}
+
 const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged)
 {
     csg_judged *own = csg_arena_alloc(arena, sizeof *own);

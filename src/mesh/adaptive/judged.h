@@ -57,6 +57,8 @@ typedef struct csg_judged {
     const csg_pierced *pierced; /* NULL: no edge is */
 } csg_judged;
 
+/* What is kept of a side's part; its slot is for the caller. False: there is nothing. */
+bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_crease *out);
 /* A copy in an arena. NULL: out of memory. */
 const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged);
 

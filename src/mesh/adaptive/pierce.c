@@ -9,9 +9,6 @@
 enum { N = CSG_BRICK_SAMPLES, E = CSG_BRICK_EDGE, P = CSG_BRICK_POINTS };
 static const unsigned STRIDE[3] = {1, N, N *N};
 
-/* Cosine: sheets that differ by less than 12 degrees make no crease that must be kept. */
-static const double ONE_SURFACE = 0.978;
-
 typedef struct points {
     float x[CSG_BRICK_POINTS_PADDED], y[CSG_BRICK_POINTS_PADDED], z[CSG_BRICK_POINTS_PADDED];
     float f[CSG_BRICK_POINTS_PADDED], g[3][CSG_BRICK_POINTS_PADDED];
@@ -61,7 +58,7 @@ static double meet_between(const points *p, int axis, unsigned a, unsigned z, do
     double sa = (double)p->g[axis][a] * length, sz = (double)p->g[axis][z] * length;
     if (fa < 0 ? !(sa > 0 && sz < 0) : !(sa < 0 && sz > 0))
         return NAN;
-    if (csg_gradients_cosine(gradient_at(p, a), gradient_at(p, z)) > ONE_SURFACE)
+    if (csg_gradients_cosine(gradient_at(p, a), gradient_at(p, z)) > CSG_LEAST_CREASE_COSINE)
         return NAN;
     double t = (fz - sz - fa) / (sa - sz), met = fa + sa * t;
     bool is_beyond = fa < 0 ? met > 0 : met < 0;

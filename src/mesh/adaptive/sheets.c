@@ -12,9 +12,8 @@
 enum { MOST = CSG_POLYGON_MOST_SHEETS, LANES = CSG_LANES, MOST_ASKED = CSG_MOST_APEXES * MOST };
 _Static_assert(MOST_ASKED >= 2 * CSG_MOST_FACES && MOST_ASKED % LANES == 0, "all looks fit");
 
-/* Cosines: gradients that differ by 5 degrees may belong to two sheets; those of one polygon that
- * differ by 12 in all may go round a tip. */
-static const double ONE_SHEET = 0.9962, ONE_POLYGON = 0.978;
+/* Cosine: gradients that differ by 5 degrees may belong to two sheets. */
+static const double ONE_SHEET = 0.9962;
 /* A sheet whose gradient turned by 60 degrees within a cell is another one. */
 static const double ANOTHER_SHEET = 0.5;
 /* Radians: two sheets whose angle would fall below 2 degrees where they meet are one. */
@@ -433,7 +432,7 @@ static bool is_sharp(const csg_polygon *polygon)
     for (int i = 0; i < n; i++)
         if (polygon->is_crease[i] &&
             csg_gradients_cosine(polygon->point[(i + n - 1) % n].gradient,
-                                 polygon->point[(i + 1) % n].gradient) < ONE_POLYGON)
+                                 polygon->point[(i + 1) % n].gradient) < CSG_LEAST_CREASE_COSINE)
             return true;
     return false;
 }
@@ -551,7 +550,7 @@ static void set_out_in_cell(const csg_sheet_probe *p, apex_way *a, csg_apex_sear
         a->otherwise = CSG_APEX_FAILED;
     if (creases >= 2)
         set_out_to_meet(p, a, creases);
-    else if (least_cosine(polygon, &mean) < ONE_POLYGON)
+    else if (least_cosine(polygon, &mean) < CSG_LEAST_CREASE_COSINE)
         set_out_to_tip(a);
     else
         land(a);

@@ -53,11 +53,6 @@ enum { CSG_MOST_FACES = 36 }; /* at once: those of a brick */
 
 void csg_sheets_meet_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count);
 
-/* Of those faces through which no crease goes: a place between the points where the surface,
- * curved, is farther than `most` from the straight way between them (bulges.c). */
-void csg_sheets_bulge_in_faces(csg_sheet_probe *probe, csg_face_crease *faces, int count,
-                               double most);
-
 /* What is between two points of a face's border: a crease, or a bend, and where it is a bend what
  * is between it and either point. */
 enum { CSG_BELOW, CSG_BETWEEN, CSG_ABOVE, CSG_SIDE_PARTS };
@@ -65,8 +60,9 @@ typedef struct csg_face_side {
     csg_face_crease part[CSG_SIDE_PARTS];
 } csg_face_side;
 
-/* The part's face, ends and is_wedge of CSG_BETWEEN are given. divides: there may be others than
- * that. */
+/* The face, ends and is_wedge of CSG_BETWEEN are given. A bend is a place where the surface,
+ * curved, is farther than `most` from the straight way between the points (bulges.c). divides:
+ * there may be other parts than that. */
 void csg_sheets_find_in_faces(csg_sheet_probe *probe, csg_face_side *sides, int count, double most,
                               bool divides);
 
@@ -107,6 +103,10 @@ typedef struct csg_apex_search {
 enum { CSG_MOST_APEXES = 8 }; /* at once; of more, eight by eight */
 
 void csg_polygons_find_apexes(csg_sheet_probe *probe, csg_apex_search *searches, int count);
+
+/* Cosine of 12 degrees: where sheets, or gradients of one polygon, differ by less, there is no
+ * crease that must be kept. */
+#define CSG_LEAST_CREASE_COSINE 0.978
 
 /* Cosine of the angle between two gradients; 1 where one is 0. */
 double csg_gradients_cosine(csg_vec3 a, csg_vec3 b);
