@@ -7,22 +7,16 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "base/sized_block.h"
 #include "io/layers/coverage.h"
 #include "io/layers/layers.h"
-#include "io/sink.h"
+#include "io/zip_records.h"
 
 enum {
     BAND = 32, /* rows at once */
     LEVEL = 6,
     ROOM = 1 << 14,
-    HEAD_BYTES = 30,
-    RECORD_BYTES = 46,
-    END_BYTES = 22,
-    CHUNK_BYTES = 12, /* of a PNG, around its data */
     NAME_BYTES = 9,
-    VERSION = 10,    /* of the format: 1.0, stored */
-    NO_DATE = 0x0021 /* 1 January 1980, the format's zero */
+    VERSION = 10 /* of the format: 1.0, stored */
 };
 
 /* ---- PNG -------------------------------------------------------------------------------------- */
@@ -53,16 +47,6 @@ static void end_chunk(csg_page *page, size_t at)
     store_big(chunk, length);
     store_big(sum, (uint32_t)crc32(0, chunk + 4, length + 4));
     csg_page_bytes(page, sum, sizeof sum);
-}
-
-static void *allocate_for_zlib(void *memory, unsigned count, unsigned size)
-{
-    return csg_sized_block_alloc(memory, (size_t)count * size);
-}
-
-static void give_back(void *memory, void *pointer)
-{
-    csg_sized_block_release(memory, pointer);
 }
 
 typedef struct picture_room {
@@ -111,7 +95,7 @@ static void put_picture(csg_page *page, const csg_layers_head *head, const csg_o
     size_t sums_bytes = ((size_t)head->width + 2) * BAND * sizeof(double);
     uint8_t size[13] = {[8] = 8}; /* bits of a pixel; grey, one pass */
     picture_room room = {
-        .stream = {.zalloc = allocate_for_zlib, .zfree = give_back, .opaque = memory}};
+        .stream = {.zalloc = csg_zlib_alloc, .zfree = csg_zlib_release, .opaque = memory}};
     room.sums = csg_memory_alloc(memory, sums_bytes);
     room.row = csg_memory_alloc(memory, (size_t)head->width + 1);
     room.is_ready = deflateInit(&room.stream, LEVEL) == Z_OK;
@@ -135,24 +119,18 @@ static void put_picture(csg_page *page, const csg_layers_head *head, const csg_o
 
 /* ---- the archive ------------------------------------------------------------------------------ */
 
-/* What the head of a file and its record share, from the version on. */
-static uint8_t *store_entry(uint8_t *at, const csg_mask_entry *entry)
+static csg_zip_record record_of(const csg_mask_entry *entry)
 {
-    at = csg_store_u16(at, VERSION);
-    at = csg_store_u16(at, 0); /* flags */
-    at = csg_store_u16(at, 0); /* stored */
-    at = csg_store_u16(at, 0);
-    at = csg_store_u16(at, NO_DATE);
-    at = csg_store_u32(at, entry->crc);
-    at = csg_store_u32(at, entry->bytes);
-    at = csg_store_u32(at, entry->bytes);
-    at = csg_store_u16(at, NAME_BYTES);
-    return csg_store_u16(at, 0); /* no more fields */
+    return (csg_zip_record){.version = VERSION,
+                            .crc = entry->crc,
+                            .packed_bytes = entry->bytes,
+                            .plain_bytes = entry->bytes,
+                            .name_bytes = NAME_BYTES};
 }
 
 static void put_mask(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer)
 {
-    uint8_t empty[HEAD_BYTES] = {0};
+    uint8_t empty[CSG_ZIP_HEAD_BYTES] = {0};
     csg_mask_entry *entry = &head->masks[layer->number];
     size_t at = page->length;
     csg_page_bytes(page, empty, sizeof empty);
@@ -164,7 +142,8 @@ static void put_mask(csg_page *page, const csg_layers_head *head, const csg_slic
     const uint8_t *picture = (const uint8_t *)page->data + from;
     entry->bytes = (uint32_t)(page->length - from);
     entry->crc = (uint32_t)crc32(0, picture, entry->bytes);
-    store_entry(csg_store_u32((uint8_t *)page->data + at, 0x04034b50), entry);
+    csg_zip_record record = record_of(entry);
+    csg_zip_store_head((uint8_t *)page->data + at, &record);
 }
 
 static void begin_masks(csg_page *page, const csg_layers_head *head)
@@ -175,20 +154,16 @@ static void begin_masks(csg_page *page, const csg_layers_head *head)
 static void end_masks(csg_page *page, const csg_layers_head *head)
 {
     uint32_t at = 0;
-    uint8_t end[END_BYTES] = {0};
+    uint8_t bytes[CSG_ZIP_RECORD_BYTES], end[CSG_ZIP_END_BYTES];
     for (size_t i = 0; i < head->count; i++) {
-        uint8_t record[RECORD_BYTES] = {0}, *next = csg_store_u32(record, 0x02014b50);
-        store_entry(csg_store_u16(next, VERSION), &head->masks[i]);
-        csg_store_u32(record + RECORD_BYTES - 4, at);
-        csg_page_bytes(page, record, sizeof record);
+        csg_zip_record record = record_of(&head->masks[i]);
+        csg_zip_store_record(bytes, &record, at);
+        csg_page_bytes(page, bytes, sizeof bytes);
         csg_page_format(page, "%05zu.png", i);
-        at += HEAD_BYTES + NAME_BYTES + head->masks[i].bytes;
+        at += CSG_ZIP_HEAD_BYTES + NAME_BYTES + head->masks[i].bytes;
     }
-    uint8_t *next = csg_store_u32(csg_store_u32(end, 0x06054b50), 0);
-    next = csg_store_u16(next, (uint32_t)head->count);
-    next = csg_store_u16(next, (uint32_t)head->count);
-    next = csg_store_u32(next, (uint32_t)(head->count * (RECORD_BYTES + NAME_BYTES)));
-    csg_store_u32(next, at);
+    csg_zip_store_end(end, (uint32_t)head->count, at,
+                      (uint32_t)(head->count * (CSG_ZIP_RECORD_BYTES + NAME_BYTES)));
     csg_page_bytes(page, end, sizeof end);
 }
 

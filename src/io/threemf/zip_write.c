@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The archive of zip_write.h; the only file that names zlib. The text is cut into pieces that are
+ * The archive of zip_write.h. The text is cut into pieces that are
  * compressed on their own (each ends on a byte with a full flush, so that they can be put one after
  * the other), a few for every thread at a time. Sizes are known behind the data, so a file's head
  * is followed by its bytes and a "data descriptor": nothing is sought, and a pipe gets the same
@@ -10,18 +10,15 @@
 #include <zlib.h>
 
 #include "base/pool.h"
+#include "io/zip_records.h"
 
 enum {
     MOST_FILES = 4,
     MOST_SLOTS = 32,
     LEVEL = 6,
-    HEAD_BYTES = 30,
     DESCRIPTOR_BYTES = 16,
-    RECORD_BYTES = 46,
-    END_BYTES = 22,
-    VERSION = 20,    /* of the format: 2.0, deflate */
-    DESCRIPTED = 8,  /* flag: sizes stand behind the data */
-    NO_DATE = 0x0021 /* 1 January 1980, the format's zero */
+    VERSION = 20,  /* of the format: 2.0, deflate */
+    DESCRIPTED = 8 /* flag: sizes stand behind the data */
 };
 
 typedef struct entry {
@@ -57,28 +54,6 @@ struct csg_zip {
     csg_zip_piece_fn *piece;
     void *user;
 };
-
-/* ---- memory: zlib does not tell sizes when it gives back ----------------------------------- */
-
-enum { SIZE_BYTES = 16 };
-
-static void *allocate_for_zlib(void *memory, unsigned count, unsigned size)
-{
-    size_t bytes = (size_t)count * size + SIZE_BYTES;
-    uint8_t *block = csg_memory_alloc(memory, bytes);
-    if (!block)
-        return NULL;
-    memcpy(block, &bytes, sizeof bytes);
-    return block + SIZE_BYTES;
-}
-
-static void give_back(void *memory, void *pointer)
-{
-    size_t bytes;
-    uint8_t *block = (uint8_t *)pointer - SIZE_BYTES;
-    memcpy(&bytes, block, sizeof bytes);
-    csg_memory_release(memory, block, bytes);
-}
 
 /* ---- pieces ---------------------------------------------------------------------------------- */
 
@@ -179,18 +154,15 @@ static void put_bytes(csg_zip *zip, const void *bytes, size_t count)
     zip->written += count;
 }
 
-/* What a file's head and its record in the directory have in common. */
-static uint8_t *store_kind(uint8_t *at)
+static csg_zip_record record_of(const entry *file)
 {
-    at = csg_store_u16(csg_store_u16(at, VERSION), DESCRIPTED);
-    return csg_store_u16(csg_store_u16(csg_store_u16(at, Z_DEFLATED), 0), NO_DATE);
-}
-
-static uint8_t *store_sizes(uint8_t *at, const entry *file)
-{
-    at = csg_store_u32(at, file->crc);
-    at = csg_store_u32(at, (uint32_t)file->packed_bytes);
-    return csg_store_u32(at, (uint32_t)file->text_bytes);
+    return (csg_zip_record){.version = VERSION,
+                            .flags = DESCRIPTED,
+                            .method = Z_DEFLATED,
+                            .crc = file->crc,
+                            .packed_bytes = (uint32_t)file->packed_bytes,
+                            .plain_bytes = (uint32_t)file->text_bytes,
+                            .name_bytes = (uint32_t)strlen(file->name)};
 }
 
 static void end_file(csg_zip *zip)
@@ -203,36 +175,35 @@ static void end_file(csg_zip *zip)
     flush_loose(zip);
     put_bytes(zip, last_block, sizeof last_block);
     file->packed_bytes += sizeof last_block;
-    store_sizes(csg_store_u32(descriptor, 0x08074B50), file);
+    csg_zip_record record = record_of(file);
+    csg_zip_store_sizes(csg_store_u32(descriptor, 0x08074B50), &record);
     put_bytes(zip, descriptor, sizeof descriptor);
 }
 
 void csg_zip_file(csg_zip *zip, const char *name)
 {
-    uint8_t head[HEAD_BYTES] = {0};
+    uint8_t head[CSG_ZIP_HEAD_BYTES];
     end_file(zip);
     entry *file = &zip->files[zip->file_count++];
     *file = (entry){.name = name, .at = zip->written};
-    store_kind(csg_store_u32(head, 0x04034B50));
-    csg_store_u16(head + 26, (uint32_t)strlen(name));
+    csg_zip_record record = record_of(file);
+    csg_zip_store_head(head, &record);
     put_bytes(zip, head, sizeof head);
     put_bytes(zip, name, strlen(name));
 }
 
 static void put_record(csg_zip *zip, const entry *file)
 {
-    uint8_t record[RECORD_BYTES] = {0};
-    uint8_t *at = csg_store_u16(csg_store_u32(record, 0x02014B50), VERSION);
-    at = store_sizes(store_kind(at), file);
-    csg_store_u16(at, (uint32_t)strlen(file->name));
-    csg_store_u32(record + 42, (uint32_t)file->at);
-    put_bytes(zip, record, sizeof record);
+    uint8_t bytes[CSG_ZIP_RECORD_BYTES];
+    csg_zip_record record = record_of(file);
+    csg_zip_store_record(bytes, &record, (uint32_t)file->at);
+    put_bytes(zip, bytes, sizeof bytes);
     put_bytes(zip, file->name, strlen(file->name));
 }
 
 csgm_status csg_zip_finish(csg_zip *zip)
 {
-    uint8_t end[END_BYTES] = {0};
+    uint8_t end[CSG_ZIP_END_BYTES];
     end_file(zip);
     uint64_t directory = zip->written;
     bool fits = true;
@@ -240,11 +211,8 @@ csgm_status csg_zip_finish(csg_zip *zip)
         put_record(zip, &zip->files[i]);
         fits &= zip->files[i].text_bytes < UINT32_MAX;
     }
-    csg_store_u32(end, 0x06054B50);
-    csg_store_u16(end + 8, (uint32_t)zip->file_count);
-    csg_store_u16(end + 10, (uint32_t)zip->file_count);
-    csg_store_u32(end + 12, (uint32_t)(zip->written - directory));
-    csg_store_u32(end + 16, (uint32_t)directory);
+    csg_zip_store_end(end, (uint32_t)zip->file_count, (uint32_t)directory,
+                      (uint32_t)(zip->written - directory));
     put_bytes(zip, end, sizeof end);
     return fits && zip->written < UINT32_MAX ? CSGM_OK : CSGM_ERR_UNSUPPORTED;
 }
@@ -258,8 +226,8 @@ static bool make_packers(csg_zip *zip)
     memset(zip->packers, 0, zip->worker_count * sizeof(packer));
     for (uint32_t i = 0; i < zip->worker_count; i++) {
         z_stream *stream = &zip->packers[i].stream;
-        stream->zalloc = allocate_for_zlib;
-        stream->zfree = give_back;
+        stream->zalloc = csg_zlib_alloc;
+        stream->zfree = csg_zlib_release;
         stream->opaque = memory;
         zip->packers[i].ready =
             deflateInit2(stream, LEVEL, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) == Z_OK;
