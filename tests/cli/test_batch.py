@@ -372,7 +372,7 @@ class Reports(BatchTest):
         self.run_in("batch", "bad.txt", "ball.txt", "-d", "out", *SMALL, "--junit", "r.xml")
         suite = xml.fromstring(self.read("r.xml"))
         self.assertEqual((suite.get("tests"), suite.get("failures")), ("2", "1"))
-        failure = suite[0].find("failure")
+        failure = suite.find("testcase/failure")
         self.assertIn("error E0", failure.get("message"))
         self.assertIn("sphere(r = );", failure.text)
         self.assertNotIn("timestamp", suite.attrib)

@@ -272,6 +272,8 @@ static int take_record(maker *m)
         sound = sound && batch_hash_available() && batch_hash_path(output->path, &output->digest);
     }
     m->record.key = batch_record_key(m->job, &m->run->program);
+    m->record.thread_seconds =
+        result->thread_seconds + (cli_now_s() - m->app.start_s) * (uint32_t)m->options.threads;
     m->record.outputs = result->outputs;
     m->record.output_count = result->output_count;
     if (m->run->app->options->depfiles && !batch_write_depfiles(&m->app, &m->record, m->job))
@@ -368,4 +370,5 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     result->messages = text;
     result->outcome = result->status == CLI_DONE ? BATCH_MADE : BATCH_FAILED;
     result->seconds += cli_now_s() - m.app.start_s;
+    result->thread_seconds += (cli_now_s() - m.app.start_s) * threads;
 }

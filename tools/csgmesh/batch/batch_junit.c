@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "batch/batch_report.h"
+#include "batch/batch_shard.h"
 #include "core/junit.h"
 #include "core/markup.h"
 #include "core/options.h"
@@ -38,6 +39,21 @@ static void put_case(FILE *out, const batch_job *job, const batch_result *result
     fputs("</testcase>\n", out);
 }
 
+/* Of which batch it is which part, for --merge-reports. */
+static void put_properties(FILE *out, const batch_run *run)
+{
+    const batch_shard *shard = &run->plan->shard;
+    char name[BATCH_JOB_NAME];
+    batch_shard_name(shard, name);
+    cli_junit_begin_properties(out);
+    cli_junit_property(out, "version", csgm_version());
+    cli_junit_property(out, "batch", name);
+    cli_junit_count(out, "shard", shard->index);
+    cli_junit_count(out, "shards", shard->count);
+    cli_junit_count(out, "all_jobs", shard->all);
+    cli_junit_end_properties(out);
+}
+
 static void put_suite(FILE *out, const batch_run *run)
 {
     size_t failed = 0, skipped = 0;
@@ -49,6 +65,7 @@ static void put_suite(FILE *out, const batch_run *run)
     }
     cli_junit_open(out, "batch",
                    &(cli_junit_counts){run->plan->count, failed, 0, skipped, seconds});
+    put_properties(out, run);
     for (size_t i = 0; i < run->plan->count; i++)
         put_case(out, &run->plan->jobs[i], &run->results[i]);
     cli_junit_close(out);

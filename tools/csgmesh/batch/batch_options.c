@@ -261,15 +261,26 @@ cli_list batch_settings_arguments(cli_arena *arena, const batch_settings *settin
     return list;
 }
 
-void batch_settings_hash(const batch_settings *settings, batch_hasher *hasher)
+void batch_settings_visit(const batch_settings *settings,
+                          void (*take)(void *user, const char *text), void *user)
 {
     for (size_t i = 0; i < ROWS; i++) {
         const char *argument = settings->arguments[rows[i].id];
         if (argument && *argument && !is_without_effect(rows[i].id))
-            batch_hash_text(hasher, argument);
+            take(user, argument);
     }
     for (size_t i = 0; i < settings->defines.count; i++)
-        batch_hash_text(hasher, settings->defines.items[i]);
+        take(user, settings->defines.items[i]);
     for (size_t i = 0; i < settings->meta.count; i++)
-        batch_hash_text(hasher, settings->meta.items[i]);
+        take(user, settings->meta.items[i]);
+}
+
+static void hash_text(void *hasher, const char *text)
+{
+    batch_hash_text(hasher, text);
+}
+
+void batch_settings_hash(const batch_settings *settings, batch_hasher *hasher)
+{
+    batch_settings_visit(settings, hash_text, hasher);
 }

@@ -34,6 +34,9 @@ cli_list batch_settings_arguments(cli_arena *arena, const batch_settings *settin
 /* Only what may change a byte of the outputs, or whether there are any; includes are hashed as the
  * files that they lead to. */
 void batch_settings_hash(const batch_settings *settings, batch_hasher *hasher);
+/* The same, text by text, for another hash. */
+void batch_settings_visit(const batch_settings *settings,
+                          void (*take)(void *user, const char *text), void *user);
 
 /* A value as an expression of the scene language: 5, true, "text", [1, 2]. NULL: an object. */
 const char *batch_expression(cli_arena *arena, const cli_value *value);

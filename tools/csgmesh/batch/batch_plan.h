@@ -26,7 +26,15 @@ typedef struct batch_job {
     cli_list formats;    /* names, "glb" */
     cli_list names;      /* of the outputs, below the directory; those without a part */
     cli_list outputs;    /* the same with the directory */
+    size_t number;       /* in the whole batch, from 1 on */
 } batch_job;
+
+/* The part of a batch that one machine makes; see batch_shard.h. */
+typedef struct batch_shard {
+    uint32_t index, count; /* 3 of 8; 1 of 1: all */
+    size_t all;            /* jobs of all shards together */
+    uint64_t batch;        /* which batch it is: of jobs, options and costs */
+} batch_shard;
 
 typedef struct batch_plan {
     cli_app *app;
@@ -34,6 +42,7 @@ typedef struct batch_plan {
     const char *directory;
     batch_job *jobs;
     size_t count;
+    batch_shard shard;
     /* while the plan is made */
     batch_settings *given;
     batch_sets_cache sets;

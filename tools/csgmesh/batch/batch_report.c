@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "batch/batch_shard.h"
 #include "core/interrupt.h"
 #include "core/json.h"
 #include "core/options.h"
@@ -102,6 +103,8 @@ static void put_outputs(cli_json *json, const batch_result *result)
 static void put_job(const batch_job *job, const batch_result *result)
 {
     cli_json json = cli_json_make(stdout, false);
+    char name[BATCH_JOB_NAME];
+    batch_job_name(job, name);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "scene", job->scene);
     if (job->set)
@@ -115,6 +118,10 @@ static void put_job(const batch_job *job, const batch_result *result)
         cli_json_count(&json, "triangles", result->triangles);
     if (result->outcome != BATCH_NOT_RUN)
         cli_json_number(&json, "seconds", result->seconds);
+    if (result->thread_seconds > 0)
+        cli_json_number(&json, "thread_seconds", result->thread_seconds);
+    cli_json_string(&json, "job", name);
+    cli_json_count(&json, "number", job->number);
     if (result->messages && *result->messages)
         cli_json_string(&json, "messages", result->messages);
     cli_json_end(&json, '}');
@@ -132,6 +139,7 @@ static size_t count_of(const batch_run *run, batch_outcome outcome)
 static void put_summary_json(const batch_run *run, double seconds)
 {
     cli_json json = cli_json_make(stdout, false);
+    char name[BATCH_JOB_NAME];
     cli_json_begin(&json, '{');
     cli_json_count(&json, "jobs", run->plan->count);
     cli_json_count(&json, "made", count_of(run, BATCH_MADE));
@@ -140,6 +148,12 @@ static void put_summary_json(const batch_run *run, double seconds)
     cli_json_count(&json, "failed", count_of(run, BATCH_FAILED));
     cli_json_count(&json, "not_run", count_of(run, BATCH_NOT_RUN));
     cli_json_number(&json, "seconds", seconds);
+    cli_json_string(&json, "version", csgm_version());
+    batch_shard_name(&run->plan->shard, name);
+    cli_json_string(&json, "batch", name);
+    cli_json_count(&json, "shard", run->plan->shard.index);
+    cli_json_count(&json, "shards", run->plan->shard.count);
+    cli_json_count(&json, "all_jobs", run->plan->shard.all);
     cli_json_end(&json, '}');
     putchar('\n');
 }
@@ -178,12 +192,16 @@ static void put_row(const batch_run *run, batch_outcome outcome)
 
 static void put_summary(const batch_run *run, double seconds)
 {
+    const batch_shard *shard = &run->plan->shard;
     static const batch_outcome order[] = {BATCH_MADE, BATCH_CACHED, BATCH_UP_TO_DATE, BATCH_FAILED,
                                           BATCH_NOT_RUN};
     puts("             jobs    files        MiB");
     for (size_t i = 0; i < sizeof order / sizeof *order; i++)
         put_row(run, order[i]);
     printf("%-10s %6zu   in %.2f s\n", "all", run->plan->count, seconds);
+    if (run->app->options->shard)
+        printf("shard %" PRIu32 " of %" PRIu32 " of a batch of %zu jobs\n", shard->index,
+               shard->count, shard->all);
 }
 
 int batch_report_end(batch_run *run)

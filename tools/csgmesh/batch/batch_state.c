@@ -115,6 +115,7 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
     if (current) {
         take_outputs(result, &record);
         tell_inputs(run, &record);
+        result->thread_seconds = record.thread_seconds;
         result->outcome = BATCH_UP_TO_DATE;
     }
     cli_arena_reset(&arena);
@@ -202,6 +203,7 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     if (found) {
         take_outputs(result, &record);
         tell_inputs(run, &record);
+        result->thread_seconds = record.thread_seconds;
         result->outcome = BATCH_CACHED;
         write_state(run, &arena, job, &record);
     }
@@ -232,10 +234,12 @@ static void store(batch_run *run, cli_arena *arena, const batch_job *job,
     for (size_t i = 0; i < timeless.output_count; i++)
         timeless.outputs[i].changed_s = timeless.outputs[i].changed_ns = 0;
     const char *text = batch_record_print(arena, job, &timeless);
-    if (!folder || !text || !store_objects(run, arena, record))
+    timeless.thread_seconds = 0;
+    const char *named = batch_record_print(arena, job, &timeless);
+    if (!folder || !text || !named || !store_objects(run, arena, record))
         return;
     batch_hash_begin(&hasher);
-    batch_hash_text(&hasher, text);
+    batch_hash_text(&hasher, named);
     batch_digest digest = batch_hash_end(&hasher);
     batch_digest_print(&digest, name);
     const char *path = cli_path_join(arena, folder, name);

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "batch/batch_report.h"
+#include "batch/batch_shard.h"
 #include "core/commands.h"
 #include "core/options.h"
 #include "core/work.h"
@@ -20,6 +21,8 @@ static int check_usage(cli_app *app)
                                "no manifest and no scenes given");
     if (options->keep_going && options->fail_fast)
         return cli_usage_error(app, NULL, "--keep-going and --fail-fast exclude each other");
+    if (options->times && !options->shard)
+        return cli_usage_error(app, NULL, "--times is for --shard");
     if (cli_outputs_check_contents(app) != CLI_DONE)
         return CLI_TROUBLE;
     int status = cli_work_check(app);
@@ -58,11 +61,17 @@ static int run_plan(cli_app *app, batch_plan *plan)
 int cli_cmd_batch(cli_app *app)
 {
     batch_plan plan = {0};
+    batch_shard shard;
     int status = check_usage(app);
+    if (status == CLI_DONE)
+        status = batch_shard_read(app, &shard);
     if (status == CLI_DONE)
         status = cli_app_open(app);
     if (status == CLI_DONE)
         status = batch_plan_make(app, &plan);
+    plan.shard = shard;
+    if (status == CLI_DONE)
+        status = batch_shard_choose(&plan);
     if (status == CLI_DONE)
         status = app->options->emit ? emit_plan(&plan) : run_plan(app, &plan);
     batch_plan_release(&plan);

@@ -3,6 +3,8 @@
  */
 #include "core/junit.h"
 
+#include "core/markup.h"
+
 void cli_junit_open(FILE *out, const char *command, const cli_junit_counts *counts)
 {
     fprintf(out,
@@ -12,6 +14,28 @@ void cli_junit_open(FILE *out, const char *command, const cli_junit_counts *coun
     if (counts->seconds >= 0)
         fprintf(out, " time=\"%.3f\"", counts->seconds);
     fputs(">\n", out);
+}
+
+void cli_junit_begin_properties(FILE *out)
+{
+    fputs("  <properties>\n", out);
+}
+
+void cli_junit_property(FILE *out, const char *name, const char *value)
+{
+    fprintf(out, "    <property name=\"%s\" value=\"", name);
+    cli_put_markup(out, value, CLI_XML);
+    fputs("\"/>\n", out);
+}
+
+void cli_junit_count(FILE *out, const char *name, size_t value)
+{
+    fprintf(out, "    <property name=\"%s\" value=\"%zu\"/>\n", name, value);
+}
+
+void cli_junit_end_properties(FILE *out)
+{
+    fputs("  </properties>\n", out);
 }
 
 void cli_junit_close(FILE *out)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh batch on many machines: --shard, and reports that are one again by --merge-reports. Every scene is made by one
+shard exactly, whatever the number of shards; shares are even; what comes or goes moves few others.
+"""
+import json
+import os
+import random
+import xml.etree.ElementTree as xml
+
+import cli
+from batch_support import BatchTest, digest, needs_hashes
+
+SMALL = ["-r", "6"]
+
+
+class ShardTest(BatchTest):
+    COUNT = 120
+
+    def setUp(self):
+        super().setUp()
+        self.names = self.many(self.COUNT)
+
+    def share(self, shard, *arguments, scenes=None):
+        """The names of what a shard makes, from the rules that it would have."""
+        result = self.run_in("batch", *(scenes or self.names), "-d", "out", "--emit", "ninja", "--shard", shard, *arguments)
+        self.assert_status(result, 0)
+        return [line.split()[1].rstrip(":") for line in result.stdout.decode().splitlines() if line.startswith("build out/")]
+
+    def shares(self, count, *arguments, scenes=None):
+        return [self.share(f"{i + 1}/{count}", *arguments, scenes=scenes) for i in range(count)]
+
+    def where(self, count, *arguments, scenes=None):
+        return {name: i for i, names in enumerate(self.shares(count, *arguments, scenes=scenes)) for name in names}
+
+
+class Shares(ShardTest):
+    def test_every_scene_once(self):
+        for count in (1, 2, 7, 20):
+            shares = self.shares(count)
+            made = sorted(name for names in shares for name in names)
+            self.assertEqual(made, sorted(f"out/a{n}.glb" for n in range(self.COUNT)), count)
+            most = max(len(names) for names in shares)
+            average = self.COUNT / count
+            self.assertLessEqual(most, max(average * 17 / 16, average + 1), f"{count} shards")
+
+    def test_more_shards_than_scenes(self):
+        few = self.names[:3]
+        shares = self.shares(5, scenes=few)
+        self.assertEqual(sorted(len(names) for names in shares), [0, 0, 1, 1, 1])
+        empty = [len(names) for names in shares].index(0) + 1
+        outcomes = self.batch(*few, "-d", "out", "--shard", f"{empty}/5")
+        self.assertEqual((outcomes[None]["jobs"], outcomes[None]["all_jobs"]), (0, 3))
+
+    def test_the_order_does_not_matter(self):
+        mixed = list(self.names)
+        random.Random(5).shuffle(mixed)
+        self.assertEqual(self.where(7), self.where(7, scenes=mixed))
+
+    def test_one_scene_more_moves_few(self):
+        """Of 119 scenes in 8 shards by their place in the list, about 100 would move."""
+        whole = self.where(8)
+        for left_out in (17, 60):
+            fewer = self.where(8, scenes=self.names[:left_out] + self.names[left_out + 1:])
+            moved = sum(whole[name] != shard for name, shard in fewer.items())
+            self.assertLess(moved, 12, f"without {left_out}")
+
+    def test_a_scene_that_changes_stays(self):
+        before = self.where(8)
+        for name in self.names[:10]:
+            self.write(os.path.relpath(name, self.folder) if os.path.isabs(name) else name, "cube(5);\n")
+        self.assertEqual(self.where(8), before)
+
+
+@cli.unittest.skipUnless(cli.has_library("nlohmann-json"), "no JSON in this build")
+class Times(ShardTest):
+    def report(self, times):
+        """What an earlier run has said, with other times."""
+        self.batch(*self.names, "-d", "out", *SMALL)
+        jobs = self.lines[:-1]
+        for job, seconds in zip(jobs, times):
+            job["thread_seconds"] = seconds
+        self.write("times.json", "".join(json.dumps(line) + "\n" for line in self.lines))
+        return {job["outputs"][0]["file"]: job["thread_seconds"] for job in jobs}
+
+    def test_shares_of_the_same_time(self):
+        generator = random.Random(3)
+        cost = self.report([generator.paretovariate(1.3) for _ in self.names])
+        for count in (2, 5, 8):
+            loads = [sum(cost[name] for name in names) for names in self.shares(count, "--times", "times.json")]
+            self.assertLessEqual(max(loads), max(sum(loads) / count * 17 / 16, max(cost.values())) + 1e-3, count)
+        by_number = [sum(cost[name] for name in names) for names in self.shares(8)]
+        self.assertGreater(max(by_number), sum(by_number) / 8 * 1.3, "the times are even, and show nothing")
+
+    def test_scenes_without_times(self):
+        self.report([1 + n % 3 for n in range(self.COUNT)])
+        kept = self.read("times.json").decode().splitlines()
+        self.write("times.json", "\n".join(kept[::2]) + "\n")
+        made = [name for names in self.shares(6, "--times", "times.json") for name in names]
+        self.assertEqual(len(set(made)), self.COUNT)
+        self.assertEqual(len(made), self.COUNT)
+
+    @needs_hashes
+    def test_what_is_up_to_date_keeps_its_time(self):
+        """So the latest report has the times of all, not only of what it has made."""
+        self.batch(*self.names[:4], "-d", "out", "--cache", "cache", *SMALL)
+        made = [job["thread_seconds"] for job in self.lines[:-1]]
+        for folder, outcome in (("out", "up to date"), ("other", "cached")):
+            self.batch(*self.names[:4], "-d", folder, "--cache", "cache", *SMALL)
+            self.assertEqual({job["outcome"] for job in self.lines[:-1]}, {outcome})
+            for job, seconds in zip(self.lines[:-1], made):
+                self.assertGreater(job["thread_seconds"], 0)
+                self.assertLess(abs(job["thread_seconds"] - seconds), 0.2 * seconds + 0.01)
+
+    def test_no_report(self):
+        self.write("times.json", "made 5\n")
+        for arguments, status, words in ((["--times", "times.json"], 1, "times.json:1: this is no report"),
+                                         (["--times", "none.json"], 2, "none.json")):
+            self.assert_refused(self.run_in("batch", *self.names, "-d", "out", "--shard", "1/2", *arguments), status, words)
+        self.assert_refused(self.run_in("batch", *self.names, "-d", "out", "--times", "times.json"), 2, "--shard")
+
+
+class WhichOne(ShardTest):
+    COUNT = 6
+
+    def test_bad_numbers(self):
+        for text, words in (("0/8", "no shard 0 of 8"), ("9/8", "no shard 9 of 8"), ("3", "wants I/N"), ("a/b", "wants I/N"),
+                            ("1/0", "N is from 1"), ("-1/4", "wants I/N"), ("1/2/3", "wants I/N"), ("", "wants I/N"),
+                            ("1/99999999999", "wants I/N"), ("1/200000", "N is from 1 to 100000"), (" 1/2", "wants I/N")):
+            result = self.run_in("batch", *self.names, "-d", "out", "--shard", text)
+            self.assert_refused(result, 2, words)
+            self.assertEqual(result.stderr.count("error"), 1)
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def slurm(self, **variables):
+        environment = {**os.environ, **{"SLURM_" + name: value for name, value in variables.items()}}
+        return self.run_in("batch", *self.names, "-d", "out", *SMALL, "--shard", "slurm", env=environment)
+
+    def test_slurm(self):
+        for variables, shard in (
+                ({"ARRAY_TASK_ID": "7", "ARRAY_TASK_MIN": "5", "ARRAY_TASK_COUNT": "4"}, "3 of 4"),
+                ({"ARRAY_TASK_ID": "9", "ARRAY_TASK_MIN": "1", "ARRAY_TASK_STEP": "4", "ARRAY_TASK_COUNT": "3"}, "3 of 3"),
+                ({"PROCID": "0", "STEP_NUM_TASKS": "8"}, "1 of 8"),
+                ({"ARRAY_TASK_ID": "1", "ARRAY_TASK_MIN": "0", "ARRAY_TASK_COUNT": "2", "PROCID": "2", "STEP_NUM_TASKS": "3"},
+                 "6 of 6")):
+            result = self.slurm(**variables)
+            self.assert_status(result, 0)
+            self.assertIn(f"shard {shard} of a batch of 6 jobs\n", result.stdout.decode())
+        for variables in ({}, {"ARRAY_TASK_ID": "7"}, {"ARRAY_TASK_ID": "x", "ARRAY_TASK_COUNT": "4"},
+                          {"ARRAY_TASK_ID": "9", "ARRAY_TASK_MIN": "5", "ARRAY_TASK_COUNT": "4"},
+                          {"PROCID": "8", "STEP_NUM_TASKS": "8"}, {"PROCID": "0", "STEP_NUM_TASKS": "1"}):
+            self.assert_refused(self.slurm(**variables), 2, "--shard slurm")
+
+    def test_the_report_says_it(self):
+        outcomes = self.batch(*self.names, "-d", "out", *SMALL, "--shard", "2/3", "--junit", "r.xml")
+        summary = outcomes[None]
+        self.assertEqual((summary["shard"], summary["shards"], summary["all_jobs"]), (2, 3, 6))
+        suite = xml.fromstring(self.read("r.xml"))
+        said = {p.get("name"): p.get("value") for p in suite.iter("property")}
+        self.assertEqual(said, {"version": summary["version"], "batch": summary["batch"], "shard": "2", "shards": "3",
+                                "all_jobs": "6"})
+
+    def test_the_files_of_all_are_those_of_one(self):
+        self.batch(*self.names, "-d", "whole", *SMALL)
+        for i in range(3):
+            self.batch(*self.names, "-d", "out", *SMALL, "--shard", f"{i + 1}/3")
+        self.assertEqual(digest(self.outputs()), digest(self.outputs("whole")))
+
+
+if __name__ == "__main__":
+    cli.main()
