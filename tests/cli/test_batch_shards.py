@@ -166,5 +166,140 @@ class WhichOne(ShardTest):
         self.assertEqual(digest(self.outputs()), digest(self.outputs("whole")))
 
 
+class Merged(ShardTest):
+    """Reports of three shards, as JSON and as JUnit XML."""
+    COUNT = 9
+    KINDS = ("json", "xml")
+
+    def setUp(self):
+        super().setUp()
+        if not cli.has_library("nlohmann-json"):
+            self.KINDS = ("xml",) # pylint: disable=invalid-name
+        self.write("s/a4.txt", "sphere(r = );\n")
+        self.reports("r", *self.names)
+
+    def reports(self, name, *arguments, count=3, options=()):
+        for i in range(1, count + 1):
+            result = self.run_in("batch", *arguments, "-d", "out", *SMALL, *options, "--shard", f"{i}/{count}", "--json",
+                                 "--junit", f"{name}{i}.xml")
+            self.write(f"{name}{i}.json", result.stdout)
+
+    def merge(self, *reports, status):
+        result = self.run_in("batch", "--merge-reports", *reports, "-o", "merged")
+        self.assert_clean(result)
+        self.assert_status(result, status)
+        return result.stderr
+
+    def read_lines(self, name):
+        return [json.loads(line) for line in self.read(name).splitlines()]
+
+    @staticmethod
+    def bare(lines):
+        """Without what differs from run to run."""
+        times = ("seconds", "thread_seconds", "number")
+        return [{key: value for key, value in line.items() if key not in times} for line in lines]
+
+    @cli.unittest.skipUnless(cli.has_library("nlohmann-json"), "no JSON in this build")
+    def test_json_is_that_of_one_machine(self):
+        self.assertEqual(self.merge("r3.json", "r1.json", "r2.json", status=1), "")
+        self.write("whole.json", self.run_in("batch", *self.names, "-d", "whole", *SMALL, "--json").stdout)
+        merged, whole = self.read_lines("merged"), self.read_lines("whole.json")
+        for line in whole[:-1]:
+            for output in line.get("outputs", []):
+                output["file"] = output["file"].replace("whole/", "out/")
+        self.assertEqual(self.bare(merged[:-1]), self.bare(whole[:-1])) # in the order of the list
+        self.assertEqual([line["number"] for line in merged[:-1]], list(range(1, 10)))
+        for key in ("jobs", "made", "failed", "not_run", "all_jobs", "version"):
+            self.assertEqual(merged[-1][key], whole[-1][key], key)
+        self.assertEqual((merged[-1]["shards"], merged[-1]["merged"]), (3, 3))
+        self.assertNotIn("missing_shards", merged[-1])
+        self.assertEqual(len(self.share("1/2", "--times", "merged")) + len(self.share("2/2", "--times", "merged")), 9)
+        self.assert_refused(self.run_in("batch", "--merge-reports", "merged"), 1, "merged has been merged already")
+
+    def test_junit_is_that_of_one_machine(self):
+        self.assertEqual(self.merge("r2.xml", "r1.xml", "r3.xml", status=1), "")
+        self.run_in("batch", *self.names, "-d", "out", *SMALL, "--junit", "whole")
+        merged, whole = (xml.fromstring(self.read(name)) for name in ("merged", "whole"))
+        for name in ("tests", "failures", "errors", "skipped"):
+            self.assertEqual(merged.get(name), whole.get(name))
+        cases = [{(case.get("classname"), case.get("name"), case.findtext("failure")) for case in suite.iter("testcase")}
+                 for suite in (merged, whole)]
+        self.assertEqual(cases[0], cases[1])
+        self.assertEqual(len(cases[0]), 9)
+        self.assertGreater(float(merged.get("time")), 0)
+
+    def test_a_missing_shard(self):
+        for kind in self.KINDS:
+            said = self.merge(f"r1.{kind}", f"r3.{kind}", status=2)
+            missing = 9 - len(self.share("1/3")) - len(self.share("3/3"))
+            self.assertEqual(said, f"csgmesh: error: shard 2 of 3 is missing, with {missing} of 9 jobs\n")
+            self.assertIn(b"a", self.read("merged")) # what is there is told all the same
+        self.assertIn("shards 2, 3 of 3 are missing", self.merge(f"r1.{kind}", status=2))
+        if "json" in self.KINDS:
+            self.merge("r1.json", status=2)
+            self.assertEqual(self.read_lines("merged")[-1]["missing_shards"], [2, 3])
+
+    def assert_nothing(self, words, *reports):
+        said = self.merge(*reports, status=1)
+        self.assertEqual(said.count("error"), 1, said)
+        self.assertIn(words, said)
+        self.assertFalse(os.path.exists(self.path("merged")))
+
+    def test_a_shard_twice(self):
+        for kind in self.KINDS:
+            self.write(f"again.{kind}", self.read(f"r2.{kind}"))
+            self.assert_nothing(f"r2.{kind} and again.{kind} are both of shard 2 of 3", f"r1.{kind}", f"r2.{kind}",
+                                f"again.{kind}", f"r3.{kind}")
+
+    def test_a_job_twice(self):
+        for kind in self.KINDS:
+            lines = self.read(f"r1.{kind}").splitlines(keepends=True)
+            first = next(line for line in lines if b"a" in line and (b'"job":' in line or b"<testcase" in line)
+                         and b"failure" not in line and b'"failed"' not in line)
+            other = self.read(f"r2.{kind}").decode()
+            if kind == "json":
+                other = first.decode() + other.replace('"jobs": ', '"jobs": 1') # more than there are
+                jobs = len(self.share("2/3"))
+                other = other.replace(f'"jobs": 1{jobs}', f'"jobs": {jobs + 1}')
+            else:
+                jobs = len(self.share("2/3"))
+                other = other.replace(f'tests="{jobs}"', f'tests="{jobs + 1}"')
+                other = other.replace("  </properties>\n", "  </properties>\n" + first.decode())
+            self.write(f"other.{kind}", other)
+            self.assert_nothing("have the same job", f"r1.{kind}", f"other.{kind}", f"r3.{kind}")
+
+    def test_another_version(self):
+        for kind in self.KINDS:
+            version = json.loads(self.run_in("batch", self.names[0], "-d", "out", *SMALL, "--json").stdout.splitlines()[-1])["version"]
+            self.write(f"old.{kind}", self.read(f"r2.{kind}").replace(f'"{version}"'.encode(), b'"0.0.9"'))
+            self.assert_nothing(f"old.{kind} by csgmesh 0.0.9", f"r1.{kind}", f"old.{kind}", f"r3.{kind}")
+
+    def test_another_batch(self):
+        self.reports("fewer", *self.names[1:])
+        self.reports("finer", *self.names, options=["-r", "7"])
+        self.reports("more", *self.names, count=4)
+        for kind in self.KINDS:
+            for name in ("fewer2", "finer2", "more2"):
+                self.assert_nothing(f"r1.{kind} and {name}.{kind} are of different batches", f"r1.{kind}", f"{name}.{kind}")
+        if "json" in self.KINDS:
+            self.assert_nothing("r1.json is JSON and r2.xml is JUnit XML", "r1.json", "r2.xml")
+
+    def test_half_a_report(self):
+        for kind in self.KINDS:
+            whole = self.read(f"r2.{kind}")
+            for length in (0, len(whole) // 2, whole.rindex(b"\n", 0, -1) + 1, len(whole) - 3):
+                self.write(f"half.{kind}", whole[:length])
+                self.assert_nothing(f"half.{kind}", f"r1.{kind}", f"half.{kind}", f"r3.{kind}")
+
+    def test_usage(self):
+        for arguments, words in ((["--merge-reports"], "no reports"), (["--merge-reports", "r1.xml", "-d", "out"], "exclude"),
+                                 (["--merge-reports", "none.xml"], "none.xml"), ([*self.names, "-d", "out", "-o", "x"], "-o is for"),
+                                 (["--merge-reports", "r1.xml", "r2.xml", "-o", "./r2.xml"], "would overwrite")):
+            before = self.read("r2.xml")
+            self.assert_refused(self.run_in("batch", *arguments), 2, words)
+            self.assertEqual(self.read("r2.xml"), before)
+        self.assert_status(self.run_in("batch", "--merge-reports", "r1.xml", "r2.xml", "r3.xml", "-o", "/dev/full"), 2)
+
+
 if __name__ == "__main__":
     cli.main()

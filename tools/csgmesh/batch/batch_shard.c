@@ -13,7 +13,6 @@
 #include "batch/batch_options.h"
 #include "core/options.h"
 
-enum { SHARDS_MOST = 100000 };
 static const uint64_t SECOND_US = 1000000;
 static const uint64_t SLACK = 16; /* a shard may get a sixteenth above the average */
 
@@ -114,7 +113,7 @@ static bool read_slurm(batch_shard *out)
         (!is_array && tasks == 1))
         return false;
     uint64_t place = is_array ? (task - first) / step : 0, places = is_array ? count : 1;
-    if (places * tasks > SHARDS_MOST || place >= places || process >= tasks)
+    if (places * tasks > BATCH_SHARDS_MOST || place >= places || process >= tasks)
         return false;
     out->index = (uint32_t)(place * tasks + process + 1);
     out->count = (uint32_t)(places * tasks);
@@ -137,9 +136,9 @@ int batch_shard_read(cli_app *app, batch_shard *out)
     if (!read_number(text, &slash, &out->index) || *slash != '/' ||
         !read_number(slash + 1, &end, &out->count) || *end)
         return cli_usage_error(app, "as --shard 3/8", "--shard wants I/N, not '%.80s'", text);
-    if (out->count < 1 || out->count > SHARDS_MOST)
-        return cli_usage_error(app, NULL, "--shard: N is from 1 to %d, not %" PRIu32, SHARDS_MOST,
-                               out->count);
+    if (out->count < 1 || out->count > BATCH_SHARDS_MOST)
+        return cli_usage_error(app, NULL, "--shard: N is from 1 to %d, not %" PRIu32,
+                               BATCH_SHARDS_MOST, out->count);
     if (out->index < 1 || out->index > out->count)
         return cli_usage_error(app, NULL,
                                "--shard: there is no shard %" PRIu32 " of %" PRIu32

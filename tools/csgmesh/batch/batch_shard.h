@@ -13,7 +13,7 @@
 
 #include "batch/batch_plan.h"
 
-enum { BATCH_JOB_NAME = 17 }; /* sixteen digits */
+enum { BATCH_SHARDS_MOST = 100000, BATCH_JOB_NAME = 17 /* sixteen digits */ };
 
 /* The name of a job in reports: of the files that it makes, below the directory. */
 void batch_job_name(const batch_job *job, char name[BATCH_JOB_NAME]);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
+#include "batch/batch_merge.h"
 #include "batch/batch_report.h"
 #include "batch/batch_shard.h"
 #include "core/commands.h"
@@ -21,6 +22,9 @@ static int check_usage(cli_app *app)
                                "no manifest and no scenes given");
     if (options->keep_going && options->fail_fast)
         return cli_usage_error(app, NULL, "--keep-going and --fail-fast exclude each other");
+    if (options->merged)
+        return cli_usage_error(app, "-d names the folder of the outputs, --name the outputs",
+                               "-o is for --merge-reports");
     if (options->times && !options->shard)
         return cli_usage_error(app, NULL, "--times is for --shard");
     if (cli_outputs_check_contents(app) != CLI_DONE)
@@ -62,6 +66,8 @@ int cli_cmd_batch(cli_app *app)
 {
     batch_plan plan = {0};
     batch_shard shard;
+    if (app->options->merge_reports)
+        return batch_merge_reports(app);
     int status = check_usage(app);
     if (status == CLI_DONE)
         status = batch_shard_read(app, &shard);

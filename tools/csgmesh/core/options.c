@@ -400,12 +400,18 @@ static const row *find_long(const char *name, size_t length, int commands)
     return first;
 }
 
-static const row *find_short(char letter)
+/* The same of letters. */
+static const row *find_short(char letter, int commands)
 {
-    for (size_t i = 0; i < ROW_COUNT; i++)
-        if (rows[i].letter == letter)
+    const row *first = NULL;
+    for (size_t i = 0; i < ROW_COUNT; i++) {
+        if (rows[i].letter != letter)
+            continue;
+        if (rows[i].commands & commands)
             return &rows[i];
-    return NULL;
+        first = first ? first : &rows[i];
+    }
+    return first;
 }
 
 static bool parse_long(parser *p, const char *name)
@@ -431,7 +437,7 @@ static bool parse_long(parser *p, const char *name)
 static bool parse_short(parser *p, const char *letters)
 {
     for (; *letters; letters++) {
-        const row *option = find_short(*letters);
+        const row *option = find_short(*letters, 1 << p->options->command);
         if (!option)
             return refuse(p, "csgmesh --help lists the options", "unknown option '-%c'", *letters);
         if (!check_row(p, option))
@@ -504,7 +510,7 @@ static bool takes_next(const char *option, const char *next)
         return found && !option[2 + length] && found->kind != FLAG && found->kind != REPORT;
     }
     for (const char *letter = option + 1; *letter; letter++) {
-        found = find_short(*letter);
+        found = find_short(*letter, 0);
         if (!found || found->kind != FLAG)
             return found && !letter[1];
     }

@@ -66,7 +66,8 @@ static const char *output_at(const cli_options *o, size_t index, const char **op
                   {"--html", o->diff_html},
                   {"--json", o->json ? "-" : NULL},
                   {"--junit", o->measure_junit},
-                  {"--junit", o->clear_junit}};
+                  {"--junit", o->clear_junit},
+                  {"-o", o->merged}};
     enum { OTHERS = sizeof others / sizeof *others };
     bool is_other = index >= o->outputs.count;
     *is_last = index + 1 >= o->outputs.count + OTHERS;
