@@ -58,16 +58,29 @@ bool batch_write_small(const char *path, const char *text, size_t length)
     return end_file(file, cli_write_fully(csgm_file_descriptor(file), text, length), false);
 }
 
+/* -1 with errno; of a pipe or a folder, EINVAL. */
+static int open_regular(const char *path)
+{
+    struct stat status;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd >= 0 && (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode))) {
+        close(fd);
+        errno = EINVAL;
+        return -1;
+    }
+    return fd;
+}
+
 char *batch_read_small(cli_arena *arena, const char *path, size_t *length)
 {
     enum { LARGEST = 16 << 20 };
     struct stat status;
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int fd = open_regular(path);
     if (fd < 0)
         return NULL;
     char *text = NULL;
     *length = 0;
-    if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && status.st_size <= LARGEST)
+    if (fstat(fd, &status) == 0 && status.st_size <= LARGEST)
         text = cli_arena_alloc(arena, (size_t)status.st_size + 1);
     while (text && *length < (size_t)status.st_size) {
         ssize_t got = read(fd, text + *length, (size_t)status.st_size - *length);
@@ -109,7 +122,7 @@ bool batch_copy(const char *from, const char *to, const batch_digest *digest, bo
     batch_digest found;
     if (if_changed && batch_hash_path(to, &found) && batch_digest_equal(&found, digest))
         return true;
-    int source = open(from, O_RDONLY | O_CLOEXEC);
+    int source = open_regular(from);
     if (source < 0)
         return false;
     bool opened = csgm_file_create(NULL, to, &file) == CSGM_OK;

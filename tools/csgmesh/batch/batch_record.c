@@ -39,6 +39,20 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
     return batch_hash_end(&hasher);
 }
 
+bool batch_record_scene_key(batch_memo *memo, const batch_job *job, const batch_digest *key,
+                            batch_digest *out)
+{
+    batch_digest scene;
+    batch_hasher hasher;
+    if (!batch_memo_digest(memo, job->scene, &scene))
+        return false;
+    batch_hash_begin(&hasher);
+    batch_hash_add(&hasher, key->bytes, sizeof key->bytes);
+    batch_hash_add(&hasher, scene.bytes, sizeof scene.bytes);
+    *out = batch_hash_end(&hasher);
+    return true;
+}
+
 /* ---- names of files ------------------------------------------------------------------- */
 
 /* The folders in which a job's scene looks for files, in their order; NULL past the end. */
@@ -173,6 +187,21 @@ const char *batch_record_print(cli_arena *arena, const batch_job *job, const bat
     arena->failed = arena->failed || !text;
     free(text);
     return copy;
+}
+
+const char *batch_record_name(cli_arena *arena, const char *text)
+{
+    char name[BATCH_DIGEST_TEXT];
+    batch_hasher hasher;
+    const char *end = strstr(text, "\nend\n"), *took = strstr(text, "\ntook ");
+    if (!end || end[5])
+        return NULL;
+    took = took && took < end ? took : end;
+    batch_hash_begin(&hasher);
+    batch_hash_text(&hasher, cli_arena_strndup(arena, text, (size_t)(took - text)));
+    batch_digest digest = batch_hash_end(&hasher);
+    batch_digest_print(&digest, name);
+    return cli_arena_strdup(arena, name);
 }
 
 static bool parse_input(cli_arena *arena, const batch_job *job, const char *rest, batch_record *out)

@@ -36,6 +36,14 @@ typedef struct batch_record {
 /* Program, options and parameters: all that the outputs come from but the files. */
 batch_digest batch_record_key(const batch_job *job, const batch_digest *program);
 
+/* The key together with the text of the scene: what is known before it is read. false: it cannot be
+ * read. */
+bool batch_record_scene_key(batch_memo *memo, const batch_job *job, const batch_digest *key,
+                            batch_digest *out);
+
+/* A name for the record in a cache: of all that this text says but how long it took. NULL: it is no
+ * record. */
+const char *batch_record_name(cli_arena *arena, const char *text);
 const char *batch_record_print(cli_arena *arena, const batch_job *job, const batch_record *record);
 /* false: it is none, or not whole. */
 bool batch_record_parse(cli_arena *arena, const batch_job *job, const char *directory,

@@ -5,6 +5,7 @@
 #include "batch/batch_report.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -51,6 +52,19 @@ void batch_report_job(batch_run *run, size_t index)
         put_headline(console, &run->plan->jobs[index], failed);
     if (text)
         fputs(text, stderr);
+}
+
+void batch_report_warn(batch_run *run, const char *format, ...)
+{
+    char message[600];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    pthread_mutex_lock(&run->mutex);
+    cli_console_end_progress(&run->app->console);
+    cli_console_say(&run->app->console, CSGM_WARNING, NULL, "%s", message);
+    pthread_mutex_unlock(&run->mutex);
 }
 
 static const double PATIENCE_S = 0.5; /* shorter work shows no bar */

@@ -11,6 +11,9 @@
 void batch_report_job(batch_run *run, size_t index);
 /* Draws the bar, when one is wanted; run->mutex is held. */
 void batch_report_progress(batch_run *run);
+/* A warning of the batch itself, on any thread. */
+__attribute__((format(printf, 2, 3))) void batch_report_warn(batch_run *run, const char *format,
+                                                             ...);
 /* The summary and the files of --json and --junit. The exit status of the batch. */
 int batch_report_end(batch_run *run);
 

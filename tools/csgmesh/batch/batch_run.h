@@ -48,6 +48,7 @@ typedef struct batch_run {
     size_t *locked, locked_count;           /* put off: another process is at it */
     uint32_t threads_each;
     bool may_defer_large, may_defer_locked;
+    bool cache_is_full; /* its warning was given; mutex */
 } batch_run;
 
 /* Name of an outcome: "made", "up to date", ... */
@@ -61,10 +62,13 @@ int batch_run_all(batch_run *run);
 void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may_defer,
                 batch_result *result, bool *is_large);
 
-/* batch_state.c: records beside the outputs, and the cache. */
+/* batch_state.c: records beside the outputs. */
 batch_digest batch_job_id(const batch_job *job);
 bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result);
 bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result);
+/* Is this text, which a cache has, the record of this job as it is now? */
+bool batch_record_is_taken(batch_run *run, cli_arena *arena, const batch_job *job,
+                           const batch_digest *key, const char *text, batch_record *record);
 /* Notes what was made; a failure here costs time later and nothing else. */
 void batch_note(batch_run *run, const batch_job *job, batch_record *record);
 bool batch_write_depfiles(cli_app *app, const batch_record *record, const batch_job *job);

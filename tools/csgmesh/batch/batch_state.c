@@ -1,19 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * What is up to date, and what another checkout has made already.
- *
- *     DIR/.csgmesh-cache/ID                 the record of a job, by the names of its outputs
- *     CACHE/KK/KEY/RECORD                   records of jobs with this program, options and scene
- *     CACHE/objects/DD/DIGEST               outputs, by their bytes
- *
- * All of it may be deleted at any time. Files appear whole under names made of their contents or
- * are replaced whole, and what is read is checked, so that no process needs to wait for another.
+ * What is up to date. DIR/.csgmesh-cache/ID is the record of a job, by the names of its outputs; it
+ * appears or is replaced whole, and may be deleted at any time.
  */
-#include <dirent.h>
-#include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "batch/batch_run.h"
+#include "batch/batch_cache.h"
 #include "core/options.h"
 #include "core/sources.h"
 #include "mesh/depfile.h"
@@ -122,46 +114,7 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
     return current;
 }
 
-/* ---- the cache ------------------------------------------------------------------------ */
-
-static const char *object_path(cli_arena *arena, const char *cache, const batch_digest *digest)
-{
-    char name[BATCH_DIGEST_TEXT];
-    batch_digest_print(digest, name);
-    return cli_arena_printf(arena, "%s/objects/%.2s/%s", cache, name, name);
-}
-
-/* The folder of all records with this key and this text of the scene; NULL: it cannot be read. */
-static const char *records_folder(cli_arena *arena, batch_run *run, const batch_job *job,
-                                  const batch_digest *key)
-{
-    batch_digest scene, both;
-    batch_hasher hasher;
-    char name[BATCH_DIGEST_TEXT];
-    if (!batch_memo_digest(&run->memo, job->scene, &scene))
-        return NULL;
-    batch_hash_begin(&hasher);
-    batch_hash_add(&hasher, key->bytes, sizeof key->bytes);
-    batch_hash_add(&hasher, scene.bytes, sizeof scene.bytes);
-    both = batch_hash_end(&hasher);
-    batch_digest_print(&both, name);
-    return cli_arena_printf(arena, "%s/%.2s/%s", run->app->options->cache, name, name);
-}
-
-/* Outputs that are not there in the cache, or broken, leave the job to be made. */
-static bool install(batch_run *run, cli_arena *arena, const batch_job *job, batch_record *record)
-{
-    const cli_options *options = run->app->options;
-    for (size_t i = 0; i < record->output_count; i++) {
-        batch_output *output = &record->outputs[i];
-        const char *object = object_path(arena, options->cache, &output->digest);
-        if (!batch_make_folders(output->path, false) ||
-            !batch_copy(object, output->path, &output->digest, true, !options->no_sync) ||
-            !batch_output_look(output))
-            return false;
-    }
-    return !options->depfiles || batch_write_depfiles(run->app, record, job);
-}
+/* ---- another checkout's ---------------------------------------------------------------- */
 
 static void write_state(batch_run *run, cli_arena *arena, const batch_job *job,
                         const batch_record *record)
@@ -171,15 +124,12 @@ static void write_state(batch_run *run, cli_arena *arena, const batch_job *job,
         batch_write_small(record_path(arena, run, job), text, strlen(text));
 }
 
-static bool try_record(batch_run *run, cli_arena *arena, const batch_job *job, const char *path,
-                       const batch_digest *key, batch_record *record)
+bool batch_record_is_taken(batch_run *run, cli_arena *arena, const batch_job *job,
+                           const batch_digest *key, const char *text, batch_record *record)
 {
-    size_t length;
-    const char *text = batch_read_small(arena, path, &length);
-    return text && batch_record_parse(arena, job, run->plan->directory, text, record) &&
+    return batch_record_parse(arena, job, run->plan->directory, text, record) &&
            batch_digest_equal(&record->key, key) && batch_record_inputs_hold(&run->memo, record) &&
-           record->output_count > 0 && !is_endangered(run, record) &&
-           install(run, arena, job, record);
+           record->output_count > 0 && !is_endangered(run, record);
 }
 
 bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result)
@@ -187,19 +137,9 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     cli_arena arena = {0};
     batch_record record;
     batch_digest key = batch_record_key(job, &run->program);
-    const char *folder =
-        run->app->options->cache && batch_hash_available() && !run->app->options->force
-            ? records_folder(&arena, run, job, &key)
-            : NULL;
-    DIR *directory = folder ? opendir(folder) : NULL;
-    const struct dirent *entry;
-    bool found = false;
-    while (directory && !found && (entry = readdir(directory)))
-        found = entry->d_name[0] != '.' &&
-                try_record(run, &arena, job, cli_path_join(&arena, folder, entry->d_name), &key,
-                           &record);
-    if (directory)
-        closedir(directory);
+    bool found = run->app->options->cache && batch_hash_available() && !run->app->options->force &&
+                 batch_cache_take(run, &arena, job, &key, &record) &&
+                 (!run->app->options->depfiles || batch_write_depfiles(run->app, &record, job));
     if (found) {
         take_outputs(result, &record);
         tell_inputs(run, &record);
@@ -211,48 +151,12 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     return found;
 }
 
-static bool store_objects(batch_run *run, cli_arena *arena, const batch_record *record)
-{
-    for (size_t i = 0; i < record->output_count; i++) {
-        const batch_output *output = &record->outputs[i];
-        const char *object = object_path(arena, run->app->options->cache, &output->digest);
-        if (!batch_make_folders(object, false) ||
-            !batch_copy(output->path, object, &output->digest, true, false))
-            return false;
-    }
-    return true;
-}
-
-/* The record's name is made of its inputs: the same in every process that finds the same. */
-static void store(batch_run *run, cli_arena *arena, const batch_job *job,
-                  const batch_record *record)
-{
-    char name[BATCH_DIGEST_TEXT];
-    batch_record timeless = *record;
-    batch_hasher hasher;
-    const char *folder = records_folder(arena, run, job, &record->key);
-    for (size_t i = 0; i < timeless.output_count; i++)
-        timeless.outputs[i].changed_s = timeless.outputs[i].changed_ns = 0;
-    const char *text = batch_record_print(arena, job, &timeless);
-    timeless.thread_seconds = 0;
-    const char *named = batch_record_print(arena, job, &timeless);
-    if (!folder || !text || !named || !store_objects(run, arena, record))
-        return;
-    batch_hash_begin(&hasher);
-    batch_hash_text(&hasher, named);
-    batch_digest digest = batch_hash_end(&hasher);
-    batch_digest_print(&digest, name);
-    const char *path = cli_path_join(arena, folder, name);
-    if (batch_make_folders(path, false))
-        batch_write_small(path, text, strlen(text));
-}
-
 void batch_note(batch_run *run, const batch_job *job, batch_record *record)
 {
     cli_arena arena = {0};
     write_state(run, &arena, job, record);
     if (run->app->options->cache)
-        store(run, &arena, job, record);
+        batch_cache_store(run, &arena, job, record);
     cli_arena_reset(&arena);
 }
 
