@@ -48,7 +48,8 @@ need_core_packages() {
     need_packages gcc g++ meson ninja-build pkg-config:pkgconf libopenmesh-dev libdraco-dev \
         libpolyclipping-dev libexpat1-dev libzip-dev zlib1g-dev libpng-dev libfreetype-dev libharfbuzz-dev \
         libfribidi-dev libfontconfig-dev fonts-liberation fonts-dejavu-core \
-        libtinygltf-dev nlohmann-json3-dev libqhull-dev libb2-dev libmicrohttpd-dev libmeshoptimizer-dev \
+        libtinygltf-dev nlohmann-json3-dev libqhull-dev libb2-dev libcurl4-openssl-dev libmicrohttpd-dev \
+        libmeshoptimizer-dev \
         "$@"
 }
 

@@ -122,13 +122,11 @@ static bool store_objects(batch_run *run, cli_arena *arena, const batch_record *
 void batch_cache_store(batch_run *run, cli_arena *arena, const batch_job *job,
                        const batch_record *record)
 {
-    batch_record timeless = *record;
+    batch_record timeless = batch_record_timeless(arena, record);
     const char *folder = records_folder(arena, run, job, &record->key);
-    for (size_t i = 0; i < timeless.output_count; i++)
-        timeless.outputs[i].changed_s = timeless.outputs[i].changed_ns = 0;
     const char *text = batch_record_print(arena, job, &timeless);
     const char *name = text ? batch_record_name(arena, text) : NULL;
-    if (!folder || !name)
+    if (!folder || !name || arena->failed)
         return;
     const char *path = cli_path_join(arena, folder, name);
     if (!store_objects(run, arena, record) || !batch_make_folders(path, false) ||

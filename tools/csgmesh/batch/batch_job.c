@@ -26,6 +26,7 @@ typedef struct maker {
     cli_work work;
     batch_record record;
     int64_t since[2];
+    bool is_noted; /* the record says how long it took */
 } maker;
 
 static int fail_memory(maker *m)
@@ -274,6 +275,8 @@ static int take_record(maker *m)
     m->record.key = batch_record_key(m->job, &m->run->program);
     m->record.thread_seconds =
         result->thread_seconds + (cli_now_s() - m->app.start_s) * (uint32_t)m->options.threads;
+    result->thread_seconds = m->record.thread_seconds;
+    m->is_noted = true;
     m->record.outputs = result->outputs;
     m->record.output_count = result->output_count;
     if (m->run->app->options->depfiles && !batch_write_depfiles(&m->app, &m->record, m->job))
@@ -370,5 +373,6 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     result->messages = text;
     result->outcome = result->status == CLI_DONE ? BATCH_MADE : BATCH_FAILED;
     result->seconds += cli_now_s() - m.app.start_s;
-    result->thread_seconds += (cli_now_s() - m.app.start_s) * threads;
+    if (!m.is_noted)
+        result->thread_seconds += (cli_now_s() - m.app.start_s) * threads;
 }

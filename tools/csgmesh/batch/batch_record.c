@@ -189,6 +189,19 @@ const char *batch_record_print(cli_arena *arena, const batch_job *job, const bat
     return copy;
 }
 
+batch_record batch_record_timeless(cli_arena *arena, const batch_record *record)
+{
+    batch_record timeless = *record;
+    size_t size = record->output_count * sizeof *record->outputs;
+    timeless.outputs = cli_arena_alloc(arena, size + 1);
+    timeless.output_count = timeless.outputs ? record->output_count : 0;
+    for (size_t i = 0; i < timeless.output_count; i++) {
+        timeless.outputs[i] = record->outputs[i];
+        timeless.outputs[i].changed_s = timeless.outputs[i].changed_ns = 0;
+    }
+    return timeless;
+}
+
 const char *batch_record_name(cli_arena *arena, const char *text)
 {
     char name[BATCH_DIGEST_TEXT];

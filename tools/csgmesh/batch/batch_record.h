@@ -41,6 +41,8 @@ batch_digest batch_record_key(const batch_job *job, const batch_digest *program)
 bool batch_record_scene_key(batch_memo *memo, const batch_job *job, const batch_digest *key,
                             batch_digest *out);
 
+/* The same for a cache: times of outputs are those of one folder. */
+batch_record batch_record_timeless(cli_arena *arena, const batch_record *record);
 /* A name for the record in a cache: of all that this text says but how long it took. NULL: it is no
  * record. */
 const char *batch_record_name(cli_arena *arena, const char *text);

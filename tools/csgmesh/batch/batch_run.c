@@ -12,6 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "batch/batch_http.h"
+#include "batch/batch_remote.h"
 #include "batch/batch_report.h"
 #include "core/options.h"
 
@@ -235,7 +237,8 @@ static int open_state(batch_run *run)
     if (!batch_make_folders(run->state, true) ||
         !batch_locks_open(&run->locks, cli_path_join(arena, run->state, "lock")))
         return refuse(run, run->state);
-    if (cache && (!batch_make_folders(cache, true) || access(cache, W_OK | X_OK) != 0))
+    if (cache && !batch_http_is_address(cache) &&
+        (!batch_make_folders(cache, true) || access(cache, W_OK | X_OK) != 0))
         return refuse(run, cache);
     if (run->locks.alone)
         sweep(run);
@@ -269,7 +272,11 @@ int batch_run_all(batch_run *run)
     pthread_mutex_init(&run->mutex, NULL);
     pthread_cond_init(&run->changed, NULL);
     batch_memo_init(&run->memo);
+    if (batch_http_is_address(run->app->options->cache) && run->plan->count)
+        run->remote = batch_remote_open(run);
     run_phases(run);
+    batch_remote_close(run->remote);
+    run->remote = NULL;
     batch_memo_release(&run->memo);
     pthread_cond_destroy(&run->changed);
     pthread_mutex_destroy(&run->mutex);

@@ -30,13 +30,16 @@ typedef struct batch_result {
     cli_arena arena; /* of the outputs */
 } batch_result;
 
+typedef struct batch_remote batch_remote; /* batch_remote.h */
+
 typedef struct batch_run {
     cli_app *app;
     batch_plan *plan;
     batch_digest program; /* this very executable */
     batch_memo memo;
     batch_locks locks;
-    const char *state; /* folder of the records */
+    batch_remote *remote; /* where --cache is an address; NULL: it is not, or cannot be used */
+    const char *state;    /* folder of the records */
     batch_result *results;
     uint32_t threads;
     pthread_mutex_t mutex; /* of what follows, and of standard error */

@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 
 #include "batch/batch_cache.h"
+#include "batch/batch_http.h"
+#include "batch/batch_remote.h"
 #include "core/options.h"
 #include "core/sources.h"
 #include "mesh/depfile.h"
@@ -132,13 +134,21 @@ bool batch_record_is_taken(batch_run *run, cli_arena *arena, const batch_job *jo
            record->output_count > 0 && !is_endangered(run, record);
 }
 
+static bool has_cache(const batch_run *run)
+{
+    const char *cache = run->app->options->cache;
+    return batch_hash_available() &&
+           (batch_http_is_address(cache) ? run->remote != NULL : cache != NULL);
+}
+
 bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *result)
 {
     cli_arena arena = {0};
     batch_record record;
     batch_digest key = batch_record_key(job, &run->program);
-    bool found = run->app->options->cache && batch_hash_available() && !run->app->options->force &&
-                 batch_cache_take(run, &arena, job, &key, &record) &&
+    bool found = has_cache(run) && !run->app->options->force &&
+                 (run->remote ? batch_remote_take(run, &arena, job, &key, &record)
+                              : batch_cache_take(run, &arena, job, &key, &record)) &&
                  (!run->app->options->depfiles || batch_write_depfiles(run->app, &record, job));
     if (found) {
         take_outputs(result, &record);
@@ -155,7 +165,9 @@ void batch_note(batch_run *run, const batch_job *job, batch_record *record)
 {
     cli_arena arena = {0};
     write_state(run, &arena, job, record);
-    if (run->app->options->cache)
+    if (has_cache(run) && run->remote)
+        batch_remote_store(run, &arena, job, record);
+    else if (has_cache(run))
         batch_cache_store(run, &arena, job, record);
     cli_arena_reset(&arena);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
+#include "batch/batch_http.h"
 #include "batch/batch_merge.h"
 #include "batch/batch_report.h"
 #include "batch/batch_shard.h"
@@ -35,6 +36,9 @@ static int check_usage(cli_app *app)
     if (options->cache && !batch_hash_available())
         return cli_usage_error(app, "install libb2 and build csgmesh again",
                                "--cache: this csgmesh was built without libb2");
+    if (batch_http_is_address(options->cache) && !batch_http_available())
+        return cli_usage_error(app, "install libcurl and build csgmesh again, or name a folder",
+                               "--cache: this csgmesh was built without libcurl");
     return CLI_DONE;
 }
 
@@ -68,6 +72,9 @@ int cli_cmd_batch(cli_app *app)
     batch_shard shard;
     if (app->options->merge_reports)
         return batch_merge_reports(app);
+    const char *cache = getenv("CSGMESH_CACHE");
+    if (!app->options->cache && cache && *cache)
+        app->options->cache = cache;
     int status = check_usage(app);
     if (status == CLI_DONE)
         status = batch_shard_read(app, &shard);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "batch/batch_hash.h"
+#include "batch/batch_http.h"
 #include "core/cli.h"
 #include "core/commands.h"
 #include "core/options.h"
@@ -13,8 +14,9 @@ int cli_print_version(cli_app *app)
 {
     int status = cli_app_open(app);
     if (status == CLI_DONE)
-        printf("csgmesh %s (%s)\n%s\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
-               csgm_build_features(), batch_hash_feature(), view_server_feature());
+        printf("csgmesh %s (%s)\n%s\n%s\n%s\n%s\n", csgm_version(), csgm_context_isa(app->context),
+               csgm_build_features(), batch_hash_feature(), batch_http_feature(),
+               view_server_feature());
     return cli_finish_stdout(app, status);
 }
 

@@ -25,6 +25,7 @@ pkgs.stdenv.mkDerivation {
   nativeBuildInputs = with pkgs; [ meson ninja pkg-config python3 ];
   buildInputs = with pkgs; [
     clipper
+    curl
     draco
     expat
     fontconfig
