@@ -151,8 +151,9 @@ typedef struct csgm_limits {
     uint32_t scene_nodes;  /* nodes of the evaluated tree; default 4 million */
     uint64_t eval_steps;   /* language steps, guards endless loops; default 1e9 */
     uint64_t memory_bytes; /* of the context's allocator; default 8 GiB; 0 = no limit */
-    double timeout_s;      /* wall clock of one scene's parse and evaluation, of one mesh build and
-                              of making the mesh of one file; default 0 = none */
+    double timeout_s;      /* wall clock of one scene's parse and evaluation, of one mesh build, of
+                              making the mesh of one file and of an inspection (that of a file:
+                              with the making); default 0 = none */
 } csgm_limits;
 
 typedef struct csgm_trace csgm_trace; /* see "trace" below */

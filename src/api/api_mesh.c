@@ -155,7 +155,7 @@ csgm_status csgm_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
 {
     if (!context || !out || !csg_view_is_sound(mesh))
         return CSGM_ERR_ARGUMENT;
-    return csg_mesh_inspect(context, mesh, out);
+    return csg_mesh_inspect(context, mesh, 0, out);
 }
 
 csgm_status csgm_mesh_cluster(csgm_context *context, const csgm_mesh_view *mesh, csgm_box frame,

@@ -293,7 +293,7 @@ static csgm_status inspect(csg_diff_pair *pair, csg_diff_side *side)
                              .indices = indices,
                              .vertex_count = view->vertex_count,
                              .triangle_count = view->triangle_count};
-    csgm_status status = csg_mesh_inspect(pair->context, &welded, &side->check);
+    csgm_status status = csg_mesh_inspect(pair->context, &welded, 0, &side->check);
     csg_arena_release_to(&side->arena, mark);
     side->check.bounds = turned_box(side->turn, side->check.bounds);
     return status;

@@ -16,6 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/mesh_codes.h"
 #include "base/sets.h"
 #include "base/table.h"
@@ -452,6 +453,7 @@ static csgm_status inspect_whole(csgm_context *context, const char *path, csgm_f
                                  csgm_file_figures *out)
 {
     csgm_mesh *mesh;
+    double started_s = csg_clock_now_s(); /* one time limit for both */
     csgm_status status = csg_io_read(context, path, format, &mesh);
     if (status)
         return status;
@@ -460,7 +462,7 @@ static csgm_status inspect_whole(csgm_context *context, const char *path, csgm_f
     out->triangles = view.triangle_count;
     out->has_normals = view.normals != NULL;
     out->has_colors = view.colors != NULL;
-    status = csg_mesh_inspect(context, &view, &out->check);
+    status = csg_mesh_inspect(context, &view, started_s, &out->check);
     csg_mesh_destroy(mesh);
     return status;
 }

@@ -227,15 +227,20 @@ static csgm_status fill_rounded(csgm_context *context, const csgm_mesh_view *mes
 
 /* ---- parts that touch ------------------------------------------------------------------ */
 
-/* The part of each vertex that triangles use. */
-static void mark_parts(const csgm_mesh_view *mesh, uint32_t *part_of)
+static const uint32_t SEVERAL = CSG_NO_PART - 1; /* parts */
+
+/* Places that vertices of several parts share. to: from csg_weld_map. */
+static uint64_t count_touching(uint64_t vertex_count, const uint32_t *to, uint32_t *part_of)
 {
-    for (uint64_t p = 0; p < mesh->part_count; p++) {
-        const csgm_mesh_part *part = &mesh->parts[p];
-        const uint32_t *corner = mesh->indices + 3 * part->first_triangle;
-        for (uint64_t i = 0; i < 3 * part->triangle_count; i++)
-            part_of[corner[i]] = (uint32_t)p;
+    uint64_t touching = 0;
+    for (uint64_t v = 0; v < vertex_count; v++) {
+        uint32_t *at_place = &part_of[to[v]];
+        if (part_of[v] == CSG_NO_PART || *at_place == SEVERAL || *at_place == part_of[v])
+            continue;
+        touching += *at_place != CSG_NO_PART;
+        *at_place = *at_place == CSG_NO_PART ? part_of[v] : SEVERAL;
     }
+    return touching;
 }
 
 /* Each part is closed, and their vertices are told apart by number alone: where a format has only
@@ -252,12 +257,11 @@ static csgm_status tell_of_touching(csgm_context *context, const csgm_mesh_view 
     uint64_t touching = 0;
     bool failed = !to || !part_of;
     if (!failed) {
-        memset(part_of, 0, bytes);
-        mark_parts(mesh, part_of);
+        csg_weld_parts_of(mesh, part_of);
         csg_weld_map(memory, mesh, CSG_WELD_ALL, to, &failed);
     }
-    for (uint64_t v = 0; v < mesh->vertex_count && !failed; v++)
-        touching += part_of[to[v]] != part_of[v];
+    if (!failed)
+        touching = count_touching(mesh->vertex_count, to, part_of);
     csg_memory_release(memory, to, bytes);
     csg_memory_release(memory, part_of, bytes);
     if (failed)
@@ -265,8 +269,8 @@ static csgm_status tell_of_touching(csgm_context *context, const csgm_mesh_view 
     if (touching)
         csg_diag_plain(
             &context->diags, CSG_DIAG_PARTS_TOUCH, name, "3MF, glTF and OBJ keep parts apart",
-            "parts touch in %llu vertices, which readers of %s join: not a manifold there",
-            (unsigned long long)touching, row->title);
+            "parts touch in %llu %s, which readers of %s join: not a manifold there",
+            (unsigned long long)touching, touching == 1 ? "vertex" : "vertices", row->title);
     return CSGM_OK;
 }
 

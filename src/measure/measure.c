@@ -126,7 +126,7 @@ csgm_status csg_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
 {
     csgm_mesh_check check;
     double low[CSG_INTEGRALS], high[CSG_INTEGRALS];
-    csgm_status status = csg_mesh_inspect(context, mesh, &check);
+    csgm_status status = csg_mesh_inspect(context, mesh, 0, &check);
     if (status == CSGM_OK && !mesh->triangle_count)
         return refuse_empty(context);
     if (status == CSGM_OK)

@@ -17,11 +17,16 @@
 #include "base/geometry.h"
 #include "base/mesh_codes.h"
 #include "base/sets.h"
+#include "mesh/watch.h"
 #include "mesh/weld.h"
 
-enum { INSERTION_SORT_MOST = 24 };
+enum {
+    INSERTION_SORT_MOST = 24,
+    STEPS = 1 << 14 /* triangles, corners or vertices between two looks at the clock */
+};
 
 typedef struct inspection {
+    csg_mesh_watch *watch;
     const csgm_mesh_view *mesh;
     csgm_mesh_check *check;
     uint64_t corner_count;  /* 3 * triangle_count, < 2^32 */
@@ -32,6 +37,12 @@ typedef struct inspection {
     uint32_t *parent;       /* sets of corners (base/sets.h) */
     uint8_t *fans;          /* per vertex: 0, 1 or 2 = several */
 } inspection;
+
+/* Of a loop over i: the clock is looked at in its first step, then now and then. */
+static bool may_go_on(const inspection *in, uint64_t i)
+{
+    return i % STEPS != 0 || !csg_mesh_should_stop(in->watch);
+}
 
 static const uint32_t *triangle_at(const inspection *in, uint64_t triangle)
 {
@@ -63,7 +74,7 @@ static void half_edge_ends(const inspection *in, uint32_t corner, uint32_t *from
 static void count_half_edges(inspection *in)
 {
     memset(in->bucket_begin, 0, (in->mesh->vertex_count + 1) * sizeof *in->bucket_begin);
-    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+    for (uint64_t t = 0; t < in->mesh->triangle_count && may_go_on(in, t); t++) {
         const uint32_t *v = triangle_at(in, t);
         for (int k = 0; k < 3; k++)
             in->check->index_out_of_range += v[k] >= in->mesh->vertex_count;
@@ -89,7 +100,7 @@ static void place_half_edges(inspection *in)
         end += in->bucket_begin[v];
         in->bucket_begin[v] = end;
     }
-    for (uint64_t t = in->mesh->triangle_count; t-- > 0;) {
+    for (uint64_t t = in->mesh->triangle_count; t-- > 0 && may_go_on(in, t);) {
         const uint32_t *v = triangle_at(in, t);
         if (!is_sound(in, v))
             continue;
@@ -154,7 +165,7 @@ static void close_edge(inspection *in, uint32_t smaller, const uint64_t *keys, s
 static void walk_edges(inspection *in)
 {
     csg_sets_init(in->parent, in->corner_count);
-    for (uint32_t v = 0; v < in->mesh->vertex_count; v++) {
+    for (uint32_t v = 0; v < in->mesh->vertex_count && may_go_on(in, v); v++) {
         uint64_t *keys = in->half_edges + in->bucket_begin[v];
         size_t count = in->bucket_begin[v + 1] - in->bucket_begin[v];
         sort_bucket(keys, count);
@@ -173,7 +184,7 @@ static void count_fans(inspection *in)
     uint64_t used = 0;
     if (in->mesh->vertex_count)
         memset(in->fans, 0, in->mesh->vertex_count);
-    for (uint64_t c = 0; c < in->corner_count; c++) {
+    for (uint64_t c = 0; c < in->corner_count && may_go_on(in, c); c++) {
         const uint32_t *v = triangle_at(in, c / 3);
         if (in->parent[c] != c || !is_sound(in, v))
             continue;
@@ -189,7 +200,7 @@ static void count_fans(inspection *in)
 
 static void count_components(inspection *in)
 {
-    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+    for (uint64_t t = 0; t < in->mesh->triangle_count && may_go_on(in, t); t++) {
         uint32_t corner = (uint32_t)(3 * t);
         csg_sets_join(in->parent, corner, corner + 1);
         csg_sets_join(in->parent, corner, corner + 2);
@@ -284,7 +295,7 @@ static void measure(inspection *in)
 {
     csg_box box = used_box(in);
     csg_mesh_measures measures = csg_mesh_measures_begin(box);
-    for (uint64_t t = 0; t < in->mesh->triangle_count; t++) {
+    for (uint64_t t = 0; t < in->mesh->triangle_count && may_go_on(in, t); t++) {
         const uint32_t *v = triangle_at(in, t);
         if (is_sound(in, v))
             csg_mesh_measures_add(&measures, position(in, v[0]), position(in, v[1]),
@@ -327,64 +338,90 @@ csgm_status csg_mesh_too_large(csgm_context *context, uint64_t triangle_count)
     return CSGM_ERR_LIMIT;
 }
 
-static csgm_status inspect_indexed(csgm_context *context, const csgm_mesh_view *mesh,
+static csgm_status why_stopped(csg_mesh_watch *watch)
+{
+    if (!atomic_load(&watch->timed_out))
+        return csg_mesh_why_stopped(watch);
+    csg_diag_plain(&watch->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
+                   "looking at the mesh took longer than the limit of %g s",
+                   watch->context->limits.timeout_s);
+    return CSGM_ERR_LIMIT;
+}
+
+static csgm_status inspect_indexed(csg_mesh_watch *watch, const csgm_mesh_view *mesh,
                                    csgm_mesh_check *out)
 {
+    csgm_context *context = watch->context;
     if (mesh->triangle_count > UINT32_MAX / 3)
         return csg_mesh_too_large(context, mesh->triangle_count);
     csgm_mesh_check check = {0};
-    inspection in = {.mesh = mesh, .check = &check, .corner_count = 3 * mesh->triangle_count};
+    inspection in = {
+        .watch = watch, .mesh = mesh, .check = &check, .corner_count = 3 * mesh->triangle_count};
     if (!take_arrays(&context->memory, &in)) {
         release_arrays(&context->memory, &in);
         return csg_context_no_memory(context);
     }
-    count_half_edges(&in);
-    place_half_edges(&in);
-    walk_edges(&in);
-    count_fans(&in);
-    count_components(&in);
-    measure(&in);
+    /* a pass that was stopped leaves arrays behind that the next one must not read */
+    void (*const passes[])(inspection *) = {count_half_edges, place_half_edges, walk_edges,
+                                            count_fans,       count_components, measure};
+    bool is_stopped = false;
+    for (size_t i = 0; i < sizeof passes / sizeof *passes && !is_stopped; i++) {
+        passes[i](&in);
+        is_stopped = csg_mesh_should_stop(watch);
+    }
     release_arrays(&context->memory, &in);
+    if (is_stopped)
+        return why_stopped(watch);
     *out = check;
     return CSGM_OK;
 }
 
 /* The same triangles with the first vertex of each place. */
-static csgm_status inspect_welded(csgm_context *context, const csgm_mesh_view *mesh,
+static csgm_status inspect_welded(csg_mesh_watch *watch, const csgm_mesh_view *mesh, csg_weld how,
                                   csgm_mesh_check *out)
 {
-    csg_memory *memory = &context->memory;
+    csg_memory *memory = &watch->context->memory;
     uint32_t *to = NULL, *indices = NULL;
     bool failed = true;
     if (take(memory, &to, mesh->vertex_count, sizeof *to) &&
         take(memory, &indices, 3 * mesh->triangle_count, sizeof *indices))
-        csg_weld_map(memory, mesh, mesh->split ? CSG_WELD_RUNS : CSG_WELD_ALL, to, &failed);
-    csgm_status status = failed ? csg_context_no_memory(context) : CSGM_OK;
+        csg_weld_map(memory, mesh, how, to, &failed);
+    csgm_status status = failed ? csg_context_no_memory(watch->context) : CSGM_OK;
     if (status == CSGM_OK) {
         csgm_mesh_view welded = *mesh;
         for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
             indices[i] =
                 mesh->indices[i] < mesh->vertex_count ? to[mesh->indices[i]] : mesh->indices[i];
         welded.indices = indices;
-        status = inspect_indexed(context, &welded, out);
+        status = inspect_indexed(watch, &welded, out);
     }
     csg_memory_release(memory, to, (size_t)mesh->vertex_count * sizeof *to);
     csg_memory_release(memory, indices, 3 * (size_t)mesh->triangle_count * sizeof *indices);
     return status;
 }
 
-/* Files with a vertex for each normal are open along every crease until they are welded. */
-csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
+/* Files with a vertex for each normal are open along every crease until they are welded: each part
+ * for itself, as parts that touch are solids of their own; all of them, where parts are open still,
+ * as those of a solid that is cut by its materials. */
+csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh, double limit_from_s,
                              csgm_mesh_check *out)
 {
+    const csgm_monitor nobody = {0};
+    csg_mesh_watch watch = {0};
     csgm_mesh_check check, welded;
-    csgm_status status = inspect_indexed(context, mesh, &check);
-    if (status == CSGM_OK && check.boundary_edges) {
-        status = inspect_welded(context, mesh, &welded);
+    csg_mesh_watch_begin(&watch, context, &nobody, limit_from_s);
+    csg_weld how = mesh->split            ? CSG_WELD_RUNS
+                   : mesh->part_count > 1 ? CSG_WELD_PARTS
+                                          : CSG_WELD_ALL;
+    csgm_status status = inspect_indexed(&watch, mesh, &check);
+    for (bool is_done = false; status == CSGM_OK && check.boundary_edges && !is_done;) {
+        status = inspect_welded(&watch, mesh, how, &welded);
         if (status == CSGM_OK && welded.boundary_edges < check.boundary_edges) {
             welded.unused_vertices = check.unused_vertices;
             check = welded;
         }
+        is_done = how != CSG_WELD_PARTS;
+        how = CSG_WELD_ALL;
     }
     if (status == CSGM_OK)
         *out = check;

@@ -12,8 +12,10 @@
 #include "base/geometry.h"
 
 /* *out is written on CSGM_OK only. CSGM_ERR_MEMORY (reported), CSGM_ERR_LIMIT (reported) above
- * 2^32 / 3 triangles. Takes about 36 bytes per triangle while it runs. */
-csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh,
+ * 2^32 / 3 triangles and when it takes longer than the context's time limit, CSGM_CANCELLED. Takes
+ * about 36 bytes per triangle while it runs. limit_from_s: when what the limit is for has begun, by
+ * csg_clock_now_s; 0 = now. */
+csgm_status csg_mesh_inspect(csgm_context *context, const csgm_mesh_view *mesh, double limit_from_s,
                              csgm_mesh_check *out);
 
 /* Reports it: CSGM_ERR_LIMIT. */

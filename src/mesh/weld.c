@@ -14,12 +14,29 @@ static bool same_place(const csgm_mesh_view *mesh, uint64_t a, uint64_t b)
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-static uint64_t map_runs(const csgm_mesh_view *mesh, uint32_t *to)
+void csg_weld_parts_of(const csgm_mesh_view *mesh, uint32_t *part_of)
+{
+    memset(part_of, 0xFF, (size_t)mesh->vertex_count * sizeof *part_of);
+    for (uint64_t p = 0; p < mesh->part_count; p++) {
+        const csgm_mesh_part *part = &mesh->parts[p];
+        const uint32_t *corner = mesh->indices + 3 * part->first_triangle;
+        for (uint64_t i = 0; i < 3 * part->triangle_count; i++)
+            if (corner[i] < mesh->vertex_count)
+                part_of[corner[i]] = (uint32_t)p;
+    }
+}
+
+/* part_of: NULL, or of each vertex. One without a part goes with any. */
+static uint64_t map_runs(const csgm_mesh_view *mesh, const uint32_t *part_of, uint32_t *to)
 {
     uint64_t places = 0;
+    uint32_t part = CSG_NO_PART; /* of the run at hand */
     for (uint64_t i = 0; i < mesh->vertex_count; i++) {
-        bool copy = i > 0 && same_place(mesh, i, i - 1);
+        uint32_t own = part_of ? part_of[i] : CSG_NO_PART;
+        bool copy = i > 0 && same_place(mesh, i, i - 1) &&
+                    (own == part || own == CSG_NO_PART || part == CSG_NO_PART);
         to[i] = copy ? to[i - 1] : (uint32_t)i;
+        part = copy && own == CSG_NO_PART ? part : own;
         places += !copy;
     }
     return places;
@@ -30,7 +47,8 @@ static csg_vec3 place_of(const csgm_mesh_view *mesh, uint64_t i)
     return csg_vec3_from_floats(mesh->positions + 3 * i);
 }
 
-static uint64_t map_all(csg_memory *memory, const csgm_mesh_view *mesh, uint32_t *to, bool *failed)
+static uint64_t map_all(csg_memory *memory, const csgm_mesh_view *mesh, const uint32_t *part_of,
+                        uint32_t *to, bool *failed)
 {
     csg_table table;
     csg_table_init(&table, memory);
@@ -41,7 +59,8 @@ static uint64_t map_all(csg_memory *memory, const csgm_mesh_view *mesh, uint32_t
     for (uint64_t i = 0; i < mesh->vertex_count; i++) {
         size_t slot;
         to[i] = csg_table_first(&table, csg_place_hash(place_of(mesh, i)), &slot);
-        while (to[i] != CSG_TABLE_NONE && !same_place(mesh, i, to[i]))
+        while (to[i] != CSG_TABLE_NONE &&
+               !(same_place(mesh, i, to[i]) && (!part_of || part_of[i] == part_of[to[i]])))
             to[i] = csg_table_next(&table, &slot);
         if (to[i] != CSG_TABLE_NONE)
             continue;
@@ -56,8 +75,19 @@ static uint64_t map_all(csg_memory *memory, const csgm_mesh_view *mesh, uint32_t
 uint64_t csg_weld_map(csg_memory *memory, const csgm_mesh_view *mesh, csg_weld how, uint32_t *to,
                       bool *failed)
 {
-    *failed = false;
-    return how == CSG_WELD_RUNS ? map_runs(mesh, to) : map_all(memory, mesh, to, failed);
+    bool has_parts = how != CSG_WELD_ALL && mesh->part_count > 1 && mesh->vertex_count > 0;
+    size_t bytes = has_parts ? (size_t)mesh->vertex_count * sizeof(uint32_t) : 0;
+    uint32_t *part_of = bytes ? csg_memory_alloc(memory, bytes) : NULL;
+    uint64_t places = 0;
+    *failed = bytes && !part_of;
+    if (part_of)
+        csg_weld_parts_of(mesh, part_of);
+    if (!*failed && how == CSG_WELD_RUNS)
+        places = map_runs(mesh, part_of, to);
+    else if (!*failed)
+        places = map_all(memory, mesh, part_of, to, failed);
+    csg_memory_release(memory, part_of, bytes);
+    return places;
 }
 
 /* The copies [first, end) as vertex v. */
@@ -94,13 +124,13 @@ static csgm_status copy_parts(const csgm_mesh_view *mesh, csgm_mesh *out)
     return status;
 }
 
-/* numbers[i]: vertex i after the weld. */
+/* numbers: in, the first vertex at each one's place; out, its number after the weld. */
 static void fill(const csgm_mesh_view *mesh, uint32_t *numbers, csgm_mesh *out)
 {
     uint64_t v = 0;
     for (uint64_t i = 0; i < mesh->vertex_count; v++) {
         uint64_t end = i + 1;
-        while (end < mesh->vertex_count && same_place(mesh, i, end))
+        while (end < mesh->vertex_count && numbers[end] == i)
             end++;
         join_copies(mesh, i, end, out, v);
         for (; i < end; i++)
@@ -115,11 +145,13 @@ csgm_status csg_weld_runs(csgm_context *context, const csgm_mesh_view *mesh, csg
     csg_memory *memory = &context->memory;
     size_t bytes = (size_t)(mesh->vertex_count + 1) * sizeof(uint32_t);
     uint32_t *numbers = csg_memory_alloc(memory, bytes);
-    if (!numbers)
-        return csg_context_no_memory(context);
+    bool failed = !numbers;
+    uint64_t places = failed ? 0 : csg_weld_map(memory, mesh, CSG_WELD_RUNS, numbers, &failed);
     csgm_mesh *made = NULL;
-    csgm_status status = csg_mesh_create(context, map_runs(mesh, numbers), mesh->triangle_count,
-                                         mesh->normals != NULL, mesh->colors != NULL, &made);
+    csgm_status status = failed ? csg_context_no_memory(context) : CSGM_OK;
+    if (status == CSGM_OK)
+        status = csg_mesh_create(context, places, mesh->triangle_count, mesh->normals != NULL,
+                                 mesh->colors != NULL, &made);
     if (status == CSGM_OK && mesh->materials)
         status = csg_mesh_add_materials(made);
     if (status == CSGM_OK) {

@@ -224,8 +224,24 @@ class Statistics(cli.CliTest):
         self.assertIn(files["stl"]["nonmanifold_edges"], (4, 5))  # a diagonal of the face is one if both parts have the same
         self.assertEqual(result.stderr.count("W0514"), 1)
         self.assertIn("a.stl: warning W0514: parts touch in 4 vertices", result.stderr)
+        if cli.has_library("tinygltf"):  # each node has vertices of its own, of each face
+            self.assert_status(self.run_in("two.txt", "-o", "a.glb"), 0)
+            self.assertIn("yes, an oriented 2-manifold", self.run_in("info", "a.glb").stdout.decode())
         self.write("two.txt", 'part("a") cube(10);\npart("b") translate([11, 0, 0]) cube(10);\n')
         self.assertNotIn("W0514", self.run_in("two.txt", "-o", "a.stl").stderr)
+
+    def test_parts_that_touch_in_a_corner(self):
+        """Copies of a corner are no places of their own, and stay with their parts."""
+        self.write("two.txt", 'part("a") cube(10, center = true);\npart("b") translate([10, 10, 10]) cube(10, center = true);\n')
+        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.obj", "-o", "a.stl", "--normals", "crease", "--stats")
+        self.assert_status(result, 0)
+        stats = json.loads(result.stdout)
+        self.assertTrue(stats["mesh"]["manifold"])
+        self.assertEqual([file["manifold"] for file in stats["files"]], [True, True, False])
+        self.assertIn("a.stl: warning W0514: parts touch in 1 vertex,", result.stderr)
+        # a copy that nothing uses belongs to no part: these do not touch, and nothing says so
+        self.write("two.txt", 'part("x") difference() { sphere(6); cylinder(h = 4, r = 4); }\ntranslate([9, 0, 0]) cube(1);\n')
+        self.assertNotIn("W0514", self.run_in("two.txt", "-r", "9", "-o", "a.obj", "-o", "a.stl", "--normals", "crease").stderr)
 
     def test_what_needs_less_memory(self):
         self.write("a.txt", "sphere(10);\n")

@@ -61,7 +61,7 @@ static csgm_mesh_check inspect_file(place *p, double nearness)
     for (uint64_t i = 0; i < 3 * view.triangle_count; i++)
         indices[i] = to[view.indices[i]];
     view.indices = indices;
-    assert_int_equal(csg_mesh_inspect(&p->io.context, &view, &check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&p->io.context, &view, 0, &check), CSGM_OK);
     csg_mesh_destroy(back);
     return check;
 }

@@ -78,7 +78,7 @@ void mesh_build_closed(mesh_case *c, const csgm_mesh_options *options, const cha
     if (mesh_build(c, options) != CSGM_OK)
         fail_msg("%s: no mesh", what);
     csgm_mesh_view view = csg_mesh_view(c->mesh);
-    assert_int_equal(csg_mesh_inspect(&c->context, &view, &c->check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&c->context, &view, 0, &c->check), CSGM_OK);
     const csgm_mesh_check *k = &c->check;
     const struct {
         const char *name;

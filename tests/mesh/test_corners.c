@@ -22,7 +22,7 @@ static void inspect(mesh_case *c, const csg_corners *m, csgm_mesh_check *check)
     view.indices = indices;
     view.triangle_count = m->live;
     assert_int_equal(n, 3 * (size_t)m->live);
-    assert_int_equal(csg_mesh_inspect(&c->context, &view, check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&c->context, &view, 0, check), CSGM_OK);
     free(indices);
 }
 

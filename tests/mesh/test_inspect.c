@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "base/clock.h"
 #include "base/random.h"
 #include "mesh/inspect.h"
 
@@ -29,7 +30,7 @@ static csgm_mesh_check inspect(const float *positions, uint64_t vertices, const 
                            .vertex_count = vertices,
                            .triangle_count = triangles};
     csgm_mesh_check check;
-    assert_int_equal(csg_mesh_inspect(&context, &view, &check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_OK);
     assert_int_equal(atomic_load(&context.memory.used_bytes), 0);
     return check;
 }
@@ -78,7 +79,7 @@ static void test_origin_moves_the_bounds_only(void **state)
                            .vertex_count = 8,
                            .triangle_count = 12};
     csgm_mesh_check check;
-    assert_int_equal(csg_mesh_inspect(&context, &view, &check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_OK);
     assert_near(check.volume, 1, 1e-14);
     assert_near(check.bounds.min.x, 1e9, 0);
     assert_near(check.bounds.max.y, -1e9 + 1, 0);
@@ -340,6 +341,120 @@ static void test_star(void **state)
     assert_int_equal(check.nonmanifold_vertices, 0);
 }
 
+/* ---- parts ------------------------------------------------------------------------ */
+
+enum { CUBE_CORNERS = 36 };
+
+/* Two cubes that touch in a face, each corner of a triangle a vertex of its own, as files have them
+ * that keep creases. `cut`: the triangles of the first part end in the midst of the first cube. */
+static csgm_mesh_check inspect_two_cubes(bool has_parts, bool cut)
+{
+    float positions[2 * CUBE_CORNERS * 3];
+    uint32_t indices[2 * CUBE_CORNERS];
+    for (size_t i = 0; i < 2 * CUBE_CORNERS; i++) {
+        const float *at = cube_positions + 3 * (size_t)cube_indices[i % CUBE_CORNERS];
+        positions[3 * i] = at[0] + (i < CUBE_CORNERS ? 0 : 1);
+        positions[3 * i + 1] = at[1];
+        positions[3 * i + 2] = at[2];
+        indices[i] = (uint32_t)i;
+    }
+    const uint64_t first = cut ? 5 : 12;
+    const csgm_mesh_part parts[] = {{.triangle_count = first},
+                                    {.first_triangle = first, .triangle_count = 24 - first}};
+    csgm_context context = {0};
+    csg_memory_init(&context.memory, NULL, 0);
+    csgm_mesh_view view = {.positions = positions,
+                           .indices = indices,
+                           .vertex_count = COUNT(indices),
+                           .triangle_count = COUNT(indices) / 3,
+                           .parts = has_parts ? parts : NULL,
+                           .part_count = has_parts ? 2 : 0};
+    csgm_mesh_check check;
+    assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_OK);
+    assert_int_equal(atomic_load(&context.memory.used_bytes), 0);
+    return check;
+}
+
+/* Each is closed for itself; without parts, edges of the face they share are used four times. */
+static void test_parts_that_touch(void **state)
+{
+    csgm_mesh_check check = inspect_two_cubes(true, false);
+    assert_closed(&check);
+    assert_int_equal(check.components, 2);
+    check = inspect_two_cubes(false, false);
+    assert_int_equal(check.boundary_edges, 0);
+    assert_int_equal(check.nonmanifold_edges, 5); /* four and the diagonal */
+    (void)state;
+}
+
+/* A solid whose parts are not solids, as one that is cut by its materials: they are joined. */
+static void test_parts_that_are_open(void **state)
+{
+    csgm_mesh_check check = inspect_two_cubes(true, true);
+    assert_int_equal(check.boundary_edges, 0);
+    assert_int_equal(check.nonmanifold_edges, 5);
+    (void)state;
+}
+
+/* Copies stand one after the other; the last of a part and the first of the next have one place. */
+static void test_split_parts(void **state)
+{
+    static const uint32_t indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4,
+                                       5, 6, 7, 5, 8, 6, 5, 7, 8, 6, 8, 7};
+    static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0,
+                                      1, 0, 0, 1, 1, 0, 1, 0, 1, 1, 0, 0, 2};
+    static const csgm_mesh_part parts[] = {{.triangle_count = 4},
+                                           {.first_triangle = 4, .triangle_count = 4}};
+    csgm_context context = {0};
+    csg_memory_init(&context.memory, NULL, 0);
+    csgm_mesh_view view = {.positions = positions,
+                           .indices = indices,
+                           .vertex_count = 9,
+                           .triangle_count = 8,
+                           .parts = parts,
+                           .part_count = 2,
+                           .split = true};
+    csgm_mesh_check check;
+    assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_OK);
+    assert_closed(&check);
+    assert_int_equal(check.components, 2);
+    (void)state;
+}
+
+/* ---- limits ----------------------------------------------------------------------- */
+
+static bool is_cancelled(void *user)
+{
+    return --*(int *)user < 0;
+}
+
+/* The clock is looked at from the beginning on, and between and within all passes. */
+static void test_time(void **state)
+{
+    csgm_context context = {.limits = {.timeout_s = 1}};
+    csg_memory_init(&context.memory, NULL, 0);
+    csgm_mesh_view view = {.positions = cube_positions,
+                           .indices = cube_indices,
+                           .vertex_count = 8,
+                           .triangle_count = 12};
+    csgm_mesh_check check;
+    assert_int_equal(csg_mesh_inspect(&context, &view, csg_clock_now_s() - 2, &check),
+                     CSGM_ERR_LIMIT);
+    assert_int_equal(context.diags.errors, 1);
+    assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_OK);
+    int looks = 0, left = 0;
+    context.cancelled = is_cancelled;
+    context.cancel_user = &left;
+    for (csgm_status status = CSGM_CANCELLED; status != CSGM_OK; looks++) {
+        left = looks;
+        status = csg_mesh_inspect(&context, &view, 0, &check);
+        assert_true(status == CSGM_OK || status == CSGM_CANCELLED);
+        assert_int_equal(atomic_load(&context.memory.used_bytes), 0);
+    }
+    assert_true(looks > 12); /* six passes: in the first step of each, and after it */
+    (void)state;
+}
+
 static void *no_memory(void *user, size_t size_bytes)
 {
     int *left = user;
@@ -364,7 +479,7 @@ static void test_no_memory(void **state)
                                .vertex_count = 8,
                                .triangle_count = 12};
         csgm_mesh_check check;
-        assert_int_equal(csg_mesh_inspect(&context, &view, &check), CSGM_ERR_MEMORY);
+        assert_int_equal(csg_mesh_inspect(&context, &view, 0, &check), CSGM_ERR_MEMORY);
         assert_int_equal(context.diags.errors, 1);
     }
 }
@@ -384,6 +499,10 @@ int main(void)
         cmocka_unit_test(test_torus),
         cmocka_unit_test(test_soups),
         cmocka_unit_test(test_star),
+        cmocka_unit_test(test_parts_that_touch),
+        cmocka_unit_test(test_parts_that_are_open),
+        cmocka_unit_test(test_split_parts),
+        cmocka_unit_test(test_time),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

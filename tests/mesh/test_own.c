@@ -215,7 +215,7 @@ static void test_extrusions(void **state)
         assert_true(is_taken(&c, &options));
         assert_true(fabs(mesh_largest_error(&c)) < 1e-5);
         csgm_mesh_view view = csg_mesh_view(c.mesh);
-        assert_int_equal(csg_mesh_inspect(&c.context, &view, &c.check), CSGM_OK);
+        assert_int_equal(csg_mesh_inspect(&c.context, &view, 0, &c.check), CSGM_OK);
         assert_true(fabs(c.check.volume - 2 * area) < 1e-4);
         assert_int_equal(c.check.components, 20);
         assert_int_equal(c.check.euler, 0);
@@ -421,7 +421,7 @@ static void test_random_shells(void **state)
         if (is_taken(&c, &options)) {
             own++;
             csgm_mesh_view view = csg_mesh_view(c.mesh);
-            assert_int_equal(csg_mesh_inspect(&c.context, &view, &c.check), CSGM_OK);
+            assert_int_equal(csg_mesh_inspect(&c.context, &view, 0, &c.check), CSGM_OK);
             assert_int_equal(c.check.boundary_edges + c.check.nonmanifold_edges +
                                  c.check.misoriented_edges + c.check.nonmanifold_vertices,
                              0);

@@ -176,7 +176,7 @@ static void reach(mesh_case *c, csg_mesh_goal *goal)
     csg_mesh_destroy(c->mesh);
     c->mesh = mesh;
     csgm_mesh_view view = csg_mesh_view(mesh);
-    assert_int_equal(csg_mesh_inspect(&c->context, &view, &c->check), CSGM_OK);
+    assert_int_equal(csg_mesh_inspect(&c->context, &view, 0, &c->check), CSGM_OK);
     assert_true(!c->check.boundary_edges && !c->check.nonmanifold_edges &&
                 !c->check.nonmanifold_vertices && !c->check.misoriented_edges);
     assert_uncrossed(mesh, "goal");

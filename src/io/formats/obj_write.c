@@ -107,6 +107,10 @@ static uint32_t *number_places(csg_memory *memory, const csgm_mesh_view *mesh)
     if (!number)
         return NULL;
     csg_weld_map(memory, mesh, CSG_WELD_RUNS, number, &failed);
+    if (failed) {
+        csg_memory_release(memory, number, (mesh->vertex_count + 1) * sizeof *number);
+        return NULL;
+    }
     uint32_t next = 0;
     for (uint64_t i = 0; i < mesh->vertex_count; i++)
         number[i] = number[i] == i ? next++ : number[i - 1];

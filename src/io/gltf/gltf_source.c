@@ -114,7 +114,7 @@ static bool merges_stay_inside(const csg_gltf_source *source, const csg_gltf_sha
 static bool find_merges(csg_gltf_source *source)
 {
     csg_memory *memory = source->arena.memory;
-    bool failed;
+    bool failed = false;
     uint32_t *to = csg_arena_alloc(&source->arena, (source->mesh.vertex_count + 1) * sizeof *to);
     if (!to)
         return false;
@@ -122,6 +122,8 @@ static bool find_merges(csg_gltf_source *source)
         memcpy(to, source->merge_to, source->mesh.vertex_count * sizeof *to);
     else
         csg_weld_map(memory, &source->mesh, CSG_WELD_RUNS, to, &failed);
+    if (failed)
+        return false;
     source->merge_to = to;
     for (size_t i = 0; i < source->shape_count; i++) {
         csg_gltf_shape *shape = &source->shapes[i];

@@ -164,11 +164,11 @@ static uint32_t *merged(projector *p)
 {
     csgm_mesh_view *mesh = &p->source->mesh;
     uint32_t *to = csg_arena_alloc(&p->source->arena, p->count * sizeof *to);
-    bool failed;
-    if (!to)
-        return NULL;
-    if (mesh->split)
+    bool failed = !to;
+    if (to && mesh->split)
         csg_weld_map(p->source->arena.memory, mesh, CSG_WELD_RUNS, p->first, &failed);
+    if (failed)
+        return NULL;
     for (uint64_t i = 0; !mesh->split && i < mesh->vertex_count; i++)
         p->first[i] = (uint32_t)i;
     /* first[v]: the vertex that v is one with; then, in the order of copies, the copy */
