@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Parts of a scene; see parts.h. A part's scene is made by the builder, from a copy of the whole
- * scene's nodes, under a new root.
+ * Parts of a scene; see parts.h.
  */
 #include "scene/tree/parts.h"
 
@@ -10,6 +9,7 @@
 #include "scene/tree/build.h"
 #include "scene/tree/build_private.h"
 #include "scene/tree/check.h"
+#include "scene/tree/excerpt.h"
 
 /* ---- finding ------------------------------------------------------------------------------- */
 
@@ -182,96 +182,22 @@ csg_box csg_parts_box(const csg_parts *parts, size_t index)
 
 /* ---- a part alone ---------------------------------------------------------------------------- */
 
-/* array: where the pointer stands. */
-static bool load_array(csg_memory *memory, void *array, size_t *capacity, const void *from,
-                       size_t count, size_t bytes)
-{
-    void *data = NULL;
-    if (!count)
-        return true;
-    if (!csg_memory_reserve(memory, &data, capacity, count, bytes))
-        return false;
-    memcpy(data, from, count * bytes);
-    memcpy(array, &data, sizeof data);
-    return true;
-}
-
-static bool load_shapes(csg_scene_builder *b, const csgm_scene *from)
-{
-    csgm_scene *scene = b->scene;
-    if (!load_array(&b->context->memory, &scene->shapes, &b->shape_capacity, from->shapes,
-                    from->shape_count, sizeof *scene->shapes))
-        return false;
-    scene->shape_count = from->shape_count;
-    for (size_t i = 0; i < scene->shape_count; i++)
-        csg_shape_retain(scene->shapes[i]);
-    return true;
-}
-
-/* All nodes of a sealed scene into an empty builder, with the same numbers. */
-static bool load(csg_scene_builder *b, const csgm_scene *from)
-{
-    csg_memory *memory = &b->context->memory;
-    csgm_scene *to = b->scene;
-#define LOAD(array, room, number)                                                                  \
-    (load_array(memory, &to->array, &b->room, from->array, from->number, sizeof *to->array) &&     \
-     ((to->number = from->number), true))
-    return LOAD(nodes, node_capacity, node_count) && LOAD(children, child_capacity, child_count) &&
-           LOAD(parameters, parameter_capacity, parameter_count) &&
-           LOAD(transforms, transform_capacity, transform_count) &&
-           LOAD(looks, look_capacity, look_count) &&
-           LOAD(formulas, formula_capacity, formula_count) &&
-           LOAD(steps, step_capacity, step_count) && LOAD(warps, warp_capacity, warp_count) &&
-           LOAD(rules, rule_capacity, rule_count) && load_shapes(b, from);
-#undef LOAD
-}
-
-static csg_node_id place_unit(csg_scene_builder *b, csg_node_id unit, const csg_part_way *way)
-{
-    csg_look look = way->look;
-    csg_span where = b->scene->nodes[unit].where;
-    csg_node_id node = csg_build_transform(b, &way->place, unit, where);
-    look.part = 0;
-    bool plain = !look.has_color && !look.has_material;
-    return node == CSG_NODE_NONE || plain ? node : csg_build_look(b, &look, node, where);
-}
-
-static csg_node_id build_part(csg_scene_builder *b, const csg_parts *parts, uint32_t number,
-                              csg_node_id *nodes)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < parts->unit_count; i++) {
-        const csg_part_way *way = &parts->ways[parts->units[i].way];
-        if (way->look.part != number)
-            continue;
-        nodes[count] = place_unit(b, parts->units[i].node, way);
-        if (nodes[count++] == CSG_NODE_NONE)
-            return CSG_NODE_NONE;
-    }
-    return csg_build_operator(b, CSG_NODE_UNION, CSG_SHARP, nodes, count,
-                              b->scene->nodes[parts->scene->root].where);
-}
-
 csgm_status csg_parts_scene(const csg_parts *parts, size_t index, csgm_scene **out)
 {
-    csg_scene_builder b;
-    csgm_context *context = parts->scene->context;
-    size_t bytes = parts->unit_count * sizeof(csg_node_id);
-    csg_node_id *nodes = csg_memory_alloc(&context->memory, bytes);
-    csgm_status status = nodes ? csg_build_begin(&b, context) : CSGM_ERR_MEMORY;
-    if (status == CSGM_OK) {
-        if (!load(&b, parts->scene))
-            csg_build_no_memory(&b);
-        else
-            csg_build_finish(&b, build_part(&b, parts, parts->numbers[index], nodes), NULL, 0, out);
-        status = b.status;
-        csg_build_abandon(&b);
+    csg_memory *memory = &parts->scene->context->memory;
+    size_t count = 0, bytes = parts->unit_count * sizeof(csg_excerpt_item);
+    csg_excerpt_item *items = csg_memory_alloc(memory, bytes);
+    if (!items)
+        return CSGM_ERR_MEMORY;
+    for (size_t i = 0; i < parts->unit_count; i++) {
+        const csg_part_way *way = &parts->ways[parts->units[i].way];
+        if (way->look.part == parts->numbers[index])
+            items[count++] = (csg_excerpt_item){parts->units[i].node, way->place, way->look};
     }
-    if (status == CSGM_OK) {
-        (*out)->texts = parts->scene->texts;
-        (*out)->text_count = parts->scene->text_count;
-    }
-    csg_memory_release(&context->memory, nodes, bytes);
+    const csg_excerpt excerpt = {
+        .kind = CSG_NODE_UNION, .items = items, .count = count, .within = csg_box_empty()};
+    csgm_status status = csg_scene_excerpt(parts->scene, &excerpt, out);
+    csg_memory_release(memory, items, bytes);
     return status;
 }
 
