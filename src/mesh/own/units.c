@@ -26,6 +26,16 @@ static bool is_shape(const csgm_scene *scene, const csg_node *node, csg_shape_ki
     return node->kind == CSG_NODE_SHAPE && scene->shapes[node->payload]->kind == kind;
 }
 
+static bool is_sharp_box(const csgm_scene *scene, const csg_node *node)
+{
+    return node->kind == CSG_NODE_BOX && !(csg_scene_parameters(scene, node)[3] > 0);
+}
+
+static bool is_sharp_rectangle(const csgm_scene *scene, const csg_node *node)
+{
+    return node->kind == CSG_NODE_RECTANGLE && !(csg_scene_parameters(scene, node)[2] > 0);
+}
+
 /* At most so many units; 0: there is something that is in no such scene. */
 static size_t most_units(const csgm_scene *scene)
 {
@@ -34,8 +44,10 @@ static size_t most_units(const csgm_scene *scene)
         const csg_node *node = &scene->nodes[i];
         bool is_way = node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
                       node->kind == CSG_NODE_SLAB || is_shape(scene, node, CSG_SHAPE_REGION) ||
-                      (node->kind == CSG_NODE_UNION && csg_blend_is_sharp(node->blend));
-        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || csg_node_is_plate(node))
+                      is_sharp_rectangle(scene, node) ||
+                      (csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend));
+        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || csg_node_is_plate(node) ||
+            is_sharp_box(scene, node))
             count++;
         else if (!is_way)
             return 0;
@@ -50,6 +62,30 @@ static above below(const csgm_scene *scene, const csg_node *node, above a)
     else if (node->kind == CSG_NODE_COLOR)
         csg_look_take_inner(&a.look, &scene->looks[node->payload]);
     return a;
+}
+
+/* ---- boxes -------------------------------------------------------------------------------------
+ */
+
+/* half: sizes. */
+static csgm_status make_box(csg_memory *memory, csg_vec3 half, double middle, csg_own_unit *unit)
+{
+    static const uint32_t SIDES[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    csg_triangles triangles;
+    bool added = true;
+    csg_triangles_init(&triangles, memory);
+    for (int i = 0; i < 8 && added; i++)
+        added = csg_triangles_add_point(
+            &triangles, csg_vec3_make(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y,
+                                      middle + (i & 4 ? half.z : -half.z)));
+    for (int i = 0; i < 6 && added; i++)
+        added = csg_triangles_add_face(&triangles, SIDES[i], 4);
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (added)
+        status = csg_polyhedron_create(memory, &triangles, NULL, &unit->shape);
+    csg_triangles_release(&triangles);
+    return status;
 }
 
 /* ---- plates ------------------------------------------------------------------------------------
@@ -110,12 +146,18 @@ static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_o
     above flat = {.place = csg_affine_identity(), .look = unit->look}, ends = flat;
     const csg_node *figure = leaf_below(scene, &scene->nodes[children[0]], &flat);
     const csg_node *slab = leaf_below(scene, &scene->nodes[children[1]], &ends);
-    if (!is_shape(scene, figure, CSG_SHAPE_REGION) || slab->kind != CSG_NODE_SLAB)
+    if (slab->kind != CSG_NODE_SLAB)
         return CSGM_OK;
     unit->place = csg_affine_multiply(unit->place, csg_affine_of_plane(flat.place));
     unit->look = flat.look;
-    csgm_status status =
-        make_prism(scene, figure, csg_scene_parameters(scene, slab)[0], ends.place.t[2], unit);
+    double half = csg_scene_parameters(scene, slab)[0], middle = ends.place.t[2];
+    const double *sizes = csg_scene_parameters(scene, figure);
+    csgm_status status = CSGM_OK;
+    if (is_shape(scene, figure, CSG_SHAPE_REGION))
+        status = make_prism(scene, figure, half, middle, unit);
+    else if (is_sharp_rectangle(scene, figure))
+        status = make_box(&scene->context->memory, csg_vec3_make(sizes[0], sizes[1], half), middle,
+                          unit);
     return status == CSGM_ERR_MEMORY ? status : CSGM_OK;
 }
 
@@ -126,9 +168,14 @@ static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_o
 static csgm_status take_unit(const csgm_scene *scene, const csg_node *node, const above *a,
                              csg_own_unit *unit)
 {
-    *unit = (csg_own_unit){.place = a->place, .look = a->look};
+    *unit = (csg_own_unit){
+        .place = a->place, .look = a->look, .node = (csg_node_id)(node - scene->nodes)};
     if (csg_node_is_plate(node))
         return extrude(scene, node, unit);
+    if (is_sharp_box(scene, node)) {
+        const double *half = csg_scene_parameters(scene, node);
+        return make_box(&scene->context->memory, csg_vec3_make(half[0], half[1], half[2]), 0, unit);
+    }
     if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON)) {
         unit->shape = scene->shapes[node->payload];
         csg_shape_retain(unit->shape);
@@ -191,8 +238,27 @@ static bool are_apart(const csg_own_units *units)
     return true;
 }
 
+static bool has_unions_only(const csgm_scene *scene)
+{
+    for (size_t i = 0; i < scene->node_count; i++) {
+        const csg_node *node = &scene->nodes[i];
+        if (csg_node_is_operator(node->kind) && node->kind != CSG_NODE_UNION &&
+            !csg_node_is_plate(node))
+            return false;
+    }
+    return true;
+}
+
+/* Corners have numbers, too. */
+static bool can_be_numbered(const csg_own_units *units)
+{
+    static const uint64_t MOST = UINT32_MAX / 3 - 1;
+    return units->vertex_count <= MOST && units->triangle_count <= MOST;
+}
+
 static void number(csg_own_units *units)
 {
+    units->vertex_count = units->triangle_count = 0;
     for (size_t i = 0; i < units->count; i++) {
         csg_own_unit *unit = &units->items[i];
         const csg_triangles *triangles = csg_polyhedron_triangles(unit->shape);
@@ -205,7 +271,6 @@ static void number(csg_own_units *units)
 
 csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
 {
-    static const uint64_t MOST = UINT32_MAX / 3 - 1; /* corners have numbers too */
     *units = (csg_own_units){.memory = &scene->context->memory};
     size_t room_bytes = scene->node_count * sizeof(above);
     units->room = most_units(scene);
@@ -221,10 +286,25 @@ csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
     if (status == CSGM_OK && all) {
         arrange(units);
         number(units);
+        units->are_apart = has_unions_only(scene) && are_apart(units);
     }
-    if (!all || units->vertex_count > MOST || units->triangle_count > MOST || !are_apart(units))
+    if (!all || !can_be_numbered(units))
         csg_own_units_reset(units);
     return status;
+}
+
+void csg_own_units_replace(csg_own_units *units, csg_shape *joined)
+{
+    csg_look look = units->items[0].look;
+    for (size_t i = 0; i < units->count; i++)
+        csg_shape_release(units->items[i].shape);
+    units->items[0] = (csg_own_unit){
+        .shape = joined, .place = csg_affine_identity(), .look = look, .box = joined->box};
+    units->count = 1;
+    units->are_apart = true;
+    number(units);
+    if (!can_be_numbered(units))
+        csg_own_units_reset(units);
 }
 
 void csg_own_units_reset(csg_own_units *units)

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/trace.h"
 #include "field/field.h"
+#include "mesh/own/join.h"
 #include "mesh/own/sound.h"
 #include "mesh/own/write.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -158,6 +159,9 @@ static csgm_status build(own *o)
     csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(o->input.context);
+    status = csg_own_join(&o->units, o->input.field->scene, &o->watch);
+    if (status != CSGM_OK)
+        return status;
     bool too_many = options->triangles && o->units.triangle_count > options->triangles;
     if (!o->units.count || too_many)
         return CSGM_OK;

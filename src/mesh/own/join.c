@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ * See join.h. Children have smaller numbers than their parents, so one loop upwards over the nodes
+ * has the steps of operands before those of operators.
+ */
+#include "mesh/own/join.h"
+
+#include <math.h>
+
+#include "base/trace.h"
+#include "shape/polyhedra/booleans.h"
+#include "shape/polyhedra/polyhedron.h"
+
+static const uint32_t NO_STEP = UINT32_MAX;
+
+typedef struct joining {
+    const csg_own_units *units;
+    const csgm_scene *scene;
+    uint32_t *step_of;       /* per node: the step that makes it */
+    uint32_t *operands;      /* of all steps, as the scene has its children */
+    csg_boolean_step *steps; /* at most one per node */
+    size_t count;
+} joining;
+
+/* ---- steps -------------------------------------------------------------------------------------
+ */
+
+static uint32_t add_leaf(joining *j, const csg_own_unit *unit)
+{
+    j->steps[j->count] = (csg_boolean_step){.kind = CSG_BOOLEAN_LEAF,
+                                            .triangles = csg_polyhedron_triangles(unit->shape),
+                                            .place = unit->place};
+    return (uint32_t)j->count++;
+}
+
+static csg_boolean_kind kind_of(const csg_node *node)
+{
+    return node->kind == CSG_NODE_UNION          ? CSG_BOOLEAN_UNION
+           : node->kind == CSG_NODE_INTERSECTION ? CSG_BOOLEAN_INTERSECTION
+                                                 : CSG_BOOLEAN_DIFFERENCE;
+}
+
+/* NO_STEP: it is a part of a unit. */
+static uint32_t add_node(joining *j, const csg_node *node)
+{
+    const csg_node_id *children = csg_scene_children(j->scene, node);
+    if (!node->child_count)
+        return NO_STEP;
+    if (!csg_node_is_operator(node->kind))
+        return j->step_of[children[0]];
+    uint32_t *operands = j->operands + node->first_child;
+    for (uint32_t k = 0; k < node->child_count; k++) {
+        operands[k] = j->step_of[children[k]];
+        if (operands[k] == NO_STEP)
+            return NO_STEP;
+    }
+    j->steps[j->count] =
+        (csg_boolean_step){.kind = kind_of(node), .operands = operands, .count = node->child_count};
+    return (uint32_t)j->count++;
+}
+
+/* Nothing that no unit and no operator of units is stands at the end, behind the root's step. */
+static void list_steps(joining *j)
+{
+    size_t unit = 0;
+    for (csg_node_id i = 0; i <= j->scene->root; i++) {
+        bool is_unit = unit < j->units->count && j->units->items[unit].node == i;
+        j->step_of[i] =
+            is_unit ? add_leaf(j, &j->units->items[unit++]) : add_node(j, &j->scene->nodes[i]);
+    }
+}
+
+/* ---- the solid ---------------------------------------------------------------------------------
+ */
+
+/* Four steps of a float at the farthest place: rounded, what is nearer would be one place or on the
+ * wrong side of its neighbours. */
+static double nearest_places(const csg_own_units *units)
+{
+    double farthest = 0;
+    for (size_t i = 0; i < units->count; i++) {
+        csg_box box = units->items[i].box;
+        farthest = fmax(farthest, fmax(csg_vec3_norm(box.min), csg_vec3_norm(box.max)));
+    }
+    return 0x1p-21 * farthest;
+}
+
+/* *joined NULL: there is none. */
+static csgm_status make_joined(joining *j, csg_mesh_watch *watch, csg_shape **joined)
+{
+    csg_memory *memory = j->units->memory;
+    const csg_boolean_watch asked = {csg_mesh_should_stop, watch};
+    csg_triangles triangles;
+    list_steps(j);
+    csgm_status status =
+        csg_booleans(memory, j->steps, j->count, nearest_places(j->units), &asked, &triangles);
+    if (status == CSGM_OK && triangles.count)
+        status = csg_polyhedron_create(memory, &triangles, NULL, joined);
+    csg_triangles_release(&triangles);
+    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : CSGM_OK;
+}
+
+static csgm_status join_in_rooms(csg_own_units *units, const csgm_scene *scene,
+                                 csg_mesh_watch *watch, csg_shape **joined)
+{
+    csg_memory *memory = units->memory;
+    size_t nodes = scene->node_count, children = scene->child_count + 1;
+    joining j = {.units = units, .scene = scene};
+    csgm_status status = CSGM_OK;
+    j.step_of = csg_memory_alloc(memory, nodes * sizeof *j.step_of);
+    j.operands = csg_memory_alloc(memory, children * sizeof *j.operands);
+    j.steps = csg_memory_alloc(memory, nodes * sizeof *j.steps);
+    if (j.step_of && j.operands && j.steps)
+        status = make_joined(&j, watch, joined);
+    csg_memory_release(memory, j.step_of, nodes * sizeof *j.step_of);
+    csg_memory_release(memory, j.operands, children * sizeof *j.operands);
+    csg_memory_release(memory, j.steps, nodes * sizeof *j.steps);
+    return status;
+}
+
+static bool is_same_look(const csg_look *a, const csg_look *b)
+{
+    return a->has_color == b->has_color && a->has_material == b->has_material &&
+           a->color.r == b->color.r && a->color.g == b->color.g && a->color.b == b->color.b &&
+           a->color.a == b->color.a && a->metallic == b->metallic && a->roughness == b->roughness;
+}
+
+static bool can_be_joined(const csg_own_units *units)
+{
+    for (size_t i = 1; i < units->count; i++)
+        if (!is_same_look(&units->items[0].look, &units->items[i].look))
+            return false;
+    return csg_booleans_are_available();
+}
+
+csgm_status csg_own_join(csg_own_units *units, const csgm_scene *scene, csg_mesh_watch *watch)
+{
+    if (!units->count || units->are_apart)
+        return CSGM_OK;
+    CSG_ZONE(watch->context, "own triangles: join");
+    csg_shape *joined = NULL;
+    csgm_status status = CSGM_OK;
+    if (can_be_joined(units))
+        status = join_in_rooms(units, scene, watch, &joined);
+    if (joined)
+        csg_own_units_replace(units, joined);
+    else
+        csg_own_units_reset(units);
+    return status;
+}
