@@ -26,8 +26,18 @@ typedef struct maker {
     cli_work work;
     batch_record record;
     int64_t since[2];
+    double start_cpu_s;
     bool is_noted; /* the record says how long it took */
 } maker;
+
+/* Processor time: of this thread, or of all, where no other job is at work. */
+static double cpu_now_s(const maker *m)
+{
+    struct timespec now = {0, 0};
+    clock_gettime(m->options.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID,
+                  &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
 
 static int fail_memory(maker *m)
 {
@@ -273,9 +283,8 @@ static int take_record(maker *m)
         sound = sound && batch_hash_available() && batch_hash_path(output->path, &output->digest);
     }
     m->record.key = batch_record_key(m->job, &m->run->program);
-    m->record.thread_seconds =
-        result->thread_seconds + (cli_now_s() - m->app.start_s) * (uint32_t)m->options.threads;
-    result->thread_seconds = m->record.thread_seconds;
+    m->record.cpu_seconds = result->cpu_seconds + cpu_now_s(m) - m->start_cpu_s;
+    result->cpu_seconds = m->record.cpu_seconds;
     m->is_noted = true;
     m->record.outputs = result->outputs;
     m->record.output_count = result->output_count;
@@ -352,6 +361,7 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     m.options.threads = threads;
     m.options.if_changed = true;
     m.app.start_s = cli_now_s();
+    m.start_cpu_s = cpu_now_s(&m);
     m.app.trace = run->app->trace;
     m.app.cancelled = run->app->cancelled;
     m.app.looked = run->app->looked;
@@ -374,5 +384,5 @@ void batch_make(batch_run *run, const batch_job *job, uint32_t threads, bool may
     result->outcome = result->status == CLI_DONE ? BATCH_MADE : BATCH_FAILED;
     result->seconds += cli_now_s() - m.app.start_s;
     if (!m.is_noted)
-        result->thread_seconds += (cli_now_s() - m.app.start_s) * threads;
+        result->cpu_seconds += cpu_now_s(&m) - m.start_cpu_s;
 }

@@ -6,7 +6,7 @@
  *     in DIGEST NAME           NAME: "=" the scene, "S/x" beside it, "I2/x" in the third -I folder,
  *     no NAME                        "A/x" by its own path; % and control characters as %0A
  *     out DIGEST BYTES SECONDS NANOSECONDS FORMAT [PART]
- *     took MICROSECONDS        of one thread
+ *     took MICROSECONDS        of processor time
  *     end
  */
 #include "batch/batch_record.h"
@@ -172,8 +172,8 @@ static void put_record(FILE *out, cli_arena *arena, const batch_job *job, const 
         put_escaped(out, o->part ? o->part : "");
         fputc('\n', out);
     }
-    if (r->thread_seconds > 0)
-        fprintf(out, "took %" PRIu64 "\n", (uint64_t)(r->thread_seconds * 1e6));
+    if (r->cpu_seconds > 0)
+        fprintf(out, "took %" PRIu64 "\n", (uint64_t)(r->cpu_seconds * 1e6));
     fputs("end\n", out);
 }
 
@@ -265,7 +265,7 @@ static bool parse_line(cli_arena *arena, const batch_job *job, const char *direc
     if (strncmp(line, "out ", 4) == 0)
         return parse_output(arena, job, directory, line + 4, out);
     if (strncmp(line, "took ", 5) == 0) {
-        out->thread_seconds = (double)strtoull(line + 5, NULL, 10) * 1e-6;
+        out->cpu_seconds = (double)strtoull(line + 5, NULL, 10) * 1e-6;
         return true;
     }
     const char *path = NULL;

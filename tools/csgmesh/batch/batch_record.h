@@ -30,7 +30,7 @@ typedef struct batch_record {
     cli_list absent; /* files that would have been found first, had they been there */
     batch_output *outputs;
     size_t output_count;
-    double thread_seconds; /* that it took; 0: not known */
+    double cpu_seconds; /* that it took; 0: not known */
 } batch_record;
 
 /* Program, options and parameters: all that the outputs come from but the files. */

@@ -132,8 +132,8 @@ static void put_job(const batch_job *job, const batch_result *result)
         cli_json_count(&json, "triangles", result->triangles);
     if (result->outcome != BATCH_NOT_RUN)
         cli_json_number(&json, "seconds", result->seconds);
-    if (result->thread_seconds > 0)
-        cli_json_number(&json, "thread_seconds", result->thread_seconds);
+    if (result->cpu_seconds > 0)
+        cli_json_number(&json, "cpu_seconds", result->cpu_seconds);
     cli_json_string(&json, "job", name);
     cli_json_count(&json, "number", job->number);
     if (result->messages && *result->messages)

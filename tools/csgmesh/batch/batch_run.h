@@ -22,8 +22,8 @@ typedef struct batch_result {
     bool endangers_files; /* --trace or --junit would overwrite what it reads or writes */
     char *messages;       /* what csgmesh mesh would have said; NULL or "" = nothing */
     double seconds;
-    double thread_seconds; /* times the threads that worked at it; of what was not made, the time
-                              that it took when it was; 0: not known */
+    double cpu_seconds;    /* of all threads; of what was not made, the time that it took when it
+                              was; 0: not known */
     uint64_t triangles;    /* of BATCH_MADE */
     batch_output *outputs; /* with their digests, sizes */
     size_t output_count;

@@ -32,6 +32,18 @@ static uint32_t read_word(const uint8_t *bytes)
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
+/* d and h become the e and a of the next round. */
+static inline void do_round(const uint32_t *a, uint32_t b, uint32_t c, uint32_t *d, uint32_t e,
+                            uint32_t f, uint32_t g, uint32_t *h, uint32_t added)
+{
+    uint32_t one =
+        *h + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) + ((e & f) ^ (~e & g)) + added;
+    uint32_t two =
+        (turned(*a, 2) ^ turned(*a, 13) ^ turned(*a, 22)) + ((*a & b) ^ (*a & c) ^ (b & c));
+    *d += one;
+    *h = one + two;
+}
+
 static void take_block(batch_sha256 *hasher, const uint8_t *block)
 {
     uint32_t w[64], s[8];
@@ -43,15 +55,16 @@ static void take_block(batch_sha256 *hasher, const uint8_t *block)
                (turned(b, 17) ^ turned(b, 19) ^ b >> 10);
     }
     memcpy(s, hasher->state, sizeof s);
-    for (int i = 0; i < 64; i++) {
-        uint32_t choice = (s[4] & s[5]) ^ (~s[4] & s[6]);
-        uint32_t majority = (s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]);
-        uint32_t one = s[7] + (turned(s[4], 6) ^ turned(s[4], 11) ^ turned(s[4], 25)) + choice +
-                       rounds[i] + w[i];
-        uint32_t two = (turned(s[0], 2) ^ turned(s[0], 13) ^ turned(s[0], 22)) + majority;
-        memmove(s + 1, s, 7 * sizeof *s);
-        s[4] += one;
-        s[0] = one + two;
+    /* The eight words go round by their names, not in memory. */
+    for (int i = 0; i < 64; i += 8) {
+        do_round(&s[0], s[1], s[2], &s[3], s[4], s[5], s[6], &s[7], rounds[i] + w[i]);
+        do_round(&s[7], s[0], s[1], &s[2], s[3], s[4], s[5], &s[6], rounds[i + 1] + w[i + 1]);
+        do_round(&s[6], s[7], s[0], &s[1], s[2], s[3], s[4], &s[5], rounds[i + 2] + w[i + 2]);
+        do_round(&s[5], s[6], s[7], &s[0], s[1], s[2], s[3], &s[4], rounds[i + 3] + w[i + 3]);
+        do_round(&s[4], s[5], s[6], &s[7], s[0], s[1], s[2], &s[3], rounds[i + 4] + w[i + 4]);
+        do_round(&s[3], s[4], s[5], &s[6], s[7], s[0], s[1], &s[2], rounds[i + 5] + w[i + 5]);
+        do_round(&s[2], s[3], s[4], &s[5], s[6], s[7], s[0], &s[1], rounds[i + 6] + w[i + 6]);
+        do_round(&s[1], s[2], s[3], &s[4], s[5], s[6], s[7], &s[0], rounds[i + 7] + w[i + 7]);
     }
     for (int i = 0; i < 8; i++)
         hasher->state[i] += s[i];

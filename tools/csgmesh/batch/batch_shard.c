@@ -175,7 +175,7 @@ static int take_time(void *user, const batch_line *line)
     weights *times = user;
     const double longest_s = 1e9;
     const char *name = batch_line_text(line->object, "job");
-    double seconds = batch_line_number(line->object, "thread_seconds");
+    double seconds = batch_line_number(line->object, "cpu_seconds");
     if (!name || !(seconds > 0))
         return CLI_DONE;
     seconds = seconds < longest_s ? seconds : longest_s;

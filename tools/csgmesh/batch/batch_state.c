@@ -109,7 +109,7 @@ bool batch_is_current(batch_run *run, const batch_job *job, batch_result *result
     if (current) {
         take_outputs(result, &record);
         tell_inputs(run, &record);
-        result->thread_seconds = record.thread_seconds;
+        result->cpu_seconds = record.cpu_seconds;
         result->outcome = BATCH_UP_TO_DATE;
     }
     cli_arena_reset(&arena);
@@ -153,7 +153,7 @@ bool batch_take_from_cache(batch_run *run, const batch_job *job, batch_result *r
     if (found) {
         take_outputs(result, &record);
         tell_inputs(run, &record);
-        result->thread_seconds = record.thread_seconds;
+        result->cpu_seconds = record.cpu_seconds;
         result->outcome = BATCH_CACHED;
         write_state(run, &arena, job, &record);
     }
