@@ -74,12 +74,21 @@ csg_rounding csg_rounding_of_draco(const csgm_mesh_view *mesh, uint32_t bits, bo
     return grid;
 }
 
-/* As Draco computes it, in floats. */
+static float number_of(const csg_rounding *grid, int axis, float value)
+{
+    float per_step = (float)grid->most / grid->range;
+    return floorf((value - grid->low[axis]) * per_step + 0.5f);
+}
+
+uint32_t csg_rounding_number(const csg_rounding *grid, int axis, float value)
+{
+    return grid->range > 0 ? (uint32_t)number_of(grid, axis, value) : 0;
+}
+
 static double on_grid(const csg_rounding *grid, int axis, double value)
 {
-    float step = grid->range / (float)grid->most, per_step = (float)grid->most / grid->range;
-    float number = floorf(((float)value - grid->low[axis]) * per_step + 0.5f);
-    return (double)(number * step + grid->low[axis]);
+    float step = grid->range / (float)grid->most;
+    return (double)(number_of(grid, axis, (float)value) * step + grid->low[axis]);
 }
 
 /* One after the other, each by a call: gcc 12 at -O3 makes vectors of `is ? (double)(float)x : x`

@@ -27,6 +27,10 @@ typedef struct csg_rounding {
  * options, which hold six decimals. */
 csg_rounding csg_rounding_of_draco(const csgm_mesh_view *mesh, uint32_t bits, bool is_told);
 
+/* The number of the grid that a value on an axis gets, as Draco computes it, in floats: whoever
+ * writes the grid asks here, as halves go another way in doubles, and what was kept apart meets. */
+uint32_t csg_rounding_number(const csg_rounding *grid, int axis, float value);
+
 typedef struct csg_rounded {
     csgm_mesh_view mesh; /* with positions as the file has them, and for floats without an origin */
     float *positions;    /* owned; NULL = the mesh's own */

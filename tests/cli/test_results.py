@@ -243,6 +243,13 @@ class Statistics(cli.CliTest):
         self.write("two.txt", 'part("x") difference() { sphere(6); cylinder(h = 4, r = 4); }\ntranslate([9, 0, 0]) cube(1);\n')
         self.assertNotIn("W0514", self.run_in("two.txt", "-r", "9", "-o", "a.obj", "-o", "a.stl", "--normals", "crease").stderr)
 
+    def test_creases_without_a_gradient(self):
+        """Where a fillet's gradient is nothing, the normal of a crease that was given up was none, and no file was written."""
+        self.write("a.txt", 'scale(1e-3) union(blend = fillet(1.798357)) { roof() text("8", 8.503070);'
+                            ' difference() { sphere(5.859); gyroid(6, 1.003487); } }\n'
+                            'scale(1e-3) part("x") cube(5.920, round = 0.355975);\n')
+        self.assert_status(self.run_in("a.txt", "-r", "18", "-o", "a.ply", "-o", "a.glb", "-q"), 0)
+
     def test_what_needs_less_memory(self):
         self.write("a.txt", "sphere(10);\n")
         for options, word in ((("-o", "a.ply"), "equal cells do not: -r 256\n"),

@@ -167,6 +167,37 @@ static void what_cannot_be_told_apart_is_refused(void **state)
     }
 }
 
+/* A corner of a triangle half way between the mesh's ends in x, and at none of those in y and z. */
+static uint64_t corner_in_the_middle(const csgm_mesh_view *mesh)
+{
+    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
+        const float *at = mesh->positions + 3 * (uint64_t)mesh->indices[i];
+        if (fabsf(at[0]) < 1e-5f && fabsf(at[1]) < 8 && fabsf(at[2]) < 8)
+            return i;
+    }
+    fail();
+    return 0;
+}
+
+/* Zero is half way between two numbers of the grid. In floats the larger one of two places a little
+ * below it is rounded up, in doubles it is not: looked at in one way and written in the
+ * other, they would meet. */
+static void halves_of_a_step_stay_apart(void **state)
+{
+    (void)state;
+    place p;
+    begin(&p, "a.glb", 24, 12, 0);
+    uint64_t i = corner_in_the_middle(&p.view);
+    uint64_t upper = p.view.indices[i], lower = p.view.indices[i / 3 * 3 + (i + 1) % 3];
+    memcpy(p.mesh->positions + 3 * lower, p.mesh->positions + 3 * upper, 12);
+    p.mesh->positions[3 * upper] = -2e-7f;
+    p.mesh->positions[3 * lower] = -3e-6f;
+    csgm_write_options options = csg_write_options_default();
+    options.meshopt = true;
+    expect_whole(&p, &options, 0);
+    end(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +205,7 @@ int main(void)
         cmocka_unit_test(draco_on_a_coarse_grid_is_whole),
         cmocka_unit_test(much_that_moves_is_told),
         cmocka_unit_test(what_cannot_be_told_apart_is_refused),
+        cmocka_unit_test(halves_of_a_step_stay_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,10 +133,7 @@ static int pack_array(meshopt *m, uint32_t bytes, put_fn *put, csg_gltf_accessor
 
 static uint16_t on_grid(const csg_rounding *grid, float value, int axis)
 {
-    double steps = grid->range > 0 ? ((double)value - (double)grid->low[axis]) /
-                                         (double)grid->range * (double)grid->most
-                                   : 0;
-    return (uint16_t)floor(steps + 0.5);
+    return (uint16_t)csg_rounding_number(grid, axis, value); /* of 16 bits at most */
 }
 
 static void put_position(const meshopt *m, uint64_t vertex, void *at)

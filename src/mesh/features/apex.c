@@ -259,12 +259,29 @@ static bool sheets_differ(const polygon *p, const apex *a)
     return p->creased || widest > 0.03; /* a tip: 14 degrees between corners */
 }
 
+/* Inwards, as gradients are, by the area of the polygon: where a field has no gradient, as at a
+ * critical point or on the axis of what has been dropped. */
+static csg_vec3 polygon_gradient(const csg_feature *f)
+{
+    csg_vec3 sum = {0, 0, 0}, first = csg_vec3_from_floats(f->corner[0]), last = {0, 0, 0};
+    for (int s = 1; s < f->side_count; s++) {
+        csg_vec3 way = csg_vec3_sub(csg_vec3_from_floats(f->corner[s]), first);
+        sum = csg_vec3_add(sum, csg_vec3_cross(way, last)); /* last x way looks outwards */
+        last = way;
+    }
+    return csg_vec3_norm(sum) > 0 ? sum : csg_vec3_make(0, 0, -1);
+}
+
 void csg_apex_place(const polygon *p, const apex *a, csg_feature *out)
 {
     out->at[0] = (float)a->at.x, out->at[1] = (float)a->at.y, out->at[2] = (float)a->at.z;
     for (int k = 0; k < p->sheets; k++) {
         csg_vec3 g = a->planes[k].g;
         double length = csg_vec3_norm(g); /* adding 0 makes every zero positive */
+        if (!(length > 0 && length < INFINITY)) {
+            g = polygon_gradient(out);
+            length = csg_vec3_norm(g);
+        }
         out->normal[k][0] = (float)(-g.x / length) + 0.0f;
         out->normal[k][1] = (float)(-g.y / length) + 0.0f;
         out->normal[k][2] = (float)(-g.z / length) + 0.0f;
