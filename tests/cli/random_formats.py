@@ -3,7 +3,7 @@
 triangles, pieces and handles and of the volume that the mesh has.
 
 Usage: random_formats.py COUNT SEED [NUMBER]. NUMBER is the only scene of the seed that is tried, and is kept in the
-folder at hand. A scene of four is made of cells that follow the shape, the others of equal cells; each has writers'
+folder at hand. A scene of eight is made of cells that follow the shape, the others of equal cells; each has writers'
 options of its own. Scenes that are nothing, or endless, say so and count as refused. What files are written of matters
 here, not how: hulls of what is curved are rare, and scenes of cells that follow the shape small, as these take twenty
 times as long as all the files do.
@@ -109,7 +109,7 @@ def scene(rng, deepest, most):
 
 def settings_of(rng, number):
     """How the scene is meshed, and what writers may be asked for."""
-    words = ["-r", str(rng.randint(8, 32))] if number % 4 else ["--quality", "draft"]
+    words = ["-r", str(rng.randint(8, 32))] if number % 8 else ["--quality", "draft"]
     for option, values in WRITERS.items():
         if rng.random() < 0.5:
             words += [option, rng.choice(values)] if values else [option]
@@ -178,7 +178,7 @@ def tried(text, settings, folder):
 def tried_number(seed, number, folder):
     """The same, of one scene of a seed; what is wrong is told."""
     rng = random.Random(f"{seed} {number}")
-    text, settings = scene(rng, *((3, 3) if number % 4 else (1, 2))), settings_of(rng, number)
+    text, settings = scene(rng, *((3, 3) if number % 8 else (1, 2))), settings_of(rng, number)
     status, faults, touching = tried(text, settings, folder)
     if faults:
         print(f"scene {number} of seed {seed}, {' '.join(settings)}:\n{text}  " + "\n  ".join(faults), flush=True)

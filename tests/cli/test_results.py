@@ -266,7 +266,7 @@ class Statistics(cli.CliTest):
     def test_files(self):
         """Each file as it is read back: what rounding and quantising have made of the mesh."""
         self.write("far.txt", "translate([5000, 5000, 5000]) union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); }\n")
-        names = ["a.stl", "a.ply"] + ["a.drc"] * cli.has_library("draco")
+        names = ["a.stl", "a.ply"] + ["a.drc"] * cli.has_library("Draco")
         files = self.stats("far.txt", "-r", "128", *(word for name in names for word in ("-o", name)))["files"]
         self.assertEqual([file["name"] for file in files], names)
         for file in files:

@@ -34,6 +34,22 @@ class BadInput(cli.CliTest):
         self.write("nul.txt", b"sphere(r = 1);\0\0\0cube(1);")
         self.refused(1, "nul.txt", words=["nul.txt:1:15"], left=["nul.txt"])
 
+    @unittest.skipUnless(cli.has_library("Draco"), "needs Draco")
+    def test_draco_that_claims_too_much(self):
+        """The counts of its first bytes, edgebreaker's and the sequential method's, would be taken before anything is decoded."""
+        def count(number):  # 7 bits a byte, the lowest first
+            return bytes([number & 127 | 128]) + count(number >> 7) if number > 127 else bytes([number])
+        faces, zeros = count(80_000_000), bytes(4000)
+        self.write("a.drc", b"DRACO\2\2\1\1\0\0\0" + count(40_000_000) + faces + b"\0" + faces + zeros)
+        self.write("b.drc", b"DRACO\2\2\1\0\0\0" + faces + count(200) + b"\1" + zeros)
+        for name in ("a.drc", "b.drc"):
+            self.assert_refused(self.run_in("info", name), 1, "E0510", "more triangles or vertices than its bytes can hold")
+        self.write("plane.txt", "linear_extrude(1) square(100);\n")
+        self.assert_status(self.run_in("plane.txt", "-r", "300", "--features", "smooth", "--normals", "none", "--draco-level", "10",
+                                       "-o", "plane.drc", "-q"), 0)
+        self.assert_status(self.run_in("info", "plane.drc"), 0)
+        self.assert_refused(self.run_in("info", "plane.drc", "--max-memory", "8M"), 2, "E0901")
+
     def test_missing_include(self):
         self.write("a.txt", "include <missing.txt>\nsphere(1);\n")
         self.refused(2, "a.txt", words=["a.txt:1:9: error", "missing.txt"], left=["a.txt"])

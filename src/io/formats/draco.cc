@@ -7,6 +7,7 @@
  */
 #include "io/adapter.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -15,7 +16,10 @@
 
 #include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
+#include <draco/metadata/metadata_decoder.h>
 
 namespace
 {
@@ -156,11 +160,72 @@ bool collect_all(const draco::Mesh &mesh, const csg_draco_ids *ids, decoded_owne
                        collect(mesh, color, *color_components, &owner->colors)));
 }
 
+// A count of the connectivity: plain before `varying`, the version that has it in 7 bits a byte.
+bool take_count(draco::DecoderBuffer *buffer, uint16_t varying, uint64_t *count)
+{
+    uint32_t number = 0;
+    if (buffer->bitstream_version() < varying ? !buffer->Decode(&number)
+                                              : !draco::DecodeVarint(&number, buffer))
+        return false;
+    *count = number;
+    return true;
+}
+
+// What the file says that it has, from its first bytes (Draco Bitstream Specification, 3.2 and 5).
+// False: nothing that is known here, the decoder has the word.
+bool read_counts(draco::DecoderBuffer buffer, uint64_t *faces, uint64_t *points)
+{
+    draco::DracoHeader header;
+    if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok() ||
+        header.encoder_type != draco::TRIANGULAR_MESH)
+        return false;
+    const auto version = static_cast<uint16_t>(header.version_major << 8 | header.version_minor);
+    buffer.set_bitstream_version(version);
+    draco::GeometryMetadata metadata;
+    draco::MetadataDecoder metadata_decoder;
+    if ((header.flags & METADATA_FLAG_MASK) &&
+        !metadata_decoder.DecodeGeometryMetadata(&buffer, &metadata))
+        return false;
+    if (header.encoder_method != draco::MESH_EDGEBREAKER_ENCODING)
+        return take_count(&buffer, DRACO_BITSTREAM_VERSION(2, 2), faces) &&
+               take_count(&buffer, DRACO_BITSTREAM_VERSION(2, 2), points);
+    uint8_t traversal;
+    uint64_t added;
+    const uint16_t varying = DRACO_BITSTREAM_VERSION(2, 0);
+    if (!buffer.Decode(&traversal) ||
+        (version < DRACO_BITSTREAM_VERSION(2, 2) && !take_count(&buffer, varying, &added)))
+        return false;
+    return take_count(&buffer, varying, points) && take_count(&buffer, varying, faces);
+}
+
+// The decoder takes its arrays by these counts before it has seen what they are of: a file of 20
+// bytes could ask for 2^32 triangles. Entropy coding has no least size for a triangle; thousand in
+// a byte, a million besides, are more than any regular mesh has. And what is made of each, corner
+// table and faces, needs room in any case.
+csgm_status check_counts(const draco::DecoderBuffer &buffer, size_t size, uint64_t most,
+                         csg_adapter_error *error)
+{
+    constexpr uint64_t free_count = 1 << 20, most_in_a_byte = 1 << 10;
+    constexpr uint64_t face_bytes = 36, point_bytes = 12;
+    uint64_t faces = 0, points = 0;
+    if (!read_counts(buffer, &faces, &points))
+        return CSGM_OK;
+    if (std::max(faces, points) > free_count + most_in_a_byte * size)
+        return fail(error, CSGM_ERR_FORMAT,
+                    "it says that it has more triangles or vertices than its bytes can hold");
+    error->is_limit = most && faces * face_bytes + points * point_bytes > most;
+    return error->is_limit
+               ? fail(error, CSGM_ERR_MEMORY, "the decoded mesh is larger than the memory limit")
+               : CSGM_OK;
+}
+
 csgm_status decode(const uint8_t *bytes, size_t size, const csg_draco_ids *ids, uint64_t most,
                    csg_draco_decoded *out, csg_adapter_error *error)
 {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char *>(bytes), size);
+    if (csgm_status status = check_counts(buffer, size, most, error))
+        return status;
     draco::Decoder decoder;
     auto result = decoder.DecodeMeshFromBuffer(&buffer);
     if (!result.ok())
