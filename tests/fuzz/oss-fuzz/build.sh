@@ -4,6 +4,8 @@
 # with CC, CXX, CFLAGS, CXXFLAGS, LIB_FUZZING_ENGINE, OUT and WORK as base-builder sets them.
 fuzz=$PWD/tests/fuzz inputs=$PWD/tests/data/fuzz build=$WORK/build
 rm -rf "$build"
+# Ubuntu's libraries in C++ are made with libstdc++, and base-builder's libc++ has no from_chars for floats.
+export CXXFLAGS="${CXXFLAGS//-stdlib=libc++/}"
 # The sanitizers stand in CFLAGS. b_lundef: their functions are not in shared libraries.
 meson setup "$build" -Dfuzz=true -Dfuzz_engine="$LIB_FUZZING_ENGINE" -Dtests=enabled -Dwerror=false -Db_lundef=false \
     -Dbuildtype=plain -Db_ndebug=false -Dopenmesh=disabled -Dlibb2=disabled -Dlibcurl=disabled -Dmicrohttpd=disabled
@@ -25,5 +27,6 @@ for target in $targets; do
     # Where the targets run there are no libraries of this image.
     ldd "$OUT/$name" | sed -n 's,.* => \(/[^ ]*\) .*,\1,p' | grep -v -E '/(libc|libm|libpthread|libdl|librt|libgcc_s)\.so' |
         xargs -r -I '{}' cp -n -L '{}' "$OUT/lib/"
-    patchelf --set-rpath '$ORIGIN/lib' "$OUT/$name"
+    # not a run path, which holds for what the target names itself, and not for what these libraries do
+    patchelf --force-rpath --set-rpath '$ORIGIN/lib' "$OUT/$name"
 done
