@@ -24,7 +24,7 @@ PARTS = {
 }
 
 # What customers include.
-PUBLIC = {"csgmesh/clearance.h", "csgmesh/csgmesh.h", "csgmesh/editing.h", "csgmesh/reshaping.h", "csgmesh/slicing.h"}
+PUBLIC = {"csgmesh/clearance.h", "csgmesh/csgmesh.h", "csgmesh/editing.h", "csgmesh/ranks.h", "csgmesh/reshaping.h", "csgmesh/slicing.h"}
 
 # Made by the build.
 GENERATED = {"report_page.inc"}

@@ -11,6 +11,7 @@
 #include "api/options.h"
 #include "base/context.h"
 #include "base/pool.h"
+#include "base/ranks.h"
 #include "base/scene_codes.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
@@ -168,6 +169,7 @@ void csgm_context_destroy(csgm_context *context)
     csg_pool_destroy(context->pool);
     csg_trace_leave(context->trace);
     csg_survey_destroy(context->survey);
+    csg_ranks_leave(context);
     release_context(context, context->memory.allocator);
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/ranks.h"
 #include "io/formats.h"
 #include "io/parts.h"
 #include "io/stream.h"
@@ -44,6 +45,13 @@ double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
                                                     : 0;
 }
 
+/* What this rank does is counted for one mesh at a time. */
+static void begin_of_ranks(csgm_context *context)
+{
+    if (context->ranks)
+        context->ranks->work = csgm_rank_work_default();
+}
+
 /* At most one goal of thinning out. */
 static bool adopt_options(csgm_mesh_options *own, const csgm_mesh_options *given)
 {
@@ -65,6 +73,7 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
         !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats made = csgm_mesh_stats_default();
+    begin_of_ranks(context);
     csgm_status status = csg_mesh_build(context, field, &own, out, &made);
     csg_struct_deliver(stats, &made);
     return status;
@@ -102,10 +111,11 @@ static csgm_status build_and_write(csgm_context *context, const csgm_field *fiel
     csgm_mesh_view view = csg_mesh_view(mesh);
     counts->vertex_count = view.vertex_count;
     counts->triangle_count = view.triangle_count;
-    status = view.triangle_count ? csg_io_write(context, &view, path, format, write_options)
-                                 : CSGM_ERR_SCENE;
+    if (csg_ranks_is_first(context)) /* the others have none of it */
+        status = view.triangle_count ? csg_io_write(context, &view, path, format, write_options)
+                                     : CSGM_ERR_SCENE;
     csg_mesh_destroy(mesh);
-    return status;
+    return csg_ranks_agree(context, status);
 }
 
 csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
@@ -130,8 +140,14 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     bool streams =
         csg_mesh_can_stream(field, options) &&
         csg_stream_is_possible(path, format, csg_mesh_distance(field, options), write_options);
-    csgm_status status = (streams ? stream_file : build_and_write)(
-        context, field, options, path, format, write_options, &made, &found);
+    begin_of_ranks(context);
+    csgm_status status = csg_mesh_check_ranks(context, options);
+    if (status == CSGM_OK)
+        status = csg_ranks_follow(context, status, &streams);
+    if (status != CSGM_OK)
+        return status;
+    status = (streams ? stream_file : build_and_write)(context, field, options, path, format,
+                                                       write_options, &made, &found);
     csg_struct_deliver(stats, &found);
     if (counts) {
         counts[0] = made.vertex_count;

@@ -13,6 +13,7 @@ typedef struct csg_pool csg_pool;
 typedef struct csg_trace_lanes csg_trace_lanes;
 typedef struct csg_survey csg_survey;
 typedef struct csg_held_file csg_held_file;
+typedef struct csg_ranks csg_ranks;
 
 struct csgm_context {
     csg_memory memory;
@@ -30,6 +31,7 @@ struct csgm_context {
     csg_held_file *held;    /* those that wait for that, the last first */
     csg_trace_lanes *trace; /* NULL = nobody wants to know where the time goes (trace.h) */
     csg_survey *survey;     /* NULL = nor what meshes are made from (mesh/pipeline/survey.h) */
+    csg_ranks *ranks;       /* NULL = this process is alone (ranks.h) */
 };
 
 /* Has the caller said that this context's calls shall stop? On any thread. */

@@ -93,7 +93,9 @@ static int open_temporary(csg_atomic_file *file)
     if (!folder)
         return ENOMEM;
     csg_temporary_sweep_once(folder);
-    int error = csg_temporary_open(&file->temporary, &file->names, file->target);
+    int error = file->is_shared
+                    ? csg_temporary_open_named(&file->temporary, &file->names, file->target)
+                    : csg_temporary_open(&file->temporary, &file->names, file->target);
     file->fd = file->temporary.fd;
     return error;
 }
@@ -108,9 +110,11 @@ static void take_over(int fd, const struct stat *old)
         errno = 0;
 }
 
-csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path)
+static csgm_status create(csg_atomic_file *file, csgm_context *context, const char *path,
+                          bool is_shared)
 {
-    *file = (csg_atomic_file){.context = context, .path = path, .fd = -1, .sync = true};
+    *file = (csg_atomic_file){
+        .context = context, .path = path, .fd = -1, .sync = true, .is_shared = is_shared};
     csg_arena_init(&file->names, &context->memory);
     int descriptor = descriptor_of(path);
     struct stat old;
@@ -133,6 +137,29 @@ csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const 
     if (exists)
         take_over(file->fd, &old);
     return CSGM_OK;
+}
+
+csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path)
+{
+    return create(file, context, path, false);
+}
+
+csgm_status csg_file_create_shared(csg_atomic_file *file, csgm_context *context, const char *path)
+{
+    return create(file, context, path, true);
+}
+
+csgm_status csg_file_attach(csg_atomic_file *file, csgm_context *context, const char *path,
+                            const char *name)
+{
+    *file = (csg_atomic_file){
+        .context = context, .path = path, .fd = -1, .sync = true, .is_shared = true};
+    csg_arena_init(&file->names, &context->memory);
+    const char *own = csg_arena_printf(&file->names, "%s", name);
+    file->target = own;
+    int error = own ? csg_temporary_attach(&file->temporary, own) : ENOMEM;
+    file->fd = file->temporary.fd;
+    return error ? fail(file, error) : CSGM_OK;
 }
 
 /* ---- the end ---------------------------------------------------------------------- */
@@ -205,6 +232,18 @@ static csgm_status end_file(csg_atomic_file *file, int error)
         return fail(file, error);
     csg_arena_reset(&file->names);
     return CSGM_OK;
+}
+
+csgm_status csg_file_flush(csg_atomic_file *file)
+{
+    int error = file->sync ? wait_for_disk(file) : 0;
+    if (!error)
+        error = csg_temporary_flush(&file->temporary);
+    if (!error)
+        return CSGM_OK;
+    csg_diag_plain(&file->context->diags, CSG_DIAG_CANNOT_WRITE, file->path, NULL,
+                   "cannot write: %s", strerror(error));
+    return CSGM_ERR_IO;
 }
 
 struct csg_held_file {

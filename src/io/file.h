@@ -18,10 +18,19 @@ typedef struct csg_atomic_file {
     bool sync; /* on the disk before it gets its name; true unless changed before the commit */
     bool only_if_changed; /* a target with these bytes stays as it is; set before the commit */
     bool is_new;          /* nothing has had the target's name */
+    bool is_shared;       /* other processes write to it, too: it has a hidden name at once */
 } csg_atomic_file;
 
 /* Each reports its own failure (CSGM_ERR_IO or CSGM_ERR_MEMORY) and then holds nothing. */
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path);
+/* The same for one that other processes attach to by file->temporary.name. Devices are none. */
+csgm_status csg_file_create_shared(csg_atomic_file *file, csgm_context *context, const char *path);
+/* In those processes: to be flushed, then abandoned; the one that has created it commits it. `path`
+ * is for diagnostics. */
+csgm_status csg_file_attach(csg_atomic_file *file, csgm_context *context, const char *path,
+                            const char *name);
+/* What this process has written is where others find it. Reports what fails. */
+csgm_status csg_file_flush(csg_atomic_file *file);
 /* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. Where
  * the context holds files the name waits. */
 csgm_status csg_file_commit(csg_atomic_file *file);

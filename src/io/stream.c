@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/mesh_codes.h"
+#include "base/ranks.h"
 #include "io/file.h"
 #include "io/format_table.h"
 
@@ -165,8 +166,8 @@ static void *allocate_zeros(csg_memory *memory, size_t bytes)
     return zeros ? memset(zeros, 0, bytes) : NULL;
 }
 
-csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_format format,
-                              const csgm_write_options *options, uint32_t workers, csg_stream **out)
+static csgm_status create(csgm_context *context, const char *path, csgm_format format,
+                          const csgm_write_options *options, uint32_t workers, csg_stream **out)
 {
     csg_memory *memory = &context->memory;
     csg_stream *s = csg_memory_alloc(memory, sizeof *s);
@@ -183,15 +184,54 @@ csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_form
         release(s);
         return csg_context_no_memory(context);
     }
-    csgm_status status = csg_file_create(&s->file, context, path);
+    *out = s;
+    return CSGM_OK;
+}
+
+/* One file for all ranks: the first creates it and tells the others its hidden name. */
+static csgm_status open_shared(csg_stream *s, csgm_context *context, const char *path,
+                               csgm_status own)
+{
+    bool first = csg_ranks_is_first(context), is_open = false;
+    if (own == CSGM_OK && first) {
+        own = csg_file_create_shared(&s->file, context, path);
+        is_open = own == CSGM_OK;
+    }
+    const char *name = is_open ? s->file.temporary.name : "";
+    csg_rank_pieces names;
+    csgm_status status = csg_ranks_gather(context, own, CSGM_ALL_RANKS, name,
+                                          is_open ? strlen(name) + 1 : 0, &names);
+    if (status == CSGM_OK && !first) {
+        status = csg_file_attach(&s->file, context, path, names.bytes);
+        is_open = status == CSGM_OK;
+    }
+    csg_rank_pieces_release(&context->memory, &names);
+    status = csg_ranks_agree(context, status);
+    if (status != CSGM_OK && is_open)
+        csg_file_abandon(&s->file);
+    return status;
+}
+
+csgm_status csg_stream_create(csgm_context *context, const char *path, csgm_format format,
+                              const csgm_write_options *options, uint32_t workers, csg_stream **out)
+{
+    csg_stream *s = NULL;
+    csgm_status status = create(context, path, format, options, workers, &s);
+    if (context->ranks)
+        status = open_shared(s, context, path, status);
+    else if (status == CSGM_OK)
+        status = csg_file_create(&s->file, context, path);
+    if (status != CSGM_OK) {
+        if (s)
+            release(s);
+        return status;
+    }
     s->file.sync = options->sync;
     s->file.only_if_changed = options->only_if_changed;
     s->view.fd = s->file.fd;
-    if (status != CSGM_OK)
-        release(s);
-    else
-        *out = s;
-    return status;
+    s->view.is_first = csg_ranks_is_first(context);
+    *out = s;
+    return CSGM_OK;
 }
 
 static csgm_status report(csg_stream *s)
@@ -206,15 +246,52 @@ static csgm_status report(csg_stream *s)
     return CSGM_ERR_IO;
 }
 
-csgm_status csg_stream_commit(csg_stream *s)
+/* What ends the file, by the process that names it; then it is gone. */
+static csgm_status complete(csg_stream *s)
 {
     if (s->kind->end)
         s->kind->end(&s->view);
     csgm_status status = report(s);
     if (status == CSGM_OK)
-        status = csg_file_commit(&s->file);
-    else
+        return csg_file_commit(&s->file);
+    csg_file_abandon(&s->file);
+    return status;
+}
+
+/* The first rank sees what the workers of all have seen, once the bytes of all are in the file. */
+static csgm_status complete_shared(csg_stream *s)
+{
+    csgm_context *context = s->view.context;
+    bool first = s->view.is_first;
+    csgm_status status = report(s);
+    if (status == CSGM_OK && !first)
+        status = csg_file_flush(&s->file);
+    csg_rank_pieces seen;
+    status = csg_ranks_gather(context, status, 0, s->view.workers,
+                              s->view.worker_count * s->kind->worker_bytes, &seen);
+    if (status == CSGM_OK && first) {
+        void *own = s->view.workers;
+        uint32_t count = s->view.worker_count;
+        if (seen.total) {
+            s->view.workers = seen.bytes;
+            s->view.worker_count = (uint32_t)(seen.total / s->kind->worker_bytes);
+        }
+        status = complete(s);
+        s->view.workers = own;
+        s->view.worker_count = count;
+        status = csg_ranks_agree(context, status);
+    } else {
+        if (status == CSGM_OK)
+            status = csg_ranks_agree(context, status);
         csg_file_abandon(&s->file);
+    }
+    csg_rank_pieces_release(&context->memory, &seen);
+    return status;
+}
+
+csgm_status csg_stream_commit(csg_stream *s)
+{
+    csgm_status status = s->view.context->ranks ? complete_shared(s) : complete(s);
     release(s);
     return status;
 }

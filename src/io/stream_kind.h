@@ -12,6 +12,7 @@
 typedef struct csg_stream_view {
     csgm_context *context;
     const char *path; /* for diagnostics */
+    bool is_first;    /* this process writes what belongs to no run */
     int fd;           /* for what is put at the file's begin before any run */
     csgm_write_options options;
     csgm_mesh_view mesh; /* counts, origin, and which arrays there are (pointers without meaning) */

@@ -177,6 +177,17 @@ int csg_temporary_open(csg_temporary *file, csg_arena *names, const char *target
     return open_unnamed(file, names, target) ? 0 : csg_temporary_open_named(file, names, target);
 }
 
+int csg_temporary_attach(csg_temporary *file, const char *name)
+{
+    *file = closed;
+    file->slot = pending_add(name);
+    file->fd = open(name, O_RDWR | O_CLOEXEC);
+    int error = file->fd >= 0 ? 0 : errno;
+    if (error)
+        csg_temporary_close(file);
+    return error;
+}
+
 /* ---- the end ---------------------------------------------------------------------- */
 
 static int link_as(csg_temporary *file, const char *name)
@@ -187,17 +198,15 @@ static int link_as(csg_temporary *file, const char *name)
     return linkat(AT_FDCWD, path, AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
 }
 
-/* Of a file system that writes when a descriptor is closed: such an error must not come after the
- * name. */
-static int flush_file(int fd)
+int csg_temporary_flush(const csg_temporary *file)
 {
-    int copy = fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    int copy = fcntl(file->fd, F_DUPFD_CLOEXEC, 0);
     return copy >= 0 && close(copy) != 0 ? errno : 0;
 }
 
 int csg_temporary_rename(csg_temporary *file, const char *target, bool is_new)
 {
-    int flushed = flush_file(file->fd);
+    int flushed = csg_temporary_flush(file);
     if (flushed)
         return flushed;
     if (!file->is_named && is_new) {

@@ -27,6 +27,12 @@ typedef struct csg_temporary {
 int csg_temporary_open(csg_temporary *file, csg_arena *names, const char *target);
 /* The same with a hidden name from the start. */
 int csg_temporary_open_named(csg_temporary *file, csg_arena *names, const char *target);
+/* One that another process has opened with that hidden name, which must last as long: this one
+ * writes to it, too, and an interrupt here removes it. It is never given another name from here. */
+int csg_temporary_attach(csg_temporary *file, const char *name);
+/* Of a file system that writes when a descriptor is closed: such an error must not come after the
+ * name. 0 or errno. */
+int csg_temporary_flush(const csg_temporary *file);
 /* Gives it the target's name, in the place of what had it; is_new: nothing had it. 0 or errno. */
 int csg_temporary_rename(csg_temporary *file, const char *target, bool is_new);
 /* Closes it; with its hidden name, if it still has that, it is removed. errno of close, or 0. */

@@ -67,6 +67,8 @@ struct csg_octree {
     cell *cells;    /* the level being split; at the end the frontier */
     size_t cell_count;
     size_t first_cell, end_cell; /* of them, those being split */
+    const size_t *picked;        /* instead: cell i is picked[i] of them; NULL = none are */
+    size_t first_sampled;        /* csg_octree_is_before_sampled */
     size_t cells_per_item;
     csg_block **blocks; /* sampled last, in Morton order */
     size_t block_count;
@@ -323,7 +325,7 @@ static bool split_item(void *user, uint32_t worker_index, size_t item)
     s->first = w->level ? self->cell_count : self->block_count;
     size_t first = w->first_cell + item * w->cells_per_item, end = first + w->cells_per_item;
     for (size_t i = first; i < end && i < w->end_cell; i++) {
-        if (!split(w, self, &w->cells[i])) {
+        if (!split(w, self, &w->cells[w->picked ? w->picked[i] : i])) {
             atomic_store(&w->out_of_memory, true);
             return false;
         }
@@ -564,21 +566,63 @@ csg_tape csg_octree_frontier_tape(const csg_octree *w, size_t index, uint32_t at
     return tape;
 }
 
-csgm_status csg_octree_sample(csg_octree *w, size_t first, size_t end)
+const uint32_t *csg_octree_frontier_at(const csg_octree *w, size_t index)
+{
+    return w->cells[index].at;
+}
+
+size_t csg_octree_find(const csg_octree *w, const uint32_t at[3])
+{
+    size_t low = 0, high = w->cell_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (csg_lattice_compare_morton(w->cells[middle].at, at) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    bool is_there = low < w->cell_count && !memcmp(w->cells[low].at, at, sizeof w->cells->at);
+    return is_there ? low : w->cell_count;
+}
+
+static csgm_status sample(csg_octree *w)
 {
     void *blocks;
     forget_blocks(w);
     w->level = 0;
-    w->first_cell = first;
-    w->end_cell = end;
-    w->scans = w->options.scan && first >= w->scanned; /* a slab is sampled twice */
-    w->scanned = end > w->scanned ? end : w->scanned;
     if (!run_level(w, sizeof(csg_block *), &blocks, &w->block_count)) {
         w->block_count = 0;
         return why_stopped(w);
     }
     w->blocks = blocks;
     return CSGM_OK;
+}
+
+csgm_status csg_octree_sample(csg_octree *w, size_t first, size_t end)
+{
+    w->first_cell = w->first_sampled = first;
+    w->end_cell = end;
+    w->scans = w->options.scan && first >= w->scanned; /* a slab is sampled twice */
+    w->scanned = end > w->scanned ? end : w->scanned;
+    return sample(w);
+}
+
+csgm_status csg_octree_sample_picked(csg_octree *w, const size_t *picked, size_t count,
+                                     size_t first_sampled)
+{
+    w->first_cell = 0;
+    w->end_cell = count;
+    w->first_sampled = first_sampled;
+    w->scans = false;
+    w->picked = picked;
+    csgm_status status = sample(w);
+    w->picked = NULL;
+    return status;
+}
+
+void csg_octree_end_scan(csg_octree *w)
+{
+    w->options.scan = false;
 }
 
 csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count)
@@ -590,7 +634,7 @@ csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count)
 bool csg_octree_is_before_sampled(const csg_octree *w, const uint32_t at[3])
 {
     uint32_t cube[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
-    return csg_lattice_compare_morton(cube, w->cells[w->first_cell].at) < 0;
+    return csg_lattice_compare_morton(cube, w->cells[w->first_sampled].at) < 0;
 }
 
 static int compare_doubts(const void *a, const void *b)
@@ -621,6 +665,20 @@ const csg_scan *csg_octree_doubts(csg_octree *w, size_t *count, uint64_t *edges)
     if (w->doubts) /* workers share them out as it happens */
         qsort(w->doubts, w->doubt_count, sizeof *w->doubts, compare_doubts);
     return w->doubts;
+}
+
+bool csg_octree_adopt_doubts(csg_octree *w, const csg_scan *doubts, size_t count)
+{
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        w->workers[i].doubt_count = 0;
+    worker *first = &w->workers[0];
+    if (count && !csg_memory_reserve(&w->context->memory, (void **)&first->doubts,
+                                     &first->doubt_capacity, count, sizeof *doubts))
+        return false;
+    if (count)
+        memcpy(first->doubts, doubts, count * sizeof *doubts);
+    first->doubt_count = count;
+    return true;
 }
 
 csg_octree_stats csg_octree_get_stats(const csg_octree *w)

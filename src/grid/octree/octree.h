@@ -42,6 +42,7 @@ void csg_octree_destroy(csg_octree *octree); /* NULL is a no-op */
 size_t csg_octree_frontier_count(const csg_octree *octree);
 /* The tape of a frontier cube, and its place in cubes of 2^3 blocks. */
 csg_tape csg_octree_frontier_tape(const csg_octree *octree, size_t index, uint32_t at[3]);
+const uint32_t *csg_octree_frontier_at(const csg_octree *octree, size_t index);
 /* Slack of lengths for pruners of this walk's tapes. */
 float csg_octree_rounding(const csg_lattice *lattice);
 /* Tapes for the eight parts of the block at `at`, in the arena, as a walk with that margin gives
@@ -51,6 +52,12 @@ bool csg_octree_split(csg_pruner *pruner, const csg_lattice *lattice, double mar
                       csg_block_part parts[CSG_OCTANTS]);
 /* Samples the blocks of frontier cubes [first, end) and forgets those of the call before. */
 csgm_status csg_octree_sample(csg_octree *octree, size_t first, size_t end);
+/* The same for the frontier cubes picked[0], picked[1] ..., which nobody looks at for thin parts;
+ * what is before frontier cube `first_sampled` is then before what was sampled. */
+csgm_status csg_octree_sample_picked(csg_octree *octree, const size_t *picked, size_t count,
+                                     size_t first_sampled);
+/* The frontier cube at this place; csg_octree_frontier_count: there is none. */
+size_t csg_octree_find(const csg_octree *octree, const uint32_t at[3]);
 /* The blocks, in Morton order, that the surface touches. */
 csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count);
 /* Whether a block at this place comes, in Morton order, before all of the range sampled last. */
@@ -58,6 +65,11 @@ bool csg_octree_is_before_sampled(const csg_octree *octree, const uint32_t at[3]
 /* The most doubtful edge of each doubtful block sampled so far, in an order of their own; *edges:
  * of how many doubtful edges. NULL and *count > 0: out of memory. */
 const csg_scan *csg_octree_doubts(csg_octree *octree, size_t *count, uint64_t *edges);
+/* From here on samples are not looked at for thin parts. */
+void csg_octree_end_scan(csg_octree *octree);
+/* Of all doubts those of several walks over one frontier, instead of this walk's own. False: out of
+ * memory. */
+bool csg_octree_adopt_doubts(csg_octree *octree, const csg_scan *doubts, size_t count);
 /* Work done so far. */
 csg_octree_stats csg_octree_get_stats(const csg_octree *octree);
 

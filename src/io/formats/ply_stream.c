@@ -26,7 +26,10 @@ static csgm_status put_header(csg_stream_view *s)
     csg_ply_put_header(&sink, &s->mesh, &s->options);
     ply->vertices_at = sink.length; /* far shorter than the sink's buffer */
     ply->faces_at = ply->vertices_at + s->mesh.vertex_count * csg_ply_vertex_bytes(&s->mesh);
-    return csg_sink_close(&sink);
+    if (s->is_first)
+        return csg_sink_close(&sink);
+    csg_sink_discard(&sink);
+    return CSGM_OK;
 }
 
 /* The run as a mesh of its own. */

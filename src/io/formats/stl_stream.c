@@ -16,7 +16,7 @@ static csgm_status put_head(csg_stream_view *s)
         return CSGM_ERR_INTERNAL; /* corners would be written without the mesh's origin */
     csgm_status status = csg_stl_check(s->context, s->path, &s->mesh);
     csg_stl_pack_head(head, s->mesh.triangle_count);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && s->is_first)
         csg_stream_write_at(s, head, sizeof head, 0);
     return status;
 }

@@ -81,6 +81,11 @@ void csg_feature_cross_wake(csg_feature_cross *cross)
         }
 }
 
+bool csg_feature_cross_is_awake(const csg_feature_cross *cross, size_t block)
+{
+    return cross->blocks[block] & AWAKE;
+}
+
 static bool note(void *user, const csg_near_triangle *s, const csg_near_triangle *t)
 {
     return false;
@@ -89,7 +94,7 @@ static bool note(void *user, const csg_near_triangle *s, const csg_near_triangle
 bool csg_feature_cross_test(csg_feature_cross *cross, uint32_t worker, size_t block)
 {
     csg_near_room *room = &cross->rooms[worker];
-    if (!(cross->blocks[block] & AWAKE))
+    if (!csg_feature_cross_is_awake(cross, block))
         return true;
     if (!csg_near_collect(&cross->near, room, block))
         return false;

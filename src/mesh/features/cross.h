@@ -15,7 +15,7 @@ typedef struct csg_feature_cross {
     csg_near_room *rooms; /* one per worker, the caller's */
     uint32_t room_count;
     struct csg_cross_state *states; /* one a feature */
-    uint8_t *blocks;                /* what is known of each */
+    uint8_t *blocks;                /* what is known of each: a test changes its block's alone */
     uint32_t search;                /* number of the one that mends */
     bool has_changed;               /* something, in that */
 } csg_feature_cross;
@@ -30,6 +30,8 @@ void csg_feature_cross_end(csg_feature_cross *cross);
  * changed, whose flips are to be done again. False: out of memory. */
 void csg_feature_cross_look(csg_feature_cross *cross, size_t block);
 void csg_feature_cross_wake(csg_feature_cross *cross);
+/* Whether it is to be tested in this round: others need not. */
+bool csg_feature_cross_is_awake(const csg_feature_cross *cross, size_t block);
 bool csg_feature_cross_test(csg_feature_cross *cross, uint32_t worker, size_t block);
 bool csg_feature_cross_mend(csg_feature_cross *cross, size_t *changed);
 

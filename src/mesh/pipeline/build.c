@@ -7,9 +7,11 @@
 
 #include "base/clock.h"
 #include "base/mesh_codes.h"
+#include "base/ranks.h"
 #include "base/trace.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/output.h"
+#include "mesh/pipeline/ranks.h"
 #include "mesh/pipeline/survey.h"
 
 typedef struct build {
@@ -106,15 +108,17 @@ static void connect_stages(build *b, csgm_context *context, const csgm_mesh_opti
 /* Nothing but the empty solid has no bounds: then there is no octree and the mesh is empty. */
 static csgm_status sample_and_count(build *b)
 {
-    csgm_status status = csg_mesh_input_complete(&b->input);
+    csgm_context *context = b->input.context;
+    csgm_status status = csg_ranks_agree(context, csg_mesh_input_complete(&b->input));
     if (status == CSGM_OK && !csg_box_is_empty(b->input.bounds)) {
         status = csg_mesh_walk_octree(&b->slabs, &b->input);
         if (status == CSGM_OK)
             status = csg_mesh_workers_create(&b->workers, &b->input);
+        status = csg_mesh_ranks_share(&b->slabs, status);
         if (status == CSGM_OK)
             status = csg_mesh_count_slabs(&b->slabs); /* finds features, too */
-        if (status == CSGM_OK)
-            status = csg_mesh_settle_features(&b->creases, b->slabs.octree);
+        status = csg_mesh_ranks_number(&b->slabs, status);
+        status = csg_mesh_settle_features(&b->creases, b->slabs.octree, status);
     }
     b->sampled_s = csg_clock_now_s();
     return status;
@@ -149,15 +153,19 @@ static csgm_status build_mesh(build *b, csgm_context *context, const csgm_mesh_o
     csgm_status status = sample_and_count(b);
     if (status == CSGM_OK)
         survey_stages(b);
-    if (status == CSGM_OK)
-        status = csg_mesh_begin_output(out, b->slabs.vertex_count, b->slabs.triangle_count);
-    if (status == CSGM_OK && out->counts.vertex_count)
-        status = csg_mesh_make_slabs(out, &b->slabs);
+    if (status == CSGM_OK) {
+        status = csg_mesh_begin_output(out, &b->slabs);
+        if (status == CSGM_OK && out->counts.vertex_count)
+            status = csg_mesh_make_slabs(out, &b->slabs);
+        status = csg_mesh_ranks_join(out, &b->slabs, status);
+    }
     if (status == CSGM_OK && b->goal && out->counts.triangle_count)
         status = reshape_mesh(b);
     if (status == CSGM_OK && !(b->goal && b->goal->cell_size > 0)) { /* there is no next try */
-        status = csg_mesh_look_for_missed(&b->input, b->slabs.octree, &b->watch, &b->doubts);
-        if (status == CSGM_OK)
+        if (csg_ranks_is_first(context))
+            status = csg_mesh_look_for_missed(&b->input, b->slabs.octree, &b->watch, &b->doubts);
+        status = csg_ranks_agree(context, status);
+        if (status == CSGM_OK && csg_ranks_is_first(context))
             warn_of_result(b);
     } else if (context->survey) {
         context->survey->count = surveyed;

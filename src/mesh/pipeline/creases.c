@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "base/ranks.h"
 #include "base/trace.h"
 #include "mesh/features/bare.h"
 #include "mesh/features/cross.h"
@@ -217,6 +218,8 @@ typedef struct uncrossing {
     csg_mesh_creases *creases;
     csg_feature_probe *probe;
     csg_feature_cross cross;
+    size_t first, end; /* blocks that this process tests */
+    csgm_status told;  /* all ranks know that one has failed: it is why */
 } uncrossing;
 
 static bool look_item(void *user, uint32_t worker, size_t item)
@@ -231,9 +234,58 @@ static bool test_item(void *user, uint32_t worker, size_t item)
 {
     uncrossing *u = user;
     csg_mesh_watch *watch = u->creases->watch;
+    item += u->first;
     if (item % BLOCKS_PER_QUESTION == 0 && csg_mesh_should_stop(watch))
         return false;
     return csg_feature_cross_test(&u->cross, worker, item) || csg_mesh_stop_without_memory(watch);
+}
+
+/* The first block that rank `rank` tests: of those that are awake each has as many as the next. */
+static size_t first_test_of(const uncrossing *u, uint32_t rank, size_t awake)
+{
+    const csg_ranks *ranks = u->creases->watch->context->ranks;
+    size_t blocks = u->creases->store.block_count, before = 0;
+    for (size_t i = 0; i < blocks && rank; i++) {
+        if (!csg_feature_cross_is_awake(&u->cross, i))
+            continue;
+        if (before++ == awake * rank / ranks->by.count)
+            return i;
+    }
+    return rank ? blocks : 0;
+}
+
+static void choose_tests(uncrossing *u)
+{
+    const csg_ranks *ranks = u->creases->watch->context->ranks;
+    size_t blocks = u->creases->store.block_count, awake = 0;
+    u->first = 0;
+    u->end = blocks;
+    if (!ranks)
+        return;
+    for (size_t i = 0; i < blocks; i++)
+        awake += csg_feature_cross_is_awake(&u->cross, i);
+    u->first = first_test_of(u, ranks->by.rank, awake);
+    if (ranks->by.rank + 1 < ranks->by.count)
+        u->end = first_test_of(u, ranks->by.rank + 1, awake);
+}
+
+/* What is known of a block is a byte: what the test says of it goes from the rank that has made it
+ * to all others. All else is done by all alike, in one order. */
+static bool test_blocks(uncrossing *u)
+{
+    csg_mesh_creases *c = u->creases;
+    csgm_context *context = c->watch->context;
+    choose_tests(u);
+    bool done = csg_pool_run(context->pool, u->end - u->first, test_item, NULL, u);
+    if (!context->ranks || !done)
+        return done;
+    csg_rank_pieces all;
+    u->told = csg_ranks_gather(context, CSGM_OK, CSGM_ALL_RANKS, u->cross.blocks + u->first,
+                               u->end - u->first, &all);
+    if (u->told == CSGM_OK && all.total)
+        memcpy(u->cross.blocks, all.bytes, (size_t)all.total);
+    csg_rank_pieces_release(&context->memory, &all);
+    return u->told == CSGM_OK;
 }
 
 /* Until nothing folds over and nothing meets anything else: in the end all are smooth. */
@@ -249,7 +301,7 @@ static bool settle_rounds(uncrossing *u)
         csg_pool_run(pool, c->store.block_count, flip_item, NULL, c);
         csg_pool_run(pool, c->store.block_count, look_item, NULL, u);
         csg_feature_cross_wake(&u->cross);
-        if (!csg_pool_run(pool, c->store.block_count, test_item, NULL, u))
+        if (!test_blocks(u))
             return false;
         if (!csg_feature_cross_mend(&u->cross, &changed))
             return csg_mesh_stop_without_memory(c->watch);
@@ -257,9 +309,9 @@ static bool settle_rounds(uncrossing *u)
     return true;
 }
 
-/* False: asked to stop, or out of memory. */
+/* False: asked to stop, or out of memory; *told is why where all ranks know it. */
 static bool uncross_features(csg_mesh_creases *c, const csg_octree *octree,
-                             csg_feature_probe *probe)
+                             csg_feature_probe *probe, csgm_status *told)
 {
     csg_memory *memory = c->store.memory;
     csg_mesh_workers *workers = c->workers;
@@ -280,6 +332,7 @@ static bool uncross_features(csg_mesh_creases *c, const csg_octree *octree,
                                            .scratch_floats = workers->scratch_floats};
     bool done = csg_feature_cross_begin(&u.cross) || csg_mesh_stop_without_memory(c->watch);
     done = done && settle_rounds(&u);
+    *told = u.told;
     for (uint32_t i = 0; i < workers->count; i++)
         workers->each[i].point_evaluations += u.cross.rooms[i].evaluations;
     csg_feature_cross_end(&u.cross);
@@ -287,11 +340,9 @@ static bool uncross_features(csg_mesh_creases *c, const csg_octree *octree,
     return done;
 }
 
-csgm_status csg_mesh_settle_features(csg_mesh_creases *c, const csg_octree *octree)
+static csgm_status settle(csg_mesh_creases *c, const csg_octree *octree, csgm_status *told)
 {
     CSG_ZONE(c->watch->context, "features: join");
-    if (!c->sharp || !octree)
-        return CSGM_OK;
     csgm_context *context = c->watch->context;
     csg_mesh_workers *workers = c->workers;
     csg_mesh_worker *self = &workers->each[0];
@@ -303,11 +354,19 @@ csgm_status csg_mesh_settle_features(csg_mesh_creases *c, const csg_octree *octr
     csg_feature_around *around = &self->features->around;
     csg_feature_probe probe = csg_feature_probe_of(
         &workers->marching, NULL, around, &context->memory, self->scratch, workers->scratch_floats);
-    bool done = order_features(c, &probe) && uncross_features(c, octree, &probe);
+    bool done = order_features(c, &probe) && uncross_features(c, octree, &probe, told);
     self->point_evaluations += probe.evaluations;
     if (around->out_of_memory)
         done = csg_mesh_stop_without_memory(c->watch);
-    return done ? CSGM_OK : csg_mesh_why_stopped(c->watch);
+    return done || *told != CSGM_OK ? *told : csg_mesh_why_stopped(c->watch);
+}
+
+csgm_status csg_mesh_settle_features(csg_mesh_creases *c, const csg_octree *octree, csgm_status own)
+{
+    csgm_status told = CSGM_OK;
+    if (own == CSGM_OK && c->sharp && octree)
+        own = settle(c, octree, &told);
+    return told != CSGM_OK ? told : csg_ranks_agree(c->watch->context, own);
 }
 
 void csg_mesh_creases_release(csg_mesh_creases *c)

@@ -25,8 +25,10 @@ typedef struct csg_mesh_creases {
 csgm_status csg_mesh_find_features(csg_mesh_creases *creases, csg_mesh_blocks blocks);
 /* After the blocks at hand have their numbers, the first time. */
 void csg_mesh_number_features(csg_mesh_creases *creases, csg_mesh_blocks blocks);
-/* Once all are found: joins them, and makes smooth again what cannot be joined. */
-csgm_status csg_mesh_settle_features(csg_mesh_creases *creases, const csg_octree *octree);
+/* Once all are found, or `own` has ended it (on this rank): joins them, and makes smooth again what
+ * cannot be joined. All ranks end alike. */
+csgm_status csg_mesh_settle_features(csg_mesh_creases *creases, const csg_octree *octree,
+                                     csgm_status own);
 void csg_mesh_creases_release(csg_mesh_creases *creases);
 
 #endif

@@ -80,14 +80,15 @@ static void make_block(csg_mesh_output *o, csg_mesh_worker *self, const csg_bloc
  */
 
 /* The run's places in the mesh. */
-static void find_in_mesh(const csgm_mesh *mesh, const csg_mesh_run *run, places *to)
+static void find_in_mesh(const csg_mesh_output *o, const csg_mesh_run *run, places *to)
 {
-    size_t v = (size_t)run->first_vertex;
+    const csgm_mesh *mesh = o->mesh;
+    size_t v = (size_t)(run->first_vertex - o->before.vertices);
     to->arrays = (csg_marching_output){
         .positions = mesh->positions + 3 * v,
         .normals = mesh->normals ? mesh->normals + 3 * v : NULL,
         .colors = mesh->colors ? mesh->colors + 4 * v : NULL,
-        .indices = mesh->indices + 3 * run->first_triangle,
+        .indices = mesh->indices + 3 * (run->first_triangle - o->before.triangles),
         .materials = mesh->materials ? mesh->materials + 2 * v : NULL,
     };
 }
@@ -140,7 +141,7 @@ static bool make_item(void *user, uint32_t worker_index, size_t item)
     };
     places to = {.first = start};
     if (!o->receiver)
-        find_in_mesh(o->mesh, &run, &to);
+        find_in_mesh(o, &run, &to);
     else if (!reserve_run(o, &self->run, &run, &to))
         return csg_mesh_stop_without_memory(o->watch);
     for (size_t i = first; i < end; i++)
@@ -154,18 +155,29 @@ static bool make_item(void *user, uint32_t worker_index, size_t item)
 /* ---- all of them -------------------------------------------------------------------------------
  */
 
-csgm_status csg_mesh_begin_output(csg_mesh_output *o, uint64_t vertex_count,
-                                  uint64_t triangle_count)
+/* What this process makes of it comes after how much, and is how much. */
+static csg_cell_sum find_own(csg_mesh_output *o, const csg_mesh_slabs *slabs)
+{
+    o->before = (csg_cell_sum){0};
+    if (!slabs->before) /* it makes all */
+        return (csg_cell_sum){slabs->vertex_count, slabs->triangle_count};
+    o->before = slabs->before[slabs->first_cell];
+    csg_cell_sum end = slabs->before[slabs->end_cell];
+    return (csg_cell_sum){end.vertices - o->before.vertices, end.triangles - o->before.triangles};
+}
+
+csgm_status csg_mesh_begin_output(csg_mesh_output *o, const csg_mesh_slabs *slabs)
 {
     const csg_mesh_input *in = o->input;
-    o->counts = (csg_mesh_counts){.vertex_count = vertex_count,
-                                  .triangle_count = triangle_count,
+    csg_cell_sum own = find_own(o, slabs);
+    o->counts = (csg_mesh_counts){.vertex_count = slabs->vertex_count,
+                                  .triangle_count = slabs->triangle_count,
                                   .normals = in->options->normals != CSGM_NORMALS_NONE,
                                   .colors = csg_mesh_gets_colors(in),
                                   .origin = csg_mesh_origin_of(in)};
     if (o->receiver)
         return o->receiver->begin(o->receiver->user, &o->counts);
-    csgm_status status = csg_mesh_create(in->context, vertex_count, triangle_count,
+    csgm_status status = csg_mesh_create(in->context, own.vertices, own.triangles,
                                          o->counts.normals, o->counts.colors, &o->mesh);
     if (status == CSGM_OK) {
         o->mesh->origin = o->counts.origin;

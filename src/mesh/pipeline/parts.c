@@ -11,8 +11,10 @@
 #include "base/clock.h"
 #include "base/elementary.h"
 #include "base/mesh_codes.h"
+#include "base/ranks.h"
 #include "mesh/pipeline/certify.h"
 #include "mesh/pipeline/own.h"
+#include "mesh/pipeline/ranks.h"
 #include "mesh/pipeline/tries.h"
 
 /* A field without parts. */
@@ -222,25 +224,44 @@ static csgm_status build_parts(csgm_context *context, const csgm_field *field,
     stats = stats ? stats : &ignored;
     *stats = (csgm_mesh_stats){0};
     a.meshes = csg_memory_alloc(&context->memory, bytes);
-    if (!a.meshes)
-        return csg_context_no_memory(context);
-    memset(a.meshes, 0, bytes);
+    csgm_status status =
+        csg_ranks_agree(context, a.meshes ? CSGM_OK : csg_context_no_memory(context));
+    if (a.meshes)
+        memset(a.meshes, 0, bytes);
     begin(&a);
-    csgm_status status = build_all(&a, stats);
+    if (status == CSGM_OK)
+        status = build_all(&a, stats);
     if (status == CSGM_OK)
         status = assemble(&a, out);
-    for (size_t i = 0; i < field->part_count; i++)
+    for (size_t i = 0; a.meshes && i < field->part_count; i++)
         csg_mesh_destroy(a.meshes[i]);
     csg_memory_release(&context->memory, a.meshes, bytes);
     return status;
+}
+
+csgm_status csg_mesh_check_ranks(csgm_context *context, const csgm_mesh_options *options)
+{
+    if (!context->ranks || !csg_mesh_is_reshaped(options))
+        return CSGM_OK;
+    if (csg_ranks_is_first(context))
+        csg_diag_plain(
+            &context->diags, CSG_DIAG_RANKS_ALONE, NULL,
+            "give the cells' size by -r or -s; one process can do the rest",
+            "several processes make meshes of equal cells only, and change none of their "
+            "triangles");
+    return CSGM_ERR_UNSUPPORTED;
 }
 
 csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
                            const csgm_mesh_options *options, csgm_mesh **out,
                            csgm_mesh_stats *stats)
 {
-    csgm_status status = field->part_count ? build_parts(context, field, options, out, stats)
-                                           : build_part(context, field, options, NULL, out, stats);
+    csgm_status status = csg_mesh_check_ranks(context, options);
+    if (status != CSGM_OK)
+        return status;
+    status = field->part_count ? build_parts(context, field, options, out, stats)
+                               : build_part(context, field, options, NULL, out, stats);
+    status = csg_mesh_ranks_settle(context, status, out);
     if (status == CSGM_OK)
         (*out)->equal_cells = csg_mesh_can_stream(field, options);
     return status;

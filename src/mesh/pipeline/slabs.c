@@ -7,6 +7,7 @@
 
 #include "base/mesh_codes.h"
 #include "base/pool.h"
+#include "base/ranks.h"
 #include "base/trace.h"
 
 csgm_status csg_mesh_walk_octree(csg_mesh_slabs *s, const csg_mesh_input *in)
@@ -39,18 +40,22 @@ static size_t cells_per_slab(const csg_memory *memory, bool sharp)
     return cells > LEAST_CELLS ? (size_t)cells : (size_t)LEAST_CELLS;
 }
 
-static csgm_status divide_frontier(csg_mesh_slabs *s)
+csgm_status csg_mesh_divide_slabs(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    size_t cells = csg_octree_frontier_count(s->octree),
+    size_t cells = s->end_cell - s->first_cell,
            per_slab = cells_per_slab(memory, s->creases->sharp);
+    csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     s->count = cells ? (cells + per_slab - 1) / per_slab : 1;
     s->slabs = csg_memory_alloc(memory, s->count * sizeof(csg_slab));
-    if (!s->slabs)
+    if (!s->slabs) {
+        s->count = 0;
         return csg_context_no_memory(s->watch->context);
+    }
     for (size_t i = 0; i < s->count; i++) {
         size_t end = (i + 1) * per_slab;
-        s->slabs[i] = (csg_slab){.first_cell = i * per_slab, .end_cell = end < cells ? end : cells};
+        s->slabs[i] = (csg_slab){.first_cell = s->first_cell + i * per_slab,
+                                 .end_cell = s->first_cell + (end < cells ? end : cells)};
     }
     return CSGM_OK;
 }
@@ -68,6 +73,21 @@ static bool count_item(void *user, uint32_t worker_index, size_t item)
         block->triangle_count = csg_marching_count(block, &s->workers->tables);
     }
     return true;
+}
+
+/* Blocks that nobody has seen before are counted for their cubes of the frontier. */
+static void note_counts(csg_mesh_slabs *s, const csg_slab *slab)
+{
+    size_t cell = slab->first_cell;
+    for (size_t i = 0; i < s->at_hand.count; i++) {
+        const csg_block *block = s->at_hand.block[i];
+        const uint32_t cube[3] = {block->at[0] / 2, block->at[1] / 2, block->at[2] / 2};
+        while (memcmp(csg_octree_frontier_at(s->octree, cell), cube, sizeof cube) != 0)
+            cell++;
+        csg_cell_count *count = &s->counts[cell - s->first_cell];
+        count->vertices += block->vertex_count;
+        count->triangles += block->triangle_count;
+    }
 }
 
 /* Samples a slab and numbers its vertices and triangles by prefix sums over its blocks in Morton
@@ -105,16 +125,28 @@ static void begin_part(csg_mesh_slabs *s, csgm_stage stage, size_t done)
 
 csgm_status csg_mesh_count_slabs(csg_mesh_slabs *s)
 {
-    csgm_status status = divide_frontier(s);
+    csgm_status status = csg_mesh_divide_slabs(s);
     for (size_t i = 0; i < s->count && status == CSGM_OK; i++) {
         csg_slab *slab = &s->slabs[i];
         slab->vertices = s->vertex_count;
         slab->triangles = s->triangle_count;
         begin_part(s, CSGM_STAGE_OCTREE, i);
         status = sample_slab(s, slab, &s->vertex_count, &s->triangle_count);
+        if (status == CSGM_OK && s->counts)
+            note_counts(s, slab);
     }
-    if (status != CSGM_OK || s->vertex_count <= UINT32_MAX)
-        return status;
+    s->is_at_hand = status == CSGM_OK;
+    if (s->octree)
+        csg_octree_end_scan(s->octree);
+    return status;
+}
+
+csgm_status csg_mesh_check_numbers(csg_mesh_slabs *s)
+{
+    if (s->vertex_count <= UINT32_MAX)
+        return CSGM_OK;
+    if (!csg_ranks_is_first(s->watch->context))
+        return CSGM_ERR_LIMIT;
     csg_diag_plain(&s->watch->context->diags, CSG_DIAG_TOO_FINE, NULL,
                    "lower -r, or raise -s or -e",
                    "the mesh would have %llu vertices, more than 32-bit indices can number",
@@ -142,19 +174,44 @@ static bool is_needed_below(const csg_mesh_slabs *s, const csg_block *block)
     return false;
 }
 
+static bool keep(csg_mesh_slabs *s, csg_halo *to, const csg_block *block)
+{
+    csg_block *copy = csg_arena_alloc(&to->arena, sizeof *copy);
+    if (!copy || !csg_memory_reserve(&s->watch->context->memory, (void **)&to->blocks,
+                                     &to->capacity, to->count + 1, sizeof copy))
+        return false;
+    *copy = *block;
+    to->blocks[to->count++] = copy;
+    return true;
+}
+
 static bool keep_needed(csg_mesh_slabs *s, csg_halo *to, csg_block *const *blocks, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (!is_needed_below(s, blocks[i]))
-            continue;
-        csg_block *copy = csg_arena_alloc(&to->arena, sizeof *copy);
-        if (!copy || !csg_memory_reserve(&s->watch->context->memory, (void **)&to->blocks,
-                                         &to->capacity, to->count + 1, sizeof copy))
+    for (size_t i = 0; i < count; i++)
+        if (is_needed_below(s, blocks[i]) && !keep(s, to, blocks[i]))
             return false;
-        *copy = *blocks[i];
-        to->blocks[to->count++] = copy;
-    }
     return true;
+}
+
+csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
+{
+    csg_memory *memory = &s->watch->context->memory;
+    csgm_status status =
+        csg_octree_sample_picked(s->octree, s->halo_cells, s->halo_count, s->end_cell);
+    s->at_hand = (csg_mesh_blocks){0};
+    if (status != CSGM_OK)
+        return status == CSGM_CANCELLED ? csg_mesh_why_stopped(s->watch) : status;
+    csg_halo *halo = &s->halo;
+    size_t count;
+    csg_block *const *blocks = csg_octree_blocks(s->octree, &count);
+    if (halo->arena.memory)
+        csg_arena_reset(&halo->arena);
+    csg_arena_init(&halo->arena, memory);
+    halo->count = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!keep(s, halo, blocks[i]))
+            return csg_context_no_memory(s->watch->context);
+    return CSGM_OK;
 }
 
 /* After a slab is made: its lower rim, and what is still needed of the halo before. */
@@ -198,7 +255,7 @@ static csgm_status index_blocks(csg_mesh_slabs *s)
 csgm_status csg_mesh_take_slab(csg_mesh_slabs *s, size_t i)
 {
     begin_part(s, CSGM_STAGE_MESH, s->count - 1 - i);
-    if (i + 1 < s->count) { /* the last one's blocks are at hand since it was counted */
+    if (i + 1 < s->count || !s->is_at_hand) {
         csg_slab slab = s->slabs[i];
         csgm_status status = sample_slab(s, &slab, &slab.vertices, &slab.triangles);
         if (status != CSGM_OK)
@@ -227,5 +284,10 @@ void csg_mesh_slabs_release(csg_mesh_slabs *s)
     csg_memory_release(memory, s->reachable, s->reachable_capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     csg_table_release(&s->index);
+    csg_memory_release(memory, s->counts, s->counts_bytes);
+    csg_memory_release(memory, s->halo_cells, s->halo_capacity * sizeof(size_t));
+    if (s->before)
+        csg_memory_release(memory, s->before,
+                           (csg_octree_frontier_count(s->octree) + 1) * sizeof *s->before);
     csg_octree_destroy(s->octree);
 }

@@ -22,28 +22,51 @@ typedef struct csg_halo {
     size_t count, capacity;
 } csg_halo;
 
+/* Of a frontier cube; and of all before it. */
+typedef struct csg_cell_count {
+    uint32_t vertices, triangles;
+} csg_cell_count;
+typedef struct csg_cell_sum {
+    uint64_t vertices, triangles;
+} csg_cell_sum;
+
 typedef struct csg_mesh_slabs {
     /* taken: whose features are counted with the blocks; workers->marching is told the blocks */
     csg_mesh_watch *watch;
     csg_mesh_workers *workers;
     csg_mesh_creases *creases;
     /* made */
-    csg_octree *octree; /* NULL when there is nothing to mesh */
+    csg_octree *octree;          /* NULL when there is nothing to mesh */
+    size_t first_cell, end_cell; /* of the frontier: what this process meshes */
     csg_slab *slabs;
     size_t count;
     csg_mesh_blocks at_hand; /* of one slab */
+    bool is_at_hand;         /* the last one, since it was counted */
     uint64_t vertex_count, triangle_count;
     csg_halo halo, old_halo;
     csg_block **reachable; /* the slab's blocks and the halo's, where there are several slabs */
     size_t reachable_capacity;
     csg_table index;
+    /* where other ranks have the rest of the frontier (ranks.h); else NULL and 0 */
+    csg_cell_count *counts; /* of each cube from first_cell on */
+    size_t counts_bytes;
+    csg_cell_sum *before; /* each cube of the frontier, and its end */
+    size_t *halo_cells;   /* behind end_cell: those of the first halo */
+    size_t halo_count, halo_capacity;
 } csg_mesh_slabs;
 
 /* The octree of the input's lattice. */
 csgm_status csg_mesh_walk_octree(csg_mesh_slabs *slabs, const csg_mesh_input *input);
-/* Divides the frontier so that a slab's blocks fit into the memory limit, counts every slab with
- * its features and numbers its blocks; leaves the last one's blocks at hand. */
+/* Divides what this process meshes so that a slab's blocks fit into the memory limit. */
+csgm_status csg_mesh_divide_slabs(csg_mesh_slabs *slabs);
+/* Divides, counts every slab with its features and numbers its blocks, from 0; leaves the last
+ * one's blocks at hand. */
 csgm_status csg_mesh_count_slabs(csg_mesh_slabs *slabs);
+/* Whether indices can number all vertices; else it is reported. */
+csgm_status csg_mesh_check_numbers(csg_mesh_slabs *slabs);
+/* Samples halo_cells: all their blocks become the halo of the last slab, counted without features
+ * and not numbered. Forgets what is at hand. */
+csgm_status csg_mesh_sample_halo(csg_mesh_slabs *slabs);
 /* Has the blocks of slab i at hand, numbered, and all that their cells refer to in the index of
  * workers->marching. To be taken from the last to the first: a block's upper neighbours come after
  * it in Morton order, so their numbers are known by then. */

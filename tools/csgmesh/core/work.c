@@ -166,7 +166,7 @@ int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_form
         status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
                                       write_options, counts, &work->stats);
     cli_console_end_progress(&app->console);
-    if (status != CSGM_OK && app->console.errors == errors)
+    if (status == CSGM_ERR_SCENE && app->console.errors == errors)
         cli_console_say(&app->console, CSGM_ERROR, NULL,
                         "the mesh has no triangles: nothing was written");
     return cli_exit_status(status);

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ * What several processes that make one mesh tell each other (csgmesh/ranks.h). Each stage ends with
+ * an exchange that begins with everybody's status: where one has failed all stop there, so that
+ * nobody waits for somebody who is gone. What is called by one rank is called by all, in one order.
+ */
+#ifndef CSG_BASE_RANKS_H
+#define CSG_BASE_RANKS_H
+
+#include "base/context.h"
+#include "csgmesh/ranks.h"
+
+/* What a rank says at the begin of an exchange. */
+typedef struct csg_rank_word {
+    uint64_t status, bytes;
+} csg_rank_word;
+
+typedef struct csg_ranks {
+    csgm_communicator by;
+    csg_rank_word *words; /* one for each rank, of the exchange at hand */
+    uint64_t *bytes;      /* of each rank in it */
+    csgm_rank_work work;
+} csg_ranks;
+
+/* The pieces of all ranks, one after the other. */
+typedef struct csg_rank_pieces {
+    void *bytes; /* of csg_memory; NULL for none, and where they did not come */
+    uint64_t total;
+} csg_rank_pieces;
+
+/* context->ranks, made of a communicator that was checked. Reports what fails. */
+csgm_status csg_ranks_join(csgm_context *context, const csgm_communicator *communicator);
+void csg_ranks_leave(csgm_context *context);
+
+static inline bool csg_ranks_is_first(const csgm_context *context)
+{
+    return !context->ranks || context->ranks->by.rank == 0;
+}
+
+/* How a stage ends that this rank has ended with `own`: CSGM_OK where all did; else `own`, or, not
+ * reported here, what the first rank says that has failed. A process alone: `own`. */
+csgm_status csg_ranks_agree(csgm_context *context, csgm_status own);
+/* The same, and the pieces of all come to rank `to` or to all (CSGM_ALL_RANKS). Only with ranks. */
+csgm_status csg_ranks_gather(csgm_context *context, csgm_status own, uint32_t to, const void *piece,
+                             uint64_t bytes, csg_rank_pieces *out);
+/* The same into a place that has room for them all (NULL where none arrive): how many there are is
+ * known. */
+csgm_status csg_ranks_gather_into(csgm_context *context, csgm_status own, uint32_t to,
+                                  const void *piece, uint64_t bytes, void *place);
+/* All do what the first rank says. */
+csgm_status csg_ranks_follow(csgm_context *context, csgm_status own, bool *what);
+void csg_rank_pieces_release(csg_memory *memory, csg_rank_pieces *pieces);
+
+#endif
