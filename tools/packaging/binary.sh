@@ -84,7 +84,7 @@ make_binary() {
     say "building csgmesh: some minutes"
     [ -f "$work/build/build.ninja" ] ||
         quietly env PKG_CONFIG_PATH="$prefix/lib/pkgconfig" meson setup "$work/build" "$root" -Dprefer_static=true \
-            -Dauto_features=enabled -Dtests=disabled -Dopenmesh=disabled -Dmeshoptimizer=disabled -Dlibcurl=disabled -Dc_link_args=-static -Dcpp_link_args=-static ||
+            -Dauto_features=enabled -Dtests=disabled -Dopenmesh=disabled -Dmpi=disabled -Dmeshoptimizer=disabled -Dlibcurl=disabled -Dc_link_args=-static -Dcpp_link_args=-static ||
         fail "meson setup failed"
     quietly ninja -C "$work/build" tools/csgmesh/csgmesh || fail "the build failed"
     strip -o "$results/csgmesh" "$work/build/tools/csgmesh/csgmesh"

@@ -8,7 +8,7 @@ rm -rf "$build"
 export CXXFLAGS="${CXXFLAGS//-stdlib=libc++/}"
 # The sanitizers stand in CFLAGS. b_lundef: their functions are not in shared libraries.
 meson setup "$build" -Dfuzz=true -Dfuzz_engine="$LIB_FUZZING_ENGINE" -Dtests=enabled -Dwerror=false -Db_lundef=false \
-    -Dbuildtype=plain -Db_ndebug=false -Dopenmesh=disabled -Dlibb2=disabled -Dlibcurl=disabled -Dmicrohttpd=disabled
+    -Dbuildtype=plain -Db_ndebug=false -Dopenmesh=disabled -Dlibb2=disabled -Dlibcurl=disabled -Dmicrohttpd=disabled -Dmpi=disabled
 targets=$(ninja -C "$build" -t targets all | sed -n 's,^\(tests/[a-z]*/fuzz_[a-z0-9]*\):.*,\1,p' | sort -u)
 # shellcheck disable=SC2086 # a word for each target
 ninja -C "$build" $targets

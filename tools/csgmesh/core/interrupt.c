@@ -12,7 +12,7 @@
 
 #include "core/cli.h"
 
-static atomic_bool progress_shown, is_asked;
+static atomic_bool progress_shown, is_asked, is_silent;
 
 static void say(const char *text)
 {
@@ -36,7 +36,8 @@ _Noreturn void cli_interrupt_end(void)
 static void on_signal(int signal_number)
 {
     (void)signal_number;
-    say("csgmesh: interrupted\n");
+    if (!atomic_load(&is_silent))
+        say("csgmesh: interrupted\n");
     cli_interrupt_end();
 }
 
@@ -56,6 +57,11 @@ void cli_interrupt_install(void)
     catch_signal(SIGHUP, on_signal);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+}
+
+void cli_interrupt_be_silent(void)
+{
+    atomic_store(&is_silent, true);
 }
 
 static void on_first_signal(int signal_number)

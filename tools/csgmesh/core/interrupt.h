@@ -8,6 +8,8 @@
 
 /* Installs the handlers; SIGPIPE and SIGXFSZ become errors of write(). */
 void cli_interrupt_install(void);
+/* Signals that end the process are not told: its parent does. */
+void cli_interrupt_be_silent(void);
 /* For work whose result so far is worth having: from now on the first Ctrl-C only asks for it, and
  * the second one ends the process. */
 void cli_interrupt_ask_first(void);

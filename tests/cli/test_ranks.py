@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""csgmesh-mpi: many ranks write the bytes of one process, and a job that fails leaves one message and no file.
+
+CSGMESH_MPI names the program; without it, or without mpirun, the tests are skipped. Ranks are more than there are cores.
+"""
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import cli
+
+PROGRAM = os.environ.get("CSGMESH_MPI", "")
+STRESS = os.path.join(cli.SCENES, "stress")
+RANKS = (1, 2, 4, 7)
+PARTS = """part("base") color("red") difference() { cube([4, 3, 1]); translate([2, 1.5, -1]) cylinder(h = 3, r = 1); }
+part("nothing") intersection() { cube(1); translate([3, 0, 0]) cube(1); }
+part("ball") color("blue") translate([2, 1.5, 2]) sphere(r = 0.9);
+color("green") translate([0, 0, 3]) cube(0.4);
+"""
+# Where the tape is short there is surface in every cube, where it is long in few: work is shared out twice.
+UNEVEN = """sphere(r = 1);
+translate([4, 0, 0]) intersection() {
+  sphere(r = 1.5);
+  union(blend = 0.2) for (i = [0 : 30]) rotate([i * 20, i * 37, i * 11]) translate([1.4, 0, 0]) sphere(r = 0.05);
+}
+"""
+
+
+def launcher():
+    """mpirun with what makes it start more ranks than there are cores, also as root; None: there is none."""
+    program = shutil.which("mpirun")
+    if not program:
+        return None
+    says = subprocess.run([program, "--version"], capture_output=True, text=True, check=False).stdout
+    return [program, "--quiet", "--oversubscribe"] if "Open MPI" in says else [program]
+
+
+@unittest.skipUnless(PROGRAM and os.path.exists(PROGRAM), "this build has no csgmesh-mpi (it was made without MPI)")
+@unittest.skipUnless(launcher(), "there is no mpirun")
+class Ranks(cli.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                            "OMPI_MCA_btl_base_warn_component_unused": "0", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+                            # what MPI itself keeps until the end is not ours
+                            "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:allocator_may_return_null=1"}
+
+    def job(self, *groups):
+        """Each group is a number of ranks and their command line."""
+        line = launcher()
+        for i, (count, *command) in enumerate(groups):
+            line += [":"] * (i > 0) + ["-n", str(count), *map(str, command)]
+        return line
+
+    def run_job(self, *groups):
+        result = subprocess.run(self.job(*groups), cwd=self.folder, env=self.environment, capture_output=True,
+                                timeout=120, check=False)
+        result.stderr = result.stderr.decode("utf-8", "replace")
+        return result
+
+    def make(self, count, *arguments):
+        result = self.run_job((count, PROGRAM, *arguments))
+        self.assert_status(result, 0)
+        return result
+
+    def compare(self, name, scene, extension, counts, *options):
+        one, many = "one." + extension, "many." + extension
+        self.assert_status(self.run_in(scene, "-o", one, *options), 0)
+        for count in counts:
+            with self.subTest(name, extension=extension, ranks=count):
+                self.make(count, scene, "-o", many, *options)
+                self.assertTrue(self.read(many) == self.read(one), f"{name}: {count} ranks make another file")
+                os.unlink(self.path(many))
+        os.unlink(self.path(one))
+
+    def assert_one_message(self, result, *words):
+        """Of ours: what mpirun says of the job's end comes on top."""
+        ours = [line for line in result.stderr.splitlines() if re.search(r"\berror( E\d+)?: ", line)]
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(len(ours), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    # ---- the same bytes
+
+    def test_scenes(self):
+        for name, extension, counts in (("s1-sphere", "glb", (1, 2)), ("s2-twenty-blended", "ply", (4,)),
+                                        ("s3-cylinder-minus-cross", "ply", RANKS), ("s4-thousand-spheres", "stl", (7,)),
+                                        ("s5-gyroid", "glb", (4,))):
+            self.compare(name, os.path.join(STRESS, name + ".txt"), extension, counts, "-r", 48)
+
+    def test_formats_and_smooth(self):
+        scene = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        for extension in ("stl", "glb"):
+            self.compare("smooth", scene, extension, (3,), "-r", 50, "--features", "smooth")
+        self.compare("sharp", scene, "obj", (3,), "-r", 50)
+
+    def test_parts_and_colors(self):
+        self.write("parts.txt", PARTS)
+        self.write("blend.txt", cli.BLEND)
+        self.compare("parts", "parts.txt", "glb", (4,), "-r", 40)
+        self.compare("parts", "parts.txt", "ply", (2,), "-r", 40)
+        self.compare("colours", "blend.txt", "glb", (4,), "-r", 40)
+
+    def test_fewer_cubes_than_ranks(self):
+        self.write("ball.txt", cli.BALL)
+        self.compare("ball", "ball.txt", "ply", (7,), "-r", 6)
+
+    def test_slabs(self):
+        """Each rank's stretch in several slabs, under a memory limit."""
+        self.compare("slabs", os.path.join(STRESS, "s1-sphere.txt"), "ply", (2,), "-r", 200, "--max-memory", "4M",
+                     "--features", "smooth")
+
+    def test_shared_again(self):
+        self.write("uneven.txt", UNEVEN)
+        self.compare("uneven", "uneven.txt", "ply", (4,), "-r", 150)
+        stats = json.loads(self.make(4, "uneven.txt", "-r", 150, "-o", "a.ply", "--stats").stdout)
+        self.assertTrue(stats["shared_again"])
+
+    def test_stats(self):
+        """Shares add up, and none is far from the mean."""
+        scene = os.path.join(STRESS, "s1-sphere.txt")
+        stats = json.loads(self.make(4, scene, "-r", 128, "-o", "a.ply", "--stats").stdout)
+        self.assertEqual(len(stats["ranks"]), 4)
+        for key in ("vertices", "triangles"):
+            shares = [rank[key] for rank in stats["ranks"]]
+            self.assertEqual(sum(shares), stats["mesh"][key])
+            self.assertLess(max(shares), 1.3 * sum(shares) / 4, shares)
+        self.assertFalse(stats["shared_again"])
+        for rank in stats["ranks"][:3]:
+            self.assertGreater(rank["halo_cubes"], 0)
+
+    # ---- refusals and faults
+
+    def test_refused(self):
+        self.write("ball.txt", cli.BALL)
+        for options, words in (((), "give -r or -s"), (("-r", 20, "-e", 0.1), "changes none of the triangles"),
+                               (("-r", 20, "-o", "b.ply"), "one file")):
+            with self.subTest(words):
+                result = self.run_job((2, PROGRAM, "ball.txt", "-o", "a.ply", *options))
+                self.assert_one_message(result, words)
+                self.assert_files("ball.txt")
+
+    def test_mistake_in_scene(self):
+        self.write("bad.txt", "sphere(r = 1;\n")
+        result = self.run_job((3, PROGRAM, "bad.txt", "-r", 20, "-o", "a.ply"))
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(result.stderr.count("error E0109"), 1, result.stderr)
+        self.assert_files("bad.txt")
+
+    def test_other_scene_on_one_rank(self):
+        self.write("a.txt", cli.BALL)
+        self.write("b.txt", "sphere(r = 1.0001);\n")
+        tail = ["-r", 20, "-o", "a.ply"]
+        result = self.run_job((2, PROGRAM, "a.txt", *tail), (1, PROGRAM, "b.txt", *tail))
+        self.assert_one_message(result, "rank 2 has another scene or other options")
+        self.assert_files("a.txt", "b.txt")
+
+    def test_other_version_on_one_rank(self):
+        """The other version is this program with another number in its bytes."""
+        self.write("a.txt", cli.BALL)
+        version = subprocess.run([cli.PROGRAM, "--version"], capture_output=True, check=True).stdout.split()[1]
+        with open(PROGRAM, "rb") as file:
+            program = file.read()
+        other = version[:-1] + (b"1" if version[-1:] != b"1" else b"2")
+        self.assertTrue(version + b"\0" in program)
+        self.write("other", program.replace(version + b"\0", other + b"\0"))
+        os.chmod(self.path("other"), 0o755)
+        tail = ["a.txt", "-r", 20, "-o", "a.ply"]
+        result = self.run_job((2, PROGRAM, *tail), (1, self.path("other"), *tail))
+        self.assert_one_message(result, "rank 2 runs another version than rank 0", version.decode())
+        self.assert_files("a.txt", "other")
+
+    def test_full_disk_on_one_rank(self):
+        """A rank that may write no further than 64 KiB into any file; Open MPI must not want one in shared memory."""
+        self.environment["OMPI_MCA_btl"] = "self,tcp"
+        scene = os.path.join(STRESS, "s1-sphere.txt")
+        tail = [scene, "-r", 128, "-o", "a.ply"]
+        for groups in ([(2, PROGRAM, *tail), (1, "bash", "-c", 'ulimit -f 64; exec "$@"', "bash", PROGRAM, *tail)],
+                       [(1, "bash", "-c", 'ulimit -f 64; exec "$@"', "bash", PROGRAM, *tail), (2, PROGRAM, *tail)]):
+            result = self.run_job(*groups)
+            self.assert_one_message(result, "a.ply", "cannot write: File too large")
+            self.assert_files()
+
+    def test_killed_rank(self):
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        for victim in (0, 2):
+            with self.subTest(victim=victim):
+                line = self.job((3, PROGRAM, scene, "-r", 600, "-o", "a.ply"))
+                with subprocess.Popen(line, cwd=self.folder, env=self.environment, stderr=subprocess.PIPE,
+                                      stdout=subprocess.DEVNULL) as job:
+                    deadline = time.monotonic() + 60
+                    while not os.listdir(self.folder) and time.monotonic() < deadline:
+                        time.sleep(0.02)
+                    self.assertTrue(os.listdir(self.folder), "no file was begun")
+                    os.kill(self.process_of(victim), signal.SIGKILL)
+                    _, said = job.communicate(timeout=60)
+                self.assertNotEqual(job.returncode, 0)
+                self.assertNotIn(b"csgmesh: ", said)
+                self.assert_files()
+
+    def process_of(self, rank):
+        """The process that is this rank of the job in the test's folder."""
+        for name in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open(f"/proc/{name}/environ", "rb") as file:
+                    environment = file.read().split(b"\0")
+                if os.readlink(f"/proc/{name}/cwd") == os.path.realpath(self.folder) and any(
+                        word in environment for word in (b"OMPI_COMM_WORLD_RANK=%d" % rank, b"PMI_RANK=%d" % rank)):
+                    return int(name)
+            except OSError:
+                continue
+        raise self.failureException("no such rank")
+
+
+if __name__ == "__main__":
+    cli.main()
