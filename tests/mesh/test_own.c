@@ -4,7 +4,7 @@
  * meshed as ever. Seeded random shells say that what is taken has the solid on its inner side
  * everywhere (by solid angles) and meets nowhere (CGAL); every allocation may fail.
  */
-#include "mesh/mesh_support.h"
+#include "mesh/own_support.h"
 #include "mesh/pipeline/own.h"
 #include "mesh/uncrossed.h"
 #include "shape/plane/region.h"
@@ -14,68 +14,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static csg_node_id shape_of(mesh_case *c, const csg_triangles *triangles)
-{
-    csg_shape *shape;
-    csg_repairs repairs;
-    assert_int_equal(csg_polyhedron_create(&c->context.memory, triangles, &repairs, &shape),
-                     CSGM_OK);
-    return csg_build_shape(&c->builder, shape, NOWHERE);
-}
-
-static csg_node_id make_ball(mesh_case *c, csg_vec3 center, double radius, uint32_t columns,
-                             double bumps)
-{
-    csg_triangles triangles;
-    csg_triangles_init(&triangles, &c->context.memory);
-    solid_add_ball(&triangles, center, radius, columns, columns, bumps);
-    csg_node_id node = shape_of(c, &triangles);
-    csg_triangles_release(&triangles);
-    return node;
-}
-
-static csgm_mesh_options plain(void)
-{
-    return mesh_options(0);
-}
-
-/* Whether they are taken; if not, nothing is meshed. */
-static bool is_taken(mesh_case *c, const csgm_mesh_options *options)
-{
-    csg_mesh_destroy(c->mesh);
-    c->mesh = NULL;
-    assert_int_equal(csg_mesh_build_own(&c->context, c->field, options, NULL, &c->mesh, &c->stats),
-                     CSGM_OK);
-    return c->mesh != NULL;
-}
-
-static uint64_t own_of(mesh_case *c, const csgm_mesh_options *options)
-{
-    assert_int_equal(mesh_build(c, options), CSGM_OK);
-    return c->stats.own_triangles;
-}
-
-/* Where the solid is, the mesh winds around once, elsewhere never. */
-static void assert_winds_around(const mesh_case *c, csg_random *random)
-{
-    const csgm_mesh *mesh = c->mesh;
-    csg_triangles t = {.points = malloc(mesh->vertex_count * sizeof(csg_vec3)),
-                       .point_count = mesh->vertex_count,
-                       .corners = (uint32_t(*)[3])mesh->indices,
-                       .count = mesh->triangle_count};
-    for (uint64_t i = 0; i < mesh->vertex_count; i++)
-        t.points[i] = mesh_vertex(c, i);
-    for (int i = 0; i < 100; i++) {
-        csg_vec3 p =
-            mesh_vertex(c, (uint64_t)csg_random_uniform(random, 0, (double)mesh->vertex_count - 1));
-        p = csg_vec3_add(p, solid_random_point(random, 0.1));
-        double f = test_sample(c->scene, p).value;
-        if (fabs(f) > 1e-5)
-            assert_true(fabs(solid_winding(&t, p) - (f > 0)) < 1e-3);
-    }
-    free(t.points);
-}
 
 /* ---- placed and painted ------------------------------------------------------------------------
  */
@@ -173,15 +111,6 @@ static void test_normals(void **state)
 /* ---- extruded outlines -------------------------------------------------------------------------
  */
 
-static csg_node_id region_of(mesh_case *c, csg_outline *outline)
-{
-    csg_shape *shape;
-    assert_int_equal(csg_region_create(&c->context.memory, outline, &shape), CSGM_OK);
-    csg_outline_release(outline);
-    return csg_build_shape(&c->builder, shape, NOWHERE);
-}
-
-/* Stars with holes in rows. */
 static csg_node_id make_stars(mesh_case *c, csg_random *random, double *area)
 {
     csg_outline outline;
@@ -383,123 +312,6 @@ static void test_other_scenes(void **state)
     }
 }
 
-/* ---- what is joined ----------------------------------------------------------------------------
- */
-
-/* Balls, prisms and boxes, plain, hollow or mirrored, on whole places now and then, so that faces
- * lie in one plane. */
-static csg_node_id random_unit(mesh_case *c, csg_random *random)
-{
-    bool whole = csg_random_uniform(random, 0, 1) < 0.5;
-    double kind = csg_random_uniform(random, 0, 1);
-    csg_node_id node;
-    if (kind < 0.4) {
-        node = make_box(c, 1, 0.5, 1.5);
-    } else if (kind < 0.6) {
-        csg_outline outline;
-        csg_outline_init(&outline, &c->context.memory);
-        add_rectangle(&outline, -1, -1, 1, 1);
-        add_star(&outline, random, (csg_vec2){0, 0}, 0.2, 0.8, 12, true);
-        node = csg_build_extrude(&c->builder, region_of(c, &outline), -1, 1, NOWHERE);
-    } else {
-        node = make_ball(c, csg_vec3_make(0, 0, 0), 1.2, 12, kind < 0.8 ? 0.2 : 0);
-    }
-    if (!whole)
-        node = posed_anyhow(c, node, random);
-    csg_vec3 by = solid_random_point(random, 1.5);
-    if (whole)
-        by = csg_vec3_make(round(by.x), round(by.y), round(by.z));
-    return moved(c, node, by.x, by.y, by.z);
-}
-
-static csg_node_id random_tree(mesh_case *c, csg_random *random)
-{
-    static const csg_node_kind KINDS[] = {CSG_NODE_UNION, CSG_NODE_INTERSECTION,
-                                          CSG_NODE_DIFFERENCE, CSG_NODE_UNION};
-    csg_node_id node = random_unit(c, random);
-    int count = 1 + (int)csg_random_uniform(random, 0, 5);
-    for (int i = 0; i < count; i++) {
-        csg_node_kind kind = KINDS[(int)csg_random_uniform(random, 0, 4)];
-        node = joined(c, kind, SHARP, node, random_unit(c, random));
-    }
-    return node;
-}
-
-/* What is taken is the solid: closed, uncrossed, on its surface, with the solid on its inner
- * side. */
-static void test_random_joins(void **state)
-{
-    (void)state;
-    enum { SCENES = 200 };
-    int own = 0;
-    for (unsigned seed = 0; seed < SCENES; seed++) {
-        mesh_case c;
-        csg_random random = {seed + 1};
-        mesh_case_begin(&c, 2);
-        mesh_case_compile(&c, random_tree(&c, &random));
-        csgm_mesh_options options = plain();
-        if (is_taken(&c, &options)) {
-            own++;
-            csgm_mesh_view view = csg_mesh_view(c.mesh);
-            assert_int_equal(csg_mesh_inspect(&c.context, &view, 0, &c.check), CSGM_OK);
-            assert_int_equal(c.check.boundary_edges + c.check.nonmanifold_edges +
-                                 c.check.misoriented_edges + c.check.nonmanifold_vertices,
-                             0);
-            assert_uncrossed(c.mesh, "joined");
-            assert_true(fabs(mesh_largest_error(&c)) < 1e-5);
-            assert_winds_around(&c, &random);
-        }
-        mesh_case_end(&c);
-    }
-    if (csg_booleans_are_available())
-        assert_in_range(own, SCENES * 3 / 5, SCENES);
-    else
-        assert_int_equal(own, 0);
-}
-
-/* A hole through a box, beside a box in the same plane: no triangle more than the outline needs. */
-static void test_joined_faces(void **state)
-{
-    (void)state;
-    mesh_case c;
-    mesh_case_begin(&c, 1);
-    if (csg_booleans_are_available()) {
-        csg_node_id plate = joined(&c, CSG_NODE_UNION, SHARP, make_box(&c, 2, 1, 0.5),
-                                   moved(&c, make_box(&c, 1, 1, 0.5), 3, 0, 0));
-        mesh_case_compile(
-            &c, joined(&c, CSG_NODE_DIFFERENCE, SHARP, plate, make_box(&c, 0.25, 0.25, 2)));
-        csgm_mesh_options options = plain();
-        mesh_build_closed(&c, &options, "a plate");
-        assert_int_equal(c.stats.own_triangles, c.mesh->triangle_count);
-        assert_int_equal(c.mesh->vertex_count, 16);
-        assert_int_equal(c.mesh->triangle_count, 32);
-        assert_int_equal(c.check.genus, 1);
-        assert_true(fabs(c.check.volume - (12 - 0.25)) < 1e-6);
-    }
-    mesh_case_end(&c);
-}
-
-/* Units of two colours stay with the cells: a vertex at their border would be of both. */
-static void test_joined_looks(void **state)
-{
-    (void)state;
-    for (int same = 0; same < 2; same++) {
-        mesh_case c;
-        mesh_case_begin(&c, 1);
-        csg_node_id a =
-            csg_build_color(&c.builder, (csg_color){1, 0, 0, 1}, make_box(&c, 1, 1, 1), NOWHERE);
-        csg_node_id b = moved(&c, make_box(&c, 1, 1, 1), 0.5, 0.5, 0.5);
-        if (same)
-            b = csg_build_color(&c.builder, (csg_color){1, 0, 0, 1}, b, NOWHERE);
-        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, a, b));
-        csgm_mesh_options options = plain();
-        assert_int_equal(is_taken(&c, &options), same && csg_booleans_are_available());
-        for (size_t i = 0; c.mesh && i < c.mesh->vertex_count; i++)
-            assert_int_equal(c.mesh->colors[4 * i], 255);
-        mesh_case_end(&c);
-    }
-}
-
 /* ---- random shells -----------------------------------------------------------------------------
  */
 
@@ -572,54 +384,26 @@ static void test_same_bytes(void **state)
 
 /* ---- allocations that fail ----------------------------------------------------------------- */
 
-static void fail_each_allocation(bool is_joined)
+static csg_node_id small_ball(mesh_case *c)
 {
-    mesh_case c;
-    failing f = {0};
-    mesh_case_begin(&c, 1);
-    csg_node_id node = make_ball(&c, csg_vec3_make(0, 0, 0), 1, 8, 0);
-    if (is_joined)
-        node = joined(&c, CSG_NODE_DIFFERENCE, SHARP, node, make_box(&c, 2, 0.25, 0.25));
-    mesh_case_compile(&c, node);
-    uint64_t before = atomic_load(&c.context.memory.used_bytes);
-    csgm_allocator original = c.context.memory.allocator;
-    c.context.memory.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
-    csgm_mesh_options options = plain();
-    options.normals = CSGM_NORMALS_CREASE;
-    csgm_status status = CSGM_ERR_MEMORY;
-    long n = 0;
-    while (status == CSGM_ERR_MEMORY) {
-        f.left = n++;
-        status = mesh_build(&c, &options);
-        assert_int_equal(c.findings, status == CSGM_OK ? 0 : 1);
-        csg_mesh_destroy(c.mesh);
-        c.mesh = NULL;
-        assert_int_equal(atomic_load(&c.context.memory.used_bytes), before);
-    }
-    assert_int_equal(status, CSGM_OK);
-    assert_true(n > 15);
-    c.context.memory.allocator = original;
-    mesh_case_end(&c);
+    return make_ball(c, csg_vec3_make(0, 0, 0), 1, 8, 0);
 }
 
 static void test_each_allocation(void **state)
 {
     (void)state;
-    fail_each_allocation(false);
-    if (csg_booleans_are_available())
-        fail_each_allocation(true);
+    own_fail_each_allocation(small_ball, 1);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vertices),       cmocka_unit_test(test_looks),
-        cmocka_unit_test(test_normals),        cmocka_unit_test(test_extrusions),
-        cmocka_unit_test(test_touching_loops), cmocka_unit_test(test_options),
-        cmocka_unit_test(test_soundness),      cmocka_unit_test(test_other_scenes),
-        cmocka_unit_test(test_random_joins),   cmocka_unit_test(test_joined_faces),
-        cmocka_unit_test(test_joined_looks),   cmocka_unit_test(test_random_shells),
-        cmocka_unit_test(test_same_bytes),     cmocka_unit_test(test_each_allocation),
+        cmocka_unit_test(test_vertices),        cmocka_unit_test(test_looks),
+        cmocka_unit_test(test_normals),         cmocka_unit_test(test_extrusions),
+        cmocka_unit_test(test_touching_loops),  cmocka_unit_test(test_options),
+        cmocka_unit_test(test_soundness),       cmocka_unit_test(test_other_scenes),
+        cmocka_unit_test(test_random_shells),   cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_each_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

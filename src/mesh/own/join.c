@@ -15,9 +15,10 @@ static const uint32_t NO_STEP = UINT32_MAX;
 typedef struct joining {
     const csg_own_units *units;
     const csgm_scene *scene;
-    uint32_t *step_of;       /* per node: the step that makes it */
-    uint32_t *operands;      /* of all steps, as the scene has its children */
-    csg_boolean_step *steps; /* at most one per node */
+    uint32_t *step_of;  /* per node: the step that makes it */
+    uint32_t *operands; /* of all steps */
+    size_t operand_count;
+    csg_boolean_step *steps; /* at most one per node and unit */
     size_t count;
 } joining;
 
@@ -39,33 +40,40 @@ static csg_boolean_kind kind_of(const csg_node *node)
                                                  : CSG_BOOLEAN_DIFFERENCE;
 }
 
-/* NO_STEP: it is a part of a unit. */
-static uint32_t add_node(joining *j, const csg_node *node)
+/* rest: the step of operands that are one unit, or NO_STEP. The result is NO_STEP where the node is
+ * a part of a unit. */
+static uint32_t add_node(joining *j, const csg_node *node, uint32_t rest)
 {
     const csg_node_id *children = csg_scene_children(j->scene, node);
     if (!node->child_count)
         return NO_STEP;
     if (!csg_node_is_operator(node->kind))
         return j->step_of[children[0]];
-    uint32_t *operands = j->operands + node->first_child;
-    for (uint32_t k = 0; k < node->child_count; k++) {
-        operands[k] = j->step_of[children[k]];
-        if (operands[k] == NO_STEP)
-            return NO_STEP;
-    }
+    uint32_t *operands = j->operands + j->operand_count, count = 0;
+    for (uint32_t k = 0; k < node->child_count; k++)
+        if (j->step_of[children[k]] != NO_STEP)
+            operands[count++] = j->step_of[children[k]];
+    if (rest != NO_STEP)
+        operands[count++] = rest;
+    if (!count)
+        return NO_STEP;
+    j->operand_count += count;
     j->steps[j->count] =
-        (csg_boolean_step){.kind = kind_of(node), .operands = operands, .count = node->child_count};
+        (csg_boolean_step){.kind = kind_of(node), .operands = operands, .count = count};
     return (uint32_t)j->count++;
 }
 
-/* Nothing that no unit and no operator of units is stands at the end, behind the root's step. */
+/* The root's step is the last. */
 static void list_steps(joining *j)
 {
-    size_t unit = 0;
+    size_t next = 0;
     for (csg_node_id i = 0; i <= j->scene->root; i++) {
-        bool is_unit = unit < j->units->count && j->units->items[unit].node == i;
+        const csg_own_unit *unit = &j->units->items[next];
+        bool has_unit = next < j->units->count && unit->node == i;
+        uint32_t leaf = has_unit ? add_leaf(j, unit) : NO_STEP;
+        next += has_unit;
         j->step_of[i] =
-            is_unit ? add_leaf(j, &j->units->items[unit++]) : add_node(j, &j->scene->nodes[i]);
+            has_unit && !unit->is_operand ? leaf : add_node(j, &j->scene->nodes[i], leaf);
     }
 }
 
@@ -103,33 +111,28 @@ static csgm_status join_in_rooms(csg_own_units *units, const csgm_scene *scene,
                                  csg_mesh_watch *watch, csg_shape **joined)
 {
     csg_memory *memory = units->memory;
-    size_t nodes = scene->node_count, children = scene->child_count + 1;
+    size_t nodes = scene->node_count, operands = scene->child_count + units->count;
+    size_t steps = nodes + units->count;
     joining j = {.units = units, .scene = scene};
     csgm_status status = CSGM_OK;
     j.step_of = csg_memory_alloc(memory, nodes * sizeof *j.step_of);
-    j.operands = csg_memory_alloc(memory, children * sizeof *j.operands);
-    j.steps = csg_memory_alloc(memory, nodes * sizeof *j.steps);
+    j.operands = csg_memory_alloc(memory, operands * sizeof *j.operands);
+    j.steps = csg_memory_alloc(memory, steps * sizeof *j.steps);
     if (j.step_of && j.operands && j.steps)
         status = make_joined(&j, watch, joined);
     csg_memory_release(memory, j.step_of, nodes * sizeof *j.step_of);
-    csg_memory_release(memory, j.operands, children * sizeof *j.operands);
-    csg_memory_release(memory, j.steps, nodes * sizeof *j.steps);
+    csg_memory_release(memory, j.operands, operands * sizeof *j.operands);
+    csg_memory_release(memory, j.steps, steps * sizeof *j.steps);
     return status;
 }
 
-static bool is_same_look(const csg_look *a, const csg_look *b)
+/* A rest may have come to nothing. */
+static bool have_shapes(const csg_own_units *units)
 {
-    return a->has_color == b->has_color && a->has_material == b->has_material &&
-           a->color.r == b->color.r && a->color.g == b->color.g && a->color.b == b->color.b &&
-           a->color.a == b->color.a && a->metallic == b->metallic && a->roughness == b->roughness;
-}
-
-static bool can_be_joined(const csg_own_units *units)
-{
-    for (size_t i = 1; i < units->count; i++)
-        if (!is_same_look(&units->items[0].look, &units->items[i].look))
+    for (size_t i = 0; i < units->count; i++)
+        if (!units->items[i].shape)
             return false;
-    return csg_booleans_are_available();
+    return true;
 }
 
 csgm_status csg_own_join(csg_own_units *units, const csgm_scene *scene, csg_mesh_watch *watch)
@@ -139,7 +142,7 @@ csgm_status csg_own_join(csg_own_units *units, const csgm_scene *scene, csg_mesh
     CSG_ZONE(watch->context, "own triangles: join");
     csg_shape *joined = NULL;
     csgm_status status = CSGM_OK;
-    if (can_be_joined(units))
+    if (have_shapes(units))
         status = join_in_rooms(units, scene, watch, &joined);
     if (joined)
         csg_own_units_replace(units, joined);

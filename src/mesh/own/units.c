@@ -6,220 +6,205 @@
 
 #include <string.h>
 
-#include "scene/primitives/kinds.h"
-#include "shape/plane/region.h"
+#include "mesh/own/leaves.h"
 #include "shape/polyhedra/polyhedron.h"
-#include "shape/polyhedra/prism.h"
 
-/* More units than that are meshed as ever: each is held against each. */
-enum { MOST_UNITS = 4096 };
+/* More units than that are meshed as ever: each is held against each. Polyhedra of fewer triangles
+ * cost cells little, and cells put corners where they serve both sides of an edge. */
+enum { MOST_UNITS = 4096, LEAST_TRIANGLES_BESIDE_RESTS = 256 };
 
-/* What stands above a node. */
-typedef struct above {
-    csg_affine place;
-    csg_look look;
-    bool is_taken; /* it is of a unit that stands above */
-} above;
+typedef struct finder {
+    csg_own_units *units;
+    const csgm_scene *scene;
+    bool boxes;       /* count as polyhedra */
+    uint8_t *holds;   /* per node: there are polyhedra below, and only sharp operators above them */
+    uint8_t *reached; /* per node: it is on the way to them */
+    csg_own_way *ways;
+    bool all; /* nothing is left over */
+} finder;
 
-static bool is_shape(const csgm_scene *scene, const csg_node *node, csg_shape_kind kind)
+/* ---- where polyhedra are -----------------------------------------------------------------------
+ */
+
+static bool is_leaf(const finder *f, const csg_node *node)
 {
-    return node->kind == CSG_NODE_SHAPE && scene->shapes[node->payload]->kind == kind;
+    csg_own_leaf_kind kind = csg_own_leaf_kind_of(f->scene, node);
+    return kind == CSG_OWN_LEAF_SHAPE || (f->boxes && kind == CSG_OWN_LEAF_BOX);
 }
 
-static bool is_sharp_box(const csgm_scene *scene, const csg_node *node)
+static bool is_way(const csg_node *node)
 {
-    return node->kind == CSG_NODE_BOX && !(csg_scene_parameters(scene, node)[3] > 0);
+    return node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
+           (csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend));
 }
 
-static bool is_sharp_rectangle(const csgm_scene *scene, const csg_node *node)
+static void look_for_polyhedra(finder *f)
 {
-    return node->kind == CSG_NODE_RECTANGLE && !(csg_scene_parameters(scene, node)[2] > 0);
+    for (csg_node_id i = 0; i <= f->scene->root; i++) {
+        const csg_node *node = &f->scene->nodes[i];
+        const csg_node_id *children = csg_scene_children(f->scene, node);
+        f->holds[i] = is_leaf(f, node);
+        for (uint32_t k = 0; !f->holds[i] && is_way(node) && k < node->child_count; k++)
+            f->holds[i] = f->holds[children[k]];
+    }
 }
 
-/* At most so many units; 0: there is something that is in no such scene. */
-static size_t most_units(const csgm_scene *scene)
+/* ---- looks -------------------------------------------------------------------------------------
+ */
+
+static bool is_same_look(const csg_look *a, const csg_look *b)
 {
-    size_t count = 0;
-    for (size_t i = 0; i < scene->node_count; i++) {
+    return a->has_color == b->has_color && a->has_material == b->has_material &&
+           a->color.r == b->color.r && a->color.g == b->color.g && a->color.b == b->color.b &&
+           a->color.a == b->color.a && a->metallic == b->metallic && a->roughness == b->roughness;
+}
+
+/* Whether all leaves look alike; there may be nodes that the root does not have. */
+static bool has_one_look(const finder *f)
+{
+    const csgm_scene *scene = f->scene;
+    const csg_look *first = NULL;
+    memset(f->reached, 0, scene->node_count);
+    f->reached[scene->root] = true;
+    f->ways[scene->root] = (csg_own_way){.place = csg_affine_identity()};
+    for (csg_node_id i = scene->root + 1; i-- > 0;) {
         const csg_node *node = &scene->nodes[i];
-        bool is_way = node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR ||
-                      node->kind == CSG_NODE_SLAB || is_shape(scene, node, CSG_SHAPE_REGION) ||
-                      is_sharp_rectangle(scene, node) ||
-                      (csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend));
-        if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON) || csg_node_is_plate(node) ||
-            is_sharp_box(scene, node))
-            count++;
-        else if (!is_way)
-            return 0;
-    }
-    return count <= MOST_UNITS ? count : 0;
-}
-
-static above below(const csgm_scene *scene, const csg_node *node, above a)
-{
-    if (node->kind == CSG_NODE_TRANSFORM)
-        a.place = csg_affine_multiply(a.place, scene->transforms[node->payload]);
-    else if (node->kind == CSG_NODE_COLOR)
-        csg_look_take_inner(&a.look, &scene->looks[node->payload]);
-    return a;
-}
-
-/* ---- boxes -------------------------------------------------------------------------------------
- */
-
-/* half: sizes. */
-static csgm_status make_box(csg_memory *memory, csg_vec3 half, double middle, csg_own_unit *unit)
-{
-    static const uint32_t SIDES[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    csg_triangles triangles;
-    bool added = true;
-    csg_triangles_init(&triangles, memory);
-    for (int i = 0; i < 8 && added; i++)
-        added = csg_triangles_add_point(
-            &triangles, csg_vec3_make(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y,
-                                      middle + (i & 4 ? half.z : -half.z)));
-    for (int i = 0; i < 6 && added; i++)
-        added = csg_triangles_add_face(&triangles, SIDES[i], 4);
-    csgm_status status = CSGM_ERR_MEMORY;
-    if (added)
-        status = csg_polyhedron_create(memory, &triangles, NULL, &unit->shape);
-    csg_triangles_release(&triangles);
-    return status;
-}
-
-/* ---- plates ------------------------------------------------------------------------------------
- */
-
-/* Down to a leaf through transforms and colours. */
-static const csg_node *leaf_below(const csgm_scene *scene, const csg_node *node, above *a)
-{
-    while (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR) {
-        *a = below(scene, node, *a);
-        node = &scene->nodes[csg_scene_children(scene, node)[0]];
-    }
-    return node;
-}
-
-/* To places that are floats in the scene, where these are the same all along z: triangles of a lid
- * that are thin are then as thin as they will be. */
-static void round_points(csg_outline *outline, const csg_affine *place)
-{
-    csg_affine back;
-    if (place->m[0][2] != 0 || place->m[1][2] != 0 || !csg_affine_invert(*place, &back))
-        return;
-    for (size_t i = 0; i < outline->point_count; i++) {
-        csg_vec2 *p = &outline->points[i];
-        csg_vec3 at = csg_affine_point(place, csg_vec3_make(p->x, p->y, 0));
-        at.x = (double)(float)at.x;
-        at.y = (double)(float)at.y;
-        at = csg_affine_point(&back, at);
-        *p = (csg_vec2){at.x, at.y};
-    }
-}
-
-static csgm_status make_prism(const csgm_scene *scene, const csg_node *figure, double half,
-                              double middle, csg_own_unit *unit)
-{
-    csg_memory *memory = &scene->context->memory;
-    csg_outline outline;
-    csg_triangles triangles;
-    csg_repairs repairs;
-    csgm_status status = CSGM_ERR_MEMORY;
-    csg_outline_init(&outline, memory);
-    if (csg_outline_append(&outline, csg_region_outline(scene->shapes[figure->payload]))) {
-        round_points(&outline, &unit->place);
-        status = csg_prism(memory, &outline, middle - half, middle + half, &triangles);
-    }
-    csg_outline_release(&outline);
-    if (status != CSGM_OK)
-        return status;
-    status = csg_polyhedron_create(memory, &triangles, &repairs, &unit->shape);
-    csg_triangles_release(&triangles);
-    return status;
-}
-
-/* The unit's shape stays NULL: the plate is none of an outline. */
-static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_own_unit *unit)
-{
-    const csg_node_id *children = csg_scene_children(scene, plate);
-    above flat = {.place = csg_affine_identity(), .look = unit->look}, ends = flat;
-    const csg_node *figure = leaf_below(scene, &scene->nodes[children[0]], &flat);
-    const csg_node *slab = leaf_below(scene, &scene->nodes[children[1]], &ends);
-    if (slab->kind != CSG_NODE_SLAB)
-        return CSGM_OK;
-    unit->place = csg_affine_multiply(unit->place, csg_affine_of_plane(flat.place));
-    unit->look = flat.look;
-    double half = csg_scene_parameters(scene, slab)[0], middle = ends.place.t[2];
-    const double *sizes = csg_scene_parameters(scene, figure);
-    csgm_status status = CSGM_OK;
-    if (is_shape(scene, figure, CSG_SHAPE_REGION))
-        status = make_prism(scene, figure, half, middle, unit);
-    else if (is_sharp_rectangle(scene, figure))
-        status = make_box(&scene->context->memory, csg_vec3_make(sizes[0], sizes[1], half), middle,
-                          unit);
-    return status == CSGM_ERR_MEMORY ? status : CSGM_OK;
-}
-
-/* ---- all of them -------------------------------------------------------------------------------
- */
-
-/* The unit that a node is. unit->shape stays NULL: it is none. */
-static csgm_status take_unit(const csgm_scene *scene, const csg_node *node, const above *a,
-                             csg_own_unit *unit)
-{
-    *unit = (csg_own_unit){
-        .place = a->place, .look = a->look, .node = (csg_node_id)(node - scene->nodes)};
-    if (csg_node_is_plate(node))
-        return extrude(scene, node, unit);
-    if (is_sharp_box(scene, node)) {
-        const double *half = csg_scene_parameters(scene, node);
-        return make_box(&scene->context->memory, csg_vec3_make(half[0], half[1], half[2]), 0, unit);
-    }
-    if (is_shape(scene, node, CSG_SHAPE_POLYHEDRON)) {
-        unit->shape = scene->shapes[node->payload];
-        csg_shape_retain(unit->shape);
-    }
-    return CSGM_OK;
-}
-
-/* room: for what is above each node. *all: nothing is left over. Units come from the last to the
- * first. */
-static csgm_status place_units(csg_own_units *units, const csgm_scene *scene, above *room,
-                               bool *all)
-{
-    csgm_status status = CSGM_OK;
-    *all = true;
-    room[scene->root] = (above){.place = csg_affine_identity()};
-    for (size_t i = scene->node_count; i-- > 0 && status == CSGM_OK && *all;) {
-        const csg_node *node = &scene->nodes[i];
-        above a = below(scene, node, room[i]);
-        bool is_unit = !a.is_taken && (csg_node_is_plate(node) || !node->child_count);
-        if (is_unit) {
-            csg_own_unit *unit = &units->items[units->count];
-            status = take_unit(scene, node, &a, unit);
-            a.is_taken = *all = unit->shape != NULL;
-            units->count += unit->shape != NULL;
+        if (!f->reached[i])
+            continue;
+        csg_own_way way = csg_own_way_below(scene, node, f->ways[i]);
+        for (uint32_t k = 0; k < node->child_count; k++) {
+            csg_node_id child = csg_scene_children(scene, node)[k];
+            f->reached[child] = true;
+            f->ways[child] = way;
         }
-        for (uint32_t k = 0; k < node->child_count; k++)
-            room[csg_scene_children(scene, node)[k]] = a;
+        if (!csg_node_is_primitive(node->kind))
+            continue;
+        first = first ? first : &f->ways[i].look;
+        if (!is_same_look(first, &f->ways[i].look))
+            return false;
     }
-    return status;
+    return true;
 }
 
-/* In the order of the scene, each with its box. */
-static void arrange(csg_own_units *units)
+/* ---- units -------------------------------------------------------------------------------------
+ */
+
+static bool add_unit(finder *f, const csg_own_unit *unit)
+{
+    csg_own_units *units = f->units;
+    f->all = units->count < MOST_UNITS;
+    if (!f->all)
+        return true;
+    if (!csg_memory_reserve(units->memory, (void **)&units->items, &units->room, units->count + 1,
+                            sizeof *unit))
+        return false;
+    units->items[units->count++] = *unit;
+    return true;
+}
+
+static bool add_leaf(finder *f, csg_node_id i)
+{
+    csg_own_unit unit;
+    if (csg_own_leaf_make(f->scene, &f->scene->nodes[i], &f->ways[i], &unit) != CSGM_OK)
+        return false;
+    f->all = unit.shape != NULL;
+    if (!f->all)
+        return true;
+    unit.box = csg_affine_box(&unit.place, unit.shape->box);
+    bool added = add_unit(f, &unit);
+    if (!added || !f->all)
+        csg_shape_release(unit.shape);
+    return added;
+}
+
+/* As yet without members. */
+static bool add_rest(finder *f, csg_node_id i, csg_node_kind kind, bool is_operand)
+{
+    const csg_own_unit unit = {.place = csg_affine_identity(),
+                               .look = f->ways[i].look,
+                               .node = i,
+                               .kind = kind,
+                               .is_operand = is_operand,
+                               .first_member = f->units->member_count};
+    f->units->rest_count++;
+    return add_unit(f, &unit);
+}
+
+static bool add_member(finder *f, csg_node_id node, const csg_own_way *way)
+{
+    csg_own_units *units = f->units;
+    if (!csg_memory_reserve(units->memory, (void **)&units->members, &units->member_room,
+                            units->member_count + 1, sizeof *units->members))
+        return false;
+    units->members[units->member_count++] =
+        (csg_excerpt_item){.node = node, .place = way->place, .look = way->look};
+    units->items[units->count - 1].member_count++;
+    return true;
+}
+
+/* An operand that is on the way, or one of those that are taken together: all that are subtracted,
+ * or all that are united or intersected. */
+static bool goes_on(const finder *f, const csg_node *node, uint32_t k)
+{
+    return f->holds[csg_scene_children(f->scene, node)[k]] ||
+           (node->kind == CSG_NODE_DIFFERENCE && k == 0);
+}
+
+static bool add_operands(finder *f, csg_node_id i)
+{
+    const csg_node *node = &f->scene->nodes[i];
+    const csg_node_id *children = csg_scene_children(f->scene, node);
+    csg_own_way way = csg_own_way_below(f->scene, node, f->ways[i]);
+    bool has_rest = false, added = true;
+    for (uint32_t k = 0; k < node->child_count && added && f->all; k++) {
+        if (goes_on(f, node, k)) {
+            f->reached[children[k]] = true;
+            f->ways[children[k]] = way;
+            continue;
+        }
+        if (!has_rest)
+            added = add_rest(
+                f, i, node->kind == CSG_NODE_INTERSECTION ? CSG_NODE_INTERSECTION : CSG_NODE_UNION,
+                true);
+        has_rest = true;
+        added = added && f->all && add_member(f, children[k], &way);
+    }
+    return added;
+}
+
+/* Units come from the last to the first. False: no memory. */
+static bool walk(finder *f)
+{
+    csg_node_id root = f->scene->root;
+    bool added = true;
+    f->ways[root] = (csg_own_way){.place = csg_affine_identity()};
+    f->reached[root] = f->all = f->holds[root];
+    for (csg_node_id i = root + 1; i-- > 0 && added && f->all;) {
+        const csg_node *node = &f->scene->nodes[i];
+        if (!f->reached[i])
+            continue;
+        if (!f->holds[i])
+            added =
+                add_rest(f, i, CSG_NODE_UNION, false) && (!f->all || add_member(f, i, &f->ways[i]));
+        else if (is_leaf(f, node))
+            added = add_leaf(f, i);
+        else
+            added = add_operands(f, i);
+    }
+    return added;
+}
+
+static void turn_round(csg_own_units *units)
 {
     for (size_t i = 0, k = units->count; i < k; i++) {
         csg_own_unit unit = units->items[i];
         units->items[i] = units->items[--k];
         units->items[k] = unit;
     }
-    for (size_t i = 0; i < units->count; i++) {
-        csg_own_unit *unit = &units->items[i];
-        unit->box = csg_affine_box(&unit->place, unit->shape->box);
-    }
 }
+
+/* ---- what they are together --------------------------------------------------------------------
+ */
 
 /* By more than rounding moves anything. */
 static bool are_apart(const csg_own_units *units)
@@ -238,15 +223,31 @@ static bool are_apart(const csg_own_units *units)
     return true;
 }
 
-static bool has_unions_only(const csgm_scene *scene)
+/* Those that are combined at all. */
+static bool has_unions_only(const csgm_scene *scene, const uint8_t *reached)
 {
     for (size_t i = 0; i < scene->node_count; i++) {
-        const csg_node *node = &scene->nodes[i];
-        if (csg_node_is_operator(node->kind) && node->kind != CSG_NODE_UNION &&
-            !csg_node_is_plate(node))
+        csg_node_kind kind = scene->nodes[i].kind;
+        bool is_plate = csg_node_is_plate(&scene->nodes[i]);
+        if (reached[i] && !is_plate && csg_node_is_operator(kind) && kind != CSG_NODE_UNION)
             return false;
     }
     return true;
+}
+
+static void number(csg_own_units *units)
+{
+    units->vertex_count = units->triangle_count = 0;
+    for (size_t i = 0; i < units->count; i++) {
+        csg_own_unit *unit = &units->items[i];
+        if (!unit->shape)
+            continue;
+        const csg_triangles *triangles = csg_polyhedron_triangles(unit->shape);
+        unit->first_vertex = (uint32_t)units->vertex_count;
+        unit->first_triangle = (uint32_t)units->triangle_count;
+        units->vertex_count += triangles->point_count;
+        units->triangle_count += triangles->count;
+    }
 }
 
 /* Corners have numbers, too. */
@@ -256,41 +257,71 @@ static bool can_be_numbered(const csg_own_units *units)
     return units->vertex_count <= MOST && units->triangle_count <= MOST;
 }
 
-static void number(csg_own_units *units)
+/* ---- all of it ---------------------------------------------------------------------------------
+ */
+
+static bool find(finder *f)
 {
-    units->vertex_count = units->triangle_count = 0;
-    for (size_t i = 0; i < units->count; i++) {
-        csg_own_unit *unit = &units->items[i];
-        const csg_triangles *triangles = csg_polyhedron_triangles(unit->shape);
-        unit->first_vertex = (uint32_t)units->vertex_count;
-        unit->first_triangle = (uint32_t)units->triangle_count;
-        units->vertex_count += triangles->point_count;
-        units->triangle_count += triangles->count;
+    csg_own_units *units = f->units;
+    memset(f->reached, 0, f->scene->node_count);
+    look_for_polyhedra(f);
+    if (!walk(f))
+        return false;
+    if (!f->all) {
+        csg_own_units_reset(units);
+        return true;
     }
+    turn_round(units);
+    number(units);
+    units->are_apart =
+        !units->rest_count && has_unions_only(f->scene, f->reached) && are_apart(units);
+    return true;
+}
+
+/* Boxes are polyhedra where there is nothing else; beside what needs cells, cells are best for
+ * them. */
+static bool find_either(finder *f)
+{
+    csg_own_units *units = f->units;
+    f->boxes = true;
+    if (!find(f))
+        return false;
+    if (!units->rest_count)
+        return true;
+    csg_own_units_reset(units);
+    f->boxes = false;
+    if (!find(f))
+        return false;
+    if (units->rest_count && units->triangle_count < LEAST_TRIANGLES_BESIDE_RESTS)
+        csg_own_units_reset(units);
+    return true;
 }
 
 csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
 {
-    *units = (csg_own_units){.memory = &scene->context->memory};
-    size_t room_bytes = scene->node_count * sizeof(above);
-    units->room = most_units(scene);
-    if (!units->room)
-        return CSGM_OK;
-    bool all = false;
-    above *room = csg_memory_alloc(units->memory, room_bytes);
-    units->items = csg_memory_alloc(units->memory, units->room * sizeof *units->items);
-    csgm_status status = CSGM_ERR_MEMORY;
-    if (room && units->items)
-        status = place_units(units, scene, room, &all);
-    csg_memory_release(units->memory, room, room_bytes);
-    if (status == CSGM_OK && all) {
-        arrange(units);
-        number(units);
-        units->are_apart = has_unions_only(scene) && are_apart(units);
-    }
-    if (!all || !can_be_numbered(units))
+    csg_memory *memory = &scene->context->memory;
+    size_t nodes = scene->node_count;
+    *units = (csg_own_units){.memory = memory};
+    finder f = {.units = units, .scene = scene};
+    f.holds = csg_memory_alloc(memory, nodes);
+    f.reached = csg_memory_alloc(memory, nodes);
+    f.ways = csg_memory_alloc(memory, nodes * sizeof *f.ways);
+    bool done = f.holds && f.reached && f.ways;
+    bool looks_alike = done && has_one_look(&f);
+    done = done && find_either(&f);
+    units->look_alike = looks_alike;
+    csg_memory_release(memory, f.holds, nodes);
+    csg_memory_release(memory, f.reached, nodes);
+    csg_memory_release(memory, f.ways, nodes * sizeof *f.ways);
+    if (!done || !can_be_numbered(units))
         csg_own_units_reset(units);
-    return status;
+    return done ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+void csg_own_units_give(csg_own_unit *unit, csg_shape *shape)
+{
+    unit->shape = shape;
+    unit->box = shape->box;
 }
 
 void csg_own_units_replace(csg_own_units *units, csg_shape *joined)
@@ -311,8 +342,7 @@ void csg_own_units_reset(csg_own_units *units)
 {
     for (size_t i = 0; i < units->count; i++)
         csg_shape_release(units->items[i].shape);
-    if (units->items)
-        csg_memory_release(units->memory, units->items, units->room * sizeof *units->items);
-    units->items = NULL;
-    units->count = 0;
+    csg_memory_release(units->memory, units->items, units->room * sizeof *units->items);
+    csg_memory_release(units->memory, units->members, units->member_room * sizeof *units->members);
+    *units = (csg_own_units){.memory = units->memory};
 }

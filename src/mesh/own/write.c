@@ -13,6 +13,8 @@ typedef struct writer {
     const csgm_mesh *from;
     const csg_corners *corners;
     bool split;
+    csg_own_normal_of *normal_of;
+    void *user;
     csgm_mesh *mesh;
     uint32_t *number; /* per corner: its vertex in the new mesh */
     uint32_t count;   /* of new vertices */
@@ -82,18 +84,39 @@ static void store(float out[3], csg_vec3 normal)
         out[k] += 0.0f;
 }
 
+/* From a corner towards the middle of the side across. */
+static csg_vec3 into_triangle(const writer *w, uint32_t c)
+{
+    csg_vec3 middle = csg_vec3_scale(
+        csg_vec3_add(place_of(w, csg_corner_next(c)), place_of(w, csg_corner_previous(c))), 0.5);
+    return csg_vec3_sub(middle, place_of(w, c));
+}
+
+/* Asked a little beside the vertex, into the sheet: at the vertex there may be several. */
+static void write_normal(const writer *w, uint32_t c, csg_vec3 mean, csg_vec3 into)
+{
+    static const double BESIDE = 1.0 / 64;
+    csg_vec3 place = csg_vec3_add(place_of(w, c), csg_vec3_scale(into, BESIDE));
+    csg_vec3 normal;
+    bool found = w->normal_of && w->normal_of(w->user, place, csg_vec3_normalize(mean), &normal);
+    store(w->mesh->normals + 3 * (size_t)w->number[c], found ? normal : mean);
+}
+
 /* The normals of the new vertices at one old vertex. */
 static void write_normals(const writer *w, uint32_t vertex)
 {
     const csg_corners *m = w->corners;
-    uint32_t first = first_of_sheet(w, vertex), c = first;
-    csg_vec3 sum = {0, 0, 0};
+    uint32_t first = first_of_sheet(w, vertex), c = first, count = 0;
+    csg_vec3 sum = {0, 0, 0}, into = {0, 0, 0};
     do {
         uint32_t next = csg_corner_swing(m, c);
         sum = csg_vec3_add(sum, csg_vec3_scale(normal_of(w, c), angle_at(w, c)));
+        into = csg_vec3_add(into, into_triangle(w, c));
+        count++;
         if (next == first || w->number[next] != w->number[c]) {
-            store(w->mesh->normals + 3 * (size_t)w->number[c], sum);
-            sum = csg_vec3_make(0, 0, 0);
+            write_normal(w, c, sum, csg_vec3_scale(into, 1.0 / count));
+            sum = into = csg_vec3_make(0, 0, 0);
+            count = 0;
         }
         c = next;
     } while (c != first);
@@ -138,9 +161,14 @@ static csgm_status create(writer *w, csgm_context *context)
 }
 
 csgm_status csg_own_write_normals(csgm_context *context, const csgm_mesh *mesh,
-                                  const csg_corners *corners, bool split, csgm_mesh **out)
+                                  const csg_corners *corners, bool split,
+                                  csg_own_normal_of *normal_of_place, void *user, csgm_mesh **out)
 {
-    writer w = {.from = mesh, .corners = corners, .split = split};
+    writer w = {.from = mesh,
+                .corners = corners,
+                .split = split,
+                .normal_of = normal_of_place,
+                .user = user};
     size_t bytes = 3 * (size_t)corners->triangle_count * sizeof *w.number;
     w.number = csg_memory_alloc(&context->memory, bytes);
     if (!w.number)

@@ -114,6 +114,8 @@ void csg_mesh_warn_of_result(const csg_mesh_input *in, const csg_mesh_fineness *
 {
     csg_diag_sink *diags = &in->context->diags;
     const csg_mesh_share *share = in->share;
+    if (share && share->is_operand)
+        return;
     if (is_empty && share)
         csg_diag_plain(diags, CSG_DIAG_NO_SURFACE, NULL, fineness->hints[1],
                        share->name ? "no surface of the part \"%.60s\" was found"

@@ -12,6 +12,7 @@
 typedef struct csg_mesh_share {
     const char *name; /* NULL = the part without a name */
     bool colors, materials;
+    bool is_operand; /* not a part, but an operand of one: it may be nothing */
     csg_vec3 origin;
     double started_s;      /* for the time limit */
     double before, amount; /* of the work: fractions */

@@ -12,12 +12,15 @@
 #include "mesh/own/join.h"
 #include "mesh/own/sound.h"
 #include "mesh/own/write.h"
+#include "mesh/pipeline/own_rests.h"
+#include "shape/polyhedra/booleans.h"
 #include "shape/polyhedra/polyhedron.h"
 
 typedef struct own {
     csg_mesh_input input;
     csg_mesh_watch watch;
     csg_own_units units;
+    csg_own_rests rests;
     csgm_mesh *mesh; /* NULL: they are not taken */
 } own;
 
@@ -98,8 +101,9 @@ static csgm_status add_normals(own *o, const csg_corners *corners)
     csgm_mesh *with;
     if (normals == CSGM_NORMALS_NONE)
         return CSGM_OK;
-    csgm_status status = csg_own_write_normals(o->input.context, o->mesh, corners,
-                                               normals == CSGM_NORMALS_CREASE, &with);
+    csgm_status status =
+        csg_own_write_normals(o->input.context, o->mesh, corners, normals == CSGM_NORMALS_CREASE,
+                              o->rests.count ? csg_own_rests_normal : NULL, &o->rests, &with);
     if (status == CSGM_OK) {
         drop(o);
         o->mesh = with;
@@ -135,13 +139,29 @@ static csgm_status make_mesh(own *o)
     return status;
 }
 
-static void fill_stats(const own *o, csgm_mesh_stats *stats)
+/* Those of polyhedra. */
+static uint64_t count_own(own *o)
 {
-    *stats = (csgm_mesh_stats){
-        .mesh_s = csg_clock_now_s() - o->watch.started_s,
-        .own_triangles = o->mesh->triangle_count,
-        .memory_peak_bytes = atomic_load(&o->input.context->memory.peak_bytes),
-    };
+    const csgm_mesh *mesh = o->mesh;
+    uint64_t count = 0;
+    for (uint64_t t = 0; t < mesh->triangle_count; t++) {
+        csg_vec3 v[3], normal;
+        for (size_t k = 0; k < 3; k++)
+            v[k] = csg_vec3_from_floats(mesh->positions + 3 * (size_t)mesh->indices[3 * t + k]);
+        csg_vec3 middle = csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3);
+        csg_vec3 face =
+            csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
+        count += !csg_own_rests_normal(&o->rests, middle, face, &normal);
+    }
+    return count;
+}
+
+static void fill_stats(own *o, csgm_mesh_stats *stats)
+{
+    *stats = o->rests.stats;
+    stats->mesh_s = csg_clock_now_s() - o->watch.started_s - stats->octree_s - stats->reshape_s;
+    stats->own_triangles = count_own(o);
+    stats->memory_peak_bytes = atomic_load(&o->input.context->memory.peak_bytes);
 }
 
 /* Bounds and cells that are no numbers are for the lattice to refuse. */
@@ -149,6 +169,12 @@ static bool is_whole(const csg_mesh_input *in)
 {
     return !(in->options->cell_size < 0) && !isnan(in->options->cell_size) &&
            csg_box_is_finite(in->bounds) && csg_box_contains_box(in->bounds, in->field->bounds);
+}
+
+/* A vertex at the border of two colours would be of both. */
+static bool can_be_joined(const csg_own_units *units)
+{
+    return units->are_apart || (csg_booleans_are_available() && units->look_alike);
 }
 
 static csgm_status build(own *o)
@@ -159,7 +185,11 @@ static csgm_status build(own *o)
     csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(o->input.context);
-    status = csg_own_join(&o->units, o->input.field->scene, &o->watch);
+    if (!can_be_joined(&o->units))
+        return CSGM_OK;
+    status = csg_own_rests_mesh(&o->rests, &o->units, &o->input);
+    if (status == CSGM_OK)
+        status = csg_own_join(&o->units, o->input.field->scene, &o->watch);
     if (status != CSGM_OK)
         return status;
     bool too_many = options->triangles && o->units.triangle_count > options->triangles;
@@ -184,6 +214,7 @@ csgm_status csg_mesh_build_own(csgm_context *context, const csgm_field *field,
     if (status == CSGM_OK && o.mesh && stats)
         fill_stats(&o, stats);
     csg_own_units_reset(&o.units);
+    csg_own_rests_release(&o.rests);
     *out = o.mesh;
     return status;
 }

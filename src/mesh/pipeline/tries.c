@@ -83,6 +83,15 @@ static double longest_side(const csgm_field *field, const csgm_mesh_options *opt
     return fmax(size.x, fmax(size.y, size.z));
 }
 
+double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options *options,
+                                const csg_mesh_share *share)
+{
+    csg_box solid = csg_box_intersect(box_of(field, options), field->bounds);
+    if (share || !csg_box_is_finite(solid)) /* parts have one tolerance */
+        solid = box_of(field, options);
+    return csg_mesh_quality_tolerance(options->quality, solid);
+}
+
 csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                                  const csgm_mesh_options *options, const csg_mesh_share *share,
                                  csgm_mesh **out, csgm_mesh_stats *stats)
@@ -105,11 +114,8 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                           .care = 0.85,
                           .started_s = csg_clock_now_s()};
     base.normals = CSGM_NORMALS_NONE;
-    csg_box solid = csg_box_intersect(box_of(field, options), field->bounds);
-    if (share || !csg_box_is_finite(solid)) /* parts have one tolerance */
-        solid = box_of(field, options);
     if (follows && !(goal.error > 0))
-        goal.error = csg_mesh_quality_tolerance(options->quality, solid);
+        goal.error = csg_mesh_tries_tolerance(field, options, share);
     goal.asked = goal.error;
     if (goal.chooses)
         base.resolution = FIRST_CELLS;

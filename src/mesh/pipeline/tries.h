@@ -13,6 +13,10 @@ static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
            options->improve || csg_mesh_is_adaptive(options);
 }
 
+/* Within which cells follow the shape where nothing but a quality is asked for. */
+double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options *options,
+                                const csg_mesh_share *share);
+
 /* csg_mesh_build_field for options that ask for it. */
 csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                                  const csgm_mesh_options *options, const csg_mesh_share *share,

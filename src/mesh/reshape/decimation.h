@@ -117,8 +117,8 @@ bool csg_decimation_can_hand_over(csg_decimation *d, uint32_t kept, double reach
 void csg_decimation_hand_over(csg_decimation *d);
 /* What collapses left gets another chance: edges in flat parts are flipped where that makes better
  * triangles, and vertices that are no corners of the mesh as it is now are none. *any: something
- * changed, and is fresh. CSGM_OK, or why it was stopped (reported). */
-csgm_status csg_decimation_loosen(csg_decimation *d, bool *any);
+ * changed, and is fresh. False: stopped, or without memory; the watch knows. */
+bool csg_decimation_loosen(csg_decimation *d, bool *any);
 /* room->seen, from who takes which. */
 void csg_decimation_find_seen(csg_decimation *d);
 

@@ -139,13 +139,13 @@ static bool ease_kinds(csg_decimation *d, bool *any)
     return done;
 }
 
-csgm_status csg_decimation_loosen(csg_decimation *d, bool *any)
+bool csg_decimation_loosen(csg_decimation *d, bool *any)
 {
     enum { PASSES = 8 };
     *any = false;
     if (!ease_kinds(d, any))
-        return csg_mesh_why_stopped(d->remesh->watch);
+        return false;
     for (int pass = 0; pass < PASSES && flip_all(d); pass++)
         *any = true;
-    return CSGM_OK;
+    return true;
 }

@@ -278,7 +278,7 @@ static csgm_status run_loosened(cutting *c, uint32_t least)
     csgm_status status = CSGM_OK;
     bool any = true;
     for (int round = 0; round < ROUNDS && any && status == CSGM_OK; round++) {
-        status = csg_decimation_loosen(d, &any);
+        status = csg_decimation_loosen(d, &any) ? CSGM_OK : CSGM_CANCELLED;
         if (status == CSGM_OK && (any || round == 0))
             status = run_last(c, least);
     }

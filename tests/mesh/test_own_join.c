@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT
+ * Polyhedra that sharp operators combine, with each other and with solids that cells are made for:
+ * what is taken is closed, meets nowhere (CGAL), lies on its surface and has the solid on its inner
+ * side everywhere (by solid angles); every allocation may fail.
+ */
+#include "mesh/own_support.h"
+#include "mesh/uncrossed.h"
+#include "shape/polyhedra/booleans.h"
+#include "shape/solid_support.h"
+
+#include <math.h>
+
+/* ---- what is joined ----------------------------------------------------------------------------
+ */
+
+/* Balls, prisms and boxes, plain, hollow or mirrored, on whole places now and then, so that faces
+ * lie in one plane. */
+static csg_node_id random_unit(mesh_case *c, csg_random *random)
+{
+    bool whole = csg_random_uniform(random, 0, 1) < 0.5;
+    double kind = csg_random_uniform(random, 0, 1);
+    csg_node_id node;
+    if (kind < 0.4) {
+        node = make_box(c, 1, 0.5, 1.5);
+    } else if (kind < 0.6) {
+        csg_outline outline;
+        csg_outline_init(&outline, &c->context.memory);
+        add_rectangle(&outline, -1, -1, 1, 1);
+        add_star(&outline, random, (csg_vec2){0, 0}, 0.2, 0.8, 12, true);
+        node = csg_build_extrude(&c->builder, region_of(c, &outline), -1, 1, NOWHERE);
+    } else {
+        node = make_ball(c, csg_vec3_make(0, 0, 0), 1.2, 12, kind < 0.8 ? 0.2 : 0);
+    }
+    if (!whole)
+        node = posed_anyhow(c, node, random);
+    csg_vec3 by = solid_random_point(random, 1.5);
+    if (whole)
+        by = csg_vec3_make(round(by.x), round(by.y), round(by.z));
+    return moved(c, node, by.x, by.y, by.z);
+}
+
+static csg_node_id random_tree(mesh_case *c, csg_random *random)
+{
+    static const csg_node_kind KINDS[] = {CSG_NODE_UNION, CSG_NODE_INTERSECTION,
+                                          CSG_NODE_DIFFERENCE, CSG_NODE_UNION};
+    csg_node_id node = random_unit(c, random);
+    int count = 1 + (int)csg_random_uniform(random, 0, 5);
+    for (int i = 0; i < count; i++) {
+        csg_node_kind kind = KINDS[(int)csg_random_uniform(random, 0, 4)];
+        node = joined(c, kind, SHARP, node, random_unit(c, random));
+    }
+    return node;
+}
+
+static void assert_is_solid(mesh_case *c, csg_random *random)
+{
+    csgm_mesh_view view = csg_mesh_view(c->mesh);
+    assert_int_equal(csg_mesh_inspect(&c->context, &view, 0, &c->check), CSGM_OK);
+    assert_int_equal(c->check.boundary_edges + c->check.nonmanifold_edges +
+                         c->check.misoriented_edges + c->check.nonmanifold_vertices,
+                     0);
+    assert_uncrossed(c->mesh, "joined");
+    if (c->stats.tolerance > 0) {
+        assert_true(fabs(mesh_largest_error(c)) < 1.5 * c->stats.tolerance);
+        assert_in_range(c->stats.own_triangles, 1, c->mesh->triangle_count - 1);
+        assert_winds_beyond(c, random, 2 * c->stats.tolerance);
+    } else {
+        assert_true(fabs(mesh_largest_error(c)) < 1e-5);
+        assert_winds_around(c, random);
+    }
+}
+
+/* What is taken is the solid: closed, uncrossed, on its surface, with the solid on its inner
+ * side. */
+static void test_random_joins(void **state)
+{
+    (void)state;
+    enum { SCENES = 200 };
+    int own = 0;
+    for (unsigned seed = 0; seed < SCENES; seed++) {
+        mesh_case c;
+        csg_random random = {seed + 1};
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, random_tree(&c, &random));
+        csgm_mesh_options options = plain();
+        if (is_taken(&c, &options)) {
+            own++;
+            assert_is_solid(&c, &random);
+        }
+        mesh_case_end(&c);
+    }
+    if (csg_booleans_are_available())
+        assert_in_range(own, SCENES * 3 / 5, SCENES);
+    else
+        assert_int_equal(own, 0);
+}
+
+/* A hole through a box, beside a box in the same plane: no triangle more than the outline needs. */
+static void test_joined_faces(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    if (csg_booleans_are_available()) {
+        csg_node_id plate = joined(&c, CSG_NODE_UNION, SHARP, make_box(&c, 2, 1, 0.5),
+                                   moved(&c, make_box(&c, 1, 1, 0.5), 3, 0, 0));
+        mesh_case_compile(
+            &c, joined(&c, CSG_NODE_DIFFERENCE, SHARP, plate, make_box(&c, 0.25, 0.25, 2)));
+        csgm_mesh_options options = plain();
+        mesh_build_closed(&c, &options, "a plate");
+        assert_int_equal(c.stats.own_triangles, c.mesh->triangle_count);
+        assert_int_equal(c.mesh->vertex_count, 16);
+        assert_int_equal(c.mesh->triangle_count, 32);
+        assert_int_equal(c.check.genus, 1);
+        assert_true(fabs(c.check.volume - (12 - 0.25)) < 1e-6);
+    }
+    mesh_case_end(&c);
+}
+
+/* ---- what is joined with solids that are no polyhedra ------------------------------------------
+ */
+
+static csg_node_id random_rest(mesh_case *c, csg_random *random)
+{
+    csg_node_id node;
+    switch ((int)csg_random_uniform(random, 0, 5)) {
+    case 0:
+        node = make_sphere(c, csg_random_uniform(random, 0.3, 1));
+        break;
+    case 1:
+        node = csg_build_capsule(&c->builder, csg_vec3_make(-2, 0, 0), csg_vec3_make(2, 0.5, 0),
+                                 csg_random_uniform(random, 0.2, 0.5), 0.3, NOWHERE);
+        break;
+    case 2: /* without end: cut far from everything */
+        node = csg_build_half_space(&c->builder, csg_vec3_make(0.6, 0, 0.8),
+                                    csg_random_uniform(random, -0.5, 0.5), NOWHERE);
+        break;
+    case 3:
+        node = joined(c, CSG_NODE_UNION, ROUND(0.3), make_sphere(c, 0.6),
+                      moved(c, make_box(c, 0.3, 0.3, 1), 0.4, 0, 0));
+        break;
+    default: /* beside these a box is none, either */
+        node = joined(c, CSG_NODE_UNION, SHARP, make_box(c, 0.25, 0.5, 2), make_sphere(c, 0.7));
+    }
+    csg_vec3 by = solid_random_point(random, 1);
+    return moved(c, node, by.x, by.y, by.z);
+}
+
+/* Bumpy balls and others in one operator, or one within another. */
+static csg_node_id mixed_tree(mesh_case *c, csg_random *random)
+{
+    static const csg_node_kind KINDS[] = {CSG_NODE_DIFFERENCE, CSG_NODE_INTERSECTION,
+                                          CSG_NODE_DIFFERENCE, CSG_NODE_UNION};
+    csg_node_id nodes[5];
+    size_t count = 2 + (size_t)csg_random_uniform(random, 0, 3);
+    for (size_t i = 0; i < count; i++)
+        nodes[i] =
+            i ? random_rest(c, random)
+              : make_ball(c, csg_vec3_make(0, 0, 0), 1.2, 16, csg_random_uniform(random, 0, 0.2));
+    if (csg_random_uniform(random, 0, 1) < 0.3)
+        nodes[0] = joined(c, CSG_NODE_DIFFERENCE, SHARP, random_rest(c, random), nodes[0]);
+    csg_node_kind kind = KINDS[(int)csg_random_uniform(random, 0, 4)];
+    return csg_build_operator(&c->builder, kind, SHARP, nodes, count, NOWHERE);
+}
+
+static void test_random_mixtures(void **state)
+{
+    (void)state;
+    enum { SCENES = 25 };
+    int own = 0, mixed = 0;
+    for (unsigned seed = 0; seed < SCENES; seed++) {
+        mesh_case c;
+        csg_random random = {seed + 1};
+        mesh_case_begin(&c, 2);
+        mesh_case_compile(&c, mixed_tree(&c, &random));
+        csgm_mesh_options options = plain();
+        options.quality = CSGM_QUALITY_DRAFT;
+        if (csg_box_is_finite(c.field->bounds) && is_taken(&c, &options)) {
+            own++;
+            mixed += c.stats.tolerance > 0;
+            assert_is_solid(&c, &random);
+        }
+        mesh_case_end(&c);
+    }
+    if (csg_booleans_are_available())
+        assert_true(own > SCENES / 2 && mixed > SCENES / 3);
+    else
+        assert_int_equal(own, 0);
+}
+
+/* A hole has the normals of its field: those of a cylinder, though its triangles are few. */
+static void test_normals_of_rests(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    if (csg_booleans_are_available()) {
+        csg_node_id hole = csg_build_capsule(&c.builder, csg_vec3_make(0, 0, -5),
+                                             csg_vec3_make(0, 0, 5), 0.5, 0.5, NOWHERE);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_DIFFERENCE, SHARP,
+                                     make_ball(&c, csg_vec3_make(0, 0, 0), 2, 20, 0), hole));
+        csgm_mesh_options options = plain();
+        options.normals = CSGM_NORMALS_CREASE;
+        assert_true(is_taken(&c, &options));
+        int count = 0;
+        for (size_t i = 0; i < c.mesh->vertex_count; i++) {
+            csg_vec3 n = csg_vec3_from_floats(c.mesh->normals + 3 * i), p = mesh_vertex(&c, i);
+            double radius = hypot(p.x, p.y);
+            if (fabs(n.z) > 1e-3 || radius > 0.6)
+                continue;
+            count++;
+            assert_true(hypot(n.x + p.x / radius, n.y + p.y / radius) < 1e-2);
+        }
+        assert_true(count > 20);
+    }
+    mesh_case_end(&c);
+}
+
+/* ---- looks -------------------------------------------------------------------------------------
+ */
+
+/* Units of two colours stay with the cells: a vertex at their border would be of both. */
+static void test_joined_looks(void **state)
+{
+    (void)state;
+    for (int same = 0; same < 2; same++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id a =
+            csg_build_color(&c.builder, (csg_color){1, 0, 0, 1}, make_box(&c, 1, 1, 1), NOWHERE);
+        csg_node_id b = moved(&c, make_box(&c, 1, 1, 1), 0.5, 0.5, 0.5);
+        if (same)
+            b = csg_build_color(&c.builder, (csg_color){1, 0, 0, 1}, b, NOWHERE);
+        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, a, b));
+        csgm_mesh_options options = plain();
+        assert_int_equal(is_taken(&c, &options), same && csg_booleans_are_available());
+        for (size_t i = 0; c.mesh && i < c.mesh->vertex_count; i++)
+            assert_int_equal(c.mesh->colors[4 * i], 255);
+        mesh_case_end(&c);
+    }
+}
+
+/* ---- the same everywhere, and allocations that fail --------------------------------------------
+ */
+
+static csg_node_id one_mixture(mesh_case *c)
+{
+    csg_random random = {3};
+    return joined(c, CSG_NODE_DIFFERENCE, SHARP, make_ball(c, csg_vec3_make(0, 0, 0), 1, 60, 0.2),
+                  random_rest(c, &random));
+}
+
+static void test_same_bytes(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 3);
+    mesh_case_compile(&c, one_mixture(&c));
+    csgm_mesh_options options = plain();
+    options.quality = CSGM_QUALITY_DRAFT;
+    assert_int_equal(own_of(&c, &options) > 0, csg_booleans_are_available());
+    mesh_assert_same_by(&c, one_mixture, &options, 1, CSGM_ISA_AUTO);
+    mesh_assert_same_by(&c, one_mixture, &options, 2, CSGM_ISA_SCALAR);
+    mesh_case_end(&c);
+}
+
+static csg_node_id without_box(mesh_case *c)
+{
+    return joined(c, CSG_NODE_DIFFERENCE, SHARP, make_ball(c, csg_vec3_make(0, 0, 0), 1, 8, 0),
+                  make_box(c, 2, 0.25, 0.25));
+}
+
+static csg_node_id without_ball(mesh_case *c)
+{
+    return joined(c, CSG_NODE_DIFFERENCE, SHARP, make_ball(c, csg_vec3_make(0, 0, 0), 1, 12, 0),
+                  moved(c, make_sphere(c, 0.5), 0, 0, 1));
+}
+
+static void test_each_allocation(void **state)
+{
+    (void)state;
+    own_fail_each_allocation(without_box, 1);
+    own_fail_each_allocation(without_ball, 9);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random_joins),     cmocka_unit_test(test_joined_faces),
+        cmocka_unit_test(test_joined_looks),     cmocka_unit_test(test_random_mixtures),
+        cmocka_unit_test(test_normals_of_rests), cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_each_allocation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
