@@ -24,8 +24,11 @@ class Quality(cli.CliTest):
         return self.read(name)
 
     def test_cube(self):
+        """A sharp cube has triangles of its own; a cylinder has a tolerance."""
         stats = self.stats("cube(10);", "--quality", "normal")
         self.assertEqual(stats["mesh"]["triangles"], 12)
+        self.assertEqual(stats["lattice"], {"adaptive": False, "own_triangles": 12})
+        stats = self.stats("cylinder(r = 5, h = 10);", "--quality", "normal")
         self.assertEqual(stats["quality"]["distance_allowed"], 2 ** -7)
         self.assertEqual(len(self.bytes("cube(10);", "--quality", "draft", name="out.stl")), 84 + 12 * 50)
 
@@ -200,9 +203,9 @@ scale(1e14) d();
 
     def test_lattice_of_parts(self):
         """Small parts begin with smaller cells; blocks of one size are counted together."""
-        alone = [self.stats(part + ";", "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]
-                 for part in ("cube(100)", "cube(1)")]
-        both = self.stats('part("a") cube(1); part("b") cube(100);', "--quality", "draft", "--bounds=-1,-1,-1,101,101,101")["lattice"]
+        alone = [self.stats(part + ";", "--quality", "draft", "--bounds=-51,-51,-1,51,51,101")["lattice"]
+                 for part in ("cylinder(r = 50, h = 100)", "cylinder(r = 0.5, h = 1)")]
+        both = self.stats('part("a") cylinder(r = 0.5, h = 1); part("b") cylinder(r = 50, h = 100);', "--quality", "draft", "--bounds=-51,-51,-1,51,51,101")["lattice"]
         self.assertGreater(alone[0]["cell_coarsest"], alone[1]["cell_coarsest"])
         self.assertEqual(both["cell_coarsest"], alone[0]["cell_coarsest"])
         self.assertEqual(sum(both["blocks"]), sum(map(sum, (lattice["blocks"] for lattice in alone))))
