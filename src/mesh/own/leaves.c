@@ -36,7 +36,7 @@ static bool is_sharp_rectangle(const csgm_scene *scene, const csg_node *node)
  */
 
 /* half: sizes. */
-static csgm_status make_box(csg_memory *memory, csg_vec3 half, double middle, csg_own_unit *unit)
+static csgm_status make_box(csg_memory *memory, csg_vec3 half, double middle, csg_own_leaf *leaf)
 {
     static const uint32_t SIDES[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -51,7 +51,7 @@ static csgm_status make_box(csg_memory *memory, csg_vec3 half, double middle, cs
         added = csg_triangles_add_face(&triangles, SIDES[i], 4);
     csgm_status status = CSGM_ERR_MEMORY;
     if (added)
-        status = csg_polyhedron_create(memory, &triangles, NULL, &unit->shape);
+        status = csg_polyhedron_create(memory, &triangles, NULL, &leaf->shape);
     csg_triangles_release(&triangles);
     return status;
 }
@@ -87,7 +87,7 @@ static void round_points(csg_outline *outline, const csg_affine *place)
 }
 
 static csgm_status make_prism(const csgm_scene *scene, const csg_node *figure, double half,
-                              double middle, csg_own_unit *unit)
+                              double middle, csg_own_leaf *leaf)
 {
     csg_memory *memory = &scene->context->memory;
     csg_outline outline;
@@ -96,36 +96,36 @@ static csgm_status make_prism(const csgm_scene *scene, const csg_node *figure, d
     csgm_status status = CSGM_ERR_MEMORY;
     csg_outline_init(&outline, memory);
     if (csg_outline_append(&outline, csg_region_outline(scene->shapes[figure->payload]))) {
-        round_points(&outline, &unit->place);
+        round_points(&outline, &leaf->way.place);
         status = csg_prism(memory, &outline, middle - half, middle + half, &triangles);
     }
     csg_outline_release(&outline);
     if (status != CSGM_OK)
         return status;
-    status = csg_polyhedron_create(memory, &triangles, &repairs, &unit->shape);
+    status = csg_polyhedron_create(memory, &triangles, &repairs, &leaf->shape);
     csg_triangles_release(&triangles);
     return status;
 }
 
-/* The unit's shape stays NULL: the plate is none of an outline. */
-static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_own_unit *unit)
+/* The shape stays NULL: the plate is none of an outline. */
+static csgm_status extrude(const csgm_scene *scene, const csg_node *plate, csg_own_leaf *leaf)
 {
     const csg_node_id *children = csg_scene_children(scene, plate);
-    csg_own_way flat = {.place = csg_affine_identity(), .look = unit->look}, ends = flat;
+    csg_own_way flat = {.place = csg_affine_identity(), .look = leaf->way.look}, ends = flat;
     const csg_node *figure = leaf_below(scene, &scene->nodes[children[0]], &flat);
     const csg_node *slab = leaf_below(scene, &scene->nodes[children[1]], &ends);
     if (slab->kind != CSG_NODE_SLAB)
         return CSGM_OK;
-    unit->place = csg_affine_multiply(unit->place, csg_affine_of_plane(flat.place));
-    unit->look = flat.look;
+    leaf->way.place = csg_affine_multiply(leaf->way.place, csg_affine_of_plane(flat.place));
+    leaf->way.look = flat.look;
     double half = csg_scene_parameters(scene, slab)[0], middle = ends.place.t[2];
     const double *sizes = csg_scene_parameters(scene, figure);
     csgm_status status = CSGM_OK;
     if (is_shape(scene, figure, CSG_SHAPE_REGION))
-        status = make_prism(scene, figure, half, middle, unit);
+        status = make_prism(scene, figure, half, middle, leaf);
     else if (is_sharp_rectangle(scene, figure))
         status = make_box(&scene->context->memory, csg_vec3_make(sizes[0], sizes[1], half), middle,
-                          unit);
+                          leaf);
     return status == CSGM_ERR_MEMORY ? status : CSGM_OK;
 }
 
@@ -151,17 +151,16 @@ csg_own_leaf_kind csg_own_leaf_kind_of(const csgm_scene *scene, const csg_node *
 }
 
 csgm_status csg_own_leaf_make(const csgm_scene *scene, const csg_node *node, const csg_own_way *way,
-                              csg_own_unit *unit)
+                              csg_own_leaf *leaf)
 {
-    *unit = (csg_own_unit){
-        .place = way->place, .look = way->look, .node = (csg_node_id)(node - scene->nodes)};
+    *leaf = (csg_own_leaf){.way = *way};
     if (csg_node_is_plate(node))
-        return extrude(scene, node, unit);
+        return extrude(scene, node, leaf);
     if (is_sharp_box(scene, node)) {
         const double *half = csg_scene_parameters(scene, node);
-        return make_box(&scene->context->memory, csg_vec3_make(half[0], half[1], half[2]), 0, unit);
+        return make_box(&scene->context->memory, csg_vec3_make(half[0], half[1], half[2]), 0, leaf);
     }
-    unit->shape = scene->shapes[node->payload];
-    csg_shape_retain(unit->shape);
+    leaf->shape = scene->shapes[node->payload];
+    csg_shape_retain(leaf->shape);
     return CSGM_OK;
 }

@@ -5,7 +5,7 @@
 #ifndef CSG_MESH_OWN_LEAVES_H
 #define CSG_MESH_OWN_LEAVES_H
 
-#include "mesh/own/units.h"
+#include "scene/scene.h"
 
 typedef enum csg_own_leaf_kind {
     CSG_OWN_LEAF_NONE, /* it is no such leaf */
@@ -23,9 +23,14 @@ typedef struct csg_own_way {
 csg_own_way csg_own_way_below(const csgm_scene *scene, const csg_node *node, csg_own_way way);
 
 csg_own_leaf_kind csg_own_leaf_kind_of(const csgm_scene *scene, const csg_node *node);
-/* The unit of such a leaf, but for its box. unit->shape stays NULL where an outline cannot be cut
- * into triangles. CSGM_ERR_MEMORY is not reported. */
+typedef struct csg_own_leaf {
+    csg_shape *shape; /* one reference */
+    csg_own_way way;  /* of the shape */
+} csg_own_leaf;
+
+/* Such a leaf below this way. leaf->shape is NULL where an outline cannot be cut into triangles.
+ * CSGM_ERR_MEMORY is not reported. */
 csgm_status csg_own_leaf_make(const csgm_scene *scene, const csg_node *node, const csg_own_way *way,
-                              csg_own_unit *unit);
+                              csg_own_leaf *leaf);
 
 #endif

@@ -104,16 +104,20 @@ static bool add_unit(finder *f, const csg_own_unit *unit)
 
 static bool add_leaf(finder *f, csg_node_id i)
 {
-    csg_own_unit unit;
-    if (csg_own_leaf_make(f->scene, &f->scene->nodes[i], &f->ways[i], &unit) != CSGM_OK)
+    csg_own_leaf leaf;
+    if (csg_own_leaf_make(f->scene, &f->scene->nodes[i], &f->ways[i], &leaf) != CSGM_OK)
         return false;
-    f->all = unit.shape != NULL;
+    f->all = leaf.shape != NULL;
     if (!f->all)
         return true;
-    unit.box = csg_affine_box(&unit.place, unit.shape->box);
+    const csg_own_unit unit = {.shape = leaf.shape,
+                               .place = leaf.way.place,
+                               .look = leaf.way.look,
+                               .node = i,
+                               .box = csg_affine_box(&leaf.way.place, leaf.shape->box)};
     bool added = add_unit(f, &unit);
     if (!added || !f->all)
-        csg_shape_release(unit.shape);
+        csg_shape_release(leaf.shape);
     return added;
 }
 
