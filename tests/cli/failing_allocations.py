@@ -85,12 +85,14 @@ JOBS = {
     "FreeType, HarfBuzz, fontconfig": ["text.txt", "-r", "12", "-o", "out.stl"], "Qhull": ["hull.txt", "-r", "12", "-o", "out.stl"],
     "Clipper": ["flat.txt", "-o", "out.svg"], "OpenMesh": ["convert", "in.stl", "--simplify", "0.1", "-o", "out.stl"],
     "libpng": ["render", "balls.txt", "--size", "24x24", "-o", "out.png"], "JSON": ["params", "balls.txt", "-p", "sets.json", "-P", "one"],
+    "Manifold": ["joined.txt", "--quality", "draft", "-o", "out.ply"],
     "cells that follow the shape": ["balls.txt", "--quality", "draft", "-o", "out.obj"],
 }
 # A single allocation that fails among others that do not ends these libraries: nlohmann's values allocate in destructors,
 # fontconfig looks at no result. Memory that has ended is found out before they begin.
 ABORTS = ("tinygltf", "tinygltf and Draco", "FreeType, HarfBuzz, fontconfig")
-SCENES = {"balls.txt": BALLS, "text.txt": 'linear_extrude(2) text("Ag&");\n', "flat.txt": "offset(1) difference() { square(9); circle(3); }\n",
+SCENES = {"balls.txt": BALLS, "joined.txt": 'difference() { import("in.stl"); rotate(40) cube([3, 4, 50], center = true); sphere(3); }\n',
+          "text.txt": 'linear_extrude(2) text("Ag&");\n', "flat.txt": "offset(1) difference() { square(9); circle(3); }\n",
           "hull.txt": "hull() { cube(2); translate([4, 1, 3]) cube(1); }\n", "sets.json": '{"parameterSets": {"one": {"x": "1"}}, "fileFormatVersion": "1"}\n'}
 
 
