@@ -92,6 +92,17 @@ static double nearest_places(const csg_own_units *units)
     return 0x1p-21 * farthest;
 }
 
+/* The polyhedron knows of no time, but takes memory in each step. */
+static csgm_status make_polyhedron(csg_memory *memory, const csg_triangles *triangles,
+                                   csg_mesh_watch *watch, csg_shape **joined)
+{
+    csg_memory_end_when(memory, csg_mesh_should_stop, watch);
+    csgm_status status = csg_polyhedron_create(memory, triangles, NULL, joined);
+    bool is_late = csg_memory_has_ended(memory);
+    csg_memory_end_when(memory, NULL, NULL);
+    return is_late && status == CSGM_ERR_MEMORY ? CSGM_CANCELLED : status;
+}
+
 /* *joined NULL: there is none. */
 static csgm_status make_joined(joining *j, csg_mesh_watch *watch, csg_shape **joined)
 {
@@ -102,7 +113,7 @@ static csgm_status make_joined(joining *j, csg_mesh_watch *watch, csg_shape **jo
     csgm_status status =
         csg_booleans(memory, j->steps, j->count, nearest_places(j->units), &asked, &triangles);
     if (status == CSGM_OK && triangles.count)
-        status = csg_polyhedron_create(memory, &triangles, NULL, joined);
+        status = make_polyhedron(memory, &triangles, watch, joined);
     csg_triangles_release(&triangles);
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : CSGM_OK;
 }
