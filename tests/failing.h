@@ -4,11 +4,13 @@
 #ifndef TEST_FAILING_H
 #define TEST_FAILING_H
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 typedef struct failing {
-    long left; /* allocations before the one that fails; negative once one has */
-    long live;
+    /* threads of one pool share them */
+    atomic_long left; /* allocations before the one that fails; negative once one has */
+    atomic_long live;
 } failing;
 
 static inline void *failing_alloc(void *user, size_t size)

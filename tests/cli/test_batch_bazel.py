@@ -28,6 +28,7 @@ class Syntax(unittest.TestCase):
 class Bazel(BuildTest):
     def setUp(self):
         super().setUp()
+        self.env.pop("CC", None)  # bazel takes a path, no command of several words
         logs = tempfile.TemporaryDirectory()
         self.addCleanup(logs.cleanup)
         self.log = os.path.join(logs.name, "calls.log")

@@ -230,7 +230,7 @@ class Fence(cli.CliTest):
         result = cli.run("info", "a.drc", "--max-memory", "8M", "--threads", "1", cwd=self.folder)
         self.assert_status(result, 2)
         self.assertIn("E0901", result.stderr)
-        self.assertIn("that the process may have", result.stderr)
+        self.assertIn("more memory is needed than the limit of 8 MiB", result.stderr)
 
 
 if __name__ == "__main__":
