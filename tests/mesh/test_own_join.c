@@ -9,6 +9,7 @@
 #include "shape/solid_support.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* ---- what is joined ----------------------------------------------------------------------------
  */
@@ -165,6 +166,29 @@ static csg_node_id mixed_tree(mesh_case *c, csg_random *random)
     return csg_build_operator(&c->builder, kind, SHARP, nodes, count, NOWHERE);
 }
 
+/* Thousands of operands are left to the cells, without a word. */
+static void test_too_many(void **state)
+{
+    (void)state;
+    enum { PAIRS = 2100 };
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    csg_node_id *nodes = malloc(PAIRS * sizeof *nodes);
+    assert_non_null(nodes);
+    for (int i = 0; i < PAIRS; i++) {
+        csg_node_id ball = make_ball(&c, csg_vec3_make(3 * i, 0, 0), 1, 4, 0);
+        nodes[i] = joined(&c, CSG_NODE_DIFFERENCE, SHARP, ball,
+                          moved(&c, make_sphere(&c, 0.5), 3 * i, 0, 1));
+    }
+    mesh_case_compile(&c,
+                      csg_build_operator(&c.builder, CSG_NODE_UNION, SHARP, nodes, PAIRS, NOWHERE));
+    free(nodes);
+    csgm_mesh_options options = plain();
+    assert_false(is_taken(&c, &options));
+    assert_int_equal(c.findings, 0);
+    mesh_case_end(&c);
+}
+
 static void test_random_mixtures(void **state)
 {
     (void)state;
@@ -222,6 +246,27 @@ static void test_normals_of_rests(void **state)
 
 /* ---- looks -------------------------------------------------------------------------------------
  */
+
+/* The colour stands below the operators; the first operand is none of triangles. */
+static void test_color_below(void **state)
+{
+    (void)state;
+    if (!csg_booleans_are_available())
+        skip();
+    mesh_case c;
+    const csg_color red = {1, 0, 0, 1};
+    mesh_case_begin(&c, 1);
+    csg_node_id ball = moved(&c, make_ball(&c, csg_vec3_make(0, 0, 0), 1, 16, 0), 0.5, 0, 0);
+    csg_node_id sphere = csg_build_color(&c.builder, red, make_sphere(&c, 1), NOWHERE);
+    mesh_case_compile(&c, joined(&c, CSG_NODE_DIFFERENCE, SHARP, sphere,
+                                 csg_build_color(&c.builder, red, ball, NOWHERE)));
+    csgm_mesh_options options = plain();
+    assert_true(is_taken(&c, &options));
+    assert_non_null(c.mesh->colors);
+    for (size_t i = 0; i < c.mesh->vertex_count; i++)
+        assert_true(c.mesh->colors[4 * i] == 255 && c.mesh->colors[4 * i + 1] == 0);
+    mesh_case_end(&c);
+}
 
 /* Units of two colours stay with the cells: a vertex at their border would be of both. */
 static void test_joined_looks(void **state)
@@ -294,6 +339,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_joins),     cmocka_unit_test(test_joined_faces),
         cmocka_unit_test(test_joined_looks),     cmocka_unit_test(test_random_mixtures),
+        cmocka_unit_test(test_too_many),         cmocka_unit_test(test_color_below),
         cmocka_unit_test(test_normals_of_rests), cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_each_allocation),
     };

@@ -16,7 +16,7 @@ enum { MOST_UNITS = 4096, LEAST_TRIANGLES_BESIDE_RESTS = 256 };
 typedef struct finder {
     csg_own_units *units;
     const csgm_scene *scene;
-    bool boxes;       /* count as polyhedra */
+    bool boxes;       /* count as polyhedra: where there is nothing else */
     uint8_t *holds;   /* per node: there are polyhedra below, and only sharp operators above them */
     uint8_t *reached; /* per node: it is on the way to them */
     csg_own_way *ways;
@@ -38,14 +38,22 @@ static bool is_way(const csg_node *node)
            (csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend));
 }
 
-static void look_for_polyhedra(finder *f)
+/* Of a node that is no leaf: how many of its children hold polyhedra. */
+static uint32_t count_holding(const finder *f, const csg_node *node)
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; is_way(node) && k < node->child_count; k++)
+        count += f->holds[csg_scene_children(f->scene, node)[k]];
+    return count;
+}
+
+/* all: a node counts only where everything below it does. */
+static void look_for_polyhedra(finder *f, bool all)
 {
     for (csg_node_id i = 0; i <= f->scene->root; i++) {
         const csg_node *node = &f->scene->nodes[i];
-        const csg_node_id *children = csg_scene_children(f->scene, node);
-        f->holds[i] = is_leaf(f, node);
-        for (uint32_t k = 0; !f->holds[i] && is_way(node) && k < node->child_count; k++)
-            f->holds[i] = f->holds[children[k]];
+        uint32_t count = count_holding(f, node);
+        f->holds[i] = is_leaf(f, node) || (all ? count && count == node->child_count : count);
     }
 }
 
@@ -59,15 +67,16 @@ static bool is_same_look(const csg_look *a, const csg_look *b)
            a->color.a == b->color.a && a->metallic == b->metallic && a->roughness == b->roughness;
 }
 
-/* Whether all leaves look alike; there may be nodes that the root does not have. */
-static bool has_one_look(const finder *f)
+/* There may be nodes that the root does not have. */
+static void look_at_leaves(finder *f)
 {
     const csgm_scene *scene = f->scene;
     const csg_look *first = NULL;
+    f->units->look_alike = true;
     memset(f->reached, 0, scene->node_count);
     f->reached[scene->root] = true;
     f->ways[scene->root] = (csg_own_way){.place = csg_affine_identity()};
-    for (csg_node_id i = scene->root + 1; i-- > 0;) {
+    for (csg_node_id i = scene->root + 1; i-- > 0 && f->units->look_alike;) {
         const csg_node *node = &scene->nodes[i];
         if (!f->reached[i])
             continue;
@@ -80,10 +89,10 @@ static bool has_one_look(const finder *f)
         if (!csg_node_is_primitive(node->kind))
             continue;
         first = first ? first : &f->ways[i].look;
-        if (!is_same_look(first, &f->ways[i].look))
-            return false;
+        f->units->look_alike = is_same_look(first, &f->ways[i].look);
     }
-    return true;
+    if (first)
+        f->units->look = *first;
 }
 
 /* ---- units -------------------------------------------------------------------------------------
@@ -125,7 +134,6 @@ static bool add_leaf(finder *f, csg_node_id i)
 static bool add_rest(finder *f, csg_node_id i, csg_node_kind kind, bool is_operand)
 {
     const csg_own_unit unit = {.place = csg_affine_identity(),
-                               .look = f->ways[i].look,
                                .node = i,
                                .kind = kind,
                                .is_operand = is_operand,
@@ -171,7 +179,8 @@ static bool add_operands(finder *f, csg_node_id i)
                 f, i, node->kind == CSG_NODE_INTERSECTION ? CSG_NODE_INTERSECTION : CSG_NODE_UNION,
                 true);
         has_rest = true;
-        added = added && f->all && add_member(f, children[k], &way);
+        if (added && f->all)
+            added = add_member(f, children[k], &way);
     }
     return added;
 }
@@ -264,39 +273,26 @@ static bool can_be_numbered(const csg_own_units *units)
 /* ---- all of it ---------------------------------------------------------------------------------
  */
 
+/* Boxes are polyhedra where there is nothing else; beside what needs cells, cells are best for
+ * them. */
 static bool find(finder *f)
 {
     csg_own_units *units = f->units;
+    look_at_leaves(f);
+    f->boxes = true;
+    look_for_polyhedra(f, true);
+    f->boxes = f->holds[f->scene->root];
+    if (!f->boxes)
+        look_for_polyhedra(f, false);
     memset(f->reached, 0, f->scene->node_count);
-    look_for_polyhedra(f);
     if (!walk(f))
         return false;
-    if (!f->all) {
-        csg_own_units_reset(units);
-        return true;
-    }
     turn_round(units);
     number(units);
     units->are_apart =
-        !units->rest_count && has_unions_only(f->scene, f->reached) && are_apart(units);
-    return true;
-}
-
-/* Boxes are polyhedra where there is nothing else; beside what needs cells, cells are best for
- * them. */
-static bool find_either(finder *f)
-{
-    csg_own_units *units = f->units;
-    f->boxes = true;
-    if (!find(f))
-        return false;
-    if (!units->rest_count)
-        return true;
-    csg_own_units_reset(units);
-    f->boxes = false;
-    if (!find(f))
-        return false;
-    if (units->rest_count && units->triangle_count < LEAST_TRIANGLES_BESIDE_RESTS)
+        f->all && !units->rest_count && has_unions_only(f->scene, f->reached) && are_apart(units);
+    bool is_worth_it = !units->rest_count || units->triangle_count >= LEAST_TRIANGLES_BESIDE_RESTS;
+    if (!f->all || !can_be_numbered(units) || !is_worth_it)
         csg_own_units_reset(units);
     return true;
 }
@@ -310,14 +306,11 @@ csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
     f.holds = csg_memory_alloc(memory, nodes);
     f.reached = csg_memory_alloc(memory, nodes);
     f.ways = csg_memory_alloc(memory, nodes * sizeof *f.ways);
-    bool done = f.holds && f.reached && f.ways;
-    bool looks_alike = done && has_one_look(&f);
-    done = done && find_either(&f);
-    units->look_alike = looks_alike;
+    bool done = f.holds && f.reached && f.ways && find(&f);
     csg_memory_release(memory, f.holds, nodes);
     csg_memory_release(memory, f.reached, nodes);
     csg_memory_release(memory, f.ways, nodes * sizeof *f.ways);
-    if (!done || !can_be_numbered(units))
+    if (!done)
         csg_own_units_reset(units);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
 }
@@ -330,11 +323,10 @@ void csg_own_units_give(csg_own_unit *unit, csg_shape *shape)
 
 void csg_own_units_replace(csg_own_units *units, csg_shape *joined)
 {
-    csg_look look = units->items[0].look;
     for (size_t i = 0; i < units->count; i++)
         csg_shape_release(units->items[i].shape);
     units->items[0] = (csg_own_unit){
-        .shape = joined, .place = csg_affine_identity(), .look = look, .box = joined->box};
+        .shape = joined, .place = csg_affine_identity(), .look = units->look, .box = joined->box};
     units->count = 1;
     units->are_apart = true;
     number(units);

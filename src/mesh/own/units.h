@@ -34,7 +34,8 @@ typedef struct csg_own_units {
     size_t member_count, member_room, rest_count;
     uint64_t vertex_count, triangle_count;
     bool are_apart;  /* nothing but unions combine them, and their boxes do not meet */
-    bool look_alike; /* all leaves of the scene do */
+    bool look_alike; /* all leaves of the scene do: */
+    csg_look look;
 } csg_own_units;
 
 /* count 0: it is not such a scene, of more vertices than 32 bits can number, or of so few triangles

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Booleans by the Manifold library (J. Smith, "Towards Easy and Reliable AI-assisted Mesh
- * Booleans" has its ideas: symbolic perturbation, signs that agree). It works in doubles on one
- * thread here. What it throws becomes a status; its memory is its own, so what it will take at most
- * is asked of the caller's before.
+ * Booleans by the Manifold library (E. Lalish and others): symbolic perturbation decides where
+ * operands touch, so that the result is a manifold whatever rounding does. It works in doubles on
+ * one thread here. What it throws becomes a status.
  */
 #include "shape/polyhedra/manifold.h"
 
