@@ -338,16 +338,6 @@ csgm_status csg_mesh_too_large(csgm_context *context, uint64_t triangle_count)
     return CSGM_ERR_LIMIT;
 }
 
-static csgm_status why_stopped(csg_mesh_watch *watch)
-{
-    if (!atomic_load(&watch->timed_out))
-        return csg_mesh_why_stopped(watch);
-    csg_diag_plain(&watch->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
-                   "looking at the mesh took longer than the limit of %g s",
-                   watch->context->limits.timeout_s);
-    return CSGM_ERR_LIMIT;
-}
-
 static csgm_status inspect_indexed(csg_mesh_watch *watch, const csgm_mesh_view *mesh,
                                    csgm_mesh_check *out)
 {
@@ -371,7 +361,7 @@ static csgm_status inspect_indexed(csg_mesh_watch *watch, const csgm_mesh_view *
     }
     release_arrays(&context->memory, &in);
     if (is_stopped)
-        return why_stopped(watch);
+        return csg_mesh_why_work_stopped(watch, "looking at the mesh", "raise --timeout");
     *out = check;
     return CSGM_OK;
 }

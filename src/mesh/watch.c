@@ -77,15 +77,20 @@ void csg_mesh_take(csg_mesh_watch *w, csgm_stage stage, double part)
 
 csgm_status csg_mesh_why_stopped(csg_mesh_watch *w)
 {
+    return csg_mesh_why_work_stopped(
+        w, "meshing", "raise --timeout, or mesh more coarsely: --quality draft, or a lower -r");
+}
+
+csgm_status csg_mesh_why_work_stopped(csg_mesh_watch *w, const char *work, const char *hint)
+{
     if (atomic_load(&w->out_of_memory))
         return csg_context_no_memory(w->context);
     if (atomic_load(&w->refused))
         return CSGM_ERR_IO;
     if (!atomic_load(&w->timed_out))
         return CSGM_CANCELLED;
-    csg_diag_plain(&w->context->diags, CSG_DIAG_TIMEOUT, NULL,
-                   "raise --timeout, or mesh more coarsely: --quality draft, or a lower -r",
-                   "meshing took longer than the limit of %g s", w->context->limits.timeout_s);
+    csg_diag_plain(&w->context->diags, CSG_DIAG_TIMEOUT, NULL, hint,
+                   "%s took longer than the limit of %g s", work, w->context->limits.timeout_s);
     return CSGM_ERR_LIMIT;
 }
 

@@ -43,6 +43,8 @@ bool csg_mesh_should_stop(void *user);
 bool csg_mesh_stop_without_memory(csg_mesh_watch *watch);
 /* What a stage that was stopped ends with; reported where need be. */
 csgm_status csg_mesh_why_stopped(csg_mesh_watch *watch);
+/* The same of other work than meshing, named as a message begins with it. */
+csgm_status csg_mesh_why_work_stopped(csg_mesh_watch *watch, const char *work, const char *hint);
 /* Says that what was made is not closed, which is a bug. CSGM_ERR_INTERNAL. */
 csgm_status csg_mesh_report_open(csg_mesh_watch *watch);
 

@@ -6,33 +6,16 @@ server (nginx, where it is installed). Prints figures, the median of three runs 
 import json
 import os
 import shutil
-import socket
 import statistics
 import subprocess
 import tempfile
 import time
 
+import nginx
+
 PROGRAM = os.environ["CSGMESH"]
 TEXT = "union(blend = 0.2) {{\n  sphere(r = {a});\n  translate([1, {b}, 0]) cube({c});\n  cylinder(h = {h}, r = 1);\n}}\n"
 COUNT, SHARDS, RUNS = 400, 8, 3
-NGINX = """daemon off;
-pid {folder}/nginx.pid;
-error_log {folder}/nginx.log;
-events {{ }}
-http {{
-    access_log off;
-    server {{
-        listen 127.0.0.1:{port};
-        location / {{
-            root {folder}/served;
-            client_body_temp_path {folder}/served/tmp;
-            dav_methods PUT;
-            create_full_put_path on;
-            client_max_body_size 1G;
-        }}
-    }}
-}}
-"""
 
 
 def used(folder, *arguments, output=None):
@@ -76,26 +59,8 @@ def shards(folder):
               f"{max(shares) / (sum(shares) / SHARDS):.2f} of the average")
 
 
-def serve(folder):
-    """The address of a server, and its process; None: there is none."""
-    program = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
-    if not program:
-        return None, None
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    os.makedirs(os.path.join(folder, "served/tmp"))
-    for place in ("", "served", "served/tmp"):
-        os.chmod(os.path.join(folder, place), 0o777)
-    with open(os.path.join(folder, "nginx.conf"), "w", encoding="utf-8") as file:
-        file.write(NGINX.format(folder=folder, port=port))
-    process = subprocess.Popen([program, "-p", folder, "-c", os.path.join(folder, "nginx.conf")])
-    time.sleep(1)
-    return f"http://127.0.0.1:{port}", process
-
-
 def caches(folder):
-    address, server = serve(folder)
+    address, server = nginx.serve(folder) if nginx.PROGRAM else (None, None)
     for name, cache in (("a folder", "cache"), ("nginx", address)):
         if not cache:
             continue

@@ -7,7 +7,6 @@ import hashlib
 import http.server
 import json
 import os
-import shutil
 import socket
 import subprocess
 import threading
@@ -15,6 +14,7 @@ import time
 import unittest
 
 import cli
+import nginx
 from batch_support import BASE, BatchTest, MUG, digest, needs_hashes
 
 SMALL = ["-r", "8"]
@@ -450,50 +450,17 @@ class Credentials(RemoteTest):
         self.assertEqual(self.messages.count("\n"), 1)
 
 
-@unittest.skipUnless(shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin"), "no nginx")
+@unittest.skipUnless(nginx.PROGRAM, "no nginx")
 class Nginx(RemoteTest):
     """A server as Bazel's manual sets it up: nginx with files that may be put."""
 
     def test_nginx(self):
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        os.makedirs(self.path("served/tmp"))
-        os.chmod(self.folder, 0o777)
-        for place in ("served", "served/tmp"):
-            os.chmod(self.path(place), 0o777)
-        self.write("nginx.conf", f"""
-daemon off;
-pid {self.path("nginx.pid")};
-error_log {self.path("nginx.log")};
-events {{ }}
-http {{
-    access_log off;
-    server {{
-        listen 127.0.0.1:{port};
-        location / {{
-            root {self.path("served")};
-            client_body_temp_path {self.path("served/tmp")};
-            dav_methods PUT;
-            create_full_put_path on;
-            client_max_body_size 1G;
-        }}
-    }}
-}}
-""")
-        program = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
-        process = subprocess.Popen([program, "-p", self.folder, "-c", self.path("nginx.conf")], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
+        address, process = nginx.serve(self.folder)
         self.addCleanup(process.communicate)
         self.addCleanup(process.terminate)
-        for _ in range(500):
-            with socket.socket() as probe:
-                if probe.connect_ex(("127.0.0.1", port)) == 0 or process.poll() is not None:
-                    break
-            time.sleep(0.01)
         if process.poll() is not None:
             self.skipTest("nginx does not start: " + process.communicate()[1].decode())
-        url = f"http://127.0.0.1:{port}/csgmesh"
+        url = address + "/csgmesh"
         self.assertEqual((self.run_with(cache=url)["made"], self.messages), (3, ""))
         self.assertEqual((self.run_with(cache=url)["cached"], self.messages), (3, ""))
         kinds = {name.split(os.sep)[1] for name in self.outputs("served") if name.startswith("csgmesh")}

@@ -33,13 +33,7 @@ static void tell(void *user, double fraction)
 
 static csgm_status why_stopped(job *j)
 {
-    csg_mesh_watch *watch = j->watch;
-    if (!atomic_load(&watch->timed_out))
-        return csg_mesh_why_stopped(watch);
-    csg_diag_plain(&watch->context->diags, CSG_DIAG_TIMEOUT, NULL, "raise --timeout",
-                   "changing the mesh took longer than the limit of %g s",
-                   watch->context->limits.timeout_s);
-    return CSGM_ERR_LIMIT;
+    return csg_mesh_why_work_stopped(j->watch, "changing the mesh", "raise --timeout");
 }
 
 /* "part 'lid': ", or nothing where there is one part only. */
