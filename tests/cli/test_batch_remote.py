@@ -119,7 +119,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         elif kind == "cas" and hashlib.sha256(body).hexdigest() != name:
             self.answer(400, b"that is not its digest")
         else:
-            self.server.store[self.path] = body
+            self.server.keep(self.path, body)
             self.answer(200)
 
 
@@ -129,12 +129,18 @@ class Server(http.server.ThreadingHTTPServer):
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.store, self.seen, self.fault, self.password = {}, [], None, None
+        self.most = None # entries, with the last of which it begins to fail
         self.over = threading.Event()
         self.url = f"http://127.0.0.1:{self.server_address[1]}"
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     def handle_error(self, *_): # clients that go away
         pass
+
+    def keep(self, path, body):
+        self.store[path] = body
+        if len(self.store) == self.most:
+            self.fault = "error"
 
     def stop(self):
         self.over.set()
@@ -378,15 +384,8 @@ class Faults(RemoteTest):
         names = self.many(30, text="union(blend = 0.1) {{ sphere(r = {r}); cube([{r}, 2, {n}]); }}\n")
         self.batch(*names, "-d", "many", "-r", "8")
         wanted = digest(self.outputs("many"))
-
-        def stop():
-            while len(self.server.store) < 30:
-                time.sleep(0.001)
-            self.server.fault = "error"
-        thread = threading.Thread(target=stop)
-        thread.start()
-        self.run_with(scenes=names, wanted=wanted)
-        thread.join()
+        self.server.most = 60 # five for each scene: two threads have stored at least ten whole ones
+        self.run_with("-j", "2", scenes=names, wanted=wanted)
         self.assertEqual(self.messages.count("warning"), 1)
         self.server.fault = None
         self.assertGreater(self.run_with(scenes=names, wanted=wanted)["cached"], 5)
