@@ -990,7 +990,7 @@ typedef struct csgm_camera {
     csgm_projection projection; /* default PERSPECTIVE */
     double fov_deg;             /* perspective: vertical angle of view, 1 .. 150; default 30 */
     /* Not placed (the default): looks at the middle of the bounds from there, from so far away that
-     * all of them are seen. azimuth: 0 from -y (the front), 90 from +x (the right). */
+     * all of them are seen. azimuth: 0 from -y (the front), 90 from +x (the right), within 1e6. */
     double azimuth_deg, elevation_deg; /* default 35 and 25; elevation -90 .. 90 */
     bool placed;
     csgm_vec3 eye, target, up; /* when placed; up default (0, 0, 1) */

@@ -38,11 +38,7 @@ csgm_mesh_stats csgm_mesh_stats_default(void)
 
 double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
 {
-    csg_vec3 size = csg_box_size(bounds);
-    bool has_size = !csg_box_is_empty(bounds) && csg_box_is_finite(bounds) &&
-                    fmax(size.x, fmax(size.y, size.z)) > 0;
-    return has_size && quality <= CSGM_QUALITY_FINE ? csg_mesh_quality_tolerance(quality, bounds)
-                                                    : 0;
+    return quality <= CSGM_QUALITY_FINE ? csg_mesh_quality_tolerance(quality, bounds) : 0;
 }
 
 /* What this rank does is counted for one mesh at a time. */

@@ -77,7 +77,10 @@ static csgm_status check(csgm_context *context, const csgm_camera *camera)
         return refuse(context, "the zoom is a number from 1e-6 to 1e6, not %g", camera->zoom);
     if (!(camera->height >= 0 && isfinite(camera->height)))
         return refuse(context, "the height of a picture is a length, not %g", camera->height);
-    if (!camera->placed && !(fabs(camera->elevation_deg) <= 90 && fabs(camera->azimuth_deg) <= 1e6))
+    if (!camera->placed && !(fabs(camera->azimuth_deg) <= 1e6))
+        return refuse(context, "a camera's azimuth is from -1e6 to 1e6 degrees, not %g",
+                      camera->azimuth_deg);
+    if (!camera->placed && !(fabs(camera->elevation_deg) <= 90))
         return refuse(context, "a camera's elevation is from -90 to 90 degrees, not %g",
                       camera->elevation_deg);
     if (!camera->placed)

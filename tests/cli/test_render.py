@@ -210,6 +210,7 @@ class Render(cli.CliTest):
                 ("angle of view", ("ball.txt", "-o", "x.ppm", "--fov", "170")),
                 ("--view wants", ("ball.txt", "-o", "x.ppm", "--view", "above")),
                 ("elevation", ("ball.txt", "-o", "x.ppm", "--view", "0,100")),
+                ("azimuth is from", ("ball.txt", "-o", "x.ppm", "--view", "2e6,10")),
                 ("--camera wants", ("ball.txt", "-o", "x.ppm", "--camera", "1,2,3")),
                 ("same point", ("ball.txt", "-o", "x.ppm", "--camera", "1,2,3,1,2,3")),
                 ("--background wants", ("ball.txt", "-o", "x.ppm", "--background", "#12")),

@@ -2,20 +2,23 @@
 """A build by the other compiler writes the same files for every scene of the repository.
 
 Usage: test_compilers.py CELLS [--build FOLDER] [STEP | --of N]: scenes as for test_machines.py, in equal cells and, every
-third of them, in cells that follow the shape; keeps the other compiler's build in FOLDER. Exit status 77 (a skip) where
-clang is not installed.
+third of them, in cells that follow the shape; and random joins of polyhedra, triangle by triangle. Keeps the other
+compiler's build in FOLDER. Exit status 77 (a skip) where clang is not installed.
 """
 import argparse
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 
+from random_joins import write_scene
 from same_bytes import chosen_scenes, differences, mesh
 
 PROGRAM = os.environ["CSGMESH"]
 SOURCE = os.environ["CSGMESH_SOURCE"]
+JOINS = 32
 
 
 def build_with(cc, cxx, folder):
@@ -39,6 +42,27 @@ def other_compiler():
     return (cc, cxx) if shutil.which(cc) and shutil.which(cxx) else None
 
 
+def is_joined(scene):
+    """Whether triangles of polyhedra went out by themselves."""
+    result = subprocess.run([PROGRAM, scene, "--facets=exact", "--stats", "-q", "-o", os.devnull, "-f", "ply"],
+                            capture_output=True, text=True, check=True)
+    return json.loads(result.stdout)["lattice"].get("own_triangles", 0) > 0
+
+
+def differences_of_joins(theirs, name, folder):
+    """Between the two programs; nothing to compare where they are built without the library that joins."""
+    if "Manifold" not in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout:
+        return []
+    faults, out = [], os.path.join(folder, "join.glb")
+    every = [write_scene(folder, seed) for seed in range(JOINS)]
+    for scene in every:
+        faults += differences(scene, mesh(PROGRAM, scene, out, "--facets=exact"), [
+            (f"by {name}", lambda: mesh(theirs, scene, out, "--facets=exact"))])
+    joined = sum(map(is_joined, every))
+    assert 4 * joined > 3 * JOINS, f"only {joined} of {JOINS} scenes are joined triangle by triangle"
+    return faults
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build")
@@ -57,6 +81,7 @@ def main():
                 out = os.path.join(folder, "out." + kind)
                 faults += differences(scene, mesh(PROGRAM, scene, out, *settings), [
                     (f"{' '.join(settings)} {kind} by {other[0]}", lambda: mesh(theirs, scene, out, *settings))])
+        faults += differences_of_joins(theirs, other[0], folder)
     for fault in faults:
         print("differs:", fault)
     print(f"{len(every)} scenes, {len(faults)} differences")

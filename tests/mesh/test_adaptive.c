@@ -328,6 +328,35 @@ static csgm_mesh_options options_of(const mesh_case *c, unsigned seed)
     return options;
 }
 
+/* A solid that is empty, that touches the bounds in a point only, or that has no end: what sets the
+ * tolerance has no size there, which no integer may be made of. */
+static void test_without_size(void **state)
+{
+    mesh_case c;
+    csgm_mesh_options options = following(CSGM_QUALITY_NORMAL);
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, joined(&c, CSG_NODE_INTERSECTION, SHARP, make_sphere(&c, 1),
+                                 moved(&c, make_sphere(&c, 1), 9, 0, 0)));
+    assert_int_equal(mesh_build(&c, &options), CSGM_OK);
+    assert_int_equal(c.mesh->triangle_count, 0);
+    mesh_case_end(&c);
+
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, make_box(&c, 1, 1, 1));
+    options.bounds = (csgm_box){{1, 1, 1}, {2, 3, 2}};
+    assert_int_equal(mesh_build(&c, &options), CSGM_OK);
+    assert_int_equal(c.mesh->triangle_count, 0);
+    assert_int_equal(c.last_code, CSG_DIAG_NO_SURFACE);
+    mesh_case_end(&c);
+
+    mesh_case_begin(&c, 2);
+    mesh_case_compile(&c, make_half_space(&c, 0, 0, 1, 0));
+    options = following(CSGM_QUALITY_FINE);
+    assert_int_equal(mesh_build(&c, &options), CSGM_ERR_SCENE);
+    assert_int_equal(c.last_code, CSG_DIAG_UNBOUNDED);
+    mesh_case_end(&c);
+}
+
 static void test_random_scenes(void **state)
 {
     for (unsigned seed = first_seed; seed < first_seed + scene_count; seed++) {
@@ -358,6 +387,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
         cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_bulges),          cmocka_unit_test(test_tight_roundings),
+        cmocka_unit_test(test_without_size),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

@@ -52,7 +52,7 @@ static double cells_error(const csg_mesh_goal *goal)
     return goal->finer * goal->error;
 }
 
-/* The largest power of two that is at most this. */
+/* The largest power of two that is at most this, which is finite and above 0. */
 static double power_below(double size)
 {
     return ldexp(1, (int)floor(csg_log2(size)));
@@ -64,10 +64,8 @@ static double power_below(double size)
 static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
 {
     const csg_box bounds = a->input.bounds;
-    csg_box solid = csg_box_intersect(bounds, a->input.field->bounds); /* bounds may be generous */
-    if (!csg_box_is_finite(solid))
-        solid = bounds;
-    csg_vec3 size = csg_box_size(solid), center = a->input.field->center;
+    csg_vec3 size = csg_box_size(csg_mesh_box_within(bounds, a->input.field->bounds));
+    csg_vec3 center = a->input.field->center;
     double longest = fmax(size.x, fmax(size.y, size.z));
     double first = power_below(longest / FIRST_CELLS);
     double cell = fmin(power_below(cells_error(a->goal)) / 2, ldexp(first, -LEAST_LEVELS));
@@ -173,12 +171,25 @@ static csgm_status paint(adaptive *a)
 
 /* ---- bounds ------------------------------------------------------------------------------------ */
 
+/* The longest side of a box; 0 where it has none, or no end. */
+static double longest_side(csg_box box)
+{
+    csg_vec3 size = csg_box_size(box);
+    return csg_box_is_finite(box) ? fmax(size.x, fmax(size.y, size.z)) : 0;
+}
+
+csg_box csg_mesh_box_within(csg_box bounds, csg_box solid)
+{
+    csg_box within = csg_box_intersect(bounds, solid);
+    return longest_side(within) > 0 ? within : bounds;
+}
+
 double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds)
 {
     static const double shares[] = {
         [CSGM_QUALITY_NORMAL] = 1000, [CSGM_QUALITY_DRAFT] = 250, [CSGM_QUALITY_FINE] = 4000};
-    csg_vec3 size = csg_box_size(bounds);
-    return power_below(fmax(size.x, fmax(size.y, size.z)) / shares[quality]);
+    double longest = longest_side(bounds);
+    return longest > 0 ? power_below(longest / shares[quality]) : 0;
 }
 
 /* Whether a vertex lies on one of the planes that cut the solid. */

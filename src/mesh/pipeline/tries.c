@@ -86,10 +86,10 @@ static double longest_side(const csgm_field *field, const csgm_mesh_options *opt
 double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options *options,
                                 const csg_mesh_share *share)
 {
-    csg_box solid = csg_box_intersect(box_of(field, options), field->bounds);
-    if (share || !csg_box_is_finite(solid)) /* parts have one tolerance */
-        solid = box_of(field, options);
-    return csg_mesh_quality_tolerance(options->quality, solid);
+    csg_box bounds = box_of(field, options);
+    if (!share) /* parts have one tolerance */
+        bounds = csg_mesh_box_within(bounds, field->bounds);
+    return csg_mesh_quality_tolerance(options->quality, bounds);
 }
 
 csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
