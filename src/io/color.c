@@ -38,7 +38,7 @@ uint8_t csg_color_to_byte(float value)
 {
     if (!(value > 0))
         return 0;
-    return value >= 1 ? 255 : (uint8_t)(value * 255.0f + 0.5f);
+    return (uint8_t)(value >= 1 ? 255.0f : value * 255.0f + 0.5f);
 }
 
 uint8_t csg_color_to_srgb(float linear)
