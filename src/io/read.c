@@ -33,6 +33,7 @@ csgm_status csg_read_broken(const csg_input *input, uint32_t line, const char *f
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    csg_diag_make_line(text); /* names are those of the file */
     csg_diag_report(
         &input->context->diags, CSG_DIAG_BROKEN_FILE,
         (csgm_diag){
