@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 
+import cli
 from random_joins import write_scene
 from same_bytes import chosen_scenes, differences, mesh
 
@@ -51,7 +52,7 @@ def is_joined(scene):
 
 def differences_of_joins(theirs, name, folder):
     """Between the two programs; nothing to compare where they are built without the library that joins."""
-    if "Manifold" not in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout:
+    if not cli.has_library("Manifold"):
         return []
     faults, out = [], os.path.join(folder, "join.glb")
     every = [write_scene(folder, seed) for seed in range(JOINS)]

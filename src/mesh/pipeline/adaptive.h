@@ -13,11 +13,9 @@ static inline bool csg_mesh_is_adaptive(const csgm_mesh_options *options)
     return !options->resolution && !(options->cell_size > 0) && !options->certify;
 }
 
-/* The solid's box where that has a size within the bounds, which may be generous; else the bounds.
- */
+/* The solid's box within the bounds, which may be generous; the bounds where it has no size. */
 csg_box csg_mesh_box_within(csg_box bounds, csg_box solid);
-/* The tolerance of a quality, for a box to mesh; 0 for a box without size and for an endless one.
- */
+/* The tolerance of a quality, for a box to mesh; 0 where that has no size, or no end. */
 double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds);
 
 /* csg_mesh_build_field for options that ask for it, towards a goal with an error. */
