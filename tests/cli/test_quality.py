@@ -178,6 +178,19 @@ intersection(blend = 0.3) {
         bent = self.stats('difference() { import("ball.stl"); torus(r = 8, tube = 2); }', "--quality", "draft")
         self.assertTrue(bent["mesh"]["manifold"])
 
+    @unittest.skipUnless(cli.has_library("Manifold"), "built without Manifold")
+    def test_polyhedra_of_several_colors_are_joined(self):
+        """Where the format has vertices for each side of a border, or no colours."""
+        text = 'color("red") cube([20, 10, 5]); color("blue") translate([5, -5, -1]) cube([5, 20, 7]);'
+        for name, taken in (("out.glb", True), ("out.obj", True), ("out.stl", True), ("out.ply", False), ("out.3mf", False)):
+            self.write("scene.txt", text)
+            result = cli.run("scene.txt", "-o", name, "--stats", cwd=self.folder)
+            self.assert_status(result, 0)
+            stats = json.loads(result.stdout)
+            self.assertEqual("own_triangles" in stats["lattice"], taken, name)
+            self.assertTrue(stats["files"][0]["manifold"], name)
+            self.assertAlmostEqual(stats["mesh"]["volume"], 1000 + 700 - 250, delta=0.5)
+
     def test_polyhedra_beyond_floats(self):
         """Coordinates that no float has are not taken as they are."""
         self.write("scene.txt", """module a() polyhedron(points = [[1, 1, 1], [2, 1, 1], [1, 2, 1], [1, 1, 2]], faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);

@@ -268,7 +268,7 @@ static void test_color_below(void **state)
     mesh_case_end(&c);
 }
 
-/* Units of two colours stay with the cells: a vertex at their border would be of both. */
+/* Units of two colours stay with the cells where a vertex at their border would be of both. */
 static void test_joined_looks(void **state)
 {
     (void)state;
@@ -287,6 +287,140 @@ static void test_joined_looks(void **state)
             assert_int_equal(c.mesh->colors[4 * i], 255);
         mesh_case_end(&c);
     }
+}
+
+static csg_node_id in_color(mesh_case *c, int number, csg_node_id node)
+{
+    return csg_build_color(&c->builder, (csg_color){(float)(number + 1) / 255, 0, 1, 1}, node,
+                           NOWHERE);
+}
+
+static csgm_mesh_options with_creases(void)
+{
+    csgm_mesh_options options = plain();
+    options.normals = CSGM_NORMALS_CREASE;
+    return options;
+}
+
+static void assert_closed_by_places(mesh_case *c)
+{
+    csgm_mesh_view view = csg_mesh_view(c->mesh);
+    assert_int_equal(csg_mesh_inspect(&c->context, &view, 0, &c->check), CSGM_OK);
+    assert_int_equal(c->check.boundary_edges + c->check.nonmanifold_edges +
+                         c->check.misoriented_edges + c->check.nonmanifold_vertices,
+                     0);
+}
+
+/* Operand number k is made from its own state of chance. */
+static csg_node_id one_operand(mesh_case *c, int k, csg_random random)
+{
+    csg_node_id node = csg_random_uniform(&random, 0, 1) < 0.5
+                           ? make_box(c, 1, 0.7, 1.2)
+                           : make_ball(c, csg_vec3_make(0, 0, 0), 1, 12, 0);
+    node = posed_anyhow(c, node, &random);
+    csg_vec3 by = solid_random_point(&random, 1);
+    return in_color(c, k, moved(c, node, by.x, by.y, by.z));
+}
+
+static csg_vec3 middle_of(const csgm_mesh *mesh, const uint32_t corners[3])
+{
+    csg_vec3 sum = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        sum = csg_vec3_add(sum, csg_vec3_from_floats(mesh->positions + 3 * (size_t)corners[k]));
+    return csg_vec3_add(mesh->origin, csg_vec3_scale(sum, 1.0 / 3));
+}
+
+/* Each triangle that is not thinner than rounding has the one colour of an operand on whose surface
+ * it lies. */
+static void assert_color_of_operand(const csgm_mesh *mesh, int k, csg_random random)
+{
+    mesh_case alone;
+    mesh_case_begin(&alone, 1);
+    mesh_case_compile(&alone, one_operand(&alone, k, random));
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->indices + 3 * t;
+        const uint8_t *color = mesh->colors + 4 * (size_t)corners[0];
+        for (int i = 1; i < 3; i++)
+            assert_memory_equal(mesh->colors + 4 * (size_t)corners[i], color, 4);
+        if (color[0] == k + 1)
+            assert_true(fabs(test_sample(alone.scene, middle_of(mesh, corners)).value) < 1e-5);
+    }
+    mesh_case_end(&alone);
+}
+
+/* With vertices for each side of a border they are joined. */
+static void test_looks_side_by_side(void **state)
+{
+    enum { SCENES = 40, MOST = 5 };
+    static const csg_node_kind KINDS[] = {CSG_NODE_UNION, CSG_NODE_INTERSECTION,
+                                          CSG_NODE_DIFFERENCE, CSG_NODE_UNION};
+    (void)state;
+    if (!csg_booleans_are_available())
+        skip();
+    csg_random random = {21};
+    int taken = 0;
+    for (int i = 0; i < SCENES; i++) {
+        mesh_case c;
+        csg_random states[MOST];
+        int count = 2 + (int)csg_random_uniform(&random, 0, MOST - 1);
+        csg_node_id root = CSG_NODE_NONE;
+        mesh_case_begin(&c, 1);
+        for (int k = 0; k < count; k++) {
+            csg_node_kind kind = KINDS[(int)csg_random_uniform(&random, 0, 4)];
+            states[k] = (csg_random){(uint64_t)(100 * i + k)};
+            csg_node_id operand = one_operand(&c, k, states[k]);
+            root = k ? joined(&c, kind, SHARP, root, operand) : operand;
+        }
+        mesh_case_compile(&c, root);
+        csgm_mesh_options options = with_creases();
+        if (is_taken(&c, &options)) {
+            taken++;
+            assert_closed_by_places(&c);
+            for (int k = 0; k < count; k++)
+                assert_color_of_operand(c.mesh, k, states[k]);
+        }
+        mesh_case_end(&c);
+    }
+    assert_true(taken > SCENES / 2);
+}
+
+/* Two boxes in one plane: beside each other each keeps its side of the border; where they overlap
+ * there is no border that anybody has drawn, and cells decide. */
+static void test_looks_in_one_plane(void **state)
+{
+    (void)state;
+    for (int overlaps = 0; overlaps < 2; overlaps++) {
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_node_id a = in_color(&c, 0, make_box(&c, 2, 1, 1));
+        csg_node_id b = in_color(&c, 1, moved(&c, make_box(&c, 1, 2, 1), overlaps ? 1 : 3, 0, 0));
+        mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, a, b));
+        csgm_mesh_options options = with_creases();
+        assert_int_equal(is_taken(&c, &options), !overlaps && csg_booleans_are_available());
+        for (size_t t = 0; c.mesh && t < c.mesh->triangle_count; t++) {
+            const uint32_t *corners = c.mesh->indices + 3 * t;
+            assert_int_equal(c.mesh->colors[4 * (size_t)corners[0]],
+                             1 + (middle_of(c.mesh, corners).x > 2 - 1e-6));
+        }
+        mesh_case_end(&c);
+    }
+}
+
+/* A format without colours does not care how they look. */
+static void test_looks_that_nobody_asks_for(void **state)
+{
+    (void)state;
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    csg_node_id a = in_color(&c, 0, make_box(&c, 1, 1, 1));
+    csg_node_id b = in_color(&c, 1, moved(&c, make_box(&c, 1, 2, 1), 1, 0, 0));
+    mesh_case_compile(&c, joined(&c, CSG_NODE_UNION, SHARP, a, b));
+    csgm_mesh_options options = plain();
+    options.colors = false;
+    assert_int_equal(is_taken(&c, &options), csg_booleans_are_available());
+    if (c.mesh)
+        assert_int_equal(c.mesh->triangle_count, 28);
+    mesh_case_end(&c);
 }
 
 /* ---- the same everywhere, and allocations that fail --------------------------------------------
@@ -337,11 +471,18 @@ static void test_each_allocation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_joins),     cmocka_unit_test(test_joined_faces),
-        cmocka_unit_test(test_joined_looks),     cmocka_unit_test(test_random_mixtures),
-        cmocka_unit_test(test_too_many),         cmocka_unit_test(test_color_below),
-        cmocka_unit_test(test_normals_of_rests), cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_random_joins),
+        cmocka_unit_test(test_joined_faces),
+        cmocka_unit_test(test_joined_looks),
+        cmocka_unit_test(test_random_mixtures),
+        cmocka_unit_test(test_too_many),
+        cmocka_unit_test(test_color_below),
+        cmocka_unit_test(test_normals_of_rests),
+        cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_each_allocation),
+        cmocka_unit_test(test_looks_side_by_side),
+        cmocka_unit_test(test_looks_in_one_plane),
+        cmocka_unit_test(test_looks_that_nobody_asks_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,10 +5,13 @@
 #include "mesh/own/join.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/trace.h"
+#include "mesh/own/borders.h"
 #include "shape/polyhedra/booleans.h"
 #include "shape/polyhedra/polyhedron.h"
+#include "shape/polyhedra/repair.h"
 
 static const uint32_t NO_STEP = UINT32_MAX;
 
@@ -22,6 +25,11 @@ typedef struct joining {
     size_t count;
 } joining;
 
+typedef struct joined {
+    csg_shape *shape; /* NULL: there is none */
+    csg_marked_triangles marked;
+} joined;
+
 /* ---- steps -------------------------------------------------------------------------------------
  */
 
@@ -29,7 +37,8 @@ static uint32_t add_leaf(joining *j, const csg_own_unit *unit)
 {
     j->steps[j->count] = (csg_boolean_step){.kind = CSG_BOOLEAN_LEAF,
                                             .triangles = csg_polyhedron_triangles(unit->shape),
-                                            .place = unit->place};
+                                            .place = unit->place,
+                                            .mark = unit->look};
     return (uint32_t)j->count++;
 }
 
@@ -92,34 +101,76 @@ static double nearest_places(const csg_own_units *units)
     return 0x1p-21 * farthest;
 }
 
-/* The polyhedron knows of no time, but takes memory in each step. */
-static csgm_status make_polyhedron(csg_memory *memory, const csg_triangles *triangles,
-                                   csg_mesh_watch *watch, csg_shape **joined)
+/* Points in the order in which a polyhedron has them. */
+static bool number_points(csg_memory *memory, csg_triangles *triangles)
 {
+    csg_arena scratch;
+    csg_arena_init(&scratch, memory);
+    bool done = csg_repair_number(&scratch, triangles);
+    csg_arena_reset(&scratch);
+    return done;
+}
+
+/* Whether its triangles are these, in this order, so that their marks are known. */
+static bool has_triangles(const csg_shape *shape, const csg_triangles *triangles)
+{
+    const csg_triangles *own = csg_polyhedron_triangles(shape);
+    return own->count == triangles->count &&
+           memcmp(own->corners, triangles->corners, own->count * sizeof *own->corners) == 0;
+}
+
+/* *made NULL: it is none, or others. The polyhedron knows of no time, but takes memory in each
+ * step. */
+static csgm_status make_polyhedron(csg_memory *memory, csg_triangles *triangles,
+                                   csg_mesh_watch *watch, csg_shape **made)
+{
+    csgm_status status = CSGM_ERR_MEMORY;
     csg_memory_end_when(memory, csg_mesh_should_stop, watch);
-    csgm_status status = csg_polyhedron_create(memory, triangles, NULL, joined);
+    if (number_points(memory, triangles))
+        status = csg_polyhedron_create(memory, triangles, NULL, made);
     bool is_late = csg_memory_has_ended(memory);
     csg_memory_end_when(memory, NULL, NULL);
+    if (status == CSGM_OK && !has_triangles(*made, triangles)) {
+        csg_shape_release(*made);
+        *made = NULL;
+    }
     return is_late && status == CSGM_ERR_MEMORY ? CSGM_CANCELLED : status;
 }
 
-/* *joined NULL: there is none. */
-static csgm_status make_joined(joining *j, csg_mesh_watch *watch, csg_shape **joined)
+/* Not where looks of faces that coincide are mixed. */
+static csgm_status check_borders(const csg_own_units *units, joined *out)
+{
+    bool clear = true;
+    if (units->look_count > 1 && !csg_own_borders_are_clear(units, &out->marked, &clear))
+        return CSGM_ERR_MEMORY;
+    if (!clear) {
+        csg_shape_release(out->shape);
+        out->shape = NULL;
+    }
+    return CSGM_OK;
+}
+
+/* Where memory is short cells may do with less. */
+static csgm_status make_joined(joining *j, csg_mesh_watch *watch, joined *out)
 {
     csg_memory *memory = j->units->memory;
     const csg_boolean_watch asked = {csg_mesh_should_stop, watch};
-    csg_triangles triangles;
     list_steps(j);
     csgm_status status =
-        csg_booleans(memory, j->steps, j->count, nearest_places(j->units), &asked, &triangles);
-    if (status == CSGM_OK && triangles.count)
-        status = make_polyhedron(memory, &triangles, watch, joined);
-    csg_triangles_release(&triangles);
+        csg_booleans(memory, j->steps, j->count, nearest_places(j->units), &asked, &out->marked);
+    if (status == CSGM_OK && out->marked.triangles.count)
+        status = make_polyhedron(memory, &out->marked.triangles, watch, &out->shape);
+    if (status == CSGM_OK && out->shape)
+        status = check_borders(j->units, out);
+    if (status != CSGM_OK) {
+        csg_shape_release(out->shape); /* NULL is a no-op */
+        out->shape = NULL;
+    }
     return status == CSGM_CANCELLED ? csg_mesh_why_stopped(watch) : CSGM_OK;
 }
 
 static csgm_status join_in_rooms(csg_own_units *units, const csgm_scene *scene,
-                                 csg_mesh_watch *watch, csg_shape **joined)
+                                 csg_mesh_watch *watch, joined *out)
 {
     csg_memory *memory = units->memory;
     size_t nodes = scene->node_count, operands = scene->child_count + units->count;
@@ -130,7 +181,7 @@ static csgm_status join_in_rooms(csg_own_units *units, const csgm_scene *scene,
     j.operands = csg_memory_alloc(memory, operands * sizeof *j.operands);
     j.steps = csg_memory_alloc(memory, steps * sizeof *j.steps);
     if (j.step_of && j.operands && j.steps)
-        status = make_joined(&j, watch, joined);
+        status = make_joined(&j, watch, out);
     csg_memory_release(memory, j.step_of, nodes * sizeof *j.step_of);
     csg_memory_release(memory, j.operands, operands * sizeof *j.operands);
     csg_memory_release(memory, j.steps, steps * sizeof *j.steps);
@@ -151,13 +202,17 @@ csgm_status csg_own_join(csg_own_units *units, const csgm_scene *scene, csg_mesh
     if (!units->count || units->are_apart)
         return CSGM_OK;
     CSG_ZONE(watch->context, "own triangles: join");
-    csg_shape *joined = NULL;
+    joined out = {0};
     csgm_status status = CSGM_OK;
+    csg_triangles_init(&out.marked.triangles, units->memory);
     if (have_shapes(units))
-        status = join_in_rooms(units, scene, watch, &joined);
-    if (joined)
-        csg_own_units_replace(units, joined);
-    else
+        status = join_in_rooms(units, scene, watch, &out);
+    if (out.shape) {
+        csg_own_units_replace(units, out.shape, out.marked.marks, out.marked.mark_room);
+        out.marked.marks = NULL;
+        out.marked.mark_room = 0;
+    } else
         csg_own_units_reset(units);
+    csg_marked_triangles_release(&out.marked);
     return status;
 }

@@ -12,6 +12,8 @@
 /* More units than that are meshed as ever: each is held against each. Polyhedra of fewer triangles
  * cost cells little, and cells put corners where they serve both sides of an edge. */
 enum { MOST_UNITS = 4096, LEAST_TRIANGLES_BESIDE_RESTS = 256 };
+/* More looks than that in a scene are taken as several anywhere: each is held against each. */
+enum { MOST_LOOKS = 64 };
 
 typedef struct finder {
     csg_own_units *units;
@@ -20,7 +22,8 @@ typedef struct finder {
     uint8_t *holds;   /* per node: there are polyhedra below, and only sharp operators above them */
     uint8_t *reached; /* per node: it is on the way to them */
     csg_own_way *ways;
-    bool all; /* nothing is left over */
+    uint32_t *looks; /* per node: the number of that of its leaves */
+    bool all;        /* nothing is left over */
 } finder;
 
 /* ---- where polyhedra are -----------------------------------------------------------------------
@@ -67,17 +70,41 @@ static bool is_same_look(const csg_look *a, const csg_look *b)
            a->color.a == b->color.a && a->metallic == b->metallic && a->roughness == b->roughness;
 }
 
-/* There may be nodes that the root does not have. */
-static void look_at_leaves(finder *f)
+/* False: no memory. */
+static bool number_look(csg_own_units *units, const csg_look *look, uint32_t *number)
+{
+    for (size_t i = units->look_count; i-- > 0;)
+        if (is_same_look(&units->looks[i], look)) {
+            *number = (uint32_t)i;
+            return true;
+        }
+    *number = CSG_OWN_SEVERAL_LOOKS;
+    if (units->look_count == MOST_LOOKS)
+        return true;
+    if (!csg_memory_reserve(units->memory, (void **)&units->looks, &units->look_room,
+                            units->look_count + 1, sizeof *look))
+        return false;
+    units->looks[units->look_count] = *look;
+    *number = (uint32_t)units->look_count++;
+    return true;
+}
+
+static uint32_t look_of_both(uint32_t a, uint32_t b)
+{
+    return a == CSG_OWN_NO_LOOK ? b : b == CSG_OWN_NO_LOOK || a == b ? a : CSG_OWN_SEVERAL_LOOKS;
+}
+
+/* Downwards to the leaves. There may be nodes that the root does not have. */
+static bool look_at_leaves(finder *f)
 {
     const csgm_scene *scene = f->scene;
-    const csg_look *first = NULL;
-    f->units->look_alike = true;
+    bool added = true;
     memset(f->reached, 0, scene->node_count);
     f->reached[scene->root] = true;
     f->ways[scene->root] = (csg_own_way){.place = csg_affine_identity()};
-    for (csg_node_id i = scene->root + 1; i-- > 0 && f->units->look_alike;) {
+    for (csg_node_id i = scene->root + 1; i-- > 0 && added;) {
         const csg_node *node = &scene->nodes[i];
+        f->looks[i] = CSG_OWN_NO_LOOK;
         if (!f->reached[i])
             continue;
         csg_own_way way = csg_own_way_below(scene, node, f->ways[i]);
@@ -86,13 +113,22 @@ static void look_at_leaves(finder *f)
             f->reached[child] = true;
             f->ways[child] = way;
         }
-        if (!csg_node_is_primitive(node->kind))
-            continue;
-        first = first ? first : &f->ways[i].look;
-        f->units->look_alike = is_same_look(first, &f->ways[i].look);
+        if (csg_node_is_primitive(node->kind))
+            added = number_look(f->units, &f->ways[i].look, &f->looks[i]);
     }
-    if (first)
-        f->units->look = *first;
+    return added;
+}
+
+/* And upwards again. A plate looks as its figure does. */
+static void look_at_nodes(finder *f)
+{
+    for (csg_node_id i = 0; i <= f->scene->root; i++) {
+        const csg_node *node = &f->scene->nodes[i];
+        uint32_t count = csg_node_is_plate(node) ? 1 : node->child_count;
+        for (uint32_t k = 0; k < count; k++)
+            f->looks[i] =
+                look_of_both(f->looks[i], f->looks[csg_scene_children(f->scene, node)[k]]);
+    }
 }
 
 /* ---- units -------------------------------------------------------------------------------------
@@ -121,7 +157,7 @@ static bool add_leaf(finder *f, csg_node_id i)
         return true;
     const csg_own_unit unit = {.shape = leaf.shape,
                                .place = leaf.way.place,
-                               .look = leaf.way.look,
+                               .look = f->looks[i],
                                .node = i,
                                .box = csg_affine_box(&leaf.way.place, leaf.shape->box)};
     bool added = add_unit(f, &unit);
@@ -134,6 +170,7 @@ static bool add_leaf(finder *f, csg_node_id i)
 static bool add_rest(finder *f, csg_node_id i, csg_node_kind kind, bool is_operand)
 {
     const csg_own_unit unit = {.place = csg_affine_identity(),
+                               .look = CSG_OWN_NO_LOOK,
                                .node = i,
                                .kind = kind,
                                .is_operand = is_operand,
@@ -150,7 +187,9 @@ static bool add_member(finder *f, csg_node_id node, const csg_own_way *way)
         return false;
     units->members[units->member_count++] =
         (csg_excerpt_item){.node = node, .place = way->place, .look = way->look};
-    units->items[units->count - 1].member_count++;
+    csg_own_unit *rest = &units->items[units->count - 1];
+    rest->member_count++;
+    rest->look = look_of_both(rest->look, f->looks[node]);
     return true;
 }
 
@@ -278,7 +317,9 @@ static bool can_be_numbered(const csg_own_units *units)
 static bool find(finder *f)
 {
     csg_own_units *units = f->units;
-    look_at_leaves(f);
+    if (!look_at_leaves(f))
+        return false;
+    look_at_nodes(f);
     f->boxes = true;
     look_for_polyhedra(f, true);
     f->boxes = f->holds[f->scene->root];
@@ -306,10 +347,12 @@ csgm_status csg_own_units_find(csg_own_units *units, const csgm_scene *scene)
     f.holds = csg_memory_alloc(memory, nodes);
     f.reached = csg_memory_alloc(memory, nodes);
     f.ways = csg_memory_alloc(memory, nodes * sizeof *f.ways);
-    bool done = f.holds && f.reached && f.ways && find(&f);
+    f.looks = csg_memory_alloc(memory, nodes * sizeof *f.looks);
+    bool done = f.holds && f.reached && f.ways && f.looks && find(&f);
     csg_memory_release(memory, f.holds, nodes);
     csg_memory_release(memory, f.reached, nodes);
     csg_memory_release(memory, f.ways, nodes * sizeof *f.ways);
+    csg_memory_release(memory, f.looks, nodes * sizeof *f.looks);
     if (!done)
         csg_own_units_reset(units);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
@@ -321,12 +364,32 @@ void csg_own_units_give(csg_own_unit *unit, csg_shape *shape)
     unit->box = shape->box;
 }
 
-void csg_own_units_replace(csg_own_units *units, csg_shape *joined)
+void csg_own_units_forget_looks(csg_own_units *units)
+{
+    units->look_count = units->count > 0;
+    for (size_t i = 0; i < units->count; i++)
+        units->items[i].look = 0;
+}
+
+bool csg_own_units_have_looks(const csg_own_units *units)
+{
+    for (size_t i = 0; i < units->count; i++)
+        if (units->items[i].look >= units->look_count)
+            return false;
+    return true;
+}
+
+void csg_own_units_replace(csg_own_units *units, csg_shape *joined, uint32_t *triangle_looks,
+                           size_t room)
 {
     for (size_t i = 0; i < units->count; i++)
         csg_shape_release(units->items[i].shape);
-    units->items[0] = (csg_own_unit){
-        .shape = joined, .place = csg_affine_identity(), .look = units->look, .box = joined->box};
+    units->items[0] = (csg_own_unit){.shape = joined,
+                                     .place = csg_affine_identity(),
+                                     .look = CSG_OWN_SEVERAL_LOOKS,
+                                     .box = joined->box};
+    units->triangle_looks = triangle_looks;
+    units->triangle_look_room = room;
     units->count = 1;
     units->are_apart = true;
     number(units);
@@ -340,5 +403,8 @@ void csg_own_units_reset(csg_own_units *units)
         csg_shape_release(units->items[i].shape);
     csg_memory_release(units->memory, units->items, units->room * sizeof *units->items);
     csg_memory_release(units->memory, units->members, units->member_room * sizeof *units->members);
+    csg_memory_release(units->memory, units->looks, units->look_room * sizeof *units->looks);
+    csg_memory_release(units->memory, units->triangle_looks,
+                       units->triangle_look_room * sizeof *units->triangle_looks);
     *units = (csg_own_units){.memory = units->memory};
 }

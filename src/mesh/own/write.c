@@ -13,6 +13,7 @@ typedef struct writer {
     const csgm_mesh *from;
     const csg_corners *corners;
     bool split;
+    const uint32_t *looks; /* per triangle, or NULL */
     csg_own_normal_of *normal_of;
     void *user;
     csgm_mesh *mesh;
@@ -34,11 +35,12 @@ static csg_vec3 normal_of(const writer *w, uint32_t c)
 }
 
 /* Whether the edge between this corner's triangle and the one before it around the vertex is a
- * crease. */
+ * crease, or a border of looks. */
 static bool begins_sheet(const writer *w, uint32_t c)
 {
     uint32_t before = w->corners->across[csg_corner_previous(c)];
-    return w->split && csg_vec3_dot(normal_of(w, c), normal_of(w, before)) < CSG_CREASE_COS;
+    return w->split && ((w->looks && w->looks[c / 3] != w->looks[before / 3]) ||
+                        csg_vec3_dot(normal_of(w, c), normal_of(w, before)) < CSG_CREASE_COS);
 }
 
 /* A corner to start the walk around a vertex at: the first of a sheet, where there are several. */
@@ -122,22 +124,12 @@ static void write_normals(const writer *w, uint32_t vertex)
     } while (c != first);
 }
 
-static void copy_vertex(const writer *w, size_t from, size_t to)
-{
-    const csgm_mesh *old = w->from;
-    csgm_mesh *mesh = w->mesh;
-    memcpy(mesh->positions + 3 * to, old->positions + 3 * from, 3 * sizeof(float));
-    if (mesh->colors)
-        memcpy(mesh->colors + 4 * to, old->colors + 4 * from, 4);
-    if (mesh->materials)
-        memcpy(mesh->materials + 2 * to, old->materials + 2 * from, 2 * sizeof(uint16_t));
-}
-
 static void fill(const writer *w)
 {
     const csg_corners *m = w->corners;
     for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
-        copy_vertex(w, m->vertex[c], w->number[c]);
+        memcpy(w->mesh->positions + 3 * (size_t)w->number[c],
+               w->from->positions + 3 * (size_t)m->vertex[c], 3 * sizeof(float));
         w->mesh->indices[c] = w->number[c];
     }
     for (uint32_t v = 0; v < m->vertex_count; v++)
@@ -161,12 +153,13 @@ static csgm_status create(writer *w, csgm_context *context)
 }
 
 csgm_status csg_own_write_normals(csgm_context *context, const csgm_mesh *mesh,
-                                  const csg_corners *corners, bool split,
+                                  const csg_corners *corners, bool split, const uint32_t *looks,
                                   csg_own_normal_of *normal_of_place, void *user, csgm_mesh **out)
 {
     writer w = {.from = mesh,
                 .corners = corners,
                 .split = split,
+                .looks = looks,
                 .normal_of = normal_of_place,
                 .user = user};
     size_t bytes = 3 * (size_t)corners->triangle_count * sizeof *w.number;

@@ -13,11 +13,12 @@ typedef bool csg_own_normal_of(void *user, csg_vec3 place, csg_vec3 face, csg_ve
 /* How far apart the two may be. */
 #define CSG_OWN_LEAST_COSINE 0.7
 
-/* A copy of the mesh with normals: what normal_of (NULL: nothing) says, or the means of those of
- * the triangles around a vertex, by their angles there. split: where they turn by more than a
- * crease's angle, a vertex for each sheet. Reports what fails (memory only). */
+/* A copy of the mesh with normals, not painted: what normal_of (NULL: nothing) says, or the means
+ * of those of the triangles around a vertex, by their angles there. split: where they turn by more
+ * than a crease's angle, or the numbers of their looks (NULL: all are alike) differ, a vertex for
+ * each sheet. Reports what fails (memory only). */
 csgm_status csg_own_write_normals(csgm_context *context, const csgm_mesh *mesh,
-                                  const csg_corners *corners, bool split,
+                                  const csg_corners *corners, bool split, const uint32_t *looks,
                                   csg_own_normal_of *normal_of, void *user, csgm_mesh **out);
 
 #endif

@@ -27,9 +27,8 @@ typedef struct own {
 /* ---- vertices and triangles --------------------------------------------------------------------
  */
 
-static void paint(csgm_mesh *mesh, const csg_own_unit *unit, size_t vertex)
+static void paint_vertex(csgm_mesh *mesh, const csg_look *look, size_t vertex)
 {
-    const csg_look *look = &unit->look;
     csg_color color = look->has_color ? look->color : csg_default_color;
     if (mesh->colors) {
         uint8_t *rgba = mesh->colors + 4 * vertex;
@@ -43,6 +42,24 @@ static void paint(csgm_mesh *mesh, const csg_own_unit *unit, size_t vertex)
         uint16_t *pair = mesh->materials + 2 * vertex;
         pair[0] = csg_mesh_material_share(has ? look->metallic : csg_default_material.r);
         pair[1] = csg_mesh_material_share(has ? look->roughness : csg_default_material.g);
+    }
+}
+
+/* The triangles that have a vertex look alike. */
+static void paint(const own *o)
+{
+    const csg_own_units *units = &o->units;
+    if (!o->mesh->colors && !o->mesh->materials)
+        return;
+    for (size_t i = 0; i < units->count; i++) {
+        const csg_own_unit *unit = &units->items[i];
+        size_t first = unit->first_triangle;
+        size_t end = first + csg_polyhedron_triangles(unit->shape)->count;
+        for (size_t t = first; t < end; t++) {
+            uint32_t look = units->triangle_looks ? units->triangle_looks[t] : unit->look;
+            for (size_t k = 0; k < 3; k++)
+                paint_vertex(o->mesh, &units->looks[look], o->mesh->indices[3 * t + k]);
+        }
     }
 }
 
@@ -61,7 +78,6 @@ static bool place_unit(csgm_mesh *mesh, const csg_own_unit *unit)
         csg_vec3_to_floats(mesh->positions + 3 * vertex, at);
         for (int k = 0; k < 3; k++)
             mesh->positions[3 * vertex + (size_t)k] += 0.0f; /* no -0 */
-        paint(mesh, unit, vertex);
     }
     for (size_t t = 0; t < from->count; t++)
         for (size_t k = 0; k < 3; k++)
@@ -101,9 +117,9 @@ static csgm_status add_normals(own *o, const csg_corners *corners)
     csgm_mesh *with;
     if (normals == CSGM_NORMALS_NONE)
         return CSGM_OK;
-    csgm_status status =
-        csg_own_write_normals(o->input.context, o->mesh, corners, normals == CSGM_NORMALS_CREASE,
-                              o->rests.count ? csg_own_rests_normal : NULL, &o->rests, &with);
+    csgm_status status = csg_own_write_normals(
+        o->input.context, o->mesh, corners, normals == CSGM_NORMALS_CREASE, o->units.triangle_looks,
+        o->rests.count ? csg_own_rests_normal : NULL, &o->rests, &with);
     if (status == CSGM_OK) {
         drop(o);
         o->mesh = with;
@@ -133,6 +149,8 @@ static csgm_status make_mesh(own *o)
     status = csg_own_is_sound(&o->units, o->mesh, &corners, &o->watch, &sound);
     if (status == CSGM_OK && sound)
         status = add_normals(o, &corners);
+    if (status == CSGM_OK && sound)
+        paint(o);
     csg_corners_release(&corners);
     if (!sound)
         drop(o);
@@ -171,10 +189,13 @@ static bool is_whole(const csg_mesh_input *in)
            csg_box_is_finite(in->bounds) && csg_box_contains_box(in->bounds, in->field->bounds);
 }
 
-/* A vertex at the border of two colours would be of both. */
-static bool can_be_joined(const csg_own_units *units)
+/* A vertex at the border of two looks is of both, unless there is one for each side. */
+static bool can_be_joined(const own *o)
 {
-    return units->are_apart || (csg_booleans_are_available() && units->look_alike);
+    const csg_own_units *units = &o->units;
+    bool splits = o->input.options->normals == CSGM_NORMALS_CREASE;
+    return units->are_apart || (csg_booleans_are_available() && csg_own_units_have_looks(units) &&
+                                (units->look_count == 1 || splits));
 }
 
 static csgm_status build(own *o)
@@ -185,7 +206,9 @@ static csgm_status build(own *o)
     csgm_status status = csg_own_units_find(&o->units, o->input.field->scene);
     if (status == CSGM_ERR_MEMORY)
         return csg_context_no_memory(o->input.context);
-    if (!can_be_joined(&o->units))
+    if (!csg_mesh_gets_colors(&o->input) && !csg_mesh_gets_materials(&o->input))
+        csg_own_units_forget_looks(&o->units);
+    if (!can_be_joined(o))
         return CSGM_OK;
     status = csg_own_rests_mesh(&o->rests, &o->units, &o->input);
     if (status == CSGM_OK)

@@ -11,8 +11,15 @@ static const uint64_t BYTES_MOST = 1024;
 typedef struct booleans {
     const csg_boolean_step *steps;
     const csg_boolean_watch *watch;
-    csg_triangles *out;
+    csg_marked_triangles *out;
 } booleans;
+
+void csg_marked_triangles_release(csg_marked_triangles *marked)
+{
+    csg_memory_release(marked->triangles.memory, marked->marks,
+                       marked->mark_room * sizeof *marked->marks);
+    csg_triangles_release(&marked->triangles);
+}
 
 static void give_point(void *user, size_t step, size_t i, double at[3])
 {
@@ -39,12 +46,20 @@ static bool should_stop(void *user)
 
 static bool take_point(void *user, const double at[3])
 {
-    return csg_triangles_add_point(((booleans *)user)->out, csg_vec3_make(at[0], at[1], at[2]));
+    return csg_triangles_add_point(&((booleans *)user)->out->triangles,
+                                   csg_vec3_make(at[0], at[1], at[2]));
 }
 
-static bool take_triangle(void *user, const uint32_t corners[3])
+static bool take_triangle(void *user, const uint32_t corners[3], uint32_t mark)
 {
-    return csg_triangles_add(((booleans *)user)->out, corners[0], corners[1], corners[2]);
+    csg_marked_triangles *out = ((booleans *)user)->out;
+    size_t number = out->triangles.count;
+    if (!csg_memory_reserve(out->triangles.memory, (void **)&out->marks, &out->mark_room,
+                            number + 1, sizeof *out->marks) ||
+        !csg_triangles_add(&out->triangles, corners[0], corners[1], corners[2]))
+        return false;
+    out->marks[number] = mark;
+    return true;
 }
 
 static csgm_status run_library(csg_memory *memory, booleans *b, size_t count, double tolerance)
@@ -62,6 +77,7 @@ static csgm_status run_library(csg_memory *memory, booleans *b, size_t count, do
         if (s->kind == CSG_BOOLEAN_LEAF) {
             steps[i].point_count = s->triangles->point_count;
             steps[i].triangle_count = s->triangles->count;
+            steps[i].mark = s->mark;
             triangles += s->triangles->count;
         }
     }
@@ -73,10 +89,12 @@ static csgm_status run_library(csg_memory *memory, booleans *b, size_t count, do
 }
 
 csgm_status csg_booleans(csg_memory *memory, const csg_boolean_step *steps, size_t count,
-                         double tolerance, const csg_boolean_watch *watch, csg_triangles *out)
+                         double tolerance, const csg_boolean_watch *watch,
+                         csg_marked_triangles *out)
 {
     booleans b = {steps, watch, out};
-    csg_triangles_init(out, memory);
+    *out = (csg_marked_triangles){0};
+    csg_triangles_init(&out->triangles, memory);
     return run_library(memory, &b, count, tolerance);
 }
 

@@ -15,6 +15,7 @@ typedef struct csg_boolean_step {
     csg_boolean_kind kind;
     const csg_triangles *triangles; /* of a leaf: closed and outward, before it is placed */
     csg_affine place;               /* of a leaf */
+    uint32_t mark;                  /* of a leaf, below 2^31: its triangles keep it */
     const uint32_t *operands;       /* of an operator: `count` numbers of earlier steps */
     uint32_t count;
 } csg_boolean_step;
@@ -25,12 +26,23 @@ typedef struct csg_boolean_watch {
     void *user;
 } csg_boolean_watch;
 
+/* Triangles, and the mark of each. */
+typedef struct csg_marked_triangles {
+    csg_triangles triangles;
+    uint32_t *marks;
+    size_t mark_room;
+} csg_marked_triangles;
+
+void csg_marked_triangles_release(csg_marked_triangles *marked);
+
 /* The last step's result, which may have no triangles; places within `tolerance` of each other may
- * become one. *out is initialised in any case. CSGM_ERR_SCENE: a leaf is not a closed manifold.
+ * become one, and triangles of one plane and mark. *out is initialised in any case, and to be
+ * released. CSGM_ERR_SCENE: a leaf is not a closed manifold.
  * CSGM_ERR_MEMORY, not reported; CSGM_CANCELLED: watch said so. CSGM_ERR_UNSUPPORTED: built
  * without the library. The result does not depend on chance. */
 csgm_status csg_booleans(csg_memory *memory, const csg_boolean_step *steps, size_t count,
-                         double tolerance, const csg_boolean_watch *watch, csg_triangles *out);
+                         double tolerance, const csg_boolean_watch *watch,
+                         csg_marked_triangles *out);
 /* Was the program built with the library? */
 bool csg_booleans_are_available(void);
 

@@ -72,6 +72,7 @@ manifold::MeshGL64 mesh_of(const csg_manifold_step *steps, size_t leaf, double t
         caller->give_triangle(caller->user, leaf, i, corners);
         mesh.triVerts.insert(mesh.triVerts.end(), corners, corners + 3);
     }
+    mesh.faceID.assign(steps[leaf].triangle_count, steps[leaf].mark);
     return mesh;
 }
 
@@ -98,6 +99,18 @@ csgm_status status_of(Manifold::Error error)
     }
 }
 
+/* A mesh without its past: which triangles lie in one plane is looked up anew, and of those that do
+ * only such of one mark may become one. */
+template <class Mesh> Mesh anew(const Mesh &mesh)
+{
+    Mesh result;
+    result.tolerance = mesh.tolerance;
+    result.vertProperties = mesh.vertProperties;
+    result.triVerts = mesh.triVerts;
+    result.faceID = mesh.faceID;
+    return result;
+}
+
 csgm_status hand_over(const Manifold &result, const csg_manifold_caller *caller)
 {
     const manifold::MeshGL mesh = result.GetMeshGL();
@@ -111,7 +124,7 @@ csgm_status hand_over(const Manifold &result, const csg_manifold_caller *caller)
         const auto of = mesh.GetTriVerts(t);
         const uint32_t corners[] = {static_cast<uint32_t>(of[0]), static_cast<uint32_t>(of[1]),
                                     static_cast<uint32_t>(of[2])};
-        if (!caller->take_triangle(caller->user, corners))
+        if (!caller->take_triangle(caller->user, corners, mesh.faceID[t]))
             return CSGM_ERR_MEMORY;
     }
     return CSGM_OK;
@@ -137,10 +150,9 @@ csgm_status combine(const csg_manifold_step *steps, size_t count, double toleran
     csgm_status status = status_of(results.back().WithContext(context).Status());
     if (status != CSGM_OK)
         return status;
-    /* Nobody asks which operand a triangle was of: those in one plane may become one. Places become
-     * floats, and what is too thin for floats is mended. */
-    const Manifold rounded =
-        context.FromMeshGL(results.back().AsOriginal().Simplify().GetMeshGL()).Simplify();
+    /* Places become floats, and what is too thin for floats is mended. */
+    const Manifold whole = context.FromMeshGL(anew(results.back().GetMeshGL64())).Simplify();
+    const Manifold rounded = context.FromMeshGL(anew(whole.GetMeshGL())).Simplify();
     status = status_of(rounded.WithContext(context).Status());
     return status == CSGM_OK ? hand_over(rounded, caller) : status;
 }

@@ -25,6 +25,7 @@ typedef enum csg_boolean_kind {
 typedef struct csg_manifold_step {
     csg_boolean_kind kind;
     size_t point_count, triangle_count; /* of a leaf */
+    uint32_t mark;                      /* of a leaf, below 2^31: its triangles keep it */
     const uint32_t *operands;           /* of an operator: `count` numbers of earlier steps */
     uint32_t count;
 } csg_manifold_step;
@@ -36,7 +37,7 @@ typedef struct csg_manifold_caller {
     void (*give_triangle)(void *user, size_t step, size_t i, uint32_t corners[3]);
     bool (*should_stop)(void *user);
     bool (*take_point)(void *user, const double at[3]);
-    bool (*take_triangle)(void *user, const uint32_t corners[3]);
+    bool (*take_triangle)(void *user, const uint32_t corners[3], uint32_t mark);
     void *user;
 } csg_manifold_caller;
 

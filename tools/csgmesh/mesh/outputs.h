@@ -17,6 +17,8 @@ int cli_outputs_check_contents(cli_app *app);
 bool cli_outputs_draco(const cli_options *options);
 /* What --normals asks for, given the formats. */
 csgm_normals cli_outputs_normals(const cli_options *options);
+/* Whether colours and materials are asked for: not where no format has them. */
+bool cli_outputs_colors(const cli_options *options);
 /* Of --unit. */
 csgm_unit cli_outputs_unit(const cli_options *options);
 /* scene_path: the file names it as its source; NULL = it names none. The app keeps the texts. */
