@@ -65,6 +65,12 @@ csg_vec3 csg_box_size(csg_box box)
     return csg_vec3_sub(box.max, box.min);
 }
 
+double csg_box_longest_side(csg_box box)
+{
+    csg_vec3 size = csg_box_size(box);
+    return fmax(size.x, fmax(size.y, size.z));
+}
+
 bool csg_box_contains_box(csg_box outer, csg_box inner)
 {
     return csg_box_is_empty(inner) || (outer.min.x <= inner.min.x && outer.min.y <= inner.min.y &&

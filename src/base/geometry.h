@@ -75,6 +75,7 @@ csg_box csg_box_intersect(csg_box a, csg_box b);
 csg_box csg_box_grow(csg_box box, double by); /* empty stays empty; by >= 0, may be infinite */
 csg_vec3 csg_box_center(csg_box box);
 csg_vec3 csg_box_size(csg_box box);
+double csg_box_longest_side(csg_box box); /* 0 of the empty box; infinite where it has no end */
 bool csg_box_contains_box(csg_box outer, csg_box inner);
 /* b(x) of operators.md 3.1: distance to the nearest face inside, minus the distance to the box
  * outside, -infinity for the empty box. */

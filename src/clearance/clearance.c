@@ -213,10 +213,9 @@ static csgm_status refuse_few(csgm_context *context)
     return CSGM_ERR_SCENE;
 }
 
-static double longest_side(csg_box box)
+static double side_of(csg_box box)
 {
-    csg_vec3 size = csg_box_size(box);
-    return csg_box_is_finite(box) ? fmax(size.x, fmax(size.y, size.z)) : 0;
+    return csg_box_is_finite(box) ? csg_box_longest_side(box) : 0;
 }
 
 static csgm_status begin(csgm_clearances *c)
@@ -224,7 +223,7 @@ static csgm_status begin(csgm_clearances *c)
     static const double SHARE = 1e-4;
     double longest = 0; /* of one part: how far away others are says nothing of how fine it is */
     for (size_t i = 0; i < c->part_count; i++)
-        longest = fmax(longest, longest_side(c->parts[i].box));
+        longest = fmax(longest, side_of(c->parts[i].box));
     c->tolerance = c->options.tolerance > 0 ? c->options.tolerance : SHARE * longest;
     if (!(c->tolerance > 0))
         c->tolerance = SHARE;
@@ -284,7 +283,7 @@ static double enough_of(const csgm_clearances *c, const pair *p)
  * were named, these are wanted. */
 static bool is_far(const csgm_clearances *c, const pair *p, double apart)
 {
-    double a = longest_side(c->parts[p->a].box), b = longest_side(c->parts[p->b].box);
+    double a = side_of(c->parts[p->a].box), b = side_of(c->parts[p->b].box);
     return apart >= INFINITY || (c->options.part_count == 0 && (!p->is_known || p->told.by_boxes) &&
                                  apart > 0.5 * fmin(a, b) && apart >= c->options.min_gap);
 }

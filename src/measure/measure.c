@@ -62,8 +62,7 @@ static csgm_status measure(csg_measure_walk *walk, const csgm_measure_options *o
     csg_extents extents;
     csg_integral_bounds integrals;
     const csgm_field *field = walk->field;
-    csg_vec3 size = csg_box_size(field->bounds);
-    double longest = fmax(size.x, fmax(size.y, size.z));
+    double longest = csg_box_longest_side(field->bounds);
     csgm_status status = csg_measure_extents(walk, options->tolerance * longest,
                                              options->most_cubes / SHARE_FOR_EXTENTS, &extents);
     take_extents(&extents, field->center, out);

@@ -257,8 +257,8 @@ static bool make_root(build *b, csg_box box)
     if (!csg_memory_reserve(&out->context->memory, (void **)&out->cells, &out->capacity, 1,
                             sizeof *out->cells))
         return false;
-    csg_vec3 center = csg_box_center(box), size = csg_box_size(box);
-    double half = fmax(size.x, fmax(size.y, size.z)) / 2 * (1 + 1e-6) + 1e-30;
+    csg_vec3 center = csg_box_center(box);
+    double half = csg_box_longest_side(box) / 2 * (1 + 1e-6) + 1e-30;
     double extent = fmax(fabs(center.x), fmax(fabs(center.y), fabs(center.z))) + 2 * half;
     out->rounding = (float)(32 * (double)FLT_EPSILON * extent); /* as grid/octree/octree.c */
     out->cells[0] = (csg_ray_cell){

@@ -106,8 +106,7 @@ static csgm_status make_cells(csg_layer *layer, csg_picture *picture)
 {
     const csg_view *view = &layer->tracer.view;
     csg_box box = moved_box(layer->bounds, layer->field->center);
-    csg_vec3 size = csg_box_size(box);
-    double side = fmax(size.x, fmax(size.y, size.z));
+    double side = csg_box_longest_side(box);
     double away = csg_vec3_norm(csg_vec3_sub(csg_box_center(box), view->eye));
     double pixels = side / (view->pixel * (view->orthographic ? 1 : fmax(away, 1e-3 * side)));
     int level = 4;

@@ -45,8 +45,7 @@ void csg_slice_plan_make(csg_slice_plan *plan, csgm_context *context, const csgm
                              .layer_count = layer_count};
     csg_box b = {csg_vec3_sub(field->bounds.min, field->center),
                  csg_vec3_sub(field->bounds.max, field->center)};
-    csg_vec3 size = csg_box_size(b);
-    double edge = fmax(size.x, fmax(size.y, size.z)) * (1 + MARGIN);
+    double edge = csg_box_longest_side(b) * (1 + MARGIN);
     plan->corner[0] = b.min.x - BEFORE * edge;
     plan->corner[1] = b.min.y - BEFORE * edge;
     plan->corner[2] = b.min.z - BEFORE * edge;

@@ -232,8 +232,7 @@ csgm_status csg_slice_field(csgm_context *context, const csgm_field *field,
         status = place_layers(&job, field->bounds, options->height);
     if (status != CSGM_OK)
         return status;
-    csg_vec3 size = csg_box_size(field->bounds);
-    double longest = fmax(size.x, fmax(size.y, size.z));
+    double longest = csg_box_longest_side(field->bounds);
     csg_mesh_watch_begin(&watch, context, &options->monitor, 0);
     stats->tolerance = options->tolerance > 0 ? options->tolerance : SHARE_OF_LONGEST * longest;
     job.head.box = field->bounds;

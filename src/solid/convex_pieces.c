@@ -115,12 +115,6 @@ static csgm_status clouds_of_triangles(csg_solid_job *job, const csg_solid_piece
     return status != CSGM_OK ? status : ok ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
-static double longest_side(const csg_triangles *triangles)
-{
-    csg_vec3 size = csg_box_size(csg_triangles_box(triangles));
-    return fmax(size.x, fmax(size.y, size.z));
-}
-
 /* Its corners are floats, which is what counts as one place. */
 static csgm_status clouds_of_any(csg_solid_job *job, const csg_solid_piece *piece, csg_clouds *out)
 {
@@ -133,8 +127,9 @@ static csgm_status clouds_of_any(csg_solid_job *job, const csg_solid_piece *piec
         csg_triangles_init(&triangles, job->memory);
         status = csg_solid_triangles_by(job, piece->node, cells, &triangles);
         if (status == CSGM_OK)
-            status = clouds_of_triangles(job, piece, &triangles,
-                                         float_slack * longest_side(&triangles), MOST, out);
+            status = clouds_of_triangles(
+                job, piece, &triangles,
+                float_slack * csg_box_longest_side(csg_triangles_box(&triangles)), MOST, out);
         csg_triangles_release(&triangles);
     }
     return status;
@@ -159,7 +154,8 @@ csgm_status csg_piece_convex_clouds(csg_solid_job *job, const csg_solid_piece *p
         scene->shapes[node->payload]->kind == CSG_SHAPE_POLYHEDRON) {
         const double slack = 1e-9;
         const csg_triangles *own = csg_polyhedron_triangles(scene->shapes[node->payload]);
-        return clouds_of_triangles(job, piece, own, slack * longest_side(own),
+        return clouds_of_triangles(job, piece, own,
+                                   slack * csg_box_longest_side(csg_triangles_box(own)),
                                    CSG_MOST_CONVEX_PIECES, out);
     }
     return clouds_of_any(job, piece, out);

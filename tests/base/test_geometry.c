@@ -62,6 +62,9 @@ static void test_empty_and_all(void **state)
     csg_box apart = {{2, 0, 0}, {3, 1, 1}};
     assert_true(csg_box_is_empty(csg_box_intersect(one, apart)));
     near_vec3(csg_box_size(empty), csg_vec3_make(0, 0, 0), 0);
+    near(csg_box_longest_side(one), 3, 0);
+    near(csg_box_longest_side(empty), 0, 0);
+    assert_true(isinf(csg_box_longest_side(all)));
     near_vec3(csg_box_center(one), csg_vec3_make(0.5, 1, 1.5), 0);
     csg_box nan = {{NAN, 0, 0}, {1, 1, 1}};
     assert_true(csg_box_is_empty(nan));

@@ -34,8 +34,7 @@ typedef struct measured {
 static measured measure(int cells)
 {
     csg_box box = csg_bounds_of_solid(b.scene);
-    csg_vec3 size = csg_box_size(box);
-    measured m = {.cell = fmax(size.x, fmax(size.y, size.z)) / cells, .box = csg_box_empty()};
+    measured m = {.cell = csg_box_longest_side(box) / cells, .box = csg_box_empty()};
     assert_true(csg_box_is_finite(box));
     for (double x = box.min.x - 0.69 * m.cell; x < box.max.x + m.cell; x += m.cell)
         for (double y = box.min.y - 0.63 * m.cell; y < box.max.y + m.cell; y += m.cell)

@@ -64,9 +64,9 @@ static double power_below(double size)
 static csgm_status make_lattice(adaptive *a, uint32_t *coarse_levels)
 {
     const csg_box bounds = a->input.bounds;
-    csg_vec3 size = csg_box_size(csg_mesh_box_within(bounds, a->input.field->bounds));
-    csg_vec3 center = a->input.field->center;
-    double longest = fmax(size.x, fmax(size.y, size.z));
+    const csg_box within = csg_mesh_box_within(bounds, a->input.field->bounds);
+    double longest = csg_box_longest_side(within);
+    csg_vec3 center = a->input.field->center, size = csg_box_size(within);
     double first = power_below(longest / FIRST_CELLS);
     double cell = fmin(power_below(cells_error(a->goal)) / 2, ldexp(first, -LEAST_LEVELS));
     const double low[3] = {bounds.min.x, bounds.min.y, bounds.min.z};
@@ -171,25 +171,19 @@ static csgm_status paint(adaptive *a)
 
 /* ---- bounds ------------------------------------------------------------------------------------ */
 
-/* The longest side of a box; 0 where it has none, or no end. */
-static double longest_side(csg_box box)
-{
-    csg_vec3 size = csg_box_size(box);
-    return csg_box_is_finite(box) ? fmax(size.x, fmax(size.y, size.z)) : 0;
-}
-
 csg_box csg_mesh_box_within(csg_box bounds, csg_box solid)
 {
     csg_box within = csg_box_intersect(bounds, solid);
-    return longest_side(within) > 0 ? within : bounds;
+    double longest = csg_box_longest_side(within);
+    return longest > 0 && isfinite(longest) ? within : bounds;
 }
 
 double csg_mesh_quality_tolerance(csgm_quality quality, csg_box bounds)
 {
     static const double shares[] = {
         [CSGM_QUALITY_NORMAL] = 1000, [CSGM_QUALITY_DRAFT] = 250, [CSGM_QUALITY_FINE] = 4000};
-    double longest = longest_side(bounds);
-    return longest > 0 ? power_below(longest / shares[quality]) : 0;
+    double longest = csg_box_longest_side(bounds);
+    return longest > 0 && isfinite(longest) ? power_below(longest / shares[quality]) : 0;
 }
 
 /* Whether a vertex lies on one of the planes that cut the solid. */

@@ -35,8 +35,7 @@ static void show_source(const csgm_scene *scene, csg_vec3 at, csgm_diag *diag)
 static void write_hint(const csg_mesh_input *in, const csgm_certify_place *place, char *hint,
                        size_t size)
 {
-    csg_vec3 sides = csg_box_size(in->bounds);
-    double longest = fmax(sides.x, fmax(sides.y, sides.z));
+    double longest = csg_box_longest_side(in->bounds);
     double resolution = place->cell_size > 0 ? ceil(longest / place->cell_size) : INFINITY;
     if (resolution <= CSG_LATTICE_MOST_CELLS)
         snprintf(hint, size, "-r %.0f or finer (-s %.3g) has it in the mesh", resolution,

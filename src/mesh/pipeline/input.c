@@ -89,9 +89,8 @@ void csg_mesh_input_release(csg_mesh_input *in)
 csg_vec3 csg_mesh_origin(csg_vec3 center, csg_box bounds)
 {
     enum { FAR = 64 };
-    csg_vec3 size = csg_box_size(bounds);
-    double extent = fmax(size.x, fmax(size.y, size.z));
-    return csg_vec3_norm(center) > FAR * extent ? center : csg_vec3_make(0, 0, 0);
+    return csg_vec3_norm(center) > FAR * csg_box_longest_side(bounds) ? center
+                                                                      : csg_vec3_make(0, 0, 0);
 }
 
 /* ---- the whole build ---------------------------------------------------------------------------

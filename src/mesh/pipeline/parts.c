@@ -217,6 +217,5 @@ double csg_mesh_distance(const csgm_field *field, const csgm_mesh_options *optio
     /* a field that bounds cut gets their middle for its own (csg_field_clip) */
     csg_vec3 center =
         csg_box_contains_box(bounds, field->bounds) ? field->center : csg_field_center(bounds);
-    csg_vec3 size = csg_box_size(bounds), origin = csg_mesh_origin(center, bounds);
-    return csg_vec3_norm(origin) / fmax(size.x, fmax(size.y, size.z));
+    return csg_vec3_norm(csg_mesh_origin(center, bounds)) / csg_box_longest_side(bounds);
 }

@@ -79,8 +79,7 @@ static csg_box box_of(const csgm_field *field, const csgm_mesh_options *options)
 
 static double longest_side(const csgm_field *field, const csgm_mesh_options *options)
 {
-    csg_vec3 size = csg_box_size(box_of(field, options));
-    return fmax(size.x, fmax(size.y, size.z));
+    return csg_box_longest_side(box_of(field, options));
 }
 
 double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options *options,

@@ -215,8 +215,7 @@ static csgm_status find(search *s, csg_box *out)
     csgm_status status = find_hull(s, 0, &hull);
     if (status != CSGM_OK || csg_box_is_empty(hull) || !csg_box_is_finite(hull))
         return status;
-    csg_vec3 size = csg_vec3_sub(hull.max, hull.min);
-    double side = fmax(size.x, fmax(size.y, size.z));
+    double side = csg_box_longest_side(hull);
     s->far = FAR * side;
     for (int k = -FINEST; k <= COARSEST && side > 0; k++) {
         status = find_hull(s, ldexp(side, k), &hull);

@@ -119,8 +119,7 @@ static csg_vec3 within(csg_box box, csg_vec3 p)
 /* The largest slope between two points beside the place that is certain; 0: none is. */
 static double certain_slope(slope_search *s)
 {
-    csg_vec3 size = csg_box_size(s->box);
-    double width = fmax(size.x, fmax(size.y, size.z)), most = 0;
+    double width = csg_box_longest_side(s->box), most = 0;
     for (int i = 0; i < 12; i++, width /= 8) {
         csg_vec3 half = csg_vec3_scale(s->along, width / 16);
         csg_vec3 p = within(s->box, csg_vec3_sub(s->place, half));

@@ -173,8 +173,7 @@ static csg_node_id bend_room(csg_scene_builder *builder, const csg_warp *warp, c
                              csg_span where)
 {
     csg_box box = csg_warp_box(warp, child, false);
-    csg_vec3 size = csg_box_size(box);
-    box = csg_box_grow(box, 0.25 * fmax(size.x, fmax(size.y, size.z)));
+    box = csg_box_grow(box, 0.25 * csg_box_longest_side(box));
     csg_node_id room = csg_build_block(builder, box, where);
     const csg_blend sharp = CSG_SHARP;
     double radius = warp->parameters[CSG_BEND_RADIUS], angle = warp->parameters[CSG_BEND_ANGLE];

@@ -6,8 +6,7 @@
 
 bool csg_triangle_frame_make(csg_box box, csg_triangle_frame *out)
 {
-    csg_vec3 size = csg_box_size(box);
-    double half = 0.5 * fmax(size.x, fmax(size.y, size.z));
+    double half = 0.5 * csg_box_longest_side(box);
     if (!(half > 1e-150 && half < 1e150))
         return false;
     int exponent;
