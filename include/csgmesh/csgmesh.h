@@ -593,6 +593,7 @@ typedef struct csgm_mesh_stats {
     /* Of polyhedra, which went into the mesh as they are. Where they are all of it, it has no
      * cells: cell_size is 0. */
     uint64_t own_triangles;
+    uint64_t own_triangles_before; /* of polyhedra, which thinning out and improving began with */
 } csgm_mesh_stats;
 
 /* All zeros but struct_size. */

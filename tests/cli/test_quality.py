@@ -191,6 +191,42 @@ intersection(blend = 0.3) {
             self.assertTrue(stats["files"][0]["manifold"], name)
             self.assertAlmostEqual(stats["mesh"]["volume"], 1000 + 700 - 250, delta=0.5)
 
+    def test_polyhedra_are_reshaped(self):
+        """What thins out and improves begins with their triangles: no cells, however long and thin these are."""
+        ball = "sphere(10, $fn = 60);"
+        counts = {}
+        for options in (["-e", "0.1"], ["--simplify", "0.1"], ["--simplify", "20%"], ["--triangles", "500"], ["--improve"]):
+            stats = self.stats(ball, "--facets=exact", *options)
+            self.assertEqual(stats["lattice"], {"adaptive": False, "own_triangles_before": 3596}, options)
+            self.assertTrue(stats["files"][0]["manifold"], options)
+            self.assertEqual(stats["mesh"]["euler"], 2)
+            counts[options[-1]] = stats["mesh"]["triangles"]
+        self.assertLessEqual(abs(counts["20%"] - 3596 / 5), 2)
+        self.assertEqual(counts["500"], 500)
+        self.assertLess(counts["0.1"], 3596 / 2)
+        bar = self.bytes("cube([200, 1, 1]);", "-e", "0.01", name="bar.obj").decode()
+        self.assertEqual((bar.count("\nf "), bar.count("\nvn ")), (12, 24), "a normal for each corner of each side")
+        plate = self.stats("union() { cube([20, 20, 0.01]); translate([30, 0, 0]) cube(5); }", "--simplify", "0.5")
+        self.assertEqual(plate["mesh"]["triangles"], 24)
+
+    @unittest.skipUnless(cli.has_library("Manifold"), "built without Manifold")
+    def test_joined_polyhedra_are_reshaped(self):
+        """Of one look, or apart; what is no polyhedron takes cells, as do borders of looks."""
+        cut = 'difference() { %ssphere(10, $fn = 60); translate([2.5, -20, -20]) cube(40); }'
+        for color in ("", 'color("red") '):
+            stats = self.stats(cut % color, "--facets=exact", "-e", "0.1")
+            self.assertEqual("own_triangles_before" in stats["lattice"], not color)
+            self.assertTrue(stats["files"][0]["manifold"])
+            self.assertEqual(stats["quality"]["open_places"], 0)
+        self.bytes(cut % "", "--facets=exact", "-e", "0.1", name="cut.ply")
+        result = cli.run("diff", "scene.txt", "cut.ply", "--facets=exact", "--tol", "0.1", "--ignore", "normals", cwd=self.folder)
+        self.assert_status(result, 0)
+        apart = self.stats('color("red") cube(10); color("blue") translate([15, 0, 0]) cube(10);', "--simplify", "0.1")
+        self.assertEqual((apart["lattice"]["own_triangles_before"], apart["mesh"]["triangles"]), (24, 24))
+        self.assertIn(b"uchar red", self.read("out.ply")[:400])
+        rest = self.stats('difference() { sphere(10, $fn = 60); torus(r = 8, tube = 2); }', "--simplify", "0.5")
+        self.assertTrue(rest["lattice"]["adaptive"])
+
     def test_polyhedra_beyond_floats(self):
         """Coordinates that no float has are not taken as they are."""
         self.write("scene.txt", """module a() polyhedron(points = [[1, 1, 1], [2, 1, 1], [1, 2, 1], [1, 1, 2]], faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);

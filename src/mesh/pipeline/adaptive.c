@@ -39,6 +39,7 @@ typedef struct adaptive {
     csg_judge judge;
     csg_extraction extraction;
     csg_mesh_goal *goal;
+    uint64_t own_triangles; /* that it began with */
     double refined_s;
     bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
@@ -125,12 +126,24 @@ static csgm_status create_judge(adaptive *a)
     return CSGM_OK;
 }
 
+/* A csg_brick_judge for what has its triangles already: the largest cells will do to ask the field
+ * in. */
+static bool want_nothing(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
+                         const float *f)
+{
+    (void)user, (void)worker, (void)bricks, (void)f;
+    brick->wanted = 0;
+    return true;
+}
+
 /* Until every border is simple, and near the surface. */
 static csgm_status refine(adaptive *a)
 {
     csgm_status status = CSGM_OK;
     for (bool any = true; any && status == CSGM_OK;) {
         status = csg_bricks_refine(&a->bricks);
+        if (a->goal->is_own)
+            break;
         if (status == CSGM_OK)
             status = csg_borders_check_simple(&a->extraction, &any);
         if (status == CSGM_OK && !any)
@@ -214,7 +227,7 @@ static csgm_status walk(adaptive *a)
         return status;
     csg_bricks_options options = {.prune = a->input.options->prune,
                                   .most = MOST_BRICKS,
-                                  .judge = csg_judge_brick,
+                                  .judge = a->goal->is_own ? want_nothing : csg_judge_brick,
                                   .judge_user = &a->judge,
                                   .progress = csg_mesh_report_progress,
                                   .cancelled = csg_mesh_should_stop,
@@ -225,6 +238,7 @@ static csgm_status walk(adaptive *a)
     a->bricks.options.coarse = a->bricks.finest - levels;
     a->workers.marching.bricks = &a->bricks;
     a->extraction = (csg_extraction){.context = context,
+                                     .mesh = a->extraction.mesh,
                                      .watch = &a->watch,
                                      .bricks = &a->bricks,
                                      .judge = &a->judge,
@@ -248,11 +262,13 @@ static void count_blocks(const csg_bricks *bricks, uint64_t blocks[CSGM_LEVELS_M
 static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
 {
     const csg_bricks_stats *s = &a->bricks.stats;
+    bool has_cells = !a->goal->is_own;
     *stats = (csgm_mesh_stats){
         .octree_s = a->refined_s - a->watch.started_s,
         .mesh_s = csg_clock_now_s() - a->refined_s,
-        .cell_size = a->lattice.cell_size,
-        .tolerance = a->goal->error,
+        .cell_size = has_cells ? a->lattice.cell_size : 0,
+        .tolerance = has_cells ? a->goal->error : 0,
+        .own_triangles_before = a->own_triangles,
         .cell_coarsest =
             csg_bricks_cell(&a->bricks, a->bricks.options.coarse) * a->lattice.cell_size,
         .cells = {a->lattice.cells[0], a->lattice.cells[1], a->lattice.cells[2]},
@@ -271,7 +287,8 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
         stats->point_evaluations += a->judge.rooms[i].evaluations;
         stats->gradient_evaluations += a->judge.rooms[i].gradients;
     }
-    count_blocks(&a->bricks, stats->blocks);
+    if (has_cells)
+        count_blocks(&a->bricks, stats->blocks);
 }
 
 static void end_room(csg_judge_room *room, csg_memory *memory)
@@ -322,24 +339,40 @@ static csgm_status extract(adaptive *a)
     return status;
 }
 
+static csgm_status extract_and_paint(adaptive *a)
+{
+    csgm_status status = extract(a);
+    if (status != CSGM_OK)
+        return status;
+    a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
+    return paint(a);
+}
+
 static csgm_status make_mesh(adaptive *a)
 {
+    csgm_mesh **mesh = &a->extraction.mesh;
     csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
-    if (status == CSGM_OK)
-        status = extract(a);
-    if (status == CSGM_OK) {
-        a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
-        status = paint(a);
-    }
-    if (status == CSGM_OK && a->extraction.mesh->triangle_count)
-        status = csg_mesh_reshape(a->goal, &a->extraction.mesh, &a->workers.marching, &a->watch);
-    if (status == CSGM_OK && !(a->goal->cell_size > 0) && a->input.context->survey)
+    if (status == CSGM_OK && !a->goal->is_own)
+        status = extract_and_paint(a);
+    if (status == CSGM_OK && (*mesh)->triangle_count)
+        status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);
+    if (status != CSGM_OK || a->goal->is_own || a->goal->cell_size > 0)
+        return status;
+    if (a->input.context->survey)
         csg_survey_bricks(a->input.context->survey, a->input.field->center, &a->bricks);
-    if (status == CSGM_OK && !(a->goal->cell_size > 0))
-        status = csg_mesh_look_for_lost(&a->input, &a->bricks, cells_error(a->goal),
-                                        a->goal->error > a->goal->asked, &a->watch);
-    return status;
+    return csg_mesh_look_for_lost(&a->input, &a->bricks, cells_error(a->goal),
+                                  a->goal->error > a->goal->asked, &a->watch);
+}
+
+/* The goal's mesh of polyhedra, where it has one, in place of one of cells. */
+static void take_own(adaptive *a)
+{
+    csg_mesh_goal *goal = a->goal;
+    goal->is_own = goal->own != NULL;
+    a->extraction.mesh = goal->own;
+    a->own_triangles = goal->own ? goal->own->triangle_count : 0;
+    goal->own = NULL;
 }
 
 /* With the tolerance of the goal; *is_too_fine: it takes too many bricks, nothing was made. */
@@ -353,6 +386,7 @@ static csgm_status build_within(csgm_context *context, const csgm_field *field,
     base.features = CSGM_FEATURES_SMOOTH;
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
                   .goal = goal};
+    take_own(&a);
     csg_mesh_input_watch(&a.input, goal->started_s, &a.watch);
     csgm_status status = csg_mesh_input_complete(&a.input);
     a.refined_s = csg_clock_now_s();

@@ -22,6 +22,7 @@ typedef struct own {
     csg_own_units units;
     csg_own_rests rests;
     csgm_mesh *mesh; /* NULL: they are not taken */
+    bool reshapes;   /* it is for changing, not for good */
 } own;
 
 /* ---- vertices and triangles --------------------------------------------------------------------
@@ -115,7 +116,7 @@ static csgm_status add_normals(own *o, const csg_corners *corners)
 {
     csgm_normals normals = o->input.options->normals;
     csgm_mesh *with;
-    if (normals == CSGM_NORMALS_NONE)
+    if (normals == CSGM_NORMALS_NONE || o->reshapes)
         return CSGM_OK;
     csgm_status status = csg_own_write_normals(
         o->input.context, o->mesh, corners, normals == CSGM_NORMALS_CREASE, o->units.triangle_looks,
@@ -198,6 +199,13 @@ static bool can_be_joined(const own *o)
                                 (units->look_count == 1 || splits));
 }
 
+/* Changes ask for one field, and for one look at a vertex. */
+static bool can_be_reshaped(const own *o)
+{
+    const csg_own_units *units = &o->units;
+    return !units->rest_count && (units->are_apart || units->look_count <= 1);
+}
+
 static csgm_status build(own *o)
 {
     const csgm_mesh_options *options = o->input.options;
@@ -208,15 +216,16 @@ static csgm_status build(own *o)
         return csg_context_no_memory(o->input.context);
     if (!csg_mesh_gets_colors(&o->input) && !csg_mesh_gets_materials(&o->input))
         csg_own_units_forget_looks(&o->units);
-    if (!can_be_joined(o))
+    bool may_be_reshaped = can_be_reshaped(o);
+    if (!can_be_joined(o) || (csg_mesh_reshapes_own(options, 0) && !may_be_reshaped))
         return CSGM_OK;
     status = csg_own_rests_mesh(&o->rests, &o->units, &o->input);
     if (status == CSGM_OK)
         status = csg_own_join(&o->units, o->input.field->scene, &o->watch);
     if (status != CSGM_OK)
         return status;
-    bool too_many = options->triangles && o->units.triangle_count > options->triangles;
-    if (!o->units.count || too_many)
+    o->reshapes = csg_mesh_reshapes_own(options, o->units.triangle_count);
+    if (!o->units.count || (o->reshapes && !may_be_reshaped))
         return CSGM_OK;
     status = make_mesh(o);
     if (status != CSGM_OK)

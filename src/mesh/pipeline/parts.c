@@ -25,12 +25,12 @@ static csgm_status build_part(csgm_context *context, const csgm_field *field,
     csgm_status status = CSGM_OK;
     if (csg_mesh_may_be_own(options))
         status = csg_mesh_build_own(context, field, options, share, &own, stats);
-    if (status != CSGM_OK || own) {
+    if (status != CSGM_OK || (own && !csg_mesh_reshapes_own(options, own->triangle_count))) {
         *out = own;
         return status;
     }
     return csg_mesh_is_reshaped(options)
-               ? csg_mesh_build_tries(context, field, options, share, out, stats)
+               ? csg_mesh_build_tries(context, field, options, share, own, out, stats)
                : csg_mesh_build_field(context, field, options, share, NULL, out, stats);
 }
 

@@ -46,6 +46,7 @@ void csg_mesh_add_stats(csgm_mesh_stats *sum, const csgm_mesh_stats *part)
     sum->octree_s += part->octree_s;
     sum->mesh_s += part->mesh_s;
     sum->own_triangles += part->own_triangles;
+    sum->own_triangles_before += part->own_triangles_before;
     if (part->cell_size > 0) {
         sum->cell_size = part->cell_size;
         sum->tolerance = part->tolerance;

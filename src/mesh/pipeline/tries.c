@@ -93,7 +93,7 @@ double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options
 
 csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                                  const csgm_mesh_options *options, const csg_mesh_share *share,
-                                 csgm_mesh **out, csgm_mesh_stats *stats)
+                                 csgm_mesh *own, csgm_mesh **out, csgm_mesh_stats *stats)
 {
     enum { MOST_TRIES = 6, FIRST_CELLS = 64, MOST_CELLS = 768 };
     csgm_mesh_options base = *options;
@@ -108,6 +108,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                           .chooses = !follows && proves && !options->resolution &&
                                      !(options->cell_size > 0),
                           .follows = follows,
+                          .own = own,
                           .finer = 1,
                           .normals = options->normals,
                           .care = 0.85,

@@ -17,9 +17,10 @@ static inline bool csg_mesh_is_reshaped(const csgm_mesh_options *options)
 double csg_mesh_tries_tolerance(const csgm_field *field, const csgm_mesh_options *options,
                                 const csg_mesh_share *share);
 
-/* csg_mesh_build_field for options that ask for it. */
+/* csg_mesh_build_field for options that ask for it. own: triangles to begin with, which are taken
+ * over (csg_mesh_build_own); NULL: none. */
 csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
                                  const csgm_mesh_options *options, const csg_mesh_share *share,
-                                 csgm_mesh **out, csgm_mesh_stats *stats);
+                                 csgm_mesh *own, csgm_mesh **out, csgm_mesh_stats *stats);
 
 #endif

@@ -129,6 +129,29 @@ static void take_back_bent(csg_remesh *r, uint8_t *creased, uint8_t *turns, floa
     take_back_beside(r, creased, turns);
 }
 
+/* Per triangle, but for `creased`, which is per corner. */
+typedef struct crease_room {
+    float *value;
+    csg_vec3 *normals;
+    uint8_t *turns, *creased;
+} crease_room;
+
+/* Takes those edges back at which a triangle is so low that rounding may have turned it. */
+static void take_back_low(const csg_remesh *r, const crease_room *room)
+{
+    static const double LOWEST = 64; /* of the noise */
+    const csg_corners *m = &r->corners;
+    for (uint32_t t = 0; t < m->triangle_count; t++) {
+        if (!room->turns[t])
+            continue;
+        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
+                               csg_remesh_corner(r, 3 * t + 2)};
+        double height = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
+        room->turns[t] = height > LOWEST * r->tree.noise * csg_triangle_longest_side(v);
+    }
+    take_back_beside(r, room->creased, room->turns);
+}
+
 /* A place in a triangle, beside the edge that a corner faces. */
 static void place_beside(const csg_remesh *r, uint32_t corner, float at[3])
 {
@@ -175,13 +198,6 @@ static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
     return true;
 }
 
-/* Per triangle, but for `creased`, which is per corner. */
-typedef struct crease_room {
-    float *value;
-    csg_vec3 *normals;
-    uint8_t *turns, *creased;
-} crease_room;
-
 static void find_all_turns(const csg_remesh *r, const crease_room *room)
 {
     for (uint32_t t = 0; t < r->corners.triangle_count; t++)
@@ -194,7 +210,10 @@ static bool find_kinds(csg_remesh *r, const crease_room *room)
 {
     uint32_t creases;
     find_all_turns(r, room);
-    take_back_bent(r, room->creased, room->turns, room->value);
+    if (r->is_own)
+        take_back_low(r, room);
+    else
+        take_back_bent(r, room->creased, room->turns, room->value);
     if (r->marching->bricks && !take_back_curved(r, room->normals, room->creased))
         return false;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++)
@@ -226,22 +245,6 @@ static bool with_room(csg_remesh *r, bool (*find)(csg_remesh *r, const crease_ro
 
 /* ---- a second look -----------------------------------------------------------------------------
  */
-
-/* Takes those edges back at which a triangle is so low that rounding may have turned it. */
-static void take_back_low(const csg_remesh *r, const crease_room *room)
-{
-    static const double LOWEST = 64; /* of the noise */
-    const csg_corners *m = &r->corners;
-    for (uint32_t t = 0; t < m->triangle_count; t++) {
-        if (!room->turns[t])
-            continue;
-        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
-                               csg_remesh_corner(r, 3 * t + 2)};
-        double height = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
-        room->turns[t] = height > LOWEST * r->tree.noise * csg_triangle_longest_side(v);
-    }
-    take_back_beside(r, room->creased, room->turns);
-}
 
 /* Whether all triangles at a vertex lie in one plane, to rounding. */
 static bool is_plane_around(const csg_remesh *r, uint32_t vertex)
@@ -332,8 +335,8 @@ static bool take_arrays(csg_remesh *r)
     return r->at && r->kind && (!looks || r->looks);
 }
 
-csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching *marching,
-                             csg_mesh_watch *watch)
+csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, bool is_own,
+                             const csg_marching *marching, csg_mesh_watch *watch)
 {
     csgm_context *context = watch->context;
     *r = (csg_remesh){.context = context,
@@ -341,6 +344,7 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_marching 
                       .watch = watch,
                       .marching = marching,
                       .mesh = mesh,
+                      .is_own = is_own,
                       .cell = marching->lattice->cell_size};
     csg_corners_result result = csg_corners_make(&r->corners, r->memory, mesh->indices,
                                                  mesh->triangle_count, mesh->vertex_count);

@@ -38,16 +38,17 @@ typedef struct csg_remesh {
     csg_vec3 *at;              /* per vertex, field frame */
     uint8_t *kind;             /* per vertex: csg_vertex_kind */
     csg_look_at_vertex *looks; /* per vertex; NULL: the mesh has neither colours nor materials */
+    bool is_own;               /* it began with triangles of polyhedra */
     double cell;               /* edge of a cell */
     double error;              /* that changes may make: distance both ways */
 } csg_remesh;
 
 /* Of a mesh, whose creases are found by angle: where triangles that lie on the surface meet at 20
  * degrees or more, and, where cells follow the shape, the field turns there and not beside it.
- * marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL:
- * not a closed manifold. */
-csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, const csg_marching *marching,
-                             csg_mesh_watch *watch);
+ * is_own: triangles are polyhedra's, slivers among them true. marching: as it was made, with its
+ * blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL: not a closed manifold. */
+csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, bool is_own,
+                             const csg_marching *marching, csg_mesh_watch *watch);
 void csg_remesh_end(csg_remesh *remesh);
 /* The mesh as it is now as new arrays in place of remesh->mesh, which is destroyed; gaps in the
  * numbers are closed. split: a vertex for each sheet at creases and corners. */

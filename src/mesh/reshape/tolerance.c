@@ -56,13 +56,14 @@ static bool has_count(const csg_mesh_goal *goal)
     return goal->triangles || goal->share > 0;
 }
 
-/* With errors that double until few enough triangles are left. A share of a mesh within an error is
- * that of the triangles which the error leaves, not of those that it began with. */
+/* With errors that double until few enough triangles are left. A share of a mesh that cells made
+ * within an error is that of the triangles which the error leaves, not of those that it began with:
+ * nobody has seen these. */
 static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
 {
     csg_remesh *r = d->remesh;
     csgm_status status = CSGM_OK;
-    if (goal->error > 0 && goal->share > 0 && !goal->triangles) {
+    if (goal->error > 0 && goal->share > 0 && !goal->triangles && !goal->is_own) {
         status = csg_decimate(d, CSG_DECIMATE_ALL);
         goal->begun = r->corners.live;
     }
@@ -127,7 +128,7 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
     static const double PART = 2; /* of the error: what is as far from the mesh is not part of it */
     CSG_ZONE(r->context, "missed parts");
     *missed = (csg_missed){0};
-    if (!(goal->error > 0) || !goal->proves)
+    if (!(goal->error > 0) || !goal->proves || goal->is_own)
         return CSGM_OK;
     csgm_status status = csg_missed_find(r, goal->error, missed);
     if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
@@ -190,7 +191,7 @@ csgm_status csg_mesh_reshape(csg_mesh_goal *goal, csgm_mesh **mesh, const csg_ma
     CSG_ZONE(watch->context, "reshape");
     csg_remesh remesh;
     double begin_s = csg_clock_now_s();
-    csgm_status status = csg_remesh_begin(&remesh, *mesh, marching, watch);
+    csgm_status status = csg_remesh_begin(&remesh, *mesh, goal->is_own, marching, watch);
     if (status == CSGM_OK) {
         status = try_goal(&remesh, goal);
         *mesh = remesh.mesh;

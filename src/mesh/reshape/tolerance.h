@@ -19,6 +19,8 @@ typedef struct csg_mesh_goal {
     bool sharp;           /* creases are kept */
     bool chooses;         /* the cell size */
     bool follows;         /* the shape, with its cells */
+    bool is_own;          /* it begins with the triangles of polyhedra: it is the surface */
+    csgm_mesh *own;       /* these, for the next try, which takes them over; NULL: none */
     double finer;         /* of the error: what these are made for */
     double asked;         /* the error before it was raised, since it took too many cells */
     csgm_normals normals; /* of the result */

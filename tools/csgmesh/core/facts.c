@@ -72,10 +72,10 @@ static bool is_adaptive(const csgm_mesh_stats *stats)
     return stats->tolerance > 0;
 }
 
-/* A mesh of nothing but polyhedra's own triangles has no cells. */
+/* A mesh of nothing but polyhedra's own triangles, or made of such, has no cells. */
 static bool has_cells(const csgm_mesh_stats *stats)
 {
-    return stats->cell_size > 0 || !stats->own_triangles;
+    return stats->cell_size > 0 || !(stats->own_triangles || stats->own_triangles_before);
 }
 
 static void put_cells(cli_json *json, const csgm_mesh_stats *stats)
@@ -97,6 +97,8 @@ void cli_facts_lattice_json(cli_json *json, const csgm_mesh_stats *stats)
     cli_json_bool(json, "adaptive", is_adaptive(stats));
     if (stats->own_triangles)
         cli_json_count(json, "own_triangles", stats->own_triangles);
+    if (stats->own_triangles_before)
+        cli_json_count(json, "own_triangles_before", stats->own_triangles_before);
     if (has_cells(stats))
         put_cells(json, stats);
     cli_json_end(json, '}');
@@ -131,6 +133,9 @@ void cli_facts_lattice_text(const csgm_mesh_stats *stats)
     if (stats->own_triangles)
         printf("%" PRIu64 " triangles of its mesh are those of polyhedra, as they are\n",
                stats->own_triangles);
+    if (stats->own_triangles_before)
+        printf("its mesh was made of %" PRIu64 " triangles of polyhedra\n",
+               stats->own_triangles_before);
     if (!has_cells(stats))
         return;
     if (is_adaptive(stats))

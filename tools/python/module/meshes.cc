@@ -58,6 +58,7 @@ nb::dict stats_of(const csgm_mesh_stats &s)
     PUT(fading_features);
     PUT(triangles_before);
     PUT(own_triangles);
+    PUT(own_triangles_before);
     PUT(is_measured);
     PUT(distance_allowed);
     PUT(max_distance_bound);
