@@ -691,6 +691,11 @@ typedef struct csgm_measures {
                                    I_zz, I_xy, I_xz, I_yz, I_xx the integral of y^2 + z^2, I_xy that
                                    of -x y */
     csgm_interval bounds[6];    /* the smallest box: its least x, y, z, then its largest */
+    csgm_interval moments[3];   /* principal moments of inertia, the smallest first */
+    csgm_vec3 axes[3];     /* their directions, of unit length, the largest component positive */
+    double axis_within[3]; /* degrees: the true axis is no farther from it; 90: unknown, as where
+                              two moments may be equal */
+    csgm_interval area;    /* of a mesh's surface; of a field's nothing is known */
 } csgm_measures;
 
 /* All zeros but struct_size. */

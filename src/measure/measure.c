@@ -45,6 +45,7 @@ static void begin_with_bounds(const csgm_field *field, double density, csgm_meas
     double none[CSG_INTEGRALS] = {0}, all[CSG_INTEGRALS] = {size.x * size.y * size.z};
     for (int k = 0; k < 3; k++)
         out->bounds[k] = out->bounds[3 + k] = (csgm_interval){low[k], high[k]};
+    out->area = (csgm_interval){0, INFINITY};
     csg_measure_derive(none, all, field->center, density, out);
 }
 
@@ -135,7 +136,7 @@ csgm_status csg_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     csg_box box = {csg_vec3_sub(check.bounds.min, mesh->origin),
                    csg_vec3_sub(check.bounds.max, mesh->origin)};
     csg_vec3 center = csg_box_center(box);
-    csg_mesh_integrals(mesh, box, center, low, high);
+    csg_mesh_integrals(mesh, box, center, low, high, &out->area);
     if (high[0] < 0) {
         csg_diag_plain(&context->diags, CSG_DIAG_NOT_CLOSED, NULL, NULL,
                        "the mesh is inside out: its volume is %g", check.volume);

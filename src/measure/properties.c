@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include "measure/principal.h"
+
 static const double ROUNDING = 0x1p-50;
 
 csgm_interval csg_interval_grown(double low, double high, double relative)
@@ -75,6 +77,7 @@ void csg_measure_derive(const double low[CSG_INTEGRALS], const double high[CSG_I
         out->centroid[k] = unknown;
     for (int k = 0; k < 6; k++)
         out->inertia[k] = unknown;
+    csg_measure_principal(out);
     if (!(m[0].low > 0))
         return;
     for (int k = 0; k < 3; k++)
@@ -88,4 +91,5 @@ void csg_measure_derive(const double low[CSG_INTEGRALS], const double high[CSG_I
         out->inertia[k] = multiply(add(c[(k + 1) % 3], c[(k + 2) % 3]), of);
     for (int k = 3; k < 6; k++)
         out->inertia[k] = multiply(negated(c[k]), of);
+    csg_measure_principal(out);
 }

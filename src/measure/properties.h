@@ -7,7 +7,8 @@
 #include "base/geometry.h"
 #include "measure/integrals.h"
 
-/* The integrals are around `origin` (scene units). Fills volume, mass, centroid and inertia. */
+/* The integrals are around `origin` (scene units). Fills volume, mass, centroid, inertia and what
+ * is principal of it. */
 void csg_measure_derive(const double low[CSG_INTEGRALS], const double high[CSG_INTEGRALS],
                         csg_vec3 origin, double density, csgm_measures *out);
 

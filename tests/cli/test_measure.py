@@ -163,6 +163,45 @@ class Measure(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn('did you mean "lid"', result.stderr)
 
+    def test_each_part(self):
+        scene = 'part("box") color("red") cube(10);\npart("lid") translate([0, 0, 20]) cube([10, 10, 2]);\n'
+        found = self.measure(scene, "--to", 1e-3, "--each-part")
+        self.holds(found["volume"], 1200)
+        self.assertEqual([part["part"] for part in found["parts"]], ["box", "lid"])
+        for part, volume in zip(found["parts"], (1000, 200)):
+            self.holds(part["volume"], volume)
+            alone = self.measure(scene, "--to", 1e-3, "--part", part["part"])
+            self.assertEqual({name: alone[name] for name in part if name != "part"}, {name: part[name] for name in part if name != "part"})
+        path = write(self.folder, "scene.txt", scene)
+        text = cli.run("measure", path, "--to", 1e-3, "--each-part").stdout.decode()
+        self.assertEqual([text.count(words) for words in ("a scene", 'part "box"', 'part "lid"', "  volume ")], [1, 1, 1, 3])
+        mesh = os.path.join(self.folder, "mesh.glb")
+        self.assertEqual(cli.run(path, "-o", mesh).returncode, 0)
+        parts = json.loads(cli.run("measure", mesh, "--json", "--each-part").stdout)["parts"]
+        self.assertEqual([round(part["area"][0]) for part in parts], [600, 280])
+        self.assertNotIn("parts", self.measure("cube(1);", "--to", 1e-2, "--each-part"))
+        both = cli.run("measure", path, "--each-part", "--part", "lid")
+        self.assertEqual(both.returncode, 2)
+        self.assertIn("give one", both.stderr)
+        gone = self.run_text('part("box") cube(10);\npart("lid") intersection() { cube(1); translate([5, 0, 0]) cube(1); }\n', "--each-part")
+        self.assertEqual(gone.returncode, 1)
+        self.assertIn('part "lid" has no measures', gone.stderr)
+
+    def run_text(self, scene, *options):
+        return cli.run("measure", write(self.folder, "scene.txt", scene), *options)
+
+    def test_principal_moments_and_axes(self):
+        found = self.measure("rotate([0, 0, 30]) cube([10, 20, 30], center = true);", "--to", 1e-3)["principal"]
+        for one, (moment, axis) in zip(found, ((500, (0, 0, 1)), (1000, (-0.5, 0.75 ** 0.5, 0)), (1300, (0.75 ** 0.5, 0.5, 0)))):
+            self.holds(one["moment"], 6000 * moment / 12)
+            self.assertLess(one["axis_within_deg"], 0.5)
+            cosine = abs(sum(a * b for a, b in zip(one["axis"], axis)))
+            self.assertGreaterEqual(cosine, math.cos(math.radians(one["axis_within_deg"])) - 1e-12)
+        ball = self.measure("sphere(5);", "--to", 1e-3)["principal"]
+        self.assertEqual([one["axis_within_deg"] for one in ball], [90] * 3)
+        self.check("cube([10, 20, 30]);", "moment_1 < 260000 && moment_3 > 640000", status=0)
+        self.check("cube([10, 20, 30]);", "area < 1e9", status=2)
+
     def test_meshes(self):
         path = write(self.folder, "scene.txt", "translate([1, 2, 3]) cube([10, 20, 30]);\n")
         mesh = os.path.join(self.folder, "mesh.stl")
@@ -170,6 +209,8 @@ class Measure(unittest.TestCase):
         found = json.loads(cli.run("measure", mesh, "--json").stdout)
         self.holds(found["volume"], 6000)
         self.holds(found["inertia"]["xx"], 6000 * 1300 / 12)
+        self.holds(found["area"], 2200)
+        self.assertLess(found["area"][1] - found["area"][0], 1e-8)
         self.assertLess(found["volume"][1] - found["volume"][0], 1e-8 * 6000)
         open_one = write(self.folder, "open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n")
         result = cli.run("measure", open_one)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * csgmesh measure SCENE|MESH: volume, centroid, inertia and tight bounds, between proven bounds.
+ * csgmesh measure SCENE|MESH: volume, centroid, inertia and tight bounds, between proven bounds, of
+ * all and of each part.
  * What is proven when a limit or Ctrl-C ends the work is printed too.
  */
 #include <stdio.h>
@@ -38,34 +39,70 @@ static int no_memory(cli_app *app)
     return cli_usage_error(app, NULL, "out of memory");
 }
 
-static int find_part_of_field(cli_app *app, const char *path, const csgm_field *field)
+/* ---- what is measured --------------------------------------------------------------------------
+ */
+
+/* A scene or a mesh, one of the two, and the names of its parts. */
+typedef struct subject {
+    const char *path;
+    const csgm_field *field; /* NULL: it is a mesh */
+    csgm_mesh_view mesh;
+    const char **names;
+    size_t count;
+} subject;
+
+/* False: out of memory. */
+static bool find_names(subject *s)
 {
-    size_t count = 0;
+    size_t count = (size_t)s->mesh.part_count;
     const char *name;
-    while (csgm_field_part(field, count, &name))
-        count++;
-    const char **names = calloc(count + 1, sizeof *names);
-    if (!names)
-        return no_memory(app);
-    for (size_t i = 0; i < count; i++)
-        csgm_field_part(field, i, &names[i]);
-    int status = cli_part_find(app, path, app->options->measure_part, names, count);
-    free(names);
+    for (; s->field && csgm_field_part(s->field, count, &name); count++)
+        ;
+    s->names = calloc(count + 1, sizeof *s->names);
+    for (size_t i = 0; s->names && i < count; i++) {
+        if (s->field)
+            csgm_field_part(s->field, i, &name);
+        else
+            name = s->mesh.parts[i].name;
+        if (name)
+            s->names[s->count++] = name;
+    }
+    return s->names != NULL;
+}
+
+static csgm_status measure(cli_app *app, const subject *s, const csgm_measure_options *options,
+                           csgm_measures *out)
+{
+    return s->field ? csgm_measure_field(app->context, s->field, options, out)
+                    : csgm_measure_mesh(app->context, &s->mesh, options, out);
+}
+
+static bool is_stopped(csgm_status status)
+{
+    return status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
+}
+
+/* As many as could be, in the order of their names; what stopped it, of the last one. */
+static csgm_status measure_parts(cli_app *app, const subject *s, csgm_measure_options options,
+                                 cli_measured_part *parts, size_t *count)
+{
+    csgm_status status = CSGM_OK;
+    for (*count = 0; *count < s->count && status == CSGM_OK; ++*count) {
+        cli_measured_part *part = &parts[*count];
+        options.part = part->name = s->names[*count];
+        part->measures = csgm_measures_default();
+        status = measure(app, s, &options, &part->measures);
+        if (status != CSGM_OK && !is_stopped(status)) {
+            cli_console_say(&app->console, CSGM_ERROR, NULL,
+                            "%s: so part \"%.200s\" has no measures", s->path, part->name);
+            return status;
+        }
+    }
     return status;
 }
 
-static int find_part_of_mesh(cli_app *app, const char *path, const csgm_mesh_view *view)
-{
-    const char **names = calloc(view->part_count + 1, sizeof *names);
-    if (!names)
-        return no_memory(app);
-    for (uint64_t i = 0; i < view->part_count; i++)
-        names[i] = view->parts[i].name;
-    int status =
-        cli_part_find(app, path, app->options->measure_part, names, (size_t)view->part_count);
-    free(names);
-    return status;
-}
+/* ---- what is said ------------------------------------------------------------------------------
+ */
 
 /* What the checks come to: the worst of them. */
 static int report_checks(cli_app *app, const cli_measured *measured)
@@ -85,59 +122,87 @@ static int report_checks(cli_app *app, const cli_measured *measured)
     return worst == CLI_HOLDS ? CLI_DONE : worst == CLI_FAILS ? CLI_INPUT_AT_FAULT : CLI_TROUBLE;
 }
 
-/* status: of the measuring; what is proven is printed after a limit, too. What is checked decides
- * about the exit status: what is proven by then is proven. */
-static int print(cli_app *app, const char *path, bool is_mesh, csgm_status status,
-                 const csgm_measure_options *options, const csgm_measures *measures)
+static void say_how_far(cli_app *app, const cli_measured *measured, csgm_status status,
+                        bool is_reached)
 {
-    bool is_stopped =
-        status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
-    const cli_options *o = app->options;
-    cli_measured measured = {.path = path,
-                             .part = options->part,
-                             .is_mesh = is_mesh,
-                             .measures = measures,
-                             .density = options->density,
-                             .to = options->tolerance};
-    cli_console_end_progress(&app->console);
-    if (status != CSGM_OK && !is_stopped)
-        return cli_exit_status(status);
     if (status == CSGM_CANCELLED)
         cli_console_say(&app->console, CSGM_ERROR, NULL, "interrupted: this is proven so far");
-    else if (status == CSGM_OK && !measures->is_reached)
+    else if (status == CSGM_OK && !is_reached)
         cli_console_say(&app->console, CSGM_WARNING,
                         "where gradients have no bounds, intervals shrink slowly: a larger --to",
-                        "%s could not be measured to %g: this is what is proven", path,
-                        options->tolerance);
-    if (!cli_checks_decide(&measured.checks, &o->measure_checks, measures)) {
-        cli_checks_release(&measured.checks);
+                        "%s could not be measured to %g: this is what is proven", measured->path,
+                        measured->to);
+}
+
+/* status: of the measuring; what is proven is printed after a limit, too. What is checked decides
+ * about the exit status: what is proven by then is proven. */
+static int print(cli_app *app, cli_measured *measured, csgm_status status)
+{
+    const cli_options *o = app->options;
+    bool is_reached = measured->measures->is_reached;
+    for (size_t i = 0; i < measured->part_count; i++)
+        is_reached = is_reached && measured->parts[i].measures.is_reached;
+    cli_console_end_progress(&app->console);
+    if (status != CSGM_OK && !is_stopped(status))
+        return cli_exit_status(status);
+    say_how_far(app, measured, status, is_reached);
+    if (!cli_checks_decide(&measured->checks, &o->measure_checks, measured->measures))
         return no_memory(app);
-    }
     if (!o->measure_junit || strcmp(o->measure_junit, "-") != 0)
-        (o->json ? cli_measure_json : cli_measure_text)(&measured);
-    int result = is_stopped || !measures->is_reached ? CLI_TROUBLE : CLI_DONE;
-    if (measured.checks.count)
-        result = report_checks(app, &measured);
-    if (o->measure_junit && cli_measure_junit(app, &measured) != CLI_DONE)
+        (o->json ? cli_measure_json : cli_measure_text)(measured);
+    int result = status != CSGM_OK || !is_reached ? CLI_TROUBLE : CLI_DONE;
+    if (measured->checks.count)
+        result = report_checks(app, measured);
+    if (o->measure_junit && cli_measure_junit(app, measured) != CLI_DONE)
         result = CLI_TROUBLE;
-    cli_checks_release(&measured.checks);
     return result;
+}
+
+static int measure_and_print(cli_app *app, const subject *s, const csgm_measure_options *options)
+{
+    csgm_measures measures = csgm_measures_default();
+    cli_measured measured = {.path = s->path,
+                             .part = options->part,
+                             .is_mesh = !s->field,
+                             .measures = &measures,
+                             .density = options->density,
+                             .to = options->tolerance};
+    cli_measured_part *parts = NULL;
+    csgm_status status = measure(app, s, options, &measures);
+    if (status == CSGM_OK && app->options->measure_each_part) {
+        parts = calloc(s->count + 1, sizeof *parts);
+        if (!parts)
+            return no_memory(app);
+        status = measure_parts(app, s, *options, parts, &measured.part_count);
+        measured.parts = parts;
+    }
+    int result = print(app, &measured, status);
+    cli_checks_release(&measured.checks);
+    free(parts);
+    return result;
+}
+
+static int measure_subject(cli_app *app, subject *s)
+{
+    csgm_measure_options options = measure_options(app);
+    int status = CLI_DONE;
+    if (!find_names(s))
+        return no_memory(app);
+    if (options.part)
+        status = cli_part_find(app, s->path, options.part, s->names, s->count);
+    if (status == CLI_DONE)
+        status = measure_and_print(app, s, &options);
+    free(s->names);
+    return status;
 }
 
 static int measure_mesh(cli_app *app, const char *path, csgm_format format)
 {
     csgm_mesh *mesh = NULL;
-    csgm_measure_options options = measure_options(app);
-    csgm_measures measures = csgm_measures_default();
     int status = cli_exit_status(csgm_mesh_read(app->context, path, format, &mesh));
     if (status == CLI_DONE) {
-        csgm_mesh_view view = csgm_mesh_get_view(mesh);
-        if (options.part)
-            status = find_part_of_mesh(app, path, &view);
-        if (status == CLI_DONE) {
-            csgm_status made = csgm_measure_mesh(app->context, &view, &options, &measures);
-            status = print(app, path, true, made, &options, &measures);
-        }
+        subject s = {.path = path, .mesh = csgm_mesh_get_view(mesh)};
+        status = measure_subject(app, &s);
     }
     csgm_mesh_destroy(mesh);
     return status;
@@ -146,17 +211,13 @@ static int measure_mesh(cli_app *app, const char *path, csgm_format format)
 static int measure_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
-    csgm_measure_options options = measure_options(app);
-    csgm_measures measures = csgm_measures_default();
     int status = cli_work_load(app, &work, path);
     if (status == CLI_DONE)
         status = cli_exit_status(csgm_field_compile(app->context, work.scene, &work.field));
-    if (status == CLI_DONE && options.part)
-        status = find_part_of_field(app, path, work.field);
     if (status == CLI_DONE) {
+        subject s = {.path = path, .field = work.field};
         cli_interrupt_ask_first();
-        csgm_status made = csgm_measure_field(app->context, work.field, &options, &measures);
-        status = print(app, path, false, made, &options, &measures);
+        status = measure_subject(app, &s);
     }
     cli_work_release(&work);
     return status;
@@ -175,6 +236,8 @@ int cli_cmd_measure(cli_app *app)
         if (asked == CSGM_FORMAT_AUTO)
             return cli_usage_error(app, NULL, "unknown format '%s'", app->options->format);
     }
+    if (app->options->measure_each_part && app->options->measure_part)
+        return cli_usage_error(app, NULL, "--part measures one part, --each-part all: give one");
     int status = cli_checks_read(app, &app->options->measure_checks);
     if (status == CLI_DONE && app->options->measure_junit && !app->options->measure_checks.count)
         return cli_usage_error(app, "as --check 'volume < 1000'", "--junit needs a --check");

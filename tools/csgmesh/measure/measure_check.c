@@ -23,6 +23,10 @@
     M(inertia_xy, inertia[3])                                                                      \
     M(inertia_xz, inertia[4])                                                                      \
     M(inertia_yz, inertia[5])                                                                      \
+    M(moment_1, moments[0])                                                                        \
+    M(moment_2, moments[1])                                                                        \
+    M(moment_3, moments[2])                                                                        \
+    M(area, area)                                                                                  \
     M(min_x, bounds[0])                                                                            \
     M(min_y, bounds[1])                                                                            \
     M(min_z, bounds[2])                                                                            \
@@ -167,9 +171,10 @@ static meaning read_name(reader *r)
     name[length] = '\0';
     if (!find_measure(r->measures ? r->measures : &unknown, name, &m.number)) {
         const char *near = cli_nearest(name, names);
-        return fail(
-            r, at, "no measure has that name",
-            near ? near : "volume, mass, centroid_x, inertia_xx, inertia_xy, min_x, max_x, size_x");
+        return fail(r, at, "no measure has that name",
+                    near ? near
+                         : "volume, mass, area, centroid_x, inertia_xx, inertia_xy, moment_1, "
+                           "min_x, max_x, size_x");
     }
     if (!r->measures)
         m.number = (csgm_interval){-INFINITY, INFINITY};

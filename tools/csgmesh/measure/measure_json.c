@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Measures as one JSON object: every interval is [low, high], null where it has no end.
  */
+#include <math.h>
+
 #include "measure/measure_print.h"
 
 static void put_interval(cli_json *json, const char *key, csgm_interval interval)
@@ -32,12 +34,54 @@ static void put_checks(cli_json *json, const cli_checks *checks)
     cli_json_end(json, ']');
 }
 
-void cli_measure_json(const cli_measured *measured)
+static void put_principal(cli_json *json, const csgm_measures *m)
+{
+    cli_json_open(json, "principal", '[');
+    for (int n = 0; n < 3; n++) {
+        const double axis[3] = {m->axes[n].x, m->axes[n].y, m->axes[n].z};
+        cli_json_open(json, NULL, '{');
+        put_interval(json, "moment", m->moments[n]);
+        cli_json_open(json, "axis", '[');
+        for (int k = 0; k < 3; k++)
+            cli_json_number(json, NULL, axis[k]);
+        cli_json_end(json, ']');
+        cli_json_number(json, "axis_within_deg", m->axis_within[n]);
+        cli_json_end(json, '}');
+    }
+    cli_json_end(json, ']');
+}
+
+static void put_measures(cli_json *json, const csgm_measures *m)
 {
     static const char *const axes[] = {"x", "y", "z"};
     static const char *const products[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     static const char *const sides[] = {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z"};
-    const csgm_measures *m = measured->measures;
+    cli_json_bool(json, "reached", m->is_reached);
+    cli_json_count(json, "cubes", m->cubes);
+    put_interval(json, "volume", m->volume);
+    put_interval(json, "mass", m->mass);
+    put_intervals(json, "centroid", axes, m->centroid, 3);
+    put_intervals(json, "inertia", products, m->inertia, 6);
+    put_principal(json, m);
+    put_intervals(json, "bounds", sides, m->bounds, 6);
+    if (isfinite(m->area.high))
+        put_interval(json, "area", m->area);
+}
+
+static void put_parts(cli_json *json, const cli_measured *measured)
+{
+    cli_json_open(json, "parts", '[');
+    for (size_t i = 0; i < measured->part_count; i++) {
+        cli_json_open(json, NULL, '{');
+        cli_json_string(json, "part", measured->parts[i].name);
+        put_measures(json, &measured->parts[i].measures);
+        cli_json_end(json, '}');
+    }
+    cli_json_end(json, ']');
+}
+
+void cli_measure_json(const cli_measured *measured)
+{
     cli_json json = cli_json_make(stdout, true);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "file", measured->path);
@@ -45,14 +89,10 @@ void cli_measure_json(const cli_measured *measured)
         cli_json_string(&json, "part", measured->part);
     cli_json_string(&json, "kind", measured->is_mesh ? "mesh" : "scene");
     cli_json_number(&json, "to", measured->to);
-    cli_json_bool(&json, "reached", m->is_reached);
-    cli_json_count(&json, "cubes", m->cubes);
     cli_json_number(&json, "density", measured->density);
-    put_interval(&json, "volume", m->volume);
-    put_interval(&json, "mass", m->mass);
-    put_intervals(&json, "centroid", axes, m->centroid, 3);
-    put_intervals(&json, "inertia", products, m->inertia, 6);
-    put_intervals(&json, "bounds", sides, m->bounds, 6);
+    put_measures(&json, measured->measures);
+    if (measured->part_count)
+        put_parts(&json, measured);
     if (measured->checks.count)
         put_checks(&json, &measured->checks);
     cli_json_end(&json, '}');

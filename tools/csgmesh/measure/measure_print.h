@@ -6,12 +6,20 @@
 
 #include "measure/measure_check.h"
 
+/* One of the parts that are measured by themselves. */
+typedef struct cli_measured_part {
+    const char *name;
+    csgm_measures measures;
+} cli_measured_part;
+
 typedef struct cli_measured {
     const char *path, *part; /* part: NULL = all */
     bool is_mesh;
     const csgm_measures *measures;
     double density, to;
     cli_checks checks;
+    const cli_measured_part *parts;
+    size_t part_count;
 } cli_measured;
 
 void cli_measure_json(const cli_measured *measured);
