@@ -115,7 +115,8 @@ static csgm_status mesh_field(csg_own_rests *rests, const csgm_field *field, siz
     share.amount /= (double)count;
     share.before += (double)index * share.amount;
     csgm_mesh_stats stats = {0};
-    csgm_status status = csg_mesh_build_tries(input->context, field, &options, &share, NULL, out, &stats);
+    csgm_status status =
+        csg_mesh_build_tries(input->context, field, &options, &share, NULL, out, &stats);
     csg_mesh_add_stats(&rests->stats, &stats);
     return status;
 }
