@@ -15,7 +15,8 @@ from . import _core, _modules, functions
 from ._errors import (ArgumentError, Diagnostic, Error, FileError, FormatError, InternalError, LimitError, MissingFileError,
                       OutOfMemoryError, SceneError, SceneSyntaxError, SceneWarning, UnsupportedError)
 from ._modules import Solid
-from ._results import Diff, Mesh, Part, Scene, check, diff, load, mesh, parse, read, render, write, write_image
+from ._results import (Clearance, Diff, Mesh, Part, Scene, check, clear, diff, load, measure, mesh, parse, read, render, write,
+                       write_image)
 from ._solid import Expression, code
 from ._modules import *  # noqa: F403 the modules of the scene language
 from .functions import *  # noqa: F403 its blends
@@ -31,9 +32,9 @@ def formats() -> "list[dict[str, object]]":
 
 
 __all__ = [
-    "ArgumentError", "Diagnostic", "Diff", "Error", "Expression", "FileError", "FormatError", "InternalError", "LimitError",
+    "ArgumentError", "Clearance", "Diagnostic", "Diff", "Error", "Expression", "FileError", "FormatError", "InternalError", "LimitError",
     "Mesh", "MissingFileError", "OutOfMemoryError", "Part", "Scene", "SceneError", "SceneSyntaxError", "SceneWarning", "Solid",
-    "UnsupportedError", "check", "code", "diff", "features", "formats", "functions", "load", "mesh", "parse", "read", "render", "write",
-    "write_image",
+    "UnsupportedError", "check", "clear", "code", "diff", "features", "formats", "functions", "load", "measure", "mesh", "parse", "read",
+    "render", "write", "write_image",
 ]
 __all__ += [*_modules.__all__, *functions.__all__]

@@ -108,8 +108,12 @@ def _words(given: Any) -> list[Any]:
     return [given] if isinstance(given, str) else list(given)
 
 
+def _texts(given: Any) -> list[Any]:
+    return [_text(word) for word in _words(given)]
+
+
 _CONVERT = {"define": _define, "include": _include, "openscad_version": _level, "comment": _text, "metadata": _metadata, "levels": _levels, "background": _color,
-            "ignore": _words, "parameter_set": _text, "parameter_file": lambda path: path_bytes(path, "parameter_file")}
+            "ignore": _words, "part": _text, "parts": _texts, "parameter_set": _text, "parameter_file": lambda path: path_bytes(path, "parameter_file")}
 
 
 class Call:

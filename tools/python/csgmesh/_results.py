@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from typing_extensions import Unpack
 
-    from ._types import DiffOptions, MeshOptions, Path, RenderOptions, RunOptions, SceneMeshOptions, SceneOptions
+    from ._types import ClearOptions, DiffOptions, MeasureOptions, MeshOptions, Path, RenderOptions, RunOptions, SceneMeshOptions, SceneOptions
     from ._types import SceneWriteOptions, WriteOptions
 
 Source = Union[str, "os.PathLike[str]", SolidBase, "Scene"]
@@ -602,6 +602,82 @@ def _compare(call: Call, given: list[Union[Scene, Mesh]], how: dict[str, Any], u
     return Diff(*call.settle(_core.diff(call.run, sides[0]._core, sides[1]._core, fields[0], fields[1], call.of["diff"])))
 
 
+# ---- numbers with proof
+
+def measure(source: Union[Source, Mesh], **options: Unpack[MeasureOptions]) -> SimpleNamespace:
+    """Volume, mass, centroid, inertia, principal moments and axes, and the smallest box of a scene, a solid or a closed mesh.
+    Each number is (low, high), and the true one lies between them; bounds are the least x, y, z, then the largest; inertia is
+    xx, yy, zz, xy, xz, yz around the centroid. axes are of unit length, the true ones within axis_within degrees; area is of
+    meshes only. is_reached: as closely as tolerance asks. As `csgmesh measure` (docs/measure.md)."""
+    _check_names("measure()", options, "measure", "scene")
+    how, others = split(options, "measure")
+    if isinstance(source, Mesh):
+        call = Call("measure()", options, "measure")
+        return _measures(call, _core.measure_mesh(call.run, source._core, call.of["measure"]))
+    scene = scene_of(source, others)
+    call = Call("measure()", how, "measure")
+    return _measures(call, _core.measure_scene(call.run, scene._core, call.of["measure"]))
+
+
+def _measures(call: Call, answer: tuple[str, Any]) -> SimpleNamespace:
+    part = call.of["measure"].get("part")
+    if answer[0] == "ERR_ARGUMENT" and part is not None:
+        raise ValueError(f"part: there is none of the name {part.decode()!r}, or another option is out of range")
+    return _spaces(call.settle(answer)[0])
+
+
+class Clearance(NamedTuple):
+    """What is proven of two parts over all poses: that of the worst. Between poses nothing is known."""
+
+    parts: tuple[Optional[str], Optional[str]]
+    state: str  #: "apart", "touching", "undecided" or "interfering", at the worst pose
+    pose: int  #: the worst
+    gap: tuple[float, float]  #: nowhere less than the first
+    nearest: Optional[tuple[tuple[float, float, float], tuple[float, float, float]]]  #: a point of each, gap[1] apart
+    inside: Optional[tuple[float, float, float]]  #: a point inside both, where they interfere
+    volume: Optional[tuple[float, float]]  #: what both have, where they interfere
+    size: Optional[float]  #: undecided: the edge of the largest cube that is left
+    poses: int  #: at which both are there
+    poses_bad: int  #: those where they interfere, or are less than min_gap apart
+    poses_open: int  #: those where that could not be told
+
+
+def clear(source: Union[str, "os.PathLike[str]", SolidBase], poses: Sequence[Mapping[str, Any]] = ({},),
+          **options: Unpack[ClearOptions]) -> list[Clearance]:
+    """Whether the named parts of a scene's text, a file (a pathlib.Path) or a solid stay clear of each other: a Clearance for
+    each pair. poses: values for assignments at the top of the text, as of define, one dict for each pose. As `csgmesh clear`
+    (docs/clear.md)."""
+    call = Call("clear()", options, "scene", "clear")
+    given = options.get("define") or {}
+    core = _needed(call, _core.begin_clear(call.run, call.of["clear"]))
+    for pose in poses:
+        how = Call("clear()", {"define": {**given, **pose}}, "scene").of["scene"]
+        scene = _read_in(call, source, {**call.of["scene"], **how})
+        answer = _core.add_pose(call.run, core, scene)
+        if answer[0] == "ERR_ARGUMENT":
+            there = ", ".join(repr(name) for name in core.parts())
+            raise ValueError(f"parts: a part that is asked for is not there, only {there}")
+        if answer[0] != "OK":
+            call.settle(answer)
+    call.settle(("OK", None))
+    return [Clearance(**pair) for pair in core.pairs()]
+
+
+def _needed(call: Call, answer: tuple[str, Any]) -> Any:
+    """A result on the way to another: findings are settled at the end."""
+    return answer[1] if answer[0] == "OK" else call.settle(answer)[0]
+
+
+def _read_in(call: Call, source: Any, how: dict[str, Any]) -> Any:
+    """In the call's own run, as poses must be."""
+    if isinstance(source, os.PathLike):
+        return _needed(call, _core.load(call.run, existing(source), how))
+    if not isinstance(source, (str, SolidBase)):
+        raise TypeError(f"a scene's text, a path or a solid is wanted, not {type(source).__name__}")
+    name = b"solid" if isinstance(source, SolidBase) else b"text"
+    return _needed(call, _core.parse(call.run, str(source).encode("utf-8", "surrogatepass"), name, how))
+
+
 def _document() -> None:
     """Docstrings end with the options that a function takes."""
     of = _core.option_names
@@ -610,7 +686,7 @@ def _document() -> None:
     documented: list[tuple[Any, list[str]]] = [
         (load, scene), (parse, scene), (check, scene), (mesh, [*of["mesh"], *scene]), (Scene.mesh, of["mesh"]),
         (write, [*of["mesh"], *of["write"], *scene]), (Mesh.write, of["write"]), (render, [*of["render"], *scene]),
-        (diff, [*of["diff"], "field", "mesh"]), (read, []), (Scene.field, [])]
+        (diff, [*of["diff"], "field", "mesh"]), (read, []), (measure, [*of["measure"], *scene]), (clear, [*of["clear"], *scene]), (Scene.field, [])]
     for function, options in documented:
         names = textwrap.fill(", ".join([*options, *common]), 110, initial_indent="    ", subsequent_indent="    ")
         function.__doc__ = f"{function.__doc__}\n\n    Options:\n{names}"

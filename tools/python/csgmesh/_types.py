@@ -154,3 +154,21 @@ class DiffOptions(RunOptions, total=False):
     verdict_only: bool
     field: bool  # measure against the exact field of a scene, too
     mesh: BuildOptions  # how scenes are meshed
+
+
+class MeasureOptions(SceneOptions, total=False):
+    """How closely a solid is measured: csgm_measure_options."""
+
+    tolerance: float  # how wide the volume's interval may be, as a share of it (1e-4)
+    density: float  # mass per cubic scene unit (1)
+    part: str  # of this name alone
+    most_cubes: int
+
+
+class ClearOptions(SceneOptions, total=False):
+    """What is to be known of parts: csgm_clear_options."""
+
+    tolerance: float  # how closely gaps are to be known
+    min_gap: float  # whether gaps are as large
+    parts: Union[str, Sequence[str]]  # pairs among these alone; of one, its pairs with all others
+    most_pairs: int

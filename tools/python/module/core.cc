@@ -70,4 +70,5 @@ NB_MODULE(_core, module)
     define_meshes(module);
     define_pictures(module);
     define_diffs(module);
+    define_measures(module);
 }

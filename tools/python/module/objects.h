@@ -61,5 +61,6 @@ void define_scenes(nb::module_ &module);
 void define_meshes(nb::module_ &module);
 void define_pictures(nb::module_ &module);
 void define_diffs(nb::module_ &module);
+void define_measures(nb::module_ &module);
 
 #endif

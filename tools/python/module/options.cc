@@ -383,6 +383,32 @@ const Row<csgm_diff_options> diff_rows[] = {
 };
 #undef OF
 
+#define OF(member) MEMBER(csgm_measure_options, member)
+const Row<csgm_measure_options> measure_rows[] = {
+    OF(tolerance),
+    OF(density),
+    OF(part),
+    OF(most_cubes),
+};
+#undef OF
+
+void take_parts(csgm_clear_options &options, nb::handle value, const char *name, Keep &keep)
+{
+    for (nb::handle part : nb::cast<nb::list>(value))
+        keep.parts.push_back(keep.text(part, name));
+    options.parts = keep.parts.data();
+    options.part_count = keep.parts.size();
+}
+
+#define OF(member) MEMBER(csgm_clear_options, member)
+const Row<csgm_clear_options> clear_rows[] = {
+    OF(tolerance),
+    OF(min_gap),
+    {"parts", take_parts},
+    OF(most_pairs),
+};
+#undef OF
+
 } // namespace
 
 const char *Keep::text(nb::handle value, const char *name)
@@ -427,6 +453,16 @@ void fill_diff_options(csgm_diff_options &options, nb::dict given, Keep &keep)
     fill(options, given, diff_rows, keep);
 }
 
+void fill_measure_options(csgm_measure_options &options, nb::dict given, Keep &keep)
+{
+    fill(options, given, measure_rows, keep);
+}
+
+void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep)
+{
+    fill(options, given, clear_rows, keep);
+}
+
 void define_options(nb::module_ &module)
 {
     nb::dict all;
@@ -436,5 +472,7 @@ void define_options(nb::module_ &module)
     all["write"] = names(write_rows);
     all["render"] = names(render_rows);
     all["diff"] = names(diff_rows);
+    all["measure"] = names(measure_rows);
+    all["clear"] = names(clear_rows);
     module.attr("option_names") = all;
 }

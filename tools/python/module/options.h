@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "csgmesh/csgmesh.h"
+#include "csgmesh/clearance.h"
 
 namespace nb = nanobind;
 
@@ -19,7 +19,7 @@ namespace nb = nanobind;
 struct Keep {
     std::list<std::string> texts;
     std::vector<csgm_define> defines;
-    std::vector<const char *> folders, metadata;
+    std::vector<const char *> folders, metadata, parts;
     std::vector<csgm_level> levels;
 
     const char *text(nb::handle bytes, const char *name);
@@ -31,6 +31,8 @@ void fill_mesh_options(csgm_mesh_options &options, nb::dict given, Keep &keep);
 void fill_write_options(csgm_write_options &options, nb::dict given, Keep &keep);
 void fill_render_options(csgm_render_options &options, nb::dict given, Keep &keep);
 void fill_diff_options(csgm_diff_options &options, nb::dict given, Keep &keep);
+void fill_measure_options(csgm_measure_options &options, nb::dict given, Keep &keep);
+void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep);
 
 /* option_names(kind): for those who check names before. */
 void define_options(nb::module_ &module);

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Measures and clearances: the figures of the command line, closed forms, and what is refused."""
+import json
+import math
+import pathlib
+
+import pytest
+
+import csgmesh
+from conftest import SCENES, csgmesh_program
+
+MUG = SCENES / "parts" / "mug.txt"
+BOXES = 'part("a") cube([1, 2, 3]); part("b") translate([t, 0, 0]) color("red") sphere(1);'
+
+
+def test_figures_are_those_of_the_command_line(folder):
+    for options, arguments in (({"tolerance": 1e-2}, []), ({"tolerance": 1e-2, "density": 2.5}, ["--density", 2.5])):
+        wanted = json.loads(csgmesh_program("measure", MUG, "--json", "--to", 1e-2, *arguments, cwd=folder))
+        found = csgmesh.measure(MUG, **options)
+        assert list(found.volume) == wanted["volume"] and list(found.mass) == wanted["mass"]
+        assert [list(pair) for pair in found.inertia] == list(wanted["inertia"].values())
+        assert [list(pair) for pair in found.bounds] == list(wanted["bounds"].values())
+        assert [list(pair) for pair in found.moments] == [one["moment"] for one in wanted["principal"]]
+        assert [list(axis) for axis in found.axes] == [one["axis"] for one in wanted["principal"]]
+        assert found.is_reached and found.cubes == wanted["cubes"]
+
+
+def test_solids_scenes_and_meshes(folder):
+    solid = csgmesh.cube([2, 3, 4])
+    for source in (solid, solid.scene(), "cube([2, 3, 4]);", solid.mesh()):
+        found = csgmesh.measure(source)
+        assert found.volume[0] <= 24 <= found.volume[1] and found.volume[1] - found.volume[0] < 0.01
+        assert found.area[0] <= 52 <= found.area[1]
+        assert (found.area[1] < 53) == isinstance(source, csgmesh.Mesh) and found.axis_within[0] < 1
+    low, high = csgmesh.measure(BOXES, define={"t": 9}, part="b", tolerance=1e-3).volume
+    assert low <= 4 / 3 * math.pi <= high
+    assert not csgmesh.measure("torus(8, 2);", tolerance=1e-9, most_cubes=1000).is_reached
+    with pytest.raises(ValueError, match="'c'"):
+        csgmesh.measure(BOXES, define={"t": 9}, part="c")
+    with pytest.raises(csgmesh.SceneError, match="infinity"):
+        csgmesh.measure("plane([0, 0, 1]);")
+    with pytest.raises(TypeError, match="did you mean 'density'"):
+        csgmesh.measure(solid, densty=1)
+    with pytest.raises(csgmesh.LimitError):
+        csgmesh.measure(MUG, timeout=1e-6)
+
+
+def test_clearances(folder):
+    (folder / "boxes.txt").write_text("t = 0;\n" + BOXES)
+    poses = [{"t": t} for t in (9, 2.5, 1.5, 4)]
+    for source in (pathlib.Path("boxes.txt"), "t = 0;\n" + BOXES):
+        (pair,) = csgmesh.clear(source, poses=poses[:2], tolerance=1e-3)
+        assert (pair.parts, pair.state, pair.pose, pair.poses, pair.poses_bad) == (("a", "b"), "apart", 1, 2, 0)
+        assert pair.gap[0] <= 0.5 <= pair.gap[1] and pair.gap[1] - pair.gap[0] <= 2e-3
+        assert pair.inside is None and math.dist(*pair.nearest) == pytest.approx(pair.gap[1], abs=1e-6)
+        (pair,) = csgmesh.clear(source, poses=poses)
+        assert (pair.state, pair.pose, pair.poses_bad) == ("interfering", 2, 1)
+        assert pair.volume[0] > 0 and pair.nearest is None and 0.5 < pair.inside[0] < 1
+    (pair,) = csgmesh.clear(BOXES, define={"t": 2.5}, min_gap=0.6)
+    assert (pair.poses_bad, pair.poses_open) == (1, 0)
+    assert csgmesh.clear(csgmesh.code(BOXES.replace("t,", "9,")), parts="a")[0].state == "apart"
+    with pytest.raises(ValueError, match="'a', 'b'"):
+        csgmesh.clear(BOXES, define={"t": 9}, parts=["a", "d"])
+    with pytest.raises(csgmesh.ArgumentError):
+        csgmesh.clear(BOXES, define={"t": 9}, tolerance=-1)
+    with pytest.raises(csgmesh.SceneSyntaxError):
+        csgmesh.clear("cube(")
+    with pytest.raises(csgmesh.SceneError):
+        csgmesh.clear("cube(1);")
+    with pytest.raises(TypeError, match="Scene"):
+        csgmesh.clear(csgmesh.parse(BOXES, define={"t": 9}))

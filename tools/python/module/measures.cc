@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ * Numbers with proof: what a scene or a mesh measures, and whether parts stay clear of each other.
+ * Intervals are pairs, (low, high).
+ */
+#include <nanobind/stl/string.h>
+
+#include "csgmesh/clearance.h"
+#include "module/objects.h"
+#include "module/options.h"
+
+namespace
+{
+
+nb::tuple pair_of(const csgm_interval &interval)
+{
+    return nb::make_tuple(interval.low, interval.high);
+}
+
+template <size_t COUNT> nb::tuple pairs_of(const csgm_interval (&intervals)[COUNT])
+{
+    nb::list out;
+    for (const csgm_interval &interval : intervals)
+        out.append(pair_of(interval));
+    return nb::tuple(out);
+}
+
+/* ---- measures ---------------------------------------------------------------------------------- */
+
+nb::dict dict_of(const csgm_measures &m)
+{
+    nb::dict out;
+    nb::list axes, within;
+    for (int n = 0; n < 3; n++) {
+        axes.append(vector_of(m.axes[n]));
+        within.append(m.axis_within[n]);
+    }
+    out["is_reached"] = m.is_reached;
+    out["cubes"] = m.cubes;
+    out["volume"] = pair_of(m.volume);
+    out["mass"] = pair_of(m.mass);
+    out["area"] = pair_of(m.area);
+    out["centroid"] = pairs_of(m.centroid);
+    out["inertia"] = pairs_of(m.inertia);
+    out["moments"] = pairs_of(m.moments);
+    out["axes"] = nb::tuple(axes);
+    out["axis_within"] = nb::tuple(within);
+    out["bounds"] = pairs_of(m.bounds);
+    return out;
+}
+
+/* what: measures with the options, without the GIL. */
+template <typename What> nb::tuple measure(const Run &run, nb::dict given, What what)
+{
+    Keep keep;
+    csgm_measure_options options = csgm_measure_options_default();
+    options.monitor = run.context->monitor();
+    fill_measure_options(options, given, keep);
+    csgm_measures measures = csgm_measures_default();
+    csgm_status status = run.work([&] { return what(options, measures); });
+    return result_of(status, dict_of(measures));
+}
+
+nb::tuple measure_scene(const Run &run, const Scene &scene, nb::dict given)
+{
+    return measure(run, given, [&](const csgm_measure_options &options, csgm_measures &out) {
+        csgm_field *field = nullptr;
+        csgm_status status = csgm_field_compile(run.context->get(), scene.scene.get(), &field);
+        FieldPointer owner{field, csgm_field_destroy};
+        return status != CSGM_OK ? status
+                                 : csgm_measure_field(run.context->get(), field, &options, &out);
+    });
+}
+
+nb::tuple measure_mesh(const Run &run, const Mesh &mesh, nb::dict given)
+{
+    return measure(run, given, [&](const csgm_measure_options &options, csgm_measures &out) {
+        return csgm_measure_mesh(run.context->get(), &mesh.view, &options, &out);
+    });
+}
+
+/* ---- clearances -------------------------------------------------------------------------------- */
+
+struct Clearances {
+    ContextPointer context;
+    std::unique_ptr<csgm_clearances, decltype(&csgm_clearances_destroy)> clearances{
+        nullptr, csgm_clearances_destroy};
+};
+
+/* Scenes that are added must have been read in the same run. */
+nb::tuple begin_clear(const Run &run, nb::dict given)
+{
+    Keep keep;
+    auto out = std::make_unique<Clearances>();
+    csgm_clear_options options = csgm_clear_options_default();
+    options.monitor = run.context->monitor();
+    fill_clear_options(options, given, keep);
+    csgm_clearances *made = nullptr;
+    csgm_status status = csgm_clearances_create(run.context->get(), &options, &made);
+    out->context = run.context;
+    out->clearances.reset(made);
+    return result_of(status, nb::cast(out.release(), nb::rv_policy::take_ownership));
+}
+
+nb::tuple add_pose(const Run &run, const Clearances &self, const Scene &scene)
+{
+    csgm_status status =
+        run.work([&] { return csgm_clearances_add(self.clearances.get(), scene.scene.get()); });
+    return result_of(status, nb::none());
+}
+
+nb::dict clear_pair_of(const csgm_clear_pair &p)
+{
+    static const char *const states[] = {"apart", "touching", "undecided", "interfering"};
+    bool knows_nearest =
+        !p.by_boxes && (p.state == CSGM_CLEAR_APART || p.state == CSGM_CLEAR_TOUCHING);
+    bool interferes = p.state == CSGM_CLEAR_INTERFERING;
+    nb::dict out;
+    out["parts"] = nb::make_tuple(text_of(p.names[0]), text_of(p.names[1]));
+    out["state"] = states[p.state];
+    out["pose"] = p.pose;
+    out["gap"] = pair_of(p.gap);
+    out["nearest"] =
+        knows_nearest ? nb::object(nb::make_tuple(vector_of(p.nearest[0]), vector_of(p.nearest[1])))
+                      : nb::none();
+    out["inside"] = interferes ? nb::object(vector_of(p.inside)) : nb::none();
+    out["volume"] = interferes ? nb::object(pair_of(p.volume)) : nb::none();
+    out["size"] = p.state == CSGM_CLEAR_UNDECIDED ? nb::object(nb::float_(p.size)) : nb::none();
+    out["poses"] = p.poses;
+    out["poses_bad"] = p.poses_bad;
+    out["poses_open"] = p.poses_open;
+    return out;
+}
+
+nb::list clear_pairs_of(const Clearances &self)
+{
+    nb::list out;
+    for (size_t i = 0; const csgm_clear_pair *pair = csgm_clearances_get(self.clearances.get(), i);
+         i++)
+        out.append(clear_pair_of(*pair));
+    return out;
+}
+
+nb::list part_names_of(const Clearances &self)
+{
+    nb::list out;
+    const char *name;
+    for (size_t i = 0; csgm_clearances_part(self.clearances.get(), i, &name); i++)
+        out.append(text_of(name));
+    return out;
+}
+
+} // namespace
+
+void define_measures(nb::module_ &module)
+{
+    nb::class_<Clearances>(module, "Clearances")
+        .def("pairs", clear_pairs_of)
+        .def("parts", part_names_of)
+        .def_prop_ro("tolerance", [](const Clearances &self) {
+            return csgm_clearances_tolerance(self.clearances.get());
+        });
+    module.def("measure_scene", measure_scene, nb::arg("run"), nb::arg("scene"),
+               nb::arg("options"));
+    module.def("measure_mesh", measure_mesh, nb::arg("run"), nb::arg("mesh"), nb::arg("options"));
+    module.def("begin_clear", begin_clear, nb::arg("run"), nb::arg("options"));
+    module.def("add_pose", add_pose, nb::arg("run"), nb::arg("clearances"), nb::arg("scene"));
+}
