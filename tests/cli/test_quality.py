@@ -206,6 +206,8 @@ intersection(blend = 0.3) {
         self.assertLess(counts["0.1"], 3596 / 2)
         bar = self.bytes("cube([200, 1, 1]);", "-e", "0.01", name="bar.obj").decode()
         self.assertEqual((bar.count("\nf "), bar.count("\nvn ")), (12, 24), "a normal for each corner of each side")
+        gap = self.stats("cube(5); translate([5.02, 0, 0]) cube(5);", "-e", "0.05")  # no field tells within E which side is whose
+        self.assertEqual((gap["mesh"]["triangles"], gap["quality"]["open_places"]), (24, 0))
         plate = self.stats("union() { cube([20, 20, 0.01]); translate([30, 0, 0]) cube(5); }", "--simplify", "0.5")
         self.assertEqual(plate["mesh"]["triangles"], 24)
 

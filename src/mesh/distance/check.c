@@ -445,6 +445,15 @@ static void end(proof *p)
     csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
 }
 
+/* Polyhedra's own triangles are the surface, but for what floats and joining them have rounded. */
+static bool is_surface(const proof *p, uint32_t triangle)
+{
+    static const double ROUNDED = 64; /* of the noise, and less */
+    const csg_remesh *r = p->remesh;
+    return r->is_own && p->error > ROUNDED * (double)r->probe.noise &&
+           csg_remesh_is_as_begun(r, triangle);
+}
+
 csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
                                uint8_t *pending, csg_distance_proof *out)
 {
@@ -459,6 +468,8 @@ csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool pati
         if (csg_corners_is_live(m, t) && pending[t]) {
             pending[t] = 0;
             p.at = t;
+            if (is_surface(&p, t))
+                continue;
             status = prove_triangle(&p, t, pending, out);
         }
     if (status == CSGM_OK && p.count && !out->stopped)

@@ -13,6 +13,8 @@
  *            pieces of the order of sqrt(E / curvature) are settled at once
  *   nearby   f changes its sign within E - r of c
  *
+ * Triangles of polyhedra that are as they were need no proof: they are the surface.
+ *
  * Every piece that is settled has the surface within E on the line through each of its points; and
  * where a cone settled it, just once: the surface near it is one sheet, so it is within E of the
  * mesh too.

@@ -308,14 +308,32 @@ bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
 /* ---- beginning ---------------------------------------------------------------------------------
  */
 
+static csg_vec3 first_place(const csg_remesh *r, uint32_t vertex)
+{
+    return csg_vec3_sub(csg_vec3_from_floats(r->mesh->positions + 3 * (size_t)vertex),
+                        r->marching->shift);
+}
+
+bool csg_remesh_is_as_begun(const csg_remesh *r, uint32_t triangle)
+{
+    if (triangle >= r->mesh->triangle_count)
+        return false;
+    for (size_t c = 3 * (size_t)triangle; c < 3 * (size_t)triangle + 3; c++) {
+        uint32_t v = r->corners.vertex[c];
+        if (v != r->mesh->indices[c])
+            return false;
+        csg_vec3 off = csg_vec3_sub(r->at[v], first_place(r, v));
+        if (csg_vec3_dot(off, off) > 0)
+            return false;
+    }
+    return true;
+}
+
 static void copy_vertices(csg_remesh *r)
 {
     const csgm_mesh *mesh = r->mesh;
-    csg_vec3 shift = r->marching->shift;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
-        const float *p = mesh->positions + 3 * (size_t)v;
-        csg_vec3 at = csg_vec3_from_floats(p);
-        r->at[v] = csg_vec3_sub(at, shift);
+        r->at[v] = first_place(r, v);
         if (r->looks && mesh->colors)
             memcpy(r->looks[v].color, mesh->colors + 4 * (size_t)v, 4);
         if (r->looks && mesh->materials)
