@@ -14,14 +14,13 @@ static void print_interval(const char *name, csgm_interval interval)
 
 static void print_axis(int n, const csgm_measures *m)
 {
+    static const char *const names[] = {"axis 1", "2", "3"};
     const csgm_vec3 axis = m->axes[n];
-    char name[16];
-    snprintf(name, sizeof name, "axis %d", n + 1);
     if (m->axis_within[n] < 90)
-        printf("  %-12s %.6g,%.6g,%.6g within %.2g degrees\n", name, axis.x, axis.y, axis.z,
+        printf("  %-12s %.6g,%.6g,%.6g within %.2g degrees\n", names[n], axis.x, axis.y, axis.z,
                m->axis_within[n]);
     else
-        printf("  %-12s unknown\n", name);
+        printf("  %-12s unknown\n", names[n]);
 }
 
 static void print_measures(const cli_measured *measured, const csgm_measures *m)
